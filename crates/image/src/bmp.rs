@@ -1,0 +1,122 @@
+//! BMP: 24 bits a pixel, uncompressed, the format of the method's first implementation.
+//!
+//! Layout (little-endian): `BITMAPFILEHEADER` of 14 bytes, `BITMAPINFOHEADER` of 40 bytes, then the rows from the bottom
+//! one up, each of blue, green, red triples and padded to a multiple of 4 bytes.
+
+use std::io::{Cursor, Write};
+
+use image::codecs::bmp::BmpDecoder;
+
+use crate::load::{DecodeError, read_with};
+use crate::save::EncodeError;
+use crate::{Format, Frame, Transfer};
+
+const FILE_HEADER: u32 = 14;
+const INFO_HEADER: u32 = 40;
+const HEADERS: u32 = FILE_HEADER + INFO_HEADER;
+
+/// 72 dots per inch, in dots per metre.
+const RESOLUTION: i32 = 2835;
+
+/// The sizes that the headers state, all within their 32 bits.
+struct Layout {
+    width: i32,
+    height: i32,
+    row: usize,
+    image: u32,
+    file: u32,
+}
+
+impl Layout {
+    fn new(width: u32, height: u32) -> Option<Self> {
+        let row = (u64::from(width) * 3).next_multiple_of(4);
+        let image = u32::try_from(row.checked_mul(u64::from(height))?).ok()?;
+        Some(Self {
+            width: i32::try_from(width).ok()?,
+            height: i32::try_from(height).ok()?,
+            row: usize::try_from(row).ok()?,
+            image,
+            file: image.checked_add(HEADERS)?,
+        })
+    }
+
+    fn headers(&self) -> [u8; HEADERS as usize] {
+        let mut bytes = [0; HEADERS as usize];
+        let mut put = |at: usize, value: &[u8]| bytes[at..at + value.len()].copy_from_slice(value);
+        put(0, b"BM");
+        put(2, &self.file.to_le_bytes());
+        put(10, &HEADERS.to_le_bytes()); // where the rows start
+        put(14, &INFO_HEADER.to_le_bytes());
+        put(18, &self.width.to_le_bytes());
+        put(22, &self.height.to_le_bytes()); // positive: bottom row first
+        put(26, &1_u16.to_le_bytes()); // planes
+        put(28, &24_u16.to_le_bytes()); // bits a pixel
+        put(34, &self.image.to_le_bytes()); // after four zero bytes: no compression
+        put(38, &RESOLUTION.to_le_bytes());
+        put(42, &RESOLUTION.to_le_bytes());
+        bytes
+    }
+}
+
+/// Writes `frame` with `transfer`; the format cannot say which one was used.
+pub(crate) fn write(frame: &Frame, transfer: Transfer, mut output: impl Write) -> Result<(), EncodeError> {
+    let layout = Layout::new(frame.width(), frame.height()).ok_or(EncodeError::TooLarge { limit: "4 GiB a file" })?;
+    output.write_all(&layout.headers())?;
+    let mut bytes = Vec::with_capacity(layout.row);
+    for row in frame.rows().rev() {
+        bytes.clear();
+        bytes.extend(row.iter().flat_map(|&[r, g, b]| [b, g, r].map(|value| transfer.encode(value))));
+        bytes.resize(layout.row, 0);
+        output.write_all(&bytes)?;
+    }
+    Ok(())
+}
+
+/// Reads any BMP of 1 to 32 bits a pixel, taken as sRGB.
+pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
+    read_with(Format::Bmp, BmpDecoder::new(Cursor::new(bytes)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn encode(width: u32, height: u32, color: Vec<[f32; 3]>) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        write(&Frame::new(width, height, color).unwrap(), Transfer::Linear, &mut bytes).unwrap();
+        bytes
+    }
+
+    #[test]
+    fn every_byte_of_a_small_picture() {
+        let color = (0..6).map(|pixel| [1, 2, 3].map(|channel| (pixel * 10 + channel) as f32 / 255.0)).collect();
+        #[rustfmt::skip]
+        let expected = [
+            b'B', b'M', 78, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0,
+            40, 0, 0, 0, 3, 0, 0, 0, 2, 0, 0, 0, 1, 0, 24, 0, 0, 0, 0, 0, 24, 0, 0, 0,
+            0x13, 0x0b, 0, 0, 0x13, 0x0b, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+            33, 32, 31, 43, 42, 41, 53, 52, 51, 0, 0, 0,
+            3, 2, 1, 13, 12, 11, 23, 22, 21, 0, 0, 0,
+        ];
+        assert_eq!(encode(3, 2, color), expected);
+    }
+
+    #[test]
+    fn rows_are_padded_to_four_bytes() {
+        for (width, row) in [(1, 4), (2, 8), (3, 12), (4, 12), (5, 16), (6, 20), (7, 24), (8, 24)] {
+            let bytes = encode(width, 3, vec![[1.0; 3]; 3 * width as usize]);
+            assert_eq!(bytes.len(), 54 + 3 * row, "width {width}");
+            let padding = &bytes[54 + 3 * width as usize..54 + row];
+            assert!(padding.iter().all(|&byte| byte == 0), "width {width}");
+        }
+    }
+
+    #[test]
+    fn sizes_beyond_32_bits_are_refused() {
+        assert!(Layout::new(37_837, 37_837).is_some_and(|layout| layout.file > 4_000_000_000));
+        assert!(Layout::new(37_838, 37_838).is_none());
+        assert!(Layout::new(u32::MAX, 1).is_none());
+        assert!(Layout::new(1, u32::MAX).is_none());
+        assert!(Layout::new(u32::MAX, u32::MAX).is_none());
+    }
+}

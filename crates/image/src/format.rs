@@ -1,0 +1,90 @@
+//! The picture formats: their extensions for writing, their first bytes for reading.
+
+use std::fmt;
+use std::path::Path;
+
+/// A picture format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Windows bitmap, 24 bits a pixel, uncompressed.
+    Bmp,
+    /// Portable Network Graphics, 8 bits a channel.
+    Png,
+    /// OpenEXR, linear 32-bit floats.
+    Exr,
+    /// JPEG, 8 bits a channel, lossy.
+    Jpg,
+}
+
+impl Format {
+    /// The formats in the order in which messages list them.
+    pub const ALL: [Self; 4] = [Self::Bmp, Self::Png, Self::Exr, Self::Jpg];
+
+    /// The extensions that stand for the format, the preferred one first.
+    pub fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Self::Bmp => &["bmp"],
+            Self::Png => &["png"],
+            Self::Exr => &["exr"],
+            Self::Jpg => &["jpg", "jpeg"],
+        }
+    }
+
+    /// The format that the extension of `path` names, in upper or lower case.
+    pub fn from_path(path: &Path) -> Option<Self> {
+        let extension = path.extension()?;
+        Self::ALL
+            .into_iter()
+            .find(|format| format.extensions().iter().any(|known| extension.eq_ignore_ascii_case(known)))
+    }
+
+    /// The format whose signature `bytes` starts with.
+    pub(crate) fn from_signature(bytes: &[u8]) -> Option<Self> {
+        Self::ALL.into_iter().find(|format| bytes.starts_with(format.signature()))
+    }
+
+    fn signature(self) -> &'static [u8] {
+        match self {
+            Self::Bmp => b"BM",
+            Self::Png => b"\x89PNG\r\n\x1a\n",
+            Self::Exr => b"\x76\x2f\x31\x01",
+            Self::Jpg => b"\xff\xd8\xff",
+        }
+    }
+
+    /// All known extensions as messages list them.
+    pub(crate) fn known() -> String {
+        let extensions: Vec<_> = Self::ALL.iter().flat_map(|format| format.extensions()).copied().collect();
+        extensions.join(", ")
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.extensions()[0])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extensions_name_formats() {
+        assert_eq!(Format::from_path(Path::new("a/b.PNG")), Some(Format::Png));
+        assert_eq!(Format::from_path(Path::new("b.jpeg")), Some(Format::Jpg));
+        assert_eq!(Format::from_path(Path::new("b.tga")), None);
+        assert_eq!(Format::from_path(Path::new("png")), None);
+        assert_eq!(Format::known(), "bmp, png, exr, jpg, jpeg");
+    }
+
+    #[test]
+    fn signatures_name_formats() {
+        for format in Format::ALL {
+            let mut bytes = format.signature().to_vec();
+            bytes.push(0);
+            assert_eq!(Format::from_signature(&bytes), Some(format));
+            assert_eq!(Format::from_signature(&format.signature()[1..]), None);
+        }
+    }
+}

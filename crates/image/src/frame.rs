@@ -1,0 +1,188 @@
+//! [`Frame`], what a render produces, and [`Layers`], what each pixel saw on the way.
+//!
+//! Pixels are row-major and row 0 is the top one, so pixel (x, y) lies at `y * width + x` in every plane. Every length is
+//! checked when a frame is made; the writers rely on it.
+
+use thiserror::Error;
+
+/// A picture of linear radiance with Rec. 709 primaries, and optionally the [`Layers`] behind it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    width: u32,
+    height: u32,
+    color: Vec<[f32; 3]>,
+    layers: Option<Layers>,
+}
+
+/// What the render knew about each pixel: one plane a quantity, each of `width * height` entries in the frame's order.
+///
+/// Lengths and vectors are in scene units and world coordinates. Where a pixel's ray missed the scene, `depth` is
+/// +infinity and everything else is 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Layers {
+    /// Distance from the camera along the pixel's ray.
+    pub depth: Vec<f32>,
+    /// Geometric normal, of unit length, turned to the viewer.
+    pub normal: Vec<[f32; 3]>,
+    /// Object point.
+    pub position: Vec<[f32; 3]>,
+    /// One plane a light: visibility in [0, 1], which is 0 where the light is behind the surface.
+    pub visibility: Vec<Vec<f32>>,
+    /// Number of light points that the pixel's visibility was interpolated from.
+    pub used: Vec<u32>,
+}
+
+/// Planes that do not fit the size of their frame.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum FrameError {
+    /// Width or height is 0, or the number of pixels is not addressable.
+    #[error("a frame of {width}x{height} pixels cannot exist: both sides must be at least 1 and fit in memory")]
+    Size {
+        /// Pixels a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// A plane has another number of entries than the frame has pixels.
+    #[error("plane '{plane}' has {found} entries, but a frame of {width}x{height} pixels needs {expected}")]
+    Length {
+        /// Name of the plane: `color`, or a field of [`Layers`] (`visibility[i]` for light i).
+        plane: String,
+        /// Pixels a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// `width * height`.
+        expected: usize,
+        /// The plane's length.
+        found: usize,
+    },
+}
+
+impl Frame {
+    /// A frame of `width * height` linear colours, row 0 at the top.
+    ///
+    /// # Errors
+    /// [`FrameError`] where a side is 0 or `color` has another length.
+    pub fn new(width: u32, height: u32, color: Vec<[f32; 3]>) -> Result<Self, FrameError> {
+        let pixels = pixel_count(width, height).ok_or(FrameError::Size { width, height })?;
+        check_length("color", color.len(), width, height, pixels)?;
+        Ok(Self { width, height, color, layers: None })
+    }
+
+    /// The same frame with `layers` attached, in place of those it had.
+    ///
+    /// # Errors
+    /// [`FrameError::Length`] where a plane has another number of entries than the frame has pixels.
+    pub fn with_layers(mut self, layers: Layers) -> Result<Self, FrameError> {
+        let check = |plane: &str, found| check_length(plane, found, self.width, self.height, self.color.len());
+        check("depth", layers.depth.len())?;
+        check("normal", layers.normal.len())?;
+        check("position", layers.position.len())?;
+        check("used", layers.used.len())?;
+        for (light, plane) in layers.visibility.iter().enumerate() {
+            check(&format!("visibility[{light}]"), plane.len())?;
+        }
+        self.layers = Some(layers);
+        Ok(self)
+    }
+
+    /// Pixels a row.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Linear colours, row-major, row 0 at the top.
+    pub fn color(&self) -> &[[f32; 3]] {
+        &self.color
+    }
+
+    /// Linear colours, to be changed in place.
+    pub fn color_mut(&mut self) -> &mut [[f32; 3]] {
+        &mut self.color
+    }
+
+    /// The colour of pixel (x, y), or `None` outside of the frame.
+    pub fn pixel(&self, x: u32, y: u32) -> Option<[f32; 3]> {
+        (x < self.width && y < self.height).then(|| self.color[y as usize * self.width as usize + x as usize])
+    }
+
+    /// The rows from top to bottom, each of `width` colours.
+    pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[[f32; 3]]> + ExactSizeIterator {
+        self.color.chunks_exact(self.width as usize)
+    }
+
+    /// A frame of the same size, without layers, coloured by the index of each pixel.
+    pub(crate) fn recolored(&self, color: impl FnMut(usize) -> [f32; 3]) -> Self {
+        Self { color: (0..self.color.len()).map(color).collect(), layers: None, ..*self }
+    }
+
+    /// The layers, where the frame was made with them.
+    pub fn layers(&self) -> Option<&Layers> {
+        self.layers.as_ref()
+    }
+}
+
+/// `width * height`, or `None` where there is no pixel or the colours would not be addressable.
+pub(crate) fn pixel_count(width: u32, height: u32) -> Option<usize> {
+    let pixels = usize::try_from(u64::from(width) * u64::from(height)).ok()?;
+    let bytes = pixels.checked_mul(size_of::<[f32; 3]>())?;
+    (pixels > 0 && isize::try_from(bytes).is_ok()).then_some(pixels)
+}
+
+fn check_length(plane: &str, found: usize, width: u32, height: u32, expected: usize) -> Result<(), FrameError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(FrameError::Length { plane: plane.to_owned(), width, height, expected, found })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn layers(pixels: usize) -> Layers {
+        Layers {
+            depth: vec![1.0; pixels],
+            normal: vec![[0.0, 1.0, 0.0]; pixels],
+            position: vec![[0.0; 3]; pixels],
+            visibility: vec![vec![1.0; pixels]; 2],
+            used: vec![7; pixels],
+        }
+    }
+
+    #[test]
+    fn rows_run_from_the_top() {
+        let frame = Frame::new(2, 2, vec![[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]]).unwrap();
+        assert_eq!(frame.pixel(1, 0), Some([1.0; 3]));
+        assert_eq!(frame.pixel(0, 1), Some([2.0; 3]));
+        assert_eq!((frame.pixel(2, 0), frame.pixel(0, 2)), (None, None));
+        assert_eq!(frame.rows().last(), Some(&[[2.0; 3], [3.0; 3]][..]));
+    }
+
+    #[test]
+    fn a_frame_without_pixels_is_refused() {
+        assert_eq!(Frame::new(0, 3, vec![]), Err(FrameError::Size { width: 0, height: 3 }));
+        assert_eq!(Frame::new(3, 0, vec![]), Err(FrameError::Size { width: 3, height: 0 }));
+        assert!(matches!(Frame::new(u32::MAX, u32::MAX, vec![]), Err(FrameError::Size { .. })));
+    }
+
+    #[test]
+    fn lengths_are_checked() {
+        let error = Frame::new(3, 2, vec![[0.0; 3]; 5]).unwrap_err();
+        assert_eq!(error.to_string(), "plane 'color' has 5 entries, but a frame of 3x2 pixels needs 6");
+
+        let frame = || Frame::new(3, 2, vec![[0.0; 3]; 6]).unwrap();
+        assert_eq!(frame().with_layers(layers(6)).unwrap().layers(), Some(&layers(6)));
+        let mut short = layers(6);
+        short.visibility[1].pop();
+        let error = frame().with_layers(short).unwrap_err();
+        assert!(error.to_string().contains("visibility[1]"), "{error}");
+        assert!(frame().with_layers(layers(7)).is_err());
+    }
+}

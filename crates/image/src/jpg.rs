@@ -1,0 +1,69 @@
+//! JPEG at quality 92: for looking at, not for measuring.
+
+use std::io::{self, Cursor, Write};
+
+use image::ImageError;
+use image::codecs::jpeg::{JpegDecoder, JpegEncoder};
+
+use crate::load::{DecodeError, read_with};
+use crate::save::EncodeError;
+use crate::{Format, Frame, Transfer};
+
+const QUALITY: u8 = 92;
+const MAX_SIDE: u32 = 65_535;
+
+const START_OF_SCAN: [u8; 2] = [0xff, 0xda];
+const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
+
+/// Writes `frame` with `transfer`; the format cannot say which one was used.
+pub(crate) fn write(frame: &Frame, transfer: Transfer, output: impl Write) -> Result<(), EncodeError> {
+    let (width, height) = (frame.width(), frame.height());
+    if width.max(height) > MAX_SIDE {
+        return Err(EncodeError::TooLarge { limit: "65535 pixels a side" });
+    }
+    let mut bytes = Vec::with_capacity(3 * frame.color().len());
+    transfer.encode_into(frame.color(), &mut bytes);
+    JpegEncoder::new_with_quality(output, QUALITY)
+        .encode(&bytes, width, height, image::ExtendedColorType::Rgb8)
+        .map_err(|error| EncodeError::Io(io_error(error)))
+}
+
+fn io_error(error: ImageError) -> io::Error {
+    match error {
+        ImageError::IoError(error) => error,
+        other => io::Error::other(other),
+    }
+}
+
+/// Reads baseline and progressive JPEG, taken as sRGB.
+pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
+    // The decoder fills what is missing with grey and calls it a success.
+    if is_cut_off(bytes) {
+        return Err(DecodeError::malformed(Format::Jpg, "the file ends before the picture does"));
+    }
+    read_with(Format::Jpg, JpegDecoder::new(Cursor::new(bytes)))
+}
+
+/// Whether no end marker follows the last scan. Neither marker can occur within the coded data of a scan.
+fn is_cut_off(bytes: &[u8]) -> bool {
+    let last = |marker: [u8; 2]| bytes.windows(2).rposition(|window| window == marker);
+    last(END_OF_IMAGE) <= last(START_OF_SCAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_sides_are_refused() {
+        let frame = Frame::new(65_536, 1, vec![[0.0; 3]; 65_536]).unwrap();
+        assert!(matches!(write(&frame, Transfer::Srgb, Vec::new()), Err(EncodeError::TooLarge { .. })));
+    }
+
+    #[test]
+    fn a_scan_without_an_end_is_noticed() {
+        assert!(is_cut_off(b""));
+        assert!(is_cut_off(b"\xff\xd8\xff\xd9 thumbnail, then \xff\xda scan"));
+        assert!(!is_cut_off(b"\xff\xd8\xff\xda scan \xff\xd9 and more"));
+    }
+}

@@ -1,0 +1,125 @@
+//! Transfer functions between linear values and the 8-bit codes of picture files.
+//!
+//! [`Transfer::Srgb`] is the piecewise curve of IEC 61966-2-1, not the power 2.2 that resembles it. Decoding and the
+//! thresholds of encoding are worked out in double precision, so a value gets the code nearest to its encoded value and
+//! all 256 codes survive a round trip.
+
+use std::sync::LazyLock;
+
+/// How an 8-bit file stands for linear values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Transfer {
+    /// The curve of IEC 61966-2-1, what screens and picture viewers expect.
+    #[default]
+    Srgb,
+    /// Codes proportional to the linear value, for measuring.
+    Linear,
+}
+
+/// The sRGB codes' linear values.
+static SRGB_DECODED: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|code| srgb_to_linear(code as f64 / 255.0) as f32));
+
+/// Linear value from which on code `i + 1` is nearer than code `i`: the curve half-way between both.
+static SRGB_THRESHOLDS: LazyLock<[f32; 255]> =
+    LazyLock::new(|| std::array::from_fn(|code| srgb_to_linear((code as f64 + 0.5) / 255.0) as f32));
+
+impl Transfer {
+    /// The code nearest to `linear` on this curve. Values outside of [0, 1] are clamped; NaN becomes 0.
+    pub fn encode(self, linear: f32) -> u8 {
+        match self {
+            // Counting the thresholds passed needs no power function per pixel, clamps at both ends, and NaN passes none.
+            Self::Srgb => SRGB_THRESHOLDS.partition_point(|&threshold| linear >= threshold) as u8,
+            // In f64 the product is exact; the cast saturates and turns NaN into 0.
+            Self::Linear => (f64::from(linear) * 255.0 + 0.5) as u8,
+        }
+    }
+
+    /// The linear value in [0, 1] that `code` stands for.
+    pub fn decode(self, code: u8) -> f32 {
+        match self {
+            Self::Srgb => SRGB_DECODED[usize::from(code)],
+            Self::Linear => f32::from(code) / 255.0,
+        }
+    }
+
+    /// The linear value of a `code` in 0..=65535, as 16-bit files have it.
+    pub(crate) fn decode16(self, code: u16) -> f32 {
+        let value = f64::from(code) / 65535.0;
+        match self {
+            Self::Srgb => srgb_to_linear(value) as f32,
+            Self::Linear => value as f32,
+        }
+    }
+
+    /// Appends the codes of `colors` to `bytes`, red first.
+    pub(crate) fn encode_into(self, colors: &[[f32; 3]], bytes: &mut Vec<u8>) {
+        bytes.extend(colors.as_flattened().iter().map(|&value| self.encode(value)));
+    }
+}
+
+/// The sRGB curve: a linear value in [0, 1] to its display value in [0, 1].
+pub(crate) fn linear_to_srgb(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// The inverse of [`linear_to_srgb`].
+fn srgb_to_linear(display: f64) -> f64 {
+    if display <= 0.040_45 { display / 12.92 } else { ((display + 0.055) / 1.055).powf(2.4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn known_values_of_srgb() {
+        // Middle grey of 18 % is display value 0.4613561; code 128 is 21.586 %; code 10 lies on the straight part.
+        assert!((linear_to_srgb(0.18) - 0.461_356_1).abs() < 1e-6);
+        assert!((Transfer::Srgb.decode(128) - 0.215_860_5).abs() < 1e-6);
+        assert!((Transfer::Srgb.decode(10) - 10.0 / 255.0 / 12.92).abs() < 1e-9);
+        assert_eq!((Transfer::Srgb.decode(0), Transfer::Srgb.decode(255)), (0.0, 1.0));
+        assert_eq!((Transfer::Srgb.encode(0.18), Transfer::Srgb.encode(0.5)), (118, 188));
+    }
+
+    #[test]
+    fn both_parts_of_srgb_meet() {
+        let (below, above) = (linear_to_srgb(0.003_130_8), linear_to_srgb(0.003_130_801));
+        assert!((below - above).abs() < 1e-6, "{below} {above}");
+    }
+
+    #[test]
+    fn every_code_survives_a_round_trip() {
+        for transfer in [Transfer::Srgb, Transfer::Linear] {
+            for code in 0..=255 {
+                assert_eq!(transfer.encode(transfer.decode(code)), code, "{transfer:?}");
+                let wide = transfer.decode16(u16::from(code) * 257);
+                assert!((wide - transfer.decode(code)).abs() < 1e-7, "{transfer:?} {code}");
+            }
+        }
+    }
+
+    #[test]
+    fn encoding_rounds_to_the_nearest_code() {
+        for step in 0..=100_000 {
+            let linear = step as f32 / 100_000.0;
+            let srgb = linear_to_srgb(f64::from(linear)) * 255.0;
+            let off = (f64::from(Transfer::Srgb.encode(linear)) - srgb).abs();
+            assert!(off <= 0.5 + 1e-5, "{linear}: off by {off} codes");
+            let off = (f64::from(Transfer::Linear.encode(linear)) - f64::from(linear) * 255.0).abs();
+            assert!(off <= 0.5, "{linear}: off by {off} codes");
+        }
+    }
+
+    #[test]
+    fn values_out_of_range_are_clamped() {
+        for transfer in [Transfer::Srgb, Transfer::Linear] {
+            for low in [-0.0, -1e-9, -3.0, f32::NEG_INFINITY, f32::NAN, -f32::NAN] {
+                assert_eq!(transfer.encode(low), 0, "{transfer:?} {low}");
+            }
+            for high in [1.0, 1.000_1, 1e30, f32::INFINITY] {
+                assert_eq!(transfer.encode(high), 255, "{transfer:?} {high}");
+            }
+        }
+    }
+}

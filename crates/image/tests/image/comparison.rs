@@ -1,0 +1,102 @@
+//! The judge of pictures is judged: equal pictures pass, and every kind of difference is seen with the value it has.
+
+use crate::pictures::{coded, layered, plain, ramp};
+use lightmesh_image::{CompareError, Frame, Transfer, compare};
+
+fn close(value: f64, expected: f64) -> bool {
+    (value - expected).abs() <= 1e-6
+}
+
+#[test]
+fn equal_pictures_differ_by_nothing() {
+    for frame in [coded(33, 17), ramp(64, 64), plain(1, 1, [0.3; 3]), layered(8, 8)] {
+        let comparison = compare(&frame, &frame.clone()).unwrap();
+        assert_eq!((comparison.rmse, comparison.max_difference, comparison.mean_flip), (0.0, 0.0, 0.0));
+        assert_eq!(comparison.psnr, f64::INFINITY);
+        let difference = &comparison.difference;
+        assert_eq!((difference.width(), difference.height()), (frame.width(), frame.height()));
+        assert!(difference.layers().is_none());
+        assert!(difference.color().iter().all(|color| color == &difference.color()[0]), "one colour stands for equal");
+    }
+}
+
+#[test]
+fn black_and_white_are_as_far_apart_as_can_be() {
+    let comparison = compare(&plain(32, 32, [0.0; 3]), &plain(32, 32, [1.0; 3])).unwrap();
+    assert_eq!((comparison.rmse, comparison.psnr, comparison.max_difference), (1.0, 0.0, 1.0));
+    assert!(comparison.mean_flip > 0.95, "{}", comparison.mean_flip);
+}
+
+#[test]
+fn one_changed_pixel_has_its_known_weight() {
+    let frame = plain(10, 10, [0.0; 3]);
+    let mut changed = frame.clone();
+    changed.color_mut()[37] = [0.0, Transfer::Srgb.decode(51), 0.0]; // display value 0.2
+    let comparison = compare(&frame, &changed).unwrap();
+    let rmse = 0.2 / 300.0_f64.sqrt();
+    assert!(close(comparison.rmse, rmse), "{}", comparison.rmse);
+    assert!(close(comparison.psnr, -20.0 * rmse.log10()), "{}", comparison.psnr);
+    assert!(close(comparison.max_difference, 0.2), "{}", comparison.max_difference);
+    assert!(comparison.mean_flip > 0.0);
+    let map = comparison.difference.color();
+    assert_ne!(map[37], map[99], "the map shows where");
+}
+
+#[test]
+fn a_grey_step_has_its_known_values() {
+    let grey = |code| plain(16, 16, [Transfer::Srgb.decode(code); 3]);
+    let comparison = compare(&grey(102), &grey(153)).unwrap();
+    assert!(close(comparison.rmse, 0.2) && close(comparison.max_difference, 0.2), "{comparison:?}");
+    assert!(close(comparison.psnr, 13.979_400), "{}", comparison.psnr);
+}
+
+#[test]
+fn a_shifted_picture_is_seen() {
+    let (width, height) = (64, 64);
+    let stripes = |shift: u32| {
+        let color = (0..width * height).map(|pixel| [(((pixel % width) + shift) / 8 % 2) as f32; 3]).collect();
+        Frame::new(width, height, color).unwrap()
+    };
+    let comparison = compare(&stripes(0), &stripes(1)).unwrap();
+    // One column in eight swaps black for white.
+    assert!(close(comparison.rmse, (1.0_f64 / 8.0).sqrt()), "{}", comparison.rmse);
+    assert_eq!(comparison.max_difference, 1.0);
+    assert!(comparison.mean_flip > 0.1, "{}", comparison.mean_flip);
+
+    let half = compare(&stripes(0), &stripes(8)).unwrap();
+    assert_eq!(half.rmse, 1.0);
+    assert!(half.mean_flip > comparison.mean_flip, "a larger shift is worse");
+}
+
+#[test]
+fn what_is_brighter_than_the_screen_does_not_count() {
+    let comparison = compare(&plain(8, 8, [1.0; 3]), &plain(8, 8, [f32::INFINITY; 3])).unwrap();
+    assert_eq!((comparison.rmse, comparison.mean_flip), (0.0, 0.0));
+}
+
+#[test]
+fn sizes_must_agree() {
+    let error = compare(&ramp(4, 3), &ramp(3, 4)).unwrap_err();
+    assert_eq!(error, CompareError::Size { first: (4, 3), second: (3, 4) });
+    assert!(error.to_string().contains("4x3 pixels with one of 3x4"), "{error}");
+}
+
+#[test]
+fn nan_is_an_error_and_not_a_match() {
+    let mut broken = plain(4, 3, [0.5; 3]);
+    broken.color_mut()[6][1] = f32::NAN;
+    let error = compare(&broken, &broken).unwrap_err();
+    assert_eq!(error, CompareError::NotANumber { which: "first", x: 2, y: 1 });
+    let error = compare(&plain(4, 3, [0.5; 3]), &broken).unwrap_err();
+    assert_eq!(error, CompareError::NotANumber { which: "second", x: 2, y: 1 });
+}
+
+#[test]
+fn json_has_the_four_measures() {
+    let json = |a: &Frame, b: &Frame| serde_json::to_value(compare(a, b).unwrap()).unwrap();
+    let equal = json(&ramp(8, 8), &ramp(8, 8));
+    assert_eq!(equal, serde_json::json!({"rmse": 0.0, "psnr": null, "max_difference": 0.0, "mean_flip": 0.0}));
+    let opposite = json(&plain(8, 8, [0.0; 3]), &plain(8, 8, [1.0; 3]));
+    assert_eq!(opposite["psnr"], 0.0);
+    assert!(opposite["mean_flip"].as_f64().is_some_and(|flip| flip > 0.9));
+}

@@ -1,0 +1,36 @@
+//! Soft shadows without noise: the light mesh method.
+//!
+//! Visibility to the lights is computed once at the nodes of a lattice in space (*light points*) and interpolated at every
+//! surface point that a pixel sees, so that many shadow rays per pixel become a few short segment tests.
+//!
+//! ```no_run
+//! use lightmesh::{Device, Renderer, Scene, Settings};
+//!
+//! let scene = Scene::open("garden.toml")?;
+//! let renderer = Renderer::new(Device::Auto)?;
+//! let frame = renderer.render(&scene, &Settings::default())?;
+//! frame.save("garden.png")?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # A tour
+//!
+//! * [`Scene`] is what is rendered: open a file or one of the built-in scenes (`builtin:gazebo`, `builtin:childpark`,
+//!   `builtin:garden`), or put triangles together with [`SceneBuilder`](scene::SceneBuilder).
+//! * [`Settings`] says how: [`Mode`] (the method, hard-shadow ray tracing, or the area-shadow reference), picture size,
+//!   light-mesh step and radius, and so on. The defaults make a good picture.
+//! * [`Renderer`] does it on a [`Device`]. One call to [`Renderer::prepare`] serves any number of pictures.
+//! * [`Frame`] is the picture with its [`Stats`]; an [`Observer`] watches progress and can stop the work.
+//!
+//! The parts live in crates of their own, which are re-exported whole as [`scene`], [`image`] and [`render`].
+#![forbid(unsafe_code)]
+
+pub use lightmesh_image as image;
+pub use lightmesh_render as render;
+pub use lightmesh_scene as scene;
+
+pub use lightmesh_image::{SaveError, Transfer};
+pub use lightmesh_render::{
+    Acceleration, Device, Frame, Lookup, Mode, Observer, RenderError, Renderer, Settings, Stage, Stats, Step,
+};
+pub use lightmesh_scene::{LoadError, Scene};

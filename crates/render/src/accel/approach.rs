@@ -1,0 +1,131 @@
+//! Brings a ray near the triangles before it is traced.
+//!
+//! A ray that starts a thousand scene sizes away would meet a triangle with the rounding of a thousand scene sizes. So every
+//! structure first moves such an origin along the ray, in double precision, to just before the sphere around the triangles,
+//! and scales extreme directions. Afterwards all coordinates relative to an origin are below [`REACH`] + 1 radii, which bounds
+//! every rounding error in a walk.
+
+use glam::{DVec3, Vec3};
+use lightmesh_scene::Bounds;
+
+use super::{Hit, Ray, Triangle};
+
+/// Origins farther than this many radii from the middle of the triangles are moved.
+pub(super) const REACH: f32 = 8.0;
+
+/// Directions whose largest component lies outside these powers of two are scaled.
+const DIRECTION_RANGE: std::ops::RangeInclusive<f32> = 1.0 / SCALE..=SCALE;
+const SCALE: f32 = (1u64 << 40) as f32;
+
+/// The sphere of interest: where the triangles of a structure are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Approach {
+    center: Vec3,
+    /// Half the longest edge of the box around the triangles; never zero.
+    radius: f32,
+}
+
+/// A ray that is near the triangles, and how its parameter relates to that of the ray asked for: `t = start + t' · scale`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NearRay {
+    pub(super) origin: Vec3,
+    pub(super) direction: Vec3,
+    pub(super) t_max: f32,
+    start: f64,
+    scale: f64,
+}
+
+impl Approach {
+    /// For triangles within `bounds`.
+    pub(super) fn new(bounds: &Bounds) -> Approach {
+        if bounds.is_empty() {
+            return Approach { center: Vec3::ZERO, radius: 1.0 };
+        }
+        let center = bounds.center();
+        // The floor keeps rounding of the coordinates themselves below the radius.
+        let floor = (center.abs().max_element() * f32::EPSILON).max(f32::MIN_POSITIVE);
+        Approach { center, radius: (0.5 * bounds.extent().max_element()).max(floor) }
+    }
+
+    pub(super) fn around(triangles: &[Triangle]) -> Approach {
+        Approach::new(&bounds(triangles))
+    }
+
+    /// Half the longest edge of the box around the triangles.
+    pub(super) fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    /// The ray to trace; `None` where it cannot hit anything.
+    #[inline(always)]
+    pub(super) fn ray(&self, ray: &Ray) -> Option<NearRay> {
+        let Ray { origin, direction, t_max } = *ray;
+        let near = (origin - self.center).abs().cmple(Vec3::splat(REACH * self.radius)).all();
+        if near && DIRECTION_RANGE.contains(&direction.abs().max_element()) && direction.is_finite() && t_max > 0.0 {
+            return Some(NearRay { origin, direction, t_max, start: 0.0, scale: 1.0 });
+        }
+        self.far_ray(ray)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn far_ray(&self, ray: &Ray) -> Option<NearRay> {
+        let (origin, center) = (ray.origin.as_dvec3(), self.center.as_dvec3());
+        let largest = f64::from(ray.direction.abs().max_element());
+        let usable = ray.origin.is_finite() && ray.direction.is_finite() && largest > 0.0 && ray.t_max > 0.0;
+        if !usable {
+            return None;
+        }
+        // A power of two: the scaled direction has the same bits but for its exponent.
+        let scale = largest.log2().floor().exp2().recip();
+        let direction = ray.direction.as_dvec3() * scale;
+        let start = self.start(origin - center, direction)?;
+        let t_max = (f64::from(ray.t_max) / scale - start) as f32;
+        (t_max > 0.0).then(|| NearRay {
+            origin: (origin + start * direction).as_vec3(),
+            direction: direction.as_vec3(),
+            t_max,
+            start: start * scale,
+            scale,
+        })
+    }
+
+    /// Where along the ray to begin; `None` where it passes the triangles by or leads away from them.
+    fn start(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        let radius = f64::from(self.radius);
+        if origin.abs().max_element() <= f64::from(REACH) * radius {
+            return Some(0.0);
+        }
+        let nearest = -origin.dot(direction) / direction.length_squared();
+        // The box lies in a sphere of √3 radii; 2 leaves room for rounding.
+        let sphere = 2.0 * radius;
+        let passes_by = (origin + nearest * direction).length() > sphere;
+        (nearest > 0.0 && !passes_by).then(|| nearest - 2.0 * sphere / direction.length())
+    }
+}
+
+impl NearRay {
+    /// The hit of this ray as a hit of the ray that was asked for.
+    #[inline(always)]
+    pub(super) fn finish(&self, mut hit: Hit) -> Hit {
+        if self.start != 0.0 || self.scale != 1.0 {
+            hit.t = (self.start + f64::from(hit.t) * self.scale) as f32;
+        }
+        hit
+    }
+}
+
+/// The triangles that structures take.
+pub(super) fn usable(triangles: &[Triangle]) -> Vec<Triangle> {
+    triangles.iter().copied().filter(Triangle::is_usable).collect()
+}
+
+/// The box around `triangles`.
+pub(super) fn bounds(triangles: &[Triangle]) -> Bounds {
+    Bounds::around(triangles.iter().flat_map(|triangle| triangle.corners()))
+}
+
+/// Whether two closed boxes have a point in common.
+pub(super) fn overlap(a: &Bounds, b: &Bounds) -> bool {
+    a.min.cmple(b.max).all() && b.min.cmple(a.max).all()
+}

@@ -1,0 +1,70 @@
+//! Asks every triangle: the oracle that the other structures are held against.
+
+use lightmesh_scene::Bounds;
+
+use super::approach::{Approach, NearRay, overlap, usable};
+use super::triangle::RayShear;
+use super::{Accelerator, Hit, Ray, ShortSegments, Triangle};
+
+/// A list of triangles, all of which are asked.
+#[derive(Clone, Debug)]
+pub struct BruteForce {
+    triangles: Vec<Triangle>,
+    approach: Approach,
+}
+
+impl BruteForce {
+    /// Keeps the usable triangles.
+    pub fn new(triangles: &[Triangle]) -> BruteForce {
+        let triangles = usable(triangles);
+        BruteForce { approach: Approach::around(&triangles), triangles }
+    }
+
+    fn closest(&self, ray: &NearRay) -> Hit {
+        let shear = RayShear::new(ray.origin, ray.direction);
+        let hits = self.triangles.iter().filter_map(|triangle| shear.hit(triangle, ray.t_max));
+        hits.fold(Hit::MISS, |best, hit| if hit.beats(&best) { hit } else { best })
+    }
+
+    fn any(&self, ray: &NearRay) -> bool {
+        let shear = RayShear::new(ray.origin, ray.direction);
+        self.triangles.iter().any(|triangle| shear.hit(triangle, ray.t_max).is_some())
+    }
+}
+
+impl Accelerator for BruteForce {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
+        for (hit, ray) in hits.iter_mut().zip(rays) {
+            *hit = self.approach.ray(ray).map_or(Hit::MISS, |near| near.finish(self.closest(&near)));
+        }
+    }
+
+    fn occluded(&self, segments: &[Ray], occluded: &mut [bool]) {
+        for (occluded, segment) in occluded.iter_mut().zip(segments) {
+            *occluded = self.approach.ray(segment).is_some_and(|near| self.any(&near));
+        }
+    }
+
+    fn short_segments(&self, segments: &ShortSegments, blocked: &mut [bool]) {
+        segments.ask(self.triangles.iter(), blocked);
+    }
+
+    fn triangles_in(&self, region: &Bounds, found: &mut Vec<u32>) {
+        found.clear();
+        found.extend(
+            self.triangles
+                .iter()
+                .filter(|triangle| overlap(&triangle.bounds(), region))
+                .map(Triangle::index),
+        );
+        found.sort_unstable();
+    }
+
+    fn name(&self) -> &'static str {
+        "brute-force"
+    }
+
+    fn memory(&self) -> usize {
+        size_of_val(self.triangles.as_slice())
+    }
+}

@@ -1,0 +1,161 @@
+//! From triangles to nodes.
+//!
+//! 1. `obvhs` sorts the triangles' boxes into a binary tree (PLOC) and improves it by reinsertion.
+//! 2. It collapses the tree into compressed nodes of eight children.
+//! 3. We widen every quantised box that rounding left too small, so that each holds its triangles exactly: the walk's margins
+//!    rest on that.
+
+use fearless_simd::Level;
+use glam::{DVec3, Vec3A};
+use lightmesh_scene::Bounds;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::cwbvh::CwBvh;
+use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
+use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+
+use super::{Bvh, Node};
+use crate::accel::Triangle;
+use crate::accel::approach::{self, Approach, usable};
+
+/// Neighbours looked at on each side when boxes are paired.
+const SEARCH_DISTANCE: PlocSearchDistance = PlocSearchDistance::Medium;
+/// Levels below which a narrower search would do.
+const SEARCH_DEPTH: usize = 3;
+/// Share of the nodes that are reinserted in a round.
+const REINSERTION: f32 = 0.1;
+/// Most triangles in a leaf: the node format has room for three.
+const LEAF_SIZE: u32 = 3;
+
+pub(super) fn build(triangles: &[Triangle]) -> Bvh {
+    let triangles = usable(triangles);
+    let approach = Approach::around(&triangles);
+    let tree = tree(&triangles);
+    let triangles: Vec<_> = tree.primitive_indices.iter().map(|&index| triangles[index as usize]).collect();
+    let mut nodes = tree.nodes;
+    enclose(&mut nodes, &triangles);
+    Bvh { depth: depth(&nodes), nodes, triangles, approach, level: Level::new() }
+}
+
+fn tree(triangles: &[Triangle]) -> CwBvh {
+    if triangles.is_empty() {
+        return CwBvh::default();
+    }
+    let boxes: Vec<_> = triangles.iter().map(|triangle| Aabb::from_points(&triangle.corners().map(Vec3A::from))).collect();
+    let indices = (0..boxes.len() as u32).collect();
+    let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
+        SEARCH_DISTANCE,
+        &boxes,
+        indices,
+        SortPrecision::U64,
+        SEARCH_DEPTH,
+    );
+    ReinsertionOptimizer::default().run(&mut binary, REINSERTION, None);
+    bvh2_to_cwbvh(&binary, LEAF_SIZE, true, false)
+}
+
+/// One child of a node.
+enum Child {
+    /// Index of its node.
+    Inner(usize),
+    /// Its triangles.
+    Leaf(std::ops::Range<usize>),
+}
+
+/// The occupied slots of a node.
+fn children(node: &Node) -> impl Iterator<Item = (usize, Child)> + use<> {
+    let node = *node;
+    (0..8).filter(move |&slot| node.child_meta[slot] != 0).map(move |slot| {
+        if node.imask >> slot & 1 == 1 {
+            let before = node.imask & ((1 << slot) - 1);
+            return (slot, Child::Inner(node.child_base_idx as usize + before.count_ones() as usize));
+        }
+        let meta = node.child_meta[slot];
+        let first = node.primitive_base_idx as usize + usize::from(meta & 0b1_1111);
+        (slot, Child::Leaf(first..first + (meta >> 5).count_ones() as usize))
+    })
+}
+
+/// Widens the boxes of all nodes to hold their triangles. Children have higher indices than their parents.
+fn enclose(nodes: &mut [Node], triangles: &[Triangle]) {
+    let mut bounds = vec![Bounds::EMPTY; nodes.len()];
+    for index in (0..nodes.len()).rev() {
+        let boxes: Vec<_> = children(&nodes[index])
+            .map(|(slot, child)| match child {
+                Child::Inner(child) => (slot, bounds[child]),
+                Child::Leaf(range) => (slot, approach::bounds(&triangles[range])),
+            })
+            .collect();
+        bounds[index] = Bounds::around(boxes.iter().flat_map(|(_, bounds)| [bounds.min, bounds.max]));
+        for axis in 0..3 {
+            enclose_axis(&mut nodes[index], axis, &boxes, bounds[index].min[axis]);
+        }
+    }
+}
+
+/// Quantises the children's boxes on one axis anew where one of them does not hold its content.
+fn enclose_axis(node: &mut Node, axis: usize, boxes: &[(usize, Bounds)], origin: f32) {
+    let holds = |node: &Node| {
+        let (start, step) = (node.p.as_dvec3()[axis], extent(node)[axis]);
+        let (low, high) = planes(node, axis);
+        boxes.iter().all(|(slot, bounds)| {
+            start + step * f64::from(low[*slot]) <= f64::from(bounds.min[axis])
+                && start + step * f64::from(high[*slot]) >= f64::from(bounds.max[axis])
+        })
+    };
+    if holds(node) {
+        return;
+    }
+    node.p[axis] = origin;
+    loop {
+        let (start, step) = (f64::from(origin), extent(node)[axis]);
+        let quantised: Vec<_> = boxes
+            .iter()
+            .map(|(slot, bounds)| {
+                let low = ((f64::from(bounds.min[axis]) - start) / step).floor();
+                (*slot, low, ((f64::from(bounds.max[axis]) - start) / step).ceil())
+            })
+            .collect();
+        if quantised.iter().all(|&(_, _, high)| high <= 255.0) {
+            for (slot, low, high) in quantised {
+                set_planes(node, axis, slot, low as u8, high as u8);
+            }
+            return;
+        }
+        node.e[axis] += 1;
+    }
+}
+
+fn extent(node: &Node) -> DVec3 {
+    node.compute_extent().as_dvec3()
+}
+
+fn planes(node: &Node, axis: usize) -> ([u8; 8], [u8; 8]) {
+    match axis {
+        0 => (node.child_min_x, node.child_max_x),
+        1 => (node.child_min_y, node.child_max_y),
+        _ => (node.child_min_z, node.child_max_z),
+    }
+}
+
+fn set_planes(node: &mut Node, axis: usize, slot: usize, low: u8, high: u8) {
+    let (lows, highs) = match axis {
+        0 => (&mut node.child_min_x, &mut node.child_max_x),
+        1 => (&mut node.child_min_y, &mut node.child_max_y),
+        _ => (&mut node.child_min_z, &mut node.child_max_z),
+    };
+    (lows[slot], highs[slot]) = (low, high);
+}
+
+/// Number of levels.
+fn depth(nodes: &[Node]) -> usize {
+    let mut depths = vec![1; nodes.len()];
+    for (index, node) in nodes.iter().enumerate() {
+        for (_, child) in children(node) {
+            if let Child::Inner(child) = child {
+                depths[child] = depths[index] + 1;
+            }
+        }
+    }
+    depths.into_iter().max().unwrap_or(0)
+}

@@ -1,0 +1,68 @@
+//! A wide BVH: eight children a node, 80 bytes each, after Ylitie, Karras, Laine: *Efficient Incoherent Ray Traversal on GPUs
+//! Through Compressed Wide BVHs* (HPG 2017).
+//!
+//! * `build`: the tree comes from `obvhs`; we check that every box holds its triangles, and lay these out in leaf order.
+//! * `walk`: the walk over the nodes, by rays and by boxes. Nodes and triangles are plain arrays, ready for a device.
+
+mod build;
+mod walk;
+
+use fearless_simd::{Level, dispatch};
+use lightmesh_scene::Bounds;
+use obvhs::cwbvh::node::CwBvhNode as Node;
+
+use super::approach::Approach;
+use super::{Accelerator, Hit, Ray, ShortSegments, Triangle};
+
+/// A compressed wide bounding volume hierarchy.
+#[derive(Clone, Debug)]
+pub struct Bvh {
+    /// Root first; empty where there are no triangles.
+    nodes: Vec<Node>,
+    /// In leaf order.
+    triangles: Vec<Triangle>,
+    /// Number of levels: the longest stack a walk needs.
+    depth: usize,
+    approach: Approach,
+    level: Level,
+}
+
+impl Bvh {
+    /// Builds the tree over the usable triangles.
+    pub fn new(triangles: &[Triangle]) -> Bvh {
+        build::build(triangles)
+    }
+
+    /// The same tree walked at another SIMD level; every level gives the same bits.
+    #[cfg(test)]
+    pub(crate) fn at_level(mut self, level: Level) -> Bvh {
+        self.level = level;
+        self
+    }
+}
+
+impl Accelerator for Bvh {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
+        dispatch!(self.level, simd => walk::closest_hits(simd, self, rays, hits));
+    }
+
+    fn occluded(&self, segments: &[Ray], occluded: &mut [bool]) {
+        dispatch!(self.level, simd => walk::occluded(simd, self, segments, occluded));
+    }
+
+    fn short_segments(&self, segments: &ShortSegments, blocked: &mut [bool]) {
+        dispatch!(self.level, simd => walk::short_segments(simd, self, segments, blocked));
+    }
+
+    fn triangles_in(&self, region: &Bounds, found: &mut Vec<u32>) {
+        dispatch!(self.level, simd => walk::triangles_in(simd, self, region, found));
+    }
+
+    fn name(&self) -> &'static str {
+        "bvh"
+    }
+
+    fn memory(&self) -> usize {
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.triangles.as_slice())
+    }
+}

@@ -1,0 +1,258 @@
+//! The walk over compressed wide nodes: by a ray, by a segment, by a box.
+//!
+//! # Theory
+//!
+//! A walk holds two groups. A *node group* is a set of sibling nodes still to be entered: the index of the first sibling, and a
+//! word with a hit bit for each slot (bits 24–31, nearest octant highest) above the mask of inner slots (bits 0–7). A
+//! *triangle group* is a set of triangles still to be asked: the index of the first, and a bit for each (bits 0–23).
+//!
+//! # The margin
+//!
+//! Let ε = 2⁻²⁴ and S the largest coordinate, relative to the ray's origin, of the node's frame. [`RayShear::intersect`](crate::accel::triangle::RayShear::intersect) reports
+//! points that lie up to 9 ε S outside their triangle. The slab test itself rounds by at most 12 ε S: ε S for the frame's
+//! origin, 2 ε S for its product with the reciprocal direction, 4 ε S for the plane (whose offset is at most 2 S), and 3 ε S for
+//! the sum; 2 ε S for the margin. So a margin of γ S with γ = 2⁻¹⁹ = 32 ε on both sides of every slab never loses a hit. It is
+//! the same for all eight children, and so costs next to nothing.
+//!
+//! A direction component below 2⁻³⁰ of the largest is replaced by that bound, sign kept: over the length of a node this moves
+//! the ray by 2⁻²⁹ S at most, and γ S times the reciprocal then exceeds every `t` in the node. No reciprocal is infinite, no
+//! product NaN.
+
+use fearless_simd::prelude::*;
+use fearless_simd::f32x8;
+use fearless_simd_macros::simd;
+use glam::Vec3;
+use lightmesh_scene::Bounds;
+
+use super::{Bvh, Node};
+use crate::accel::approach::overlap;
+use crate::accel::visit::{Any, Closest, Short, Visitor};
+use crate::accel::{Hit, Ray, ShortSegments, Triangle};
+
+/// Relative margin of the slab test: 2⁻¹⁹.
+const MARGIN: f32 = 1.0 / (1u32 << 19) as f32;
+/// Direction components below this share of the largest are raised to it: 2⁻³⁰.
+const LEAST_COMPONENT: f32 = 1.0 / (1u32 << 30) as f32;
+/// Entries of the stack that lies in registers and cache; deeper trees, which only hostile input makes, get one from the heap.
+const STACK: usize = 32;
+
+/// A set of siblings to enter, or of triangles to ask.
+#[derive(Clone, Copy, Default)]
+struct Group {
+    base: u32,
+    bits: u32,
+}
+
+/// A ray prepared for the slab tests.
+#[derive(Clone, Copy)]
+struct Slabs {
+    origin: Vec3,
+    inverse: Vec3,
+    /// Margin for a node of unit distance, in units of the ray parameter.
+    margin: Vec3,
+    /// Added to the distance S: how far outside a box may be and still count.
+    slack: f32,
+    /// The octant that the ray points to: traversal order is slot xor this.
+    octant: u32,
+}
+
+impl Slabs {
+    #[inline(always)]
+    fn new(origin: Vec3, direction: Vec3, slack: f32) -> Slabs {
+        let least = LEAST_COMPONENT * direction.abs().max_element();
+        let direction = direction.abs().max(Vec3::splat(least)).copysign(direction);
+        let inverse = direction.recip();
+        let octant = [(direction.x, 4), (direction.y, 2), (direction.z, 1)];
+        let octant = octant.iter().map(|&(component, bit)| if component < 0.0 { 0 } else { bit }).sum();
+        Slabs { origin, inverse, margin: MARGIN * inverse.abs(), slack: slack / MARGIN, octant }
+    }
+}
+
+#[simd]
+pub(super) fn closest_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut [Hit]) {
+    let mut stack = Stack::new(bvh.depth);
+    for (hit, ray) in hits.iter_mut().zip(rays) {
+        *hit = bvh.approach.ray(ray).map_or(Hit::MISS, |near| {
+            let mut closest = Closest::new(&near);
+            walk(simd, bvh, &Slabs::new(near.origin, near.direction, 0.0), stack.entries(), &mut closest);
+            near.finish(closest.best)
+        });
+    }
+}
+
+#[simd]
+pub(super) fn occluded<S: Simd>(simd: S, bvh: &Bvh, segments: &[Ray], occluded: &mut [bool]) {
+    let mut stack = Stack::new(bvh.depth);
+    for (occluded, segment) in occluded.iter_mut().zip(segments) {
+        *occluded = bvh.approach.ray(segment).is_some_and(|near| {
+            let mut any = Any::new(&near);
+            walk(simd, bvh, &Slabs::new(near.origin, near.direction, 0.0), stack.entries(), &mut any);
+            any.hit
+        });
+    }
+}
+
+#[simd]
+pub(super) fn short_segments<S: Simd>(simd: S, bvh: &Bvh, segments: &ShortSegments, blocked: &mut [bool]) {
+    let mut stack = Stack::new(bvh.depth);
+    for (blocked, &direction) in blocked.iter_mut().zip(segments.directions) {
+        let mut short = Short::new(&segments.test, direction);
+        let slabs = Slabs::new(segments.test.origin, direction, segments.slack);
+        walk(simd, bvh, &slabs, stack.entries(), &mut short);
+        *blocked = short.blocked;
+    }
+}
+
+/// Visits the triangles of all leaves whose boxes the ray meets between 0 and the visitor's limit, near octants first.
+#[inline(always)]
+fn walk<S: Simd>(simd: S, bvh: &Bvh, slabs: &Slabs, stack: &mut [Group], visitor: &mut impl Visitor) {
+    if bvh.nodes.is_empty() {
+        return;
+    }
+    // 1. Begin with the root, as if it were the only child in the slot entered first.
+    let mut nodes = Group { base: 0, bits: 0x8000_0000 };
+    let mut height = 0;
+    loop {
+        // 2. Take the nearest node out of its group; keep the rest for later.
+        let bit = 31 - nodes.bits.leading_zeros();
+        let siblings = nodes.bits;
+        nodes.bits &= !(1 << bit);
+        if nodes.bits > 0x00ff_ffff {
+            stack[height] = nodes;
+            height += 1;
+        }
+        let slot = (bit - 24) ^ slabs.octant;
+        let before = siblings & ((1 << slot) - 1) & 0xff;
+        let node = &bvh.nodes[(nodes.base + before.count_ones()) as usize];
+
+        // 3. Which of its children does the ray meet?
+        let hits = child_hits(node, met_slots(simd, node, slabs, visitor.limit()), slabs.octant);
+        nodes = Group { base: node.child_base_idx, bits: (hits & 0xff00_0000) | u32::from(node.imask) };
+
+        // 4. Ask the triangles of those that are leaves.
+        let mut triangles = hits & 0x00ff_ffff;
+        while triangles != 0 {
+            let triangle = node.primitive_base_idx + triangles.trailing_zeros();
+            triangles &= triangles - 1;
+            if !visitor.triangle(&bvh.triangles[triangle as usize]) {
+                return;
+            }
+        }
+
+        // 5. No child left to enter: go on with the group left last.
+        if nodes.bits <= 0x00ff_ffff {
+            if height == 0 {
+                return;
+            }
+            height -= 1;
+            nodes = stack[height];
+        }
+    }
+}
+
+/// Bit k: the ray meets the box of slot k between 0 and `limit`.
+#[inline(always)]
+fn met_slots<S: Simd>(simd: S, node: &Node, slabs: &Slabs, limit: f32) -> u32 {
+    // 1. The node's frame in units of the ray parameter.
+    let extent = Vec3::from(node.compute_extent());
+    let offset = node.p - slabs.origin;
+    let margin = ((offset.abs() + 256.0 * extent).max_element() + slabs.slack) * slabs.margin;
+    let scale = extent * slabs.inverse;
+    let start = offset * slabs.inverse;
+    let (near, far) = (start - margin, start + margin);
+
+    // 2. Where the ray enters and leaves each child's slabs.
+    let (near_x, far_x) = by_sign(slabs.inverse.x, &node.child_min_x, &node.child_max_x);
+    let (near_y, far_y) = by_sign(slabs.inverse.y, &node.child_min_y, &node.child_max_y);
+    let (near_z, far_z) = by_sign(slabs.inverse.z, &node.child_min_z, &node.child_max_z);
+    let plane = |bytes: &[u8; 8], scale: f32, start: f32| -> f32x8<S> {
+        f32x8::from_slice(simd, &bytes.map(f32::from)) * scale + start
+    };
+    let enter = plane(near_x, scale.x, near.x).max(plane(near_y, scale.y, near.y)).max(plane(near_z, scale.z, near.z));
+    let leave = plane(far_x, scale.x, far.x).min(plane(far_y, scale.y, far.y)).min(plane(far_z, scale.z, far.z));
+
+    // 3. Met where the slabs overlap within the segment.
+    let met = enter.max(f32x8::splat(simd, 0.0)).simd_le(leave.min(f32x8::splat(simd, limit)));
+    met.to_bitmask() as u32
+}
+
+#[inline(always)]
+fn by_sign<'a>(inverse: f32, low: &'a [u8; 8], high: &'a [u8; 8]) -> (&'a [u8; 8], &'a [u8; 8]) {
+    if inverse < 0.0 { (high, low) } else { (low, high) }
+}
+
+/// The hit bits of a node and triangle group for the slots met: inner nodes from bit 24 on in traversal order, the triangles of
+/// leaves below.
+#[inline(always)]
+fn child_hits(node: &Node, mut met: u32, octant: u32) -> u32 {
+    let mut hits = 0;
+    while met != 0 {
+        let slot = met.trailing_zeros();
+        met &= met - 1;
+        let meta = u32::from(node.child_meta[slot as usize & 7]);
+        // Inner nodes have index 24 + slot, which the octant reorders; leaves the index of their first triangle.
+        let order = if meta & 0b1_1000 == 0b1_1000 { octant } else { 0 };
+        hits |= (meta >> 5) << ((meta & 0b1_1111) ^ order);
+    }
+    hits
+}
+
+/// All triangles of boxes that overlap `region`, in ascending order.
+#[simd]
+pub(super) fn triangles_in<S: Simd>(_: S, bvh: &Bvh, region: &Bounds, found: &mut Vec<u32>) {
+    found.clear();
+    let mut pending = Vec::from_iter((!bvh.nodes.is_empty()).then_some(0));
+    while let Some(index) = pending.pop() {
+        let node: &Node = &bvh.nodes[index as usize];
+        let hits = child_hits(node, overlapped_slots(node, region), 0);
+        let inner = (0..8).filter(|slot| hits >> (24 + slot) & 1 == 1);
+        pending.extend(inner.map(|slot| {
+            let before = u32::from(node.imask) & ((1 << slot) - 1);
+            node.child_base_idx + before.count_ones()
+        }));
+        let triangles = (0..24).filter(|bit| hits >> bit & 1 == 1);
+        let triangles = triangles.map(|bit| &bvh.triangles[(node.primitive_base_idx + bit) as usize]);
+        found.extend(triangles.filter(|triangle| overlap(&triangle.bounds(), region)).map(Triangle::index));
+    }
+    found.sort_unstable();
+}
+
+/// Bit k: the box of slot k may overlap the region.
+#[inline(always)]
+fn overlapped_slots(node: &Node, region: &Bounds) -> u32 {
+    let extent = Vec3::from(node.compute_extent());
+    // Rounding of a plane is far below this.
+    let margin = MARGIN * (node.p.abs() + 256.0 * extent);
+    let (low, high) = (region.min - margin, region.max + margin);
+    let axes = [
+        (&node.child_min_x, &node.child_max_x),
+        (&node.child_min_y, &node.child_max_y),
+        (&node.child_min_z, &node.child_max_z),
+    ];
+    let overlaps = |slot: usize| {
+        axes.iter().enumerate().all(|(axis, (min, max))| {
+            node.p[axis] + extent[axis] * f32::from(min[slot]) <= high[axis]
+                && node.p[axis] + extent[axis] * f32::from(max[slot]) >= low[axis]
+        })
+    };
+    (0..8).filter(|&slot| overlaps(slot)).map(|slot| 1 << slot).sum()
+}
+
+/// The node groups left for later: at most one for each level of the tree.
+struct Stack {
+    fixed: [Group; STACK],
+    deep: Vec<Group>,
+}
+
+impl Stack {
+    #[inline(always)]
+    fn new(depth: usize) -> Stack {
+        let deep = if depth > STACK { vec![Group::default(); depth] } else { Vec::new() };
+        Stack { fixed: [Group::default(); STACK], deep }
+    }
+
+    #[inline(always)]
+    fn entries(&mut self) -> &mut [Group] {
+        if self.deep.is_empty() { &mut self.fixed } else { &mut self.deep }
+    }
+}

@@ -1,0 +1,210 @@
+//! From triangles to cells: find the pairs of cell and triangle, sort them by cell, write the flat form.
+
+use glam::{DVec3, UVec3, Vec3};
+use lightmesh_scene::Bounds;
+use rayon::prelude::*;
+
+use super::file::geometry_hash;
+use super::lattice::{Lattice, cells_between, margin};
+use super::overlap::triangle_meets_box;
+use super::{Grid, GridError, GridOptions, Levels};
+use crate::accel::Triangle;
+use crate::accel::approach::Approach;
+
+/// Cells for each triangle, where there is one level.
+const DENSITY: f64 = 8.0;
+/// Cells for each triangle of the outer grid, where there are two.
+const OUTER_DENSITY: f64 = 0.5;
+/// Cells for each triangle of a nested grid.
+const INNER_DENSITY: f64 = 4.0;
+/// A cell with more triangles than this becomes a grid.
+const MANY: usize = 8;
+/// Most cells on an axis that are chosen automatically: finer ones would drown in the margin.
+const MOST: [f64; 2] = [1024.0, 32.0];
+/// Triangles that one task sorts into cells.
+const TASK: usize = 2048;
+
+pub(super) fn build(triangles: &[Triangle], options: &GridOptions) -> Result<Grid, GridError> {
+    let usable: Vec<u32> = (0..triangles.len() as u32).filter(|&at| triangles[at as usize].is_usable()).collect();
+    let bounds = Bounds::around(usable.iter().flat_map(|&at| triangles[at as usize].corners()));
+    let density = if options.levels == Levels::One { DENSITY } else { OUTER_DENSITY };
+    let dims = options.dims.map_or_else(|| automatic(&bounds, density * usable.len() as f64, MOST[0]), UVec3::from);
+    let (lattice, approach, margin) = frame(&bounds, dims)?;
+
+    let sorter = Sorter { triangles, margin };
+    let lists = sorter.sort(&lattice, &usable);
+    let nested = |cell: usize| {
+        let list = lists.of(cell);
+        (options.levels == Levels::Two && list.len() > MANY).then(|| sorter.nested(&lattice, cell, list)).flatten()
+    };
+    let nested: Vec<Option<Nested>> = (0..lattice.len()).into_par_iter().map(nested).collect();
+    let (cells, sources) = Writer::write(&lattice, &lists, &nested)?;
+    Ok(Grid {
+        triangles: sources.iter().map(|&at| triangles[at as usize]).collect(),
+        geometry: geometry_hash(triangles),
+        built_from: triangles.len() as u32,
+        overruns: 0.into(),
+        lattice,
+        margin,
+        cells,
+        sources,
+        approach,
+    })
+}
+
+/// Where the cells lie. A loaded grid must get the same.
+pub(super) fn frame(bounds: &Bounds, dims: UVec3) -> Result<(Lattice, Approach, f32), GridError> {
+    let cells = dims.to_array().map(u128::from).iter().product::<u128>();
+    if cells == 0 {
+        return Err(GridError::NoCells { dims: dims.to_array() });
+    }
+    let needed = u64::try_from(cells + 3).unwrap_or(u64::MAX);
+    fit(needed, "integers", dims)?;
+    let approach = Approach::new(bounds);
+    let margin = margin(approach.radius());
+    let bounds = if bounds.is_empty() { Bounds::around([Vec3::ZERO]) } else { *bounds };
+    Ok((Lattice::new(&bounds, margin, dims), approach, margin))
+}
+
+fn fit(needed: u64, what: &'static str, dims: UVec3) -> Result<i32, GridError> {
+    i32::try_from(needed).map_err(|_| GridError::TooLarge { dims: dims.to_array(), what, needed })
+}
+
+/// About `wanted` cells that are nearly cubes: the largest cube edge that gives as many.
+fn automatic(bounds: &Bounds, wanted: f64, most: f64) -> UVec3 {
+    let extent = bounds.extent().as_dvec3();
+    let longest = extent.max_element();
+    if longest == 0.0 {
+        return UVec3::ONE;
+    }
+    let dims = |share: f64| (extent / (longest * share)).ceil().clamp(DVec3::ONE, DVec3::splat(most));
+    let (mut fine, mut coarse) = (1.0 / most, 1.0);
+    for _ in 0..20 {
+        let middle = 0.5 * (fine + coarse);
+        if dims(middle).element_product() > wanted { fine = middle } else { coarse = middle }
+    }
+    dims(coarse).as_uvec3()
+}
+
+/// Positions of triangles, cell by cell.
+struct Lists {
+    /// Where each cell's list begins; one more than there are cells.
+    starts: Vec<usize>,
+    sources: Vec<u32>,
+}
+
+impl Lists {
+    fn of(&self, cell: usize) -> &[u32] {
+        &self.sources[self.starts[cell]..self.starts[cell + 1]]
+    }
+}
+
+struct Nested {
+    lattice: Lattice,
+    lists: Lists,
+}
+
+/// Sorts triangles into the cells that they meet.
+struct Sorter<'a> {
+    triangles: &'a [Triangle],
+    margin: f32,
+}
+
+impl Sorter<'_> {
+    /// The triangles at `sources` by cell, each list in the order of `sources`.
+    fn sort(&self, lattice: &Lattice, sources: &[u32]) -> Lists {
+        let tasks = sources.par_chunks(TASK);
+        let pairs: Vec<Vec<(usize, u32)>> = tasks.map(|sources| self.pairs(lattice, sources)).collect();
+        let mut starts = vec![0; lattice.len() + 1];
+        for (cell, _) in pairs.iter().flatten() {
+            starts[cell + 1] += 1;
+        }
+        for cell in 0..lattice.len() {
+            starts[cell + 1] += starts[cell];
+        }
+        let mut ends = starts.clone();
+        let mut sorted = vec![0; starts[lattice.len()]];
+        for &(cell, source) in pairs.iter().flatten() {
+            sorted[ends[cell]] = source;
+            ends[cell] += 1;
+        }
+        Lists { starts, sources: sorted }
+    }
+
+    fn pairs(&self, lattice: &Lattice, sources: &[u32]) -> Vec<(usize, u32)> {
+        let margin = f64::from(self.margin);
+        let half = 0.5 * lattice.size.as_dvec3() + margin;
+        let mut pairs = Vec::new();
+        for &source in sources {
+            let triangle = &self.triangles[source as usize];
+            let Some((first, last)) = lattice.cells(&triangle.bounds(), self.margin) else { continue };
+            let corners = triangle.corners();
+            pairs.extend(
+                cells_between(first, last)
+                    .filter(|&cell| {
+                        let center = lattice.corner(cell) + 0.5 * lattice.size.as_dvec3();
+                        first == last || triangle_meets_box(corners, center, half)
+                    })
+                    .map(|cell| (lattice.index(cell), source)),
+            );
+        }
+        pairs
+    }
+
+    /// The grid within a cell; `None` where it would not separate its triangles.
+    fn nested(&self, outer: &Lattice, cell: usize, list: &[u32]) -> Option<Nested> {
+        let at = position(outer, cell);
+        let bounds = Bounds { min: Vec3::ZERO, max: outer.size };
+        let dims = automatic(&bounds, INNER_DENSITY * list.len() as f64, MOST[1]);
+        let lattice = outer.nested(at, dims);
+        // Cells no larger than their margins separate nothing.
+        let useful = lattice.size.min_element() > 8.0 * self.margin && dims != UVec3::ONE;
+        useful.then(|| Nested { lists: self.sort(&lattice, list), lattice })
+    }
+}
+
+fn position(lattice: &Lattice, cell: usize) -> UVec3 {
+    let (x, y) = (lattice.dims.x as usize, lattice.dims.y as usize);
+    UVec3::new((cell % x) as u32, (cell / x % y) as u32, (cell / x / y) as u32)
+}
+
+/// Writes the flat form.
+struct Writer {
+    dims: UVec3,
+    cells: Vec<i32>,
+    sources: Vec<u32>,
+}
+
+impl Writer {
+    fn write(lattice: &Lattice, lists: &Lists, nested: &[Option<Nested>]) -> Result<(Vec<i32>, Vec<u32>), GridError> {
+        let mut writer = Writer { dims: lattice.dims, cells: Vec::new(), sources: Vec::new() };
+        writer.grid(lattice, lists, nested)?;
+        Ok((writer.cells, writer.sources))
+    }
+
+    fn grid(&mut self, lattice: &Lattice, lists: &Lists, nested: &[Option<Nested>]) -> Result<(), GridError> {
+        let base = self.cells.len();
+        self.cells.extend(lattice.dims.to_array().map(|count| count as i32));
+        self.cells.resize(base + 3 + lattice.len(), -1);
+        for cell in 0..lattice.len() {
+            let list = lists.of(cell);
+            if list.is_empty() {
+                continue;
+            }
+            self.cells[base + 3 + cell] = fit(self.cells.len() as u64, "integers", self.dims)?;
+            match nested.get(cell) {
+                Some(Some(nested)) => self.grid(&nested.lattice, &nested.lists, &[])?,
+                _ => self.leaf(list)?,
+            }
+        }
+        fit(self.cells.len() as u64, "integers", self.dims).map(|_| ())
+    }
+
+    fn leaf(&mut self, list: &[u32]) -> Result<(), GridError> {
+        let first = fit(self.sources.len() as u64, "triangle references", self.dims)?;
+        fit((self.sources.len() + list.len()) as u64, "triangle references", self.dims)?;
+        self.cells.extend([-(list.len() as i32), first]);
+        self.sources.extend(list);
+        Ok(())
+    }
+}

@@ -1,0 +1,226 @@
+//! The regular grid of the thesis (chapters 3.2 and 4.1), one level or two.
+//!
+//! Everything lies in one array of integers and one of triangles:
+//!
+//! ```text
+//! <grid>   ::= nx ny nz <offset>…          nx·ny·nz offsets from the start of the array, x fastest
+//! <offset> ::= −1 (empty) | offset of a <cell>
+//! <cell>   ::= −(number of triangles) (offset into triangles) | <grid>
+//! ```
+//!
+//! so a cell's first number tells a leaf (negative) from a nested grid (positive). Triangles are repeated for every cell that
+//! they meet: neighbours in a cell are neighbours in memory.
+//!
+//! * `lattice`: where cells lie, and how much they are enlarged so that rounding cannot lose a hit.
+//! * `overlap`: the exact test of a triangle against a box.
+//! * `build`: triangles to cells; `walk`: along a ray (Amanatides, Woo 1987); `file`: saved and loaded.
+
+mod build;
+mod file;
+mod lattice;
+pub(super) mod overlap;
+mod walk;
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use lightmesh_scene::Bounds;
+
+use super::approach::{Approach, overlap};
+use super::visit::{Any, Closest};
+use super::{Accelerator, Hit, Ray, ShortSegments, Triangle};
+pub use file::{GridFault, GridFileError};
+use lattice::{Lattice, cells_between};
+
+/// How a grid is laid out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GridOptions {
+    /// Cells on each axis; `None` follows the number of triangles.
+    pub dims: Option<[u32; 3]>,
+    /// One level or two.
+    pub levels: Levels,
+}
+
+/// Number of levels of a grid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Levels {
+    /// One grid.
+    One,
+    /// Cells with many triangles hold a grid of their own.
+    #[default]
+    Two,
+}
+
+/// Why a grid cannot be built.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GridError {
+    /// An axis without cells.
+    #[error("a grid of {}x{}x{} cells has no cells: every axis needs at least 1", dims[0], dims[1], dims[2])]
+    NoCells {
+        /// The cells asked for.
+        dims: [u32; 3],
+    },
+    /// Offsets would not fit 32 bits.
+    #[error(
+        "a grid of {}x{}x{} cells needs {needed} {what}, more than 32-bit offsets reach ({}): take fewer cells or the BVH",
+        dims[0], dims[1], dims[2], i32::MAX
+    )]
+    TooLarge {
+        /// Cells on each axis.
+        dims: [u32; 3],
+        /// What there is too much of.
+        what: &'static str,
+        /// How many are needed, at least.
+        needed: u64,
+    },
+}
+
+/// A regular grid of triangles.
+#[derive(Debug)]
+pub struct Grid {
+    lattice: Lattice,
+    margin: f32,
+    /// The flat nested form.
+    cells: Vec<i32>,
+    /// The triangles of all cells, one cell after the other.
+    triangles: Vec<Triangle>,
+    /// Where each of these lies in the list that the grid was built from.
+    sources: Vec<u32>,
+    approach: Approach,
+    /// Hash of the list that the grid was built from.
+    geometry: u64,
+    /// Length of that list.
+    built_from: u32,
+    overruns: AtomicU64,
+}
+
+impl Grid {
+    /// Sorts the usable triangles into cells.
+    ///
+    /// # Errors
+    ///
+    /// Where the cells asked for are none, or too many for 32-bit offsets.
+    pub fn new(triangles: &[Triangle], options: &GridOptions) -> Result<Grid, GridError> {
+        build::build(triangles, options)
+    }
+
+    /// Cells on each axis of the outer grid.
+    pub fn dims(&self) -> [u32; 3] {
+        self.lattice.dims.to_array()
+    }
+
+    /// How many walks took more steps than a grid of this size allows and asked all triangles instead. Always 0, unless the
+    /// bound that `walk` derives is wrong.
+    pub fn overruns(&self) -> u64 {
+        self.overruns.load(Ordering::Relaxed)
+    }
+
+    /// The lowest corner of a cell of the outer grid.
+    #[cfg(test)]
+    pub(super) fn corner(&self, cell: [u32; 3]) -> glam::Vec3 {
+        self.lattice.corner(cell.into()).as_vec3()
+    }
+
+    fn count_overrun(&self) {
+        self.overruns.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Calls `visit` with the triangles of every cell that overlaps the region: some several times.
+    fn visit_region<'a>(&'a self, region: &Bounds, visit: &mut impl FnMut(&'a [Triangle])) {
+        self.visit_cells(&self.lattice, 0, region, visit);
+    }
+
+    fn visit_cells<'a>(
+        &'a self,
+        lattice: &Lattice,
+        base: usize,
+        region: &Bounds,
+        visit: &mut impl FnMut(&'a [Triangle]),
+    ) {
+        let Some((first, last)) = lattice.cells(region, self.margin) else { return };
+        for cell in cells_between(first, last) {
+            match self.cell(base, lattice.index(cell)) {
+                Cell::Empty => {}
+                Cell::Leaf(triangles) => visit(triangles),
+                Cell::Nested { base, dims } => self.visit_cells(&lattice.nested(cell, dims.into()), base, region, visit),
+            }
+        }
+    }
+
+    /// Reads one cell of the grid that begins at `base`.
+    #[inline(always)]
+    fn cell(&self, base: usize, index: usize) -> Cell<'_> {
+        let offset = self.cells[base + 3 + index];
+        if offset < 0 {
+            return Cell::Empty;
+        }
+        let offset = offset as usize;
+        let count = self.cells[offset];
+        if count < 0 {
+            let first = self.cells[offset + 1] as usize;
+            return Cell::Leaf(&self.triangles[first..first + count.unsigned_abs() as usize]);
+        }
+        let dims = [count as u32, self.cells[offset + 1] as u32, self.cells[offset + 2] as u32];
+        Cell::Nested { base: offset, dims }
+    }
+}
+
+/// What a cell holds.
+enum Cell<'a> {
+    Empty,
+    Leaf(&'a [Triangle]),
+    Nested { base: usize, dims: [u32; 3] },
+}
+
+impl Accelerator for Grid {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
+        for (hit, ray) in hits.iter_mut().zip(rays) {
+            *hit = self.approach.ray(ray).map_or(Hit::MISS, |near| {
+                let mut closest = Closest::new(&near);
+                self.walk(near.origin, near.direction, &mut closest);
+                near.finish(closest.best)
+            });
+        }
+    }
+
+    fn occluded(&self, segments: &[Ray], occluded: &mut [bool]) {
+        for (occluded, segment) in occluded.iter_mut().zip(segments) {
+            *occluded = self.approach.ray(segment).is_some_and(|near| {
+                let mut any = Any::new(&near);
+                self.walk(near.origin, near.direction, &mut any);
+                any.hit
+            });
+        }
+    }
+
+    fn short_segments(&self, segments: &ShortSegments, blocked: &mut [bool]) {
+        // The segments are short and leave one point: the cells around all of them are about those that each would walk.
+        let mut triangles: Vec<&Triangle> = Vec::new();
+        let region = segments.region();
+        self.visit_region(&region, &mut |cell| {
+            triangles.extend(cell.iter().filter(|triangle| overlap(&triangle.bounds(), &region)));
+        });
+        triangles.sort_unstable_by_key(|triangle| triangle.index());
+        triangles.dedup_by_key(|triangle| triangle.index());
+        segments.ask(triangles.into_iter(), blocked);
+    }
+
+    fn triangles_in(&self, region: &Bounds, found: &mut Vec<u32>) {
+        found.clear();
+        self.visit_region(region, &mut |cell| {
+            let overlapping = cell.iter().filter(|triangle| overlap(&triangle.bounds(), region));
+            found.extend(overlapping.map(Triangle::index));
+        });
+        found.sort_unstable();
+        found.dedup();
+    }
+
+    fn name(&self) -> &'static str {
+        "grid"
+    }
+
+    fn memory(&self) -> usize {
+        size_of_val(self.cells.as_slice())
+            + size_of_val(self.triangles.as_slice())
+            + size_of_val(self.sources.as_slice())
+    }
+}

@@ -1,0 +1,128 @@
+//! Acceleration structures: which triangles can a ray or a segment meet?
+//!
+//! One trait, three answers that must agree: [`BruteForce`] (the oracle), the regular [`Grid`] of the thesis and a wide
+//! [`Bvh`]. They are asked in batches, because that is where packets, SIMD and sorting fit; a single ray is a batch of one.
+//!
+//! # What every implementation promises
+//!
+//! * A **closest hit** is the smallest `t` in `(0, t_max)`; among equal `t` the smallest triangle index. A segment is
+//!   **occluded** when some triangle is hit at a `t` in `(0, t_max)`. Both ends are open.
+//! * Whether and where a triangle is hit is decided by [`triangle`] alone. Structures only choose which triangles to ask, and
+//!   their box tests err on the side of asking, so that all three give the same bits.
+//! * Zero, negative-zero and subnormal direction components and far-away origins are ordinary input. A zero direction, a ray
+//!   that is not finite and a triangle that is not [usable](Triangle::is_usable) hit nothing.
+
+mod approach;
+mod brute_force;
+mod bvh;
+mod grid;
+#[cfg(test)]
+mod tests;
+pub mod triangle;
+mod visit;
+
+use glam::Vec3;
+use lightmesh_scene::Bounds;
+
+pub use brute_force::BruteForce;
+pub use bvh::Bvh;
+pub use grid::{Grid, GridError, GridFault, GridFileError, GridOptions, Levels};
+pub use triangle::{ShortTest, Triangle};
+
+/// A ray or segment: the points `origin + t · direction` with `0 < t < t_max`. The direction need not be unit length; a
+/// segment has `t_max` 1 (or a little less, to spare its end) and the difference of its ends as direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it starts.
+    pub origin: Vec3,
+    /// Where it goes.
+    pub direction: Vec3,
+    /// Where it ends, in units of `direction`; may be infinite.
+    pub t_max: f32,
+}
+
+/// Where a ray meets a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Hit {
+    /// Ray parameter; infinite where nothing was hit.
+    pub t: f32,
+    /// Barycentric weight of the triangle's second corner.
+    pub u: f32,
+    /// Barycentric weight of the triangle's third corner.
+    pub v: f32,
+    /// Index of the triangle in the scene's mesh; [`Hit::NONE`] where nothing was hit.
+    pub triangle: u32,
+}
+
+impl Hit {
+    /// The triangle index that stands for "no triangle".
+    pub const NONE: u32 = u32::MAX;
+
+    /// The answer for a ray that hits nothing.
+    pub const MISS: Hit = Hit { t: f32::INFINITY, u: 0.0, v: 0.0, triangle: Hit::NONE };
+
+    /// Whether a triangle was hit.
+    pub fn is_some(&self) -> bool {
+        self.triangle != Hit::NONE
+    }
+
+    /// Whether this hit wins over `other`: nearer, or as near on a triangle of smaller index.
+    pub fn beats(&self, other: &Hit) -> bool {
+        self.t < other.t || (self.t == other.t && self.triangle < other.triangle)
+    }
+}
+
+/// The segments of one short-test query: from one surface point to some light points near it.
+#[derive(Clone, Copy, Debug)]
+pub struct ShortSegments<'a> {
+    /// What decides whether a triangle blocks a segment, set up for the surface point.
+    pub test: ShortTest,
+    /// Light point minus segment origin, for each segment.
+    pub directions: &'a [Vec3],
+    /// Triangles whose bounding box comes this near to a segment must be asked, scene units.
+    pub slack: f32,
+}
+
+impl ShortSegments<'_> {
+    /// The box that no triangle to be asked lies outside of.
+    fn region(&self) -> Bounds {
+        let origin = self.test.origin;
+        let ends = self.directions.iter().map(|&direction| origin + direction);
+        let Bounds { min, max } = Bounds::around(ends).including(origin);
+        Bounds { min: min - self.slack, max: max + self.slack }
+    }
+
+    /// Asks each triangle about every segment.
+    fn ask<'a>(&self, triangles: impl Iterator<Item = &'a Triangle>, blocked: &mut [bool]) {
+        blocked.fill(false);
+        for occluder in triangles.filter_map(|triangle| self.test.occluder(triangle.corners())) {
+            for (blocked, &direction) in blocked.iter_mut().zip(self.directions) {
+                *blocked |= occluder.blocks(direction);
+            }
+        }
+    }
+}
+
+/// Something that finds triangles.
+pub trait Accelerator: Send + Sync {
+    /// Closest hit of every ray. `hits` is as long as `rays` and is overwritten.
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]);
+
+    /// For every segment whether anything blocks it. `occluded` is as long as `segments` and is overwritten.
+    fn occluded(&self, segments: &[Ray], occluded: &mut [bool]);
+
+    /// For every short segment whether a triangle blocks it by [`ShortTest`]. `blocked` is as long as the directions and is
+    /// overwritten.
+    fn short_segments(&self, segments: &ShortSegments, blocked: &mut [bool]);
+
+    /// Replaces the content of `found` by all triangles that meet `region` (a closed box), each once, in ascending order of
+    /// index. May give others as well, but only such whose bounding box overlaps the region.
+    fn triangles_in(&self, region: &Bounds, found: &mut Vec<u32>);
+
+    /// The word for it in settings and statistics: `grid`, `bvh` or `brute-force`.
+    fn name(&self) -> &'static str;
+
+    /// Bytes that it holds.
+    fn memory(&self) -> usize;
+}

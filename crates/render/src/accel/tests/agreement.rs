@@ -1,0 +1,178 @@
+//! Brute force, grids and BVH agree.
+
+use glam::Vec3;
+use lightmesh_scene::Bounds;
+use proptest::prelude::*;
+
+use super::rays::Targets;
+use super::scenes::{self, Scene};
+use super::{Random, grids, structures};
+use crate::accel::{Accelerator, BruteForce, Hit, Ray, ShortSegments, ShortTest, Triangle};
+
+fn closest(accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<Hit> {
+    // Whatever the answer held before must not matter.
+    let mut hits = vec![Hit { t: 0.5, u: 0.5, v: 0.5, triangle: 0 }; rays.len()];
+    accelerator.closest_hits(rays, &mut hits);
+    hits
+}
+
+fn occluded(accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<bool> {
+    let mut occluded = vec![true; rays.len()];
+    accelerator.occluded(rays, &mut occluded);
+    occluded
+}
+
+fn blocked(accelerator: &dyn Accelerator, segments: &ShortSegments) -> Vec<bool> {
+    let mut blocked = vec![true; segments.directions.len()];
+    accelerator.short_segments(segments, &mut blocked);
+    blocked
+}
+
+fn bits(hit: &Hit) -> [u32; 4] {
+    bytemuck::cast(*hit)
+}
+
+/// All structures over a scene, and rays that suit it; the number of rays that hit.
+fn rays_agree(triangles: &[Triangle], random: &mut Random, count: usize) -> Result<usize, TestCaseError> {
+    let grids = grids(triangles);
+    let targets = Targets { triangles, grids: &grids };
+    let rays: Vec<Ray> = (0..count).map(|_| targets.ray(random)).collect();
+    let oracle = BruteForce::new(triangles);
+    let (hits, shadows) = (closest(&oracle, &rays), occluded(&oracle, &rays));
+    for (ray, (hit, shadow)) in rays.iter().zip(hits.iter().zip(&shadows)) {
+        prop_assert_eq!(hit.is_some(), *shadow, "closest and any hit, {:?}", ray);
+        prop_assert!(!hit.t.is_nan() && (0.0..=1.0).contains(&hit.u) && (0.0..=1.0).contains(&hit.v), "{:?}", hit);
+    }
+    let all = structures(triangles);
+    for (name, accelerator) in &all {
+        for (index, (hit, expected)) in closest(&**accelerator, &rays).iter().zip(&hits).enumerate() {
+            prop_assert_eq!(bits(hit), bits(expected), "{}, {:?}: {:?} / {:?}", name, rays[index], hit, expected);
+        }
+        let shadowed = occluded(&**accelerator, &rays);
+        for (index, (shadow, expected)) in shadowed.iter().zip(&shadows).enumerate() {
+            prop_assert_eq!(shadow, expected, "{}, {:?}: {:?}", name, rays[index], hits[index]);
+        }
+    }
+    Ok(hits.iter().filter(|hit| hit.is_some()).count())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(96) })]
+
+    #[test]
+    fn closest_and_any_hits_agree(scene in prop::sample::select(&scenes::ALL), seed: u64) {
+        let random = &mut Random(seed);
+        let triangles = scene.triangles(random);
+        let hits = rays_agree(&triangles, random, 400)?;
+        // A comparison of misses would prove little.
+        prop_assert!(matches!(scene, Scene::Empty | Scene::One | Scene::Flat) || hits > 40, "{} rays hit", hits);
+    }
+
+    #[test]
+    fn short_segments_agree(scene in prop::sample::select(&scenes::ALL), seed: u64) {
+        let random = &mut Random(seed);
+        let triangles = scene.triangles(random);
+        let all = structures(&triangles);
+        let oracle = BruteForce::new(&triangles);
+        for _ in 0..20 {
+            let usable: Vec<_> = triangles.iter().filter(|triangle| triangle.is_usable()).collect();
+            let near = if usable.is_empty() { Vec3::ZERO } else { random.pick(&usable).corners()[0] };
+            let length = random.pick(&[0.05, 0.5, 2.0]);
+            let (origin, normal) = (near + random.signed() * length, random.signed().normalize_or(Vec3::Z));
+            let directions: Vec<_> = (0..40).map(|_| random.signed() * length).collect();
+            let directions: Vec<_> = directions.into_iter().filter(|direction| direction.dot(normal) > 0.0).collect();
+            let test = ShortTest { origin, normal, edge_on: 1e-3 * length };
+            // The plane form rounds relative to the triangles' size, here up to 1e3.
+            let segments = ShortSegments { test, directions: &directions, slack: 1e-2 * length };
+            let expected = blocked(&oracle, &segments);
+            for (name, accelerator) in &all {
+                prop_assert_eq!(&blocked(&**accelerator, &segments), &expected, "{} from {:?}", name, origin);
+            }
+        }
+    }
+
+    #[test]
+    fn regions_hold_what_meets_them(scene in prop::sample::select(&scenes::ALL), seed: u64) {
+        let random = &mut Random(seed);
+        let triangles = scene.triangles(random);
+        let all = structures(&triangles);
+        let oracle = BruteForce::new(&triangles);
+        let mut found = vec![7; 3];
+        let mut overlapping = Vec::new();
+        for _ in 0..20 {
+            let usable: Vec<_> = triangles.iter().filter(|triangle| triangle.is_usable()).collect();
+            let near = if usable.is_empty() { Vec3::ZERO } else { random.pick(&usable).corners()[0] };
+            let half = random.signed().abs() * random.pick(&[0.0, 0.1, 1.0, 5.0]);
+            let center = near + random.signed() * random.pick(&[0.0, 1.0]);
+            let region = Bounds { min: center - half, max: center + half };
+            oracle.triangles_in(&region, &mut overlapping);
+            for (name, accelerator) in &all {
+                accelerator.triangles_in(&region, &mut found);
+                prop_assert!(found.is_sorted_by(|a, b| a < b), "{}: ascending, each once", name);
+                prop_assert!(found.iter().all(|index| overlapping.binary_search(index).is_ok()), "{}", name);
+                for index in overlapping.iter().filter(|&&index| meets(&triangles[index as usize], &region)) {
+                    prop_assert!(found.binary_search(index).is_ok(), "{} lacks {}", name, index);
+                }
+            }
+        }
+    }
+}
+
+fn meets(triangle: &Triangle, region: &Bounds) -> bool {
+    let (min, max) = (region.min.as_dvec3(), region.max.as_dvec3());
+    crate::accel::grid::overlap::triangle_meets_box(triangle.corners(), 0.5 * (min + max), 0.5 * (max - min))
+}
+
+#[test]
+fn unusable_rays_miss() {
+    let triangles = scenes::indexed(&scenes::icosphere(1));
+    let ray = Ray { origin: Vec3::ZERO, direction: Vec3::X, t_max: f32::INFINITY };
+    let rays = [
+        Ray { direction: Vec3::ZERO, ..ray },
+        Ray { direction: Vec3::new(-0.0, 0.0, -0.0), ..ray },
+        Ray { direction: Vec3::NAN, ..ray },
+        Ray { direction: Vec3::INFINITY, ..ray },
+        Ray { origin: Vec3::NAN, ..ray },
+        Ray { origin: Vec3::NEG_INFINITY, ..ray },
+        Ray { t_max: 0.0, ..ray },
+        Ray { t_max: -1.0, ..ray },
+        Ray { t_max: f32::NAN, ..ray },
+    ];
+    let mut all = structures(&triangles);
+    all.push(("brute force", Box::new(BruteForce::new(&triangles))));
+    for (name, accelerator) in &all {
+        assert!(closest(&**accelerator, &[ray])[0].is_some(), "{name}");
+        assert!(closest(&**accelerator, &rays).iter().all(|hit| *hit == Hit::MISS), "{name}");
+        assert!(occluded(&**accelerator, &rays).iter().all(|&occluded| !occluded), "{name}");
+    }
+}
+
+#[test]
+fn both_ends_of_a_segment_are_open() {
+    let triangles = scenes::indexed(&[[Vec3::ZERO, Vec3::X, Vec3::Y]]);
+    let segment = |height: f32, t_max: f32| Ray {
+        origin: Vec3::new(0.25, 0.25, height),
+        direction: Vec3::NEG_Z,
+        t_max,
+    };
+    let segments = [segment(1.0, 1.0), segment(0.0, 1.0), segment(1.0, 1.0 + f32::EPSILON), segment(-1.0, 5.0)];
+    let all = structures(&triangles);
+    for (name, accelerator) in &all {
+        assert_eq!(occluded(&**accelerator, &segments), [false, false, true, false], "{name}");
+    }
+}
+
+#[test]
+fn equal_hits_go_to_the_smallest_index() {
+    let corners = scenes::icosphere(1);
+    let doubled: Vec<_> = corners.iter().chain(&corners).copied().collect();
+    let all = structures(&scenes::indexed(&doubled));
+    let random = &mut Random(1);
+    let rays: Vec<Ray> =
+        (0..200).map(|_| Ray { origin: Vec3::ZERO, direction: random.signed(), t_max: f32::INFINITY }).collect();
+    for (name, accelerator) in &all {
+        for hit in closest(&**accelerator, &rays) {
+            assert!((hit.triangle as usize) < corners.len(), "{name}");
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! What can go wrong in a render.
+
+use crate::accel::{GridError, GridFileError};
+use crate::light_mesh::{LatticeError, TemplateError};
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The light mesh cannot be numbered.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// There is no template for the radius.
+    #[error(transparent)]
+    Template(#[from] TemplateError),
+    /// The grid cannot be built.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// The grid file cannot be used.
+    #[error(transparent)]
+    GridFile(#[from] GridFileError),
+    /// A setting has no sense.
+    #[error("{what} {value} in the settings: {remedy}")]
+    Setting {
+        /// Which one, and what is wrong with it.
+        what: &'static str,
+        /// What was given.
+        value: String,
+        /// What to give instead.
+        remedy: &'static str,
+    },
+    /// The threads could not be started.
+    #[error("cannot start {threads} threads ({reason}): ask for fewer with --threads")]
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+        /// What the system said.
+        reason: String,
+    },
+    /// Not even one row of the picture fits.
+    #[error(
+        "one row of the picture needs {needed} bytes for {buffer}, more than the limit of {limit}: raise --memory-limit, or choose a smaller picture, a larger step or a smaller radius"
+    )]
+    Memory {
+        /// The largest buffer.
+        buffer: &'static str,
+        /// Bytes a row.
+        needed: u64,
+        /// Bytes allowed.
+        limit: u64,
+    },
+    /// The device does not exist or cannot be used.
+    #[error("device {device} cannot be used: {reason}")]
+    Device {
+        /// What was asked for.
+        device: String,
+        /// Why not, and what to do.
+        reason: String,
+    },
+    /// The observer asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+}

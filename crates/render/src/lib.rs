@@ -1,0 +1,43 @@
+//! Soft shadows by the light mesh method.
+//!
+//! [`method`] is the file to read first: the whole method as a handful of calls. Each call is a stage with a folder of its own
+//! under `stages`, each device implements all of them behind [`backend::Backend`], and [`Renderer`] puts a picture together.
+//!
+//! Data flows one way: [`Scene`](lightmesh_scene::Scene) ▶ [`PreparedScene`] ▶ hits ▶ masks ▶ light points ▶ visibility ▶
+//! radiance ▶ [`Frame`].
+
+pub mod accel;
+pub mod backend;
+mod device;
+mod error;
+mod job;
+pub mod light_mesh;
+mod memory;
+pub mod method;
+mod modes;
+mod observer;
+mod picture;
+mod prepared;
+mod renderer;
+pub mod sampling;
+mod settings;
+mod stages;
+mod stats;
+mod surface;
+mod view;
+
+pub use device::{Device, DeviceReport, UnknownDevice, devices};
+pub use error::RenderError;
+pub use job::{Job, Sampling, Tally};
+pub use observer::{Observer, Stage, Unobserved};
+pub use picture::Picture;
+pub use prepared::PreparedScene;
+pub use renderer::{Frame, Renderer};
+pub use settings::{Acceleration, Lookup, Mode, Settings, ShortTests, Step, weight_name};
+pub use stages::long_tests::{Lit, LitBy};
+pub use stages::primary_rays::RayList;
+pub use stages::shadow_rays::Visibility;
+pub use stages::short_tests::{CellGroups, Masks};
+pub use stats::{CameraStats, Counts, DeviceStats, LatticeStats, MemoryStats, SceneStats, Seconds, SettingsStats, Stats};
+pub use surface::SurfacePoint;
+pub use view::View;

@@ -1,0 +1,116 @@
+//! `--step auto`: a light-mesh step that follows the size of a pixel in the scene.
+//!
+//! Two bounds. A cell should be about four pixels wide, so that interpolation smooths what a picture can show and no more. And
+//! light points must pay: they should be fewer than a quarter of the pixels, or the method casts more long rays than plain
+//! tracing does.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::accel::{Hit, Ray};
+use crate::prepared::PreparedScene;
+use crate::surface::SurfacePoint;
+use crate::view::View;
+
+/// Cell width in pixels.
+const PIXELS_PER_STEP: f32 = 4.0;
+/// Most light points per pixel.
+const POINTS_PER_PIXEL: f64 = 0.25;
+/// Pixels that are looked at, along the longer side of a picture.
+const PROBES: u32 = 256;
+
+/// A pixel that was looked at.
+struct Probe {
+    /// Distance to the next pixel's object point, scene units.
+    spacing: f32,
+    /// Area of surface that the pixel covers, square scene units.
+    area: f64,
+}
+
+/// The step for a picture of `scene` in `view` with interpolation radius `radius` (in steps). It depends on the picture alone,
+/// not on how it is tiled.
+pub(crate) fn auto_step(scene: &PreparedScene, view: &View, radius: f32) -> f32 {
+    let mut probes = probe(scene, view);
+    if probes.is_empty() {
+        // Nothing is seen: any step does, and this one is small against the scene.
+        return (scene.bounds.diagonal() / 256.0).max(f32::MIN_POSITIVE.sqrt());
+    }
+    let middle = probes.len() / 2;
+    let (_, median, _) = probes.select_nth_unstable_by(middle, |a, b| a.spacing.total_cmp(&b.spacing));
+    let least = (scene.bounds.diagonal() * 1e-5).max(f32::MIN_POSITIVE.sqrt());
+    let mut step = (PIXELS_PER_STEP * median.spacing).max(least);
+    while points_per_pixel(&probes, f64::from(step), f64::from(radius)) >= POINTS_PER_PIXEL {
+        step *= 1.05;
+    }
+    rounded(step)
+}
+
+/// Light points to expect per pixel that sees something.
+///
+/// Over a surface of area A stands a layer of light points r high: A·r/h³ of them. A pixel whose surface is larger than its
+/// half-ball has the half-ball to itself: 2πR³/3.
+fn points_per_pixel(probes: &[Probe], step: f64, radius: f64) -> f64 {
+    let half_ball = 2.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+    let expected = |probe: &Probe| (probe.area / (step * step) * radius).min(half_ball);
+    probes.iter().map(expected).sum::<f64>() / probes.len() as f64
+}
+
+/// Looks at every so many pixels and the right (or lower) neighbour of each.
+fn probe(scene: &PreparedScene, view: &View) -> Vec<Probe> {
+    let [width, height] = view.size();
+    let stride = width.max(height).div_ceil(PROBES).max(1);
+    let neighbour = if width > 1 { 1 } else { width };
+    let (columns, rows) = if width > 1 { (width - 1, height) } else { (width, height.max(2) - 1) };
+    let rows: Vec<u32> = (stride / 2..rows).step_by(stride as usize).collect();
+    rows.par_iter()
+        .flat_map_iter(|row| {
+            let pixels = (stride / 2..columns).step_by(stride as usize).map(|column| row * width + column);
+            let rays: Vec<Ray> = pixels.flat_map(|pixel| [view.ray(pixel), view.ray(pixel + neighbour)]).collect();
+            let mut hits = vec![Hit::MISS; rays.len()];
+            scene.accelerator.closest_hits(&rays, &mut hits);
+            let pairs = rays.chunks_exact(2).zip(hits.chunks_exact(2));
+            pairs.filter_map(|(rays, hits)| look(scene, rays, hits)).collect::<Vec<Probe>>()
+        })
+        .collect()
+}
+
+fn look(scene: &PreparedScene, rays: &[Ray], hits: &[Hit]) -> Option<Probe> {
+    if !hits.iter().all(Hit::is_some) {
+        return None;
+    }
+    let point = |i: usize| SurfacePoint::new(&rays[i], &hits[i], &scene.triangles[hits[i].triangle as usize]);
+    let (here, there) = (point(0), point(1));
+    let spacing = (there.position - here.position).length();
+    // Neighbouring rays, followed to this pixel's distance, are one pixel apart.
+    let at = |ray: &Ray| -> Vec3 { ray.origin + hits[0].t * ray.direction };
+    let pixel = f64::from((at(&rays[1]) - at(&rays[0])).length());
+    let slant = f64::from(here.normal.dot(rays[0].direction).abs().max(1e-3));
+    let probe = Probe { spacing, area: pixel * pixel / slant };
+    (probe.spacing.is_finite() && probe.area.is_finite()).then_some(probe)
+}
+
+/// Two significant digits, rounded up: a number that a person can type again.
+fn rounded(step: f32) -> f32 {
+    let unit = 10f64.powi(f64::from(step).log10().floor() as i32 - 1);
+    ((f64::from(step) / unit).ceil() * unit) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_rounded_up_to_two_digits() {
+        for (step, expected) in [(0.1234, 0.13), (1.0, 1.0), (9.91, 10.0), (432.0, 440.0), (1.5e-6, 1.5e-6)] {
+            let result = rounded(step);
+            assert!((result / expected - 1.0).abs() < 1e-6 && result >= step * 0.999_999, "{step} became {result}");
+        }
+    }
+
+    #[test]
+    fn more_light_points_are_expected_of_a_finer_mesh() {
+        let probes: Vec<Probe> = (1..100).map(|i| Probe { spacing: 1.0, area: f64::from(i) * 0.01 }).collect();
+        let expected: Vec<f64> = [0.1, 0.2, 0.4, 0.8].iter().map(|&h| points_per_pixel(&probes, h, 2.1)).collect();
+        assert!(expected.is_sorted_by(|a, b| a > b), "{expected:?}");
+    }
+}

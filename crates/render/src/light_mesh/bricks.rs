@@ -1,0 +1,215 @@
+//! The sparse store of cells and light points.
+//!
+//! Space is cut into bricks of 4×4×4 lattice points. What a picture touches lies on surfaces, so a picture needs only few
+//! bricks, and a brick's 64 points are one machine word: the used-bitmap is one `u64` a brick, and a light point's rank among
+//! all used ones is a brick's base plus a population count. Bricks are found through a hash table and kept in ascending order
+//! of their keys, so that nothing depends on the order in which threads met them.
+
+use glam::IVec3;
+
+/// A brick's coordinates packed into 57 bits: x in the lowest 19.
+pub type BrickKey = u64;
+
+/// A lattice point (or the cell above it): its brick's key, then its bit within the brick, in 63 bits.
+pub type PointKey = u64;
+
+const AXIS_BITS: u32 = 19;
+
+/// The brick that holds the lattice point `index` (no component negative).
+#[inline(always)]
+pub fn brick_of(index: IVec3) -> BrickKey {
+    let brick: IVec3 = index >> 2;
+    (brick.z as u64) << (2 * AXIS_BITS) | (brick.y as u64) << AXIS_BITS | brick.x as u64
+}
+
+/// The bit of lattice point `index` within its brick: x in the lowest two bits.
+#[inline(always)]
+pub fn point_bit(index: IVec3) -> u32 {
+    let within = index & 3;
+    (within.z << 4 | within.y << 2 | within.x) as u32
+}
+
+/// Brick and bit of a lattice point in one number.
+#[inline(always)]
+pub fn point_key(index: IVec3) -> PointKey {
+    brick_of(index) << 6 | u64::from(point_bit(index))
+}
+
+/// The lattice point of a key: the inverse of [`point_key`].
+#[inline(always)]
+pub fn point_of(key: PointKey) -> IVec3 {
+    let axis = |shift: u32| ((key >> (6 + shift)) & ((1 << AXIS_BITS) - 1)) as i32;
+    let bit = (key & 63) as i32;
+    (IVec3::new(axis(0), axis(AXIS_BITS), axis(2 * AXIS_BITS)) << 2) + IVec3::new(bit & 3, bit >> 2 & 3, bit >> 4)
+}
+
+/// A set of bricks, each with a dense index in ascending order of keys.
+#[derive(Clone, Debug, Default)]
+pub struct BrickMap {
+    keys: Vec<BrickKey>,
+    /// Open addressing with linear probing, at most half full; an entry is an index into `keys` or `EMPTY`.
+    table: Vec<u32>,
+}
+
+const EMPTY: u32 = u32::MAX;
+
+impl BrickMap {
+    /// The set of `keys`, which must ascend without repetition.
+    pub fn new(keys: Vec<BrickKey>) -> BrickMap {
+        debug_assert!(keys.is_sorted_by(|a, b| a < b));
+        let mut table = vec![EMPTY; (2 * keys.len()).next_power_of_two()];
+        let mask = table.len() - 1;
+        for (index, &key) in keys.iter().enumerate() {
+            let mut slot = hash(key) & mask;
+            while table[slot] != EMPTY {
+                slot = (slot + 1) & mask;
+            }
+            table[slot] = index as u32;
+        }
+        BrickMap { keys, table }
+    }
+
+    /// All keys, ascending.
+    pub fn keys(&self) -> &[BrickKey] {
+        &self.keys
+    }
+
+    /// The dense index of brick `key`, if it is in the set.
+    #[inline(always)]
+    pub fn find(&self, key: BrickKey) -> Option<usize> {
+        let mask = self.table.len() - 1;
+        let mut slot = hash(key) & mask;
+        loop {
+            let index = self.table[slot] as usize;
+            if index == EMPTY as usize {
+                return None;
+            }
+            if self.keys[index] == key {
+                return Some(index);
+            }
+            slot = (slot + 1) & mask;
+        }
+    }
+}
+
+/// Fibonacci hashing: the golden ratio spreads neighbouring keys.
+#[inline(always)]
+fn hash(key: BrickKey) -> usize {
+    (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32) as usize
+}
+
+/// The used light points of a picture: a bitmap over bricks with a rank directory.
+#[derive(Clone, Debug)]
+pub struct UsedPoints {
+    bricks: BrickMap,
+    used: Vec<u64>,
+    /// Number of used points in all bricks before each one, and the total at the end.
+    rank: Vec<u32>,
+}
+
+impl UsedPoints {
+    /// Counts the used points of every brick; `used` is as long as the bricks.
+    pub fn new(bricks: BrickMap, used: Vec<u64>) -> UsedPoints {
+        debug_assert_eq!(bricks.keys().len(), used.len());
+        let mut rank = Vec::with_capacity(used.len() + 1);
+        let mut total = 0;
+        rank.push(0);
+        for word in &used {
+            total += word.count_ones();
+            rank.push(total);
+        }
+        UsedPoints { bricks, used, rank }
+    }
+
+    /// Number of used light points, S_total.
+    pub fn count(&self) -> usize {
+        self.rank[self.rank.len() - 1] as usize
+    }
+
+    /// The bricks, each of which has at least one used point.
+    pub fn bricks(&self) -> &BrickMap {
+        &self.bricks
+    }
+
+    /// The used points of each brick.
+    pub fn used(&self) -> &[u64] {
+        &self.used
+    }
+
+    /// The rank of the first used point of brick `brick`.
+    #[inline(always)]
+    pub fn first_rank(&self, brick: usize) -> usize {
+        self.rank[brick] as usize
+    }
+
+    /// The rank of a used point: its place among all used points in ascending order of brick, then bit.
+    #[inline(always)]
+    pub fn rank(&self, brick: usize, bit: u32) -> usize {
+        let below = self.used[brick] & ((1 << bit) - 1);
+        self.rank[brick] as usize + below.count_ones() as usize
+    }
+
+    /// The used points of brick `brick` in ascending order.
+    pub fn points(&self, brick: usize) -> impl Iterator<Item = IVec3> + '_ {
+        let key = self.bricks.keys()[brick];
+        bits(self.used[brick]).map(move |bit| point_of(key << 6 | u64::from(bit)))
+    }
+}
+
+/// The positions of the set bits of `word`, ascending.
+#[inline(always)]
+pub(crate) fn bits(mut word: u64) -> impl Iterator<Item = u32> {
+    std::iter::from_fn(move || {
+        (word != 0).then(|| {
+            let bit = word.trailing_zeros();
+            word &= word - 1;
+            bit
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn a_point_comes_back_from_its_brick_and_bit() {
+        for index in [[0, 0, 0], [3, 2, 1], [4, 7, 1001], [2_097_151, 2_097_148, 2_097_149]] {
+            let index = IVec3::from_array(index);
+            assert_eq!(point_of(point_key(index)), index);
+            assert_eq!(point_key(index) >> 6, brick_of(index));
+        }
+    }
+
+    #[test]
+    fn the_map_finds_what_is_there_and_nothing_else() {
+        let keys: BTreeSet<BrickKey> = (0..5000u64).map(|i| i * i * 7919 % (1 << 63)).collect();
+        let map = BrickMap::new(keys.iter().copied().collect());
+        for (index, &key) in keys.iter().enumerate() {
+            assert_eq!(map.find(key), Some(index));
+        }
+        assert_eq!((0..20_000).filter(|key| map.find(*key).is_some()).count(), keys.range(..20_000).count());
+        assert_eq!(BrickMap::new(Vec::new()).find(0), None);
+    }
+
+    #[test]
+    fn ranks_count_the_used_points_before() {
+        let points = [[0, 0, 0], [1, 0, 0], [3, 3, 3], [4, 0, 0], [5, 1, 0], [0, 0, 9]].map(IVec3::from_array);
+        let keys: BTreeSet<BrickKey> = points.iter().map(|&point| brick_of(point)).collect();
+        let bricks = BrickMap::new(keys.into_iter().collect());
+        let mut used = vec![0; bricks.keys().len()];
+        for &point in &points {
+            used[bricks.find(brick_of(point)).unwrap()] |= 1 << point_bit(point);
+        }
+        let used = UsedPoints::new(bricks, used);
+        assert_eq!(used.count(), points.len());
+        let listed: Vec<IVec3> = (0..used.used().len()).flat_map(|brick| used.points(brick)).collect();
+        for (rank, &point) in listed.iter().enumerate() {
+            let brick = used.bricks().find(brick_of(point)).unwrap();
+            assert_eq!(used.rank(brick, point_bit(point)), rank);
+        }
+        assert_eq!(listed.iter().map(IVec3::to_array).collect::<BTreeSet<_>>().len(), points.len());
+    }
+}

@@ -1,0 +1,50 @@
+//! The light mesh: a lattice of light points in space, the template that says which of them a surface point may use, and the
+//! sparse store that holds only what a picture touches.
+//!
+//! A *cell* (i, j, k) is the cube whose lowest corner is *light point* (i, j, k): cells and points share one numbering.
+
+mod auto_step;
+mod bricks;
+mod lattice;
+mod template;
+mod weight;
+
+pub(crate) use auto_step::auto_step;
+pub(crate) use bricks::bits;
+pub use bricks::{BrickKey, BrickMap, PointKey, UsedPoints, brick_of, point_bit, point_key, point_of};
+pub use lattice::{Lattice, LatticeError};
+pub use template::{Template, TemplateError};
+pub use weight::weight;
+
+/// Everything that stages need to know about the light mesh of one picture.
+#[derive(Clone, Debug)]
+pub struct LightMesh {
+    /// Where the light points lie.
+    pub lattice: Lattice,
+    /// Formula (6) for the chosen radius.
+    pub template: Template,
+    /// Interpolation radius r in scene units.
+    pub radius: f32,
+    /// w of formula (3).
+    pub weight: lightmesh_scene::Weight,
+}
+
+impl LightMesh {
+    /// The smallest `(n, x − P)` that a light point must exceed to be used, in scene units. A thousandth part of a step
+    /// keeps lattice planes that coincide with a surface from flickering in and out of its half-ball.
+    pub fn least_height(&self) -> f32 {
+        1e-3 * self.lattice.step
+    }
+
+    /// How near a triangle's plane may pass to a segment's origin before it counts as edge-on, in scene units. Ten times
+    /// smaller than [`LightMesh::least_height`], so that it can hide no light point behind a surface.
+    pub fn edge_on(&self) -> f32 {
+        1e-4 * self.lattice.step
+    }
+
+    /// How much boxes grow before triangles are looked up for short tests, in scene units: far above rounding, far below a
+    /// step.
+    pub fn slack(&self) -> f32 {
+        1e-3 * self.lattice.step
+    }
+}

@@ -1,0 +1,133 @@
+//! Formula (6): which light points can lie in the interpolation half-ball of some point of a cell.
+
+use glam::IVec3;
+
+/// The light points that lie within r of *some* point of a cell, as offsets from the cell. Bit k of an object point's mask
+/// speaks of `offsets()[k]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Template {
+    radius: f32,
+    offsets: Vec<IVec3>,
+}
+
+/// A radius for which there is no template.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(
+    "interpolation radius R = {radius} is not between {least} and {most} steps: below, half-balls are empty; above, masks take kilobytes a pixel. 2.1 is a good choice",
+    least = Template::MIN_RADIUS,
+    most = Template::MAX_RADIUS
+)]
+pub struct TemplateError {
+    /// What was asked for.
+    pub radius: f32,
+}
+
+impl Template {
+    /// Smallest radius in steps.
+    pub const MIN_RADIUS: f32 = 0.5;
+    /// Largest radius in steps: 20 000 light points.
+    pub const MAX_RADIUS: f32 = 16.0;
+
+    /// The template of interpolation radius `radius` = r/h, in ascending order of (z, y, x).
+    pub fn new(radius: f32) -> Result<Template, TemplateError> {
+        if !(Self::MIN_RADIUS..=Self::MAX_RADIUS).contains(&radius) {
+            return Err(TemplateError { radius });
+        }
+        let reach = radius.ceil() as i32;
+        let range = -reach..=reach + 1;
+        // Distance of offset i from the cell's extent along one axis.
+        let excess = |i: i32| 0.max(-i).max(i - 1);
+        let inside = |&[z, y, x]: &[i32; 3]| {
+            let square = [x, y, z].map(|i| excess(i) * excess(i)).iter().sum::<i32>();
+            f64::from(square) < f64::from(radius) * f64::from(radius)
+        };
+        let offsets = range
+            .clone()
+            .flat_map(|z| range.clone().flat_map(move |y| (-reach..=reach + 1).map(move |x| [z, y, x])))
+            .filter(inside)
+            .map(|[z, y, x]| IVec3::new(x, y, z))
+            .collect();
+        Ok(Template { radius, offsets })
+    }
+
+    /// R = r/h.
+    pub fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    /// Offsets from the cell, ascending in (z, y, x).
+    pub fn offsets(&self) -> &[IVec3] {
+        &self.offsets
+    }
+
+    /// Number of light points.
+    #[allow(clippy::len_without_is_empty, reason = "a template is never empty")]
+    pub fn len(&self) -> usize {
+        self.offsets.len()
+    }
+
+    /// 32-bit words of a mask.
+    pub fn words(&self) -> usize {
+        self.offsets.len().div_ceil(32)
+    }
+
+    /// Largest component of an offset; the smallest is one less in the other direction.
+    pub fn reach(&self) -> i32 {
+        self.offsets.last().map_or(0, |offset| offset.z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn sizes_are_those_of_the_method() {
+        let sizes = [
+            (1.0, 8),
+            (1.5, 56),
+            (2.0, 64),
+            (2.1, 88),
+            (2.5, 160),
+            (3.0, 184),
+            (3.1, 232),
+            (3.2, 280),
+            (3.5, 312),
+            (4.0, 408),
+            (4.1, 432),
+            (5.0, 720),
+            (5.1, 888),
+            (6.1, 1352),
+        ];
+        for (radius, size) in sizes {
+            let template = Template::new(radius).unwrap();
+            assert_eq!(template.len(), size, "R = {radius}");
+            assert_eq!(template.words(), size.div_ceil(32), "R = {radius}");
+        }
+    }
+
+    #[test]
+    fn the_cube_s_symmetries_leave_it_alone() {
+        let template = Template::new(3.1).unwrap();
+        let set: BTreeSet<[i32; 3]> = template.offsets().iter().map(IVec3::to_array).collect();
+        for &[x, y, z] in &set {
+            // Mirror about the cell's centre (1/2) along x, and two exchanges of axes: together they generate all 48.
+            assert!(set.contains(&[1 - x, y, z]) && set.contains(&[y, x, z]) && set.contains(&[y, z, x]));
+        }
+    }
+
+    #[test]
+    fn bits_ascend_in_z_y_x() {
+        let template = Template::new(2.1).unwrap();
+        assert!(template.offsets().is_sorted_by_key(|offset| (offset.z, offset.y, offset.x)));
+    }
+
+    #[test]
+    fn radii_without_sense_are_refused() {
+        for radius in [0.0, -1.0, 0.49, 16.1, f32::NAN, f32::INFINITY] {
+            assert!(Template::new(radius).is_err(), "R = {radius}");
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! How many rows of a picture fit into memory at once.
+
+use super::Technique;
+use crate::accel::{Hit, Ray};
+use crate::RenderError;
+
+/// What is kept free for everything that is not counted below: stacks, the segments in flight, the allocator's waste.
+const RESERVE: u64 = 64 << 20;
+
+/// Rows that fit under `limit` bytes beside the `resident` bytes of scene and picture.
+///
+/// The estimate is an upper bound per pixel, taken at the stage that holds most; see the sum.
+pub(crate) fn rows_per_band(
+    technique: &Technique,
+    size: [u32; 2],
+    lights: usize,
+    resident: u64,
+    limit: Option<u64>,
+) -> Result<u32, RenderError> {
+    let Some(limit) = limit else { return Ok(size[1]) };
+    let row = u64::from(size[0]) * bytes_per_ray(technique, lights as u64);
+    let free = limit.saturating_sub(resident).saturating_sub(RESERVE);
+    match free / row {
+        0 => Err(RenderError::Memory {
+            buffer: "masks and visibility, beside the scene",
+            needed: row + resident + RESERVE,
+            limit,
+        }),
+        rows => Ok(rows.min(u64::from(size[1])) as u32),
+    }
+}
+
+fn bytes_per_ray(technique: &Technique, lights: u64) -> u64 {
+    // A ray with pixel and weight, twice (mirrors make the next list from this one), and its hit and radiance.
+    let ray = 2 * (size_of::<Ray>() as u64 + 4 + 12) + size_of::<Hit>() as u64 + 12;
+    // Shares by cell and by ray, and the sum shaded sample by sample.
+    let visibility = 2 * 4 * lights + 4 + 12;
+    let mesh = match technique {
+        Technique::LightMesh(mesh) => {
+            // Sorting by cell, members and starts; the mask; and the light points, at most a half-ball a pixel but in
+            // practice under two, each with its share of a brick and its visibility.
+            let points = 2 * (16 + 16 + 2 * lights + lights.div_ceil(8) * 8);
+            2 * 16 + 4 + 16 + 4 * mesh.template.words() as u64 + points
+        }
+        Technique::RayTrace | Technique::Area => 0,
+    };
+    ray + visibility + mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_splits_the_picture_and_none_does_not() {
+        let rows = |limit| rows_per_band(&Technique::Area, [1000, 1000], 3, 0, limit);
+        assert_eq!(rows(None).unwrap(), 1000);
+        assert_eq!(rows(Some(u64::MAX)).unwrap(), 1000);
+        let some = rows(Some(RESERVE + (20 << 20))).unwrap();
+        assert!((1..1000).contains(&some), "{some}");
+        assert!(matches!(rows(Some(RESERVE + 1)), Err(RenderError::Memory { .. })));
+    }
+}

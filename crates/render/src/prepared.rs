@@ -1,0 +1,58 @@
+//! A scene made ready for rays.
+
+use glam::Vec3;
+use lightmesh_scene::{Bounds, Scene};
+
+use crate::accel::{Accelerator, BruteForce, Bvh, Grid, GridOptions, Triangle};
+use crate::settings::Acceleration;
+use crate::{Observer, RenderError, Stage};
+
+/// A scene with its acceleration structure. Any number of pictures can be taken of it.
+pub struct PreparedScene<'s> {
+    /// The scene itself.
+    pub scene: &'s Scene,
+    /// The scene's triangles by index.
+    pub triangles: Vec<Triangle>,
+    /// What finds triangles.
+    pub accelerator: Box<dyn Accelerator>,
+    /// The box around all triangles.
+    pub bounds: Bounds,
+    /// Seconds that building took.
+    pub build_seconds: f64,
+}
+
+impl<'s> PreparedScene<'s> {
+    /// Builds the acceleration structure over `scene`.
+    pub fn new(
+        scene: &'s Scene,
+        acceleration: &Acceleration,
+        observer: &dyn Observer,
+    ) -> Result<PreparedScene<'s>, RenderError> {
+        observer.begin(Stage::Build, scene.mesh.triangles.len() as u64);
+        let start = std::time::Instant::now();
+        let triangles: Vec<Triangle> = (0..scene.mesh.triangles.len())
+            .map(|index| Triangle::new(scene.mesh.corners(index), index as u32))
+            .collect();
+        let accelerator: Box<dyn Accelerator> = match acceleration {
+            Acceleration::Auto | Acceleration::Bvh => Box::new(Bvh::new(&triangles)),
+            Acceleration::Grid(dims) => {
+                Box::new(Grid::new(&triangles, &GridOptions { dims: *dims, ..GridOptions::default() })?)
+            }
+            Acceleration::GridFile(path) => Box::new(Grid::load(path, &triangles)?),
+            Acceleration::BruteForce => Box::new(BruteForce::new(&triangles)),
+        };
+        let build_seconds = start.elapsed().as_secs_f64();
+        observer.end(Stage::Build);
+        Ok(PreparedScene { scene, bounds: scene.mesh.bounds(), triangles, accelerator, build_seconds })
+    }
+
+    /// How far a directional light stands from `from`: farther than any triangle.
+    pub fn reach(&self, from: Vec3) -> f32 {
+        if self.bounds.is_empty() { 1.0 } else { 1.25 * self.bounds.diagonal() + 2.0 * (from - self.bounds.center()).length() }
+    }
+
+    /// Bytes that the geometry takes on the host, acceleration structure included.
+    pub fn memory(&self) -> usize {
+        size_of_val(self.triangles.as_slice()) + self.accelerator.memory()
+    }
+}

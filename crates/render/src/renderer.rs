@@ -1,0 +1,259 @@
+//! From a scene and settings to a frame.
+
+use std::path::Path;
+use std::time::Instant;
+
+use lightmesh_image::SaveError;
+use lightmesh_scene::{Camera, Projection, Scene, Weight};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::backend::Cpu;
+use crate::device::{NO_CUDA, cpu_name};
+use crate::job::{Job, Sampling};
+use crate::light_mesh::{Lattice, LightMesh, Template, auto_step};
+use crate::modes::{self, Technique, rows_per_band};
+use crate::prepared::PreparedScene;
+use crate::settings::{Mode, Settings, ShortTests, Step, weight_name};
+use crate::stages::shade::DEFAULT_AMBIENT;
+use crate::stats::{CameraStats, Counts, DeviceStats, LatticeStats, MemoryStats, SceneStats, Seconds, SettingsStats, Stats};
+use crate::view::View;
+use crate::{Device, Observer, Picture, RenderError, Unobserved, memory};
+
+/// A finished picture and what is to be said about it.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Linear colours, and layers where they were asked for.
+    pub image: lightmesh_image::Frame,
+    /// Counts, seconds and settings.
+    pub stats: Stats,
+}
+
+impl Frame {
+    /// Writes the picture as bmp, png, exr or jpg, by the extension; 8-bit formats in sRGB.
+    ///
+    /// # Errors
+    /// [`SaveError`] where the extension is unknown or the file cannot be written; no file is left half-written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        self.image.save(path)
+    }
+}
+
+/// Renders scenes on one device.
+pub struct Renderer {
+    pool: ThreadPool,
+}
+
+impl Renderer {
+    /// A renderer on `device` with a thread for each processor.
+    ///
+    /// # Errors
+    /// [`RenderError::Device`] where the device cannot be used.
+    pub fn new(device: Device) -> Result<Renderer, RenderError> {
+        Renderer::with_threads(device, None)
+    }
+
+    /// A renderer on `device` with a number of threads of its own.
+    ///
+    /// # Errors
+    /// [`RenderError::Device`] where the device cannot be used, [`RenderError::Threads`] where the threads cannot be started.
+    pub fn with_threads(device: Device, threads: Option<usize>) -> Result<Renderer, RenderError> {
+        if let Device::Cuda(_) = device {
+            return Err(RenderError::Device { device: device.to_string(), reason: NO_CUDA.to_owned() });
+        }
+        let threads = threads.unwrap_or(0);
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|error| RenderError::Threads { threads, reason: error.to_string() })?;
+        Ok(Renderer { pool })
+    }
+
+    /// Renders one picture of `scene`.
+    ///
+    /// # Errors
+    /// [`RenderError`] where the settings have no sense for this scene, or memory does not suffice.
+    pub fn render(&self, scene: &Scene, settings: &Settings) -> Result<Frame, RenderError> {
+        let prepared = self.prepare(scene, settings, &Unobserved)?;
+        self.render_prepared(&prepared, settings, &Unobserved)
+    }
+
+    /// Builds the acceleration structure, for any number of pictures.
+    ///
+    /// # Errors
+    /// [`RenderError::Grid`] or [`RenderError::GridFile`] where a grid was asked for and cannot be had.
+    pub fn prepare<'s>(
+        &self,
+        scene: &'s Scene,
+        settings: &Settings,
+        observer: &dyn Observer,
+    ) -> Result<PreparedScene<'s>, RenderError> {
+        self.pool.install(|| PreparedScene::new(scene, &settings.acceleration, observer))
+    }
+
+    /// Renders one picture of a prepared scene.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`], and [`RenderError::Cancelled`] where the observer asked to stop.
+    pub fn render_prepared(
+        &self,
+        scene: &PreparedScene,
+        settings: &Settings,
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
+        check(settings)?;
+        self.pool.install(|| self.render_here(scene, settings, observer))
+    }
+
+    fn render_here(
+        &self,
+        scene: &PreparedScene,
+        settings: &Settings,
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
+        let start = Instant::now();
+        let camera = camera(scene.scene, settings);
+        let view = View::new(&camera, settings.size);
+        let technique = technique(scene, settings, &view, observer)?;
+        let lights = scene.scene.lights.len();
+
+        let pixels = u64::from(settings.size[0]) * u64::from(settings.size[1]);
+        let picture_bytes = pixels * (12 + if settings.layers { 32 + 4 * lights as u64 } else { 0 });
+        let available = memory::available().map(|bytes| bytes - bytes / 8);
+        let rows = match settings.memory_limit {
+            // The limit is on the process: what it already holds counts.
+            Some(limit) => {
+                let resident = scene.memory() as u64 + picture_bytes;
+                rows_per_band(&technique, settings.size, lights, resident, Some(limit))?
+            }
+            None => rows_per_band(&technique, settings.size, lights, picture_bytes, available)?,
+        };
+
+        let sampling =
+            Sampling { samples: settings.samples(), seed: settings.seed, spread: settings.mode == Mode::Area };
+        let job = Job::new(observer, sampling);
+        let mut picture = Picture::new(settings.size, settings.layers.then_some(lights));
+        let backend = Cpu { short_tests: settings.short_tests };
+        modes::render(&backend, &job, scene, &view, &technique, settings.bounces, rows, &mut picture)?;
+
+        let mesh = match &technique {
+            Technique::LightMesh(mesh) => Some(mesh),
+            _ => None,
+        };
+        let stats = Stats {
+            version: 1,
+            scene: SceneStats {
+                name: scene.scene.name.clone(),
+                triangles: scene.triangles.len(),
+                lights,
+            },
+            device: DeviceStats { kind: "cpu", name: cpu_name() },
+            settings: self.settings_stats(scene, settings, &camera, mesh, rows),
+            counts: Counts::new(&job, pixels, mesh),
+            seconds: Seconds::new(&job, scene.build_seconds, start.elapsed().as_secs_f64()),
+            memory: MemoryStats::now(),
+        };
+        Ok(Frame { image: picture.into_frame(), stats })
+    }
+
+    fn settings_stats(
+        &self,
+        scene: &PreparedScene,
+        settings: &Settings,
+        camera: &Camera,
+        mesh: Option<&LightMesh>,
+        rows_per_band: u32,
+    ) -> SettingsStats {
+        let aspect = settings.size[0] as f32 / settings.size[1] as f32;
+        let (vfov, height) = match camera.projection {
+            Projection::Perspective(fov) => (Some(fov.vertical(aspect)), None),
+            Projection::Orthographic { height } => (None, Some(height)),
+        };
+        SettingsStats {
+            mode: settings.mode.name(),
+            bounces: settings.bounces,
+            size: settings.size,
+            device: "cpu",
+            threads: self.pool.current_num_threads(),
+            step: mesh.map(|mesh| mesh.lattice.step),
+            step_auto: mesh.is_some() && chosen_step(scene.scene, settings) == Step::Auto,
+            radius: mesh.map(|mesh| mesh.template.radius()),
+            weight: mesh.map(|mesh| weight_name(mesh.weight)),
+            lookup: mesh.map(|_| "half-ball"),
+            short_tests: mesh.map(|_| match settings.short_tests {
+                ShortTests::Cells => "cells",
+                ShortTests::Plain => "plain",
+            }),
+            samples: settings.samples(),
+            accel: scene.accelerator.name(),
+            camera: CameraStats {
+                position: scene.scene.to_world(camera.position).to_array(),
+                direction: camera.direction.to_array(),
+                up: camera.up.to_array(),
+                vfov,
+                height,
+            },
+            ambient: scene.scene.ambient.unwrap_or(DEFAULT_AMBIENT).to_array(),
+            background: scene.scene.background.unwrap_or_default().to_array(),
+            seed: settings.seed,
+            memory_limit: settings.memory_limit,
+            rows_per_band,
+            lattice: mesh.map(|mesh| LatticeStats::new(scene, &mesh.lattice)),
+        }
+    }
+}
+
+/// Settings without sense are refused before any work.
+fn check(settings: &Settings) -> Result<(), RenderError> {
+    let [width, height] = settings.size;
+    // Rays are numbered in 32 bits.
+    if width == 0 || height == 0 || u64::from(width) * u64::from(height) >= u64::from(u32::MAX) {
+        return Err(RenderError::Setting {
+            what: "picture size",
+            value: format!("{width}x{height}"),
+            remedy: "both sides must be at least 1, and all pixels fewer than 4294967295",
+        });
+    }
+    if !(1..=u32::from(u16::MAX)).contains(&settings.samples()) {
+        return Err(RenderError::Setting {
+            what: "number of samples",
+            value: settings.samples().to_string(),
+            remedy: "choose 1 to 65535",
+        });
+    }
+    Ok(())
+}
+
+fn camera(scene: &Scene, settings: &Settings) -> Camera {
+    let chosen = settings.camera.as_ref().or(scene.cameras.first());
+    chosen.cloned().unwrap_or_else(|| scene.default_camera(settings.up))
+}
+
+fn chosen_step(scene: &Scene, settings: &Settings) -> Step {
+    settings.step.or(scene.light_mesh.step.map(Step::Fixed)).unwrap_or(Step::Auto)
+}
+
+/// Resolves what the mode needs; says what was chosen where it was left open.
+fn technique(
+    scene: &PreparedScene,
+    settings: &Settings,
+    view: &View,
+    observer: &dyn Observer,
+) -> Result<Technique, RenderError> {
+    match settings.mode {
+        Mode::RayTrace => return Ok(Technique::RayTrace),
+        Mode::Area => return Ok(Technique::Area),
+        Mode::LightMesh => {}
+    }
+    let defaults = scene.scene.light_mesh;
+    let radius = settings.radius.or(defaults.radius).unwrap_or(Settings::DEFAULT_RADIUS);
+    let template = Template::new(radius)?;
+    let step = match chosen_step(scene.scene, settings) {
+        Step::Fixed(step) => step,
+        Step::Auto => {
+            let step = auto_step(scene, view, radius);
+            observer.note(&format!("light-mesh step h = {step} chosen for this picture (--step sets another)"));
+            step
+        }
+    };
+    let lattice = Lattice::around(&scene.bounds, step, radius)?;
+    let weight = settings.weight.or(defaults.weight).unwrap_or(Weight::Smooth);
+    Ok(Technique::LightMesh(LightMesh { lattice, template, radius: radius * step, weight }))
+}

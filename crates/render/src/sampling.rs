@@ -1,0 +1,181 @@
+//! Where the shadow rays towards a light with a size end: stratified points on or in the light.
+//!
+//! Points are an Owen-scrambled Sobol sequence (Burley: *Practical Hash-based Owen Scrambling*, JCGT 2020): any first N of
+//! them are well spread, and each surface point or light point gets a scrambling of its own from a hash, so that errors do
+//! not form patterns and the result depends on the seed alone.
+
+use glam::Vec3;
+use lightmesh_scene::{Light, LightKind};
+
+/// A stream of stratified points in the unit cube, different for each key.
+#[derive(Clone, Copy, Debug)]
+pub struct Pattern {
+    seeds: [u32; 4],
+}
+
+impl Pattern {
+    /// The pattern that belongs to `key` (a pixel or light point), light number `light` and the user's `seed`.
+    #[inline(always)]
+    pub fn new(seed: u64, key: u64, light: usize) -> Pattern {
+        let base = mix(seed ^ mix(key ^ mix(light as u64 + 1)));
+        let word = |i: u64| mix(base.wrapping_add(i)) as u32;
+        Pattern { seeds: [word(0), word(1), word(2), word(3)] }
+    }
+
+    /// Point `index` of the sequence, each component in [0, 1).
+    #[inline(always)]
+    pub fn point(&self, index: u32) -> Vec3 {
+        let index = scramble(index, self.seeds[0]);
+        let axis = |bits: u32, seed: u32| (scramble(bits, seed) >> 8) as f32 * (1.0 / 16_777_216.0);
+        Vec3::new(
+            axis(index.reverse_bits(), self.seeds[1]),
+            axis(sobol_1(index), self.seeds[2]),
+            axis(sobol_2(index), self.seeds[3]),
+        )
+    }
+}
+
+/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014).
+#[inline(always)]
+fn mix(value: u64) -> u64 {
+    let value = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let value = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let value = (value ^ (value >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    value ^ (value >> 31)
+}
+
+/// Owen scrambling of a number whose most significant bit is the first binary digit (Laine and Karras 2011, constants of
+/// Burley's paper).
+#[inline(always)]
+fn scramble(value: u32, seed: u32) -> u32 {
+    let mut x = value.reverse_bits();
+    x = x.wrapping_add(seed);
+    x ^= x.wrapping_mul(0x6c50_b47c);
+    x ^= x.wrapping_mul(0xb82f_1e52);
+    x ^= x.wrapping_mul(0xc7af_e638);
+    x ^= x.wrapping_mul(0x8d22_f6e6);
+    x.reverse_bits()
+}
+
+/// Second dimension of Sobol's sequence.
+#[inline(always)]
+fn sobol_1(mut index: u32) -> u32 {
+    let mut direction = 1u32 << 31;
+    let mut result = 0;
+    while index != 0 {
+        if index & 1 != 0 {
+            result ^= direction;
+        }
+        direction ^= direction >> 1;
+        index >>= 1;
+    }
+    result
+}
+
+/// Third dimension of Sobol's sequence: primitive polynomial x² + x + 1 with initial numbers 1, 3.
+#[inline(always)]
+fn sobol_2(mut index: u32) -> u32 {
+    let (mut direction, mut next) = (1u32 << 31, 3u32 << 30);
+    let mut result = 0;
+    while index != 0 {
+        if index & 1 != 0 {
+            result ^= direction;
+        }
+        // v_i = v_(i−1) ⊕ v_(i−2) ⊕ (v_(i−2) >> 2)
+        (direction, next) = (next, next ^ direction ^ (direction >> 2));
+        index >>= 1;
+    }
+    result
+}
+
+/// The point of `light` that the numbers `u` in [0, 1)³ stand for; a directional light lies `reach` away from `from`.
+///
+/// A ball is filled evenly, as the thesis strews its point lights; disks and rectangles are covered evenly.
+#[inline(always)]
+pub fn light_point(light: &Light, from: Vec3, reach: f32, u: Vec3) -> Vec3 {
+    match light.kind {
+        LightKind::Point { position, spread } => position + spread * in_ball(u),
+        LightKind::Sphere { position, radius } => position + radius * in_ball(u),
+        LightKind::Spot { position, .. } => position,
+        LightKind::Directional { direction } => from - reach * direction,
+        LightKind::Disk { position, normal, radius } => {
+            let (tangent, bitangent) = normal.any_orthonormal_pair();
+            let (sin, cos) = (std::f32::consts::TAU * u.x).sin_cos();
+            position + radius * u.y.sqrt() * (cos * tangent + sin * bitangent)
+        }
+        LightKind::Rectangle { position, half_u, half_v } => {
+            position + (2.0 * u.x - 1.0) * half_u + (2.0 * u.y - 1.0) * half_v
+        }
+    }
+}
+
+/// The middle of `light`; a directional light lies `reach` away from `from`.
+#[inline(always)]
+pub fn light_center(light: &Light, from: Vec3, reach: f32) -> Vec3 {
+    match light.kind {
+        LightKind::Directional { direction } => from - reach * direction,
+        _ => light.position().unwrap_or(from),
+    }
+}
+
+/// An even map from the cube to the unit ball.
+#[inline(always)]
+fn in_ball(u: Vec3) -> Vec3 {
+    let z = 2.0 * u.x - 1.0;
+    let (sin, cos) = (std::f32::consts::TAU * u.y).sin_cos();
+    let ring = (1.0 - z * z).max(0.0).sqrt();
+    u.z.cbrt() * Vec3::new(ring * cos, ring * sin, z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_power_of_two_is_stratified_in_each_dimension() {
+        for key in 0..20 {
+            let pattern = Pattern::new(7, key, 0);
+            for count in [2u32, 16, 64, 256] {
+                for axis in 0..3 {
+                    let mut strata = vec![0; count as usize];
+                    for index in 0..count {
+                        strata[(pattern.point(index)[axis] * count as f32) as usize] += 1;
+                    }
+                    assert!(strata.iter().all(|&hits| hits == 1), "key {key}, {count} points, axis {axis}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_first_two_dimensions_are_a_zero_two_sequence() {
+        let pattern = Pattern::new(0, 3, 1);
+        for (nx, ny) in [(16, 1), (8, 2), (4, 4), (2, 8), (1, 16)] {
+            let cells: std::collections::BTreeSet<_> = (0..16)
+                .map(|index| pattern.point(index))
+                .map(|u| ((u.x * nx as f32) as u32, (u.y * ny as f32) as u32))
+                .collect();
+            assert_eq!(cells.len(), 16, "{nx} by {ny}");
+        }
+    }
+
+    #[test]
+    fn patterns_depend_on_seed_key_and_light() {
+        let first = |seed, key, light| Pattern::new(seed, key, light).point(0);
+        let reference = first(0, 0, 0);
+        assert_eq!(reference, first(0, 0, 0));
+        for other in [first(1, 0, 0), first(0, 1, 0), first(0, 0, 1)] {
+            assert_ne!(reference, other);
+        }
+    }
+
+    #[test]
+    fn a_ball_is_filled_evenly() {
+        let pattern = Pattern::new(0, 0, 0);
+        let points: Vec<Vec3> = (0..4096).map(|index| in_ball(pattern.point(index))).collect();
+        let mean = points.iter().sum::<Vec3>() / 4096.0;
+        let inner = points.iter().filter(|point| point.length() < 0.5).count();
+        assert!(mean.length() < 0.01, "{mean}");
+        assert!((inner as f32 / 4096.0 - 0.125).abs() < 0.005, "{inner}");
+    }
+}

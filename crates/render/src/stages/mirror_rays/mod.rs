@@ -1,0 +1,8 @@
+//! The last term of formula (1), k_s · I_r: rays from mirroring object points along the mirrored view.
+//!
+//! In: rays and hits of one depth. Out: the rays of the next one, with the share of their radiance that reaches the eye. The
+//! recursion of Whitted's tracer is a loop over such lists.
+
+pub(crate) mod cpu;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,10 @@
+//! The stages of a picture: one folder each, with its contract in `mod.rs` and a file for each kind of device beside it.
+
+pub(crate) mod interpolate;
+pub(crate) mod light_points;
+pub(crate) mod long_tests;
+pub(crate) mod mirror_rays;
+pub(crate) mod primary_rays;
+pub(crate) mod shade;
+pub(crate) mod shadow_rays;
+pub(crate) mod short_tests;

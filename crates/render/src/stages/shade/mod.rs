@@ -1,0 +1,137 @@
+//! Step 5, second half: formula (1), Whitted's model with Phong terms.
+//!
+//! ```text
+//! I(P) = I_a k_a + Σ_i V(L_i, P) · I_i · [ k_d (N·D_i) + k_s (R_i·View)^pow ] + k_s · I_r
+//! ```
+//!
+//! Both dot products are clamped at 0, channels are independent. The last term is a list of rays of its own
+//! ([`mirror_rays`](super::mirror_rays)). In: hits and visibility. Out: radiance, added to the pixels.
+
+pub(crate) mod cpu;
+#[cfg(test)]
+mod tests;
+
+use std::f32::consts::FRAC_1_PI;
+
+use glam::Vec3;
+use lightmesh_scene::{Falloff, Light, LightKind, Material};
+
+use crate::accel::Hit;
+use crate::prepared::PreparedScene;
+use crate::sampling::{Pattern, light_center, light_point};
+use crate::stages::primary_rays::RayList;
+use crate::surface::{SurfacePoint, shading_normal};
+
+/// I_a where neither the scene nor the user says.
+pub(crate) const DEFAULT_AMBIENT: Vec3 = Vec3::splat(0.1);
+
+/// An object point with what formula (1) needs.
+pub(crate) struct Surface<'a> {
+    pub(crate) point: SurfacePoint,
+    normal: Vec3,
+    /// Unit vector to the viewer.
+    view: Vec3,
+    pub(crate) material: &'a Material,
+}
+
+impl<'a> Surface<'a> {
+    #[inline(always)]
+    pub(crate) fn new(scene: &PreparedScene<'a>, list: &RayList, hits: &[Hit], ray: usize) -> Surface<'a> {
+        let (ray, hit) = (&list.rays[ray], &hits[ray]);
+        let triangle = hit.triangle as usize;
+        let point = SurfacePoint::new(ray, hit, &scene.triangles[triangle]);
+        let mesh = &scene.scene.mesh;
+        Surface {
+            normal: shading_normal(mesh, hit, point.normal),
+            point,
+            view: -ray.direction,
+            material: &scene.scene.materials[mesh.materials[triangle] as usize],
+        }
+    }
+
+    /// Light of `light` that reaches the eye if all of it comes from `target`: one term of the sum without V.
+    #[inline(always)]
+    pub(crate) fn reflected(&self, light: &Light, target: Vec3) -> Vec3 {
+        let to_light = target - self.point.position;
+        let distance = to_light.length();
+        if distance == 0.0 {
+            return Vec3::ZERO;
+        }
+        let direction = to_light / distance;
+        let cosine = self.normal.dot(direction);
+        if cosine <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let mut answer = cosine * self.material.kd;
+        if self.material.ks != Vec3::ZERO {
+            let mirrored = 2.0 * cosine * self.normal - direction;
+            answer += mirrored.dot(self.view).max(0.0).powf(self.material.shininess) * self.material.ks;
+        }
+        strength(light, direction, distance) * answer
+    }
+
+    /// The same for the whole light, averaged over `targets`.
+    #[inline(always)]
+    pub(crate) fn reflected_from_all(&self, light: &Light, targets: &[Vec3]) -> Vec3 {
+        let sum: Vec3 = targets.iter().map(|&target| self.reflected(light, target)).sum();
+        sum / targets.len() as f32
+    }
+
+    /// The direction in which a mirror at this point is seen. A smooth normal may mirror into the surface; then the geometric
+    /// one does it.
+    pub(crate) fn mirrored(&self) -> Vec3 {
+        let about = |normal: Vec3| 2.0 * normal.dot(self.view) * normal - self.view;
+        let direction = about(self.normal);
+        if direction.dot(self.point.normal) > 0.0 { direction } else { about(self.point.normal) }
+    }
+}
+
+/// Intensity of `light` at `distance` along `direction` (from the surface to the light), falloff and cone included.
+#[inline(always)]
+fn strength(light: &Light, direction: Vec3, distance: f32) -> Vec3 {
+    let falloff = match (light.falloff, &light.kind) {
+        (Falloff::None, _) => 1.0,
+        (Falloff::InverseSquare, LightKind::Directional { .. }) => FRAC_1_PI,
+        (Falloff::InverseSquare, _) => FRAC_1_PI / (distance * distance),
+    };
+    falloff * cone(light, direction) * light.intensity
+}
+
+/// The share of a spot's strength along `direction`, from the surface to the light; the curve that glTF recommends
+/// (KHR_lights_punctual, inner and outer cone angles).
+#[inline(always)]
+fn cone(light: &Light, direction: Vec3) -> f32 {
+    let LightKind::Spot { direction: axis, inner, outer, .. } = light.kind else { return 1.0 };
+    let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
+    let linear = ((-direction.dot(axis) - outer.cos()) * scale).clamp(0.0, 1.0);
+    linear * linear
+}
+
+/// The points of each light from which its unshadowed light is computed: its middle, or some spread over it.
+pub(crate) struct LightTargets {
+    points: Vec<Vec<Vec3>>,
+}
+
+impl LightTargets {
+    /// Points on a light with a size.
+    const COUNT: u32 = 16;
+
+    pub(crate) fn new(lights: &[Light]) -> LightTargets {
+        let pattern = Pattern::new(0, 0, 0);
+        let spread = |light: &Light| {
+            (0..Self::COUNT).map(|index| light_point(light, Vec3::ZERO, 0.0, pattern.point(index))).collect()
+        };
+        LightTargets {
+            points: lights.iter().map(|light| if light.has_size() { spread(light) } else { Vec::new() }).collect(),
+        }
+    }
+
+    /// Unshadowed light of light number `index` at `surface`.
+    #[inline(always)]
+    pub(crate) fn unshadowed(&self, surface: &Surface, light: &Light, index: usize, reach: f32) -> Vec3 {
+        match self.points[index].as_slice() {
+            [] => surface.reflected(light, light_center(light, surface.point.origin, reach)),
+            points => surface.reflected_from_all(light, points),
+        }
+    }
+}

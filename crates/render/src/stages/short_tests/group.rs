@@ -1,0 +1,84 @@
+//! Object points grouped by the light-mesh cell that holds them.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::accel::Hit;
+use crate::light_mesh::{Lattice, PointKey, point_key};
+use crate::prepared::PreparedScene;
+use crate::stages::primary_rays::RayList;
+use crate::surface::SurfacePoint;
+
+/// The cells that hold object points, in ascending order of key, and the object points of each.
+#[derive(Clone, Debug, Default)]
+pub struct CellGroups {
+    cells: Vec<PointKey>,
+    /// Where each cell's members begin, and their total number at the end.
+    starts: Vec<u32>,
+    members: Vec<u32>,
+}
+
+impl CellGroups {
+    /// Groups the rays that hit something.
+    pub(crate) fn new(scene: &PreparedScene, list: &RayList, hits: &[Hit], lattice: &Lattice) -> CellGroups {
+        let mut keyed: Vec<(PointKey, u32)> = hits
+            .par_iter()
+            .enumerate()
+            .filter(|(_, hit)| hit.is_some())
+            .map(|(ray, hit)| {
+                let point = SurfacePoint::new(&list.rays[ray], hit, &scene.triangles[hit.triangle as usize]);
+                (point_key(lattice.cell(point.position)), ray as u32)
+            })
+            .collect();
+        keyed.par_sort_unstable();
+
+        let mut groups = CellGroups { members: keyed.iter().map(|&(_, ray)| ray).collect(), ..CellGroups::default() };
+        for (slot, &(cell, _)) in keyed.iter().enumerate() {
+            if groups.cells.last() != Some(&cell) {
+                groups.cells.push(cell);
+                groups.starts.push(slot as u32);
+            }
+        }
+        groups.starts.push(keyed.len() as u32);
+        groups
+    }
+
+    /// Number of cells.
+    pub fn len(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Whether there is no object point at all.
+    pub fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+
+    /// The key of cell number `group`.
+    pub fn cell(&self, group: usize) -> PointKey {
+        self.cells[group]
+    }
+
+    /// The slots of the object points in cell number `group`.
+    pub fn slots(&self, group: usize) -> Range<usize> {
+        self.starts[group] as usize..self.starts[group + 1] as usize
+    }
+
+    /// The ray of each slot.
+    pub fn members(&self) -> &[u32] {
+        &self.members
+    }
+
+    /// Cuts the cells into runs of about `size` object points, for threads to share: ranges of groups.
+    pub(crate) fn runs(&self, size: usize) -> Vec<Range<usize>> {
+        let mut runs = Vec::new();
+        let mut first = 0;
+        for group in 0..self.len() {
+            if self.slots(group).end - self.slots(first).start >= size || group + 1 == self.len() {
+                runs.push(first..group + 1);
+                first = group + 1;
+            }
+        }
+        runs
+    }
+}

@@ -1,0 +1,72 @@
+//! Step 2: which light points does each object point see? Formula (2).
+//!
+//! In: rays and hits. Out: [`Masks`]. Light point k of the template belongs to the half-ball D(P, r) of object point P when
+//!
+//! 1. |x − P| < r,
+//! 2. (n, x − P) > ε h (see [`LightMesh::least_height`]),
+//! 3. no triangle stands between P and x, by [`ShortTest`](crate::accel::ShortTest).
+//!
+//! Object points are grouped by light-mesh cell, because all points of a cell share their template, its positions and the
+//! triangles that can matter. [`cells`] uses that; [`plain`] asks the acceleration structure segment by segment and is the
+//! oracle: both give the same masks in every bit.
+
+pub(crate) mod cells;
+pub(crate) mod cpu;
+pub(crate) mod group;
+mod lanes;
+pub(crate) mod plain;
+#[cfg(test)]
+mod tests;
+
+pub use group::CellGroups;
+pub(crate) use lanes::CellPoints;
+
+#[cfg(doc)]
+use crate::light_mesh::LightMesh;
+
+/// The masks of all object points, in the order of [`CellGroups::members`].
+#[derive(Clone, Debug)]
+pub struct Masks {
+    /// The object points by cell.
+    pub groups: CellGroups,
+    /// 32-bit words of a mask.
+    pub words: usize,
+    /// `words` words for each object point; bit k of a mask is bit k % 32 of word k / 32.
+    pub bits: Vec<u32>,
+}
+
+impl Masks {
+    /// The mask of the object point at `slot`.
+    #[inline(always)]
+    pub fn mask(&self, slot: usize) -> &[u32] {
+        &self.bits[slot * self.words..][..self.words]
+    }
+}
+
+/// What was counted while masks were made.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct MaskCounts {
+    /// Light points in the half-balls, before visibility.
+    pub half_ball: u64,
+    /// Light points in the masks.
+    pub used: u64,
+    /// Segments for which triangles were asked.
+    pub tested: u64,
+}
+
+impl std::ops::Add for MaskCounts {
+    type Output = MaskCounts;
+
+    fn add(self, other: MaskCounts) -> MaskCounts {
+        MaskCounts {
+            half_ball: self.half_ball + other.half_ball,
+            used: self.used + other.used,
+            tested: self.tested + other.tested,
+        }
+    }
+}
+
+/// Number of set bits.
+pub(crate) fn population(mask: &[u32]) -> u64 {
+    mask.iter().map(|word| u64::from(word.count_ones())).sum()
+}

@@ -1,0 +1,57 @@
+//! The plain short tests: every segment through the acceleration structure. The oracle.
+
+use glam::Vec3;
+
+use super::{CellPoints, MaskCounts, population};
+use crate::accel::{ShortSegments, ShortTest};
+use crate::light_mesh::LightMesh;
+use crate::prepared::PreparedScene;
+use crate::surface::SurfacePoint;
+
+/// Room for the segments of one object point.
+#[derive(Default)]
+pub(crate) struct Scratch {
+    bits: Vec<usize>,
+    directions: Vec<Vec3>,
+    blocked: Vec<bool>,
+}
+
+/// The mask of one object point, cell by cell.
+pub(crate) fn mask(
+    scene: &PreparedScene,
+    mesh: &LightMesh,
+    points: &CellPoints,
+    point: &SurfacePoint,
+    scratch: &mut Scratch,
+    mask: &mut [u32],
+) -> MaskCounts {
+    let Scratch { bits, directions, blocked } = scratch;
+
+    // 1, 2. The half-ball.
+    half_ball(mesh, points, point, mask);
+    bits.clear();
+    bits.extend((0..mesh.template.len()).filter(|bit| mask[bit / 32] >> (bit % 32) & 1 != 0));
+
+    // 3. Its segments.
+    directions.clear();
+    directions.extend(bits.iter().map(|&bit| points.get(bit) - point.origin));
+    blocked.clear();
+    blocked.resize(bits.len(), false);
+    let test = ShortTest { origin: point.origin, normal: point.normal, edge_on: mesh.edge_on() };
+    scene.accelerator.short_segments(&ShortSegments { test, directions, slack: mesh.slack() }, blocked);
+    for (&bit, _) in bits.iter().zip(blocked.iter()).filter(|(_, blocked)| **blocked) {
+        mask[bit / 32] &= !(1 << (bit % 32));
+    }
+    MaskCounts { half_ball: bits.len() as u64, used: population(mask), tested: bits.len() as u64 }
+}
+
+/// Conditions 1 and 2 of formula (2), one light point after the other.
+fn half_ball(mesh: &LightMesh, points: &CellPoints, point: &SurfacePoint, mask: &mut [u32]) {
+    mask.fill(0);
+    for bit in 0..mesh.template.len() {
+        let d = points.get(bit) - point.position;
+        if d.dot(d) < mesh.radius * mesh.radius && point.normal.dot(d) > mesh.least_height() {
+            mask[bit / 32] |= 1 << (bit % 32);
+        }
+    }
+}

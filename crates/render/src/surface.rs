@@ -1,0 +1,99 @@
+//! From a hit to the object point that everything else starts from.
+
+use glam::Vec3;
+use lightmesh_scene::Mesh;
+
+use crate::accel::{Hit, Ray, Triangle};
+
+/// An object point P.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint {
+    /// P itself, interpolated from the triangle's corners: more exact than `origin + t · direction`.
+    pub position: Vec3,
+    /// Where segments that leave P start: moved off the surface along the normal by a bound on all rounding.
+    pub origin: Vec3,
+    /// Geometric normal n, unit length, on the viewer's side.
+    pub normal: Vec3,
+}
+
+/// Relative rounding error of a chain of `n` operations (Higham's γ_n for `f32`).
+pub(crate) const fn gamma(n: u32) -> f32 {
+    let error = n as f32 * (0.5 * f32::EPSILON);
+    error / (1.0 - error)
+}
+
+impl SurfacePoint {
+    /// The object point that `ray` sees at `hit` on `triangle`.
+    #[inline(always)]
+    pub fn new(ray: &Ray, hit: &Hit, triangle: &Triangle) -> SurfacePoint {
+        let [a, b, c] = triangle.corners();
+        let position = (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
+        let outward = (b - a).cross(c - a);
+        let facing = if outward.dot(ray.direction) > 0.0 { -outward } else { outward };
+        let normal = facing / facing.length();
+
+        // The interpolated point errs by γ(7) of the corners (Pharr, Jakob, Humphreys: *Physically Based Rendering*, 3.9); a
+        // ray that leaves it errs as much again where it is sheared against the triangle. Twice the sum bounds both, and one
+        // more operation covers the move itself.
+        let error = gamma(16) * (a.abs() + b.abs() + c.abs());
+        let origin = position + normal.abs().dot(error) * normal;
+        SurfacePoint { position, origin, normal }
+    }
+}
+
+/// The unit normal that shading uses: interpolated where the mesh has normals, else geometric; always on the side of the
+/// geometric normal `facing`.
+#[inline(always)]
+pub(crate) fn shading_normal(mesh: &Mesh, hit: &Hit, facing: Vec3) -> Vec3 {
+    if mesh.normals.is_empty() {
+        return facing;
+    }
+    let [a, b, c] = mesh.triangles[hit.triangle as usize].map(|vertex| mesh.normals[vertex as usize]);
+    let smooth = (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
+    let square = smooth.length_squared();
+    // A corner without a normal makes the triangle flat; so do normals that cancel out.
+    if a == Vec3::ZERO || b == Vec3::ZERO || c == Vec3::ZERO || square < 1e-12 {
+        return facing;
+    }
+    let normal = smooth / square.sqrt();
+    if normal.dot(facing) < 0.0 { -normal } else { normal }
+}
+
+/// The segment from `origin` to `target` for a long test, its far end spared.
+///
+/// A light may lie exactly in a surface (a lamp in a ceiling). The hit on that surface comes out at `t` = 1 give or take the
+/// rounding of both ends; the segment stops that much earlier.
+#[inline(always)]
+pub(crate) fn long_segment(origin: Vec3, target: Vec3) -> Ray {
+    let direction = target - origin;
+    let length = direction.abs().max_element();
+    let error = gamma(32) * origin.abs().max(target.abs()).max_element();
+    let spared = if error < 0.5 * length { error / length } else { 0.5 };
+    Ray { origin, direction, t_max: 1.0 - spared }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_normal_faces_the_viewer_and_the_origin_leaves_the_surface() {
+        let triangle = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y].map(|corner| corner + Vec3::splat(100.0)), 0);
+        let hit = Hit { t: 1.0, u: 0.25, v: 0.25, triangle: 0 };
+        for z in [1.0, -1.0] {
+            let ray = Ray { origin: Vec3::ZERO, direction: Vec3::new(0.0, 0.0, -z), t_max: f32::INFINITY };
+            let point = SurfacePoint::new(&ray, &hit, &triangle);
+            assert_eq!(point.position, Vec3::new(100.25, 100.25, 100.0));
+            assert_eq!(point.normal, Vec3::new(0.0, 0.0, z));
+            let height = (point.origin.z - 100.0) * z;
+            assert!(height > 1e-5 && height < 1e-3, "{height}");
+        }
+    }
+
+    #[test]
+    fn a_long_segment_stops_before_its_end() {
+        let ray = long_segment(Vec3::ZERO, Vec3::new(0.0, 100.0, 0.0));
+        assert!(ray.t_max < 1.0 && ray.t_max > 0.9999);
+        assert_eq!(long_segment(Vec3::ONE, Vec3::ONE).direction, Vec3::ZERO);
+    }
+}

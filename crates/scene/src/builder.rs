@@ -1,0 +1,187 @@
+//! Collects the parts of a scene in double precision and chooses the local frame once all are known.
+
+use glam::{DMat4, DVec3, Vec2, Vec3};
+
+use crate::{Mesh, Scene};
+
+/// One mesh as a file holds it, before it is placed. Slices are as long as `positions` or empty.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshPart<'a> {
+    /// Vertices in the part's own coordinates.
+    pub positions: &'a [DVec3],
+    /// Normals by vertex; need not be unit length.
+    pub normals: &'a [Vec3],
+    /// Texture coordinates by vertex.
+    pub uvs: &'a [Vec2],
+    /// Three vertex indices a triangle, all in range.
+    pub triangles: &'a [[u32; 3]],
+}
+
+/// Gathers placed meshes; [`SceneBuilder::finish`] makes them one [`Mesh`] in a local frame.
+#[derive(Debug, Default)]
+pub struct SceneBuilder {
+    positions: Vec<DVec3>,
+    normals: Vec<Vec3>,
+    uvs: Vec<Vec2>,
+    triangles: Vec<[u32; 3]>,
+    materials: Vec<u32>,
+    origin: Option<DVec3>,
+}
+
+impl SceneBuilder {
+    /// A builder without triangles.
+    pub fn new() -> SceneBuilder {
+        SceneBuilder::default()
+    }
+
+    /// Adds `part` placed by `transform`; `material` gives the material of each of its triangles. A transform that mirrors
+    /// turns the triangles' order round, so that front faces stay front faces.
+    pub fn add(&mut self, part: MeshPart, transform: &DMat4, material: impl Fn(usize) -> u32) {
+        let first = self.positions.len() as u32;
+        self.positions.extend(part.positions.iter().map(|&position| transform.transform_point3(position)));
+
+        let normal_transform = transform.inverse().transpose();
+        let normal = |n: &Vec3| normal_transform.transform_vector3(n.as_dvec3()).normalize_or_zero().as_vec3();
+        fill_to(&mut self.normals, first, !part.normals.is_empty());
+        self.normals.extend(part.normals.iter().map(normal));
+        fill_to(&mut self.uvs, first, !part.uvs.is_empty());
+        self.uvs.extend(part.uvs);
+
+        let mirrored = transform.determinant() < 0.0;
+        self.triangles.extend(part.triangles.iter().map(|&[a, b, c]| {
+            let [b, c] = if mirrored { [c, b] } else { [b, c] };
+            [first + a, first + b, first + c]
+        }));
+        self.materials.extend((0..part.triangles.len()).map(material));
+    }
+
+    /// Number of triangles so far.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Number of vertices so far.
+    pub fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Lowest and highest corner of the box around all finite vertices so far; `None` without any.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let finite = self.positions.iter().copied().filter(|position| position.is_finite());
+        finite.map(|position| (position, position)).reduce(|(min, max), (p, _)| (min.min(p), max.max(p)))
+    }
+
+    /// Takes this origin instead of choosing one. For scenes that were written with an origin: they are read to the same `f32`.
+    pub fn prefer_origin(&mut self, origin: DVec3) {
+        self.origin = Some(origin);
+    }
+
+    /// Chooses the origin of the local frame and returns it with the finished mesh.
+    ///
+    /// The origin is zero unless the geometry lies so far from the world's origin that `f32` would lose detail: then it is a
+    /// point near the middle, rounded to a power of two of the scene's size so that the subtraction loses nothing.
+    pub fn finish(mut self) -> (DVec3, Mesh) {
+        let origin = self.origin.unwrap_or_else(|| self.bounds().map_or(DVec3::ZERO, local_origin));
+        let vertices = self.positions.len() as u32;
+        let (has_normals, has_uvs) = (!self.normals.is_empty(), !self.uvs.is_empty());
+        fill_to(&mut self.normals, vertices, has_normals);
+        fill_to(&mut self.uvs, vertices, has_uvs);
+        let mesh = Mesh {
+            positions: self.positions.iter().map(|&position| (position - origin).as_vec3()).collect(),
+            normals: self.normals,
+            uvs: self.uvs,
+            triangles: self.triangles,
+            materials: self.materials,
+        };
+        (origin, mesh)
+    }
+
+    /// A scene that holds the mesh alone, in its local frame: place cameras and lights with [`Scene::to_local`].
+    pub fn finish_scene(self, name: impl Into<String>) -> Scene {
+        let (origin, mesh) = self.finish();
+        Scene {
+            name: name.into(),
+            origin,
+            mesh,
+            materials: Vec::new(),
+            lights: Vec::new(),
+            cameras: Vec::new(),
+            ambient: None,
+            background: None,
+            light_mesh: Default::default(),
+            warnings: Vec::new(),
+        }
+    }
+}
+
+/// Lengthens an attribute with "none" up to `count` vertices, where the attribute is used at all.
+fn fill_to<T: Default + Clone>(attribute: &mut Vec<T>, count: u32, used: bool) {
+    if used || !attribute.is_empty() {
+        attribute.resize(count as usize, T::default());
+    }
+}
+
+/// How many radii a scene may lie from the world's origin before it gets an origin of its own: there `f32` has lost 3 of its
+/// 24 bits.
+const FAR: f64 = 8.0;
+
+fn local_origin((min, max): (DVec3, DVec3)) -> DVec3 {
+    let center = 0.5 * (min + max);
+    let radius = 0.5 * (max - min).length();
+    if !center.is_finite() || radius <= 0.0 || center.abs().max_element() <= FAR * radius {
+        return DVec3::ZERO;
+    }
+    let unit = radius.log2().ceil().exp2();
+    (center / unit).round() * unit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CORNERS: [DVec3; 3] = [DVec3::ZERO, DVec3::X, DVec3::Y];
+
+    fn part() -> MeshPart<'static> {
+        MeshPart { positions: &CORNERS, normals: &[], uvs: &[], triangles: &[[0, 1, 2]] }
+    }
+
+    #[test]
+    fn a_scene_at_home_keeps_its_coordinates() {
+        let mut builder = SceneBuilder::new();
+        builder.add(part(), &DMat4::IDENTITY, |_| 0);
+        let (origin, mesh) = builder.finish();
+        assert_eq!(origin, DVec3::ZERO);
+        assert_eq!(mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    }
+
+    #[test]
+    fn a_scene_far_away_keeps_its_shape() {
+        let offset = DVec3::new(1e6 + 0.125, -3e5, 7e4);
+        let mut builder = SceneBuilder::new();
+        builder.add(part(), &DMat4::from_translation(offset), |_| 0);
+        let (origin, mesh) = builder.finish();
+        let [a, b, c] = mesh.corners(0);
+        assert!((b - a - Vec3::X).length() < 1e-6 && (c - a - Vec3::Y).length() < 1e-6);
+        assert!((origin + a.as_dvec3() - offset).length() < 1e-6);
+    }
+
+    #[test]
+    fn a_mirror_keeps_the_front_in_front() {
+        let mut builder = SceneBuilder::new();
+        builder.add(part(), &DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)), |_| 0);
+        let [a, b, c] = builder.finish().1.corners(0);
+        assert!((b - a).cross(c - a).z > 0.0);
+    }
+
+    #[test]
+    fn parts_without_normals_stand_beside_parts_with() {
+        let mut builder = SceneBuilder::new();
+        builder.add(part(), &DMat4::IDENTITY, |_| 0);
+        builder.add(MeshPart { normals: &[Vec3::Z; 3], ..part() }, &DMat4::IDENTITY, |_| 1);
+        builder.add(part(), &DMat4::IDENTITY, |_| 2);
+        let mesh = builder.finish().1;
+        assert_eq!(mesh.normals.len(), 9);
+        assert_eq!((mesh.normals[0], mesh.normals[3], mesh.normals[8]), (Vec3::ZERO, Vec3::Z, Vec3::ZERO));
+        assert_eq!(mesh.materials, [0, 1, 2]);
+    }
+}

@@ -1,0 +1,94 @@
+//! The three scenes of the thesis, generated in their spirit: Gazebo, Childpark and Garden.
+//!
+//! | scene | triangles | lights | size, x × y × z | step h of the thesis |
+//! |---|---|---|---|---|
+//! | `gazebo` | 300 | 3 | 30 × 20 × 40 | 2 |
+//! | `childpark` | 27 000 | 2 | 160 × 120 × 140 | 1 |
+//! | `garden` | 234 000 | 1 | 20 × 6 × 28 | 0.1 |
+//!
+//! Triangle counts hold within 2 %, sizes within 10 %. Y is up, lights have no falloff, and every scene has one camera whose
+//! square picture is filled by geometry (in Childpark all but a few leaf gaps). The thesis prints no models: ours share its counts and sizes,
+//! not its shapes. Scenes are the same to the last bit on every machine.
+//!
+//! [`LightMeshDefaults::step`](crate::LightMeshDefaults) stays empty so that the step follows the pixels; give the thesis' step to
+//! repeat its experiments.
+
+mod childpark;
+mod foliage;
+mod garden;
+mod gazebo;
+mod lights;
+mod math;
+mod options;
+mod parts;
+mod plants;
+#[cfg(test)]
+mod tests;
+
+use glam::{DVec3, Vec3};
+
+pub use childpark::childpark;
+pub use garden::garden;
+pub use gazebo::gazebo;
+pub use options::BuiltinOptions;
+
+use crate::{Camera, Fov, Light, LightMeshDefaults, LoadError, Mesh, Projection, Scene};
+use parts::Palette;
+
+/// Generates one of the scenes from its options.
+type Generator = fn(&BuiltinOptions) -> Scene;
+
+const SCENES: [(&str, Generator); 3] = [("gazebo", gazebo), ("childpark", childpark), ("garden", garden)];
+
+/// Generates the scene that `query` names: `NAME` or `NAME?lights=N&spread=S`, what follows `builtin:`.
+///
+/// # Errors
+///
+/// [`LoadError::UnknownBuiltin`] for a name that is not known, [`LoadError::BuiltinParameter`] for an option or a value that
+/// is not.
+pub(crate) fn open(query: &str) -> Result<Scene, LoadError> {
+    let (name, options) = query.split_once('?').unwrap_or((query, ""));
+    let generate = SCENES.iter().find(|(known, _)| *known == name).map(|(_, generate)| generate);
+    let generate = generate.ok_or_else(|| LoadError::UnknownBuiltin {
+        name: name.into(),
+        known: SCENES.map(|(known, _)| known.to_owned()).to_vec(),
+    })?;
+    Ok(generate(&BuiltinOptions::parse(name, options)?))
+}
+
+/// What the scenes set alike.
+struct Composition {
+    name: &'static str,
+    mesh: Mesh,
+    palette: Palette,
+    lights: Vec<Light>,
+    eye: Vec3,
+    target: Vec3,
+    vfov: f32,
+    ambient: Vec3,
+    sky: Vec3,
+}
+
+impl Composition {
+    fn finish(self) -> Scene {
+        let camera = Camera {
+            name: "main".into(),
+            position: self.eye,
+            direction: (self.target - self.eye).normalize(),
+            up: Vec3::Y,
+            projection: Projection::Perspective(Fov::Vertical(self.vfov)),
+        };
+        Scene {
+            name: self.name.into(),
+            origin: DVec3::ZERO,
+            mesh: self.mesh,
+            materials: self.palette.0,
+            lights: self.lights,
+            cameras: vec![camera],
+            ambient: Some(self.ambient),
+            background: Some(self.sky),
+            light_mesh: LightMeshDefaults::default(),
+            warnings: Vec::new(),
+        }
+    }
+}

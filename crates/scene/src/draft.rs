@@ -1,0 +1,183 @@
+//! A scene while it is read: everything in world coordinates and double precision, until the last triangle is known and the
+//! local frame can be chosen.
+
+use std::path::{Path, PathBuf};
+
+use glam::{DMat4, DVec3, Vec3};
+
+use crate::{Camera, Light, LightKind, LightMeshDefaults, LoadError, Material, MeshPart, Scene, SceneBuilder};
+
+/// Where a model goes in the scene, and what of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Placement {
+    /// From the model's coordinates to the world's.
+    pub(crate) transform: DMat4,
+    /// Replaces the model's own materials.
+    pub(crate) material: Option<u32>,
+    /// Take the triangles alone: the scene around has lights and cameras of its own.
+    pub(crate) part: bool,
+}
+
+impl Default for Placement {
+    fn default() -> Placement {
+        Placement { transform: DMat4::IDENTITY, material: None, part: false }
+    }
+}
+
+/// Coordinates above this are taken for damage, like infinite ones: their squares must fit into `f32`.
+pub(crate) const LARGEST_COORDINATE: f64 = 1e18;
+
+/// Collects what a file holds; [`Draft::finish`] makes it a [`Scene`].
+#[derive(Debug)]
+pub(crate) struct Draft {
+    path: PathBuf,
+    builder: SceneBuilder,
+    unusable_triangles: usize,
+    /// World position of each camera beside it; the camera's own is not looked at.
+    pub(crate) cameras: Vec<(Camera, DVec3)>,
+    /// World position of each light beside it; the light's own is not looked at.
+    pub(crate) lights: Vec<(Light, DVec3)>,
+    pub(crate) materials: Vec<Material>,
+    pub(crate) ambient: Option<Vec3>,
+    pub(crate) background: Option<Vec3>,
+    pub(crate) light_mesh: LightMeshDefaults,
+    pub(crate) warnings: Vec<String>,
+}
+
+impl Draft {
+    /// An empty scene, to be read from `path`.
+    pub(crate) fn new(path: &Path) -> Draft {
+        Draft {
+            path: path.to_owned(),
+            builder: SceneBuilder::new(),
+            unusable_triangles: 0,
+            cameras: Vec::new(),
+            lights: Vec::new(),
+            materials: Vec::new(),
+            ambient: None,
+            background: None,
+            light_mesh: LightMeshDefaults::default(),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Adds placed triangles. Triangles with a vertex that is no number, or too far away to compute with, are left out and
+    /// counted in a warning.
+    pub(crate) fn add(
+        &mut self,
+        part: MeshPart,
+        transform: &DMat4,
+        material: impl Fn(usize) -> u32,
+    ) -> Result<(), LoadError> {
+        if self.builder.vertex_count() + part.positions.len() > u32::MAX as usize {
+            return Err(LoadError::TooLarge { path: self.path.clone() });
+        }
+        let usable = |p: &DVec3| transform.transform_point3(*p).abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all();
+        if part.positions.iter().all(usable) {
+            self.builder.add(part, transform, material);
+        } else {
+            self.add_usable(part, transform, material, usable);
+        }
+        Ok(())
+    }
+
+    /// [`Draft::add`] without the triangles that use a vertex that is not usable.
+    fn add_usable(
+        &mut self,
+        part: MeshPart,
+        transform: &DMat4,
+        material: impl Fn(usize) -> u32,
+        usable: impl Fn(&DVec3) -> bool,
+    ) {
+        // The vertices stay, so that indices stay, but as copies of a good one: they must not move the local frame.
+        let Some(&good) = part.positions.iter().find(|position| usable(position)) else {
+            self.unusable_triangles += part.triangles.len();
+            return;
+        };
+        let positions: Vec<DVec3> = part.positions.iter().map(|&p| if usable(&p) { p } else { good }).collect();
+        let kept: Vec<usize> = (0..part.triangles.len())
+            .filter(|&index| part.triangles[index].iter().all(|&vertex| usable(&part.positions[vertex as usize])))
+            .collect();
+        self.unusable_triangles += part.triangles.len() - kept.len();
+        let triangles: Vec<[u32; 3]> = kept.iter().map(|&index| part.triangles[index]).collect();
+        let part = MeshPart { positions: &positions, triangles: &triangles, ..part };
+        self.builder.add(part, transform, |index| material(kept[index]));
+    }
+
+    /// The local frame that the scene was written from, where its file says so: then it is read to the same `f32`.
+    pub(crate) fn prefer_origin(&mut self, origin: DVec3) {
+        self.builder.prefer_origin(origin);
+    }
+
+    /// World bounds of the vertices so far; `None` without any.
+    pub(crate) fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        self.builder.bounds()
+    }
+
+    /// The material that triangles without one get: a matt grey one, added when first asked for.
+    pub(crate) fn default_material(&mut self) -> u32 {
+        let default = Material::default();
+        let index = self.materials.iter().position(|material| *material == default).unwrap_or_else(|| {
+            self.materials.push(default);
+            self.materials.len() - 1
+        });
+        index as u32
+    }
+
+    /// Chooses the local frame and moves everything there.
+    pub(crate) fn finish(mut self) -> Scene {
+        if self.unusable_triangles > 0 {
+            self.warnings.push(format!(
+                "{} triangles with infinite, undefined or far too large coordinates were left out",
+                self.unusable_triangles
+            ));
+        }
+        if self.builder.triangle_count() == 0 {
+            self.warnings.push("the scene has no triangles".to_owned());
+        }
+        let name = self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let mut scene = self.builder.finish_scene(name);
+        let local = |world: DVec3| (world - scene.origin).as_vec3();
+        scene.cameras =
+            self.cameras.into_iter().map(|(camera, world)| Camera { position: local(world), ..camera }).collect();
+        scene.lights = self.lights.into_iter().map(|(light, world)| moved(light, local(world))).collect();
+        scene.materials = self.materials;
+        scene.ambient = self.ambient;
+        scene.background = self.background;
+        scene.light_mesh = self.light_mesh;
+        scene.warnings = self.warnings;
+        scene
+    }
+}
+
+/// The light at another place.
+fn moved(mut light: Light, to: Vec3) -> Light {
+    match &mut light.kind {
+        LightKind::Point { position, .. }
+        | LightKind::Spot { position, .. }
+        | LightKind::Sphere { position, .. }
+        | LightKind::Disk { position, .. }
+        | LightKind::Rectangle { position, .. } => *position = to,
+        LightKind::Directional { .. } => {}
+    }
+    light
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_without_a_place_are_left_out_and_counted() {
+        let positions = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(f64::NAN, 0.0, 0.0), DVec3::splat(1e300)];
+        let triangles = [[0, 1, 3], [0, 1, 2], [2, 1, 4]];
+        let part = MeshPart { positions: &positions, normals: &[], uvs: &[], triangles: &triangles };
+        let mut draft = Draft::new(Path::new("scene.obj"));
+        draft.add(part, &DMat4::IDENTITY, |index| index as u32).unwrap();
+        let scene = draft.finish();
+        assert_eq!(scene.mesh.triangles, [[0, 1, 2]]);
+        assert_eq!(scene.mesh.materials, [1]);
+        assert_eq!(scene.mesh.corners(0), [Vec3::X, Vec3::Y, Vec3::Z]);
+        assert!(scene.warnings[0].starts_with("2 triangles"), "{:?}", scene.warnings);
+    }
+}

@@ -1,0 +1,332 @@
+//! A scene as binary glTF 2.0.
+//!
+//! Triangles keep their order: each run of triangles of one material becomes a primitive. Vertices are stored in the local
+//! frame, below a node that is moved to the frame's origin.
+
+use std::{collections::HashMap, path::Path};
+
+use glam::{DVec3, Vec3};
+use serde_json::{Map, Value, json};
+
+use super::ExportError;
+use crate::{
+    Camera, Falloff, Fov, Light, LightKind, Material, Mesh, Projection, Scene,
+    formats::{
+        gltf::extras::{CameraExtras, LightExtras, MaterialExtras, SceneExtras, ShapeExtras},
+        toml::upright,
+    },
+    shapes::tangents,
+};
+
+/// What of the scene is written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Content {
+    /// Triangles and their materials.
+    Triangles,
+    /// Cameras, lights and the rest too.
+    Everything,
+}
+
+/// The bytes of a GLB file.
+pub(super) fn encode(scene: &Scene, content: Content, path: &Path) -> Result<Vec<u8>, ExportError> {
+    let mut nodes = Vec::new();
+    let mut root = json!({"asset": {"version": "2.0", "generator": "lightmesh"}, "scene": 0});
+    let mut bin = Vec::new();
+    if !scene.mesh.triangles.is_empty() {
+        root["materials"] = scene.materials.iter().map(material).collect();
+        let arrays = Arrays::new(&scene.mesh);
+        (root["accessors"], root["bufferViews"], root["meshes"]) = arrays.describe();
+        bin = arrays.into_bytes();
+        root["buffers"] = json!([{"byteLength": bin.len()}]);
+        nodes.push(json!({"name": scene.name, "mesh": 0, "translation": scene.origin.to_array()}));
+    }
+    let mut extras = Map::new();
+    if content == Content::Everything {
+        if !scene.cameras.is_empty() {
+            root["cameras"] = scene.cameras.iter().map(|camera| camera_entry(scene, camera)).collect();
+        }
+        nodes.extend(scene.cameras.iter().enumerate().map(|(index, camera)| camera_node(scene, index, camera)));
+        if !scene.lights.is_empty() {
+            let lights: Value = scene.lights.iter().map(light_entry).collect();
+            root["extensionsUsed"] = json!(["KHR_lights_punctual"]);
+            root["extensions"] = json!({"KHR_lights_punctual": {"lights": lights}});
+        }
+        nodes.extend(scene.lights.iter().enumerate().map(|(index, light)| light_node(scene, index, light)));
+        extras.insert("lightmesh".to_owned(), json!(scene_extras(scene)));
+    }
+    let mut entry = json!({"name": scene.name});
+    // glTF forbids empty arrays and objects without need.
+    if !nodes.is_empty() {
+        entry["nodes"] = (0..nodes.len()).collect();
+        root["nodes"] = Value::Array(nodes);
+    }
+    if !extras.is_empty() {
+        entry["extras"] = Value::Object(extras);
+    }
+    root["scenes"] = json!([entry]);
+    container(&root, bin, path)
+}
+
+/// Header, JSON chunk and binary chunk, each padded to four bytes (glTF 2.0, section 4.4).
+fn container(root: &Value, mut bin: Vec<u8>, path: &Path) -> Result<Vec<u8>, ExportError> {
+    let mut json = root.to_string().into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    bin.resize(bin.len().next_multiple_of(4), 0);
+    let bin_chunk = if bin.is_empty() { 0 } else { 8 + bin.len() };
+    let bytes = 20 + json.len() + bin_chunk;
+    let length = u32::try_from(bytes).map_err(|_| ExportError::TooLarge { path: path.to_owned(), bytes })?;
+
+    let mut glb = Vec::with_capacity(bytes);
+    glb.extend(b"glTF");
+    glb.extend(2u32.to_le_bytes());
+    glb.extend(length.to_le_bytes());
+    let mut chunk = |kind: &[u8; 4], data: &[u8]| {
+        glb.extend((data.len() as u32).to_le_bytes());
+        glb.extend(kind);
+        glb.extend(data);
+    };
+    chunk(b"JSON", &json);
+    if !bin.is_empty() {
+        chunk(b"BIN\0", &bin);
+    }
+    Ok(glb)
+}
+
+/// A run of triangles of one material, as ranges of the common arrays.
+struct Primitive {
+    material: u32,
+    first_vertex: usize,
+    vertices: usize,
+    first_index: usize,
+    indices: usize,
+    has_normals: bool,
+}
+
+/// The vertex and index arrays of all primitives, one after the other.
+struct Arrays {
+    primitives: Vec<Primitive>,
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+    indices: Vec<u32>,
+}
+
+impl Arrays {
+    fn new(mesh: &Mesh) -> Arrays {
+        let mut arrays =
+            Arrays { primitives: vec![], positions: vec![], normals: vec![], uvs: vec![], indices: vec![] };
+        let mut first = 0;
+        for run in mesh.materials.chunk_by(|a, b| a == b) {
+            arrays.add(mesh, &mesh.triangles[first..first + run.len()], run[0]);
+            first += run.len();
+        }
+        arrays
+    }
+
+    fn add(&mut self, mesh: &Mesh, triangles: &[[u32; 3]], material: u32) {
+        let (first_vertex, first_index) = (self.positions.len(), self.indices.len());
+        let mut renumbered = HashMap::new();
+        for &vertex in triangles.iter().flatten() {
+            let next = renumbered.len() as u32;
+            let index = *renumbered.entry(vertex).or_insert_with(|| {
+                let vertex = vertex as usize;
+                self.positions.push(mesh.positions[vertex].to_array());
+                self.normals.extend(mesh.normals.get(vertex).map(|normal| normal.to_array()));
+                self.uvs.extend(mesh.uvs.get(vertex).map(|uv| uv.to_array()));
+                next
+            });
+            self.indices.push(index);
+        }
+        let normals = self.normals.get(first_vertex..).unwrap_or_default();
+        self.primitives.push(Primitive {
+            material,
+            first_vertex,
+            vertices: renumbered.len(),
+            first_index,
+            indices: 3 * triangles.len(),
+            has_normals: normals.iter().any(|normal| *normal != [0.0; 3]),
+        });
+    }
+
+    /// Accessors, buffer views and the mesh.
+    fn describe(&self) -> (Value, Value, Value) {
+        let mut accessors = Vec::new();
+        let mut accessor = |view: usize, kind: &str, component: u32, offset: usize, count: usize| {
+            accessors.push(json!({"bufferView": view, "type": kind, "componentType": component,
+                "byteOffset": offset, "count": count}));
+            accessors.len() - 1
+        };
+        const FLOAT: u32 = 5126;
+        const UNSIGNED_INT: u32 = 5125;
+        let mut primitives = Vec::new();
+        let mut bounds = Vec::new();
+        for primitive in &self.primitives {
+            let (first, count) = (primitive.first_vertex, primitive.vertices);
+            let position = accessor(0, "VEC3", FLOAT, 12 * first, count);
+            bounds.push((position, bounds_of(&self.positions[first..first + count])));
+            let mut attributes = json!({"POSITION": position});
+            if primitive.has_normals {
+                attributes["NORMAL"] = json!(accessor(2, "VEC3", FLOAT, 12 * first, count));
+            }
+            if !self.uvs.is_empty() {
+                let view = if self.normals.is_empty() { 2 } else { 3 };
+                attributes["TEXCOORD_0"] = json!(accessor(view, "VEC2", FLOAT, 8 * first, count));
+            }
+            let indices = accessor(1, "SCALAR", UNSIGNED_INT, 4 * primitive.first_index, primitive.indices);
+            primitives.push(json!({"attributes": attributes, "indices": indices, "material": primitive.material}));
+        }
+        for (index, [min, max]) in bounds {
+            accessors[index]["min"] = json!(min);
+            accessors[index]["max"] = json!(max);
+        }
+        (Value::Array(accessors), self.views(), json!([{"primitives": primitives}]))
+    }
+
+    /// Positions, indices, and normals and texture coordinates where there are any: the order of the bytes.
+    fn views(&self) -> Value {
+        let mut offset = 0;
+        let arrays = [
+            (12 * self.positions.len(), 34962),
+            (4 * self.indices.len(), 34963),
+            (12 * self.normals.len(), 34962),
+            (8 * self.uvs.len(), 34962),
+        ];
+        let views = arrays.into_iter().filter(|(length, _)| *length > 0).map(|(length, target)| {
+            let view = json!({"buffer": 0, "byteOffset": offset, "byteLength": length, "target": target});
+            offset += length;
+            view
+        });
+        views.collect()
+    }
+
+    fn into_bytes(self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        bytes.extend(self.positions.iter().flatten().flat_map(|x| x.to_le_bytes()));
+        bytes.extend(self.indices.iter().flat_map(|x| x.to_le_bytes()));
+        bytes.extend(self.normals.iter().flatten().flat_map(|x| x.to_le_bytes()));
+        bytes.extend(self.uvs.iter().flatten().flat_map(|x| x.to_le_bytes()));
+        bytes
+    }
+}
+
+fn bounds_of(positions: &[[f32; 3]]) -> [[f32; 3]; 2] {
+    let bounds = crate::Bounds::around(positions.iter().map(|&position| Vec3::from(position)));
+    [bounds.min.to_array(), bounds.max.to_array()]
+}
+
+/// Metallic-roughness for others (the lobe of `formats::gltf::material`, backwards), our coefficients in the extras.
+fn material(material: &Material) -> Value {
+    let clamped = |color: Vec3| color.clamp(Vec3::ZERO, Vec3::ONE).to_array();
+    let [r, g, b] = clamped(material.kd);
+    let roughness = if material.ks == Vec3::ZERO { 1.0 } else { (2.0 / (material.shininess + 2.0)).powf(0.25) };
+    let extras = MaterialExtras {
+        ka: material.ka.to_array(),
+        kd: material.kd.to_array(),
+        ks: material.ks.to_array(),
+        shininess: material.shininess,
+        emission: material.emission.to_array(),
+    };
+    json!({
+        "name": material.name,
+        "pbrMetallicRoughness":
+            {"baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": roughness},
+        "emissiveFactor": clamped(material.emission),
+        "doubleSided": true,
+        "extras": {"lightmesh": extras},
+    })
+}
+
+fn camera_entry(scene: &Scene, camera: &Camera) -> Value {
+    // Other programs need planes to clip at: wide enough to hold the scene from anywhere near it.
+    let size = f64::from(scene.mesh.bounds().diagonal()).max(1.0);
+    match camera.projection {
+        Projection::Perspective(fov) => {
+            let radians = match fov {
+                Fov::Vertical(degrees) => f64::from(degrees).to_radians(),
+                Fov::Horizontal(_) => f64::from(fov.vertical(1.0)).to_radians(),
+            };
+            let mut entry = json!({"type": "perspective", "perspective": {"yfov": radians, "znear": 1e-4 * size}});
+            if let Fov::Horizontal(hfov) = fov {
+                entry["extras"] = json!({"lightmesh": CameraExtras { hfov }});
+            }
+            entry
+        }
+        Projection::Orthographic { height } => {
+            let mag = 0.5 * f64::from(height);
+            let planes = json!({"xmag": mag, "ymag": mag, "znear": 0.0, "zfar": 100.0 * size});
+            json!({"type": "orthographic", "orthographic": planes})
+        }
+    }
+}
+
+fn camera_node(scene: &Scene, index: usize, camera: &Camera) -> Value {
+    let direction = camera.direction.as_dvec3();
+    let up = upright(direction, camera.up.as_dvec3()).unwrap_or(camera.up.as_dvec3());
+    json!({"name": camera.name, "camera": index, "matrix": look(scene.to_world(camera.position), direction, up)})
+}
+
+fn light_entry(light: &Light) -> Value {
+    let strongest = f64::from(light.intensity.max_element());
+    let color = if strongest > 0.0 { light.intensity.as_dvec3() / strongest } else { DVec3::ONE };
+    let shape = match light.kind {
+        LightKind::Sphere { radius, .. } => Some(ShapeExtras::Sphere { radius }),
+        LightKind::Disk { normal, radius, .. } => Some(ShapeExtras::Disk { normal: normal.to_array(), radius }),
+        LightKind::Rectangle { half_u, half_v, .. } => {
+            Some(ShapeExtras::Rectangle { half_u: half_u.to_array(), half_v: half_v.to_array() })
+        }
+        _ => None,
+    };
+    let spread = match light.kind {
+        LightKind::Point { spread, .. } if spread > 0.0 => Some(spread),
+        _ => None,
+    };
+    let kind = match light.kind {
+        LightKind::Directional { .. } => "directional",
+        LightKind::Spot { .. } => "spot",
+        _ => "point",
+    };
+    let extras = LightExtras { shape, spread, no_falloff: light.falloff == Falloff::None };
+    let mut entry = json!({"name": light.name, "type": kind, "color": color.to_array(), "intensity": strongest});
+    if extras != LightExtras::default() {
+        entry["extras"] = json!({"lightmesh": extras});
+    }
+    if let LightKind::Spot { inner, outer, .. } = light.kind {
+        entry["spot"] = json!({"innerConeAngle": inner, "outerConeAngle": outer});
+    }
+    entry
+}
+
+/// Lights with a direction have it in their node; the extras of lights with a size are in the frame of theirs.
+fn light_node(scene: &Scene, index: usize, light: &Light) -> Value {
+    let world = light.position().map_or(DVec3::ZERO, |position| scene.to_world(position));
+    let mut node = json!({"name": light.name, "extensions": {"KHR_lights_punctual": {"light": index}}});
+    match light.kind {
+        LightKind::Directional { direction } | LightKind::Spot { direction, .. } => {
+            let direction = direction.as_dvec3();
+            node["matrix"] = json!(look(world, direction, tangents(direction).1));
+        }
+        _ => node["translation"] = json!(world.to_array()),
+    }
+    node
+}
+
+/// The matrix, by columns, of a node that looks along `direction`.
+fn look(position: DVec3, direction: DVec3, up: DVec3) -> [f64; 16] {
+    let columns = [(direction.cross(up), 0.0), (up, 0.0), (-direction, 0.0), (position, 1.0)];
+    let mut matrix = [0.0; 16];
+    for (column, (vector, w)) in matrix.chunks_exact_mut(4).zip(columns) {
+        column.copy_from_slice(&vector.extend(w).to_array());
+    }
+    matrix
+}
+
+fn scene_extras(scene: &Scene) -> SceneExtras {
+    SceneExtras {
+        origin: (scene.origin != DVec3::ZERO).then_some(scene.origin.to_array()),
+        ambient: scene.ambient.map(Vec3::into),
+        background: scene.background.map(Vec3::into),
+        step: scene.light_mesh.step,
+        radius: scene.light_mesh.radius,
+        weight: scene.light_mesh.weight.map(|weight| weight.name().to_owned()),
+    }
+}

@@ -1,0 +1,108 @@
+//! Writing a scene so that it reads back as the same picture.
+//!
+//! - `.glb`: everything in one file. What glTF has no word for is kept in `extras`, see
+//!   [`formats::gltf::extras`](crate::formats::gltf::extras); other programs show the rest.
+//! - `.toml`: cameras, lights and the ambient term as text to be edited, and beside it `NAME.mesh.glb` with the triangles and
+//!   their materials.
+//!
+//! Coordinates are written so that every `f32` of the local frame is read back as it was; only a scene far from the world's
+//! origin may round its smallest ones. Files are written beside their place and renamed: never half-written.
+
+mod glb;
+#[cfg(test)]
+mod tests;
+mod text;
+
+use std::{
+    fs::Permissions,
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+use crate::Scene;
+
+/// Why a scene could not be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// The file system refused.
+    #[error("cannot write the file ({cause}), {}; choose a folder that exists and may be written", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        cause: io::Error,
+    },
+    /// The name's ending is not that of a format that can be written.
+    #[error("`.{extension}` is not a format that can be written, {}; give a name that ends in .toml or .glb", path.display())]
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+        /// Its ending without the dot; may be empty.
+        extension: String,
+    },
+    /// A GLB file counts its bytes in 32 bits.
+    #[error("the scene takes {bytes} bytes, {}; a GLB file can hold 4 GiB: split the scene", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Bytes that it would have.
+        bytes: usize,
+    },
+}
+
+impl Scene {
+    /// Writes the scene as `.toml` (with `NAME.mesh.glb` beside it) or `.glb`.
+    ///
+    /// # Errors
+    ///
+    /// [`ExportError`] names the file and the remedy. Nothing is left half-written.
+    pub fn export(&self, path: impl AsRef<Path>) -> Result<(), ExportError> {
+        let path = path.as_ref();
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        match extension.as_str() {
+            "glb" => write(path, &glb::encode(self, glb::Content::Everything, path)?),
+            "toml" => {
+                let mesh = path.with_extension("mesh.glb");
+                let name = mesh.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                let text = text::encode(self, &name).map_err(|cause| refused(path, io::Error::other(cause)))?;
+                write(&mesh, &glb::encode(self, glb::Content::Triangles, &mesh)?)?;
+                write(path, text.as_bytes())
+            }
+            _ => Err(ExportError::UnknownFormat { path: path.to_owned(), extension }),
+        }
+    }
+}
+
+/// Writes to a new file beside `path` and renames it.
+fn write(path: &Path, bytes: &[u8]) -> Result<(), ExportError> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let write = || -> io::Result<()> {
+        let mut builder = tempfile::Builder::new();
+        let permissions = ordinary_permissions();
+        if let Some(permissions) = permissions {
+            builder.permissions(permissions);
+        }
+        let mut file = builder.tempfile_in(folder)?;
+        file.write_all(bytes)?;
+        file.persist(path)?;
+        Ok(())
+    };
+    write().map_err(|cause| refused(path, cause))
+}
+
+/// Those of any new file: temporary ones are closed to others.
+#[cfg(unix)]
+fn ordinary_permissions() -> Option<Permissions> {
+    use std::os::unix::fs::PermissionsExt;
+    Some(Permissions::from_mode(0o666))
+}
+
+#[cfg(not(unix))]
+fn ordinary_permissions() -> Option<Permissions> {
+    None
+}
+
+fn refused(path: &Path, cause: io::Error) -> ExportError {
+    ExportError::Write { path: path.to_owned(), cause }
+}

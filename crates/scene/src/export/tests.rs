@@ -1,0 +1,148 @@
+//! Written and read again, a scene is the same.
+
+use std::fs;
+
+use glam::{DMat4, DVec3, Vec2, Vec3};
+
+use crate::{Camera, Falloff, Fov, Light, LightKind, Material, MeshPart, Projection, Scene, SceneBuilder, Weight};
+
+/// Everything that a scene can hold, around `offset`.
+fn scene(offset: DVec3) -> Scene {
+    let positions = [DVec3::ZERO, DVec3::new(0.1, 2.0, 0.3), DVec3::new(-1.0, 0.7, 1e-5), DVec3::new(3.0, 0.0, 0.2)];
+    let normals = [Vec3::Z, Vec3::Y, Vec3::X, Vec3::NEG_Z];
+    let uvs = [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::new(0.3, 0.7)];
+    let triangles = [[0, 1, 2], [1, 3, 2], [0, 3, 1]];
+    let mut builder = SceneBuilder::new();
+    let smooth = MeshPart { positions: &positions, normals: &normals, uvs: &uvs, triangles: &triangles };
+    builder.add(smooth, &DMat4::from_translation(offset), |index| [1, 0, 1][index]);
+    let flat = MeshPart { normals: &[], uvs: &[], ..smooth };
+    builder.add(flat, &DMat4::from_translation(offset + DVec3::X), |_| 2);
+    let mut scene = builder.finish_scene("round trip");
+    scene.materials = vec![
+        Material { name: "plain".into(), ..Material::default() },
+        Material {
+            name: "shiny".into(),
+            ka: Vec3::new(0.1, 0.2, 0.3),
+            kd: Vec3::new(0.4, 1.5, 0.6),
+            ks: Vec3::new(0.7, 0.8, 0.9),
+            shininess: 77.7,
+            emission: Vec3::new(0.0, 2.5, 0.1),
+        },
+        Material::default(),
+    ];
+    let origin = scene.origin;
+    let at = |x, y, z| (offset + DVec3::new(x, y, z) - origin).as_vec3();
+    let direction = Vec3::new(0.3, -0.8, 0.2).normalize();
+    let light = |kind, falloff| Light { name: "l".into(), kind, intensity: Vec3::new(0.1, 700.3, 33.3), falloff };
+    let position = at(1.1, 2.2, 3.3);
+    let (half_u, half_v) = (Vec3::new(0.3, 0.0, 0.1), Vec3::new(0.0, 0.7, 0.0));
+    scene.lights = vec![
+        light(LightKind::Point { position, spread: 0.0 }, Falloff::InverseSquare),
+        light(LightKind::Point { position, spread: 0.35 }, Falloff::None),
+        light(LightKind::Directional { direction }, Falloff::None),
+        light(LightKind::Spot { position, direction, inner: 0.3, outer: 0.7 }, Falloff::InverseSquare),
+        light(LightKind::Spot { position, direction, inner: 0.0, outer: std::f32::consts::FRAC_PI_2 }, Falloff::None),
+        light(LightKind::Sphere { position, radius: 0.33 }, Falloff::None),
+        light(LightKind::Disk { position, normal: direction, radius: 0.33 }, Falloff::InverseSquare),
+        light(LightKind::Rectangle { position, half_u, half_v }, Falloff::None),
+        Light { intensity: Vec3::ZERO, ..Light::point(position, Vec3::ONE) },
+    ];
+    let up = direction.cross(Vec3::Y).cross(direction).normalize();
+    let camera = |projection| Camera { name: "c".into(), position: at(5.5, 4.4, 3.3), direction, up, projection };
+    scene.cameras = vec![
+        camera(Projection::Perspective(Fov::Vertical(41.3))),
+        camera(Projection::Perspective(Fov::Horizontal(73.1))),
+        camera(Projection::Orthographic { height: 7.7 }),
+    ];
+    scene.ambient = Some(Vec3::new(0.1, 0.2, 0.3));
+    scene.background = Some(Vec3::new(0.6, 0.75, 0.9));
+    scene.light_mesh.step = Some(0.1);
+    scene.light_mesh.radius = Some(2.1);
+    scene.light_mesh.weight = Some(Weight::Constant);
+    scene
+}
+
+fn reread(scene: &Scene, name: &str) -> Scene {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    scene.export(&path).unwrap();
+    Scene::open(&path).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Triangle by triangle: corners, normals and texture coordinates.
+fn corners(scene: &Scene) -> Vec<[(Vec3, Vec3, Vec2); 3]> {
+    let mesh = &scene.mesh;
+    let corner = |vertex: u32| {
+        let vertex = vertex as usize;
+        (mesh.positions[vertex], mesh.normals[vertex], mesh.uvs[vertex])
+    };
+    mesh.triangles.iter().map(|triangle| triangle.map(corner)).collect()
+}
+
+#[test]
+fn a_scene_at_home_is_the_same_to_the_last_bit() {
+    let written = scene(DVec3::ZERO);
+    for name in ["scene.glb", "scene.toml"] {
+        let read = reread(&written, name);
+        assert_eq!(corners(&read), corners(&written), "{name}");
+        assert_eq!(read.mesh.materials, written.mesh.materials, "{name}");
+        assert_eq!(read.materials, written.materials, "{name}");
+        assert_eq!(read.lights, written.lights, "{name}");
+        assert_eq!(read.cameras, written.cameras, "{name}");
+        assert_eq!((read.ambient, read.background), (written.ambient, written.background), "{name}");
+        assert_eq!((read.light_mesh, read.origin), (written.light_mesh, written.origin), "{name}");
+        assert!(read.warnings.is_empty(), "{name}: {:?}", read.warnings);
+    }
+}
+
+#[test]
+fn a_scene_far_away_keeps_its_frame_and_shape() {
+    let written = scene(DVec3::new(1e6, -3e5, 7e4));
+    assert_ne!(written.origin, DVec3::ZERO);
+    for name in ["scene.glb", "scene.toml"] {
+        let read = reread(&written, name);
+        assert_eq!(read.origin, written.origin, "{name}");
+        for (read, written) in corners(&read).iter().flatten().zip(corners(&written).iter().flatten()) {
+            assert!(read.0.distance(written.0) < 1e-9, "{name}: {} {}", read.0, written.0);
+            assert_eq!((read.1, read.2), (written.1, written.2), "{name}");
+        }
+        for (read, written) in read.cameras.iter().zip(&written.cameras) {
+            assert!(read.position.distance(written.position) < 1e-6, "{name}");
+        }
+        assert_eq!(read.lights.len(), written.lights.len(), "{name}");
+    }
+}
+
+#[test]
+fn a_scene_without_triangles_can_be_written() {
+    let mut written = SceneBuilder::new().finish_scene("empty");
+    written.lights.push(Light::point(Vec3::Y, Vec3::ONE));
+    for name in ["empty.glb", "empty.toml"] {
+        let read = reread(&written, name);
+        assert_eq!((read.mesh.triangles.len(), read.lights.len()), (0, 1), "{name}");
+    }
+}
+
+#[test]
+fn what_cannot_be_written_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(DVec3::ZERO);
+    let message = scene.export(folder.path().join("scene.obj")).unwrap_err().to_string();
+    assert!(message.contains("`.obj`") && message.contains(".toml or .glb"), "{message}");
+    let message = scene.export(folder.path().join("no/such/folder/scene.glb")).unwrap_err().to_string();
+    assert!(message.contains("scene.glb; choose a folder"), "{message}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[cfg(unix)]
+#[test]
+fn written_files_may_be_read_by_others() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.glb");
+    scene(DVec3::ZERO).export(&path).unwrap();
+    let ordinary = folder.path().join("ordinary");
+    fs::write(&ordinary, "").unwrap();
+    let mode = |path: &std::path::Path| fs::metadata(path).unwrap().permissions().mode();
+    assert_eq!(mode(&path), mode(&ordinary));
+}

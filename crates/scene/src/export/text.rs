@@ -1,0 +1,148 @@
+//! A scene file that refers to its triangles in a GLB beside it.
+
+use glam::{DVec3, Vec3};
+use toml::Spanned;
+
+use crate::{
+    Camera, Falloff, Fov, Light, LightKind, Projection, Scene, Weight,
+    formats::toml::{
+        schema::{
+            AmbientEntry, CameraEntry, Color, FalloffName, LightEntry, LightKindName, LightMeshEntry, MeshEntry,
+            ProjectionName, SceneFile, WeightName,
+        },
+        upright,
+    },
+    info::shortest,
+};
+
+/// The text of a scene file whose triangles are in `mesh_file`.
+pub(super) fn encode(scene: &Scene, mesh_file: &str) -> Result<String, toml::ser::Error> {
+    let mesh =
+        MeshEntry { file: anywhere(mesh_file.to_owned()), material: None, translate: None, rotate: None, scale: None };
+    toml::to_string(&SceneFile {
+        origin: (scene.origin != DVec3::ZERO).then(|| anywhere(scene.origin.to_array())),
+        camera: scene.cameras.iter().map(|camera| anywhere(camera_entry(scene, camera))).collect(),
+        ambient: (scene.ambient.is_some() || scene.background.is_some())
+            .then(|| AmbientEntry { intensity: scene.ambient.map(color), background: scene.background.map(color) }),
+        light: scene.lights.iter().map(|light| anywhere(light_entry(scene, light))).collect(),
+        mesh: if scene.mesh.triangles.is_empty() { Vec::new() } else { vec![anywhere(mesh)] },
+        lightmesh: light_mesh_entry(scene),
+        ..SceneFile::default()
+    })
+}
+
+/// A value that comes from no text.
+fn anywhere<T>(value: T) -> Spanned<T> {
+    Spanned::new(0..0, value)
+}
+
+fn vector(vector: Vec3) -> Spanned<[f64; 3]> {
+    anywhere(vector.to_array().map(shortest))
+}
+
+fn color(color: Vec3) -> Spanned<Color> {
+    anywhere(Color::Rgb(color.to_array().map(shortest)))
+}
+
+fn number(number: f32) -> Spanned<f64> {
+    anywhere(shortest(number))
+}
+
+/// World coordinates, with no more digits than the local ones have where both frames are the same.
+fn world(scene: &Scene, local: Vec3) -> Spanned<[f64; 3]> {
+    if scene.origin == DVec3::ZERO { vector(local) } else { anywhere(scene.to_world(local).to_array()) }
+}
+
+fn named(name: &str) -> Option<Spanned<String>> {
+    (!name.is_empty()).then(|| anywhere(name.to_owned()))
+}
+
+fn camera_entry(scene: &Scene, camera: &Camera) -> CameraEntry {
+    let up = upright(camera.direction.as_dvec3(), camera.up.as_dvec3()).map_or(camera.up, |up| up.as_vec3());
+    let mut entry = CameraEntry {
+        name: named(&camera.name),
+        position: world(scene, camera.position),
+        target: None,
+        direction: Some(vector(camera.direction)),
+        up: Some(vector(up)),
+        vfov: None,
+        hfov: None,
+        projection: None,
+        height: None,
+    };
+    match camera.projection {
+        Projection::Perspective(Fov::Vertical(degrees)) => entry.vfov = Some(number(degrees)),
+        Projection::Perspective(Fov::Horizontal(degrees)) => entry.hfov = Some(number(degrees)),
+        Projection::Orthographic { height } => {
+            entry.projection = Some(anywhere(ProjectionName::Orthographic));
+            entry.height = Some(number(height));
+        }
+    }
+    entry
+}
+
+fn light_entry(scene: &Scene, light: &Light) -> LightEntry {
+    let mut entry = LightEntry {
+        name: named(&light.name),
+        kind: anywhere(LightKindName::Point),
+        position: light.position().map(|position| world(scene, position)),
+        direction: None,
+        target: None,
+        normal: None,
+        radius: None,
+        spread: None,
+        inner: None,
+        outer: None,
+        u: None,
+        v: None,
+        size: None,
+        up: None,
+        intensity: Some(color(light.intensity)),
+        falloff: Some(match light.falloff {
+            Falloff::None => FalloffName::None,
+            Falloff::InverseSquare => FalloffName::InverseSquare,
+        }),
+    };
+    match light.kind {
+        LightKind::Point { spread, .. } => entry.spread = (spread > 0.0).then(|| number(spread)),
+        LightKind::Directional { direction } => {
+            entry.kind = anywhere(LightKindName::Directional);
+            entry.direction = Some(vector(direction));
+        }
+        LightKind::Spot { direction, inner, outer, .. } => {
+            // A right angle in `f32` radians is a little more than 90 degrees.
+            let degrees = |angle: f32| anywhere(f64::from(angle).to_degrees().min(90.0));
+            entry.kind = anywhere(LightKindName::Spot);
+            entry.direction = Some(vector(direction));
+            (entry.inner, entry.outer) = (Some(degrees(inner)), Some(degrees(outer)));
+        }
+        LightKind::Sphere { radius, .. } => {
+            entry.kind = anywhere(LightKindName::Sphere);
+            entry.radius = Some(number(radius));
+        }
+        LightKind::Disk { normal, radius, .. } => {
+            entry.kind = anywhere(LightKindName::Disk);
+            entry.normal = Some(vector(normal));
+            entry.radius = Some(number(radius));
+        }
+        LightKind::Rectangle { half_u, half_v, .. } => {
+            entry.kind = anywhere(LightKindName::Rectangle);
+            (entry.u, entry.v) = (Some(vector(2.0 * half_u)), Some(vector(2.0 * half_v)));
+        }
+    }
+    entry
+}
+
+fn light_mesh_entry(scene: &Scene) -> Option<LightMeshEntry> {
+    let defaults = &scene.light_mesh;
+    let any = defaults.step.is_some() || defaults.radius.is_some() || defaults.weight.is_some();
+    any.then(|| LightMeshEntry {
+        step: defaults.step.map(number),
+        radius: defaults.radius.map(number),
+        weight: defaults.weight.map(|weight| match weight {
+            Weight::Constant => WeightName::Constant,
+            Weight::Quadratic => WeightName::Quadratic,
+            Weight::Smooth => WeightName::Smooth,
+        }),
+    })
+}

@@ -1,0 +1,117 @@
+//! Known answers for OBJ and MTL, and messages for damaged files.
+
+use std::fs;
+
+use glam::Vec3;
+
+use crate::Scene;
+
+const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+
+fn try_open(obj: &str, mtl: &str) -> Result<Scene, String> {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a b.mtl"), mtl).unwrap();
+    let path = folder.path().join("shape.obj");
+    fs::write(&path, obj).unwrap();
+    Scene::open(path).map_err(|error| error.to_string().replace(&format!("{}/", folder.path().display()), ""))
+}
+
+fn open(obj: &str) -> Scene {
+    try_open(obj, "").unwrap()
+}
+
+#[test]
+fn absolute_and_relative_indices_mean_the_same() {
+    let absolute = open(&format!("{TETRAHEDRON}f 1 2 3\nf 2 3 4\n"));
+    let relative = open(&format!("{TETRAHEDRON}f -4 -3 -2\nf 2 -2 -1\n"));
+    assert_eq!(absolute.mesh.triangles.len(), 2);
+    assert_eq!(absolute.mesh.corners(1), [Vec3::X, Vec3::Y, Vec3::Z]);
+    assert_eq!([0, 1].map(|i| absolute.mesh.corners(i)), [0, 1].map(|i| relative.mesh.corners(i)));
+}
+
+#[test]
+fn polygons_are_cut_into_fans() {
+    let scene = open("v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5\nf 1 2 3 4\n");
+    assert_eq!(scene.mesh.triangles.len(), 3 + 2);
+    let area = |i: usize| {
+        let [a, b, c] = scene.mesh.corners(i);
+        0.5 * (b - a).cross(c - a).z
+    };
+    assert!((0..3).map(area).sum::<f32>() == 2.5);
+}
+
+#[test]
+fn one_place_with_two_normals_is_two_vertices() {
+    let faces = "vn 0 0 2\nvn 1 0 0\nf 1//1 2//1 3//1\nf 2//2 3//2 4//2\n";
+    let mesh = open(&format!("{TETRAHEDRON}{faces}")).mesh;
+    assert_eq!(mesh.positions.len(), 6);
+    assert!(mesh.triangles[0].iter().all(|&vertex| mesh.normals[vertex as usize] == Vec3::Z));
+    assert!(mesh.triangles[1].iter().all(|&vertex| mesh.normals[vertex as usize] == Vec3::X));
+}
+
+#[test]
+fn faces_with_and_without_normals_may_follow_each_other() {
+    let faces = "vn 0 0 1\nvt 0.5 0.25\nf 1 2 3\nf 1/1/1 2/1/1 3/1/1\nf 2 3 4\nf 1//1 2//1 4//1\nf 1/1/1 2//1 3//1\n";
+    let mesh = open(&format!("{TETRAHEDRON}{faces}")).mesh;
+    let normals = |i: usize| mesh.triangles[i].map(|vertex| mesh.normals[vertex as usize]);
+    let uvs = |i: usize| mesh.triangles[i].map(|vertex| mesh.uvs[vertex as usize].to_array());
+    let (flat, smooth) = ([Vec3::ZERO; 3], [Vec3::Z; 3]);
+    assert_eq!([0, 1, 2, 3, 4].map(normals), [flat, smooth, flat, smooth, smooth]);
+    assert_eq!([0, 1, 4].map(uvs), [[[0.0; 2]; 3], [[0.5, 0.25]; 3], [[0.0; 2]; 3]]);
+}
+
+#[test]
+fn digits_far_from_the_origin_are_kept() {
+    let scene = open("v 1000000.125 0 0\nv 1000001.125 0 0\nv 1000000.125 1.0000001 0\nf 1 2 3\n");
+    let [a, b, c] = scene.mesh.corners(0);
+    assert_eq!(b - a, Vec3::X);
+    assert!(((c - a).y - 1.000_000_1).abs() < 1e-7);
+    assert_eq!(scene.to_world(a).x, 1_000_000.125);
+}
+
+#[test]
+fn materials_have_their_coefficients() {
+    let mtl = "newmtl shiny\nKa 20 20 20\nKd 0.5\nKs 0.1 0.2 0.3 # grey\nNs 96\nKe 1 2 3\nd -halo 0.5\nillum x\n\
+               newmtl plain\nKd 0.1 0.2 0.3\nNs 0\n";
+    let obj =
+        format!("mtllib a b.mtl\n{TETRAHEDRON}usemtl plain\nf 1 2 3\nusemtl shiny\nf 2 3 4\nusemtl gone\nf 1 2 4\n");
+    let scene = try_open(&obj, mtl).unwrap();
+    assert_eq!(scene.mesh.materials, [1, 0, 2]);
+    let [shiny, plain, gone] = &scene.materials[..] else { panic!("{:?}", scene.materials) };
+    assert_eq!((shiny.ka, shiny.kd), (Vec3::splat(20.0), Vec3::splat(0.5)));
+    assert_eq!((shiny.ks, shiny.shininess), (Vec3::new(0.1, 0.2, 0.3), 96.0));
+    assert_eq!(shiny.emission, Vec3::new(1.0, 2.0, 3.0));
+    assert_eq!((plain.ka, plain.kd), (plain.kd, Vec3::new(0.1, 0.2, 0.3)));
+    assert_eq!((plain.shininess, gone.name.as_str()), (1.0, ""));
+    assert!(scene.warnings.iter().any(|warning| warning.contains("gone")), "{:?}", scene.warnings);
+}
+
+#[test]
+fn odd_but_lawful_lines_are_read() {
+    let obj = "\u{feff}# caf\u{e9}\r\nv 0 0 0 1\r\nv 1 0 0 0.5 0.5 0.5\r\nv\t0 1 0\r\nvt 0.5\ng a b\nl 1 2\np 1\nf 1/1 \\\n2/1 3/1\n";
+    let scene = open(obj);
+    assert_eq!(scene.mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(scene.mesh.uvs[0].to_array(), [0.5, 0.0]);
+    assert!(scene.warnings[0].contains("2 points and lines"), "{:?}", scene.warnings);
+}
+
+#[test]
+fn damage_is_named_with_its_line() {
+    #[rustfmt::skip]
+    const MISTAKES: [(&str, &str); 8] = [
+        ("v 0 0\n", "`v 0 0` has fewer than 3 numbers, shape.obj:1; "),
+        ("v 0 0 zero\n", "`v 0 0 zero` cannot be read (position parse error), shape.obj:1; "),
+        ("v 0 0 0\n\nf 1 1 2\n", "the face's corner `2` asks for position 2 of 1, shape.obj:3; "),
+        ("v 0 0 0\nf 1 1 0\n", "the face's corner `0` asks for position 0 of 1, shape.obj:2; "),
+        ("v 0 0 0\nf -2 1 1\n", "asks for position -2 of 1, shape.obj:2; "),
+        ("v 0 0 0\nf 1//1 1//1 1//1\n", "asks for normal 1 of 0, shape.obj:2; "),
+        ("v 0 0 0\nf 1 1 x\n", "the face's corner `x` is not made of indices, shape.obj:2; "),
+        ("v 0 0 0\nf 1/1/1/1 1 1\n", "shape.obj:2; "),
+    ];
+    for (obj, expected) in MISTAKES {
+        let message = try_open(obj, "").unwrap_err();
+        assert!(message.contains(expected), "{obj}: {message}");
+    }
+    let message = try_open("mtllib a b.mtl\nv 0 0 0\n", "newmtl a\nKd 1 x 1\n").unwrap_err();
+    assert!(message.contains("`Kd 1 x 1` is not one number or three, a b.mtl:2; "), "{message}");
+}

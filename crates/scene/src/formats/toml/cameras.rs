@@ -1,0 +1,103 @@
+//! `[camera]` to [`Camera`].
+
+use glam::{DVec3, Vec3};
+use toml::Spanned;
+
+use super::{
+    check::{Source, unit},
+    schema::{CameraEntry, ProjectionName},
+};
+use crate::{Camera, Fov, LoadError, Projection};
+
+/// Vertical angle of a camera that says none, degrees.
+const DEFAULT_VFOV: f32 = 50.0;
+
+/// The camera and its world position.
+pub(super) fn read(
+    source: &Source,
+    table: &Spanned<CameraEntry>,
+    warnings: &mut Vec<String>,
+) -> Result<(Camera, DVec3), LoadError> {
+    let entry = table.get_ref();
+    let position = source.vector("position", &entry.position)?;
+    let direction = view_direction(source, table, position)?;
+    let up = match &entry.up {
+        Some(up) => source.direction("up", up)?,
+        None => DVec3::Y,
+    };
+    let Some(up) = upright(direction, up) else {
+        let remedy = "choose an `up` that is not parallel to the view direction";
+        return Err(match &entry.up {
+            Some(up) => source.refuse("up", up, "is parallel to the view direction", remedy),
+            None => source.missing(table, "up", "the camera looks along Y, the default `up`; add `up = [0, 0, 1]`"),
+        });
+    };
+    let camera = Camera {
+        name: entry.name.as_ref().map_or(String::new(), |name| name.get_ref().clone()),
+        position: Vec3::ZERO,
+        direction: direction.as_vec3(),
+        up: up.as_vec3(),
+        projection: projection(source, table, warnings)?,
+    };
+    Ok((camera, position))
+}
+
+fn view_direction(source: &Source, table: &Spanned<CameraEntry>, position: DVec3) -> Result<DVec3, LoadError> {
+    let entry = table.get_ref();
+    match (&entry.target, &entry.direction) {
+        (Some(target), None) => unit(source.vector("target", target)? - position)
+            .ok_or_else(|| source.refuse("target", target, "is the camera's own position", "move one of them")),
+        (None, Some(direction)) => source.direction("direction", direction),
+        (None, None) => {
+            Err(source.missing(table, "target", "add the point to look at, `target = [x, y, z]`, or a `direction`"))
+        }
+        (Some(_), Some(direction)) => {
+            Err(source.refuse("direction", direction, "contradicts `target`", "keep one of them"))
+        }
+    }
+}
+
+fn projection(
+    source: &Source,
+    table: &Spanned<CameraEntry>,
+    warnings: &mut Vec<String>,
+) -> Result<Projection, LoadError> {
+    let entry = table.get_ref();
+    let vfov = entry.vfov.as_ref().map(|angle| source.view_angle("vfov", angle)).transpose()?;
+    let hfov = entry.hfov.as_ref().map(|angle| source.view_angle("hfov", angle)).transpose()?;
+    if entry.projection.as_ref().map(|name| *name.get_ref()) == Some(ProjectionName::Orthographic) {
+        let Some(height) = &entry.height else {
+            return Err(source.missing(table, "height", "add the height of the orthographic picture in scene units"));
+        };
+        if let Some(angle) = entry.vfov.as_ref().or(entry.hfov.as_ref()) {
+            return Err(source.refuse("fov", angle, "has no meaning in an orthographic camera", "remove it"));
+        }
+        return Ok(Projection::Orthographic { height: source.positive("height", height)? as f32 });
+    }
+    if let Some(height) = &entry.height {
+        let remedy = "remove it, or add `projection = \"orthographic\"`";
+        return Err(source.refuse("height", height, "has no meaning in a perspective camera", remedy));
+    }
+    Ok(Projection::Perspective(match (vfov, hfov) {
+        (Some(vfov), Some(hfov)) => {
+            if vfov != hfov {
+                let place = source.place(table.span());
+                warnings.push(format!("{place}: the camera has vfov and hfov; vfov = {vfov} is taken"));
+            }
+            Fov::Vertical(vfov)
+        }
+        (None, Some(hfov)) => Fov::Horizontal(hfov),
+        (vfov, None) => Fov::Vertical(vfov.unwrap_or(DEFAULT_VFOV)),
+    }))
+}
+
+/// `up` turned to a right angle with the unit vector `direction`, or as it is where it stands so to `f32` precision; `None`
+/// where they are parallel.
+pub(crate) fn upright(direction: DVec3, up: DVec3) -> Option<DVec3> {
+    const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
+    if up.dot(direction).abs() <= ROUNDING {
+        return Some(up);
+    }
+    let side = direction.cross(up);
+    (side.length() > ROUNDING).then(|| side.cross(direction).normalize())
+}

@@ -1,0 +1,200 @@
+//! Values of a scene file made sure of: finite, in range, known. Every refusal names file, line, key and remedy.
+
+use std::{fmt::Debug, ops::Range, path::Path};
+
+use glam::{DVec3, Vec3};
+use toml::Spanned;
+
+use super::schema::{Color, Number, Text, Vector};
+use crate::{LoadError, error::Place};
+
+/// Numbers beyond this are taken for slips: their squares must fit into `f32`.
+const LARGEST: f64 = crate::draft::LARGEST_COORDINATE;
+
+/// The file that is read: turns places in the text into lines.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<'a> {
+    pub(super) path: &'a Path,
+    pub(super) text: &'a str,
+}
+
+impl Source<'_> {
+    /// The line of a place in the text.
+    pub(super) fn place(&self, span: Range<usize>) -> Box<Place> {
+        Box::new(Place::byte(self.path, self.text, span.start))
+    }
+
+    /// The error for a value that cannot be used: "key = value `problem`; `remedy`".
+    pub(super) fn refuse<T>(&self, key: &str, value: &Spanned<T>, problem: &str, remedy: &str) -> LoadError {
+        LoadError::Value {
+            place: self.place(value.span()),
+            key: key.to_owned(),
+            value: self.text.get(value.span()).unwrap_or_default().trim().replace('\n', " "),
+            problem: problem.to_owned(),
+            remedy: remedy.to_owned(),
+        }
+    }
+
+    /// The error for a table that lacks a key.
+    pub(super) fn missing<T>(&self, table: &Spanned<T>, key: &str, remedy: &str) -> LoadError {
+        LoadError::MissingKey { place: self.place(table.span()), key: key.to_owned(), remedy: remedy.to_owned() }
+    }
+
+    fn all_finite<T>(&self, key: &str, value: &Spanned<T>, numbers: &[f64]) -> Result<(), LoadError> {
+        match numbers.iter().find(|number| !number.is_finite() || number.abs() > LARGEST) {
+            Some(number) if number.is_finite() => {
+                Err(self.refuse(key, value, "is too large", &format!("stay below {LARGEST:e}")))
+            }
+            Some(_) => Err(self.refuse(key, value, "is not finite", "give an ordinary number")),
+            None => Ok(()),
+        }
+    }
+
+    /// A finite number.
+    pub(super) fn number(&self, key: &str, value: &Number) -> Result<f64, LoadError> {
+        self.all_finite(key, value, &[*value.get_ref()])?;
+        Ok(*value.get_ref())
+    }
+
+    /// A number above 0.
+    pub(super) fn positive(&self, key: &str, value: &Number) -> Result<f64, LoadError> {
+        let number = self.number(key, value)?;
+        // Compared as it will be stored: 1e-60 is 0 there.
+        if number as f32 > 0.0 {
+            Ok(number)
+        } else {
+            Err(self.refuse(key, value, "is not above 0", &format!("give a {key} above 0")))
+        }
+    }
+
+    /// A number from `low` to `high`.
+    pub(super) fn between(&self, key: &str, value: &Number, low: f64, high: f64) -> Result<f64, LoadError> {
+        let number = self.number(key, value)?;
+        if (low..=high).contains(&number) {
+            Ok(number)
+        } else {
+            let problem = format!("is not between {low} and {high}");
+            Err(self.refuse(key, value, &problem, &format!("give a {key} from {low} to {high}")))
+        }
+    }
+
+    /// A full angle of view: above 0 and under 180 degrees.
+    pub(super) fn view_angle(&self, key: &str, value: &Number) -> Result<f32, LoadError> {
+        let degrees = self.positive(key, value)? as f32;
+        if degrees < 180.0 {
+            Ok(degrees)
+        } else {
+            Err(self.refuse(key, value, "is not under 180 degrees", "give the angle in degrees, such as 50"))
+        }
+    }
+
+    /// A whole number of segments.
+    pub(super) fn segments(&self, value: &Option<Spanned<i64>>) -> Result<u32, LoadError> {
+        const RANGE: std::ops::RangeInclusive<i64> = 3..=8192;
+        match value {
+            None => Ok(crate::shapes::DEFAULT_SEGMENTS),
+            Some(value) if RANGE.contains(value.get_ref()) => Ok(*value.get_ref() as u32),
+            Some(value) => {
+                let remedy = format!("give a whole number from {} to {}", RANGE.start(), RANGE.end());
+                Err(self.refuse("segments", value, "cannot be used", &remedy))
+            }
+        }
+    }
+
+    /// A finite point or vector.
+    pub(super) fn vector(&self, key: &str, value: &Vector) -> Result<DVec3, LoadError> {
+        self.all_finite(key, value, value.get_ref())?;
+        Ok(DVec3::from(*value.get_ref()))
+    }
+
+    /// A direction, made unit length; one that is unit length to `f32` precision already is kept digit for digit.
+    pub(super) fn direction(&self, key: &str, value: &Vector) -> Result<DVec3, LoadError> {
+        unit(self.vector(key, value)?)
+            .ok_or_else(|| self.refuse(key, value, "has no direction", "give a vector that is not zero"))
+    }
+
+    /// Three numbers above 0.
+    pub(super) fn lengths<const N: usize>(&self, key: &str, value: &Spanned<[f64; N]>) -> Result<[f64; N], LoadError> {
+        self.all_finite(key, value, value.get_ref())?;
+        if value.get_ref().iter().all(|&length| length as f32 > 0.0) {
+            Ok(*value.get_ref())
+        } else {
+            Err(self.refuse(key, value, "has a length that is not above 0", "give lengths above 0"))
+        }
+    }
+
+    /// A colour or intensity: finite, no channel below 0.
+    pub(super) fn color(&self, key: &str, value: &Spanned<Color>) -> Result<Vec3, LoadError> {
+        let rgb = match *value.get_ref() {
+            Color::Grey(grey) => [grey; 3],
+            Color::Rgb(rgb) => rgb,
+        };
+        self.all_finite(key, value, &rgb)?;
+        if rgb.iter().any(|&channel| channel < 0.0) {
+            return Err(self.refuse(key, value, "is below 0", "give 0 or more"));
+        }
+        Ok(DVec3::from(rgb).as_vec3())
+    }
+
+    /// The index of a name among the known ones.
+    pub(super) fn index_of(&self, kind: &'static str, name: &Text, known: &[String]) -> Result<usize, LoadError> {
+        known.iter().position(|candidate| candidate == name.get_ref()).ok_or_else(|| LoadError::UnknownName {
+            place: self.place(name.span()),
+            kind,
+            name: name.get_ref().clone(),
+            known: known.to_vec(),
+        })
+    }
+}
+
+/// The vector at unit length, or as it is where it is that long to `f32` precision, so that what was written reads the same.
+/// `None` where it has no direction.
+pub(crate) fn unit(vector: DVec3) -> Option<DVec3> {
+    const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
+    if (vector.length_squared() - 1.0).abs() <= ROUNDING { Some(vector) } else { vector.try_normalize() }
+}
+
+/// What toml and serde say against a file, in our words.
+pub(super) fn syntax_error(source: &Source, error: &toml::de::Error) -> LoadError {
+    let place = source.place(error.span().unwrap_or(0..0));
+    let message = error.message().lines().collect::<Vec<_>>().join(" ");
+    let mut names = message.split('`').skip(1).step_by(2).map(str::to_owned);
+    if message.starts_with("unknown field") {
+        let key = names.next().unwrap_or_default();
+        return LoadError::UnknownKey { place, key, known: names.collect() };
+    }
+    if message.starts_with("missing field") {
+        let key = names.next().unwrap_or_default();
+        let remedy = format!("add `{key} = …` to this table");
+        return LoadError::MissingKey { place, key, remedy };
+    }
+    let remedy = match key_at(source, error.span()) {
+        Some(key) => format!("write a value that `{key}` can take"),
+        None => "write it as TOML asks (see https://toml.io)".to_owned(),
+    };
+    LoadError::Syntax { place, problem: message, remedy }
+}
+
+/// The key whose value is at fault; `None` where not even the grammar is kept.
+fn key_at<'a>(source: &Source<'a>, span: Option<Range<usize>>) -> Option<&'a str> {
+    let before = source.text.get(..span?.start)?;
+    let line = before.rsplit('\n').next()?;
+    let (key, _) = line.split_once('=')?;
+    Some(key.trim())
+}
+
+/// For messages: the keys out of a list that are there.
+pub(super) fn present<'a>(keys: &[(&'a str, bool)]) -> Vec<&'a str> {
+    keys.iter().filter(|(_, there)| *there).map(|(key, _)| *key).collect()
+}
+
+/// A required key of a kind of table that has it only sometimes.
+pub(super) fn required<'a, T, E: Debug>(
+    source: &Source,
+    table: &Spanned<E>,
+    key: &str,
+    value: &'a Option<T>,
+    remedy: &str,
+) -> Result<&'a T, LoadError> {
+    value.as_ref().ok_or_else(|| source.missing(table, key, remedy))
+}

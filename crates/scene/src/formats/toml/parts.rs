@@ -1,0 +1,187 @@
+//! `[[mesh]]` and the solids to triangles.
+
+use std::path::Path;
+
+use glam::{DMat4, DVec3};
+use toml::Spanned;
+
+use super::{
+    check::{Source, required},
+    schema::{BoxEntry, CylinderEntry, MeshEntry, PlaneEntry, Scale, SceneFile, Text, TriangleEntry, Vector},
+};
+use crate::{
+    LoadError,
+    draft::Draft,
+    open::read_part,
+    shapes::{Shape, tangents},
+};
+
+/// Edge of a plane that says none, in diagonals of the rest of the scene.
+const PLANE_DIAGONALS: f64 = 20.0;
+
+/// Adds all triangles of the file; `names` are the materials in the order of their indices. Planes come last, because their
+/// size may depend on the rest.
+pub(super) fn read(source: &Source, file: &SceneFile, names: &[String], draft: &mut Draft) -> Result<(), LoadError> {
+    let material = |draft: &mut Draft, name: &Option<Text>| match name {
+        Some(name) => source.index_of("material", name, names).map(|index| index as u32),
+        None => Ok(draft.default_material()),
+    };
+    let add = |draft: &mut Draft, shape: Shape, transform: &DMat4, name: &Option<Text>| {
+        let material = material(draft, name)?;
+        draft.add(shape.part(), transform, |_| material)
+    };
+    for entry in &file.mesh {
+        read_mesh(source, entry.get_ref(), names, draft)?;
+    }
+    for entry in file.sphere.iter().map(Spanned::get_ref) {
+        let center = source.vector("center", &entry.center)?;
+        let radius = source.positive("radius", &entry.radius)?;
+        let shape = Shape::sphere(DVec3::ZERO, radius, source.segments(&entry.segments)?);
+        add(draft, shape, &DMat4::from_translation(center), &entry.material)?;
+    }
+    for entry in &file.boxes {
+        let (shape, transform) = cuboid(source, entry)?;
+        add(draft, shape, &transform, &entry.get_ref().material)?;
+    }
+    for entry in &file.cylinder {
+        add(draft, cylinder(source, entry)?, &DMat4::IDENTITY, &entry.get_ref().material)?;
+    }
+    for entry in &file.triangle {
+        add(draft, triangle(source, entry)?, &DMat4::IDENTITY, &entry.get_ref().material)?;
+    }
+    let rest = draft.bounds();
+    for entry in &file.plane {
+        add(draft, plane(source, entry, rest)?, &DMat4::IDENTITY, &entry.get_ref().material)?;
+    }
+    Ok(())
+}
+
+fn read_mesh(source: &Source, entry: &MeshEntry, names: &[String], draft: &mut Draft) -> Result<(), LoadError> {
+    let path = source.path.parent().unwrap_or(Path::new("")).join(entry.file.get_ref());
+    if let Err(cause) = std::fs::metadata(&path) {
+        let problem = format!("cannot be read ({cause})");
+        let remedy = "name an OBJ, glTF or GLB file, by its path from the scene file's folder";
+        return Err(source.refuse("file", &entry.file, &problem, remedy));
+    }
+    let material = match &entry.material {
+        Some(name) => Some(source.index_of("material", name, names)? as u32),
+        None => None,
+    };
+    read_part(&path, mesh_transform(source, entry)?, material, draft)
+}
+
+/// Scale, then turn, then move.
+fn mesh_transform(source: &Source, entry: &MeshEntry) -> Result<DMat4, LoadError> {
+    let translate = entry.translate.as_ref().map_or(Ok(DVec3::ZERO), |value| source.vector("translate", value))?;
+    let scale = match &entry.scale {
+        Some(value) => scale(source, value)?,
+        None => DVec3::ONE,
+    };
+    Ok(DMat4::from_translation(translate) * rotation(source, &entry.rotate)? * DMat4::from_scale(scale))
+}
+
+fn scale(source: &Source, value: &Spanned<Scale>) -> Result<DVec3, LoadError> {
+    let factors = match *value.get_ref() {
+        Scale::Uniform(factor) => [factor; 3],
+        Scale::ByAxis(factors) => factors,
+    };
+    if factors.iter().all(|factor| factor.is_finite() && *factor as f32 != 0.0) {
+        Ok(DVec3::from(factors))
+    } else {
+        Err(source.refuse("scale", value, "is zero or not finite", "give a factor; a negative one mirrors"))
+    }
+}
+
+/// Degrees about the fixed X axis first, then Y, then Z.
+fn rotation(source: &Source, rotate: &Option<Vector>) -> Result<DMat4, LoadError> {
+    let Some(rotate) = rotate else { return Ok(DMat4::IDENTITY) };
+    let angles = source.vector("rotate", rotate)?;
+    let [x, y, z] = angles.to_array().map(f64::to_radians);
+    Ok(DMat4::from_rotation_z(z) * DMat4::from_rotation_y(y) * DMat4::from_rotation_x(x))
+}
+
+fn cuboid(source: &Source, table: &Spanned<BoxEntry>) -> Result<(Shape, DMat4), LoadError> {
+    let entry = table.get_ref();
+    let (center, half) = match (&entry.min, &entry.max, &entry.center, &entry.size) {
+        (Some(min), Some(max), None, None) => {
+            let (low, high) = (source.vector("min", min)?, source.vector("max", max)?);
+            if !low.cmplt(high).all() {
+                return Err(source.refuse("max", max, "is not above `min` on every axis", "swap or move the corners"));
+            }
+            if entry.rotate.is_none() {
+                // The corners as they are written, not as middle and size round them.
+                return Ok((Shape::cuboid(low, high), DMat4::IDENTITY));
+            }
+            (0.5 * (low + high), 0.5 * (high - low))
+        }
+        (None, None, Some(center), Some(size)) => {
+            (source.vector("center", center)?, 0.5 * DVec3::from(source.lengths("size", size)?))
+        }
+        _ => return Err(source.missing(table, "min", "give `min` and `max`, or `center` and `size`, and not both")),
+    };
+    Ok((Shape::cuboid(-half, half), DMat4::from_translation(center) * rotation(source, &entry.rotate)?))
+}
+
+fn cylinder(source: &Source, table: &Spanned<CylinderEntry>) -> Result<Shape, LoadError> {
+    let entry = table.get_ref();
+    let (base, top) = match (&entry.base, &entry.top, &entry.center) {
+        (Some(base), Some(top), None) if entry.axis.is_none() && entry.height.is_none() => {
+            let ends = (source.vector("base", base)?, source.vector("top", top)?);
+            if (ends.1 - ends.0).try_normalize().is_none() {
+                return Err(source.refuse("top", top, "is the same as `base`", "move one of them"));
+            }
+            ends
+        }
+        (None, None, Some(center)) => {
+            let remedy = "a cylinder around a `center` needs `axis` and `height`";
+            let axis = source.direction("axis", required(source, table, "axis", &entry.axis, remedy)?)?;
+            let height = source.positive("height", required(source, table, "height", &entry.height, remedy)?)?;
+            let (center, half) = (source.vector("center", center)?, 0.5 * height * axis);
+            (center - half, center + half)
+        }
+        _ => {
+            let remedy = "give `base` and `top`, or `center`, `axis` and `height`, and not both";
+            return Err(source.missing(table, "base", remedy));
+        }
+    };
+    let radius = source.positive("radius", &entry.radius)?;
+    Ok(Shape::cylinder(base, top, radius, source.segments(&entry.segments)?, entry.caps.unwrap_or(true)))
+}
+
+fn triangle(source: &Source, table: &Spanned<TriangleEntry>) -> Result<Shape, LoadError> {
+    let entry = table.get_ref();
+    match (&entry.a, &entry.b, &entry.c, &entry.vertices) {
+        (Some(a), Some(b), Some(c), None) => {
+            Ok(Shape::triangle([source.vector("a", a)?, source.vector("b", b)?, source.vector("c", c)?]))
+        }
+        (None, None, None, Some(vertices)) => {
+            let mut corners = [DVec3::ZERO; 3];
+            for (corner, vertex) in corners.iter_mut().zip(vertices.get_ref()) {
+                *corner = source.vector("vertices", &Spanned::new(vertices.span(), *vertex))?;
+            }
+            Ok(Shape::triangle(corners))
+        }
+        _ => Err(source.missing(table, "a", "give the corners `a`, `b` and `c`, or three `vertices`, and not both")),
+    }
+}
+
+/// A plane with a size is centred on its point; one without reaches far around the rest of the scene.
+fn plane(source: &Source, table: &Spanned<PlaneEntry>, rest: Option<(DVec3, DVec3)>) -> Result<Shape, LoadError> {
+    let entry = table.get_ref();
+    let point = source.vector("point", &entry.point)?;
+    let normal = source.direction("normal", &entry.normal)?;
+    let (u, v) = tangents(normal);
+    let (center, [width, height]) = match (&entry.size, rest) {
+        (Some(size), _) => (point, source.lengths("size", size)?),
+        (None, Some((min, max))) if max != min => {
+            let middle = 0.5 * (min + max);
+            let edge = PLANE_DIAGONALS * (max - min).length();
+            (middle - (middle - point).dot(normal) * normal, [edge; 2])
+        }
+        (None, _) => {
+            let remedy = "there is nothing else in the scene to take its size from: add `size = [a, b]`";
+            return Err(source.missing(table, "size", remedy));
+        }
+    };
+    Ok(Shape::rectangle(center, width * u, height * v))
+}

@@ -1,0 +1,309 @@
+//! The keys of a scene file, as serde types: what may be written, before its sense is checked.
+//!
+//! Every value keeps its place in the text ([`Spanned`]), so that a check that fails later can name the line. Lengths are in
+//! scene units, angles in degrees, positions in world coordinates.
+
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use super::one_or_many;
+
+pub(super) type Number = Spanned<f64>;
+pub(super) type Vector = Spanned<[f64; 3]>;
+pub(super) type Text = Spanned<String>;
+
+/// A whole scene file.
+#[derive(Debug, Default, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SceneFile {
+    /// Where the frame of the stored `f32` coordinates lies; written by `export`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) origin: Option<Vector>,
+    /// One `[camera]`, or several `[[camera]]` with names.
+    #[serde(default, deserialize_with = "one_or_many::deserialize", skip_serializing_if = "Vec::is_empty")]
+    pub(crate) camera: Vec<Spanned<CameraEntry>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) ambient: Option<AmbientEntry>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) light: Vec<Spanned<LightEntry>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) material: Vec<Spanned<MaterialEntry>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) mesh: Vec<Spanned<MeshEntry>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) sphere: Vec<Spanned<SphereEntry>>,
+    #[serde(default, rename = "box", skip_serializing_if = "Vec::is_empty")]
+    pub(crate) boxes: Vec<Spanned<BoxEntry>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) plane: Vec<Spanned<PlaneEntry>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) cylinder: Vec<Spanned<CylinderEntry>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) triangle: Vec<Spanned<TriangleEntry>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) lightmesh: Option<LightMeshEntry>,
+}
+
+/// `[camera]`.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CameraEntry {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) name: Option<Text>,
+    pub(crate) position: Vector,
+    /// The point in the middle of the picture; or `direction`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) target: Option<Vector>,
+    /// The way the camera looks; or `target`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) direction: Option<Vector>,
+    /// Default: +Y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) up: Option<Vector>,
+    /// Full vertical angle. Default: 50.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) vfov: Option<Number>,
+    /// Full horizontal angle, instead of `vfov`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) hfov: Option<Number>,
+    /// Default: perspective.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) projection: Option<Spanned<ProjectionName>>,
+    /// Height of an orthographic picture, scene units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) height: Option<Number>,
+}
+
+/// How a camera maps space to the picture.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum ProjectionName {
+    Perspective,
+    Orthographic,
+}
+
+/// A number for all channels, or red, green and blue.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(untagged, expecting = "expected a number or [red, green, blue]")]
+pub(crate) enum Color {
+    Grey(f64),
+    Rgb([f64; 3]),
+}
+
+/// `[ambient]`.
+#[derive(Debug, Default, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct AmbientEntry {
+    /// I_a of formula (1).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) intensity: Option<Spanned<Color>>,
+    /// What rays see that hit nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) background: Option<Spanned<Color>>,
+}
+
+/// `[[light]]`: one table for all kinds; which keys a kind takes is checked in `lights.rs`.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LightEntry {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) name: Option<Text>,
+    pub(crate) kind: Spanned<LightKindName>,
+    /// The light's middle; all kinds but directional.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) position: Option<Vector>,
+    /// The way light travels (directional, spot); the axis (disk, rectangle).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) direction: Option<Vector>,
+    /// A point to shine at, instead of `direction`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) target: Option<Vector>,
+    /// The axis of a disk, instead of `direction`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) normal: Option<Vector>,
+    /// Sphere and disk.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) radius: Option<Number>,
+    /// Point: radius of the ball in which area mode strews the points that replace it. Default: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) spread: Option<Number>,
+    /// Spot: half-angle of the full-strength cone. Default: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) inner: Option<Number>,
+    /// Spot: half-angle where the light ends. Default: 45.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) outer: Option<Number>,
+    /// Rectangle: one whole edge.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) u: Option<Vector>,
+    /// Rectangle: the edge next to `u`, at a right angle to it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) v: Option<Vector>,
+    /// Rectangle with a direction: width and height.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) size: Option<Spanned<[f64; 2]>>,
+    /// Rectangle with a direction: which way its height goes. Default: +Y, or +Z where the direction is along Y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) up: Option<Vector>,
+    /// Default: 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) intensity: Option<Spanned<Color>>,
+    /// Default: none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) falloff: Option<FalloffName>,
+}
+
+/// Shape of a light.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum LightKindName {
+    Point,
+    Directional,
+    Spot,
+    Sphere,
+    Disk,
+    Rectangle,
+}
+
+/// What distance does to a light.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum FalloffName {
+    None,
+    InverseSquare,
+}
+
+/// `[[material]]`: coefficients of formula (1).
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MaterialEntry {
+    pub(crate) name: Text,
+    /// Default: `kd`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) ka: Option<Spanned<Color>>,
+    /// Default: 0.8.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) kd: Option<Spanned<Color>>,
+    /// Default: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) ks: Option<Spanned<Color>>,
+    /// Default: 20.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) shininess: Option<Number>,
+    /// Default: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) emission: Option<Spanned<Color>>,
+}
+
+/// `[[mesh]]`: triangles of another file, scaled, then turned, then moved.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MeshEntry {
+    /// Relative to the scene file.
+    pub(crate) file: Text,
+    /// Replaces the file's own materials.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) material: Option<Text>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) translate: Option<Vector>,
+    /// Turns about the fixed X axis first, then Y, then Z.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) rotate: Option<Vector>,
+    /// One factor, or one by axis.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) scale: Option<Spanned<Scale>>,
+}
+
+/// One factor, or one by axis.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(untagged, expecting = "expected a number or [x, y, z]")]
+pub(crate) enum Scale {
+    Uniform(f64),
+    ByAxis([f64; 3]),
+}
+
+/// `[[sphere]]`.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SphereEntry {
+    pub(crate) center: Vector,
+    pub(crate) radius: Number,
+    pub(crate) material: Option<Text>,
+    /// Triangles around the equator. Default: 96.
+    pub(crate) segments: Option<Spanned<i64>>,
+}
+
+/// `[[box]]`: `min` and `max`, or `center` and `size`.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct BoxEntry {
+    pub(crate) min: Option<Vector>,
+    pub(crate) max: Option<Vector>,
+    pub(crate) center: Option<Vector>,
+    pub(crate) size: Option<Vector>,
+    /// About the box's middle, as in `[[mesh]]`.
+    pub(crate) rotate: Option<Vector>,
+    pub(crate) material: Option<Text>,
+}
+
+/// `[[plane]]`: a rectangle of the plane through `point`.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PlaneEntry {
+    pub(crate) point: Vector,
+    pub(crate) normal: Vector,
+    /// Edge lengths. Default: a square of 20 diagonals of the rest of the scene.
+    pub(crate) size: Option<Spanned<[f64; 2]>>,
+    pub(crate) material: Option<Text>,
+}
+
+/// `[[cylinder]]`: `base` and `top`, or `center`, `axis` and `height`.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CylinderEntry {
+    pub(crate) base: Option<Vector>,
+    pub(crate) top: Option<Vector>,
+    pub(crate) center: Option<Vector>,
+    pub(crate) axis: Option<Vector>,
+    pub(crate) height: Option<Number>,
+    pub(crate) radius: Number,
+    /// Whether its ends are closed. Default: true.
+    pub(crate) caps: Option<bool>,
+    pub(crate) material: Option<Text>,
+    /// Edges around. Default: 96.
+    pub(crate) segments: Option<Spanned<i64>>,
+}
+
+/// `[[triangle]]`: `a`, `b` and `c`, or `vertices`.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TriangleEntry {
+    pub(crate) a: Option<Vector>,
+    pub(crate) b: Option<Vector>,
+    pub(crate) c: Option<Vector>,
+    pub(crate) vertices: Option<Spanned<[[f64; 3]; 3]>>,
+    pub(crate) material: Option<Text>,
+}
+
+/// `[lightmesh]`: proposed settings of the method.
+#[derive(Debug, Default, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LightMeshEntry {
+    /// Step h, scene units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) step: Option<Number>,
+    /// Interpolation radius in steps, R = r/h.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) radius: Option<Number>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) weight: Option<WeightName>,
+}
+
+/// Weight of formula (3).
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum WeightName {
+    Constant,
+    Quadratic,
+    Smooth,
+}

@@ -1,0 +1,284 @@
+//! Known answers for every table of the scene file, and the message of every way to get one wrong.
+
+use std::{fs, path::PathBuf};
+
+use glam::{DVec3, Vec3};
+use tempfile::TempDir;
+
+use crate::{Falloff, Fov, LightKind, Projection, Scene, Weight};
+
+/// A folder with a scene file and a mesh of one triangle in it.
+fn folder(text: &str) -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("one.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let path = folder.path().join("room.toml");
+    fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+fn open(text: &str) -> Scene {
+    let (_folder, path) = folder(text);
+    Scene::open(path).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The message, with the folder left out of it.
+fn error(text: &str) -> String {
+    let (folder, path) = folder(text);
+    let message = Scene::open(path).expect_err("an error").to_string();
+    message.replace(&format!("{}/", folder.path().display()), "")
+}
+
+#[test]
+fn a_whole_file_is_read() {
+    let scene = open(
+        r#"
+        [camera]
+        position = [13, 6, 14]
+        target = [13, 6, 10]
+        vfov = 40
+        [ambient]
+        intensity = 0.1
+        background = [0.6, 0.75, 0.9]
+        [[light]]
+        kind = "point"
+        position = [8, 14, 4]
+        spread = 0.5
+        [[material]]
+        name = "stone"
+        kd = [0.7, 0.7, 0.65]
+        ks = 0.25
+        shininess = 30
+        [[mesh]]
+        file = "one.obj"
+        material = "stone"
+        [lightmesh]
+        step = 0.1
+        radius = 3.1
+        weight = "quadratic"
+        "#,
+    );
+    assert_eq!(scene.name, "room");
+    let camera = &scene.cameras[0];
+    assert_eq!((camera.position, camera.direction), (Vec3::new(13.0, 6.0, 14.0), Vec3::NEG_Z));
+    assert_eq!((camera.up, camera.projection), (Vec3::Y, Projection::Perspective(Fov::Vertical(40.0))));
+    assert_eq!(scene.ambient, Some(Vec3::splat(0.1)));
+    assert_eq!(scene.background, Some(Vec3::new(0.6, 0.75, 0.9)));
+    let light = &scene.lights[0];
+    assert_eq!(light.kind, LightKind::Point { position: Vec3::new(8.0, 14.0, 4.0), spread: 0.5 });
+    assert_eq!((light.intensity, light.falloff), (Vec3::ONE, Falloff::None));
+    let stone = &scene.materials[0];
+    assert_eq!((stone.ka, stone.kd), (Vec3::new(0.7, 0.7, 0.65), Vec3::new(0.7, 0.7, 0.65)));
+    assert_eq!((stone.ks, stone.shininess, stone.emission), (Vec3::splat(0.25), 30.0, Vec3::ZERO));
+    assert_eq!((scene.mesh.triangles.len(), scene.mesh.materials[0], scene.materials.len()), (1, 0, 1));
+    let defaults = scene.light_mesh;
+    assert_eq!((defaults.step, defaults.radius, defaults.weight), (Some(0.1), Some(3.1), Some(Weight::Quadratic)));
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
+fn cameras_of_all_sorts() {
+    let scene = open(
+        r#"
+        [[camera]]
+        name = "plan"
+        position = [0, 9, 0]
+        direction = [0, -2, 0]
+        up = [0, 0, -1]
+        projection = "orthographic"
+        height = 12
+        [[camera]]
+        position = [0, 1, 5]
+        target = [0, 1, 0]
+        hfov = 90
+        [[camera]]
+        position = [0, 1, 5]
+        target = [0, 0, 4]
+        vfov = 40
+        hfov = 90
+        [[sphere]]
+        center = [0, 1, 0]
+        radius = 1
+        "#,
+    );
+    let [plan, wide, both] = &scene.cameras[..] else { panic!("{:?}", scene.cameras) };
+    assert_eq!((plan.name.as_str(), plan.direction, plan.up), ("plan", Vec3::NEG_Y, Vec3::NEG_Z));
+    assert_eq!(plan.projection, Projection::Orthographic { height: 12.0 });
+    assert_eq!(wide.projection, Projection::Perspective(Fov::Horizontal(90.0)));
+    assert_eq!(both.projection, Projection::Perspective(Fov::Vertical(40.0)));
+    assert!(both.up.dot(both.direction).abs() < 1e-6);
+    assert!(scene.warnings[0].contains("room.toml:14") && scene.warnings[0].contains("vfov"), "{:?}", scene.warnings);
+}
+
+#[test]
+fn lights_of_all_kinds() {
+    let scene = open(
+        r#"
+        [[light]]
+        kind = "directional"
+        direction = [0, -2, 0]
+        [[light]]
+        kind = "spot"
+        position = [0, 5, 0]
+        target = [0, 0, 0]
+        inner = 20
+        outer = 30
+        intensity = [1, 2, 3]
+        falloff = "inverse-square"
+        [[light]]
+        kind = "sphere"
+        position = [1, 2, 3]
+        radius = 0.5
+        [[light]]
+        kind = "disk"
+        position = [1, 2, 3]
+        normal = [0, 0, 2]
+        radius = 0.5
+        [[light]]
+        kind = "rectangle"
+        position = [1, 2, 3]
+        u = [2, 0, 0]
+        v = [0, 0, 4]
+        [[light]]
+        kind = "rectangle"
+        position = [0, 5, 0]
+        direction = [0, 0, -1]
+        size = [2, 4]
+        [[sphere]]
+        center = [0, 0, 0]
+        radius = 1
+        "#,
+    );
+    let position = Vec3::new(1.0, 2.0, 3.0);
+    let kinds: Vec<&LightKind> = scene.lights.iter().map(|light| &light.kind).collect();
+    assert_eq!(*kinds[0], LightKind::Directional { direction: Vec3::NEG_Y });
+    let (inner, outer) = (20f64.to_radians() as f32, 30f64.to_radians() as f32);
+    let up = Vec3::new(0.0, 5.0, 0.0);
+    assert_eq!(*kinds[1], LightKind::Spot { position: up, direction: Vec3::NEG_Y, inner, outer });
+    assert_eq!(scene.lights[1].intensity, Vec3::new(1.0, 2.0, 3.0));
+    assert_eq!(scene.lights[1].falloff, Falloff::InverseSquare);
+    assert_eq!(*kinds[2], LightKind::Sphere { position, radius: 0.5 });
+    assert_eq!(*kinds[3], LightKind::Disk { position, normal: Vec3::Z, radius: 0.5 });
+    assert_eq!(*kinds[4], LightKind::Rectangle { position, half_u: Vec3::X, half_v: 2.0 * Vec3::Z });
+    assert_eq!(*kinds[5], LightKind::Rectangle { position: up, half_u: Vec3::X, half_v: 2.0 * Vec3::Y });
+}
+
+#[test]
+fn solids_have_their_triangles_and_boxes() {
+    const CASES: [(&str, usize, [f32; 3], [f32; 3]); 7] = [
+        ("[[box]]\nmin = [0, 0, 0]\nmax = [1, 2, 3]", 12, [0.0, 0.0, 0.0], [1.0, 2.0, 3.0]),
+        ("[[box]]\ncenter = [1, 1, 1]\nsize = [2, 4, 6]\nrotate = [0, 0, 90]", 12, [-1.0, 0.0, -2.0], [3.0, 2.0, 4.0]),
+        ("[[plane]]\npoint = [1, 2, 3]\nnormal = [0, 1, 0]\nsize = [2, 6]", 2, [0.0, 2.0, 0.0], [2.0, 2.0, 6.0]),
+        ("[[triangle]]\na = [0, 0, 0]\nb = [1, 0, 0]\nc = [0, 1, 0]", 1, [0.0, 0.0, 0.0], [1.0, 1.0, 0.0]),
+        ("[[triangle]]\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]", 1, [0.0, 0.0, 0.0], [1.0, 1.0, 0.0]),
+        ("[[cylinder]]\nbase = [0, 0, 0]\ntop = [0, 2, 0]\nradius = 1", 384, [-1.0, 0.0, -1.0], [1.0, 2.0, 1.0]),
+        (
+            "[[cylinder]]\ncenter = [0, 0, 0]\naxis = [2, 0, 0]\nheight = 2\nradius = 1\nsegments = 8\ncaps = false",
+            16,
+            [-1.0, -1.0, -1.0],
+            [1.0, 1.0, 1.0],
+        ),
+    ];
+    for (text, triangles, min, max) in CASES {
+        let scene = open(text);
+        let bounds = scene.mesh.bounds();
+        assert_eq!(scene.mesh.triangles.len(), triangles, "{text}");
+        assert!((bounds.min - Vec3::from(min)).length() < 1e-6, "{text}: {bounds:?}");
+        assert!((bounds.max - Vec3::from(max)).length() < 1e-6, "{text}: {bounds:?}");
+        assert_eq!(scene.materials.len(), 1, "{text}");
+    }
+}
+
+#[test]
+fn a_sphere_far_away_keeps_its_shape() {
+    for offset in [0.0, 1e5, 1e6] {
+        let scene = open(&format!("[[sphere]]\ncenter = [{offset:?}, {:?}, 0.25]\nradius = 2", -offset));
+        let center = scene.to_local(DVec3::new(offset, -offset, 0.25));
+        for (position, normal) in scene.mesh.positions.iter().zip(&scene.mesh.normals) {
+            assert!((position.distance(center) - 2.0).abs() < 2e-6, "{offset}");
+            assert!(((*position - center) / 2.0).distance(*normal) < 2e-6, "{offset}");
+        }
+    }
+}
+
+#[test]
+fn a_plane_without_size_reaches_far_around_the_rest() {
+    let scene = open("[[plane]]\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\n[[box]]\nmin = [9, 1, 9]\nmax = [10, 2, 10]");
+    let bounds = scene.mesh.bounds();
+    let (world_min, world_max) = (scene.to_world(bounds.min), scene.to_world(bounds.max));
+    let edge = 20.0 * 3f64.sqrt();
+    assert!((world_max.x - world_min.x - edge).abs() < 1e-4 && world_min.y.abs() < 1e-6, "{bounds:?}");
+    assert!((0.5 * (world_min.x + world_max.x) - 9.5).abs() < 1e-5, "{bounds:?}");
+}
+
+#[test]
+fn a_mesh_is_scaled_then_turned_about_x_y_z_then_moved() {
+    let mesh = "[[mesh]]\nfile = \"one.obj\"\nscale = 2\nrotate = [90, 90, 0]\ntranslate = [1e6, 0, 0]";
+    let scene = open(mesh);
+    // (1,0,0) → scaled (2,0,0) → about X same → about Y (0,0,-2); (0,1,0) → (0,2,0) → (0,0,2) → (2,0,0).
+    let corners = scene.mesh.corners(0).map(|corner| scene.to_world(corner) - DVec3::new(1e6, 0.0, 0.0));
+    let expected = [DVec3::ZERO, DVec3::new(0.0, 0.0, -2.0), DVec3::new(2.0, 0.0, 0.0)];
+    for (corner, expected) in corners.iter().zip(expected) {
+        assert!(corner.distance(expected) < 1e-6, "{corners:?}");
+    }
+}
+
+#[test]
+fn a_mirrored_mesh_keeps_its_front() {
+    let scene = open("[[mesh]]\nfile = \"one.obj\"\nscale = [1, 1, -1]");
+    let [a, b, c] = scene.mesh.corners(0);
+    assert!((b - a).cross(c - a).z < 0.0);
+}
+
+/// Text with one mistake; what the message must say. Each names the line and a remedy after the semicolon.
+#[rustfmt::skip]
+const MISTAKES: [(&str, &str); 32] = [
+    ("[[sphere]]\ncenter = [0, 1, 0]\nradius = -1", "radius = -1 is not above 0, room.toml:3; give a radius above 0"),
+    ("[[sphere]]\ncenter = [0, 1, 0]\nradius = nan", "radius = nan is not finite, room.toml:3; "),
+    ("[[sphere]]\ncenter = [0, inf, 0]\nradius = 1", "center = [0, inf, 0] is not finite, room.toml:2; "),
+    ("[[sphere]]\ncenter = [0, 1e30, 0]\nradius = 1", "is too large, room.toml:2; stay below 1e18"),
+    ("[[sphere]]\ncenter = [0, 1, 0]\nraduis = 1", "unknown key `raduis`, room.toml:3; did you mean `radius`?"),
+    ("[[sphere]]\n\ncenter = [0, 1, 0]", "key `radius` is missing, room.toml:1; add `radius = …`"),
+    ("[[sphere]]\ncenter = [0, 1]\nradius = 1", "room.toml:2; write a value that `center` can take"),
+    ("[[sphere]]\ncenter = \"up\"\nradius = 1", "room.toml:2; write a value that `center` can take"),
+    ("[[sphere]]\ncenter = [0, 1, 0]\nradius = 1\nsegments = 2", "segments = 2 cannot be used, room.toml:4; give a whole number from 3"),
+    ("[[sphere]]\ncenter = [0, 1, 0]\nradius = 1\nmaterial = \"ston\"\n[[material]]\nname = \"stone\"", "there is no material named `ston`, room.toml:4; did you mean `stone`?"),
+    ("[[sphere]]\ncenter = [0, 1, 0]\nradius = 1\nmaterial = \"ston\"", "there is no material named `ston`, room.toml:4; there are none"),
+    ("[sphere", "room.toml:1; "),
+    ("[[spere]]\nradius = 1", "unknown key `spere`, room.toml:1; did you mean `sphere`?"),
+    ("[camera]\nposition = [0, 0, 0]", "key `target` is missing, room.toml:1; "),
+    ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 0]", "target = [0, 0, 0] is the camera's own position, room.toml:3; "),
+    ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 1, 0]", "key `up` is missing, room.toml:1; "),
+    ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 1, 0]\nup = [0, 3, 0]", "up = [0, 3, 0] is parallel to the view direction, room.toml:4; "),
+    ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nvfov = 180", "vfov = 180 is not under 180 degrees, room.toml:4; "),
+    ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nprojection = \"orthographic\"", "key `height` is missing, room.toml:1; "),
+    ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nheight = 3", "height = 3 has no meaning in a perspective camera, room.toml:4; "),
+    ("[[light]]\nkind = \"lamp\"\nposition = [0, 0, 0]", "room.toml:2; write a value that `kind` can take"),
+    ("[[light]]\nkind = \"point\"", "key `position` is missing, room.toml:1; "),
+    ("[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\nradius = 1", "kind = \"point\" does not take `radius`, room.toml:2; it takes position, spread"),
+    ("[[light]]\nkind = \"sphere\"\nposition = [0, 0, 0]", "key `radius` is missing, room.toml:1; "),
+    ("[[light]]\nkind = \"spot\"\nposition = [0, 0, 0]\ndirection = [0, 1, 0]\ninner = 50", "inner = 50 is above outer = 45, room.toml:5; "),
+    ("[[light]]\nkind = \"rectangle\"\nposition = [0, 0, 0]\nu = [1, 0, 0]\nv = [1, 1, 0]", "v = [1, 1, 0] is not at a right angle to `u`, room.toml:5; "),
+    ("[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\nintensity = -1", "intensity = -1 is below 0, room.toml:4; "),
+    ("[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"", "name = \"a\" is used by an earlier material, room.toml:4; "),
+    ("[[mesh]]\nfile = \"none.obj\"", "file = \"none.obj\" cannot be read"),
+    ("[[mesh]]\nfile = \"one.obj\"\nscale = 0", "scale = 0 is zero or not finite, room.toml:3; "),
+    ("[[box]]\nmin = [0, 0, 0]\nmax = [1, 0, 1]", "max = [1, 0, 1] is not above `min` on every axis, room.toml:3; "),
+    ("[[plane]]\npoint = [0, 0, 0]\nnormal = [0, 1, 0]", "key `size` is missing, room.toml:1; "),
+];
+
+#[test]
+fn every_mistake_is_named_with_its_line_and_a_remedy() {
+    for (text, expected) in MISTAKES {
+        let message = error(text);
+        assert!(message.contains(expected), "{text}\n  says: {message}\nwanted: {expected}");
+        assert!(message.contains("room.toml:") && message.contains("; "), "{message}");
+        assert!(!message.contains('\n') && !message.starts_with("error"), "{message}");
+    }
+}
+
+#[test]
+fn text_that_is_not_utf8_is_refused_with_its_line() {
+    let (_folder, path) = folder("");
+    fs::write(&path, b"[camera]\nposition = \xff").unwrap();
+    assert!(Scene::open(path).unwrap_err().to_string().contains("room.toml:2"));
+}

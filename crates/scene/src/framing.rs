@@ -1,0 +1,187 @@
+//! Cameras and lights for scenes that bring none, and cameras by name.
+
+use glam::Vec3;
+
+use crate::{Bounds, Camera, Fov, Light, LightKind, Projection, Scene};
+
+/// Which axis points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Up {
+    /// +Y: glTF, most OBJ.
+    #[default]
+    Y,
+    /// +Z: CAD, most STL.
+    Z,
+}
+
+impl Up {
+    /// The axis as a unit vector.
+    pub fn axis(self) -> Vec3 {
+        match self {
+            Up::Y => Vec3::Y,
+            Up::Z => Vec3::Z,
+        }
+    }
+
+    /// Right and towards the viewer, for someone who looks at the front of a model.
+    fn sides(self) -> (Vec3, Vec3) {
+        match self {
+            Up::Y => (Vec3::X, Vec3::Z),
+            Up::Z => (Vec3::X, Vec3::NEG_Y),
+        }
+    }
+}
+
+/// No camera of the scene has this name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no camera named `{name}`, scene {scene}; {}", match known.is_empty() {
+    true => "it has no named cameras: give a position and a target instead".to_owned(),
+    false => format!("known are {}", known.join(", ")),
+})]
+pub struct UnknownCamera {
+    /// The name asked for.
+    pub name: String,
+    /// The scene.
+    pub scene: String,
+    /// Names of its cameras.
+    pub known: Vec<String>,
+}
+
+/// Vertical angle of the camera that frames a scene, degrees.
+const VFOV: f32 = 40.0;
+
+/// Share of the picture's half height that the framed scene fills.
+const FILL: f32 = 0.92;
+
+/// Where the framing camera stands, seen from the middle of the scene: to the right, above and in front.
+const VIEW: [f32; 3] = [0.55, 0.45, 1.0];
+
+/// Radius over which area mode strews the key light, as a share of the scene's diagonal.
+const KEY_LIGHT_SPREAD: f32 = 0.02;
+
+impl Scene {
+    /// A camera that shows the whole scene from the front, the right and above, for square pictures and wider ones.
+    pub fn default_camera(&self, up: Up) -> Camera {
+        let bounds = framed(self.mesh.bounds());
+        let (right, front) = up.sides();
+        let direction = -(VIEW[0] * right + VIEW[1] * up.axis() + VIEW[2] * front).normalize();
+        let mut camera = Camera {
+            name: "default".to_owned(),
+            position: bounds.center(),
+            direction,
+            up: up.axis(),
+            projection: Projection::Perspective(Fov::Vertical(VFOV)),
+        };
+        camera.position -= direction * distance(&bounds, &camera);
+        camera
+    }
+
+    /// One white point light without falloff, above and beside the camera's eye, so that shadows fall away from the viewer and
+    /// to the side.
+    pub fn default_light(&self, camera: &Camera) -> Light {
+        let bounds = framed(self.mesh.bounds());
+        let (right, up, _) = camera.basis();
+        let reach = camera.position.distance(bounds.center()).max(bounds.diagonal());
+        let position = camera.position + reach * (0.8 * up - 0.5 * right);
+        let spread = KEY_LIGHT_SPREAD * bounds.diagonal();
+        Light { kind: LightKind::Point { position, spread }, ..Light::point(position, Vec3::ONE) }
+    }
+
+    /// The camera of this name.
+    ///
+    /// # Errors
+    ///
+    /// [`UnknownCamera`] lists the names that there are.
+    pub fn camera(&self, name: &str) -> Result<&Camera, UnknownCamera> {
+        self.cameras.iter().find(|camera| camera.name == name).ok_or_else(|| UnknownCamera {
+            name: name.to_owned(),
+            scene: self.name.clone(),
+            known: self.cameras.iter().map(|camera| camera.name.clone()).filter(|name| !name.is_empty()).collect(),
+        })
+    }
+}
+
+/// How far from the box's middle the camera must stand so that all eight corners lie in a square picture.
+fn distance(bounds: &Bounds, camera: &Camera) -> f32 {
+    let (right, up, forward) = camera.basis();
+    let tangent = FILL * (0.5 * VFOV).to_radians().tan();
+    let half = 0.5 * bounds.extent();
+    let corner = |i: u32| half * Vec3::from_array([1, 2, 4].map(|bit| if i & bit == 0 { -1.0 } else { 1.0 }));
+    (0..8).map(corner).map(|p| p.dot(right).abs().max(p.dot(up).abs()) / tangent - p.dot(forward)).fold(0.0, f32::max)
+}
+
+/// The box to frame: a unit cube where the scene is empty or a single point.
+fn framed(bounds: Bounds) -> Bounds {
+    let center = if bounds.is_empty() { Vec3::ZERO } else { bounds.center() };
+    if bounds.diagonal() > 0.0 { bounds } else { Bounds { min: center - 0.5, max: center + 0.5 } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SceneBuilder;
+
+    fn scene(min: Vec3, max: Vec3) -> Scene {
+        let mut scene = SceneBuilder::new().finish_scene("test");
+        scene.mesh.positions = vec![min, max, min];
+        scene.mesh.triangles = vec![[0, 1, 2]];
+        scene
+    }
+
+    /// Furthest corner from the picture's middle in half heights.
+    fn extent_in_picture(bounds: &Bounds, camera: &Camera) -> f32 {
+        let (right, up, forward) = camera.basis();
+        let tangent = (0.5 * VFOV).to_radians().tan();
+        let corners = (0..8).map(|i| {
+            let pick = |bit: u32, low: f32, high: f32| if i & bit == 0 { low } else { high };
+            let (min, max) = (bounds.min, bounds.max);
+            Vec3::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z)) - camera.position
+        });
+        corners.map(|p| p.dot(right).abs().max(p.dot(up).abs()) / (tangent * p.dot(forward))).fold(0.0, f32::max)
+    }
+
+    #[test]
+    fn all_corners_are_in_the_picture_and_fill_it() {
+        let boxes = [
+            (Vec3::splat(-1.0), Vec3::ONE),
+            (Vec3::new(100.0, 0.0, -7.0), Vec3::new(160.0, 0.0, 20.0)),
+            (Vec3::ZERO, Vec3::new(1e-3, 2.0, 1e-3)),
+            (Vec3::splat(1e5), Vec3::splat(2e5)),
+        ];
+        for (min, max) in boxes {
+            for up in [Up::Y, Up::Z] {
+                let scene = scene(min, max);
+                let extent = extent_in_picture(&scene.mesh.bounds(), &scene.default_camera(up));
+                assert!((extent - FILL).abs() < 1e-3, "{min} {max} {up:?}: {extent}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_empty_scene_has_a_camera_and_a_light_too() {
+        let empty = SceneBuilder::new().finish_scene("empty");
+        let camera = empty.default_camera(Up::Y);
+        assert!(camera.position.is_finite() && camera.position.length() > 1.0);
+        assert!(empty.default_light(&camera).position().unwrap().is_finite());
+    }
+
+    #[test]
+    fn the_key_light_is_above_the_camera() {
+        for up in [Up::Y, Up::Z] {
+            let scene = scene(Vec3::splat(-3.0), Vec3::splat(5.0));
+            let camera = scene.default_camera(up);
+            let light = scene.default_light(&camera).position().unwrap();
+            assert!((light - camera.position).dot(up.axis()) > 1.0);
+        }
+    }
+
+    #[test]
+    fn an_unknown_camera_is_answered_with_the_known() {
+        let mut scene = scene(Vec3::ZERO, Vec3::ONE);
+        let message = |scene: &Scene| scene.camera("top").unwrap_err().to_string();
+        assert!(message(&scene).contains("no named cameras"));
+        scene.cameras.push(Camera { name: "front".into(), ..scene.default_camera(Up::Y) });
+        assert_eq!(message(&scene), "there is no camera named `top`, scene test; known are front");
+        assert_eq!(scene.camera("front").unwrap().name, "front");
+    }
+}

@@ -1,0 +1,296 @@
+//! What is in a scene: the answer to `lightmesh info`, for people and, through serde, for programs.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::{Camera, Falloff, Fov, Light, LightKind, Projection, Scene};
+
+/// A scene in figures. World coordinates, scene units and degrees.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct SceneInfo {
+    /// Number of triangles.
+    pub triangles: usize,
+    /// Box around all triangles; `None` without any.
+    pub bounds: Option<BoundsInfo>,
+    /// Lights in the file's order.
+    pub lights: Vec<LightInfo>,
+    /// Cameras in the file's order.
+    pub cameras: Vec<CameraInfo>,
+    /// Number of materials.
+    pub materials: usize,
+    /// What was mended, left out or guessed.
+    pub warnings: Vec<String>,
+}
+
+/// A box in world coordinates.
+#[derive(Clone, Copy, Debug, Serialize, PartialEq)]
+pub struct BoundsInfo {
+    /// Lowest corner.
+    pub min: [f64; 3],
+    /// Highest corner.
+    pub max: [f64; 3],
+}
+
+/// A light. Fields that its kind does not have are `None`; of those only `position` and `direction` are written then.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct LightInfo {
+    /// point, directional, spot, sphere, disk or rectangle.
+    pub kind: &'static str,
+    /// Name in the file.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub name: String,
+    /// Its middle; `None` for a directional light.
+    pub position: Option<[f64; 3]>,
+    /// The way it shines, or the axis of a disk or rectangle; `None` for a point or sphere.
+    pub direction: Option<[f64; 3]>,
+    /// Red, green and blue.
+    pub intensity: [f64; 3],
+    /// none or inverse-square.
+    pub falloff: &'static str,
+    /// Of a sphere or disk.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f64>,
+    /// Of a point light that area mode strews over a ball: its radius.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spread: Option<f64>,
+    /// Of a rectangle: its edges.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size: Option<[f64; 2]>,
+    /// Of a spot light: half-angle of the full-strength cone, degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inner: Option<f64>,
+    /// Of a spot light: half-angle where it ends, degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outer: Option<f64>,
+}
+
+/// A camera.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct CameraInfo {
+    /// Name in the file; may be empty.
+    pub name: String,
+    /// The eye.
+    pub position: [f64; 3],
+    /// The way it looks.
+    pub direction: [f64; 3],
+    /// Its upper side.
+    pub up: [f64; 3],
+    /// Full vertical angle, degrees (of a camera with a horizontal angle: in a square picture); `None`, written as null, for an
+    /// orthographic one.
+    pub vfov: Option<f64>,
+    /// Full horizontal angle, degrees, where that is the one that is fixed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hfov: Option<f64>,
+    /// Height of an orthographic picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub height: Option<f64>,
+}
+
+impl Scene {
+    /// The scene in figures.
+    pub fn info(&self) -> SceneInfo {
+        let bounds = self.mesh.bounds();
+        let world = |local| self.to_world(local).to_array();
+        SceneInfo {
+            triangles: self.mesh.triangles.len(),
+            bounds: (!bounds.is_empty()).then(|| BoundsInfo { min: world(bounds.min), max: world(bounds.max) }),
+            lights: self.lights.iter().map(|light| light_info(self, light)).collect(),
+            cameras: self.cameras.iter().map(|camera| camera_info(self, camera)).collect(),
+            materials: self.materials.len(),
+            warnings: self.warnings.clone(),
+        }
+    }
+}
+
+fn light_info(scene: &Scene, light: &Light) -> LightInfo {
+    let mut info = LightInfo {
+        kind: light.kind_name(),
+        name: light.name.clone(),
+        position: light.position().map(|position| scene.to_world(position).to_array()),
+        direction: None,
+        intensity: light.intensity.to_array().map(shortest),
+        falloff: light.falloff.name(),
+        radius: None,
+        spread: None,
+        size: None,
+        inner: None,
+        outer: None,
+    };
+    match light.kind {
+        LightKind::Point { spread, .. } => info.spread = (spread > 0.0).then(|| shortest(spread)),
+        LightKind::Directional { direction } => info.direction = Some(direction.to_array().map(shortest)),
+        LightKind::Spot { direction, inner, outer, .. } => {
+            info.direction = Some(direction.to_array().map(shortest));
+            info.inner = Some(shortest(inner.to_degrees()));
+            info.outer = Some(shortest(outer.to_degrees()));
+        }
+        LightKind::Sphere { radius, .. } => info.radius = Some(shortest(radius)),
+        LightKind::Disk { normal, radius, .. } => {
+            info.direction = Some(normal.to_array().map(shortest));
+            info.radius = Some(shortest(radius));
+        }
+        LightKind::Rectangle { half_u, half_v, .. } => {
+            info.direction = Some(half_u.cross(half_v).normalize_or_zero().to_array().map(shortest));
+            info.size = Some([half_u, half_v].map(|half| shortest(2.0 * half.length())));
+        }
+    }
+    info
+}
+
+fn camera_info(scene: &Scene, camera: &Camera) -> CameraInfo {
+    let (vfov, hfov, height) = match camera.projection {
+        Projection::Perspective(fov @ Fov::Vertical(_)) => (Some(fov.vertical(1.0)), None, None),
+        Projection::Perspective(fov @ Fov::Horizontal(hfov)) => (Some(fov.vertical(1.0)), Some(hfov), None),
+        Projection::Orthographic { height } => (None, None, Some(height)),
+    };
+    CameraInfo {
+        name: camera.name.clone(),
+        position: scene.to_world(camera.position).to_array(),
+        direction: camera.direction.to_array().map(shortest),
+        up: camera.up.to_array().map(shortest),
+        vfov: vfov.map(shortest),
+        hfov: hfov.map(shortest),
+        height: height.map(shortest),
+    }
+}
+
+/// The `f64` with the fewest digits that is this `f32`: 0.1 stays 0.1.
+pub(crate) fn shortest(number: f32) -> f64 {
+    number.to_string().parse().unwrap_or(f64::from(number))
+}
+
+impl Falloff {
+    /// The word for it in scene files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Falloff::None => "none",
+            Falloff::InverseSquare => "inverse-square",
+        }
+    }
+}
+
+impl fmt::Display for SceneInfo {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(f, "{} triangles, {} materials", self.triangles, self.materials)?;
+        if let Some(bounds) = &self.bounds {
+            writeln!(f, "bounds  {} .. {}", triple(&bounds.min), triple(&bounds.max))?;
+        }
+        for light in &self.lights {
+            writeln!(f, "light   {light}")?;
+        }
+        for camera in &self.cameras {
+            writeln!(f, "camera  {camera}")?;
+        }
+        self.warnings.iter().try_for_each(|warning| writeln!(f, "warning {warning}"))
+    }
+}
+
+impl fmt::Display for LightInfo {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}", self.kind)?;
+        if !self.name.is_empty() {
+            write!(f, " `{}`", self.name)?;
+        }
+        let vectors = [("at", &self.position), ("along", &self.direction)];
+        for (word, vector) in vectors.iter().filter_map(|(word, vector)| Some((word, vector.as_ref()?))) {
+            write!(f, ", {word} {}", triple(vector))?;
+        }
+        write!(f, ", intensity {}, falloff {}", triple(&self.intensity), self.falloff)?;
+        let numbers = [("radius", self.radius), ("spread", self.spread), ("inner", self.inner), ("outer", self.outer)];
+        for (word, number) in numbers.iter().filter_map(|(word, number)| Some((word, (*number)?))) {
+            write!(f, ", {word} {}", rounded(number))?;
+        }
+        self.size.map_or(Ok(()), |[w, h]| write!(f, ", size {} × {}", rounded(w), rounded(h)))
+    }
+}
+
+impl fmt::Display for CameraInfo {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        if !self.name.is_empty() {
+            write!(f, "`{}` ", self.name)?;
+        }
+        write!(f, "at {}, along {}", triple(&self.position), triple(&self.direction))?;
+        match (self.hfov, self.vfov, self.height) {
+            (Some(hfov), ..) => write!(f, ", hfov {}°", rounded(hfov)),
+            (_, Some(vfov), _) => write!(f, ", vfov {}°", rounded(vfov)),
+            (.., Some(height)) => write!(f, ", orthographic, height {}", rounded(height)),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn triple(vector: &[f64; 3]) -> String {
+    vector.map(|number| rounded(number).to_string()).join(" ")
+}
+
+/// Six significant digits after the point at most, enough to recognise a value.
+fn rounded(number: f64) -> f64 {
+    (number * 1e6).round() / 1e6
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, Vec3};
+
+    use super::*;
+    use crate::SceneBuilder;
+
+    fn scene() -> Scene {
+        let mut scene = SceneBuilder::new().finish_scene("test");
+        scene.origin = DVec3::new(1000.0, 0.0, 0.0);
+        scene.mesh.positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+        scene.mesh.triangles = vec![[0, 1, 2]];
+        scene.lights = vec![
+            Light::point(Vec3::Z, Vec3::splat(0.1)),
+            Light { kind: LightKind::Directional { direction: Vec3::NEG_Y }, ..Light::point(Vec3::ZERO, Vec3::ONE) },
+        ];
+        let camera = Camera {
+            name: "main".into(),
+            position: Vec3::Z,
+            direction: Vec3::NEG_Z,
+            up: Vec3::Y,
+            projection: Projection::Perspective(Fov::Vertical(50.0)),
+        };
+        let plan = Projection::Orthographic { height: 4.0 };
+        scene.cameras = vec![camera.clone(), Camera { projection: plan, ..camera }];
+        scene
+    }
+
+    #[test]
+    fn the_json_is_in_world_coordinates_and_degrees() {
+        let json = serde_json::to_value(scene().info()).unwrap();
+        let expected = serde_json::json!({
+            "triangles": 1,
+            "bounds": {"min": [1000.0, 0.0, 0.0], "max": [1001.0, 1.0, 0.0]},
+            "lights": [
+                {"kind": "point", "position": [1000.0, 0.0, 1.0], "direction": null, "intensity": [0.1, 0.1, 0.1],
+                 "falloff": "none"},
+                {"kind": "directional", "position": null, "direction": [0.0, -1.0, 0.0], "intensity": [1.0, 1.0, 1.0],
+                 "falloff": "none"},
+            ],
+            "cameras": [
+                {"name": "main", "position": [1000.0, 0.0, 1.0], "direction": [0.0, 0.0, -1.0], "up": [0.0, 1.0, 0.0],
+                 "vfov": 50.0},
+                {"name": "main", "position": [1000.0, 0.0, 1.0], "direction": [0.0, 0.0, -1.0], "up": [0.0, 1.0, 0.0],
+                 "vfov": null, "height": 4.0},
+            ],
+            "materials": 0,
+            "warnings": [],
+        });
+        assert_eq!(json, expected);
+    }
+
+    #[test]
+    fn people_read_the_same() {
+        let text = scene().info().to_string();
+        assert!(text.contains("light   point, at 1000 0 1, intensity 0.1 0.1 0.1, falloff none"), "{text}");
+        assert!(text.contains("camera  `main` at 1000 0 1, along 0 0 -1, vfov 50°"), "{text}");
+    }
+
+    #[test]
+    fn an_empty_scene_has_no_bounds() {
+        let info = SceneBuilder::new().finish_scene("empty").info();
+        assert_eq!(info.bounds, None);
+    }
+}

@@ -1,0 +1,34 @@
+//! Materials: the coefficients of the shading model, formula (1).
+
+use glam::Vec3;
+
+/// How a surface answers light: ambient, diffuse and Phong terms (Whitted 1980, Phong 1975).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Name in the file; empty where it has none.
+    pub name: String,
+    /// Share of the ambient intensity, per channel.
+    pub ka: Vec3,
+    /// Diffuse reflectance k_d, per channel.
+    pub kd: Vec3,
+    /// Specular coefficient k_s, per channel: the Phong lobe and, with `--bounces`, the mirror.
+    pub ks: Vec3,
+    /// Phong exponent `pow`.
+    pub shininess: f32,
+    /// Radiance that the surface gives off by itself; it is seen but lights nothing.
+    pub emission: Vec3,
+}
+
+impl Default for Material {
+    /// Matt and light grey.
+    fn default() -> Material {
+        Material {
+            name: String::new(),
+            ka: Vec3::splat(0.8),
+            kd: Vec3::splat(0.8),
+            ks: Vec3::ZERO,
+            shininess: 20.0,
+            emission: Vec3::ZERO,
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! The geometry of a scene: one indexed list of triangles.
+
+use glam::{Vec2, Vec3};
+
+/// An axis-aligned box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Lowest corner.
+    pub min: Vec3,
+    /// Highest corner.
+    pub max: Vec3,
+}
+
+impl Bounds {
+    /// The box that holds nothing: any point enlarges it.
+    pub const EMPTY: Bounds = Bounds { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    /// The smallest box around `points`.
+    pub fn around(points: impl IntoIterator<Item = Vec3>) -> Bounds {
+        points.into_iter().fold(Bounds::EMPTY, Bounds::including)
+    }
+
+    /// This box enlarged to hold `point`.
+    pub fn including(self, point: Vec3) -> Bounds {
+        Bounds { min: self.min.min(point), max: self.max.max(point) }
+    }
+
+    /// Whether no point lies inside.
+    pub fn is_empty(&self) -> bool {
+        !self.min.cmple(self.max).all()
+    }
+
+    /// The middle.
+    pub fn center(&self) -> Vec3 {
+        0.5 * (self.min + self.max)
+    }
+
+    /// Edge lengths; zero where the box is empty.
+    pub fn extent(&self) -> Vec3 {
+        (self.max - self.min).max(Vec3::ZERO)
+    }
+
+    /// Length of the diagonal.
+    pub fn diagonal(&self) -> f32 {
+        self.extent().length()
+    }
+}
+
+/// All triangles of a scene in its local frame, instances resolved.
+///
+/// `normals` and `uvs` are empty or as long as `positions`. A zero normal means that the vertex has none: its triangles are
+/// shaded flat.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Vertices, local frame.
+    pub positions: Vec<Vec3>,
+    /// Shading normals by vertex, unit length or zero.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates by vertex.
+    pub uvs: Vec<Vec2>,
+    /// Three vertex indices a triangle, counter-clockwise seen from outside (both sides are rendered).
+    pub triangles: Vec<[u32; 3]>,
+    /// Material index by triangle.
+    pub materials: Vec<u32>,
+}
+
+impl Mesh {
+    /// The three corners of triangle `index`.
+    pub fn corners(&self, index: usize) -> [Vec3; 3] {
+        self.triangles[index].map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// The box around all vertices that a triangle uses.
+    pub fn bounds(&self) -> Bounds {
+        Bounds::around(self.triangles.iter().flatten().map(|&vertex| self.positions[vertex as usize]))
+    }
+}

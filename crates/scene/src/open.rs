@@ -1,0 +1,71 @@
+//! Opening a scene by its name: the ending of the file's name chooses the format.
+
+use std::{fs, path::Path};
+
+use glam::DMat4;
+
+use crate::{
+    LoadError, Scene,
+    draft::{Draft, Placement},
+    formats,
+};
+
+/// Endings of scene files that can be read.
+const SCENE_FORMATS: [&str; 4] = ["toml", "obj", "gltf", "glb"];
+
+impl Scene {
+    /// Reads a scene: `.toml`, `.obj`, `.gltf` or `.glb`, or a built-in one named `builtin:NAME` or
+    /// `builtin:NAME?key=value&…`.
+    ///
+    /// What a file holds beyond the scene's model is left out, with a sentence in [`Scene::warnings`].
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError`] names the file, where possible the line, and the remedy.
+    pub fn open(path: impl AsRef<Path>) -> Result<Scene, LoadError> {
+        let path = path.as_ref();
+        if let Some(query) = path.to_str().and_then(|name| name.strip_prefix("builtin:")) {
+            return crate::builtin::open(query);
+        }
+        let mut draft = Draft::new(path);
+        if extension(path) == "toml" {
+            formats::toml::read(path, &mut draft)?;
+        } else {
+            read_model(path, &Placement::default(), &mut draft)?;
+        }
+        Ok(draft.finish())
+    }
+}
+
+/// Reads a model as a scene of its own: its triangles, materials, lights and cameras.
+fn read_model(path: &Path, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
+    match extension(path).as_str() {
+        "obj" => formats::obj::read(path, placement, draft),
+        "gltf" | "glb" => formats::gltf::read(path, placement, draft),
+        extension => Err(LoadError::UnknownFormat {
+            path: path.to_owned(),
+            extension: extension.to_owned(),
+            known: SCENE_FORMATS.map(|known| format!(".{known}")).to_vec(),
+        }),
+    }
+}
+
+/// Reads a model as a part of a larger scene: its triangles, and its materials unless the placement has one.
+pub(crate) fn read_part(
+    path: &Path,
+    transform: DMat4,
+    material: Option<u32>,
+    draft: &mut Draft,
+) -> Result<(), LoadError> {
+    read_model(path, &Placement { transform, material, part: true }, draft)
+}
+
+/// The whole file.
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, LoadError> {
+    fs::read(path).map_err(|cause| LoadError::Read { path: path.to_owned(), cause })
+}
+
+/// The ending of the file's name in lower case, without the dot.
+fn extension(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
