@@ -21,6 +21,7 @@ mod prepared;
 mod renderer;
 pub mod sampling;
 mod settings;
+mod simd;
 mod stages;
 mod stats;
 mod surface;

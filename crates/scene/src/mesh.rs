@@ -16,31 +16,37 @@ impl Bounds {
     pub const EMPTY: Bounds = Bounds { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
     /// The smallest box around `points`.
+    #[inline]
     pub fn around(points: impl IntoIterator<Item = Vec3>) -> Bounds {
         points.into_iter().fold(Bounds::EMPTY, Bounds::including)
     }
 
     /// This box enlarged to hold `point`.
+    #[inline]
     pub fn including(self, point: Vec3) -> Bounds {
         Bounds { min: self.min.min(point), max: self.max.max(point) }
     }
 
     /// Whether no point lies inside.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }
 
     /// The middle.
+    #[inline]
     pub fn center(&self) -> Vec3 {
         0.5 * (self.min + self.max)
     }
 
     /// Edge lengths; zero where the box is empty.
+    #[inline]
     pub fn extent(&self) -> Vec3 {
         (self.max - self.min).max(Vec3::ZERO)
     }
 
     /// Length of the diagonal.
+    #[inline]
     pub fn diagonal(&self) -> f32 {
         self.extent().length()
     }
@@ -66,6 +72,7 @@ pub struct Mesh {
 
 impl Mesh {
     /// The three corners of triangle `index`.
+    #[inline]
     pub fn corners(&self, index: usize) -> [Vec3; 3] {
         self.triangles[index].map(|vertex| self.positions[vertex as usize])
     }

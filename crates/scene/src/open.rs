@@ -69,3 +69,33 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, LoadError> {
 fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(path: &str) -> String {
+        Scene::open(path).expect_err("an error").to_string()
+    }
+
+    #[test]
+    fn a_format_that_cannot_be_read_is_answered_with_those_that_can() {
+        let known = "known are .toml, .obj, .gltf, .glb, and builtin:NAME";
+        assert_eq!(error("bunny.ply"), format!("`.ply` is not a format that can be read, bunny.ply; {known}"));
+        assert!(error("bunny").contains(known));
+    }
+
+    #[test]
+    fn a_file_that_is_not_there_is_named() {
+        for path in ["none.toml", "none.obj", "none.gltf", "none.GLB"] {
+            let message = error(path);
+            assert!(message.contains(path) && message.contains("; check that it exists"), "{message}");
+        }
+    }
+
+    #[test]
+    fn built_in_scenes_go_by_name() {
+        assert_eq!(Scene::open("builtin:gazebo").unwrap().name, "gazebo");
+        assert!(error("builtin:gazibo").contains("known are gazebo"));
+    }
+}

@@ -51,12 +51,7 @@ impl Accelerator for BruteForce {
 
     fn triangles_in(&self, region: &Bounds, found: &mut Vec<u32>) {
         found.clear();
-        found.extend(
-            self.triangles
-                .iter()
-                .filter(|triangle| overlap(&triangle.bounds(), region))
-                .map(Triangle::index),
-        );
+        found.extend(self.triangles.iter().filter(|triangle| overlap(&triangle.bounds(), region)).map(Triangle::index));
         found.sort_unstable();
     }
 

@@ -47,7 +47,9 @@ impl Triangle {
     /// The three corners.
     #[inline(always)]
     pub fn corners(&self) -> [Vec3; 3] {
-        self.corners.map(|[x, y, z, _]| Vec3::new(x, y, z))
+        let corner = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z);
+        let [a, b, c] = self.corners;
+        [corner(a), corner(b), corner(c)]
     }
 }
 
@@ -76,7 +78,8 @@ impl RayShear {
         let axes = [(z + 1) % 3, (z + 2) % 3, z];
         let depth = direction[z];
         let shear = [direction[axes[0]] / depth, direction[axes[1]] / depth];
-        RayShear { axes, origin: axes.map(|axis| origin[axis]), shear, depth }
+        let origin = [origin[axes[0]], origin[axes[1]], origin[axes[2]]];
+        RayShear { axes, origin, shear, depth }
     }
 
     /// Where the ray meets the triangle: `(t, u, v)` with barycentric weights of the second and third corner. Both sides
@@ -90,7 +93,8 @@ impl RayShear {
     #[inline(always)]
     pub fn intersect(&self, triangle: &Triangle) -> Option<(f32, f32, f32)> {
         // 1. Corners relative to the origin, sheared so that the ray is the z axis.
-        let [a, b, c] = triangle.corners.map(|corner| self.sheared(corner));
+        let [a, b, c] = &triangle.corners;
+        let (a, b, c) = (self.sheared(a), self.sheared(b), self.sheared(c));
 
         // 2. Signs of the edge functions. Rounding is monotone: it can turn one to zero, but never past it.
         let u = c[0] * b[1] - c[1] * b[0];
@@ -110,9 +114,11 @@ impl RayShear {
     }
 
     #[inline(always)]
-    fn sheared(&self, corner: [f32; 4]) -> [f32; 3] {
+    fn sheared(&self, corner: &[f32; 4]) -> [f32; 3] {
         // The mask tells the compiler that the index is in range.
-        let [x, y, z] = [0, 1, 2].map(|axis| corner[self.axes[axis] & 3] - self.origin[axis]);
+        let x = corner[self.axes[0] & 3] - self.origin[0];
+        let y = corner[self.axes[1] & 3] - self.origin[1];
+        let z = corner[self.axes[2] & 3] - self.origin[2];
         [x - self.shear[0] * z, y - self.shear[1] * z, z]
     }
 
@@ -182,7 +188,8 @@ impl Occluder {
     /// Whether the triangle meets the segment from the origin along `direction` (the segment's end minus the origin).
     #[inline(always)]
     pub fn blocks(&self, direction: Vec3) -> bool {
-        let [u, v, w] = self.sides.map(|side| side.dot(direction));
+        let [a, b, c] = self.sides;
+        let (u, v, w) = (a.dot(direction), b.dot(direction), c.dot(direction));
         u >= 0.0 && v >= 0.0 && w >= 0.0 && u + v + w > self.volume
     }
 }

@@ -1,6 +1,9 @@
 //! Formula (6): which light points can lie in the interpolation half-ball of some point of a cell.
+//!
+//! The order of the points is ours to choose. They follow the Z-order curve (Morton 1966), so that each run of eight, a SIMD
+//! vector, is a compact cluster: what misses the cluster's box misses all eight.
 
-use glam::IVec3;
+use glam::{IVec3, Vec3};
 
 /// The light points that lie within r of *some* point of a cell, as offsets from the cell. Bit k of an object point's mask
 /// speaks of `offsets()[k]`.
@@ -8,6 +11,16 @@ use glam::IVec3;
 pub struct Template {
     radius: f32,
     offsets: Vec<IVec3>,
+    clusters: Vec<Cluster>,
+}
+
+/// The box around eight consecutive points of a template, in steps from the cell's lowest corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cluster {
+    /// Its middle.
+    pub center: Vec3,
+    /// Half its edges.
+    pub half: Vec3,
 }
 
 /// A radius for which there is no template.
@@ -28,26 +41,24 @@ impl Template {
     /// Largest radius in steps: 20 000 light points.
     pub const MAX_RADIUS: f32 = 16.0;
 
-    /// The template of interpolation radius `radius` = r/h, in ascending order of (z, y, x).
+    /// The template of interpolation radius `radius` = r/h.
     pub fn new(radius: f32) -> Result<Template, TemplateError> {
         if !(Self::MIN_RADIUS..=Self::MAX_RADIUS).contains(&radius) {
             return Err(TemplateError { radius });
         }
         let reach = radius.ceil() as i32;
-        let range = -reach..=reach + 1;
+        let side = 1 - reach..=reach;
         // Distance of offset i from the cell's extent along one axis.
         let excess = |i: i32| 0.max(-i).max(i - 1);
-        let inside = |&[z, y, x]: &[i32; 3]| {
-            let square = [x, y, z].map(|i| excess(i) * excess(i)).iter().sum::<i32>();
+        let inside = |offset: &IVec3| {
+            let square: i32 = offset.to_array().iter().map(|&i| excess(i) * excess(i)).sum();
             f64::from(square) < f64::from(radius) * f64::from(radius)
         };
-        let offsets = range
-            .clone()
-            .flat_map(|z| range.clone().flat_map(move |y| (-reach..=reach + 1).map(move |x| [z, y, x])))
-            .filter(inside)
-            .map(|[z, y, x]| IVec3::new(x, y, z))
-            .collect();
-        Ok(Template { radius, offsets })
+        let plane = |z: i32| side.clone().flat_map(move |y| (1 - reach..=reach).map(move |x| IVec3::new(x, y, z)));
+        let mut offsets: Vec<IVec3> = side.clone().flat_map(plane).filter(inside).collect();
+        offsets.sort_unstable_by_key(|offset| z_order(*offset + reach - 1));
+        let clusters = offsets.chunks(Cluster::POINTS).map(Cluster::around).collect();
+        Ok(Template { radius, offsets, clusters })
     }
 
     /// R = r/h.
@@ -55,9 +66,14 @@ impl Template {
         self.radius
     }
 
-    /// Offsets from the cell, ascending in (z, y, x).
+    /// Offsets from the cell, in Z-order.
     pub fn offsets(&self) -> &[IVec3] {
         &self.offsets
+    }
+
+    /// The boxes around each eight offsets.
+    pub fn clusters(&self) -> &[Cluster] {
+        &self.clusters
     }
 
     /// Number of light points.
@@ -73,8 +89,25 @@ impl Template {
 
     /// Largest component of an offset; the smallest is one less in the other direction.
     pub fn reach(&self) -> i32 {
-        self.offsets.last().map_or(0, |offset| offset.z)
+        self.radius.ceil() as i32
     }
+}
+
+impl Cluster {
+    /// Points of a cluster; the last one may have fewer.
+    pub const POINTS: usize = 8;
+
+    fn around(offsets: &[IVec3]) -> Cluster {
+        let min = offsets.iter().copied().fold(IVec3::MAX, IVec3::min).as_vec3();
+        let max = offsets.iter().copied().fold(IVec3::MIN, IVec3::max).as_vec3();
+        Cluster { center: 0.5 * (min + max), half: 0.5 * (max - min) }
+    }
+}
+
+/// The bits of the three components (none negative, six bits each) interleaved.
+fn z_order(index: IVec3) -> u32 {
+    let spread = |value: i32| (0..6).map(|bit| (value as u32 >> bit & 1) << (3 * bit)).sum::<u32>();
+    spread(index.x) | spread(index.y) << 1 | spread(index.z) << 2
 }
 
 #[cfg(test)]
@@ -119,9 +152,25 @@ mod tests {
     }
 
     #[test]
-    fn bits_ascend_in_z_y_x() {
-        let template = Template::new(2.1).unwrap();
-        assert!(template.offsets().is_sorted_by_key(|offset| (offset.z, offset.y, offset.x)));
+    fn clusters_hold_their_points_and_are_compact() {
+        let template = Template::new(3.1).unwrap();
+        for (points, cluster) in template.offsets().chunks(8).zip(template.clusters()) {
+            for point in points {
+                assert!((point.as_vec3() - cluster.center).abs().cmple(cluster.half).all());
+            }
+        }
+        let volume = |cluster: &Cluster| (2.0 * cluster.half + 1.0).element_product();
+        let mean = template.clusters().iter().map(volume).sum::<f32>() / template.clusters().len() as f32;
+        assert!(mean < 16.0, "rows of eight would take 8, cubes too; this order takes {mean}");
+    }
+
+    #[test]
+    fn the_reach_is_that_of_the_farthest_offset() {
+        for radius in [1.0, 1.5, 2.1, 3.0, 3.1, 5.1] {
+            let template = Template::new(radius).unwrap();
+            let farthest = template.offsets().iter().map(|offset| offset.max_element()).max();
+            assert_eq!(farthest, Some(template.reach()), "R = {radius}");
+        }
     }
 
     #[test]

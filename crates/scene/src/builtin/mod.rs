@@ -22,6 +22,7 @@ mod math;
 mod options;
 mod parts;
 mod plants;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 

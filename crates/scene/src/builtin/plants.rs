@@ -4,7 +4,8 @@ use glam::{Vec2, Vec3};
 
 use super::foliage::Leaves;
 use super::math::{Random, around};
-use super::parts::{Paint, Parts, bezier};
+use super::parts::{Paint, Parts};
+use super::surfaces::bezier;
 
 /// The plan of a broad-leaved tree that stands at its own zero.
 pub(super) struct Tree<'a> {

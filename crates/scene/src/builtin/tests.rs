@@ -7,9 +7,9 @@ use crate::LightKind;
 type Promise = (&'static str, usize, usize, Vec3, u64);
 
 const PROMISES: [Promise; 3] = [
-    ("gazebo", 300, 3, Vec3::new(30.0, 20.0, 40.0), 0),
-    ("childpark", 27_000, 2, Vec3::new(160.0, 120.0, 140.0), 0),
-    ("garden", 234_000, 1, Vec3::new(20.0, 6.0, 28.0), 0),
+    ("gazebo", 300, 3, Vec3::new(30.0, 20.0, 40.0), 0xf615_e7d6_e8bb_3f13),
+    ("childpark", 27_000, 2, Vec3::new(160.0, 120.0, 140.0), 0x1856_ad77_6080_c14b),
+    ("garden", 234_000, 1, Vec3::new(20.0, 6.0, 28.0), 0x43f7_fa62_cc98_e04a),
 ];
 
 fn scenes() -> Vec<(Promise, Scene)> {

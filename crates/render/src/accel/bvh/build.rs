@@ -41,7 +41,8 @@ fn tree(triangles: &[Triangle]) -> CwBvh {
     if triangles.is_empty() {
         return CwBvh::default();
     }
-    let boxes: Vec<_> = triangles.iter().map(|triangle| Aabb::from_points(&triangle.corners().map(Vec3A::from))).collect();
+    let boxes: Vec<_> =
+        triangles.iter().map(|triangle| Aabb::from_points(&triangle.corners().map(Vec3A::from))).collect();
     let indices = (0..boxes.len() as u32).collect();
     let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
         SEARCH_DISTANCE,

@@ -18,10 +18,10 @@
 //! the ray by 2⁻²⁹ S at most, and γ S times the reciprocal then exceeds every `t` in the node. No reciprocal is infinite, no
 //! product NaN.
 
-use fearless_simd::prelude::*;
 use fearless_simd::f32x8;
+use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 use lightmesh_scene::Bounds;
 
 use super::{Bvh, Node};
@@ -46,10 +46,10 @@ struct Group {
 /// A ray prepared for the slab tests.
 #[derive(Clone, Copy)]
 struct Slabs {
-    origin: Vec3,
-    inverse: Vec3,
+    origin: Vec3A,
+    inverse: Vec3A,
     /// Margin for a node of unit distance, in units of the ray parameter.
-    margin: Vec3,
+    margin: Vec3A,
     /// Added to the distance S: how far outside a box may be and still count.
     slack: f32,
     /// The octant that the ray points to: traversal order is slot xor this.
@@ -61,9 +61,9 @@ impl Slabs {
     fn new(origin: Vec3, direction: Vec3, slack: f32) -> Slabs {
         let least = LEAST_COMPONENT * direction.abs().max_element();
         let direction = direction.abs().max(Vec3::splat(least)).copysign(direction);
-        let inverse = direction.recip();
-        let octant = [(direction.x, 4), (direction.y, 2), (direction.z, 1)];
-        let octant = octant.iter().map(|&(component, bit)| if component < 0.0 { 0 } else { bit }).sum();
+        let (origin, inverse) = (Vec3A::from(origin), Vec3A::from(direction.recip()));
+        let onward = |component: f32| u32::from(component >= 0.0);
+        let octant = onward(direction.x) << 2 | onward(direction.y) << 1 | onward(direction.z);
         Slabs { origin, inverse, margin: MARGIN * inverse.abs(), slack: slack / MARGIN, octant }
     }
 }
@@ -154,8 +154,8 @@ fn walk<S: Simd>(simd: S, bvh: &Bvh, slabs: &Slabs, stack: &mut [Group], visitor
 #[inline(always)]
 fn met_slots<S: Simd>(simd: S, node: &Node, slabs: &Slabs, limit: f32) -> u32 {
     // 1. The node's frame in units of the ray parameter.
-    let extent = Vec3::from(node.compute_extent());
-    let offset = node.p - slabs.origin;
+    let extent = node.compute_extent();
+    let offset = Vec3A::from(node.p) - slabs.origin;
     let margin = ((offset.abs() + 256.0 * extent).max_element() + slabs.slack) * slabs.margin;
     let scale = extent * slabs.inverse;
     let start = offset * slabs.inverse;
@@ -165,15 +165,24 @@ fn met_slots<S: Simd>(simd: S, node: &Node, slabs: &Slabs, limit: f32) -> u32 {
     let (near_x, far_x) = by_sign(slabs.inverse.x, &node.child_min_x, &node.child_max_x);
     let (near_y, far_y) = by_sign(slabs.inverse.y, &node.child_min_y, &node.child_max_y);
     let (near_z, far_z) = by_sign(slabs.inverse.z, &node.child_min_z, &node.child_max_z);
-    let plane = |bytes: &[u8; 8], scale: f32, start: f32| -> f32x8<S> {
-        f32x8::from_slice(simd, &bytes.map(f32::from)) * scale + start
-    };
-    let enter = plane(near_x, scale.x, near.x).max(plane(near_y, scale.y, near.y)).max(plane(near_z, scale.z, near.z));
-    let leave = plane(far_x, scale.x, far.x).min(plane(far_y, scale.y, far.y)).min(plane(far_z, scale.z, far.z));
+    let enter = planes(simd, near_x, scale.x, near.x)
+        .max(planes(simd, near_y, scale.y, near.y))
+        .max(planes(simd, near_z, scale.z, near.z));
+    let leave = planes(simd, far_x, scale.x, far.x)
+        .min(planes(simd, far_y, scale.y, far.y))
+        .min(planes(simd, far_z, scale.z, far.z));
 
     // 3. Met where the slabs overlap within the segment.
     let met = enter.max(f32x8::splat(simd, 0.0)).simd_le(leave.min(f32x8::splat(simd, limit)));
     met.to_bitmask() as u32
+}
+
+/// Where the ray crosses eight planes.
+#[inline(always)]
+fn planes<S: Simd>(simd: S, bytes: &[u8; 8], scale: f32, start: f32) -> f32x8<S> {
+    let [a, b, c, d, e, f, g, h] = *bytes;
+    let planes = [a as f32, b as f32, c as f32, d as f32, e as f32, f as f32, g as f32, h as f32];
+    f32x8::from_slice(simd, &planes) * scale + start
 }
 
 #[inline(always)]

@@ -177,16 +177,22 @@ fn read(path: &Path, triangles: &[Triangle]) -> Result<Grid, GridFault> {
     if u128::from(length) != expected {
         return Err(GridFault::Length { found: length, expected });
     }
-    let geometry = geometry_hash(triangles);
-    if header.built_from as usize != triangles.len() || header.geometry != geometry {
-        return Err(GridFault::OtherGeometry { found: header.built_from, expected: triangles.len() });
-    }
 
-    // 2. The rest, and its hash. The buffer grows with what is really there.
+    // 2. The rest. The buffer grows with what is really there.
     let mut bytes = head;
     input.take(length - HEADER as u64).read_to_end(&mut bytes).map_err(GridFault::Read)?;
     if bytes.len() as u64 != length {
         return Err(GridFault::Length { found: bytes.len() as u64, expected });
+    }
+    decode(&header, &bytes, triangles)
+}
+
+/// The grid from all bytes of a file, of which there are as many as the header says.
+fn decode(header: &Header, bytes: &[u8], triangles: &[Triangle]) -> Result<Grid, GridFault> {
+    // 3. Is it what was saved for these triangles?
+    let geometry = geometry_hash(triangles);
+    if header.built_from as usize != triangles.len() || header.geometry != geometry {
+        return Err(GridFault::OtherGeometry { found: header.built_from, expected: triangles.len() });
     }
     let (content, hash) = bytes.split_at(bytes.len() - TRAILER);
     if xxh3_64(content).to_le_bytes() != hash {
@@ -196,7 +202,7 @@ fn read(path: &Path, triangles: &[Triangle]) -> Result<Grid, GridFault> {
     let cells: Vec<i32> = words(cells).map(i32::from_le_bytes).collect();
     let sources: Vec<u32> = words(sources).map(u32::from_le_bytes).collect();
 
-    // 3. Every number, and the grid.
+    // 4. Every number, and the grid.
     Check { cells: &cells, cell: 0, references: 0 }.run(sources.len())?;
     if sources.iter().any(|&source| triangles.get(source as usize).is_none_or(|triangle| !triangle.is_usable())) {
         return Err(GridFault::Corrupted("it refers to a triangle that does not exist"));
@@ -232,10 +238,9 @@ impl Header {
         if magic != MAGIC {
             return Err(GridFault::NotAGrid);
         }
-        let bytes: &[u8; HEADER] = bytes.try_into().map_err(|_| GridFault::Length {
-            found: bytes.len() as u64,
-            expected: (HEADER + TRAILER) as u128,
-        })?;
+        let bytes: &[u8; HEADER] = bytes
+            .try_into()
+            .map_err(|_| GridFault::Length { found: bytes.len() as u64, expected: (HEADER + TRAILER) as u128 })?;
         let word = |at: usize| [0, 1, 2, 3].map(|byte| bytes[at + byte]);
         let long = |at: usize| [0, 1, 2, 3, 4, 5, 6, 7].map(|byte| bytes[at + byte]);
         let found = u32::from_le_bytes(word(8));
@@ -296,7 +301,11 @@ impl Check<'_> {
                 return Err(GridFault::Corrupted("a cell is not where it should be"));
             }
             let head = self.number(0)?;
-            if head < 0 { self.leaf(head)? } else if outer { self.grid(false)? } else {
+            if head < 0 {
+                self.leaf(head)?
+            } else if outer {
+                self.grid(false)?
+            } else {
                 return Err(GridFault::Corrupted("grids are nested too deep"));
             }
         }

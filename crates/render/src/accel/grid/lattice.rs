@@ -76,7 +76,6 @@ impl Lattice {
 
 /// All cells from `first` to `last`, x fastest.
 pub(super) fn cells_between(first: UVec3, last: UVec3) -> impl Iterator<Item = UVec3> {
-    (first.z..=last.z).flat_map(move |z| {
-        (first.y..=last.y).flat_map(move |y| (first.x..=last.x).map(move |x| UVec3::new(x, y, z)))
-    })
+    (first.z..=last.z)
+        .flat_map(move |z| (first.y..=last.y).flat_map(move |y| (first.x..=last.x).map(move |x| UVec3::new(x, y, z))))
 }

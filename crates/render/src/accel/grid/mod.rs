@@ -141,7 +141,9 @@ impl Grid {
             match self.cell(base, lattice.index(cell)) {
                 Cell::Empty => {}
                 Cell::Leaf(triangles) => visit(triangles),
-                Cell::Nested { base, dims } => self.visit_cells(&lattice.nested(cell, dims.into()), base, region, visit),
+                Cell::Nested { base, dims } => {
+                    self.visit_cells(&lattice.nested(cell, dims.into()), base, region, visit)
+                }
             }
         }
     }

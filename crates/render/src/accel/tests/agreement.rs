@@ -53,6 +53,10 @@ fn rays_agree(triangles: &[Triangle], random: &mut Random, count: usize) -> Resu
             prop_assert_eq!(shadow, expected, "{}, {:?}: {:?}", name, rays[index], hits[index]);
         }
     }
+    for grid in &grids {
+        closest(grid, &rays);
+        prop_assert_eq!(grid.overruns(), 0);
+    }
     Ok(hits.iter().filter(|hit| hit.is_some()).count())
 }
 
@@ -150,11 +154,8 @@ fn unusable_rays_miss() {
 #[test]
 fn both_ends_of_a_segment_are_open() {
     let triangles = scenes::indexed(&[[Vec3::ZERO, Vec3::X, Vec3::Y]]);
-    let segment = |height: f32, t_max: f32| Ray {
-        origin: Vec3::new(0.25, 0.25, height),
-        direction: Vec3::NEG_Z,
-        t_max,
-    };
+    let segment =
+        |height: f32, t_max: f32| Ray { origin: Vec3::new(0.25, 0.25, height), direction: Vec3::NEG_Z, t_max };
     let segments = [segment(1.0, 1.0), segment(0.0, 1.0), segment(1.0, 1.0 + f32::EPSILON), segment(-1.0, 5.0)];
     let all = structures(&triangles);
     for (name, accelerator) in &all {

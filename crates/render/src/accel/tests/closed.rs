@@ -10,7 +10,8 @@ use crate::accel::{Accelerator, BruteForce, Hit, Ray};
 fn rays_at_vertices_and_edges_do_not_escape() {
     let random = &mut Random(7);
     for (scale, offset) in [(1.0, Vec3::ZERO), (0.01, Vec3::new(5.0, -3.0, 2.0)), (100.0, Vec3::new(-1e3, 0.0, 1e2))] {
-        let corners: Vec<_> = icosphere(3).iter().map(|corners| corners.map(|corner| corner * scale + offset)).collect();
+        let corners: Vec<_> =
+            icosphere(3).iter().map(|corners| corners.map(|corner| corner * scale + offset)).collect();
         let triangles = indexed(&corners);
         let mut rays = Vec::new();
         for &[a, b, _] in &corners {

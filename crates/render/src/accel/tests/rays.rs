@@ -23,7 +23,7 @@ impl Targets<'_> {
             5 => self.along_cell_edge(random),
             6 => self.in_plane(random),
             7 => (self.point(random) + random.signed() * 1e-3, random.signed() * 1e-2),
-            _ => self.from_afar(random),
+            _ => self.far_away(random),
         };
         let direction = spoiled(direction, random);
         let t_max = random.pick(&[f32::INFINITY, 1.0, 0.999, 3.0, 1e-3]);
@@ -86,7 +86,7 @@ impl Targets<'_> {
         (origin, inside())
     }
 
-    fn from_afar(&self, random: &mut Random) -> (Vec3, Vec3) {
+    fn far_away(&self, random: &mut Random) -> (Vec3, Vec3) {
         let target = self.point(random);
         let origin = target + random.signed() * random.pick(&[30.0, 1e3, 1e6, 1e9]);
         (origin, (target - origin) * random.pick(&[1.0, 1e-3, 1e-6]))

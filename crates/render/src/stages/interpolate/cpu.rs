@@ -3,15 +3,15 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Level, dispatch, prelude::*};
-use glam::IVec3;
+use fearless_simd::{Level, prelude::*};
 use rayon::prelude::*;
 
 use crate::accel::Hit;
 use crate::job::{Job, Tally};
-use crate::light_mesh::{LightMesh, UsedPoints, point_bit, point_of};
+use crate::light_mesh::{LightMesh, UsedPoints, point_of};
 use crate::prepared::PreparedScene;
-use crate::stages::light_points::Window;
+use crate::simd::dispatch;
+use crate::stages::light_points::{Place, Windows};
 use crate::stages::long_tests::{Lit, LitBy};
 use crate::stages::primary_rays::RayList;
 use crate::stages::shadow_rays::cpu::{fallback, object_point, ray_key};
@@ -38,6 +38,7 @@ impl Interpolation<'_> {
     pub(crate) fn run(&self) -> Visibility {
         let lights = self.lit.lights.len();
         let level = Level::new();
+        let windows = Windows::new(&self.mesh.template);
         let runs = self.masks.groups.runs(RUN);
         let parts: Vec<(Vec<f32>, u64)> = runs
             .par_iter()
@@ -45,7 +46,7 @@ impl Interpolation<'_> {
                 if self.job.observer.cancelled() {
                     return (Vec::new(), 0);
                 }
-                dispatch!(level, simd => self.shares(simd, run.clone()))
+                dispatch!(level, simd => self.shares(simd, &windows, run.clone()))
             })
             .collect();
 
@@ -66,16 +67,16 @@ impl Interpolation<'_> {
 
     /// The shares of the object points of some cells, `lights` for each, and how many found no light point.
     #[inline(always)]
-    fn shares<S: Simd>(&self, simd: S, run: Range<usize>) -> (Vec<f32>, u64) {
+    fn shares<S: Simd>(&self, simd: S, windows: &Windows, run: Range<usize>) -> (Vec<f32>, u64) {
         let lights = &self.scene.scene.lights;
         let mut points = CellPoints::new(self.mesh);
-        let mut values = CellValues::new(self.mesh, self.lit);
+        let mut values = CellValues::new(self, windows);
         let mut shares = Vec::new();
         let mut fallbacks = 0;
         for group in run {
             let cell = point_of(self.masks.groups.cell(group));
             points.place(self.mesh, cell);
-            values.fetch(self.mesh, self.points, self.lit, cell);
+            values.fetch(cell);
             for slot in self.masks.groups.slots(group) {
                 let ray = self.masks.groups.members()[slot] as usize;
                 let point = object_point(self.scene, self.list, self.hits, ray);
@@ -99,8 +100,10 @@ impl Interpolation<'_> {
 }
 
 /// What the template points of one cell see, in the template's order.
-struct CellValues {
-    window: Window,
+struct CellValues<'a> {
+    points: &'a UsedPoints,
+    lit: &'a Lit,
+    windows: &'a Windows,
     bricks: Vec<Option<usize>>,
     lights: Vec<LightValues>,
 }
@@ -115,29 +118,31 @@ struct LightValues {
     share: Vec<f32>,
 }
 
-impl CellValues {
-    fn new(mesh: &LightMesh, lit: &Lit) -> CellValues {
-        let words = mesh.template.words();
-        let window = Window::new(&mesh.template);
+impl<'a> CellValues<'a> {
+    fn new(work: &Interpolation<'a>, windows: &'a Windows) -> CellValues<'a> {
+        let words = work.mesh.template.words();
         let values = || LightValues { full: vec![0; words], some: vec![0; words], share: vec![0.0; 32 * words] };
-        CellValues { bricks: vec![None; window.len()], window, lights: lit.lights.iter().map(|_| values()).collect() }
+        CellValues {
+            points: work.points,
+            lit: work.lit,
+            windows,
+            bricks: vec![None; windows.len()],
+            lights: work.lit.lights.iter().map(|_| values()).collect(),
+        }
     }
 
     /// Fetches the values around `cell`. Points that nobody uses come out as dark; no mask has them.
-    fn fetch(&mut self, mesh: &LightMesh, points: &UsedPoints, lit: &Lit, cell: IVec3) {
-        self.window.place(&mesh.template, cell);
+    fn fetch(&mut self, cell: glam::IVec3) {
+        let window = self.windows.around(cell);
         for (slot, brick) in self.bricks.iter_mut().enumerate() {
-            *brick = points.bricks().find(self.window.key(slot));
+            *brick = self.points.bricks().find(window.key(slot));
         }
-        for (values, lit) in self.lights.iter_mut().zip(&lit.lights) {
-            values.full.fill(0);
-            values.some.fill(0);
-            for (bit, &offset) in mesh.template.offsets().iter().enumerate() {
-                let index = cell + offset;
-                let share = self.bricks[self.window.slot(index)].map_or(0.0, |brick| seen(points, lit, brick, index));
-                values.share[bit] = share;
-                values.full[bit / 32] |= u32::from(share == 1.0) << (bit % 32);
-                values.some[bit / 32] |= u32::from(share > 0.0) << (bit % 32);
+        for (values, lit) in self.lights.iter_mut().zip(&self.lit.lights) {
+            match lit {
+                LitBy::Bits(words) => values.fetch_bits(window.places, &self.bricks, words),
+                LitBy::Share { seen, samples } => {
+                    values.fetch_shares(window.places, &self.bricks, self.points, seen, *samples);
+                }
             }
         }
     }
@@ -176,13 +181,37 @@ impl CellValues {
     }
 }
 
-/// The share of a light that a used point sees.
-#[inline(always)]
-fn seen(points: &UsedPoints, lit: &LitBy, brick: usize, index: IVec3) -> f32 {
-    let bit = point_bit(index);
-    match lit {
-        LitBy::Bits(words) => (words[brick] >> bit & 1) as f32,
-        LitBy::Share { .. } if points.used()[brick] >> bit & 1 == 0 => 0.0,
-        LitBy::Share { seen, samples } => f32::from(seen[points.rank(brick, bit)]) / *samples as f32,
+impl LightValues {
+    fn fetch_bits(&mut self, places: &[Place], bricks: &[Option<usize>], words: &[u64]) {
+        for ((places, some), shares) in places.chunks(32).zip(&mut self.some).zip(self.share.chunks_mut(32)) {
+            *some = 0;
+            for (bit, (place, share)) in places.iter().zip(shares).enumerate() {
+                let word = bricks[usize::from(place.slot)].map_or(0, |brick| words[brick]);
+                let seen = (word >> place.bit & 1) as u32;
+                *some |= seen << bit;
+                *share = seen as f32;
+            }
+        }
+        self.full.copy_from_slice(&self.some);
+    }
+
+    fn fetch_shares(
+        &mut self,
+        places: &[Place],
+        bricks: &[Option<usize>],
+        points: &UsedPoints,
+        seen: &[u16],
+        samples: u32,
+    ) {
+        self.full.fill(0);
+        self.some.fill(0);
+        for (index, place) in places.iter().enumerate() {
+            let brick = bricks[usize::from(place.slot)];
+            let brick = brick.filter(|&brick| points.used()[brick] >> place.bit & 1 != 0);
+            let count = brick.map_or(0, |brick| u32::from(seen[points.rank(brick, u32::from(place.bit))]));
+            self.share[index] = count as f32 / samples as f32;
+            self.full[index / 32] |= u32::from(count == samples) << (index % 32);
+            self.some[index / 32] |= u32::from(count > 0) << (index % 32);
+        }
     }
 }

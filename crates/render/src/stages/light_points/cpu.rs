@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
-use super::Window;
+use super::Windows;
 use crate::job::{Job, Tally};
-use crate::light_mesh::{BrickKey, BrickMap, LightMesh, UsedPoints, point_bit, point_of};
+use crate::light_mesh::{BrickKey, BrickMap, LightMesh, UsedPoints, bits, point_of};
 use crate::stages::short_tests::Masks;
 
 /// Object points that one task takes.
@@ -15,13 +15,14 @@ const RUN: usize = 8192;
 
 pub(crate) fn light_points(job: &Job, masks: &Masks, mesh: &LightMesh) -> UsedPoints {
     let runs = masks.groups.runs(RUN);
+    let windows = Windows::new(&mesh.template);
 
     // 1. The bricks that hold a used point.
     let mut keys: Vec<BrickKey> = runs
         .par_iter()
         .flat_map_iter(|run| {
             let mut keys = Vec::new();
-            Marker::new(masks, mesh).each_brick(run.clone(), |key, _| keys.push(key));
+            Marker::new(masks, &windows).each_brick(run.clone(), |key, _| keys.push(key));
             keys.sort_unstable();
             keys.dedup();
             keys
@@ -34,12 +35,12 @@ pub(crate) fn light_points(job: &Job, masks: &Masks, mesh: &LightMesh) -> UsedPo
     // 2. The used points in each. The order of marking does not matter to an "or".
     let used: Vec<AtomicU64> = bricks.keys().iter().map(|_| AtomicU64::new(0)).collect();
     runs.par_iter().for_each(|run| {
-        Marker::new(masks, mesh).each_brick(run.clone(), |key, points| {
+        Marker::new(masks, &windows).each_brick(run.clone(), |key, points| {
             if let Some(brick) = bricks.find(key) {
                 used[brick].fetch_or(points, Ordering::Relaxed);
             }
         });
-        job.observer.advance(0);
+        job.observer.advance((masks.groups.slots(run.end - 1).end - masks.groups.slots(run.start).start) as u64);
     });
 
     // 3. Ranks.
@@ -51,41 +52,36 @@ pub(crate) fn light_points(job: &Job, masks: &Masks, mesh: &LightMesh) -> UsedPo
 /// Turns the masks of a cell's object points into marks in the bricks around the cell.
 struct Marker<'a> {
     masks: &'a Masks,
-    mesh: &'a LightMesh,
-    window: Window,
+    windows: &'a Windows,
     marks: Vec<u64>,
     union: Vec<u32>,
 }
 
 impl<'a> Marker<'a> {
-    fn new(masks: &'a Masks, mesh: &'a LightMesh) -> Marker<'a> {
-        let window = Window::new(&mesh.template);
-        let marks = vec![0; window.len()];
-        Marker { masks, mesh, window, marks, union: vec![0; masks.words] }
+    fn new(masks: &'a Masks, windows: &'a Windows) -> Marker<'a> {
+        Marker { masks, windows, marks: vec![0; windows.len()], union: vec![0; masks.words] }
     }
 
     /// Calls `mark` for each brick that a cell of `run` uses points of, with these points. A brick comes once a cell.
     fn each_brick(&mut self, run: Range<usize>, mut mark: impl FnMut(BrickKey, u64)) {
         for group in run {
-            let cell = point_of(self.masks.groups.cell(group));
-            self.window.place(&self.mesh.template, cell);
-
+            let window = self.windows.around(point_of(self.masks.groups.cell(group)));
             self.union.fill(0);
             for slot in self.masks.groups.slots(group) {
                 for (union, word) in self.union.iter_mut().zip(self.masks.mask(slot)) {
                     *union |= word;
                 }
             }
-            for (bit, &offset) in self.mesh.template.offsets().iter().enumerate() {
-                if self.union[bit / 32] >> (bit % 32) & 1 != 0 {
-                    let index = cell + offset;
-                    self.marks[self.window.slot(index)] |= 1 << point_bit(index);
+            for (word, &union) in self.union.iter().enumerate() {
+                for bit in bits(u64::from(union)) {
+                    let place = window.places[word * 32 + bit as usize];
+                    self.marks[usize::from(place.slot)] |= 1 << place.bit;
                 }
             }
             for slot in 0..self.marks.len() {
                 let points = std::mem::take(&mut self.marks[slot]);
                 if points != 0 {
-                    mark(self.window.key(slot), points);
+                    mark(window.key(slot), points);
                 }
             }
         }

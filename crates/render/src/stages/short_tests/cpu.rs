@@ -1,6 +1,6 @@
 //! Step 2 on the CPU: groups, then masks run by run.
 
-use fearless_simd::{Level, dispatch, prelude::*};
+use fearless_simd::{Level, prelude::*};
 use rayon::prelude::*;
 
 use super::cells::CellOccluders;
@@ -11,6 +11,7 @@ use crate::job::{Job, Tally};
 use crate::light_mesh::{LightMesh, point_of};
 use crate::prepared::PreparedScene;
 use crate::settings::ShortTests;
+use crate::simd::dispatch;
 use crate::stages::primary_rays::RayList;
 use crate::surface::SurfacePoint;
 

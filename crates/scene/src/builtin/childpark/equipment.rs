@@ -4,7 +4,8 @@ use glam::{Vec2, Vec3};
 
 use super::Paints;
 use crate::builtin::math::around;
-use crate::builtin::parts::{Open, Paint, Parts, Place, bezier};
+use crate::builtin::parts::{Open, Paint, Parts, Place};
+use crate::builtin::surfaces::bezier;
 
 /// A tower with a roof, a ladder behind (−Z) and a chute in front (+Z).
 pub(super) fn slide(parts: &mut Parts, paints: &Paints) {
@@ -62,7 +63,7 @@ fn chute(parts: &mut Parts, top: Vec3, paints: &Paints) {
         let along = (path[(index + 1).min(last)] - path[index.saturating_sub(1)]).normalize();
         let up = along.cross(Vec3::X);
         let point = |step: u32| {
-            let circle = around(0.5 + 0.5 * step as f32 / ARC as f32);
+            let circle = around(1.0 - 0.5 * step as f32 / ARC as f32);
             let outward = Vec3::X * circle.x + up * circle.y;
             (path[index] + outward * RADIUS, -outward)
         };

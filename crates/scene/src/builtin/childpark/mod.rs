@@ -10,6 +10,7 @@ use super::lights::{self, Lamp};
 use super::math::{Random, around, ease, srgb};
 use super::parts::{Paint, Palette, Parts, Place};
 use super::plants::{Tree, bush};
+use super::surfaces::bezier;
 use super::{BuiltinOptions, Composition};
 use crate::Scene;
 
@@ -122,7 +123,7 @@ fn mat(parts: &mut Parts, radius: f32, paint: Paint) {
 /// A winding path of gravel across the foreground, 0.15 above the lawn.
 fn path(parts: &mut Parts, paint: Paint) {
     let control = [[-80.0, 44.0], [-30.0, 70.0], [30.0, 58.0], [80.0, 50.0]].map(|[x, z]| Vec3::new(x, 0.15, z));
-    let line = super::parts::bezier(control, 25);
+    let line = bezier(control, 25);
     let row = |index: usize| {
         let along = line[(index + 1).min(24)] - line[index.saturating_sub(1)];
         let side = Vec3::Y.cross(along).normalize() * 4.5;
@@ -137,7 +138,7 @@ fn path(parts: &mut Parts, paint: Paint) {
 }
 
 fn playground(parts: &mut Parts, paints: &Paints) {
-    parts.put(Place::at(-33.0, 0.0, -13.0).turned(24.0), |parts| equipment::slide(parts, paints));
+    parts.put(Place::at(-33.0, 0.0, -13.0).turned(40.0), |parts| equipment::slide(parts, paints));
     parts.put(Place::at(32.0, 0.0, -12.0).turned(-18.0), |parts| equipment::swings(parts, paints));
     parts.put(Place::at(-27.0, 0.25, 28.0).turned(9.0), |parts| equipment::climbing_frame(parts, paints));
     parts.put(Place::at(10.0, 0.25, 26.0), |parts| equipment::carousel(parts, paints));
@@ -241,6 +242,6 @@ fn is_wild(x: f32, z: f32) -> bool {
     let spot = Vec2::new(x, z);
     let clear = |center: [f32; 2], radius: f32| spot.distance(Vec2::from(center)) > radius;
     let trodden = [([10.0, 26.0], 19.0), ([-27.0, 28.0], 21.0), ([44.0, 31.0], 19.0), ([-28.0, -4.0], 24.0)];
-    let at_the_edge = x.abs() > 50.0 || z < -18.0 || z > 50.0;
+    let at_the_edge = z < 38.0 && (x.abs() > 48.0 || z < -18.0);
     at_the_edge && trodden.iter().all(|&(center, radius)| clear(center, radius))
 }

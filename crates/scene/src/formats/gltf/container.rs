@@ -9,7 +9,7 @@ use base64::{
 use gltf::{
     Document, Glb,
     buffer::Source,
-    json::{Image, Root},
+    json::{Image, Root, mesh::Semantic, validation::Checked::Valid},
 };
 use percent_encoding::percent_decode_str;
 
@@ -35,6 +35,12 @@ impl Container {
         if !bytes.starts_with(b"glTF") {
             return Container::from_parts(path, &bytes, None);
         }
+        // The crate subtracts the header from the stated length unseen.
+        let stated =
+            bytes.get(8..12).map_or(0, |length| u32::from_le_bytes([length[0], length[1], length[2], length[3]]));
+        if stated < 20 {
+            return Err(malformed(path, format!("the binary container states a length of {stated} bytes")));
+        }
         let glb = Glb::from_slice(&bytes)
             .map_err(|error| malformed(path, format!("the binary container is damaged ({error})")))?;
         Container::from_parts(path, &glb.json, glb.bin.as_deref())
@@ -51,6 +57,7 @@ impl Container {
                 known: KNOWN_EXTENSIONS.map(str::to_owned).to_vec(),
             });
         }
+        check_positions(path, &root)?;
         // The crate knows fewer extensions than we read, and would refuse the rest.
         root.extensions_required.clear();
         let warnings = supply_missing_images(path, &mut root);
@@ -58,6 +65,19 @@ impl Container {
             .map_err(|error| malformed(path, format!("the file breaks the rules of glTF ({error})")))?;
         let buffers = document.buffers().map(|buffer| read_buffer(path, &buffer, bin)).collect::<Result<_, _>>()?;
         Ok(Container { document, exact, buffers, warnings })
+    }
+}
+
+/// The crate's validation takes it for granted that these accessors exist.
+fn check_positions(path: &Path, root: &Root) -> Result<(), LoadError> {
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let mut positions = primitives.filter_map(|primitive| primitive.attributes.get(&Valid(Semantic::Positions)));
+    match positions.find(|accessor| accessor.value() >= root.accessors.len()) {
+        Some(accessor) => Err(malformed(
+            path,
+            format!("a primitive has its positions in accessor {}, which is not there", accessor.value()),
+        )),
+        None => Ok(()),
     }
 }
 

@@ -40,6 +40,14 @@ struct ExactCamera {
     extras: Option<Value>,
 }
 
+/// What a camera sees.
+pub(super) enum View {
+    /// Full vertical angle, radians.
+    Yfov(f64),
+    /// Half the height of the picture.
+    Ymag(f64),
+}
+
 #[derive(Debug, Deserialize)]
 struct Perspective {
     yfov: f64,
@@ -65,6 +73,8 @@ struct LightsPunctual {
 /// A light's numbers.
 #[derive(Debug, Deserialize)]
 pub(super) struct ExactLight {
+    #[serde(default, rename = "type")]
+    pub(super) kind: String,
     #[serde(default = "white")]
     color: [f64; 3],
     #[serde(default = "one")]
@@ -111,14 +121,11 @@ impl Exact {
         )
     }
 
-    /// Full vertical angle of a perspective camera, radians.
-    pub(super) fn yfov(&self, camera: usize) -> Option<f64> {
-        Some(self.cameras.get(camera)?.perspective.as_ref()?.yfov)
-    }
-
-    /// Half the height of an orthographic camera's picture.
-    pub(super) fn ymag(&self, camera: usize) -> Option<f64> {
-        Some(self.cameras.get(camera)?.orthographic.as_ref()?.ymag)
+    /// Of a perspective camera the full vertical angle in radians, of an orthographic one half the height of its picture.
+    pub(super) fn camera(&self, camera: usize) -> Option<View> {
+        let camera = self.cameras.get(camera)?;
+        let perspective = camera.perspective.as_ref().map(|perspective| View::Yfov(perspective.yfov));
+        perspective.or(camera.orthographic.as_ref().map(|orthographic| View::Ymag(orthographic.ymag)))
     }
 
     pub(super) fn light(&self, light: usize) -> Option<&ExactLight> {

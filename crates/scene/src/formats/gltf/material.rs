@@ -3,7 +3,9 @@
 //! With the base colour b, metalness m and roughness r, s = (1 − r)² is how much of a mirror the surface is, and
 //! F₀ = 0.04 + (b − 0.04) m its reflectance at right angles (glTF 2.0, appendix B):
 //!
-//!     k_d = b (1 − m s)    k_s = F₀ s    pow = 2/r⁴ − 2 (Walter et al. 2007: the Phong lobe as wide as GGX with α = r²)
+//! ```text
+//! k_d = b (1 − m s)    k_s = F₀ s    pow = 2/r⁴ − 2  (Walter et al. 2007: the Phong lobe as wide as a facet lobe of α = r²)
+//! ```
 //!
 //! so that a rough metal is matt in its own colour, as it looks under point lights, and a smooth one mirrors.
 
@@ -11,7 +13,7 @@ use std::path::Path;
 
 use glam::Vec3;
 
-use super::{exact::Exact, extras, extras::MaterialExtras};
+use super::{container::malformed, exact::Exact, extras, extras::MaterialExtras};
 use crate::{LoadError, Material};
 
 /// The material, by our own extras where the file has them.
@@ -20,6 +22,10 @@ pub(super) fn read(path: &Path, material: &gltf::Material, exact: &Exact) -> Res
     let index = material.index().unwrap_or(usize::MAX);
     let own = extras::read::<MaterialExtras>(path, &format!("material {index}"), exact.material_extras(index))?;
     if let Some(own) = own {
+        if own.shininess <= 0.0 {
+            let problem = format!("extras.lightmesh of material {index} has shininess = {}", own.shininess);
+            return Err(malformed(path, problem));
+        }
         return Ok(Material {
             name,
             ka: own.ka.into(),

@@ -97,8 +97,8 @@ fn nodes_that_are_no_tree_are_refused() {
     }
 }
 
-#[test]
-fn cameras_and_lights_follow_their_nodes() {
+/// The triangle with cameras and lights of all kinds.
+fn furnished() -> Value {
     let mut document = triangle();
     document["extensionsUsed"] = json!(["KHR_lights_punctual"]);
     document["extensionsRequired"] = json!(["KHR_lights_punctual"]);
@@ -121,7 +121,12 @@ fn cameras_and_lights_follow_their_nodes() {
         {"extensions": {"KHR_lights_punctual": {"light": 2}}, "translation": [1, 2, 3]},
     ]);
     document["scenes"][0]["nodes"] = json!([0, 1, 2, 3, 4, 5]);
-    let scene = open(&document);
+    document
+}
+
+#[test]
+fn cameras_and_lights_follow_their_nodes() {
+    let scene = open(&furnished());
     let [top, plan] = &scene.cameras[..] else { panic!("{:?}", scene.cameras) };
     assert_eq!((top.name.as_str(), top.position), ("top", Vec3::new(0.0, 5.0, 0.0)));
     assert!(top.direction.distance(Vec3::NEG_Y) < 1e-6 && top.up.distance(Vec3::NEG_Z) < 1e-6, "{top:?}");
@@ -148,7 +153,8 @@ fn an_unknown_required_extension_is_refused_by_name() {
 #[test]
 fn ranges_that_do_not_fit_are_refused() {
     #[rustfmt::skip]
-    let changes: [(&str, Value, &str); 11] = [
+    let changes: [(&str, Value, &str); 12] = [
+        ("/meshes/0/primitives/0/attributes/POSITION", json!(9), "accessor 9, which is not there"),
         ("/accessors/0/count", json!(4), "accessor 0 reaches beyond its buffer"),
         ("/accessors/0/count", json!(u64::MAX), "accessor 0 reaches beyond its buffer"),
         ("/accessors/0/byteOffset", json!(u64::MAX - 8), "accessor 0 reaches beyond its buffer"),
@@ -169,6 +175,19 @@ fn ranges_that_do_not_fit_are_refused() {
         assert!(expected.split('|').any(|expected| message.contains(expected)), "{pointer}: {message}");
         assert!(message.contains("; "), "{message}");
     }
+}
+
+#[test]
+fn cameras_and_lights_that_say_too_little_are_refused_or_completed() {
+    let mut document = furnished();
+    document["cameras"][0].as_object_mut().unwrap().remove("perspective");
+    assert!(error(&document).contains("; "));
+    let mut document = furnished();
+    document["cameras"][1]["orthographic"]["ymag"] = json!(0);
+    assert!(error(&document).contains("camera 1 has ymag = 0"), "{}", error(&document));
+    let mut document = furnished();
+    document["extensions"]["KHR_lights_punctual"]["lights"][2]["spot"]["innerConeAngle"] = json!(2);
+    assert!(error(&document).contains("light 2 has a cone"), "{}", error(&document));
 }
 
 #[test]
@@ -199,7 +218,7 @@ fn quantized_positions_are_read() {
 fn damaged_files_never_panic() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("whole.glb");
-    let text = triangle().to_string();
+    let text = furnished().to_string();
     try_open(text.as_bytes()).unwrap().export(&path).unwrap();
     let glb = fs::read(&path).unwrap();
     let mut state = 1u64;

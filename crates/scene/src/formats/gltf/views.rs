@@ -3,11 +3,12 @@
 //! Cameras and lights look along −Z of their node, with +Y up. A node's scale does not change them.
 
 use glam::{DMat4, DVec3, Vec3};
-use gltf::{Node, camera, khr_lights_punctual as punctual};
+use gltf::{Node, khr_lights_punctual as punctual};
 
 use super::{
     Loader,
     container::malformed,
+    exact::View,
     extras::{self, CameraExtras, LightExtras, SceneExtras, ShapeExtras},
 };
 use crate::{
@@ -60,29 +61,25 @@ impl Loader<'_> {
         let direction = self.axis(node, -transform.z_axis.truncate())?;
         let up = upright(direction, self.axis(node, transform.y_axis.truncate())?).ok_or_else(|| self.flat(node))?;
         let bad = |what: &str, value: f64| malformed(self.path, format!("camera {index} has {what} = {value}"));
-        let projection = match camera.projection() {
-            camera::Projection::Perspective(_) => {
-                let yfov = self.exact.yfov(index).unwrap_or_default();
-                if !(yfov > 0.0 && yfov < std::f64::consts::PI) {
-                    return Err(bad("yfov", yfov));
-                }
+        let projection = match self.exact.camera(index) {
+            Some(View::Yfov(yfov)) if yfov > 0.0 && yfov < std::f64::consts::PI => {
                 let extras = self.exact.camera_extras(index);
                 let own = extras::read::<CameraExtras>(self.path, &format!("camera {index}"), extras)?;
                 Projection::Perspective(match own {
-                    Some(own) => Fov::Horizontal(own.hfov),
+                    Some(own) if own.hfov > 0.0 && own.hfov < 180.0 => Fov::Horizontal(own.hfov),
+                    Some(own) => return Err(bad("extras.lightmesh.hfov", own.hfov.into())),
                     None => Fov::Vertical(yfov.to_degrees() as f32),
                 })
             }
-            camera::Projection::Orthographic(_) => {
-                let ymag = self.exact.ymag(index).unwrap_or_default().abs();
-                if !(ymag > 0.0 && ymag.is_finite()) {
-                    return Err(bad("ymag", ymag));
-                }
-                Projection::Orthographic { height: (2.0 * ymag) as f32 }
+            Some(View::Ymag(ymag)) if ymag != 0.0 && ymag.is_finite() => {
+                Projection::Orthographic { height: (2.0 * ymag.abs()) as f32 }
             }
+            Some(View::Yfov(yfov)) => return Err(bad("yfov", yfov)),
+            Some(View::Ymag(ymag)) => return Err(bad("ymag", ymag)),
+            None => return Err(malformed(self.path, format!("camera {index} says neither yfov nor ymag"))),
         };
         Ok(Camera {
-            name: node.name().or(camera.name()).unwrap_or_default().to_owned(),
+            name: camera.name().or(node.name()).unwrap_or_default().to_owned(),
             position: Vec3::ZERO,
             direction: direction.as_vec3(),
             up: up.as_vec3(),
@@ -100,13 +97,13 @@ impl Loader<'_> {
         }
         let own: LightExtras = extras::read(self.path, &format!("light {index}"), exact.extras())?.unwrap_or_default();
         let position = Vec3::ZERO;
-        let kind = match (light.kind(), &own.shape) {
-            (_, Some(shape)) => shaped(shape, transform),
-            (punctual::Kind::Point, None) => LightKind::Point { position, spread: own.spread.unwrap_or(0.0).max(0.0) },
-            (punctual::Kind::Directional, None) => {
+        let kind = match (exact.kind.as_str(), &own.shape) {
+            (_, Some(shape)) => shaped(shape, transform)
+                .ok_or_else(|| malformed(self.path, format!("extras.lightmesh of light {index} give it no size")))?,
+            ("directional", None) => {
                 LightKind::Directional { direction: self.axis(node, -transform.z_axis.truncate())?.as_vec3() }
             }
-            (punctual::Kind::Spot { .. }, None) => {
+            ("spot", None) => {
                 let (inner, outer) = exact.cone();
                 // As `f32`, where a right angle is a little more than in `f64`.
                 let (inner, outer) = (inner as f32, outer as f32);
@@ -119,9 +116,10 @@ impl Loader<'_> {
                 let direction = self.axis(node, -transform.z_axis.truncate())?.as_vec3();
                 LightKind::Spot { position, direction, inner, outer }
             }
+            _ => LightKind::Point { position, spread: own.spread.unwrap_or(0.0).max(0.0) },
         };
         Ok(Light {
-            name: node.name().or(light.name()).unwrap_or_default().to_owned(),
+            name: light.name().or(node.name()).unwrap_or_default().to_owned(),
             kind,
             intensity,
             falloff: if own.no_falloff { Falloff::None } else { Falloff::InverseSquare },
@@ -137,19 +135,24 @@ impl Loader<'_> {
     }
 }
 
-/// A light with a size, whose extras are in the node's coordinates. Its node may turn it and scale it evenly.
-fn shaped(shape: &ShapeExtras, transform: &DMat4) -> LightKind {
+/// A light with a size, whose extras are in the node's coordinates. Its node may turn it and scale it evenly. `None` where
+/// nothing is left of it.
+fn shaped(shape: &ShapeExtras, transform: &DMat4) -> Option<LightKind> {
     let vector = |v: [f32; 3]| transform.transform_vector3(Vec3::from(v).as_dvec3());
-    let scale = transform.x_axis.truncate().length() as f32;
+    let scaled = |radius: f32| {
+        let radius = radius * transform.x_axis.truncate().length() as f32;
+        (radius > 0.0 && radius.is_finite()).then_some(radius)
+    };
     let position = Vec3::ZERO;
-    match *shape {
-        ShapeExtras::Sphere { radius } => LightKind::Sphere { position, radius: radius * scale },
+    Some(match *shape {
+        ShapeExtras::Sphere { radius } => LightKind::Sphere { position, radius: scaled(radius)? },
         ShapeExtras::Disk { normal, radius } => {
-            let normal = unit(vector(normal)).unwrap_or(DVec3::Y).as_vec3();
-            LightKind::Disk { position, normal, radius: radius * scale }
+            LightKind::Disk { position, normal: unit(vector(normal))?.as_vec3(), radius: scaled(radius)? }
         }
         ShapeExtras::Rectangle { half_u, half_v } => {
-            LightKind::Rectangle { position, half_u: vector(half_u).as_vec3(), half_v: vector(half_v).as_vec3() }
+            let (half_u, half_v) = (vector(half_u).as_vec3(), vector(half_v).as_vec3());
+            let area = half_u.cross(half_v).length();
+            (area > 0.0 && area.is_finite()).then_some(LightKind::Rectangle { position, half_u, half_v })?
         }
-    }
+    })
 }

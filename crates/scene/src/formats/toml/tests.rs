@@ -106,7 +106,7 @@ fn cameras_of_all_sorts() {
     assert_eq!(wide.projection, Projection::Perspective(Fov::Horizontal(90.0)));
     assert_eq!(both.projection, Projection::Perspective(Fov::Vertical(40.0)));
     assert!(both.up.dot(both.direction).abs() < 1e-6);
-    assert!(scene.warnings[0].contains("room.toml:14") && scene.warnings[0].contains("vfov"), "{:?}", scene.warnings);
+    assert!(scene.warnings[0].contains("room.toml:13") && scene.warnings[0].contains("vfov"), "{:?}", scene.warnings);
 }
 
 #[test]

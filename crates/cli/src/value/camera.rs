@@ -1,0 +1,61 @@
+//! `--camera "x,y,z;x,y,z;degrees"`.
+
+use std::str::FromStr;
+
+use glam::DVec3;
+
+use super::ValueError;
+use super::number::{number, triple};
+
+/// A perspective camera as it is typed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CameraView {
+    /// The eye, world coordinates.
+    pub(crate) position: DVec3,
+    /// Where it looks; unit length.
+    pub(crate) direction: DVec3,
+    /// Full vertical angle, degrees.
+    pub(crate) vfov: f32,
+}
+
+const FORM: ValueError =
+    ValueError::Form { form: "POSITION;TARGET;VERTICAL ANGLE IN DEGREES", example: "\"0,2,5;0,1,0;45\"" };
+
+impl FromStr for CameraView {
+    type Err = ValueError;
+
+    fn from_str(text: &str) -> Result<CameraView, ValueError> {
+        let parts: Vec<&str> = text.split(';').collect();
+        let [position, target, angle] = parts[..] else { return Err(FORM) };
+        let position = triple(position)?.ok_or(FORM)?;
+        let target = triple(target)?.ok_or(FORM)?;
+        let direction = (target - position).try_normalize().ok_or(ValueError::NoDirection)?;
+        let vfov = number(angle)? as f32;
+        if vfov <= 0.0 || vfov >= 180.0 {
+            let text = angle.trim().to_owned();
+            return Err(ValueError::OutOfRange { what: "the vertical angle", text, range: "between 0 and 180 degrees" });
+        }
+        Ok(CameraView { position, direction, vfov })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn position_target_and_angle_are_read() {
+        let view = "1, 2, 7; 1, 2, -3.5; 45".parse();
+        assert_eq!(view, Ok(CameraView { position: DVec3::new(1.0, 2.0, 7.0), direction: DVec3::NEG_Z, vfov: 45.0 }));
+    }
+
+    #[test]
+    fn what_shows_nothing_is_refused() {
+        let message = |text: &str| text.parse::<CameraView>().unwrap_err().to_string();
+        assert!(message("1,2,3").contains("POSITION;TARGET"));
+        assert!(message("1,2;1,2,3;45").contains("POSITION;TARGET"));
+        assert!(message("1,2,3;1,2,3;45").contains("same point"));
+        assert!(message("1,2,x;1,2,3;45").contains("`x` is not a number"));
+        assert_eq!(message("1,2,3;0,0,0;180"), "the vertical angle 180 is not between 0 and 180 degrees");
+    }
+}

@@ -1,0 +1,83 @@
+//! `--light "x,y,z[;I[;RADIUS]]"` and `--ambient V`.
+
+use std::str::FromStr;
+
+use glam::{DVec3, Vec3};
+
+use super::ValueError;
+use super::number::{not_negative, triple};
+
+/// Red, green and blue, each at least 0: three numbers, or one for all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Color(pub(crate) Vec3);
+
+impl FromStr for Color {
+    type Err = ValueError;
+
+    fn from_str(text: &str) -> Result<Color, ValueError> {
+        let parts: Vec<&str> = text.split(',').collect();
+        let channel = |text| not_negative("the intensity", text).map(|value| value as f32);
+        match parts[..] {
+            [grey] => Ok(Color(Vec3::splat(channel(grey)?))),
+            [r, g, b] => Ok(Color(Vec3::new(channel(r)?, channel(g)?, channel(b)?))),
+            _ => Err(ValueError::Form { form: "one number, or three as red,green,blue", example: "0.9,0.8,0.7" }),
+        }
+    }
+}
+
+/// A light as it is typed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LightSpec {
+    /// Its middle, world coordinates.
+    pub(crate) position: DVec3,
+    /// Red, green and blue.
+    pub(crate) intensity: Vec3,
+    /// 0: a point.
+    pub(crate) radius: f32,
+}
+
+const FORM: ValueError =
+    ValueError::Form { form: "POSITION, POSITION;INTENSITY or POSITION;INTENSITY;RADIUS", example: "\"3,8,2;0.9;0.25\"" };
+
+impl FromStr for LightSpec {
+    type Err = ValueError;
+
+    fn from_str(text: &str) -> Result<LightSpec, ValueError> {
+        let parts: Vec<&str> = text.split(';').collect();
+        let (position, intensity, radius) = match parts[..] {
+            [position] => (position, "1", "0"),
+            [position, intensity] => (position, intensity, "0"),
+            [position, intensity, radius] => (position, intensity, radius),
+            _ => return Err(FORM),
+        };
+        let position = triple(position)?.ok_or(FORM)?;
+        let Color(intensity) = intensity.parse()?;
+        Ok(LightSpec { position, intensity, radius: not_negative("the radius", radius)? as f32 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intensity_and_radius_may_be_left_out() {
+        let light = |text: &str| text.parse::<LightSpec>().unwrap();
+        let position = DVec3::new(-1.0, 2.0, 3.0);
+        assert_eq!(light("-1,2,3"), LightSpec { position, intensity: Vec3::ONE, radius: 0.0 });
+        assert_eq!(light("-1,2,3;0.5"), LightSpec { position, intensity: Vec3::splat(0.5), radius: 0.0 });
+        let intensity = Vec3::new(1.0, 0.5, 0.25);
+        assert_eq!(light("-1,2,3;1,.5,.25;2"), LightSpec { position, intensity, radius: 2.0 });
+    }
+
+    #[test]
+    fn what_does_not_shine_is_refused() {
+        let message = |text: &str| text.parse::<LightSpec>().unwrap_err().to_string();
+        assert!(message("").contains("POSITION"));
+        assert!(message("1,2").contains("POSITION"));
+        assert!(message("1,2,3;1,2").contains("red,green,blue"));
+        assert_eq!(message("1,2,3;-1"), "the intensity -1 is not 0 or more");
+        assert_eq!(message("1,2,3;1;-0.5"), "the radius -0.5 is not 0 or more");
+        assert!(message("1,2,3;1;1;1").contains("POSITION"));
+    }
+}

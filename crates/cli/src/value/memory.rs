@@ -1,0 +1,69 @@
+//! Sizes of memory.
+
+use std::str::FromStr;
+
+use super::ValueError;
+
+/// A number of bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ByteSize(pub(crate) u64);
+
+const FORM: ValueError = ValueError::Form {
+    form: "a number of bytes above 0, alone or with K, M, G, T, KiB, MiB, GiB, TiB, kB, MB, GB or TB",
+    example: "512M",
+};
+
+impl FromStr for ByteSize {
+    type Err = ValueError;
+
+    fn from_str(text: &str) -> Result<ByteSize, ValueError> {
+        let text = text.trim();
+        let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+        let (number, unit) = text.split_at(digits);
+        let unit = unit_bytes(unit.trim()).ok_or(FORM)?;
+        let number: f64 = number.parse().map_err(|_| FORM)?;
+        let bytes = number * unit as f64;
+        if bytes >= 1.0 && bytes < u64::MAX as f64 { Ok(ByteSize(bytes as u64)) } else { Err(FORM) }
+    }
+}
+
+fn unit_bytes(unit: &str) -> Option<u64> {
+    let lower = unit.to_ascii_lowercase();
+    let (letter, rest) = lower.split_at_checked(1).unwrap_or(("b", ""));
+    let power = match letter {
+        "b" if rest.is_empty() => return Some(1),
+        "k" => 1,
+        "m" => 2,
+        "g" => 3,
+        "t" => 4,
+        _ => return None,
+    };
+    match rest {
+        "" | "ib" => Some(1024_u64.pow(power)),
+        "b" => Some(1000_u64.pow(power)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_known() {
+        let bytes = |text: &str| text.parse().map(|ByteSize(bytes)| bytes);
+        assert_eq!(bytes("4096"), Ok(4096));
+        assert_eq!(bytes("256M"), Ok(256 << 20));
+        assert_eq!(bytes("1.5 GiB"), Ok(3 << 29));
+        assert_eq!(bytes("2kB"), Ok(2000));
+        assert_eq!(bytes("1t"), Ok(1 << 40));
+        assert_eq!(bytes("12 B"), Ok(12));
+    }
+
+    #[test]
+    fn what_is_no_size_is_refused() {
+        for text in ["", "M", "-1M", "1.2.3M", "5 apples", "0", "0.1", "1e3", "99999999T", "10µB"] {
+            assert!(text.parse::<ByteSize>().is_err(), "{text}");
+        }
+    }
+}

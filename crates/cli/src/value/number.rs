@@ -1,0 +1,105 @@
+//! Numbers, and lists of them.
+
+use std::str::FromStr;
+
+use glam::DVec3;
+use lightmesh::Step;
+
+use super::ValueError;
+
+/// A number that single precision can hold.
+pub(super) fn number(text: &str) -> Result<f64, ValueError> {
+    let text = text.trim();
+    let number = text.parse().ok().filter(|number: &f64| (*number as f32).is_finite());
+    number.ok_or_else(|| ValueError::NotANumber { text: text.to_owned() })
+}
+
+/// A number of at least 0.
+pub(super) fn not_negative(what: &'static str, text: &str) -> Result<f64, ValueError> {
+    let value = number(text)?;
+    if value >= 0.0 {
+        return Ok(value);
+    }
+    Err(ValueError::OutOfRange { what, text: text.trim().to_owned(), range: "0 or more" })
+}
+
+/// Three numbers; `None` where there are more or fewer.
+pub(super) fn triple(text: &str) -> Result<Option<DVec3>, ValueError> {
+    let parts: Vec<&str> = text.split(',').collect();
+    let Ok(parts) = <[&str; 3]>::try_from(parts) else { return Ok(None) };
+    let [x, y, z] = parts.map(number);
+    Ok(Some(DVec3::new(x?, y?, z?)))
+}
+
+/// A number above 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Positive(pub(crate) f32);
+
+impl FromStr for Positive {
+    type Err = ValueError;
+
+    fn from_str(text: &str) -> Result<Positive, ValueError> {
+        let value = number(text)? as f32;
+        if value > 0.0 {
+            return Ok(Positive(value));
+        }
+        Err(ValueError::OutOfRange { what: "the number", text: text.to_owned(), range: "above 0" })
+    }
+}
+
+/// A bound on a measure: a number of at least 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bound(pub(crate) f64);
+
+impl FromStr for Bound {
+    type Err = ValueError;
+
+    fn from_str(text: &str) -> Result<Bound, ValueError> {
+        not_negative("the bound", text).map(Bound)
+    }
+}
+
+/// A light-mesh step, or `auto`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StepValue(pub(crate) Step);
+
+impl FromStr for StepValue {
+    type Err = ValueError;
+
+    fn from_str(text: &str) -> Result<StepValue, ValueError> {
+        match text {
+            "auto" => Ok(StepValue(Step::Auto)),
+            _ => text.parse().map(|Positive(step)| StepValue(Step::Fixed(step))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_finite_and_in_range() {
+        assert_eq!("0.25".parse(), Ok(Positive(0.25)));
+        assert_eq!("0".parse(), Ok(Bound(0.0)));
+        for text in ["", "x", "nan", "inf", "1e39", "1e-60", "0", "-1"] {
+            assert!(text.parse::<Positive>().is_err(), "{text}");
+        }
+        assert!("-0.1".parse::<Bound>().is_err());
+    }
+
+    #[test]
+    fn a_step_is_a_number_or_auto() {
+        assert_eq!("auto".parse(), Ok(StepValue(Step::Auto)));
+        assert_eq!("1e-1".parse(), Ok(StepValue(Step::Fixed(0.1))));
+        let message = "-2".parse::<StepValue>().unwrap_err().to_string();
+        assert_eq!(message, "the number -2 is not above 0");
+    }
+
+    #[test]
+    fn a_triple_has_three_numbers() {
+        assert_eq!(triple("1, -2,3e2"), Ok(Some(DVec3::new(1.0, -2.0, 300.0))));
+        assert_eq!(triple("1,2"), Ok(None));
+        assert!(triple("1,,2").is_err());
+    }
+}

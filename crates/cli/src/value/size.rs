@@ -1,0 +1,56 @@
+//! Whole numbers with an x between them.
+
+use std::str::FromStr;
+
+use super::ValueError;
+
+/// Whole numbers of at least 1, separated by `x`; `None` where the text is anything else.
+fn counts<const N: usize>(text: &str) -> Option<[u32; N]> {
+    let parts: Option<Vec<u32>> = text.split(['x', 'X']).map(|part| part.parse().ok().filter(|&n| n > 0)).collect();
+    parts?.try_into().ok()
+}
+
+/// Width and height of a picture in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Size(pub(crate) [u32; 2]);
+
+impl FromStr for Size {
+    type Err = ValueError;
+
+    fn from_str(text: &str) -> Result<Size, ValueError> {
+        let form = ValueError::Form { form: "WIDTHxHEIGHT, both whole numbers of at least 1", example: "1024x768" };
+        counts(text).map(Size).ok_or(form)
+    }
+}
+
+/// Cells of a grid along x, y and z.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Dims(pub(crate) [u32; 3]);
+
+impl FromStr for Dims {
+    type Err = ValueError;
+
+    fn from_str(text: &str) -> Result<Dims, ValueError> {
+        let form = ValueError::Form { form: "NXxNYxNZ, all whole numbers of at least 1", example: "160x120x140" };
+        counts(text).map(Dims).ok_or(form)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read() {
+        assert_eq!("640x480".parse(), Ok(Size([640, 480])));
+        assert_eq!("15x10X20".parse(), Ok(Dims([15, 10, 20])));
+    }
+
+    #[test]
+    fn what_is_no_size_is_refused() {
+        for text in ["", "640", "640x", "x480", "0x480", "640x-480", "640x480x3", "6.4x4", "640*480", "9999999999x1"] {
+            assert!(text.parse::<Size>().is_err(), "{text}");
+        }
+        assert!("15x10".parse::<Dims>().is_err());
+    }
+}

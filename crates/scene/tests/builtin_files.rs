@@ -1,0 +1,32 @@
+//! Built-in scenes written as files show the same.
+
+use lightmesh_scene::Scene;
+
+#[test]
+fn a_built_in_scene_survives_being_written_and_read() {
+    let folder = tempfile::tempdir().unwrap();
+    for builtin in ["builtin:gazebo", "builtin:childpark?lights=3"] {
+        let scene = Scene::open(builtin).unwrap();
+        for name in ["copy.glb", "copy.toml"] {
+            let path = folder.path().join(name);
+            scene.export(&path).unwrap();
+            let copy = Scene::open(&path).unwrap_or_else(|error| panic!("{builtin}: {error}"));
+            let corners = |scene: &Scene| {
+                (0..scene.mesh.triangles.len()).map(|index| scene.mesh.corners(index)).collect::<Vec<_>>()
+            };
+            assert!(corners(&copy) == corners(&scene), "{builtin}, {name}");
+            assert_eq!(copy.mesh.materials, scene.mesh.materials, "{builtin}, {name}");
+            assert_eq!((&copy.materials, &copy.lights), (&scene.materials, &scene.lights), "{builtin}, {name}");
+            assert_eq!((copy.ambient, copy.background), (scene.ambient, scene.background), "{builtin}, {name}");
+            // The copy's `up` stands at a right angle to the view; the picture's axes are the same.
+            for (copy, camera) in copy.cameras.iter().zip(&scene.cameras) {
+                assert_eq!(
+                    (copy.position, copy.direction, copy.projection),
+                    (camera.position, camera.direction, camera.projection)
+                );
+                assert!(copy.basis().1.distance(camera.basis().1) < 1e-6, "{builtin}, {name}");
+            }
+            assert_eq!(copy.cameras.len(), scene.cameras.len(), "{builtin}, {name}");
+        }
+    }
+}
