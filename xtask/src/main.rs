@@ -1,1 +1,61 @@
-fn main() {}
+//! Checks of the repository itself: `cargo xtask licences` and `cargo xtask check-docs`.
+//!
+//! A check gives back what it found; only this file prints and exits.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
+
+mod docs;
+mod licences;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+usage: cargo xtask licences      every dependency, for any target, is under a licence that the project may use
+       cargo xtask check-docs    every file that the documents point to exists";
+
+/// What a check has to say.
+enum Verdict {
+    /// All is well: how much was looked at.
+    Passed(String),
+    /// What is wrong, a line each.
+    Failed(Vec<String>),
+}
+
+impl Verdict {
+    fn new(problems: Vec<impl ToString>, passed: impl FnOnce() -> String) -> Verdict {
+        if problems.is_empty() {
+            Verdict::Passed(passed())
+        } else {
+            Verdict::Failed(problems.iter().map(ToString::to_string).collect())
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
+    let verdict = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["licences"] => licences::check(root).map_err(|error| error.to_string()),
+        ["check-docs"] => docs::check(root).map_err(|error| error.to_string()),
+        _ => {
+            eprintln!("{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    match verdict {
+        Ok(Verdict::Passed(summary)) => {
+            println!("{summary}");
+            ExitCode::SUCCESS
+        }
+        Ok(Verdict::Failed(problems)) => {
+            for problem in problems {
+                eprintln!("error: {problem}");
+            }
+            ExitCode::FAILURE
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}

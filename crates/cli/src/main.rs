@@ -1,1 +1,57 @@
-fn main() {}
+//! `lightmesh`: the light mesh method on the command line.
+//!
+//! [`args`] (what was typed) ▶ [`plan`] (what it means, checked) ▶ [`run`] (the work) ▶ exit code, in one direction. What
+//! goes wrong on the way is a [`Failure`], which knows its exit code. Standard output holds what was asked for; sentences,
+//! progress and errors go to standard error.
+
+mod args;
+mod failure;
+mod interrupt;
+mod output;
+mod plan;
+mod progress;
+mod report;
+mod run;
+mod value;
+
+use std::panic::{self, PanicHookInfo};
+use std::process::ExitCode;
+use std::sync::Once;
+
+use clap::Parser;
+
+use crate::args::Cli;
+use crate::failure::{Failure, INTERRUPTED, UNABLE};
+
+fn main() -> ExitCode {
+    panic::set_hook(Box::new(report_fault));
+    let result = panic::catch_unwind(|| match Cli::try_parse() {
+        Ok(cli) => interrupt::install().and_then(|()| run::run(cli.command)).unwrap_or_else(|failure| failed(&failure)),
+        Err(message) => {
+            // Nobody is left to tell where even this cannot be printed.
+            let _ = message.print();
+            message.exit_code() as u8
+        }
+    });
+    let code = result.unwrap_or(UNABLE);
+    ExitCode::from(if interrupt::requested() { INTERRUPTED } else { code })
+}
+
+/// Says what went wrong; gives the exit code.
+fn failed(failure: &Failure) -> u8 {
+    match failure {
+        Failure::Exceeded(_) => output::complain(&failure.to_string()),
+        _ if failure.exit_code() == INTERRUPTED => output::complain("interrupted: no picture was written"),
+        _ => output::complain(&format!("error: {failure}")),
+    }
+    failure.exit_code()
+}
+
+/// A fault of the program itself, once, however many threads meet it.
+fn report_fault(fault: &PanicHookInfo) {
+    static ONCE: Once = Once::new();
+    let message = fault.payload_as_str().unwrap_or("no message");
+    let place = fault.location().map_or_else(String::new, |place| format!(", {}:{}", place.file(), place.line()));
+    let text = format!("error: a fault in lightmesh itself ({message}){place}; please report it with the command line");
+    ONCE.call_once(|| output::complain(&text));
+}

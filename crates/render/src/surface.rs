@@ -32,11 +32,12 @@ impl SurfacePoint {
         let facing = if outward.dot(ray.direction) > 0.0 { -outward } else { outward };
         let normal = facing / facing.length();
 
-        // The interpolated point errs by γ(7) of the corners (Pharr, Jakob, Humphreys: *Physically Based Rendering*, 3.9); a
-        // ray that leaves it errs as much again where it is sheared against the triangle. Twice the sum bounds both, and one
-        // more operation covers the move itself.
-        let error = gamma(16) * (a.abs() + b.abs() + c.abs());
-        let origin = position + normal.abs().dot(error) * normal;
+        // The interpolated point errs by γ(7) of the corners (Pharr, Jakob, Humphreys: *Physically Based Rendering*, 3.9). The
+        // ray that leaves it meets its own triangle up to 9 ε S off, S being the largest coordinate of the corners relative
+        // to the origin, whatever the axis: a floor at height 0 errs by its width. S is at most twice the largest corner
+        // coordinate. The sum of the corners, three times a typical one, with γ(32) bounds both with room for the move itself.
+        let error = gamma(32) * (a.abs() + b.abs() + c.abs()).max_element();
+        let origin = position + error * normal;
         SurfacePoint { position, origin, normal }
     }
 }
@@ -88,6 +89,14 @@ mod tests {
             let height = (point.origin.z - 100.0) * z;
             assert!(height > 1e-5 && height < 1e-3, "{height}");
         }
+    }
+
+    #[test]
+    fn a_floor_at_height_zero_is_left_too() {
+        let triangle = Triangle::new([Vec3::ZERO, Vec3::X * 30.0, Vec3::NEG_Z * 30.0], 0);
+        let hit = Hit { t: 1.0, u: 0.25, v: 0.25, triangle: 0 };
+        let ray = Ray { origin: Vec3::Y, direction: Vec3::NEG_Y, t_max: f32::INFINITY };
+        assert!(SurfacePoint::new(&ray, &hit, &triangle).origin.y > 1e-6);
     }
 
     #[test]

@@ -33,7 +33,11 @@ impl FromStr for CameraView {
         let vfov = number(angle)? as f32;
         if vfov <= 0.0 || vfov >= 180.0 {
             let text = angle.trim().to_owned();
-            return Err(ValueError::OutOfRange { what: "the vertical angle", text, range: "between 0 and 180 degrees" });
+            return Err(ValueError::OutOfRange {
+                what: "the vertical angle",
+                text,
+                range: "between 0 and 180 degrees",
+            });
         }
         Ok(CameraView { position, direction, vfov })
     }

@@ -36,8 +36,10 @@ pub(crate) struct LightSpec {
     pub(crate) radius: f32,
 }
 
-const FORM: ValueError =
-    ValueError::Form { form: "POSITION, POSITION;INTENSITY or POSITION;INTENSITY;RADIUS", example: "\"3,8,2;0.9;0.25\"" };
+const FORM: ValueError = ValueError::Form {
+    form: "POSITION, POSITION;INTENSITY or POSITION;INTENSITY;RADIUS",
+    example: "\"3,8,2;0.9;0.25\"",
+};
 
 impl FromStr for LightSpec {
     type Err = ValueError;

@@ -31,9 +31,12 @@ impl Triangle {
         self.corners[0][3].to_bits()
     }
 
-    /// Whether the structures take it: all coordinates finite and within ±[`Triangle::MAX_COORDINATE`]. Others are never hit.
+    /// Whether the structures take it: all coordinates finite and within ±[`Triangle::MAX_COORDINATE`], and no two corners
+    /// equal. Others are never hit.
     pub fn is_usable(&self) -> bool {
-        self.corners().iter().all(|corner| corner.abs().cmple(Vec3::splat(Triangle::MAX_COORDINATE)).all())
+        let [a, b, c] = self.corners();
+        let in_range = |corner: Vec3| corner.abs().cmple(Vec3::splat(Triangle::MAX_COORDINATE)).all();
+        in_range(a) && in_range(b) && in_range(c) && a != b && b != c && c != a
     }
 
     /// The largest usable coordinate, 2⁴⁰: beyond, products of three would leave the range of `f32`.

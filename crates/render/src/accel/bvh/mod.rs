@@ -7,12 +7,13 @@
 mod build;
 mod walk;
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use lightmesh_scene::Bounds;
 use obvhs::cwbvh::node::CwBvhNode as Node;
 
 use super::approach::Approach;
 use super::{Accelerator, Hit, Ray, ShortSegments, Triangle};
+use crate::simd::dispatch;
 
 /// A compressed wide bounding volume hierarchy.
 #[derive(Clone, Debug)]

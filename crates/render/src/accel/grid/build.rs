@@ -21,6 +21,8 @@ const INNER_DENSITY: f64 = 4.0;
 const MANY: usize = 8;
 /// Most cells on an axis that are chosen automatically: finer ones would drown in the margin.
 const MOST: [f64; 2] = [1024.0, 32.0];
+/// In how many cells' boxes a triangle may lie on average, before an automatic grid is made coarser: one for each level.
+const COPIES: [u64; 2] = [64, 16];
 /// Triangles that one task sorts into cells.
 const TASK: usize = 2048;
 
@@ -28,10 +30,17 @@ pub(super) fn build(triangles: &[Triangle], options: &GridOptions) -> Result<Gri
     let usable: Vec<u32> = (0..triangles.len() as u32).filter(|&at| triangles[at as usize].is_usable()).collect();
     let bounds = Bounds::around(usable.iter().flat_map(|&at| triangles[at as usize].corners()));
     let density = if options.levels == Levels::One { DENSITY } else { OUTER_DENSITY };
-    let dims = options.dims.map_or_else(|| automatic(&bounds, density * usable.len() as f64, MOST[0]), UVec3::from);
+    let sorter = Sorter { triangles, margin: margin(Approach::new(&bounds).radius()) };
+    let dims = match options.dims {
+        Some(dims) => dims.into(),
+        None => {
+            let dims = automatic(&bounds, density * usable.len() as f64, MOST[0]);
+            sorter.coarsened(dims, &usable, COPIES[0], |dims| Lattice::new(&bounds, sorter.margin, dims))
+        }
+    };
     let (lattice, approach, margin) = frame(&bounds, dims)?;
+    fit(sorter.candidates(&lattice, &usable), "triangle references", dims)?;
 
-    let sorter = Sorter { triangles, margin };
     let lists = sorter.sort(&lattice, &usable);
     let nested = |cell: usize| {
         let list = lists.of(cell);
@@ -111,6 +120,23 @@ struct Sorter<'a> {
 }
 
 impl Sorter<'_> {
+    /// `dims` halved until triangles that span many cells no longer fill them all.
+    fn coarsened(&self, mut dims: UVec3, sources: &[u32], copies: u64, lattice: impl Fn(UVec3) -> Lattice) -> UVec3 {
+        while dims != UVec3::ONE && self.candidates(&lattice(dims), sources) > copies * sources.len() as u64 {
+            dims = (dims / 2).max(UVec3::ONE);
+        }
+        dims
+    }
+
+    /// Pairs of a triangle and a cell whose boxes overlap: at least as many as there will be references.
+    fn candidates(&self, lattice: &Lattice, sources: &[u32]) -> u64 {
+        let cells = |&source: &u32| {
+            let range = lattice.cells(&self.triangles[source as usize].bounds(), self.margin);
+            range.map_or(0, |(first, last)| (last - first + 1).as_u64vec3().element_product())
+        };
+        sources.iter().map(cells).fold(0, u64::saturating_add)
+    }
+
     /// The triangles at `sources` by cell, each list in the order of `sources`.
     fn sort(&self, lattice: &Lattice, sources: &[u32]) -> Lists {
         let tasks = sources.par_chunks(TASK);
@@ -156,6 +182,7 @@ impl Sorter<'_> {
         let at = position(outer, cell);
         let bounds = Bounds { min: Vec3::ZERO, max: outer.size };
         let dims = automatic(&bounds, INNER_DENSITY * list.len() as f64, MOST[1]);
+        let dims = self.coarsened(dims, list, COPIES[1], |dims| outer.nested(at, dims));
         let lattice = outer.nested(at, dims);
         // Cells no larger than their margins separate nothing.
         let useful = lattice.size.min_element() > 8.0 * self.margin && dims != UVec3::ONE;
@@ -249,6 +276,18 @@ mod tests {
             let error = built(&triangles, dims, Levels::One).unwrap_err();
             assert!(matches!(error, GridError::TooLarge { what: "integers", .. }), "{error}");
             assert!(error.to_string().contains("take fewer cells"), "{error}");
+        }
+        let wide: Vec<_> = (0..300).map(|index| Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], index)).collect();
+        let error = built(&wide, [3000, 3000, 1], Levels::One).unwrap_err();
+        assert!(matches!(error, GridError::TooLarge { what: "triangle references", .. }), "{error}");
+    }
+
+    #[test]
+    fn triangles_that_fill_the_scene_make_automatic_grids_coarse() {
+        let wide: Vec<_> = (0..5000).map(|index| Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], index)).collect();
+        for levels in [Levels::One, Levels::Two] {
+            let grid = Grid::new(&wide, &GridOptions { dims: None, levels }).unwrap();
+            assert!(grid.triangles.len() < 400_000, "{levels:?}: {}", grid.triangles.len());
         }
     }
 

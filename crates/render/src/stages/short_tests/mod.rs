@@ -67,6 +67,11 @@ impl std::ops::Add for MaskCounts {
 }
 
 /// Number of set bits.
+#[inline(always)]
 pub(crate) fn population(mask: &[u32]) -> u64 {
-    mask.iter().map(|word| u64::from(word.count_ones())).sum()
+    let mut count = 0;
+    for word in mask {
+        count += word.count_ones();
+    }
+    u64::from(count)
 }

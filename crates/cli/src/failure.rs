@@ -1,0 +1,93 @@
+//! Everything that can end a run, and its exit code.
+
+use lightmesh::render::accel::{GridError, GridFileError};
+use lightmesh::scene::{ExportError, UnknownCamera};
+use lightmesh::{LoadError, RenderError, SaveError, image};
+
+use crate::output::OutputError;
+use crate::plan::PlanError;
+
+/// A comparison exceeded its bound.
+pub(crate) const EXCEEDED: u8 = 1;
+/// Bad input or usage.
+pub(crate) const BAD_INPUT: u8 = 2;
+/// Device or memory cannot do it.
+pub(crate) const UNABLE: u8 = 3;
+/// Interrupted by the user.
+pub(crate) const INTERRUPTED: u8 = 130;
+
+/// Why a run ended early. The message is one sentence: what, where, and what to do.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Failure {
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    #[error(transparent)]
+    Camera(#[from] UnknownCamera),
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    #[error(transparent)]
+    Save(#[from] SaveError),
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    #[error(transparent)]
+    GridFile(#[from] GridFileError),
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    #[error(transparent)]
+    Picture(#[from] image::LoadError),
+    #[error(transparent)]
+    Compare(#[from] image::CompareError),
+    /// A measure of a comparison is above what is accepted.
+    #[error("{0}")]
+    Exceeded(String),
+    /// No page of the manual has this name.
+    #[error("there is no subcommand `{name}`; known are {}", known.join(", "))]
+    UnknownPage {
+        /// The name asked for.
+        name: String,
+        /// All names.
+        known: Vec<String>,
+    },
+    /// The system does not let interrupts be caught.
+    #[error("cannot listen for Ctrl-C ({0}); start the program from a terminal or a shell")]
+    Signals(#[from] ctrlc::Error),
+}
+
+impl Failure {
+    /// The exit code that stands for it.
+    pub(crate) fn exit_code(&self) -> u8 {
+        match self {
+            Failure::Exceeded(_) => EXCEEDED,
+            Failure::Signals(_) => UNABLE,
+            Failure::Render(error) => match error {
+                RenderError::Cancelled => INTERRUPTED,
+                RenderError::Memory { .. } | RenderError::Device { .. } | RenderError::Threads { .. } => UNABLE,
+                RenderError::Lattice(_)
+                | RenderError::Template(_)
+                | RenderError::Grid(_)
+                | RenderError::GridFile(_)
+                | RenderError::Setting { .. } => BAD_INPUT,
+            },
+            _ => BAD_INPUT,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_machine_cannot_do_is_told_from_bad_input() {
+        let memory = RenderError::Memory { buffer: "masks", needed: 2, limit: 1 };
+        let device = RenderError::Device { device: "cuda".into(), reason: "none".into() };
+        let setting = RenderError::Setting { what: "size", value: "0x0".into(), remedy: "choose another" };
+        let codes = [memory, device, setting, RenderError::Cancelled].map(|error| Failure::from(error).exit_code());
+        assert_eq!(codes, [UNABLE, UNABLE, BAD_INPUT, INTERRUPTED]);
+        assert_eq!(Failure::Exceeded("RMSE".into()).exit_code(), EXCEEDED);
+    }
+}

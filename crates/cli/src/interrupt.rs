@@ -1,0 +1,36 @@
+//! Ctrl-C.
+//!
+//! While nothing is being watched the process ends at once: nothing has been written yet. While something is, the wish is
+//! noted and the work ends at its next opportunity; a second Ctrl-C does not wait for that. Output files are renamed into
+//! place, so that none of them is ever half-written.
+
+use std::process;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::failure::{Failure, INTERRUPTED};
+use crate::output;
+
+static REQUESTED: AtomicBool = AtomicBool::new(false);
+static WATCHED: AtomicBool = AtomicBool::new(false);
+
+/// Catches Ctrl-C from now on.
+pub(crate) fn install() -> Result<(), Failure> {
+    ctrlc::set_handler(|| {
+        let again = REQUESTED.swap(true, Ordering::SeqCst);
+        if again || !WATCHED.load(Ordering::SeqCst) {
+            output::complain("interrupted");
+            process::exit(INTERRUPTED.into());
+        }
+    })?;
+    Ok(())
+}
+
+/// From here to the end of the run somebody asks [`requested`].
+pub(crate) fn watch() {
+    WATCHED.store(true, Ordering::SeqCst);
+}
+
+/// Whether the user wants to stop.
+pub(crate) fn requested() -> bool {
+    REQUESTED.load(Ordering::Relaxed)
+}

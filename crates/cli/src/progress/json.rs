@@ -1,0 +1,104 @@
+//! Progress for programs: one JSON object a line.
+//!
+//! ```text
+//! {"event":"begin","stage":"short_tests","done":0,"total":4096,"seconds":0.0}
+//! {"event":"progress","stage":"short_tests","done":1024,"total":4096,"seconds":0.21}
+//! {"event":"end","stage":"short_tests","done":4096,"total":4096,"seconds":0.84}
+//! {"event":"note","text":"…"}
+//! ```
+//!
+//! Seconds count from the beginning of the stage. A stage comes again for each part of a picture that is split to fit into
+//! memory, and for each bounce. The texts of `note`, `warning` and `summary` are for people.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use lightmesh::Stage;
+use serde::Serialize;
+
+use crate::output;
+
+/// Time between two progress events.
+const INTERVAL: Duration = Duration::from_millis(200);
+
+/// Prints events.
+pub(super) struct Json {
+    done: AtomicU64,
+    current: Mutex<Option<Current>>,
+}
+
+/// The stage that is being worked on.
+struct Current {
+    stage: Stage,
+    total: u64,
+    start: Instant,
+    last: Instant,
+}
+
+#[derive(Serialize)]
+struct Progress {
+    event: &'static str,
+    stage: &'static str,
+    done: u64,
+    total: u64,
+    seconds: f64,
+}
+
+#[derive(Serialize)]
+struct Text<'a> {
+    event: &'static str,
+    text: &'a str,
+}
+
+impl Json {
+    pub(super) fn new() -> Json {
+        Json { done: AtomicU64::new(0), current: Mutex::new(None) }
+    }
+
+    pub(super) fn begin(&self, stage: Stage, total: u64) {
+        let now = Instant::now();
+        let current = Current { stage, total, start: now, last: now };
+        self.done.store(0, Ordering::Relaxed);
+        current.print("begin", 0);
+        *self.current() = Some(current);
+    }
+
+    /// Cheap: counts, and leaves printing to the thread that gets the lock.
+    pub(super) fn advance(&self, pieces: u64) {
+        let done = self.done.fetch_add(pieces, Ordering::Relaxed) + pieces;
+        let Ok(mut current) = self.current.try_lock() else { return };
+        let Some(current) = current.as_mut().filter(|current| current.last.elapsed() >= INTERVAL) else { return };
+        current.last = Instant::now();
+        current.print("progress", done);
+    }
+
+    pub(super) fn end(&self, stage: Stage) {
+        let mut current = self.current();
+        if let Some(current) = current.take_if(|current| current.stage == stage) {
+            current.print("end", self.done.load(Ordering::Relaxed));
+        }
+    }
+
+    pub(super) fn text(&self, event: &'static str, text: &str) {
+        print(&Text { event, text });
+    }
+
+    fn current(&self) -> MutexGuard<'_, Option<Current>> {
+        self.current.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Current {
+    fn print(&self, event: &'static str, done: u64) {
+        let (stage, total) = (self.stage.name(), self.total);
+        print(&Progress { event, stage, done, total, seconds: self.start.elapsed().as_secs_f64() });
+    }
+}
+
+fn print(event: &impl Serialize) {
+    // Strings and finite numbers always have a JSON form.
+    if let Ok(line) = serde_json::to_string(event) {
+        output::complain(&line);
+    }
+}

@@ -1,0 +1,101 @@
+//! What people and programs see on standard error while something is computed: sentences, a bar, or JSON.
+
+mod bar;
+mod json;
+
+use std::io::{self, IsTerminal};
+
+use lightmesh::{Observer, Stage};
+
+use crate::args::Progress;
+use crate::{interrupt, output};
+use bar::Bar;
+use json::Json;
+
+/// Watches a render and says what there is to say.
+pub(crate) struct Watcher {
+    quiet: bool,
+    sink: Sink,
+}
+
+enum Sink {
+    Plain,
+    Bar(Bar),
+    Json(Json),
+}
+
+impl Watcher {
+    /// Shows progress as asked; `quiet` leaves out sentences, and the bar that nobody asked for.
+    pub(crate) fn new(progress: Progress, quiet: bool) -> Watcher {
+        let terminal = io::stderr().is_terminal();
+        let sink = match progress {
+            Progress::Json => Sink::Json(Json::new()),
+            Progress::Bar if terminal => Sink::Bar(Bar::new()),
+            Progress::Auto if terminal && !quiet => Sink::Bar(Bar::new()),
+            Progress::Auto | Progress::Bar | Progress::None => Sink::Plain,
+        };
+        Watcher { quiet, sink }
+    }
+
+    /// Sentences alone.
+    pub(crate) fn plain(quiet: bool) -> Watcher {
+        Watcher { quiet, sink: Sink::Plain }
+    }
+
+    /// Something that the user should look at.
+    pub(crate) fn warning(&self, text: &str) {
+        self.say("warning", &format!("warning: {text}"), text);
+    }
+
+    /// What was done, at the very end.
+    pub(crate) fn summary(&self, text: &str) {
+        if let Sink::Bar(bar) = &self.sink {
+            bar.close();
+        }
+        self.say("summary", text, text);
+    }
+
+    fn say(&self, event: &'static str, line: &str, text: &str) {
+        if self.quiet {
+            return;
+        }
+        match &self.sink {
+            Sink::Plain => output::complain(line),
+            Sink::Bar(bar) => bar.aside(line),
+            Sink::Json(json) => json.text(event, text),
+        }
+    }
+}
+
+impl Observer for Watcher {
+    fn begin(&self, stage: Stage, total: u64) {
+        match &self.sink {
+            Sink::Plain => {}
+            Sink::Bar(bar) => bar.begin(stage, total),
+            Sink::Json(json) => json.begin(stage, total),
+        }
+    }
+
+    fn advance(&self, pieces: u64) {
+        match &self.sink {
+            Sink::Plain => {}
+            Sink::Bar(bar) => bar.advance(pieces),
+            Sink::Json(json) => json.advance(pieces),
+        }
+    }
+
+    fn end(&self, stage: Stage) {
+        match &self.sink {
+            Sink::Plain | Sink::Bar(_) => {}
+            Sink::Json(json) => json.end(stage),
+        }
+    }
+
+    fn note(&self, text: &str) {
+        self.say("note", text, text);
+    }
+
+    fn cancelled(&self) -> bool {
+        interrupt::requested()
+    }
+}

@@ -1,0 +1,47 @@
+//! The JSON of `--stats`: what the renderer counted, and what only the command line knows.
+
+use lightmesh::Stats;
+use lightmesh::render::{Counts, DeviceStats, MemoryStats, SceneStats, Seconds, SettingsStats};
+use lightmesh::scene::LightInfo;
+use serde::Serialize;
+
+/// [`Stats`] with settings of the command line among the others.
+#[derive(Serialize)]
+pub(crate) struct Report<'a> {
+    version: u32,
+    scene: &'a SceneStats,
+    device: &'a DeviceStats,
+    settings: AllSettings<'a>,
+    counts: &'a Counts,
+    seconds: &'a Seconds,
+    memory: &'a MemoryStats,
+}
+
+#[derive(Serialize)]
+struct AllSettings<'a> {
+    #[serde(flatten)]
+    render: &'a SettingsStats,
+    transfer: &'static str,
+    /// As `lightmesh info` describes them.
+    lights: &'a [LightInfo],
+}
+
+impl<'a> Report<'a> {
+    pub(crate) fn new(stats: &'a Stats, transfer: &'static str, lights: &'a [LightInfo]) -> Report<'a> {
+        Report {
+            version: stats.version,
+            scene: &stats.scene,
+            device: &stats.device,
+            settings: AllSettings { render: &stats.settings, transfer, lights },
+            counts: &stats.counts,
+            seconds: &stats.seconds,
+            memory: &stats.memory,
+        }
+    }
+}
+
+/// Indented JSON with a newline at its end.
+pub(crate) fn json(value: &impl Serialize) -> String {
+    let text = serde_json::to_string_pretty(value);
+    text.expect("all keys are strings and serializing does no input or output") + "\n"
+}

@@ -1,0 +1,20 @@
+//! `lightmesh export`.
+
+use lightmesh::Scene;
+
+use crate::args::ExportArgs;
+use crate::failure::Failure;
+use crate::progress::Watcher;
+use crate::{interrupt, output};
+
+pub(super) fn run(args: &ExportArgs) -> Result<(), Failure> {
+    output::check_writable(&args.output)?;
+    output::check_distinct(&[("the scene", Some(&args.scene.scene)), ("-o", Some(&args.output))])?;
+    let watcher = Watcher::plain(args.quiet);
+    let scene = Scene::open(&args.scene.scene)?;
+    scene.warnings.iter().for_each(|warning| watcher.warning(warning));
+    interrupt::watch();
+    scene.export(&args.output)?;
+    watcher.summary(&format!("{}, {} triangles: {}", scene.name, scene.mesh.triangles.len(), args.output.display()));
+    Ok(())
+}

@@ -1,0 +1,32 @@
+//! `lightmesh grid`.
+
+use std::time::Instant;
+
+use lightmesh::Scene;
+use lightmesh::render::accel::{Grid, GridOptions, Levels, Triangle};
+
+use crate::args::GridArgs;
+use crate::failure::Failure;
+use crate::progress::Watcher;
+use crate::{interrupt, output};
+
+pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
+    output::check_writable(&args.output)?;
+    output::check_distinct(&[("the scene", Some(&args.scene.scene)), ("-o", Some(&args.output))])?;
+    let watcher = Watcher::plain(args.quiet);
+    let scene = Scene::open(&args.scene.scene)?;
+    scene.warnings.iter().for_each(|warning| watcher.warning(warning));
+
+    let start = Instant::now();
+    let levels = if args.levels == 1 { Levels::One } else { Levels::Two };
+    let triangles: Vec<Triangle> =
+        (0..scene.mesh.triangles.len()).map(|index| Triangle::new(scene.mesh.corners(index), index as u32)).collect();
+    let grid = Grid::new(&triangles, &GridOptions { dims: args.grid.map(|dims| dims.0), levels })?;
+    let seconds = start.elapsed().as_secs_f64();
+    interrupt::watch();
+    grid.save(&args.output)?;
+
+    let ([nx, ny, nz], count, file) = (grid.dims(), triangles.len(), args.output.display());
+    watcher.summary(&format!("{}, {count} triangles: {nx}x{ny}x{nz} cells in {seconds:.3} s, {file}", scene.name));
+    Ok(())
+}

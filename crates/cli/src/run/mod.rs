@@ -1,0 +1,26 @@
+//! One file a subcommand.
+
+mod compare;
+mod completions;
+mod export;
+mod grid;
+mod info;
+mod man;
+mod render;
+
+use crate::args::Command;
+use crate::failure::Failure;
+
+/// Does what was asked for; gives the exit code.
+pub(crate) fn run(command: Command) -> Result<u8, Failure> {
+    match command {
+        Command::Render(args) => render::run(&args),
+        Command::Info(args) => info::run(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Grid(args) => grid::run(&args),
+        Command::Export(args) => export::run(&args),
+        Command::Completions(args) => completions::run(&args),
+        Command::Man(args) => man::run(&args),
+    }?;
+    Ok(0)
+}

@@ -1,0 +1,82 @@
+//! `lightmesh render`.
+
+use std::time::Instant;
+
+use lightmesh::render::devices;
+use lightmesh::{Device, Frame, Observer, RenderError, Renderer, Scene};
+
+use crate::args::RenderArgs;
+use crate::failure::Failure;
+use crate::plan::{PictureFiles, RenderPlan};
+use crate::progress::Watcher;
+use crate::report::{Report, json};
+use crate::{interrupt, output};
+
+pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
+    let plan = RenderPlan::new(args)?;
+    let watcher = Watcher::new(args.progress, args.quiet);
+    let renderer = Renderer::with_threads(plan.device, plan.threads.map(usize::from))?;
+    let start = Instant::now();
+    let mut scene = Scene::open(&plan.scene)?;
+    let load = start.elapsed().as_secs_f64();
+    scene.warnings.iter().for_each(|warning| watcher.warning(warning));
+    if plan.device == Device::Auto {
+        watcher.note(&chosen_device());
+    }
+
+    let mut settings = plan.settings;
+    settings.camera = Some(plan.choices.apply(&mut scene, &watcher)?);
+    let prepared = renderer.prepare(&scene, &settings, &watcher)?;
+    interrupt::watch();
+    let mut frame = renderer.render_prepared(&prepared, &settings, &watcher)?;
+    drop(prepared); // room for the encoders
+    if watcher.cancelled() {
+        return Err(RenderError::Cancelled.into());
+    }
+
+    frame.stats.seconds.load = load;
+    write(&mut frame, &scene, &plan.files)?;
+    watcher.summary(&summary(&frame, &plan.files));
+    Ok(())
+}
+
+/// Writes all files; the statistics last, because they say how long the others took.
+fn write(frame: &mut Frame, scene: &Scene, files: &PictureFiles) -> Result<(), Failure> {
+    let start = Instant::now();
+    let (transfer, transfer_name) = files.transfer;
+    frame.image.save_with(&files.picture, transfer)?;
+    if let Some(path) = &files.layers {
+        frame.image.save_layers(path)?;
+    }
+    frame.stats.seconds.write = start.elapsed().as_secs_f64();
+    if let Some(path) = &files.stats {
+        let lights = scene.info().lights;
+        let report = Report::new(&frame.stats, transfer_name, &lights);
+        output::write(path, json(&report).as_bytes())?;
+    }
+    Ok(())
+}
+
+/// What `--device auto` takes, and why not something else.
+fn chosen_device() -> String {
+    let devices = devices();
+    let (usable, others): (Vec<_>, Vec<_>) = devices.iter().partition(|device| device.usable);
+    let taken = usable.first().map_or_else(String::new, |it| format!("{} ({}, {})", it.device, it.name, it.remark));
+    let others: String = others.iter().map(|other| format!("; not {}: {}", other.device, other.remark)).collect();
+    format!("device auto takes {taken}{others}")
+}
+
+fn summary(frame: &Frame, files: &PictureFiles) -> String {
+    let (settings, seconds) = (&frame.stats.settings, &frame.stats.seconds);
+    let [width, height] = settings.size;
+    format!(
+        "{}, {width}x{height}, {}: {:.3} s (load {:.3} s, build {:.3} s, write {:.3} s), {}",
+        frame.stats.scene.name,
+        settings.mode,
+        seconds.render,
+        seconds.load,
+        seconds.build,
+        seconds.write,
+        files.picture.display()
+    )
+}

@@ -1,0 +1,62 @@
+//! `lightmesh compare`.
+
+use lightmesh::image::Frame;
+use serde_json::Value;
+
+use crate::run::Place;
+
+fn pictures() -> Place {
+    let place = Place::new();
+    for (name, value) in [("dark.png", 0.2), ("light.png", 0.4)] {
+        Frame::new(16, 16, vec![[value; 3]; 256]).unwrap().save(place.path(name)).unwrap();
+    }
+    Frame::new(8, 8, vec![[0.0; 3]; 64]).unwrap().save(place.path("small.png")).unwrap();
+    place
+}
+
+#[test]
+fn equal_pictures_pass_every_bound() {
+    let place = pictures();
+    let done = place.good(&["compare", "dark.png", "dark.png", "--max-flip", "0", "--max-rmse", "0"]);
+    assert_eq!(
+        done.stdout,
+        "RMSE            0.000000\nPSNR            inf dB\nmax difference  0.000000\nmean FLIP       0.000000\n"
+    );
+    assert_eq!(done.stderr, "");
+}
+
+#[test]
+fn a_bound_that_is_exceeded_is_exit_code_1() {
+    let place = pictures();
+    let compare = |flags: &[&str]| place.run(&[&["compare", "dark.png", "light.png"], flags].concat());
+    assert_eq!(compare(&[]).code, Some(0));
+    assert_eq!(compare(&["--max-flip", "1", "--max-rmse", "1"]).code, Some(0));
+    let rmse = compare(&["--max-rmse", "0.01"]);
+    assert_eq!(rmse.code, Some(1));
+    assert!(rmse.stderr.starts_with("RMSE 0.1") && rmse.stderr.ends_with("exceeds --max-rmse 0.01\n"), "{rmse:?}");
+    assert!(rmse.stdout.contains("mean FLIP"), "{rmse:?}");
+    assert_eq!(compare(&["--max-flip", "0.01"]).code, Some(1));
+}
+
+#[test]
+fn programs_read_json_and_people_see_where() {
+    let place = pictures();
+    let done = place.good(&["compare", "dark.png", "light.png", "--json", "--diff", "diff.png"]);
+    let json: Value = serde_json::from_str(&done.stdout).unwrap();
+    for key in ["rmse", "psnr", "max_difference", "mean_flip"] {
+        assert!(json[key].as_f64().unwrap() > 0.0, "{json}");
+    }
+    assert_eq!(Frame::load(place.path("diff.png")).unwrap().width(), 16);
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let place = pictures();
+    let refused = |args: &[&str]| place.refused(&[&["compare"], args].concat());
+    assert!(refused(&["dark.png", "small.png"]).contains("16x16 pixels with one of 8x8"));
+    assert!(refused(&["none.png", "dark.png"]).contains("cannot read none.png"));
+    assert!(refused(&["room.toml", "dark.png"]).contains("cannot load room.toml: not a picture of a known format"));
+    assert!(refused(&["dark.png", "light.png", "--max-flip", "-1"]).contains("the bound -1 is not 0 or more"));
+    assert!(refused(&["dark.png", "light.png", "--diff", "no/d.png"]).contains("does not exist"));
+    assert!(refused(&["dark.png", "light.png", "--diff", "light.png"]).contains("B and --diff are the same file"));
+}

@@ -1,0 +1,101 @@
+//! Help, completions, the manual, and standard output that ends early.
+
+use std::process::Stdio;
+
+use crate::run::Place;
+
+/// The flags of `render` that other programs rely on.
+const FLAGS: [&str; 29] = [
+    "--mode",
+    "--bounces",
+    "--size",
+    "--device",
+    "--threads",
+    "--step",
+    "--radius",
+    "--weight",
+    "--lookup",
+    "--samples",
+    "--accel",
+    "--grid",
+    "--grid-file",
+    "--camera",
+    "--camera-name",
+    "--up",
+    "--light",
+    "--falloff",
+    "--ambient",
+    "--layers",
+    "--transfer",
+    "--seed",
+    "--stats",
+    "--progress",
+    "--quiet",
+    "--memory-limit",
+    "--short-tests",
+    "--output",
+    "--help",
+];
+
+#[test]
+fn help_and_manual_know_every_flag() {
+    let place = Place::new();
+    let help = place.good(&["render", "--help"]).stdout;
+    let manual = place.good(&["man", "render"]).stdout.replace("\\-", "-");
+    for flag in FLAGS {
+        let known =
+            |text: &str| text.split([' ', '\n', ',', '\\']).any(|word| word == flag || word == format!("fB{flag}"));
+        assert!(known(&help), "{flag} in {help}");
+        assert!(known(&manual), "{flag} in {manual}");
+    }
+    for default in ["light-mesh", "1024x1024", "auto", "smooth", "225 / 4", "2.1", "srgb"] {
+        let stated = help.lines().any(|line| line.contains("default: ") && line.contains(default));
+        assert!(stated, "default {default} in {help}");
+    }
+}
+
+#[test]
+fn the_manual_has_a_page_for_each_subcommand() {
+    let place = Place::new();
+    let page = place.good(&["man"]).stdout;
+    assert!(page.contains(".TH lightmesh 1") && page.contains("lightmesh\\-render(1)"), "{page}");
+    std::fs::create_dir(place.path("man")).unwrap();
+    place.good(&["man", "-o", "man"]);
+    for name in
+        ["lightmesh", "lightmesh-render", "lightmesh-info", "lightmesh-compare", "lightmesh-grid", "lightmesh-export"]
+    {
+        assert!(place.read(&format!("man/{name}.1")).len() > 200, "{name}");
+    }
+    assert!(place.refused(&["man", "paint"]).contains("there is no subcommand `paint`; known are render, info"));
+    assert!(place.refused(&["man", "-o", "none"]).contains("the directory none does not exist"));
+}
+
+#[test]
+fn shells_complete_flags() {
+    let place = Place::new();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = place.good(&["completions", shell]).stdout;
+        assert!(script.contains("memory-limit"), "{shell}");
+    }
+    place.refused(&["completions", "cmd"]);
+}
+
+#[test]
+fn usage_errors_and_versions() {
+    let place = Place::new();
+    assert_eq!(place.run(&[]).code, Some(2));
+    place.refused(&["paint"]);
+    place.refused(&["render", "room.toml"]);
+    place.refused(&["render", "room.toml", "-o", "a.png", "--sise", "1x1"]);
+    assert_eq!(place.good(&["--version"]).stdout, concat!("lightmesh ", env!("CARGO_PKG_VERSION"), "\n"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_that_leaves_early_is_no_error() {
+    let place = Place::new();
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let status = place.command(&["completions", "bash"]).stdout(writer).stderr(Stdio::piped()).output().unwrap();
+    assert_eq!((status.status.code(), status.stderr.len()), (Some(0), 0));
+}

@@ -1,0 +1,11 @@
+//! The command line as a user meets it: every subcommand and flag, exit codes, and the text of messages.
+
+mod compare;
+mod help;
+mod messages;
+mod render;
+mod run;
+mod scenes;
+
+#[cfg(unix)]
+mod interrupt;

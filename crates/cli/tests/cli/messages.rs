@@ -1,0 +1,160 @@
+//! What is refused, how it is said, and that nothing was done before.
+
+use crate::run::{Place, text};
+
+/// Renders the room to `a.png` with more flags; the size is one that would take minutes.
+fn refused(place: &Place, flags: &[&str]) -> String {
+    place.refused(&[&["render", "room.toml", "-o", "a.png", "--mode", "area", "--size", "8000x8000"], flags].concat())
+}
+
+#[test]
+fn a_missing_scene_is_named() {
+    let place = Place::new();
+    assert_eq!(
+        place.refused(&["render", "none.toml", "-o", "a.png"]),
+        "error: cannot read the file (No such file or directory (os error 2)), none.toml; check that it exists and may be read"
+    );
+    assert_eq!(
+        place.refused(&["info", "builtin:castle"]),
+        "error: there is no built-in scene `castle`, builtin:castle; known are gazebo, childpark, garden"
+    );
+}
+
+#[test]
+fn a_mistake_in_a_scene_has_a_file_and_a_line() {
+    let place = Place::new();
+    place.write("bad.toml", "[[sphere]]\ncenter = [0, 0, 0]\nraduis = 1\n");
+    let message = place.refused(&["render", "bad.toml", "-o", "a.png"]);
+    assert!(message.contains("`raduis`") && message.contains("bad.toml:3"), "{message}");
+}
+
+#[test]
+fn values_of_another_form_are_shown_the_form() {
+    let place = Place::new();
+    let size = "error: invalid value '640' for '--size <WxH>': write WIDTHxHEIGHT, both whole numbers of at least 1, for \
+                instance 1024x768";
+    assert_eq!(place.refused(&["render", "room.toml", "-o", "a.png", "--size", "640"]), size);
+    let cases: [(&[&str], &str); 14] = [
+        (&["--camera", "1,2,3"], "write POSITION;TARGET;VERTICAL ANGLE"),
+        (&["--camera", "0,0,1;0,0,1;40"], "position and target are the same point"),
+        (&["--light", "1,2"], "write POSITION, POSITION;INTENSITY or"),
+        (&["--light", "1,2,3;1;-2"], "the radius -2 is not 0 or more"),
+        (&["--ambient", "1,2"], "red,green,blue"),
+        (&["--step", "-1"], "the number -1 is not above 0"),
+        (&["--radius", "nan"], "`nan` is not a number"),
+        (&["--samples", "0"], "0 is not in 1..=65535"),
+        (&["--threads", "0"], "0 is not in 1..=65535"),
+        (&["--grid", "5x5"], "write NXxNYxNZ"),
+        (&["--memory-limit", "lots"], "write a number of bytes"),
+        (&["--device", "gpu"], "choose auto, cpu, cuda or cuda:N"),
+        (&["--seed", "-1"], "--seed"),
+        (&["--bounces", "x"], "--bounces"),
+    ];
+    for (flags, expected) in cases {
+        let message = refused(&place, flags);
+        assert!(message.contains(expected), "{flags:?}: {message}");
+    }
+}
+
+#[test]
+fn an_unknown_word_is_answered_with_the_known() {
+    let place = Place::new();
+    let cases = [
+        ("--mode", "light-mesh, ray-trace, area"),
+        ("--weight", "constant, quadratic, smooth"),
+        ("--lookup", "auto, half-ball"),
+        ("--short-tests", "cells, plain"),
+        ("--accel", "auto, grid, bvh"),
+        ("--up", "y, z"),
+        ("--falloff", "none, inverse-square"),
+        ("--transfer", "srgb, linear"),
+        ("--progress", "auto, bar, json, none"),
+    ];
+    for (flag, known) in cases {
+        let done = place.run(&["render", "room.toml", "-o", "a.png", flag, "foo"]);
+        assert_eq!(done.code, Some(2));
+        assert!(done.stderr.contains(&format!("[possible values: {known}]")), "{done:?}");
+    }
+    let camera = refused(&place, &["--camera-name", "side"]);
+    assert_eq!(camera, "error: there is no camera named `side`, scene room; known are front, top");
+}
+
+#[test]
+fn flags_that_contradict_each_other_are_refused() {
+    let place = Place::new();
+    for flags in [
+        &["--camera", "0,0,1;0,0,0;40", "--camera-name", "top"][..],
+        &["--grid", "2x2x2", "--grid-file", "g"],
+        &["--falloff", "none"],
+    ] {
+        refused(&place, flags);
+    }
+    assert_eq!(
+        refused(&place, &["--accel", "bvh", "--grid", "2x2x2"]),
+        "error: --grid describes a grid, but --accel bvh asks for something else; leave one of them out"
+    );
+}
+
+#[test]
+fn an_unwritable_output_is_found_before_rendering() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("folder.png")).unwrap();
+    let render = |output: &str, flags: &[&str]| {
+        let base = ["render", "room.toml", "-o", output, "--mode", "area", "--size", "8000x8000"];
+        place.refused(&[&base, flags].concat())
+    };
+    assert_eq!(
+        render("a.foo", &[]),
+        "error: cannot save a.foo: unknown picture format, use one of these extensions: bmp, png, exr, jpg, jpeg"
+    );
+    assert_eq!(
+        render("no/a.png", &[]),
+        "error: cannot save no/a.png: the directory no does not exist, create it first"
+    );
+    assert!(render("folder.png", &[]).contains("it is a directory"));
+    assert!(render("a.png", &["--layers", "a.jpg"]).contains("only an OpenEXR file can hold them"));
+    assert!(render("a.png", &["--layers", "no/a.exr"]).contains("does not exist"));
+    assert!(
+        render("a.png", &["--stats", "no/a.json"]).contains("cannot write no/a.json: the directory no does not exist")
+    );
+    let wide = place.refused(&["render", "room.toml", "-o", "a.jpg", "--size", "70000x2"]);
+    assert!(wide.contains("too many for jpg (65535 pixels a side)"), "{wide}");
+}
+
+#[test]
+fn no_output_overwrites_another_file_of_the_run() {
+    let place = Place::new();
+    assert_eq!(
+        place.refused(&["render", "room.toml", "-o", "a.exr", "--layers", "./a.exr"]),
+        "error: -o and --layers are the same file, ./a.exr; give them different names"
+    );
+    assert!(refused(&place, &["--stats", "room.toml"]).contains("the scene and --stats are the same file"));
+    assert!(refused(&place, &["--stats", "a.png"]).contains("-o and --stats are the same file"));
+    let same = ["room.toml", "-o", text(&place.path("room.toml"))].map(str::to_owned);
+    for subcommand in ["grid", "export"] {
+        let message = place.refused(&[subcommand, &same[0], &same[1], &same[2]]);
+        assert!(message.contains("the scene and -o are the same file"), "{message}");
+    }
+}
+
+#[test]
+fn grids_that_do_not_fit_are_refused() {
+    let place = Place::new();
+    place.good(&["grid", "builtin:gazebo", "-o", "gazebo.grid", "-q"]);
+    let other = refused(&place, &["--grid-file", "gazebo.grid"]);
+    assert!(other.contains("gazebo.grid: belongs to another scene") && other.contains("lightmesh grid"), "{other}");
+    assert!(refused(&place, &["--grid-file", "none.grid"]).contains("none.grid: cannot be read"));
+    assert!(refused(&place, &["--grid-file", "room.toml"]).contains("room.toml: is not a grid file"));
+    assert!(refused(&place, &["--grid", "4000x4000x4000"]).contains("4000x4000x4000 cells"));
+}
+
+#[test]
+fn what_the_machine_cannot_do_has_exit_code_3() {
+    let place = Place::new();
+    for flags in [&["--device", "cuda"][..], &["--device", "cuda:1"], &["--memory-limit", "1M"]] {
+        let done = place.run(&[&["render", "room.toml", "-o", "a.png"], flags].concat());
+        assert_eq!(done.code, Some(3), "{flags:?}: {done:?}");
+        assert!(done.stderr.lines().last().unwrap().starts_with("error: "), "{done:?}");
+    }
+    assert_eq!(place.files(), ["room.toml"]);
+}

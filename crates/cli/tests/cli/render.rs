@@ -1,0 +1,192 @@
+//! `lightmesh render`: each flag does what it says.
+
+use lightmesh::image::Frame;
+use serde_json::json;
+
+use crate::run::{LAMP, Place};
+
+#[test]
+fn every_format_holds_the_picture() {
+    let place = Place::new();
+    for name in ["a.bmp", "a.png", "a.jpg", "a.exr"] {
+        let done = place.good(&["render", "builtin:gazebo", "-o", name, "--size", "64x48"]);
+        let frame = Frame::load(place.path(name)).unwrap();
+        assert_eq!((frame.width(), frame.height()), (64, 48));
+        let summary = done.stderr.lines().last().unwrap();
+        assert!(summary.starts_with("gazebo, 64x48, light-mesh: ") && summary.ends_with(name), "{summary}");
+        assert_eq!(done.stdout, "");
+    }
+}
+
+#[test]
+fn choices_made_for_the_user_are_said_and_quiet_is_quiet() {
+    let place = Place::new();
+    let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16"]);
+    assert!(done.stderr.contains("device auto takes "), "{done:?}");
+    assert!(done.stderr.contains("the scene has no light: taking a key light above the camera (--light"), "{done:?}");
+    assert!(done.stderr.contains("chosen for this picture (--step sets another)"), "{done:?}");
+    assert!(!done.stderr.contains("no camera"), "{done:?}");
+    let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16", "-q"]);
+    assert_eq!(done.stderr, "");
+}
+
+#[test]
+fn a_scene_without_camera_is_framed() {
+    let place = Place::new();
+    place.write("ball.toml", "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n");
+    let pictures = ["y", "z"].map(|up| {
+        let done = place.good(&["render", "ball.toml", "-o", "a.exr", "--size", "16x16", "--up", up]);
+        assert!(done.stderr.contains("the scene has no camera: taking one that frames it (--camera"), "{done:?}");
+        place.read("a.exr")
+    });
+    assert_ne!(pictures[0], pictures[1]);
+}
+
+#[test]
+fn warnings_of_the_scene_are_shown() {
+    let place = Place::new();
+    let camera = "[camera]\nposition = [0, 0, 9]\ntarget = [0, 0, 0]\nvfov = 40\nhfov = 50\n";
+    place.write("ball.toml", &format!("{camera}[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n"));
+    let base = ["render", "ball.toml", "-o", "a.exr", "--size", "16x16"];
+    let done = place.good(&base);
+    assert!(done.stderr.contains("warning: ball.toml:1: the camera has vfov and hfov"), "{done:?}");
+    assert_eq!(place.good(&[&base[..], &["--quiet"]].concat()).stderr, "");
+}
+
+#[test]
+fn modes_and_their_settings_reach_the_renderer() {
+    let place = Place::new();
+    let settings = |flags: &[&str]| place.room_stats(flags)["settings"].clone();
+
+    let mesh = settings(&["--step", "0.25", "--radius", "1.5", "--weight", "quadratic", "--lookup", "half-ball"]);
+    assert_eq!(mesh["mode"], "light-mesh");
+    assert_eq!((&mesh["step"], &mesh["step_auto"]), (&json!(0.25), &json!(false)));
+    assert_eq!(
+        (&mesh["radius"], &mesh["weight"], &mesh["lookup"]),
+        (&json!(1.5), &json!("quadratic"), &json!("half-ball"))
+    );
+    assert_eq!(mesh["lattice"]["step"], 0.25);
+    assert_eq!((&mesh["transfer"], &mesh["size"]), (&json!("srgb"), &json!([48, 32])));
+
+    assert_eq!(settings(&["--step", "auto"])["step_auto"], true);
+    assert_eq!(settings(&["--mode", "ray-trace", "--bounces", "2"])["bounces"], 2);
+    let area = settings(&["--mode", "area", "--samples", "9", "--seed", "7"]);
+    assert_eq!((&area["mode"], &area["samples"], &area["seed"]), (&json!("area"), &json!(9), &json!(7)));
+    assert_eq!(settings(&["--mode", "area", "--size", "4x4"])["samples"], 225);
+}
+
+#[test]
+fn statistics_tell_times_of_files_apart() {
+    let place = Place::new();
+    let stats = place.room_stats(&[]);
+    let seconds = |name: &str| stats["seconds"][name].as_f64().unwrap();
+    assert!(seconds("load") > 0.0 && seconds("write") > 0.0 && seconds("render") > 0.0, "{stats}");
+    let stages: f64 = ["primary_rays", "short_tests", "collect", "long_tests", "shade"].map(seconds).iter().sum();
+    assert!(stages <= seconds("render"), "{stats}");
+    assert_eq!((&stats["version"], &stats["scene"]["name"]), (&json!(1), &json!("room")));
+    assert_eq!(stats["counts"]["pixels"], 48 * 32);
+    assert!(stats["memory"]["host_peak_bytes"].is_u64());
+}
+
+#[test]
+fn lights_replace_those_of_the_scene() {
+    let place = Place::new();
+    let flags = ["--light", "-1,4,0;0.5,0.25,0;0.5", "--falloff", "inverse-square", "--ambient", "0.25"];
+    let stats = place.room_stats(&flags);
+    let [lamp, ball] = &stats["settings"]["lights"].as_array().unwrap()[..] else { panic!("{stats}") };
+    assert_eq!((&lamp["kind"], &lamp["position"]), (&json!("point"), &json!([3.0, 5.0, 2.0])));
+    assert_eq!((&ball["kind"], &ball["radius"]), (&json!("sphere"), &json!(0.5)));
+    assert_eq!((&ball["intensity"], &ball["falloff"]), (&json!([0.5, 0.25, 0.0]), &json!("inverse-square")));
+    assert_eq!(stats["settings"]["ambient"], json!([0.25, 0.25, 0.25]));
+    assert_eq!(place.room_stats(&["--ambient", "0.5,0.25,0"])["settings"]["ambient"], json!([0.5, 0.25, 0.0]));
+}
+
+#[test]
+fn a_camera_is_typed_or_named() {
+    let place = Place::new();
+    let camera = |flags: &[&str]| place.room_stats(flags)["settings"]["camera"].clone();
+    let typed = camera(&["--camera", "-1,2,8;-1,2,0;30"]);
+    assert_eq!((&typed["position"], &typed["direction"]), (&json!([-1.0, 2.0, 8.0]), &json!([0.0, 0.0, -1.0])));
+    assert_eq!((&typed["up"], &typed["vfov"]), (&json!([0.0, 1.0, 0.0]), &json!(30.0)));
+    assert_eq!(camera(&["--camera", "0,0,9;0,0,0;30", "--up", "z"])["up"], json!([0.0, 1.0, 0.0]));
+    assert_eq!(camera(&["--camera-name", "top"])["position"], json!([0.0, 9.0, 0.0]));
+    assert_eq!(camera(&[])["position"], json!([0.0, 2.0, 6.0]));
+}
+
+#[test]
+fn the_picture_does_not_depend_on_how_it_is_computed() {
+    let place = Place::new();
+    let reference = place.room(&[]);
+    place.good(&["grid", "room.toml", "-o", "room.grid", "--grid", "9x8x7", "--levels", "1", "--quiet"]);
+    let ways: [&[&str]; 9] = [
+        &["--threads", "1"],
+        &["--threads", "2"],
+        &["--short-tests", "plain"],
+        &["--accel", "bvh"],
+        &["--accel", "grid"],
+        &["--grid", "5x4x3"],
+        &["--accel", "grid", "--grid-file", "room.grid"],
+        &["--device", "cpu"],
+        &["--lookup", "auto", "--bounces", "0", "--progress", "none"],
+    ];
+    for flags in ways {
+        assert!(place.room(flags) == reference, "{flags:?}");
+    }
+    assert!(place.room(&["--radius", "3.1"]) != reference);
+}
+
+#[test]
+fn a_memory_limit_splits_the_work_and_keeps_the_picture() {
+    let place = Place::new();
+    let base = ["render", "builtin:gazebo", "--size", "128x128", "-q", "--bounces", "1"];
+    place.good(&[&base[..], &["-o", "whole.exr", "--stats", "whole.json"]].concat());
+    place.good(&[&base[..], &["-o", "split.exr", "--stats", "split.json", "--memory-limit", "65M"]].concat());
+    assert_eq!(place.json("whole.json")["settings"]["rows_per_band"], 128);
+    assert!(place.json("split.json")["settings"]["rows_per_band"].as_u64().unwrap() < 128);
+    assert!(place.read("whole.exr") == place.read("split.exr"));
+}
+
+#[test]
+fn layers_say_what_each_pixel_saw() {
+    let place = Place::new();
+    place.room(&["--layers", "layers.exr"]);
+    let frame = Frame::load(place.path("layers.exr")).unwrap();
+    let layers = frame.layers().unwrap();
+    assert_eq!(layers.visibility.len(), 1);
+    assert!(layers.depth.iter().any(|depth| depth.is_finite()));
+}
+
+#[test]
+fn transfer_is_of_8_bit_files() {
+    let place = Place::new();
+    let picture = |transfer: &str| {
+        let base = ["render", "room.toml", "-o", "a.bmp", "--size", "24x24", "-q", "--light", LAMP];
+        place.good(&[&base[..], &["--transfer", transfer]].concat());
+        place.read("a.bmp")
+    };
+    let (srgb, linear) = (picture("srgb"), picture("linear"));
+    let sum = |bytes: &[u8]| bytes.iter().map(|&byte| u64::from(byte)).sum::<u64>();
+    assert!(sum(&srgb) > sum(&linear));
+}
+
+#[test]
+fn progress_is_one_json_object_a_line() {
+    let place = Place::new();
+    let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "32x32", "--progress", "json"]);
+    let events: Vec<serde_json::Value> = done.stderr.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let stages = |event: &str| -> Vec<String> {
+        let of_kind = events.iter().filter(|it| it["event"] == event);
+        of_kind.map(|it| it["stage"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(stages("begin"), stages("end"));
+    for stage in ["build", "primary_rays", "short_tests", "collect", "long_tests", "shade"] {
+        assert!(stages("begin").contains(&stage.to_owned()), "{stage}");
+    }
+    let primary = events.iter().find(|it| it["event"] == "end" && it["stage"] == "primary_rays").unwrap();
+    assert_eq!((&primary["done"], &primary["total"]), (&json!(1024), &json!(1024)));
+    assert!(primary["seconds"].is_f64());
+    assert_eq!(events.last().unwrap()["event"], "summary");
+    // A bar is for terminals: here there is none.
+    let bar = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16", "--progress", "bar", "-q"]);
+    assert_eq!(bar.stderr, "");
+}

@@ -1,0 +1,143 @@
+//! Running the program in a folder of its own.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A ball over a floor, seen by two cameras; no light.
+const ROOM: &str = r#"
+[[camera]]
+name = "front"
+position = [0, 2, 6]
+target = [0, 1, 0]
+vfov = 45
+
+[[camera]]
+name = "top"
+position = [0, 9, 0]
+target = [0, 0, 0]
+up = [0, 0, -1]
+vfov = 45
+
+[[material]]
+name = "white"
+kd = [0.8, 0.8, 0.8]
+
+[[sphere]]
+center = [0, 1, 0]
+radius = 1
+segments = 12
+material = "white"
+
+[[plane]]
+point = [0, 0, 0]
+normal = [0, 1, 0]
+size = [12, 12]
+material = "white"
+"#;
+
+/// A light for the room, above and to the right.
+pub(crate) const LAMP: &str = "3,5,2;0.9";
+
+/// A folder with `room.toml` in it.
+pub(crate) struct Place(TempDir);
+
+/// How a run ended.
+#[derive(Debug)]
+pub(crate) struct Done {
+    pub(crate) code: Option<i32>,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+impl Place {
+    pub(crate) fn new() -> Place {
+        let place = Place(tempfile::tempdir().unwrap());
+        place.write("room.toml", ROOM);
+        place
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub(crate) fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.path(name), text).unwrap();
+    }
+
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    pub(crate) fn json(&self, name: &str) -> Value {
+        serde_json::from_slice(&self.read(name)).unwrap()
+    }
+
+    /// Names of all files, sorted.
+    pub(crate) fn files(&self) -> Vec<String> {
+        let names = std::fs::read_dir(self.0.path()).unwrap().map(|entry| entry.unwrap().file_name());
+        let mut names: Vec<String> = names.map(|name| name.into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    /// Not yet started.
+    pub(crate) fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_lightmesh"));
+        command.current_dir(self.0.path()).args(args).stdin(Stdio::null());
+        command
+    }
+
+    pub(crate) fn run(&self, args: &[&str]) -> Done {
+        self.command(args).output().unwrap().into()
+    }
+
+    /// Runs what must succeed.
+    pub(crate) fn good(&self, args: &[&str]) -> Done {
+        let done = self.run(args);
+        assert_eq!(done.code, Some(0), "{args:?}: {done:?}");
+        done
+    }
+
+    /// Runs what must be refused with exit code 2 and leave no file; gives the first line of the message.
+    pub(crate) fn refused(&self, args: &[&str]) -> String {
+        let before = self.files();
+        let done = self.run(args);
+        assert_eq!(done.code, Some(2), "{args:?}: {done:?}");
+        assert_eq!(self.files(), before, "{args:?}");
+        assert_eq!(done.stdout, "", "{args:?}");
+        let line = done.stderr.lines().find(|line| line.starts_with("error: "));
+        line.unwrap_or_else(|| panic!("no error in {done:?}")).to_owned()
+    }
+
+    /// Renders a small picture of the room, quietly, as an exr; gives its bytes.
+    pub(crate) fn room(&self, flags: &[&str]) -> Vec<u8> {
+        let base = ["render", "room.toml", "-o", "room.exr", "--size", "48x32", "--quiet", "--light", LAMP];
+        let done = self.good(&[&base, flags].concat());
+        assert_eq!(done.stderr, "", "{flags:?}");
+        self.read("room.exr")
+    }
+
+    /// As [`Place::room`]; gives the statistics.
+    pub(crate) fn room_stats(&self, flags: &[&str]) -> Value {
+        self.room(&[&["--stats", "room.json"], flags].concat());
+        self.json("room.json")
+    }
+}
+
+impl From<Output> for Done {
+    fn from(output: Output) -> Done {
+        Done {
+            code: output.status.code(),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+}
+
+/// A path as text.
+pub(crate) fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
