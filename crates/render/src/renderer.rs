@@ -19,6 +19,9 @@ use crate::stats::{CameraStats, Counts, DeviceStats, LatticeStats, MemoryStats, 
 use crate::view::View;
 use crate::{Device, Observer, Picture, RenderError, Unobserved, memory};
 
+/// More threads than any machine has processors only wait for each other.
+const MAX_THREADS: usize = 1024;
+
 /// A finished picture and what is to be said about it.
 #[derive(Clone, Debug)]
 pub struct Frame {
@@ -55,10 +58,18 @@ impl Renderer {
     /// A renderer on `device` with a number of threads of its own.
     ///
     /// # Errors
-    /// [`RenderError::Device`] where the device cannot be used, [`RenderError::Threads`] where the threads cannot be started.
+    /// [`RenderError::Device`] where the device cannot be used, [`RenderError::Setting`] where the number of threads has no sense,
+    /// [`RenderError::Threads`] where the threads cannot be started.
     pub fn with_threads(device: Device, threads: Option<usize>) -> Result<Renderer, RenderError> {
         if let Device::Cuda(_) = device {
             return Err(RenderError::Device { device: device.to_string(), reason: NO_CUDA.to_owned() });
+        }
+        if threads.is_some_and(|threads| !(1..=MAX_THREADS).contains(&threads)) {
+            return Err(RenderError::Setting {
+                what: "number of threads",
+                value: threads.unwrap_or(0).to_string(),
+                remedy: "choose 1 to 1024; the number of processors is best",
+            });
         }
         let threads = threads.unwrap_or(0);
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();

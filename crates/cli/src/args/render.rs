@@ -23,7 +23,7 @@ pub(crate) struct RenderArgs {
     pub(crate) mode: Mode,
 
     /// Depth of mirror recursion, in any mode
-    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Method")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, help_heading = "Method")]
     pub(crate) bounces: u32,
 
     /// Light-mesh step h in scene units; auto ties it to the size of a pixel in the scene [default: the scene's, else auto]
@@ -47,11 +47,11 @@ pub(crate) struct RenderArgs {
     pub(crate) short_tests: ShortTests,
 
     /// Shadow rays per light (area), or per light point and light that has a size (light-mesh) [default: 225 / 4]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65535), help_heading = "Method")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65535), help_heading = "Method")]
     pub(crate) samples: Option<u32>,
 
     /// Random pattern of sampled lights: same seed, same picture
-    #[arg(long, value_name = "S", default_value_t = 0, help_heading = "Method")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, default_value_t = 0, help_heading = "Method")]
     pub(crate) seed: u64,
 
     /// Width and height in pixels
@@ -99,7 +99,7 @@ pub(crate) struct RenderArgs {
     pub(crate) device: Device,
 
     /// CPU threads [default: all]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65535), help_heading = "Machine")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65535), help_heading = "Machine")]
     pub(crate) threads: Option<u32>,
 
     /// Acceleration structure

@@ -29,16 +29,15 @@ impl FromStr for ByteSize {
 
 fn unit_bytes(unit: &str) -> Option<u64> {
     let lower = unit.to_ascii_lowercase();
-    let (letter, rest) = lower.split_at_checked(1).unwrap_or(("b", ""));
-    let power = match letter {
-        "b" if rest.is_empty() => return Some(1),
-        "k" => 1,
-        "m" => 2,
-        "g" => 3,
-        "t" => 4,
-        _ => return None,
+    let mut rest = lower.chars();
+    let power = match rest.next() {
+        Some('k') => 1,
+        Some('m') => 2,
+        Some('g') => 3,
+        Some('t') => 4,
+        _ => return matches!(lower.as_str(), "" | "b").then_some(1),
     };
-    match rest {
+    match rest.as_str() {
         "" | "ib" => Some(1024_u64.pow(power)),
         "b" => Some(1000_u64.pow(power)),
         _ => None,

@@ -47,8 +47,8 @@ fn values_of_another_form_are_shown_the_form() {
         (&["--grid", "5x5"], "write NXxNYxNZ"),
         (&["--memory-limit", "lots"], "write a number of bytes"),
         (&["--device", "gpu"], "choose auto, cpu, cuda or cuda:N"),
-        (&["--seed", "-1"], "--seed"),
-        (&["--bounces", "x"], "--bounces"),
+        (&["--seed", "-1"], "invalid value '-1' for '--seed <S>'"),
+        (&["--bounces", "x"], "invalid value 'x' for '--bounces <N>'"),
     ];
     for (flags, expected) in cases {
         let message = refused(&place, flags);
@@ -144,7 +144,8 @@ fn grids_that_do_not_fit_are_refused() {
     let other = refused(&place, &["--grid-file", "gazebo.grid"]);
     assert!(other.contains("gazebo.grid: belongs to another scene") && other.contains("lightmesh grid"), "{other}");
     assert!(refused(&place, &["--grid-file", "none.grid"]).contains("none.grid: cannot be read"));
-    assert!(refused(&place, &["--grid-file", "room.toml"]).contains("room.toml: is not a grid file"));
+    place.write("notes.txt", "not a grid, but long enough to have a header of the right size");
+    assert!(refused(&place, &["--grid-file", "notes.txt"]).contains("notes.txt: is not a grid file"));
     assert!(refused(&place, &["--grid", "4000x4000x4000"]).contains("4000x4000x4000 cells"));
 }
 

@@ -72,7 +72,8 @@ fn modes_and_their_settings_reach_the_renderer() {
     assert_eq!(settings(&["--mode", "ray-trace", "--bounces", "2"])["bounces"], 2);
     let area = settings(&["--mode", "area", "--samples", "9", "--seed", "7"]);
     assert_eq!((&area["mode"], &area["samples"], &area["seed"]), (&json!("area"), &json!(9), &json!(7)));
-    assert_eq!(settings(&["--mode", "area", "--size", "4x4"])["samples"], 225);
+    assert_eq!(settings(&["--mode", "area"])["samples"], 225);
+    assert_eq!(settings(&[])["samples"], 4);
 }
 
 #[test]

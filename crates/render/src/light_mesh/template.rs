@@ -1,9 +1,8 @@
 //! Formula (6): which light points can lie in the interpolation half-ball of some point of a cell.
-//!
-//! The order of the points is ours to choose. They follow the Z-order curve (Morton 1966), so that each run of eight, a SIMD
-//! vector, is a compact cluster: what misses the cluster's box misses all eight.
 
-use glam::{IVec3, Vec3};
+use std::ops::Range;
+
+use glam::IVec3;
 
 /// The light points that lie within r of *some* point of a cell, as offsets from the cell. Bit k of an object point's mask
 /// speaks of `offsets()[k]`.
@@ -11,16 +10,8 @@ use glam::{IVec3, Vec3};
 pub struct Template {
     radius: f32,
     offsets: Vec<IVec3>,
-    clusters: Vec<Cluster>,
-}
-
-/// The box around eight consecutive points of a template, in steps from the cell's lowest corner.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cluster {
-    /// Its middle.
-    pub center: Vec3,
-    /// Half its edges.
-    pub half: Vec3,
+    /// The points of each line along x, by z and y from `1 − reach` on: (first bit, its x, number of points).
+    rows: Vec<(u16, i16, u16)>,
 }
 
 /// A radius for which there is no template.
@@ -54,11 +45,17 @@ impl Template {
             let square: i32 = offset.to_array().iter().map(|&i| excess(i) * excess(i)).sum();
             f64::from(square) < f64::from(radius) * f64::from(radius)
         };
-        let plane = |z: i32| side.clone().flat_map(move |y| (1 - reach..=reach).map(move |x| IVec3::new(x, y, z)));
-        let mut offsets: Vec<IVec3> = side.clone().flat_map(plane).filter(inside).collect();
-        offsets.sort_unstable_by_key(|offset| z_order(*offset + reach - 1));
-        let clusters = offsets.chunks(Cluster::POINTS).map(Cluster::around).collect();
-        Ok(Template { radius, offsets, clusters })
+        let mut offsets = Vec::new();
+        let mut rows = Vec::new();
+        for z in side.clone() {
+            for y in side.clone() {
+                let first = offsets.len();
+                offsets.extend(side.clone().map(|x| IVec3::new(x, y, z)).filter(inside));
+                let x = offsets.get(first).map_or(0, |offset| offset.x);
+                rows.push((first as u16, x as i16, (offsets.len() - first) as u16));
+            }
+        }
+        Ok(Template { radius, offsets, rows })
     }
 
     /// R = r/h.
@@ -66,14 +63,21 @@ impl Template {
         self.radius
     }
 
-    /// Offsets from the cell, in Z-order.
+    /// Offsets from the cell, ascending in (z, y, x).
     pub fn offsets(&self) -> &[IVec3] {
         &self.offsets
     }
 
-    /// The boxes around each eight offsets.
-    pub fn clusters(&self) -> &[Cluster] {
-        &self.clusters
+    /// The bits of the points with this `y` and `z` whose x lies in `low..=high`.
+    #[inline(always)]
+    pub fn row(&self, y: i32, z: i32, low: i32, high: i32) -> Range<usize> {
+        let (side, least) = (2 * self.reach(), 1 - self.reach());
+        let (first, x, count) = self.rows[((z - least) * side + y - least) as usize];
+        let (first, x, end) = (i32::from(first), i32::from(x), i32::from(first) + i32::from(count));
+        // Where the row is empty or the range misses it, so is the result.
+        let from = (first + low - x).clamp(first, end);
+        let to = (first + high + 1 - x).clamp(from, end);
+        from as usize..to as usize
     }
 
     /// Number of light points.
@@ -91,23 +95,6 @@ impl Template {
     pub fn reach(&self) -> i32 {
         self.radius.ceil() as i32
     }
-}
-
-impl Cluster {
-    /// Points of a cluster; the last one may have fewer.
-    pub const POINTS: usize = 8;
-
-    fn around(offsets: &[IVec3]) -> Cluster {
-        let min = offsets.iter().copied().fold(IVec3::MAX, IVec3::min).as_vec3();
-        let max = offsets.iter().copied().fold(IVec3::MIN, IVec3::max).as_vec3();
-        Cluster { center: 0.5 * (min + max), half: 0.5 * (max - min) }
-    }
-}
-
-/// The bits of the three components (none negative, six bits each) interleaved.
-fn z_order(index: IVec3) -> u32 {
-    let spread = |value: i32| (0..6).map(|bit| (value as u32 >> bit & 1) << (3 * bit)).sum::<u32>();
-    spread(index.x) | spread(index.y) << 1 | spread(index.z) << 2
 }
 
 #[cfg(test)]
@@ -152,16 +139,30 @@ mod tests {
     }
 
     #[test]
-    fn clusters_hold_their_points_and_are_compact() {
-        let template = Template::new(3.1).unwrap();
-        for (points, cluster) in template.offsets().chunks(8).zip(template.clusters()) {
-            for point in points {
-                assert!((point.as_vec3() - cluster.center).abs().cmple(cluster.half).all());
+    fn bits_ascend_in_z_y_x() {
+        let template = Template::new(2.1).unwrap();
+        assert!(template.offsets().is_sorted_by_key(|offset| (offset.z, offset.y, offset.x)));
+    }
+
+    #[test]
+    fn rows_are_the_points_between_two_bounds() {
+        for radius in [0.5, 1.5, 3.1, 4.0] {
+            let template = Template::new(radius).unwrap();
+            let reach = template.reach();
+            let side = 1 - reach..=reach;
+            for (y, z) in side.clone().flat_map(|y| side.clone().map(move |z| (y, z))) {
+                for (low, high) in [(1 - reach, reach), (0, 0), (-1, 2), (2, 1), (-99, 99), (reach + 1, reach + 2)] {
+                    let expected: Vec<usize> = (0..template.len())
+                        .filter(|&bit| {
+                            let offset = template.offsets()[bit];
+                            offset.y == y && offset.z == z && (low..=high).contains(&offset.x)
+                        })
+                        .collect();
+                    let row: Vec<usize> = template.row(y, z, low, high).collect();
+                    assert_eq!(row, expected, "R = {radius}, y = {y}, z = {z}, {low}..={high}");
+                }
             }
         }
-        let volume = |cluster: &Cluster| (2.0 * cluster.half + 1.0).element_product();
-        let mean = template.clusters().iter().map(volume).sum::<f32>() / template.clusters().len() as f32;
-        assert!(mean < 16.0, "rows of eight would take 8, cubes too; this order takes {mean}");
     }
 
     #[test]

@@ -14,10 +14,29 @@ use crate::view::View;
 const BATCH: usize = 2048;
 
 pub(crate) fn camera_rays(view: &View, rows: Range<u32>) -> RayList {
-    let [width, _] = view.size();
-    let pixels: Vec<u32> = (rows.start * width..rows.end * width).collect();
+    let pixels = blocks_of_pixels(view.size()[0], rows);
     let rays: Vec<Ray> = pixels.par_iter().map(|&pixel| view.ray(pixel)).collect();
     RayList { rays, pixels, weights: Vec::new() }
+}
+
+/// The pixels of some rows in blocks of 4×2 within 16×16, so that consecutive rays stay together.
+fn blocks_of_pixels(width: u32, rows: Range<u32>) -> Vec<u32> {
+    let mut pixels = Vec::with_capacity((width * (rows.end - rows.start)) as usize);
+    let cut = |range: Range<u32>, size: u32| {
+        range.clone().step_by(size as usize).map(move |first| first..range.end.min(first + size))
+    };
+    for tile_rows in cut(rows, 16) {
+        for tile_columns in cut(0..width, 16) {
+            for block_rows in cut(tile_rows.clone(), 2) {
+                for block_columns in cut(tile_columns.clone(), 4) {
+                    for y in block_rows.clone() {
+                        pixels.extend(block_columns.clone().map(|x| y * width + x));
+                    }
+                }
+            }
+        }
+    }
+    pixels
 }
 
 pub(crate) fn primary_rays(job: &Job, scene: &PreparedScene, list: &RayList) -> Vec<Hit> {
@@ -36,4 +55,19 @@ pub(crate) fn primary_rays(job: &Job, scene: &PreparedScene, list: &RayList) -> 
         Tally::add(&job.tally.hits, found);
     }
     hits
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_hold_every_pixel_of_their_rows_once() {
+        for (width, rows) in [(1, 0..1), (7, 3..6), (33, 0..35), (64, 16..48)] {
+            let mut pixels = blocks_of_pixels(width, rows.clone());
+            pixels.sort_unstable();
+            assert!(pixels.into_iter().eq(rows.start * width..rows.end * width));
+        }
+        assert_eq!(blocks_of_pixels(32, 0..2)[..9], [0, 1, 2, 3, 32, 33, 34, 35, 4]);
+    }
 }

@@ -1,144 +1,128 @@
 //! The short tests by cell: the triangles that can stand between the points of a cell and their light points are looked up
-//! once a cell.
+//! once a cell, each with the box of light points that its shadow can reach.
 //!
-//! An object point drops those that lie on or behind its tangent plane, or whose plane it cannot reach. If none is left, its
-//! whole half-ball is visible without a single test: so it is for most points of a scene with open spaces.
+//! An object point drops those that lie on or behind its tangent plane. If none is left, its whole half-ball is visible
+//! without a single test: so it is for most points of a scene with open spaces.
 
-use fearless_simd::{f32x8, prelude::*};
 use glam::{IVec3, Vec3};
 use lightmesh_scene::Bounds;
 
-use super::lanes::{self, LANES};
-use super::{CellPoints, MaskCounts, population};
-use crate::accel::ShortTest;
-use crate::accel::triangle::Occluder;
 use crate::light_mesh::LightMesh;
 use crate::prepared::PreparedScene;
+#[cfg(doc)]
 use crate::surface::SurfacePoint;
 
-/// The triangles that can block a segment which starts in one cell, one lane a triangle.
+/// A triangle that may block segments which start in one cell.
+pub(super) struct Candidate {
+    pub(super) corners: [Vec3; 3],
+    /// The light points that it can hide from any object point of the cell, as offsets from the cell; both ends included.
+    pub(super) low: IVec3,
+    pub(super) high: IVec3,
+}
+
+/// The triangles that can block a segment which starts in one cell.
 #[derive(Default)]
-pub(crate) struct CellOccluders {
+pub(super) struct CellOccluders {
     found: Vec<u32>,
-    corners: Vec<[Vec3; 3]>,
-    /// Components of the three corners, then centre and radius of a ball around the triangle.
-    lanes: [Vec<f32>; 13],
+    pub(super) candidates: Vec<Candidate>,
 }
 
 impl CellOccluders {
-    /// Collects the triangles near `cell`.
-    pub(crate) fn collect(&mut self, scene: &PreparedScene, mesh: &LightMesh, cell: IVec3) {
+    /// Collects the triangles that matter to segments from `origins`, the box around all
+    /// [origins](SurfacePoint::origin) in `cell`.
+    pub(super) fn collect(&mut self, scene: &PreparedScene, mesh: &LightMesh, cell: IVec3, origins: &Bounds) {
         let reach = mesh.radius + mesh.slack();
-        let (low, high) = (mesh.lattice.point(cell), mesh.lattice.point(cell + IVec3::ONE));
-        let region = Bounds { min: low - Vec3::splat(reach), max: high + Vec3::splat(reach) };
+        let region =
+            Bounds { min: origins.min - Vec3::splat(reach), max: origins.max + Vec3::splat(reach) };
         scene.accelerator.triangles_in(&region, &mut self.found);
-
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        self.corners.clear();
-        self.corners.extend(
-            (self.found.iter().map(|&index| scene.triangles[index as usize].corners()))
-                .filter(|corners| plane_is_near(corners, middle, half, reach)),
-        );
-        for lane in &mut self.lanes {
-            lane.clear();
-        }
-        // Padding: triangles at NaN fail every comparison.
-        let count = self.corners.len().next_multiple_of(LANES);
-        for lane in &mut self.lanes {
-            lane.resize(count, f32::NAN);
-        }
-        for (index, corners) in self.corners.iter().enumerate() {
-            let [a, b, c] = *corners;
-            let (center, radius) = ball_around(corners);
-            for (point, first) in [(a, 0), (b, 3), (c, 6), (center, 9)] {
-                self.lanes[first][index] = point.x;
-                self.lanes[first + 1][index] = point.y;
-                self.lanes[first + 2][index] = point.z;
-            }
-            self.lanes[12][index] = radius;
-        }
-    }
-
-    /// The mask of one object point of the cell.
-    #[inline(always)]
-    pub(crate) fn mask<S: Simd>(
-        &self,
-        simd: S,
-        mesh: &LightMesh,
-        points: &CellPoints,
-        point: &SurfacePoint,
-        mask: &mut [u32],
-    ) -> MaskCounts {
-        // 1, 2. The half-ball.
-        points.half_ball(simd, point.position, point.normal, mesh, mask);
-        let half_ball = population(mask);
-
-        // 3. What stands in its way.
-        let test = ShortTest { origin: point.origin, normal: point.normal, edge_on: mesh.edge_on() };
-        let reach = mesh.radius + mesh.slack();
-        let mut tested = 0;
-        for first in (0..self.lanes[0].len()).step_by(LANES) {
-            let mut near = self.in_the_way(simd, first, point, reach);
-            while near != 0 {
-                let corners = self.corners[first + near.trailing_zeros() as usize];
-                near &= near - 1;
-                let Some(occluder) = test.occluder(corners) else { continue };
-                if out_of_reach(&occluder, reach) {
-                    continue;
-                }
-                tested = half_ball;
-                points.clear_blocked(simd, point.origin, &occluder, mask);
+        self.candidates.clear();
+        for &index in &self.found {
+            let corners = scene.triangles[index as usize].corners();
+            if plane_is_near(&corners, origins, reach)
+                && let Some((low, high)) = shadow_box(mesh, cell, origins, &corners)
+            {
+                self.candidates.push(Candidate { corners, low, high });
             }
         }
-        MaskCounts { half_ball, used: population(mask), tested }
-    }
-
-    /// Bit k: triangle `first + k` rises over the tangent plane at `point` and comes nearer than `reach`.
-    #[inline(always)]
-    fn in_the_way<S: Simd>(&self, simd: S, first: usize, point: &SurfacePoint, reach: f32) -> u32 {
-        let normal = lanes::splat(simd, point.normal);
-        let a = lanes::dot(normal, self.relative(simd, 0, first, point.origin));
-        let b = lanes::dot(normal, self.relative(simd, 3, first, point.origin));
-        let c = lanes::dot(normal, self.relative(simd, 6, first, point.origin));
-        let center = self.relative(simd, 9, first, point.origin);
-        let apart = f32x8::from_slice(simd, &self.lanes[12][first..first + LANES]) + reach;
-        let near = lanes::dot(center, center).simd_le(apart * apart);
-        (a.max(b).max(c).simd_gt(0.0) & near).to_bitmask() as u32
-    }
-
-    /// Eight points whose components stand in three lanes from `lane` on, relative to `from`.
-    #[inline(always)]
-    fn relative<S: Simd>(&self, simd: S, lane: usize, first: usize, from: Vec3) -> [f32x8<S>; 3] {
-        let [x, y, z] = [&self.lanes[lane], &self.lanes[lane + 1], &self.lanes[lane + 2]];
-        [
-            f32x8::from_slice(simd, &x[first..first + LANES]) - from.x,
-            f32x8::from_slice(simd, &y[first..first + LANES]) - from.y,
-            f32x8::from_slice(simd, &z[first..first + LANES]) - from.z,
-        ]
     }
 }
 
 /// Whether the plane of a triangle comes nearer than `reach` to a box.
 #[inline(always)]
-fn plane_is_near([a, b, c]: &[Vec3; 3], middle: Vec3, half: Vec3, reach: f32) -> bool {
+fn plane_is_near([a, b, c]: &[Vec3; 3], region: &Bounds, reach: f32) -> bool {
     let normal = (b - a).cross(c - a);
-    let apart = normal.dot(middle - a).abs() - normal.abs().dot(half);
+    let apart = normal.dot(region.center() - a).abs() - 0.5 * normal.abs().dot(region.extent());
     apart <= 0.0 || apart * apart <= reach * reach * normal.length_squared()
 }
 
-/// Centre and radius of a ball that holds a triangle.
+/// The box of light points, as offsets from `cell`, that a triangle can hide from a point in `origins`; `None` where there is
+/// no such light point.
+///
+/// A hidden light point lies at P + s·(q − P) with P in `origins`, q on the triangle and s ≥ 1. It is nearer to P than the
+/// radius r, so s is at most r over the distance between the box and the triangle.
 #[inline(always)]
-fn ball_around([a, b, c]: &[Vec3; 3]) -> (Vec3, f32) {
-    let center = 0.5 * (a.min(*b).min(*c) + a.max(*b).max(*c));
-    let square = a.distance_squared(center).max(b.distance_squared(center)).max(c.distance_squared(center));
-    // Rounded up, so that the ball holds the corners as they are.
-    (center, square.sqrt() * (1.0 + 4.0 * f32::EPSILON))
+fn shadow_box(mesh: &LightMesh, cell: IVec3, origins: &Bounds, [a, b, c]: &[Vec3; 3]) -> Option<(IVec3, IVec3)> {
+    let slack = Vec3::splat(mesh.slack());
+    let reach = Vec3::splat(mesh.radius + mesh.slack());
+    // 1. All q − P.
+    let low = a.min(*b).min(*c) - origins.max - slack;
+    let high = a.max(*b).max(*c) - origins.min + slack;
+    // 2. All s·(q − P) within the ball. An infinite s leaves the ball's own box.
+    let apart = low.max(-high).max(Vec3::ZERO).max_element();
+    if apart > reach.x {
+        return None;
+    }
+    let most = if apart > 0.0 { reach.x / apart } else { f32::INFINITY };
+    let low = Vec3::select(low.cmplt(Vec3::ZERO), (most * low).max(-reach), low);
+    let high = Vec3::select(high.cmpgt(Vec3::ZERO), (most * high).min(reach), high);
+    // 3. In steps from the cell.
+    let corner = mesh.lattice.point(cell);
+    let low = ((origins.min + low - slack - corner) / mesh.lattice.step).ceil().as_ivec3();
+    let high = ((origins.max + high + slack - corner) / mesh.lattice.step).floor().as_ivec3();
+    let (least, largest) = (IVec3::splat(1 - mesh.template.reach()), IVec3::splat(mesh.template.reach()));
+    let (low, high) = (low.max(least), high.min(largest));
+    low.cmple(high).all().then_some((low, high))
 }
 
-/// Whether the triangle's plane is farther than `reach` from the segments' origin.
-#[inline(always)]
-fn out_of_reach(occluder: &Occluder, reach: f32) -> bool {
-    let [a, b, c] = occluder.sides;
-    let area = a + b + c;
-    occluder.volume * occluder.volume > reach * reach * area.length_squared()
+#[cfg(test)]
+mod tests {
+    use lightmesh_scene::Weight;
+
+    use super::*;
+    use crate::light_mesh::{Lattice, Template};
+
+    fn mesh() -> LightMesh {
+        LightMesh {
+            lattice: Lattice { origin: Vec3::ZERO, step: 1.0, dims: [100; 3] },
+            template: Template::new(3.1).unwrap(),
+            radius: 3.1,
+            weight: Weight::Smooth,
+        }
+    }
+
+    #[test]
+    fn a_shadow_widens_away_from_its_triangle() {
+        let origins = Bounds { min: Vec3::splat(10.4), max: Vec3::splat(10.6) };
+        let wall = [Vec3::new(11.5, 10.0, 10.0), Vec3::new(11.5, 11.0, 10.0), Vec3::new(11.5, 10.0, 11.0)];
+        let (low, high) = shadow_box(&mesh(), IVec3::splat(10), &origins, &wall).unwrap();
+        assert_eq!((low.x, high.x), (2, 3), "only beyond the triangle");
+        assert!(low.y < 0 && high.y > 1, "wider than the triangle");
+        assert!(low.y > -3 && high.y < 4, "but not everywhere");
+    }
+
+    #[test]
+    fn a_triangle_out_of_reach_hides_nothing() {
+        let origins = Bounds { min: Vec3::splat(10.4), max: Vec3::splat(10.6) };
+        let far = [Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner + Vec3::splat(14.0));
+        assert!(shadow_box(&mesh(), IVec3::splat(10), &origins, &far).is_none());
+    }
+
+    #[test]
+    fn a_triangle_around_the_origins_may_hide_everything() {
+        let origins = Bounds { min: Vec3::splat(10.4), max: Vec3::splat(10.6) };
+        let around = [Vec3::new(5.0, 5.0, 10.5), Vec3::new(20.0, 5.0, 10.2), Vec3::new(5.0, 20.0, 10.9)];
+        let reach = mesh().template.reach();
+        let expected = (IVec3::splat(1 - reach), IVec3::splat(reach));
+        assert_eq!(shadow_box(&mesh(), IVec3::splat(10), &origins, &around), Some(expected));
+    }
 }

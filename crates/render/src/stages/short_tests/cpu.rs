@@ -1,9 +1,12 @@
 //! Step 2 on the CPU: groups, then masks run by run.
 
 use fearless_simd::{Level, prelude::*};
+use lightmesh_scene::Bounds;
 use rayon::prelude::*;
 
+use super::batch::Batch;
 use super::cells::CellOccluders;
+use super::lanes::LANES;
 use super::plain;
 use super::{CellGroups, CellPoints, MaskCounts, Masks};
 use crate::accel::Hit;
@@ -77,16 +80,24 @@ struct Run<'a> {
 impl Run<'_> {
     #[inline(always)]
     fn by_cell<S: Simd>(&self, simd: S, run: std::ops::Range<usize>, bits: &mut [u32]) -> MaskCounts {
+        let words = self.mesh.template.words();
         let mut occluders = CellOccluders::default();
         let mut points = CellPoints::new(self.mesh);
-        let mut masks = bits.chunks_exact_mut(self.mesh.template.words());
+        let mut batch = Batch::new(self.mesh);
         let mut counts = MaskCounts::default();
+        let mut rest = bits;
         for group in run {
             let cell = point_of(self.groups.cell(group));
+            let slots = self.groups.slots(group);
             points.place(self.mesh, cell);
-            occluders.collect(self.scene, self.mesh, cell);
-            for (slot, mask) in self.groups.slots(group).zip(&mut masks) {
-                counts = counts + occluders.mask(simd, self.mesh, &points, &self.point(slot), mask);
+            let origins = Bounds::around(slots.clone().map(|slot| self.point(slot).origin));
+            occluders.collect(self.scene, self.mesh, cell, &origins);
+            for first in slots.clone().step_by(LANES) {
+                let lanes = first..slots.end.min(first + LANES);
+                let (masks, tail) = rest.split_at_mut(lanes.len() * words);
+                batch.fill(lanes.map(|slot| self.point(slot)));
+                counts = counts + batch.masks(simd, self.mesh, &points, &occluders.candidates, masks);
+                rest = tail;
             }
         }
         counts

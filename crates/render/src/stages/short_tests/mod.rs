@@ -10,6 +10,7 @@
 //! triangles that can matter. [`cells`] uses that; [`plain`] asks the acceleration structure segment by segment and is the
 //! oracle: both give the same masks in every bit.
 
+mod batch;
 pub(crate) mod cells;
 pub(crate) mod cpu;
 pub(crate) mod group;
