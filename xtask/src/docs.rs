@@ -4,10 +4,10 @@
 //! relative to the repository's root. What counts as such a path is decided by [`is_path`]. Fenced blocks are left alone:
 //! they hold commands and examples.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::{fmt, fs};
 
-use crate::Verdict;
+use crate::{Outcome, Verdict};
 
 /// The documents that describe the repository.
 const DOCUMENTS: [&str; 4] = ["README.md", "ARCHITECTURE.md", "METHOD.md", "CONTRIBUTING.md"];
@@ -15,21 +15,19 @@ const DOCUMENTS: [&str; 4] = ["README.md", "ARCHITECTURE.md", "METHOD.md", "CONT
 /// Endings of the files that the repository holds.
 const EXTENSIONS: [&str; 9] = ["rs", "md", "toml", "png", "json", "cu", "cuh", "h", "yml"];
 
-/// A document that could not be read.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot read {}: {cause}", path.display())]
-pub(crate) struct DocsError {
-    path: PathBuf,
-    cause: std::io::Error,
-}
-
 /// A pointer to something that does not exist.
-#[derive(Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{document}:{line}: there is no `{target}`; correct the document or bring the file back")]
+#[derive(Debug, PartialEq, Eq)]
 struct Problem {
     document: String,
     line: usize,
     target: String,
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Problem { document, line, target } = self;
+        write!(f, "{document}:{line}: there is no `{target}`; correct the document or bring the file back")
+    }
 }
 
 /// Something that a document points to.
@@ -42,12 +40,12 @@ enum Pointer {
 }
 
 /// Checks the documents in `root`.
-pub(crate) fn check(root: &Path) -> Result<Verdict, DocsError> {
+pub(crate) fn check(root: &Path) -> Outcome {
     let mut problems = Vec::new();
     let mut count = 0;
     for document in DOCUMENTS {
-        let path = root.join(document);
-        let text = fs::read_to_string(&path).map_err(|cause| DocsError { path, cause })?;
+        let text =
+            fs::read_to_string(root.join(document)).map_err(|error| format!("cannot read {document}: {error}"))?;
         for (line, pointer) in pointers(root, &text) {
             count += 1;
             let (Pointer::Link(target) | Pointer::Path(target)) = &pointer;

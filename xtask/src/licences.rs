@@ -4,13 +4,15 @@
 //! SPDX expression. An expression passes where [`ALLOWED`] satisfies it: one side of an `OR`, both sides of an `AND`, and for
 //! `WITH` the pair of licence and exception.
 
+use std::error::Error;
 use std::path::Path;
 use std::process::Command;
+use std::{env, fmt};
 
-use serde::Deserialize;
+use serde_json::Value;
 use spdx::{Expression, Licensee, ParseMode};
 
-use crate::Verdict;
+use crate::{Outcome, Verdict};
 
 /// Permissive licences. What is missing here and needed may be added after a look at its text.
 const ALLOWED: [&str; 12] = [
@@ -28,28 +30,7 @@ const ALLOWED: [&str; 12] = [
     "Zlib",
 ];
 
-/// Why licences could not be checked.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum LicencesError {
-    /// Cargo could not be started.
-    #[error("cannot run `cargo metadata`: {0}; start this check with `cargo xtask licences`")]
-    Start(std::io::Error),
-    /// Cargo could not describe the workspace.
-    #[error("`cargo metadata --locked` failed: {0}")]
-    Cargo(String),
-    /// Its answer is not of the form that it is documented to have.
-    #[error("`cargo metadata` answered something unknown: {0}")]
-    Answer(#[from] serde_json::Error),
-}
-
-/// What we read of `cargo metadata`.
-#[derive(Deserialize)]
-struct Metadata {
-    packages: Vec<Package>,
-}
-
 /// A package that is built, and what it says of its licence.
-#[derive(Deserialize)]
 struct Package {
     name: String,
     version: String,
@@ -59,22 +40,37 @@ struct Package {
 }
 
 /// A package that must not be used as it is.
-#[derive(Debug, thiserror::Error)]
-#[error("{package}: {fault}; {}", fault.remedy())]
 struct Problem {
     /// Name and version.
     package: String,
     fault: Fault,
 }
 
-#[derive(Debug, thiserror::Error, PartialEq, Eq)]
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}: {}; {}", self.package, self.fault, self.fault.remedy())
+    }
+}
+
+/// What is wrong with a licence.
+#[derive(Debug, PartialEq, Eq)]
 enum Fault {
-    #[error("`{expression}` needs {}, which the project may not use", needed.join(", "))]
     NotAllowed { expression: String, needed: Vec<String> },
-    #[error("`{expression}` is no SPDX expression ({reason})")]
     Unreadable { expression: String, reason: String },
-    #[error("no licence in {manifest}{}", file.as_ref().map_or(String::new(), |file| format!(" but the file {file}")))]
     None { manifest: String, file: Option<String> },
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Fault::NotAllowed { expression, needed } => {
+                write!(f, "`{expression}` needs {}, which the project may not use", needed.join(", "))
+            }
+            Fault::Unreadable { expression, reason } => write!(f, "`{expression}` is no SPDX expression ({reason})"),
+            Fault::None { manifest, file: None } => write!(f, "no licence in {manifest}"),
+            Fault::None { manifest, file: Some(file) } => write!(f, "no licence in {manifest} but the file {file}"),
+        }
+    }
 }
 
 impl Fault {
@@ -91,27 +87,51 @@ impl Fault {
 }
 
 /// Checks the workspace in `root`.
-pub(crate) fn check(root: &Path) -> Result<Verdict, LicencesError> {
-    let packages = packages(root)?;
-    let problems: Vec<Problem> = packages.iter().filter_map(|package| package.problem()).collect();
+pub(crate) fn check(root: &Path) -> Outcome {
+    let packages = packages(&metadata(root)?)?;
+    let problems: Vec<Problem> = packages.iter().filter_map(Package::problem).collect();
     Ok(Verdict::new(problems, || format!("{} packages, all under licences that may be used", packages.len())))
 }
 
-fn packages(root: &Path) -> Result<Vec<Package>, LicencesError> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+/// What Cargo knows of the workspace, as JSON.
+fn metadata(root: &Path) -> Result<Value, Box<dyn Error>> {
+    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let answer = Command::new(cargo)
         .args(["metadata", "--format-version", "1", "--all-features", "--locked"])
         .current_dir(root)
         .output()
-        .map_err(LicencesError::Start)?;
+        .map_err(|error| {
+            format!("cannot run `cargo metadata` ({error}); start this check with `cargo xtask licences`")
+        })?;
     if !answer.status.success() {
-        return Err(LicencesError::Cargo(String::from_utf8_lossy(&answer.stderr).trim().to_owned()));
+        return Err(
+            format!("`cargo metadata --locked` failed: {}", String::from_utf8_lossy(&answer.stderr).trim()).into()
+        );
     }
-    let Metadata { packages } = serde_json::from_slice(&answer.stdout)?;
-    Ok(packages)
+    Ok(serde_json::from_slice(&answer.stdout)?)
+}
+
+/// The packages of the answer; an error where it has none, so that nothing passes unseen.
+fn packages(metadata: &Value) -> Result<Vec<Package>, String> {
+    let packages = metadata["packages"].as_array().map_or(&[][..], Vec::as_slice);
+    let packages: Option<Vec<Package>> = packages.iter().map(Package::read).collect();
+    packages
+        .filter(|packages| !packages.is_empty())
+        .ok_or_else(|| "`cargo metadata` answered something unknown".to_owned())
 }
 
 impl Package {
+    fn read(entry: &Value) -> Option<Package> {
+        let text = |key: &str| entry[key].as_str().map(str::to_owned);
+        Some(Package {
+            name: text("name")?,
+            version: text("version")?,
+            license: text("license"),
+            license_file: text("license_file"),
+            manifest_path: text("manifest_path")?,
+        })
+    }
+
     fn problem(&self) -> Option<Problem> {
         let fault = match &self.license {
             Some(expression) => judge(expression).err(),
@@ -227,9 +247,19 @@ mod tests {
 
     #[test]
     fn the_answer_of_cargo_is_read() {
-        let answer = r#"{"packages": [{"name": "a", "version": "1.0.0", "license": null, "license_file": "L", "manifest_path":
-            "a/Cargo.toml", "targets": []}], "version": 1}"#;
-        let Metadata { packages } = serde_json::from_str(answer).unwrap();
+        let package = serde_json::json!({
+            "name": "a", "version": "1.0.0", "license": null, "license_file": "L", "manifest_path": "a/Cargo.toml"
+        });
+        let packages = packages(&serde_json::json!({ "packages": [package], "version": 1 })).unwrap();
         assert_eq!((packages[0].name.as_str(), packages[0].license_file.as_deref()), ("a", Some("L")));
+    }
+
+    #[test]
+    fn an_answer_without_packages_does_not_pass() {
+        for answer in
+            [serde_json::json!({}), serde_json::json!({ "packages": [] }), serde_json::json!({ "packages": [{}] })]
+        {
+            assert!(packages(&answer).is_err(), "{answer}");
+        }
     }
 }

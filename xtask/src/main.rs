@@ -6,6 +6,7 @@
 mod docs;
 mod licences;
 
+use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -13,7 +14,10 @@ const USAGE: &str = "\
 usage: cargo xtask licences      every dependency, for any target, is under a licence that the project may use
        cargo xtask check-docs    every file that the documents point to exists";
 
-/// What a check has to say.
+/// What a check has to say; an error where it could not be made.
+type Outcome = Result<Verdict, Box<dyn Error>>;
+
+/// What was found.
 enum Verdict {
     /// All is well: how much was looked at.
     Passed(String),
@@ -35,8 +39,8 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
     let verdict = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["licences"] => licences::check(root).map_err(|error| error.to_string()),
-        ["check-docs"] => docs::check(root).map_err(|error| error.to_string()),
+        ["licences"] => licences::check(root),
+        ["check-docs"] => docs::check(root),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

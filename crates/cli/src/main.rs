@@ -50,7 +50,9 @@ fn failed(failure: &Failure) -> u8 {
 /// A fault of the program itself, once, however many threads meet it.
 fn report_fault(fault: &PanicHookInfo) {
     static ONCE: Once = Once::new();
-    let message = fault.payload_as_str().unwrap_or("no message");
+    let payload = fault.payload();
+    let text = payload.downcast_ref::<&str>().copied().or(payload.downcast_ref::<String>().map(String::as_str));
+    let message = text.unwrap_or("no message");
     let place = fault.location().map_or_else(String::new, |place| format!(", {}:{}", place.file(), place.line()));
     let text = format!("error: a fault in lightmesh itself ({message}){place}; please report it with the command line");
     ONCE.call_once(|| output::complain(&text));

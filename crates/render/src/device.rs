@@ -68,7 +68,7 @@ pub fn devices() -> Vec<DeviceReport> {
         device: "cpu".to_owned(),
         name: cpu_name(),
         usable: true,
-        remark: format!("{threads} threads, {:?}", fearless_simd::Level::new()).replace("(Token)", ""),
+        remark: format!("{threads} threads, {}", simd_name()),
     };
     let cuda = DeviceReport {
         device: "cuda".to_owned(),
@@ -77,6 +77,15 @@ pub fn devices() -> Vec<DeviceReport> {
         remark: NO_CUDA.to_owned(),
     };
     vec![cpu, cuda]
+}
+
+/// Which of the two versions of SIMD code runs here.
+fn simd_name() -> &'static str {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if fearless_simd::Level::new().as_avx2().is_some() {
+        return "AVX2";
+    }
+    "baseline SIMD"
 }
 
 /// Why a CUDA device cannot be used.

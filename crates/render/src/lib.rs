@@ -34,7 +34,7 @@ pub use observer::{Observer, Stage, Unobserved};
 pub use picture::Picture;
 pub use prepared::PreparedScene;
 pub use renderer::{Frame, Renderer};
-pub use settings::{Acceleration, Lookup, Mode, Settings, ShortTests, Step, weight_name};
+pub use settings::{Acceleration, Lookup, Mode, Settings, ShortTests, Step};
 pub use stages::long_tests::{Lit, LitBy};
 pub use stages::primary_rays::RayList;
 pub use stages::shadow_rays::Visibility;

@@ -13,7 +13,7 @@ use crate::job::{Job, Sampling};
 use crate::light_mesh::{Lattice, LightMesh, Template, auto_step};
 use crate::modes::{self, Technique, rows_per_band};
 use crate::prepared::PreparedScene;
-use crate::settings::{Mode, Settings, ShortTests, Step, weight_name};
+use crate::settings::{Mode, Settings, ShortTests, Step};
 use crate::stages::shade::DEFAULT_AMBIENT;
 use crate::stats::{CameraStats, Counts, DeviceStats, LatticeStats, MemoryStats, SceneStats, Seconds, SettingsStats, Stats};
 use crate::view::View;
@@ -66,7 +66,7 @@ impl Renderer {
         }
         if threads.is_some_and(|threads| !(1..=MAX_THREADS).contains(&threads)) {
             return Err(RenderError::Setting {
-                what: "number of threads",
+                what: "number of threads (--threads)",
                 value: threads.unwrap_or(0).to_string(),
                 remedy: "choose 1 to 1024; the number of processors is best",
             });
@@ -186,7 +186,7 @@ impl Renderer {
             step: mesh.map(|mesh| mesh.lattice.step),
             step_auto: mesh.is_some() && chosen_step(scene.scene, settings) == Step::Auto,
             radius: mesh.map(|mesh| mesh.template.radius()),
-            weight: mesh.map(|mesh| weight_name(mesh.weight)),
+            weight: mesh.map(|mesh| mesh.weight.name()),
             lookup: mesh.map(|_| "half-ball"),
             short_tests: mesh.map(|_| match settings.short_tests {
                 ShortTests::Cells => "cells",
@@ -217,14 +217,14 @@ fn check(settings: &Settings) -> Result<(), RenderError> {
     // Rays are numbered in 32 bits.
     if width == 0 || height == 0 || u64::from(width) * u64::from(height) >= u64::from(u32::MAX) {
         return Err(RenderError::Setting {
-            what: "picture size",
+            what: "picture size (--size)",
             value: format!("{width}x{height}"),
             remedy: "both sides must be at least 1, and all pixels fewer than 4294967295",
         });
     }
     if !(1..=u32::from(u16::MAX)).contains(&settings.samples()) {
         return Err(RenderError::Setting {
-            what: "number of samples",
+            what: "number of samples (--samples)",
             value: settings.samples().to_string(),
             remedy: "choose 1 to 65535",
         });

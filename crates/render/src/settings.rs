@@ -141,12 +141,3 @@ impl Settings {
         })
     }
 }
-
-/// The word for a weight on the command line and in statistics.
-pub fn weight_name(weight: Weight) -> &'static str {
-    match weight {
-        Weight::Constant => "constant",
-        Weight::Quadratic => "quadratic",
-        Weight::Smooth => "smooth",
-    }
-}

@@ -99,7 +99,7 @@ pub(crate) struct RenderArgs {
     pub(crate) device: Device,
 
     /// CPU threads [default: all]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65535), help_heading = "Machine")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1024), help_heading = "Machine")]
     pub(crate) threads: Option<u32>,
 
     /// Acceleration structure

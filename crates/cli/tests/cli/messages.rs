@@ -43,7 +43,7 @@ fn values_of_another_form_are_shown_the_form() {
         (&["--step", "-1"], "the number -1 is not above 0"),
         (&["--radius", "nan"], "`nan` is not a number"),
         (&["--samples", "0"], "0 is not in 1..=65535"),
-        (&["--threads", "0"], "0 is not in 1..=65535"),
+        (&["--threads", "0"], "0 is not in 1..=1024"),
         (&["--grid", "5x5"], "write NXxNYxNZ"),
         (&["--memory-limit", "lots"], "write a number of bytes"),
         (&["--device", "gpu"], "choose auto, cpu, cuda or cuda:N"),

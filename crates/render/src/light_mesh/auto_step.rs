@@ -30,14 +30,15 @@ struct Probe {
 /// The step for a picture of `scene` in `view` with interpolation radius `radius` (in steps). It depends on the picture alone,
 /// not on how it is tiled.
 pub(crate) fn auto_step(scene: &PreparedScene, view: &View, radius: f32) -> f32 {
+    // The least step that keeps the lattice's numbers and rounding in bounds.
+    let least = (scene.bounds.diagonal() * 1e-5).max(f32::MIN_POSITIVE.sqrt());
     let mut probes = probe(scene, view);
     if probes.is_empty() {
         // Nothing is seen: any step does, and this one is small against the scene.
-        return (scene.bounds.diagonal() / 256.0).max(f32::MIN_POSITIVE.sqrt());
+        return if scene.bounds.is_empty() { 1.0 } else { rounded((scene.bounds.diagonal() / 256.0).max(least)) };
     }
     let middle = probes.len() / 2;
     let (_, median, _) = probes.select_nth_unstable_by(middle, |a, b| a.spacing.total_cmp(&b.spacing));
-    let least = (scene.bounds.diagonal() * 1e-5).max(f32::MIN_POSITIVE.sqrt());
     let mut step = (PIXELS_PER_STEP * median.spacing).max(least);
     while points_per_pixel(&probes, f64::from(step), f64::from(radius)) >= POINTS_PER_PIXEL {
         step *= 1.05;

@@ -18,14 +18,14 @@ pub struct Lattice {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LatticeError {
     /// The step is zero, negative, infinite or NaN.
-    #[error("light-mesh step {step} is not a positive number: choose a step h > 0, or let it be chosen (auto)")]
+    #[error("light-mesh step {step} is not a positive number: choose --step H with H above 0, or --step auto")]
     Step {
         /// What was asked for.
         step: f32,
     },
     /// More points along an axis than can be told apart.
     #[error(
-        "light-mesh step h = {step} puts {points:.0} light points along one axis of the scene, more than {max}: choose h of at least {least}",
+        "light-mesh step h = {step} puts {points:.0} light points along one axis of the scene, more than {max}: choose --step {least} or more",
         max = Lattice::MAX_DIM
     )]
     TooFine {
@@ -57,7 +57,7 @@ impl Lattice {
         let extent = if bounds.is_empty() { Vec3::ZERO } else { bounds.extent() };
         let points = extent.to_array().map(|length| (f64::from(length) / f64::from(step)).ceil() + 2.0 * margin + 1.0);
         let most = points.into_iter().fold(0.0, f64::max);
-        if !(most <= f64::from(Self::MAX_DIM)) {
+        if most > f64::from(Self::MAX_DIM) {
             let free = f64::from(Self::MAX_DIM) - 2.0 * margin - 2.0;
             let least = (f64::from(extent.max_element()) / free) as f32 * 1.001;
             return Err(LatticeError::TooFine { step, points: most, least });

@@ -7,14 +7,12 @@ mod auto_step;
 mod bricks;
 mod lattice;
 mod template;
-mod weight;
 
 pub(crate) use auto_step::auto_step;
 pub(crate) use bricks::bits;
 pub use bricks::{BrickKey, BrickMap, PointKey, UsedPoints, brick_of, point_bit, point_key, point_of};
 pub use lattice::{Lattice, LatticeError};
 pub use template::{Template, TemplateError};
-pub use weight::weight;
 
 /// Everything that stages need to know about the light mesh of one picture.
 #[derive(Clone, Debug)]

@@ -17,7 +17,7 @@ pub struct Template {
 /// A radius for which there is no template.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
-    "interpolation radius R = {radius} is not between {least} and {most} steps: below, half-balls are empty; above, masks take kilobytes a pixel. 2.1 is a good choice",
+    "interpolation radius R = {radius} is not between {least} and {most} steps: below, half-balls are empty; above, masks take kilobytes a pixel. --radius 2.1 is a good choice",
     least = Template::MIN_RADIUS,
     most = Template::MAX_RADIUS
 )]

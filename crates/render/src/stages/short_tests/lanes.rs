@@ -1,6 +1,6 @@
 //! The template of one cell, and helpers for vectors of eight lanes.
 
-use fearless_simd::{f32x8, prelude::*};
+use fearless_simd::{f32x8, mask32x8, prelude::*};
 use glam::{IVec3, Vec3};
 use lightmesh_scene::Weight;
 
@@ -53,7 +53,6 @@ impl CellPoints {
         values: &[f32],
     ) -> (f32, f32) {
         let zero = f32x8::splat(simd, 0.0);
-        let one = f32x8::splat(simd, 1.0);
         let scale = f32x8::splat(simd, 1.0 / (mesh.radius * mesh.radius));
         let (mut weights, mut products) = (zero, zero);
         for (index, &word) in mask.iter().enumerate() {
@@ -68,18 +67,26 @@ impl CellPoints {
                     load(simd, &self.y, first) - position.y,
                     load(simd, &self.z, first) - position.z,
                 ];
-                let falling = (one - dot(d, d) * scale).max(zero);
-                let weight = match mesh.weight {
-                    Weight::Constant => one,
-                    Weight::Quadratic => falling,
-                    Weight::Smooth => falling * falling,
-                };
-                let chosen = fearless_simd::mask32x8::from_bitmask(simd, u64::from(bits)).select(weight, zero);
+                let weight = weight(simd, mesh.weight, dot(d, d) * scale);
+                let chosen = mask32x8::from_bitmask(simd, u64::from(bits)).select(weight, zero);
                 weights += chosen;
                 products += chosen * load(simd, values, first);
             }
         }
         (sum(weights), sum(products))
+    }
+}
+
+/// w of formula (3) as a function of q² = (distance / radius)². Zero at the rim for all but the constant weight, so that a light
+/// point that leaves the half-ball fades out instead of popping.
+#[inline(always)]
+fn weight<S: Simd>(simd: S, kind: Weight, q2: f32x8<S>) -> f32x8<S> {
+    let one = f32x8::splat(simd, 1.0);
+    let falling = (one - q2).max(f32x8::splat(simd, 0.0));
+    match kind {
+        Weight::Constant => one,
+        Weight::Quadratic => falling,
+        Weight::Smooth => falling * falling,
     }
 }
 
@@ -129,4 +136,26 @@ fn sum<S: Simd>(lanes: f32x8<S>) -> f32 {
         total += lane;
     }
     total
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn weight_at(kind: Weight, q2: f32) -> f32 {
+        let level = fearless_simd::Level::new();
+        let lanes: [f32; LANES] = crate::simd::dispatch!(level, simd => weight(simd, kind, f32x8::splat(simd, q2)).into());
+        lanes[0]
+    }
+
+    #[test]
+    fn weights_are_one_in_the_middle_and_end_at_the_rim() {
+        for kind in [Weight::Constant, Weight::Quadratic, Weight::Smooth] {
+            assert_eq!(weight_at(kind, 0.0), 1.0);
+        }
+        assert_eq!(weight_at(Weight::Constant, 0.99), 1.0);
+        assert_eq!(weight_at(Weight::Quadratic, 0.25), 0.75);
+        assert_eq!(weight_at(Weight::Smooth, 0.25), 0.5625);
+        assert_eq!(weight_at(Weight::Smooth, 1.0 + 1e-6), 0.0);
+    }
 }

@@ -1,0 +1,124 @@
+//! A rendered frame, read plane by plane and judged.
+
+use glam::Vec3;
+use lightmesh_image::Layers;
+use lightmesh_render::Frame;
+
+/// A frame with layers.
+#[derive(Clone, Copy, Debug)]
+pub struct Picture<'a> {
+    frame: &'a Frame,
+    layers: &'a Layers,
+}
+
+impl<'a> Picture<'a> {
+    /// Panics where the frame was rendered without layers.
+    pub fn new(frame: &'a Frame) -> Picture<'a> {
+        Picture { frame, layers: frame.image.layers().expect("rendered with layers") }
+    }
+
+    /// The layers.
+    pub fn layers(&self) -> &'a Layers {
+        self.layers
+    }
+
+    /// Whether pixel number `pixel` shows geometry.
+    pub fn hit(&self, pixel: usize) -> bool {
+        self.layers.depth[pixel] < f32::INFINITY
+    }
+
+    /// The pixels that show geometry.
+    pub fn hits(&self) -> impl Iterator<Item = usize> + use<'a> {
+        let layers = self.layers;
+        (0..layers.depth.len()).filter(move |&pixel| layers.depth[pixel] < f32::INFINITY)
+    }
+
+    /// Object point of a pixel, world coordinates.
+    pub fn position(&self, pixel: usize) -> Vec3 {
+        Vec3::from_array(self.layers.position[pixel])
+    }
+
+    /// Geometric normal of a pixel.
+    pub fn normal(&self, pixel: usize) -> Vec3 {
+        Vec3::from_array(self.layers.normal[pixel])
+    }
+
+    /// Visibility of light number `light` at each pixel that shows geometry.
+    pub fn visibilities(&self, light: usize) -> Vec<f32> {
+        self.hits().map(|pixel| self.layers.visibility[light][pixel]).collect()
+    }
+
+    /// What is wrong with the values of this picture, if anything: colours must be finite and not negative, visibility in
+    /// [0, 1], normals of unit length, and everything but the colour as documented where a ray missed.
+    pub fn fault(&self) -> Option<String> {
+        let colors = self.frame.image.color();
+        (0..colors.len()).find_map(|pixel| {
+            let color = Vec3::from_array(colors[pixel]);
+            let visibility = self.layers.visibility.iter().map(|plane| plane[pixel]);
+            let (depth, normal) = (self.layers.depth[pixel], self.normal(pixel));
+            let problem = if !color.is_finite() || color.min_element() < 0.0 {
+                "colour"
+            } else if visibility.clone().any(|share| !(0.0..=1.0).contains(&share)) {
+                "visibility"
+            } else if self.hit(pixel) && !(depth >= 0.0 && (normal.length() - 1.0).abs() < 1e-4) {
+                "depth or normal"
+            } else if !self.hit(pixel) && (depth != f32::INFINITY || normal != Vec3::ZERO || visibility.sum::<f32>() != 0.0) {
+                "missed pixel"
+            } else if !self.position(pixel).is_finite() {
+                "position"
+            } else {
+                return None;
+            };
+            let visibility: Vec<f32> = self.layers.visibility.iter().map(|plane| plane[pixel]).collect();
+            Some(format!("{problem} of pixel {pixel}: colour {color}, depth {depth}, normal {normal}, V {visibility:?}"))
+        })
+    }
+
+    /// Pixels whose visibility of light `light` differs by more than a half from all four neighbours', while those agree and
+    /// lie with the pixel on one smooth piece of surface; and how many pixels were looked at. Acne and leaks look like this.
+    pub fn isolated(&self, light: usize) -> (usize, usize) {
+        let width = self.frame.image.width() as usize;
+        let height = self.frame.image.height() as usize;
+        let plane = &self.layers.visibility[light];
+        let (mut isolated, mut looked_at) = (0, 0);
+        for pixel in (1..height - 1).flat_map(|y| (1..width - 1).map(move |x| y * width + x)) {
+            let around = [pixel - 1, pixel + 1, pixel - width, pixel + width];
+            if !around.iter().all(|&other| self.smooth(pixel, other)) {
+                continue;
+            }
+            looked_at += 1;
+            let values = around.map(|other| plane[other]);
+            let (low, high) = values.iter().fold((1.0f32, 0.0f32), |(low, high), &v| (low.min(v), high.max(v)));
+            let alone = values.iter().all(|value| (value - plane[pixel]).abs() > 0.5);
+            isolated += usize::from(alone && high - low < 0.25);
+        }
+        (isolated, looked_at)
+    }
+
+    /// Whether two pixels lie on one smooth piece of surface: normals agree, and the chord lies in the tangent plane.
+    fn smooth(&self, pixel: usize, other: usize) -> bool {
+        let (n, m) = (self.normal(pixel), self.normal(other));
+        let chord = self.position(other) - self.position(pixel);
+        self.hit(pixel) && self.hit(other) && n.dot(m) > 0.98 && n.dot(chord).abs() < 0.2 * chord.length()
+    }
+
+    /// Every value of the picture as bits: equal pictures have equal lists.
+    pub fn bits(&self) -> Vec<u32> {
+        let colors = self.frame.image.color().as_flattened();
+        let vectors = [&self.layers.normal, &self.layers.position].into_iter().flat_map(|plane| plane.as_flattened());
+        let floats = colors.iter().chain(vectors).chain(&self.layers.depth).chain(self.layers.visibility.iter().flatten());
+        floats.map(|value| value.to_bits()).chain(self.layers.used.iter().copied()).collect()
+    }
+}
+
+/// Mean of |a − b|. Panics where there is nothing to compare.
+pub fn mean_difference(a: &[f32], b: &[f32]) -> f64 {
+    assert!(a.len() == b.len() && !a.is_empty(), "{} and {} values", a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / a.len() as f64
+}
+
+/// Root of the mean square of a − b. Panics where there is nothing to compare.
+pub fn rms_difference(a: &[f32], b: &[f32]) -> f64 {
+    assert!(a.len() == b.len() && !a.is_empty(), "{} and {} values", a.len(), b.len());
+    (a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>() / a.len() as f64).sqrt()
+}

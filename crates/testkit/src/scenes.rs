@@ -1,0 +1,69 @@
+//! Analytic scenes: what is lit and what is dark in them is known without rendering.
+
+use glam::{DVec3, Vec3};
+use lightmesh_scene::{LightKind, Scene};
+
+use crate::{Random, SceneDraft};
+
+/// A small ball of light that [`open_floor`] and [`thin_wall`] can take.
+pub const BALL_LIGHT: LightKind = LightKind::Sphere { position: Vec3::new(-2.0, 3.0, 0.7), radius: 0.25 };
+
+/// A floor under a light with nothing between them: every visible point is fully lit.
+pub fn open_floor(light: LightKind) -> Scene {
+    SceneDraft::new().floor(0.0, 4.0).light(light).camera([0.5, 2.5, 4.0], [0.0, 0.0, 0.3]).finish("open floor")
+}
+
+/// A wall from x = 0 to x = `thickness` between a lit yard (x < 0) and a closed room (x > 0). No light reaches the room. The
+/// room's sheets stick into each other, so that no corner has a crack; the camera stands inside and sees the wall's foot.
+///
+/// The light must be on the yard's side.
+pub fn thin_wall(thickness: f64, light: LightKind) -> SceneDraft {
+    SceneDraft::new()
+        .floor(0.0, 6.0)
+        .cuboid([0.0, -0.5, -4.0], [thickness, 4.0, 4.0])
+        // Ceiling, far wall, two side walls.
+        .quad([[0.0, 3.5, -4.0], [5.0, 3.5, -4.0], [5.0, 3.5, 4.0], [0.0, 3.5, 4.0]])
+        .quad([[4.5, -0.5, -4.0], [4.5, -0.5, 4.0], [4.5, 4.0, 4.0], [4.5, 4.0, -4.0]])
+        .quad([[0.0, -0.5, -3.5], [5.0, -0.5, -3.5], [5.0, 4.0, -3.5], [0.0, 4.0, -3.5]])
+        .quad([[0.0, -0.5, 3.5], [5.0, -0.5, 3.5], [5.0, 4.0, 3.5], [0.0, 4.0, 3.5]])
+        .light(light)
+        .camera([2.0, 1.2, 1.0], [0.0, 0.1, 0.0])
+}
+
+/// A half-plane (x < 0, at height 2) under a square light (2 × 2, at height 4) over a floor. The camera looks down on the floor
+/// from below the half-plane: its pixels run over x in [-2, 2] where the picture is four times as wide as high.
+///
+/// The share of the light that the floor's point (x, 0, z) sees is `clamp((1 + x) / 2, 0, 1)`: the line from it past the edge
+/// meets the light at -x.
+pub fn half_plane() -> Scene {
+    let light = LightKind::Rectangle { position: Vec3::new(0.0, 4.0, 0.0), half_u: Vec3::X, half_v: Vec3::Z };
+    SceneDraft::new()
+        .floor(0.0, 8.0)
+        .quad([[-40.0, 2.0, -40.0], [-40.0, 2.0, 40.0], [0.0, 2.0, 40.0], [0.0, 2.0, -40.0]])
+        .light(light)
+        .orthographic([0.0, 1.0, 0.0], [0.0, 0.0, 0.0], 1.0)
+        .finish("half-plane")
+}
+
+/// A few boxes on a floor with the lights `lights`, all moved by `offset`.
+pub fn pile(offset: DVec3, lights: &[LightKind]) -> Scene {
+    let draft = SceneDraft::new()
+        .moved(offset)
+        .floor(0.0, 5.0)
+        .cuboid([-1.0, -0.1, -1.0], [0.5, 1.1, 0.3])
+        .cuboid([0.8, -0.1, -0.4], [1.7, 0.6, 0.9])
+        .cuboid([-0.9, 1.7, -2.0], [1.3, 1.8, -1.4]);
+    lights.iter().fold(draft, |draft, light| draft.light(light.clone())).camera([2.5, 3.1, 4.2], [0.0, 0.4, 0.0]).finish("pile")
+}
+
+/// `count` random triangles in the cube [-3, 3]³ with a point light in the middle of them.
+pub fn soup(seed: u64, count: usize) -> Scene {
+    let mut random = Random::new(seed);
+    let mut draft = SceneDraft::new();
+    for _ in 0..count {
+        let (center, size) = (3.0 * random.in_cube(), 0.2 + random.unit());
+        let corners = [(); 3].map(|()| center + size * random.in_cube());
+        draft = draft.triangles(&corners, &[[0, 1, 2]]);
+    }
+    draft.point_light([0.3, 0.2, -0.1]).camera([5.0, 4.0, 6.0], [0.0; 3]).finish("soup")
+}
