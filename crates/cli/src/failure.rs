@@ -1,6 +1,6 @@
 //! Everything that can end a run, and its exit code.
 
-use lightmesh::render::accel::{GridError, GridFileError};
+use lightmesh::render::accel::{GridError, GridSaveError};
 use lightmesh::scene::{ExportError, UnknownCamera};
 use lightmesh::{LoadError, RenderError, SaveError, image};
 
@@ -34,7 +34,7 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Grid(#[from] GridError),
     #[error(transparent)]
-    GridFile(#[from] GridFileError),
+    GridSave(#[from] GridSaveError),
     #[error(transparent)]
     Export(#[from] ExportError),
     #[error(transparent)]

@@ -1,22 +1,18 @@
 //! Where results go: standard output, standard error, and files that are there whole or not at all.
 
-use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::{Builder, NamedTempFile};
+use lightmesh_files::{Replacement, TargetError, resolved};
 
 /// Why something was not, or will not be, written.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum OutputError {
-    /// The target is a directory.
-    #[error("cannot write {}: it is a directory, name a file in it", path.display())]
-    IsDirectory { path: PathBuf },
-    /// The directory of the target does not exist.
-    #[error("cannot write {}: the directory {} does not exist, create it first", path.display(), directory.display())]
-    NoDirectory { path: PathBuf, directory: PathBuf },
-    /// Making or filling the file failed.
-    #[error("cannot write {}: {reason}; choose another directory, or check its permissions and the space left", path.display())]
+    /// There could be no such file.
+    #[error(transparent)]
+    Target(#[from] TargetError),
+    /// Filling the file failed.
+    #[error("cannot write {}: {reason}; nothing was written, check the space left on the disk", path.display())]
     Write { path: PathBuf, reason: io::Error },
     /// Two files would overwrite each other.
     #[error("{first} and {second} are the same file, {}; give them different names", path.display())]
@@ -42,16 +38,15 @@ pub(crate) fn complain(text: &str) {
 
 /// Says whether a file could be written to `path`, without touching what is there.
 pub(crate) fn check_writable(path: &Path) -> Result<(), OutputError> {
-    temporary_beside(path).map(drop)
+    Ok(lightmesh_files::check_writable(path)?)
 }
 
-/// Writes a file: beside `path` first, then renamed.
+/// Writes a file, whole or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     let failed = |reason| OutputError::Write { path: path.to_owned(), reason };
-    let mut file = temporary_beside(path)?;
+    let mut file = Replacement::of(path)?;
     file.write_all(bytes).map_err(failed)?;
-    file.persist(resolved(path)).map_err(|error| failed(error.error))?;
-    Ok(())
+    file.commit().map_err(failed)
 }
 
 /// Refuses files that are one and the same. Each comes with the name that the user knows it by.
@@ -68,55 +63,9 @@ pub(crate) fn check_distinct(files: &[(&'static str, Option<&Path>)]) -> Result<
     Ok(())
 }
 
-/// Where `path` leads, whether or not it exists yet: links are followed, so that the file behind one is replaced.
-fn resolved(path: &Path) -> PathBuf {
-    let in_folder = || Some(fs::canonicalize(directory(path)).ok()?.join(path.file_name()?));
-    fs::canonicalize(path).ok().or_else(in_folder).unwrap_or_else(|| path.to_owned())
-}
-
-fn directory(path: &Path) -> &Path {
-    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// A new file in the directory of `path`, with the permissions of an ordinary new file.
-fn temporary_beside(path: &Path) -> Result<NamedTempFile, OutputError> {
-    let target = resolved(path);
-    if target.is_dir() {
-        return Err(OutputError::IsDirectory { path: path.to_owned() });
-    }
-    let directory = directory(&target);
-    if !directory.is_dir() {
-        return Err(OutputError::NoDirectory { path: path.to_owned(), directory: directory.to_owned() });
-    }
-    let mut builder = Builder::new();
-    builder.prefix(".lightmesh-").suffix(".tmp");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the umask
-    builder.tempfile_in(directory).map_err(|reason| OutputError::Write { path: path.to_owned(), reason })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_file_is_replaced_whole_and_nothing_is_left_beside() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.json");
-        check_writable(&path).unwrap();
-        assert!(!path.exists());
-        write(&path, b"first").unwrap();
-        write(&path, b"2nd").unwrap();
-        assert_eq!(fs::read(&path).unwrap(), b"2nd");
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-    }
-
-    #[test]
-    fn a_folder_or_a_missing_one_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        assert!(matches!(check_writable(folder.path()), Err(OutputError::IsDirectory { .. })));
-        assert!(matches!(check_writable(&folder.path().join("no/a")), Err(OutputError::NoDirectory { .. })));
-    }
 
     #[test]
     fn one_file_has_many_names() {

@@ -3,11 +3,10 @@
 //! Pictures are written to a temporary file beside the target and renamed over it, so an interrupted program leaves the
 //! earlier file as it was. [`check_writable`] finds what can be found before any time is spent on rendering.
 
-use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::{Builder, NamedTempFile};
+use lightmesh_files::{Replacement, TargetError};
 use thiserror::Error;
 
 use crate::{Format, Frame, Transfer, bmp, exr, jpg, png};
@@ -33,33 +32,9 @@ pub enum SaveError {
         /// The target.
         path: PathBuf,
     },
-    /// The target is a directory.
-    #[error("cannot save {}: it is a directory, name a file in it", path.display())]
-    IsDirectory {
-        /// The target.
-        path: PathBuf,
-    },
-    /// The directory of the target does not exist.
-    #[error("cannot save {}: the directory {} does not exist, create it first", path.display(), directory.display())]
-    NoDirectory {
-        /// The target.
-        path: PathBuf,
-        /// Where it would lie.
-        directory: PathBuf,
-    },
-    /// No file can be made in the directory of the target.
-    #[error(
-        "cannot save {}: no file can be made in {} ({reason}), choose another directory or change its permissions",
-        path.display(), directory.display()
-    )]
-    Unwritable {
-        /// The target.
-        path: PathBuf,
-        /// Where it would lie.
-        directory: PathBuf,
-        /// What the system said.
-        reason: io::Error,
-    },
+    /// There could be no such file.
+    #[error(transparent)]
+    Target(#[from] TargetError),
     /// The format cannot hold a picture of this size.
     #[error("cannot save {}: {width}x{height} pixels are too many for {format} ({limit}), use exr or png", path.display())]
     TooLarge {
@@ -132,12 +107,12 @@ impl Frame {
         self.replace(path, format, |output| exr::write_layers(self, layers, output))
     }
 
-    /// Lets `write` fill a temporary file, then renames it to `path`. Dropping the file on the way out removes it.
+    /// Lets `write` fill a file that then replaces the one at `path`.
     fn replace(
         &self,
         path: &Path,
         format: Format,
-        write: impl FnOnce(&mut BufWriter<&mut NamedTempFile>) -> Result<(), EncodeError>,
+        write: impl FnOnce(&mut BufWriter<&mut Replacement>) -> Result<(), EncodeError>,
     ) -> Result<(), SaveError> {
         let failed = |error| match error {
             EncodeError::TooLarge { limit } => {
@@ -146,14 +121,12 @@ impl Frame {
             }
             EncodeError::Io(reason) => SaveError::Write { path: path.to_owned(), reason },
         };
-        let target = resolved(path);
-        let mut file = temporary_beside(path, &target)?;
+        let mut file = Replacement::of(path)?;
         let mut output = BufWriter::new(&mut file);
         write(&mut output).map_err(failed)?;
         output.flush().map_err(|reason| failed(reason.into()))?;
         drop(output);
-        file.persist(&target).map_err(|error| failed(error.error.into()))?;
-        Ok(())
+        file.commit().map_err(|reason| failed(reason.into()))
     }
 }
 
@@ -165,37 +138,9 @@ impl Frame {
 pub fn check_writable(path: impl AsRef<Path>) -> Result<(), SaveError> {
     let path = path.as_ref();
     known_format(path)?;
-    temporary_beside(path, &resolved(path)).map(drop)
+    Ok(lightmesh_files::check_writable(path)?)
 }
 
 fn known_format(path: &Path) -> Result<Format, SaveError> {
     Format::from_path(path).ok_or_else(|| SaveError::UnknownExtension { path: path.to_owned() })
-}
-
-/// Where `path` leads: a link is followed, so that the file behind it is replaced and not the link.
-fn resolved(path: &Path) -> PathBuf {
-    fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
-}
-
-/// A new file in the directory of `target`, with the permissions of an ordinary new file.
-fn temporary_beside(path: &Path, target: &Path) -> Result<NamedTempFile, SaveError> {
-    if target.is_dir() {
-        return Err(SaveError::IsDirectory { path: path.to_owned() });
-    }
-    let directory = match target.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    if !directory.is_dir() {
-        return Err(SaveError::NoDirectory { path: path.to_owned(), directory: directory.to_owned() });
-    }
-    let mut builder = Builder::new();
-    builder.prefix(".lightmesh-").suffix(".tmp");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the umask
-    builder.tempfile_in(directory).map_err(|reason| SaveError::Unwritable {
-        path: path.to_owned(),
-        directory: directory.to_owned(),
-        reason,
-    })
 }

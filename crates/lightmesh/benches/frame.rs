@@ -26,10 +26,7 @@ fn variants(step: f32, size: u32) -> Vec<Variant> {
     let auto = Settings { step: Some(Step::Auto), radius: None, weight: None, ..thesis.clone() };
     vec![
         Variant { name: "thesis, by cell", settings: thesis.clone() },
-        Variant {
-            name: "thesis, plain",
-            settings: Settings { short_tests: ShortTests::Plain, ..thesis.clone() },
-        },
+        Variant { name: "thesis, plain", settings: Settings { short_tests: ShortTests::Plain, ..thesis.clone() } },
         Variant { name: "automatic step", settings: auto },
         Variant { name: "hard shadows", settings: Settings { mode: Mode::RayTrace, ..thesis } },
     ]

@@ -70,12 +70,8 @@ pub fn devices() -> Vec<DeviceReport> {
         usable: true,
         remark: format!("{threads} threads, {}", simd_name()),
     };
-    let cuda = DeviceReport {
-        device: "cuda".to_owned(),
-        name: String::new(),
-        usable: false,
-        remark: NO_CUDA.to_owned(),
-    };
+    let cuda =
+        DeviceReport { device: "cuda".to_owned(), name: String::new(), usable: false, remark: NO_CUDA.to_owned() };
     vec![cpu, cuda]
 }
 

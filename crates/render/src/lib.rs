@@ -39,6 +39,8 @@ pub use stages::long_tests::{Lit, LitBy};
 pub use stages::primary_rays::RayList;
 pub use stages::shadow_rays::Visibility;
 pub use stages::short_tests::{CellGroups, Masks};
-pub use stats::{CameraStats, Counts, DeviceStats, LatticeStats, MemoryStats, SceneStats, Seconds, SettingsStats, Stats};
+pub use stats::{
+    CameraStats, Counts, DeviceStats, LatticeStats, MemoryStats, SceneStats, Seconds, SettingsStats, Stats,
+};
 pub use surface::SurfacePoint;
 pub use view::View;

@@ -19,14 +19,8 @@ pub enum Stage {
 
 impl Stage {
     /// All of them, in order.
-    pub const ALL: [Stage; 6] = [
-        Stage::Build,
-        Stage::PrimaryRays,
-        Stage::ShortTests,
-        Stage::Collect,
-        Stage::LongTests,
-        Stage::Shade,
-    ];
+    pub const ALL: [Stage; 6] =
+        [Stage::Build, Stage::PrimaryRays, Stage::ShortTests, Stage::Collect, Stage::LongTests, Stage::Shade];
 
     /// The word in statistics.
     pub fn name(self) -> &'static str {

@@ -48,7 +48,11 @@ impl<'s> PreparedScene<'s> {
 
     /// How far a directional light stands from `from`: farther than any triangle.
     pub fn reach(&self, from: Vec3) -> f32 {
-        if self.bounds.is_empty() { 1.0 } else { 1.25 * self.bounds.diagonal() + 2.0 * (from - self.bounds.center()).length() }
+        if self.bounds.is_empty() {
+            1.0
+        } else {
+            1.25 * self.bounds.diagonal() + 2.0 * (from - self.bounds.center()).length()
+        }
     }
 
     /// Bytes that the geometry takes on the host, acceleration structure included.

@@ -15,7 +15,9 @@ use crate::modes::{self, Technique, rows_per_band};
 use crate::prepared::PreparedScene;
 use crate::settings::{Mode, Settings, ShortTests, Step};
 use crate::stages::shade::DEFAULT_AMBIENT;
-use crate::stats::{CameraStats, Counts, DeviceStats, LatticeStats, MemoryStats, SceneStats, Seconds, SettingsStats, Stats};
+use crate::stats::{
+    CameraStats, Counts, DeviceStats, LatticeStats, MemoryStats, SceneStats, Seconds, SettingsStats, Stats,
+};
 use crate::view::View;
 use crate::{Device, Observer, Picture, RenderError, Unobserved, memory};
 
@@ -150,11 +152,7 @@ impl Renderer {
         };
         let stats = Stats {
             version: 1,
-            scene: SceneStats {
-                name: scene.scene.name.clone(),
-                triangles: scene.triangles.len(),
-                lights,
-            },
+            scene: SceneStats { name: scene.scene.name.clone(), triangles: scene.triangles.len(), lights },
             device: DeviceStats { kind: "cpu", name: cpu_name() },
             settings: self.settings_stats(scene, settings, &camera, mesh, rows),
             counts: Counts::new(&job, pixels, mesh),

@@ -67,9 +67,7 @@ mod tests {
 
     #[test]
     fn one_pixel_looks_along_the_axis() {
-        for projection in
-            [Projection::Perspective(Fov::Vertical(50.0)), Projection::Orthographic { height: 3.0 }]
-        {
+        for projection in [Projection::Perspective(Fov::Vertical(50.0)), Projection::Orthographic { height: 3.0 }] {
             let ray = View::new(&camera(projection), [1, 1]).ray(0);
             assert_eq!((ray.origin, ray.direction), (Vec3::ZERO, Vec3::NEG_Z));
         }

@@ -122,7 +122,8 @@ impl SceneDraft {
         let mut scene = self.builder.finish_scene(name);
         let (offset, origin) = (self.offset, scene.origin);
         let local = |position: DVec3| (offset + position - origin).as_vec3();
-        scene.cameras = self.camera.iter().map(|&(eye, target, projection)| camera(local(eye), eye, target, projection)).collect();
+        scene.cameras =
+            self.camera.iter().map(|&(eye, target, projection)| camera(local(eye), eye, target, projection)).collect();
         scene.lights = self.lights;
         for light in &mut scene.lights {
             if let LightKind::Point { position, .. }

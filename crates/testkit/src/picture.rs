@@ -62,7 +62,9 @@ impl<'a> Picture<'a> {
                 "visibility"
             } else if self.hit(pixel) && !(depth >= 0.0 && (normal.length() - 1.0).abs() < 1e-4) {
                 "depth or normal"
-            } else if !self.hit(pixel) && (depth != f32::INFINITY || normal != Vec3::ZERO || visibility.sum::<f32>() != 0.0) {
+            } else if !self.hit(pixel)
+                && (depth != f32::INFINITY || normal != Vec3::ZERO || visibility.sum::<f32>() != 0.0)
+            {
                 "missed pixel"
             } else if !self.position(pixel).is_finite() {
                 "position"
@@ -70,7 +72,9 @@ impl<'a> Picture<'a> {
                 return None;
             };
             let visibility: Vec<f32> = self.layers.visibility.iter().map(|plane| plane[pixel]).collect();
-            Some(format!("{problem} of pixel {pixel}: colour {color}, depth {depth}, normal {normal}, V {visibility:?}"))
+            Some(format!(
+                "{problem} of pixel {pixel}: colour {color}, depth {depth}, normal {normal}, V {visibility:?}"
+            ))
         })
     }
 
@@ -106,7 +110,8 @@ impl<'a> Picture<'a> {
     pub fn bits(&self) -> Vec<u32> {
         let colors = self.frame.image.color().as_flattened();
         let vectors = [&self.layers.normal, &self.layers.position].into_iter().flat_map(|plane| plane.as_flattened());
-        let floats = colors.iter().chain(vectors).chain(&self.layers.depth).chain(self.layers.visibility.iter().flatten());
+        let floats =
+            colors.iter().chain(vectors).chain(&self.layers.depth).chain(self.layers.visibility.iter().flatten());
         floats.map(|value| value.to_bits()).chain(self.layers.used.iter().copied()).collect()
     }
 }
@@ -121,4 +126,67 @@ pub fn mean_difference(a: &[f32], b: &[f32]) -> f64 {
 pub fn rms_difference(a: &[f32], b: &[f32]) -> f64 {
     assert!(a.len() == b.len() && !a.is_empty(), "{} and {} values", a.len(), b.len());
     (a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>() / a.len() as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use lightmesh_image::Frame as Image;
+    use lightmesh_render::{Mode, Settings};
+
+    use super::*;
+    use crate::{BALL_LIGHT, open_floor, render};
+
+    /// A fully lit floor that fills the picture.
+    fn floor() -> Frame {
+        let mut scene = open_floor(BALL_LIGHT);
+        scene.cameras[0].position = Vec3::new(0.0, 1.0, 0.0);
+        scene.cameras[0].direction = Vec3::NEG_Y;
+        scene.cameras[0].up = Vec3::NEG_Z;
+        render(&scene, &Settings { mode: Mode::RayTrace, size: [16, 16], ..Settings::default() })
+    }
+
+    /// The same with its layers or colours changed.
+    fn spoiled(spoil: impl FnOnce(&mut Vec<[f32; 3]>, &mut Layers)) -> Frame {
+        let mut frame = floor();
+        let (mut color, mut layers) = (frame.image.color().to_vec(), frame.image.layers().unwrap().clone());
+        spoil(&mut color, &mut layers);
+        frame.image = Image::new(16, 16, color).unwrap().with_layers(layers).unwrap();
+        frame
+    }
+
+    #[test]
+    fn faults_are_found() {
+        let whole = floor();
+        assert_eq!(Picture::new(&whole).fault(), None);
+        let frames = [
+            spoiled(|color, _| color[7][1] = f32::NAN),
+            spoiled(|color, _| color[7][1] = -0.1),
+            spoiled(|_, layers| layers.visibility[0][7] = 1.1),
+            spoiled(|_, layers| layers.visibility[0][7] = f32::NAN),
+            spoiled(|_, layers| layers.depth[7] = f32::NAN),
+            spoiled(|_, layers| layers.normal[7] = [0.0, 0.5, 0.0]),
+            spoiled(|_, layers| layers.depth[7] = f32::INFINITY),
+            spoiled(|_, layers| layers.position[7][0] = f32::NAN),
+        ];
+        for (index, frame) in frames.iter().enumerate() {
+            assert!(Picture::new(frame).fault().is_some_and(|fault| fault.contains("pixel 7")), "frame {index}");
+            assert!(Picture::new(frame).bits() != Picture::new(&whole).bits(), "frame {index}");
+        }
+    }
+
+    #[test]
+    fn a_speckle_is_found_and_a_shadow_s_edge_is_not() {
+        assert_eq!(Picture::new(&floor()).isolated(0), (0, 14 * 14));
+        let speckled = spoiled(|_, layers| layers.visibility[0][5 * 16 + 5] = 0.0);
+        assert_eq!(Picture::new(&speckled).isolated(0).0, 1);
+        let edge = spoiled(|_, layers| layers.visibility[0][..8 * 16].fill(0.0));
+        assert_eq!(Picture::new(&edge).isolated(0).0, 0);
+    }
+
+    #[test]
+    fn differences_are_measured() {
+        assert_eq!(mean_difference(&[0.0, 1.0], &[0.5, 0.5]), 0.5);
+        assert_eq!(mean_difference(&[0.25], &[0.25]), 0.0);
+        assert!((rms_difference(&[0.0, 0.0], &[0.0, 1.0]) - 0.5f64.sqrt()).abs() < 1e-12);
+    }
 }

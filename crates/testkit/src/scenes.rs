@@ -53,7 +53,11 @@ pub fn pile(offset: DVec3, lights: &[LightKind]) -> Scene {
         .cuboid([-1.0, -0.1, -1.0], [0.5, 1.1, 0.3])
         .cuboid([0.8, -0.1, -0.4], [1.7, 0.6, 0.9])
         .cuboid([-0.9, 1.7, -2.0], [1.3, 1.8, -1.4]);
-    lights.iter().fold(draft, |draft, light| draft.light(light.clone())).camera([2.5, 3.1, 4.2], [0.0, 0.4, 0.0]).finish("pile")
+    lights
+        .iter()
+        .fold(draft, |draft, light| draft.light(light.clone()))
+        .camera([2.5, 3.1, 4.2], [0.0, 0.4, 0.0])
+        .finish("pile")
 }
 
 /// `count` random triangles in the cube [-3, 3]³ with a point light in the middle of them.

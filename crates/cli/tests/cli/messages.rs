@@ -109,7 +109,7 @@ fn an_unwritable_output_is_found_before_rendering() {
     );
     assert_eq!(
         render("no/a.png", &[]),
-        "error: cannot save no/a.png: the directory no does not exist, create it first"
+        "error: cannot write no/a.png: the directory no does not exist, create it first"
     );
     assert!(render("folder.png", &[]).contains("it is a directory"));
     assert!(render("a.png", &["--layers", "a.jpg"]).contains("only an OpenEXR file can hold them"));

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::pictures::{coded, layered, plain, ramp};
+use lightmesh_files::TargetError;
 use lightmesh_image::{SaveError, check_writable};
 use tempfile::tempdir;
 
@@ -30,10 +31,10 @@ fn directories_are_checked() {
     let folder = tempdir().unwrap();
     let target = folder.path().join("pictures.png");
     fs::create_dir(&target).unwrap();
-    assert!(matches!(check_writable(&target), Err(SaveError::IsDirectory { .. })));
+    assert!(matches!(check_writable(&target), Err(SaveError::Target(TargetError::IsDirectory { .. }))));
 
     let error = check_writable(folder.path().join("missing/a.png")).unwrap_err();
-    assert!(matches!(error, SaveError::NoDirectory { .. }), "{error}");
+    assert!(matches!(error, SaveError::Target(TargetError::NoDirectory { .. })), "{error}");
     assert!(error.to_string().contains("missing does not exist"), "{error}");
 
     assert!(check_writable(folder.path().join("a.png")).is_ok());
@@ -45,8 +46,8 @@ fn directories_are_checked() {
 #[test]
 fn unwritable_directories_are_found() {
     let error = check_writable("/proc/a.png").unwrap_err();
-    assert!(matches!(error, SaveError::Unwritable { .. }), "{error}");
-    assert!(matches!(coded(1, 1).save("/proc/a.png"), Err(SaveError::Unwritable { .. })));
+    assert!(matches!(error, SaveError::Target(TargetError::Unwritable { .. })), "{error}");
+    assert!(matches!(coded(1, 1).save("/proc/a.png"), Err(SaveError::Target(TargetError::Unwritable { .. }))));
 }
 
 #[test]

@@ -26,7 +26,7 @@ use lightmesh_scene::Bounds;
 
 pub use brute_force::BruteForce;
 pub use bvh::Bvh;
-pub use grid::{Grid, GridError, GridFault, GridFileError, GridOptions, Levels};
+pub use grid::{Grid, GridError, GridFault, GridFileError, GridOptions, GridSaveError, Levels};
 pub use triangle::{ShortTest, Triangle};
 
 /// A ray or segment: the points `origin + t · direction` with `0 < t < t_max`. The direction need not be unit length; a

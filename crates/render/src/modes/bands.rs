@@ -1,8 +1,8 @@
 //! How many rows of a picture fit into memory at once.
 
 use super::Technique;
-use crate::accel::{Hit, Ray};
 use crate::RenderError;
+use crate::accel::{Hit, Ray};
 
 /// What is kept free for everything that is not counted below: stacks, the segments in flight, the allocator's waste.
 const RESERVE: u64 = 64 << 20;

@@ -14,10 +14,11 @@ mod tests;
 mod text;
 
 use std::{
-    fs::Permissions,
     io::{self, Write},
     path::{Path, PathBuf},
 };
+
+use lightmesh_files::{Replacement, TargetError};
 
 use crate::Scene;
 
@@ -25,8 +26,11 @@ use crate::Scene;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// The file system refused.
-    #[error("cannot write the file ({cause}), {}; choose a folder that exists and may be written", path.display())]
+    /// There could be no such file.
+    #[error(transparent)]
+    Target(#[from] TargetError),
+    /// Writing failed, most often for want of space; nothing is left behind.
+    #[error("cannot write {}: {cause}; nothing was written, check the space left on the disk", path.display())]
     Write {
         /// The file.
         path: PathBuf,
@@ -74,33 +78,10 @@ impl Scene {
     }
 }
 
-/// Writes to a new file beside `path` and renames it.
+/// Writes a file, whole or not at all.
 fn write(path: &Path, bytes: &[u8]) -> Result<(), ExportError> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let write = || -> io::Result<()> {
-        let mut builder = tempfile::Builder::new();
-        let permissions = ordinary_permissions();
-        if let Some(permissions) = permissions {
-            builder.permissions(permissions);
-        }
-        let mut file = builder.tempfile_in(folder)?;
-        file.write_all(bytes)?;
-        file.persist(path)?;
-        Ok(())
-    };
-    write().map_err(|cause| refused(path, cause))
-}
-
-/// Those of any new file: temporary ones are closed to others.
-#[cfg(unix)]
-fn ordinary_permissions() -> Option<Permissions> {
-    use std::os::unix::fs::PermissionsExt;
-    Some(Permissions::from_mode(0o666))
-}
-
-#[cfg(not(unix))]
-fn ordinary_permissions() -> Option<Permissions> {
-    None
+    let mut file = Replacement::of(path)?;
+    file.write_all(bytes).and_then(|()| file.commit()).map_err(|cause| refused(path, cause))
 }
 
 fn refused(path: &Path, cause: io::Error) -> ExportError {

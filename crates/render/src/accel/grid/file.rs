@@ -22,6 +22,7 @@ use std::io::{BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 use glam::UVec3;
+use lightmesh_files::{Replacement, TargetError};
 use lightmesh_scene::Bounds;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
@@ -33,7 +34,23 @@ const VERSION: u32 = 1;
 const HEADER: usize = 40;
 const TRAILER: usize = 8;
 
-/// Why a grid file cannot be written or used.
+/// Why a grid cannot be saved.
+#[derive(Debug, thiserror::Error)]
+pub enum GridSaveError {
+    /// There could be no such file.
+    #[error(transparent)]
+    Target(#[from] TargetError),
+    /// Writing failed, most often for want of space; nothing is left behind.
+    #[error("cannot write {}: {reason}; nothing was written, check the space left on the disk", path.display())]
+    Write {
+        /// The target.
+        path: PathBuf,
+        /// What the system said.
+        reason: std::io::Error,
+    },
+}
+
+/// Why a grid file cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {fault}; {}", path.display(), fault.remedy())]
 pub struct GridFileError {
@@ -50,9 +67,6 @@ pub enum GridFault {
     /// It cannot be read.
     #[error("cannot be read: {0}")]
     Read(std::io::Error),
-    /// It cannot be written.
-    #[error("cannot be written: {0}")]
-    Write(std::io::Error),
     /// It is something else.
     #[error("is not a grid file")]
     NotAGrid,
@@ -88,7 +102,6 @@ impl GridFault {
     fn remedy(&self) -> &'static str {
         match self {
             GridFault::Read(_) => "check the path and its permissions",
-            GridFault::Write(_) => "check that the folder exists, is writable and has room",
             _ => "build the grid again with `lightmesh grid SCENE -o FILE`",
         }
     }
@@ -106,19 +119,18 @@ pub(super) fn geometry_hash(triangles: &[Triangle]) -> u64 {
 }
 
 impl Grid {
-    /// Writes the grid to a file: beside `path` first, and renamed when complete.
+    /// Writes the grid to a file, whole or not at all.
     ///
     /// # Errors
     ///
     /// Where the file cannot be written.
-    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), GridFileError> {
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), GridSaveError> {
         let path = path.as_ref();
-        self.write_beside(path).map_err(|error| GridFileError { path: path.into(), fault: GridFault::Write(error) })
+        let file = Replacement::of(path)?;
+        self.write(file).map_err(|reason| GridSaveError::Write { path: path.into(), reason })
     }
 
-    fn write_beside(&self, path: &Path) -> std::io::Result<()> {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut file = tempfile::NamedTempFile::new_in(folder)?;
+    fn write(&self, mut file: Replacement) -> std::io::Result<()> {
         let mut output = Hashed { inner: BufWriter::new(&mut file), hash: Xxh3::new() };
         output.write(&MAGIC)?;
         output.write(&VERSION.to_le_bytes())?;
@@ -136,8 +148,7 @@ impl Grid {
         output.inner.write_all(&hash.to_le_bytes())?;
         output.inner.flush()?;
         drop(output);
-        file.persist(path).map_err(|error| error.error)?;
-        Ok(())
+        file.commit()
     }
 
     /// Reads a grid that was saved for the same list of triangles.

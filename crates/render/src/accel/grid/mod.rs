@@ -28,7 +28,7 @@ use lightmesh_scene::Bounds;
 use super::approach::{Approach, overlap};
 use super::visit::{Any, Closest};
 use super::{Accelerator, Hit, Ray, ShortSegments, Triangle};
-pub use file::{GridFault, GridFileError};
+pub use file::{GridFault, GridFileError, GridSaveError};
 use lattice::{Lattice, cells_between};
 
 /// How a grid is laid out.

@@ -1,1 +1,88 @@
-//! Tests follow.
+//! Formula (3) against its evaluation in double precision.
+
+use glam::{DVec3, Vec3};
+use lightmesh_scene::{LightKind, Weight};
+use lightmesh_testkit::{WEIGHTS, pile};
+
+use crate::backend::{Backend, Cpu};
+use crate::job::{Job, Sampling};
+use crate::light_mesh::{Lattice, LightMesh, Template, brick_of, point_bit, point_of};
+use crate::prepared::PreparedScene;
+use crate::settings::Acceleration;
+use crate::stages::long_tests::LitBy;
+use crate::view::View;
+use crate::{SurfacePoint, Unobserved};
+
+const LIGHTS: [LightKind; 2] = [
+    LightKind::Point { position: Vec3::new(2.0, 4.0, 1.0), spread: 0.0 },
+    LightKind::Sphere { position: Vec3::new(-2.0, 4.0, 2.0), radius: 0.4 },
+];
+
+/// w of formula (3) as the method states it.
+fn w(weight: Weight, q: f64) -> f64 {
+    match weight {
+        Weight::Constant => 1.0,
+        Weight::Quadratic => 1.0 - q * q,
+        Weight::Smooth => (1.0 - q * q).powi(2),
+    }
+}
+
+#[test]
+fn visibility_is_the_weighted_mean_of_the_light_points() {
+    let scene = pile(DVec3::ZERO, &LIGHTS);
+    let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
+    for (weight, radius) in WEIGHTS.into_iter().zip([2.1, 3.1, 4.1]) {
+        let lattice = Lattice::around(&scene.bounds, 0.2, radius).unwrap();
+        let template = Template::new(radius).unwrap();
+        let mesh = LightMesh { lattice, template, radius: 0.2 * radius, weight };
+        let job = Job::new(&Unobserved, Sampling { samples: 5, seed: 0, spread: false });
+        let cpu = Cpu::default();
+        let rays = cpu.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64).unwrap();
+        let hits = cpu.primary_rays(&job, &scene, &rays).unwrap();
+        let masks = cpu.short_tests(&job, &scene, &rays, &hits, &mesh).unwrap();
+        let points = cpu.light_points(&job, &masks, &mesh).unwrap();
+        let lit = cpu.long_tests(&job, &scene, &points, &mesh).unwrap();
+        let found = cpu.interpolate(&job, &scene, &rays, &hits, &masks, &points, &lit, &mesh).unwrap();
+
+        let mut partial = 0;
+        for group in 0..masks.groups.len() {
+            let cell = point_of(masks.groups.cell(group));
+            for slot in masks.groups.slots(group) {
+                let ray = masks.groups.members()[slot] as usize;
+                let hit = &hits[ray];
+                let point = SurfacePoint::new(&rays.rays[ray], hit, &scene.triangles[hit.triangle as usize]);
+                let used = mesh.template.offsets().iter().enumerate();
+                let used = used.filter(|(bit, _)| masks.mask(slot)[bit / 32] >> (bit % 32) & 1 != 0);
+                let used: Vec<_> = used.map(|(_, &offset)| cell + offset).collect();
+                assert_eq!(found.used[ray] as usize, used.len());
+                for (light, seen) in lit.lights.iter().enumerate() {
+                    let center = scene.scene.lights[light].position().unwrap();
+                    let facing = point.normal.dot(center - point.position);
+                    if facing.abs() < 0.5 || used.is_empty() {
+                        // χ and the fallback have tests of their own.
+                        continue;
+                    }
+                    let (mut sum, mut weights) = (0.0, 0.0);
+                    for &index in &used {
+                        let brick = points.bricks().find(brick_of(index)).unwrap();
+                        let value = match seen {
+                            LitBy::Bits(words) => (words[brick] >> point_bit(index) & 1) as f64,
+                            LitBy::Share { seen, samples } => {
+                                f64::from(seen[points.rank(brick, point_bit(index))]) / f64::from(*samples)
+                            }
+                        };
+                        let distance = mesh.lattice.point(index).as_dvec3().distance(point.position.as_dvec3());
+                        let weight = w(weight, distance / f64::from(mesh.radius));
+                        (sum, weights) = (sum + weight * value, weights + weight);
+                    }
+                    let expected = if facing < 0.0 { 0.0 } else { sum / weights };
+                    let share = f64::from(found.share[ray * 2 + light]);
+                    // Sums of a hundred products in `f32`, and weights near the rim that cancel to few digits.
+                    assert!((share - expected).abs() < 2e-5, "{weight:?}: {share} instead of {expected}");
+                    partial += usize::from(share > 0.01 && share < 0.99);
+                }
+            }
+        }
+        assert!(partial > 100, "{partial} partial shadows were compared");
+    }
+}

@@ -65,11 +65,7 @@ impl Windows {
 
     /// The window around `cell`.
     pub(crate) fn around(&self, cell: IVec3) -> Window<'_> {
-        Window {
-            low: (cell + 1 - self.reach) >> 2,
-            side: self.side,
-            places: &self.places[point_bit(cell) as usize],
-        }
+        Window { low: (cell + 1 - self.reach) >> 2, side: self.side, places: &self.places[point_bit(cell) as usize] }
     }
 }
 

@@ -75,13 +75,7 @@ fn surface_radiance(
 }
 
 /// What each pixel saw.
-fn fill_layers(
-    scene: &PreparedScene,
-    list: &RayList,
-    hits: &[Hit],
-    visibility: &Visibility,
-    picture: &mut Picture,
-) {
+fn fill_layers(scene: &PreparedScene, list: &RayList, hits: &[Hit], visibility: &Visibility, picture: &mut Picture) {
     let Some(layers) = &mut picture.layers else { return };
     for (ray, hit) in hits.iter().enumerate().filter(|(_, hit)| hit.is_some()) {
         let pixel = list.pixels[ray] as usize;

@@ -74,7 +74,8 @@ pub(crate) fn area_shadows(job: &Job, scene: &PreparedScene, list: &RayList, hit
 
 /// Rays that area mode casts to `light`: one where it has no extent.
 fn sample_count(job: &Job, light: &Light) -> u32 {
-    let spread = job.sampling.spread && matches!(light.kind, lightmesh_scene::LightKind::Point { spread, .. } if spread > 0.0);
+    let spread =
+        job.sampling.spread && matches!(light.kind, lightmesh_scene::LightKind::Point { spread, .. } if spread > 0.0);
     if light.has_size() || spread { job.sampling.samples } else { 1 }
 }
 

@@ -167,11 +167,7 @@ impl Batch {
 
     #[inline(always)]
     fn load<S: Simd>(&self, simd: S, lanes: &[[f32; LANES]; 3]) -> Axes<S> {
-        [
-            f32x8::from_slice(simd, &lanes[0]),
-            f32x8::from_slice(simd, &lanes[1]),
-            f32x8::from_slice(simd, &lanes[2]),
-        ]
+        [f32x8::from_slice(simd, &lanes[0]), f32x8::from_slice(simd, &lanes[1]), f32x8::from_slice(simd, &lanes[2])]
     }
 }
 

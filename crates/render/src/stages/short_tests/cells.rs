@@ -32,8 +32,7 @@ impl CellOccluders {
     /// [origins](SurfacePoint::origin) in `cell`.
     pub(super) fn collect(&mut self, scene: &PreparedScene, mesh: &LightMesh, cell: IVec3, origins: &Bounds) {
         let reach = mesh.radius + mesh.slack();
-        let region =
-            Bounds { min: origins.min - Vec3::splat(reach), max: origins.max + Vec3::splat(reach) };
+        let region = Bounds { min: origins.min - Vec3::splat(reach), max: origins.max + Vec3::splat(reach) };
         scene.accelerator.triangles_in(&region, &mut self.found);
         self.candidates.clear();
         for &index in &self.found {

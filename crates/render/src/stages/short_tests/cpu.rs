@@ -111,8 +111,7 @@ impl Run<'_> {
         for group in run {
             points.place(self.mesh, point_of(self.groups.cell(group)));
             for (slot, mask) in self.groups.slots(group).zip(&mut masks) {
-                counts =
-                    counts + plain::mask(self.scene, self.mesh, &points, &self.point(slot), &mut scratch, mask);
+                counts = counts + plain::mask(self.scene, self.mesh, &points, &self.point(slot), &mut scratch, mask);
             }
         }
         counts

@@ -144,7 +144,8 @@ mod tests {
 
     fn weight_at(kind: Weight, q2: f32) -> f32 {
         let level = fearless_simd::Level::new();
-        let lanes: [f32; LANES] = crate::simd::dispatch!(level, simd => weight(simd, kind, f32x8::splat(simd, q2)).into());
+        let lanes: [f32; LANES] =
+            crate::simd::dispatch!(level, simd => weight(simd, kind, f32x8::splat(simd, q2)).into());
         lanes[0]
     }
 

@@ -1,0 +1,73 @@
+//! The same picture, whatever the threads and bands; another one for another seed.
+
+use glam::{DVec3, Vec3};
+use lightmesh_render::{Device, Frame, Mode, RenderError, Renderer, Settings};
+use lightmesh_scene::{LightKind, Scene};
+use lightmesh_testkit::{MODES, Picture, pile};
+
+use crate::{light_mesh, mode};
+
+const SIZE: [u32; 2] = [80, 48];
+
+fn scene() -> Scene {
+    let sphere = LightKind::Sphere { position: Vec3::new(-2.0, 4.0, 2.0), radius: 0.6 };
+    let point = LightKind::Point { position: Vec3::new(2.0, 4.0, 1.0), spread: 0.3 };
+    let mut scene = pile(DVec3::ZERO, &[sphere, point]);
+    for material in &mut scene.materials {
+        material.ks = Vec3::splat(0.3);
+    }
+    scene
+}
+
+fn settings(which: Mode) -> Settings {
+    let settings = if which == Mode::LightMesh { light_mesh(SIZE, 0.15, 2.1) } else { mode(which, SIZE) };
+    Settings { samples: Some(7), bounces: 1, layers: true, ..settings }
+}
+
+fn render(threads: usize, settings: &Settings) -> Result<Frame, RenderError> {
+    Renderer::with_threads(Device::Cpu, Some(threads)).unwrap().render(&scene(), settings)
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    for which in MODES {
+        let one = render(1, &settings(which)).unwrap();
+        for threads in [2, 3] {
+            let many = render(threads, &settings(which)).unwrap();
+            assert!(Picture::new(&many).bits() == Picture::new(&one).bits(), "{which:?} on {threads} threads");
+        }
+    }
+}
+
+#[test]
+fn bands_do_not_change_a_bit() {
+    for which in MODES {
+        let whole = render(2, &settings(which)).unwrap();
+        assert_eq!(whole.stats.settings.rows_per_band, SIZE[1]);
+        let limited = |limit| render(2, &Settings { memory_limit: Some(limit), ..settings(which) });
+        let Err(RenderError::Memory { needed, .. }) = limited(1) else { panic!("one byte must not suffice") };
+        // Just enough for one row, then for some.
+        for limit in [needed, needed + 100_000] {
+            let banded = limited(limit).unwrap();
+            assert!(banded.stats.settings.rows_per_band < SIZE[1], "{which:?}");
+            assert!(Picture::new(&banded).bits() == Picture::new(&whole).bits(), "{which:?} in bands");
+        }
+        assert!(matches!(limited(needed - 1), Err(RenderError::Memory { .. })));
+    }
+}
+
+#[test]
+fn the_seed_chooses_the_pattern_of_sized_lights() {
+    for which in [Mode::LightMesh, Mode::Area] {
+        let seeded = |seed| render(2, &Settings { seed, ..settings(which) }).unwrap();
+        let first = seeded(5);
+        assert!(Picture::new(&seeded(5)).bits() == Picture::new(&first).bits(), "{which:?}: same seed, same picture");
+        assert!(Picture::new(&seeded(6)).bits() != Picture::new(&first).bits(), "{which:?}: another seed, another one");
+    }
+}
+
+#[test]
+fn hard_shadows_know_no_seed() {
+    let seeded = |seed| render(2, &Settings { seed, ..settings(Mode::RayTrace) }).unwrap();
+    assert!(Picture::new(&seeded(5)).bits() == Picture::new(&seeded(6)).bits());
+}

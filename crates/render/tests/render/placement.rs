@@ -1,0 +1,36 @@
+//! Where a scene lies in the world does not matter.
+
+use glam::{DVec3, Vec3};
+use lightmesh_render::{Mode, Settings};
+use lightmesh_scene::LightKind;
+use lightmesh_testkit::{Picture, mean_difference, pile, render};
+
+use crate::{light_mesh, mode};
+
+const LIGHTS: [LightKind; 2] = [
+    LightKind::Point { position: Vec3::new(2.0, 4.0, 1.0), spread: 0.0 },
+    LightKind::Sphere { position: Vec3::new(-2.0, 4.0, 2.0), radius: 0.4 },
+];
+
+#[test]
+fn a_moved_scene_has_the_same_visibility() {
+    let size = [96, 96];
+    let settings =
+        [light_mesh(size, 0.15, 2.1), light_mesh(size, 0.15, 3.1), mode(Mode::RayTrace, size), mode(Mode::Area, size)];
+    for settings in settings {
+        let settings = Settings { samples: Some(16), ..settings };
+        let at_home = render(&pile(DVec3::ZERO, &LIGHTS), &settings);
+        let at_home = Picture::new(&at_home);
+        // 30 is too near for a frame of its own, the others get one; the scene is 10 wide.
+        for distance in [30.0, 1e3, 1e5, 1e6] {
+            let offset = distance * DVec3::new(1.0, -0.7, 0.31);
+            let moved = render(&pile(offset, &LIGHTS), &settings);
+            let moved = Picture::new(&moved);
+            assert_eq!(moved.hits().collect::<Vec<_>>(), at_home.hits().collect::<Vec<_>>(), "{distance}");
+            for light in 0..2 {
+                let difference = mean_difference(&moved.visibilities(light), &at_home.visibilities(light));
+                assert!(difference < 1e-3, "light {light} moved by {distance}, {:?}: {difference}", settings.mode);
+            }
+        }
+    }
+}
