@@ -131,3 +131,18 @@ fn the_yard_of_a_thin_wall_is_lit() {
     scene.cameras[0].direction = Vec3::new(0.2, -1.0, -0.1).normalize();
     assert_all(&scene, &light_mesh([32, 32], 0.1, 2.1), 1.0);
 }
+
+#[test]
+fn the_foot_of_a_single_sheet_leaks_nothing_beyond_a_ten_thousandth_of_a_step() {
+    // Nearer than that a sheet counts as edge-on and hides nothing (`LightMesh::edge_on`).
+    let light = LightKind::Point { position: Vec3::new(3.0, 2.0, 0.3), spread: 0.0 };
+    for step in [0.1, 0.4] {
+        let near = 1.0 - 3e-4 * f64::from(step);
+        let draft = SceneDraft::new().cuboid([-1.0; 3], [1.0; 3]).light(light.clone());
+        let draft = draft.orthographic([near, 0.0, 0.3], [near, -1.0, 0.3], 2e-4 * step);
+        let scene = draft.finish("sheet");
+        for radius in [2.1, 3.1] {
+            assert_all(&scene, &light_mesh([40, 40], step, radius), 0.0);
+        }
+    }
+}
