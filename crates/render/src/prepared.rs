@@ -15,7 +15,7 @@ pub struct PreparedScene<'s> {
     pub triangles: Vec<Triangle>,
     /// What finds triangles.
     pub accelerator: Box<dyn Accelerator>,
-    /// The box around all triangles.
+    /// The box around all triangles that can be hit.
     pub bounds: Bounds,
     /// Seconds that building took.
     pub build_seconds: f64,
@@ -43,7 +43,10 @@ impl<'s> PreparedScene<'s> {
         };
         let build_seconds = start.elapsed().as_secs_f64();
         observer.end(Stage::Build);
-        Ok(PreparedScene { scene, bounds: scene.mesh.bounds(), triangles, accelerator, build_seconds })
+        // Triangles that cannot be hit take no part.
+        let usable = triangles.iter().filter(|triangle| triangle.is_usable());
+        let bounds = Bounds::around(usable.flat_map(Triangle::corners));
+        Ok(PreparedScene { scene, bounds, triangles, accelerator, build_seconds })
     }
 
     /// How far a directional light stands from `from`: farther than any triangle.

@@ -22,6 +22,20 @@ pub(crate) const fn gamma(n: u32) -> f32 {
     error / (1.0 - error)
 }
 
+/// Below this square of twice its area a triangle's normal has lost its bits to underflow.
+const LEAST_SQUARE: f32 = 1e-30;
+
+/// The unit normal of a tiny triangle, or of one so narrow that single precision sees no area; where double precision sees
+/// none either, the direction to the viewer.
+#[cold]
+#[inline(never)]
+fn needle_normal(triangle: &Triangle, ray: &Ray) -> Vec3 {
+    let [a, b, c] = triangle.corners();
+    let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
+    let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+    if normal == Vec3::ZERO { -ray.direction.normalize_or_zero() } else { normal }
+}
+
 impl SurfacePoint {
     /// The object point that `ray` sees at `hit` on `triangle`.
     #[inline(always)]
@@ -29,8 +43,9 @@ impl SurfacePoint {
         let [a, b, c] = triangle.corners();
         let position = (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
         let outward = (b - a).cross(c - a);
-        let facing = if outward.dot(ray.direction) > 0.0 { -outward } else { outward };
-        let normal = facing / facing.length();
+        let square = outward.length_squared();
+        let outward = if square > LEAST_SQUARE { outward / square.sqrt() } else { needle_normal(triangle, ray) };
+        let normal = if outward.dot(ray.direction) > 0.0 { -outward } else { outward };
 
         // The interpolated point errs by γ(7) of the corners (Pharr, Jakob, Humphreys: *Physically Based Rendering*, 3.9). The
         // ray that leaves it meets its own triangle up to 9 ε S off, S being the largest coordinate of the corners relative

@@ -16,6 +16,7 @@ mod approach;
 mod brute_force;
 mod bvh;
 mod grid;
+mod packet;
 #[cfg(test)]
 mod tests;
 pub mod triangle;

@@ -47,6 +47,12 @@ impl Triangle {
         Bounds::around(self.corners())
     }
 
+    /// The corners as they lie in memory.
+    #[inline(always)]
+    pub(super) fn packed(&self) -> &[[f32; 4]; 3] {
+        &self.corners
+    }
+
     /// The three corners.
     #[inline(always)]
     pub fn corners(&self) -> [Vec3; 3] {

@@ -29,6 +29,12 @@ impl Closest {
         let shear = RayShear::new(ray.origin, ray.direction);
         Closest { shear, t_max: ray.t_max, limit: ray.t_max, best: Hit::MISS }
     }
+
+    /// Goes on with a hit that is known.
+    #[inline(always)]
+    pub(super) fn from(ray: &NearRay, best: Hit) -> Closest {
+        Closest { best, limit: ray.t_max.min(best.t), ..Closest::new(ray) }
+    }
 }
 
 impl Visitor for Closest {

@@ -93,7 +93,8 @@ fn look(scene: &PreparedScene, rays: &[Ray], hits: &[Hit]) -> Option<Probe> {
 /// Two significant digits, rounded up: a number that a person can type again.
 fn rounded(step: f32) -> f32 {
     let unit = 10f64.powi(f64::from(step).log10().floor() as i32 - 1);
-    ((f64::from(step) / unit).ceil() * unit) as f32
+    // A step that has two digits already keeps them in spite of rounding.
+    ((f64::from(step) / unit * (1.0 - 1e-6)).ceil() * unit) as f32
 }
 
 #[cfg(test)]

@@ -34,10 +34,11 @@ impl LightMesh {
         1e-3 * self.lattice.step
     }
 
-    /// How near a triangle's plane may pass to a segment's origin before it counts as edge-on, in scene units. Ten times
-    /// smaller than [`LightMesh::least_height`], so that it can hide no light point behind a surface.
+    /// How near a triangle's plane may pass to a segment's origin before it counts as edge-on, in scene units. Below that,
+    /// rounding would decide: the distance to the plane of a triangle within reach, R steps away, errs by a few ε R h. What is
+    /// ignored leaks light into pixels that lie this near to the foot of a wall without thickness, so it must not be more.
     pub fn edge_on(&self) -> f32 {
-        1e-4 * self.lattice.step
+        2e-6 * self.lattice.step
     }
 
     /// How much boxes grow before triangles are looked up for short tests, in scene units: far above rounding, far below a

@@ -56,12 +56,8 @@ fn the_method_tends_to_the_area_reference() {
     let reference = render(&scene, &Settings { samples: Some(256), ..mode(Mode::Area, size) });
     let reference = Picture::new(&reference);
     for light in 0..2 {
-        // Of a light that stands only partly over the horizon the method takes too much, by formula (3): light points look over
-        // the edges of the surface that it sinks behind. Half a light's diagonal keeps these places apart.
-        let center = scene.lights[light].position().unwrap();
-        let over = |pixel: &usize| reference.normal(*pixel).dot(center - reference.position(*pixel)) > 0.85;
-        let places: Vec<usize> = reference.hits().filter(over).collect();
-        assert!(places.len() > 1500, "{} places", places.len());
+        let places: Vec<usize> = reference.hits().collect();
+        assert!(places.len() > 2000, "{} places", places.len());
         let shares = |picture: &Picture| -> Vec<f32> {
             places.iter().map(|&pixel| picture.layers().visibility[light][pixel]).collect()
         };

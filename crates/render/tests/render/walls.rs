@@ -133,16 +133,27 @@ fn the_yard_of_a_thin_wall_is_lit() {
 }
 
 #[test]
-fn the_foot_of_a_single_sheet_leaks_nothing_beyond_a_ten_thousandth_of_a_step() {
+fn the_foot_of_a_single_sheet_leaks_nothing_beyond_a_hundred_thousandth_of_a_step() {
     // Nearer than that a sheet counts as edge-on and hides nothing (`LightMesh::edge_on`).
     let light = LightKind::Point { position: Vec3::new(3.0, 2.0, 0.3), spread: 0.0 };
     for step in [0.1, 0.4] {
-        let near = 1.0 - 3e-4 * f64::from(step);
+        let near = 1.0 - 3e-5 * f64::from(step);
         let draft = SceneDraft::new().cuboid([-1.0; 3], [1.0; 3]).light(light.clone());
-        let draft = draft.orthographic([near, 0.0, 0.3], [near, -1.0, 0.3], 2e-4 * step);
+        let draft = draft.orthographic([near, 0.0, 0.3], [near, -1.0, 0.3], 2e-5 * step);
         let scene = draft.finish("sheet");
         for radius in [2.1, 3.1] {
             assert_all(&scene, &light_mesh([40, 40], step, radius), 0.0);
+        }
+    }
+}
+
+#[test]
+fn a_shade_close_under_the_lamp_hides_it_and_the_ceiling_it_hangs_in_does_not() {
+    let lamp = || SceneDraft::new().floor(0.0, 2.0).point_light([0.1, 4.0, 0.2]).camera([0.0, 2.0, 1.5], [0.0; 3]);
+    for (height, expected) in [(3.999, 0.0), (4.0, 1.0), (4.001, 1.0)] {
+        let scene = lamp().floor(height, 6.0).finish("lamp");
+        for settings in [light_mesh([24, 24], 0.2, 2.1), mode(Mode::RayTrace, [24, 24]), mode(Mode::Area, [24, 24])] {
+            assert_all(&scene, &settings, expected);
         }
     }
 }

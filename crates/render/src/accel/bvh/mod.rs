@@ -2,9 +2,11 @@
 //! Through Compressed Wide BVHs* (HPG 2017).
 //!
 //! * `build`: the tree comes from `obvhs`; we check that every box holds its triangles, and lay these out in leaf order.
-//! * `walk`: the walk over the nodes, by rays and by boxes. Nodes and triangles are plain arrays, ready for a device.
+//! * `walk`: the walk over the nodes, by a ray and by boxes. Nodes and triangles are plain arrays, ready for a device.
+//! * `packet`: the walk by many coherent rays at once.
 
 mod build;
+mod packet;
 mod walk;
 
 use fearless_simd::Level;
@@ -44,11 +46,19 @@ impl Bvh {
 
 impl Accelerator for Bvh {
     fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
-        dispatch!(self.level, simd => walk::closest_hits(simd, self, rays, hits));
+        if rays.len() <= packet::FEW {
+            dispatch!(self.level, simd => walk::closest_hits(simd, self, rays, hits));
+        } else {
+            dispatch!(self.level, simd => packet::closest_hits(simd, self, rays, hits));
+        }
     }
 
     fn occluded(&self, segments: &[Ray], occluded: &mut [bool]) {
-        dispatch!(self.level, simd => walk::occluded(simd, self, segments, occluded));
+        if segments.len() <= packet::FEW {
+            dispatch!(self.level, simd => walk::occluded(simd, self, segments, occluded));
+        } else {
+            dispatch!(self.level, simd => packet::occluded(simd, self, segments, occluded));
+        }
     }
 
     fn short_segments(&self, segments: &ShortSegments, blocked: &mut [bool]) {

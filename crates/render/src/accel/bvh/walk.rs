@@ -30,22 +30,22 @@ use crate::accel::visit::{Any, Closest, Short, Visitor};
 use crate::accel::{Hit, Ray, ShortSegments, Triangle};
 
 /// Relative margin of the slab test: 2⁻¹⁹.
-const MARGIN: f32 = 1.0 / (1u32 << 19) as f32;
+pub(super) const MARGIN: f32 = 1.0 / (1u32 << 19) as f32;
 /// Direction components below this share of the largest are raised to it: 2⁻³⁰.
-const LEAST_COMPONENT: f32 = 1.0 / (1u32 << 30) as f32;
+pub(super) const LEAST_COMPONENT: f32 = 1.0 / (1u32 << 30) as f32;
 /// Entries of the stack that lies in registers and cache; deeper trees, which only hostile input makes, get one from the heap.
 const STACK: usize = 32;
 
 /// A set of siblings to enter, or of triangles to ask.
 #[derive(Clone, Copy, Default)]
-struct Group {
+pub(super) struct Group {
     base: u32,
     bits: u32,
 }
 
 /// A ray prepared for the slab tests.
 #[derive(Clone, Copy)]
-struct Slabs {
+pub(super) struct Slabs {
     origin: Vec3A,
     inverse: Vec3A,
     /// Margin for a node of unit distance, in units of the ray parameter.
@@ -58,7 +58,7 @@ struct Slabs {
 
 impl Slabs {
     #[inline(always)]
-    fn new(origin: Vec3, direction: Vec3, slack: f32) -> Slabs {
+    pub(super) fn new(origin: Vec3, direction: Vec3, slack: f32) -> Slabs {
         let least = LEAST_COMPONENT * direction.abs().max_element();
         let direction = direction.abs().max(Vec3::splat(least)).copysign(direction);
         let (origin, inverse) = (Vec3A::from(origin), Vec3A::from(direction.recip()));
@@ -74,7 +74,7 @@ pub(super) fn closest_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut
     for (hit, ray) in hits.iter_mut().zip(rays) {
         *hit = bvh.approach.ray(ray).map_or(Hit::MISS, |near| {
             let mut closest = Closest::new(&near);
-            walk(simd, bvh, &Slabs::new(near.origin, near.direction, 0.0), stack.entries(), &mut closest);
+            walk(simd, bvh, 0, &Slabs::new(near.origin, near.direction, 0.0), stack.entries(), &mut closest);
             near.finish(closest.best)
         });
     }
@@ -86,7 +86,7 @@ pub(super) fn occluded<S: Simd>(simd: S, bvh: &Bvh, segments: &[Ray], occluded: 
     for (occluded, segment) in occluded.iter_mut().zip(segments) {
         *occluded = bvh.approach.ray(segment).is_some_and(|near| {
             let mut any = Any::new(&near);
-            walk(simd, bvh, &Slabs::new(near.origin, near.direction, 0.0), stack.entries(), &mut any);
+            walk(simd, bvh, 0, &Slabs::new(near.origin, near.direction, 0.0), stack.entries(), &mut any);
             any.hit
         });
     }
@@ -98,19 +98,26 @@ pub(super) fn short_segments<S: Simd>(simd: S, bvh: &Bvh, segments: &ShortSegmen
     for (blocked, &direction) in blocked.iter_mut().zip(segments.directions) {
         let mut short = Short::new(&segments.test, direction);
         let slabs = Slabs::new(segments.test.origin, direction, segments.slack);
-        walk(simd, bvh, &slabs, stack.entries(), &mut short);
+        walk(simd, bvh, 0, &slabs, stack.entries(), &mut short);
         *blocked = short.blocked;
     }
 }
 
 /// Visits the triangles of all leaves whose boxes the ray meets between 0 and the visitor's limit, near octants first.
 #[inline(always)]
-fn walk<S: Simd>(simd: S, bvh: &Bvh, slabs: &Slabs, stack: &mut [Group], visitor: &mut impl Visitor) {
+pub(super) fn walk<S: Simd>(
+    simd: S,
+    bvh: &Bvh,
+    root: u32,
+    slabs: &Slabs,
+    stack: &mut [Group],
+    visitor: &mut impl Visitor,
+) {
     if bvh.nodes.is_empty() {
         return;
     }
     // 1. Begin with the root, as if it were the only child in the slot entered first.
-    let mut nodes = Group { base: 0, bits: 0x8000_0000 };
+    let mut nodes = Group { base: root, bits: 0x8000_0000 };
     let mut height = 0;
     loop {
         // 2. Take the nearest node out of its group; keep the rest for later.
@@ -248,20 +255,20 @@ fn overlapped_slots(node: &Node, region: &Bounds) -> u32 {
 }
 
 /// The node groups left for later: at most one for each level of the tree.
-struct Stack {
+pub(super) struct Stack {
     fixed: [Group; STACK],
     deep: Vec<Group>,
 }
 
 impl Stack {
     #[inline(always)]
-    fn new(depth: usize) -> Stack {
+    pub(super) fn new(depth: usize) -> Stack {
         let deep = if depth > STACK { vec![Group::default(); depth] } else { Vec::new() };
         Stack { fixed: [Group::default(); STACK], deep }
     }
 
     #[inline(always)]
-    fn entries(&mut self) -> &mut [Group] {
+    pub(super) fn entries(&mut self) -> &mut [Group] {
         if self.deep.is_empty() { &mut self.fixed } else { &mut self.deep }
     }
 }

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use super::rays::Targets;
 use super::scenes::{self, Scene};
 use super::{Random, grids, structures};
-use crate::accel::{Accelerator, BruteForce, Hit, Ray, ShortSegments, ShortTest, Triangle};
+use crate::accel::{Accelerator, BruteForce, Bvh, Hit, Ray, ShortSegments, ShortTest, Triangle};
 
 fn closest(accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<Hit> {
     // Whatever the answer held before must not matter.
@@ -32,11 +32,10 @@ fn bits(hit: &Hit) -> [u32; 4] {
     bytemuck::cast(*hit)
 }
 
-/// All structures over a scene, and rays that suit it; the number of rays that hit.
-fn rays_agree(triangles: &[Triangle], random: &mut Random, count: usize) -> Result<usize, TestCaseError> {
+/// All structures over a scene, and batches of rays that suit it; the number of rays that hit.
+fn rays_agree(triangles: &[Triangle], mut batch: impl FnMut(&Targets) -> Vec<Ray>) -> Result<usize, TestCaseError> {
     let grids = grids(triangles);
-    let targets = Targets { triangles, grids: &grids };
-    let rays: Vec<Ray> = (0..count).map(|_| targets.ray(random)).collect();
+    let rays = batch(&Targets { triangles, grids: &grids });
     let oracle = BruteForce::new(triangles);
     let (hits, shadows) = (closest(&oracle, &rays), occluded(&oracle, &rays));
     for (ray, (hit, shadow)) in rays.iter().zip(hits.iter().zip(&shadows)) {
@@ -67,9 +66,36 @@ proptest! {
     fn closest_and_any_hits_agree(scene in prop::sample::select(&scenes::ALL), seed: u64) {
         let random = &mut Random(seed);
         let triangles = scene.triangles(random);
-        let hits = rays_agree(&triangles, random, 400)?;
+        let hits = rays_agree(&triangles, |targets| (0..400).map(|_| targets.ray(random)).collect())?;
         // A comparison of misses would prove little.
         prop_assert!(matches!(scene, Scene::Empty | Scene::One | Scene::Flat) || hits > 40, "{} rays hit", hits);
+    }
+
+    #[test]
+    fn coherent_rays_agree(scene in prop::sample::select(&scenes::ALL), seed: u64) {
+        let random = &mut Random(seed);
+        let triangles = scene.triangles(random);
+        // Bundles one after another in one batch: packets begin and end anywhere.
+        let hits = rays_agree(&triangles, |targets| (0..40).flat_map(|_| targets.bundle(random)).collect())?;
+        prop_assert!(matches!(scene, Scene::Empty | Scene::One | Scene::Flat) || hits > 40, "{} rays hit", hits);
+    }
+
+    #[test]
+    fn packets_agree_with_single_rays(scene in prop::sample::select(&scenes::ALL), seed: u64) {
+        let random = &mut Random(seed);
+        let triangles = scene.triangles(random);
+        let grids = grids(&triangles);
+        let targets = Targets { triangles: &triangles, grids: &grids };
+        let bvh = Bvh::new(&triangles);
+        for _ in 0..20 {
+            let rays = targets.bundle(random);
+            let (hits, shadows) = (closest(&bvh, &rays), occluded(&bvh, &rays));
+            for (index, ray) in rays.iter().enumerate() {
+                let alone = closest(&bvh, &[*ray])[0];
+                prop_assert_eq!(bits(&hits[index]), bits(&alone), "{} of {}: {:?}", index, rays.len(), ray);
+                prop_assert_eq!(shadows[index], occluded(&bvh, &[*ray])[0], "{} of {}: {:?}", index, rays.len(), ray);
+            }
+        }
     }
 
     #[test]

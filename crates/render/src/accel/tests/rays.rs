@@ -30,6 +30,47 @@ impl Targets<'_> {
         Ray { origin, direction, t_max: if random.below(3) == 0 { t_max } else { f32::INFINITY } }
     }
 
+    /// Neighbouring rays of one of many kinds, as many as fill no, one or some packets; a few of them spoiled or cut short.
+    pub(super) fn bundle(&self, random: &mut Random) -> Vec<Ray> {
+        let count = random.pick(&[1, 3, 4, 7, 8, 9, 31, 32, 33, 64, 77]);
+        let (origin, target) = (self.around(random), self.point(random));
+        let (right, down) = (random.signed() * 0.05, random.signed() * 0.05);
+        let along = axis(random);
+        let kind = random.below(6);
+        let mut rays: Vec<Ray> = (0..count)
+            .map(|index| {
+                let aside = right * (index % 8) as f32 + down * (index / 8) as f32;
+                let (origin, direction) = match kind {
+                    // The fan of a pinhole camera.
+                    0 => (origin, target + aside - origin),
+                    // Parallel rays.
+                    1 => (origin + aside, target - origin),
+                    // Axis-aligned rays: zeros of both signs.
+                    2 => (target + aside - along * 4.0, along),
+                    // Segments from a surface towards one light.
+                    3 => (target + aside, origin - target - aside),
+                    // From everywhere towards one point: all octants.
+                    4 => (target + random.signed() * 4.0, Vec3::ZERO),
+                    // Around an axis: signs and dominant axes change within a packet.
+                    _ => (origin, along + aside - 4.0 * right - 4.0 * down),
+                };
+                let direction = if kind == 4 { target - origin } else { direction };
+                Ray { origin, direction, t_max: if kind == 3 { 0.999 } else { f32::INFINITY } }
+            })
+            .collect();
+        for _ in 0..random.below(4) {
+            let ray = &mut rays[random.below(count)];
+            match random.below(5) {
+                0 => ray.direction = Vec3::ZERO,
+                1 => ray.t_max = random.pick(&[0.0, 1e-3, 1e-30, f32::NAN]),
+                2 => ray.origin += random.signed() * 1e6,
+                3 => ray.origin = Vec3::NAN,
+                _ => ray.direction = spoiled(ray.direction, random),
+            }
+        }
+        rays
+    }
+
     fn corners(&self, random: &mut Random) -> [Vec3; 3] {
         let usable: Vec<_> = self.triangles.iter().filter(|triangle| triangle.is_usable()).collect();
         if usable.is_empty() { [Vec3::ZERO, Vec3::X, Vec3::Y] } else { random.pick(&usable).corners() }

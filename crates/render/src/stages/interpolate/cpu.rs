@@ -15,7 +15,7 @@ use crate::stages::light_points::{Place, Windows};
 use crate::stages::long_tests::{Lit, LitBy};
 use crate::stages::primary_rays::RayList;
 use crate::stages::shadow_rays::cpu::{fallback, object_point, ray_key};
-use crate::stages::shadow_rays::{Visibility, faces};
+use crate::stages::shadow_rays::{Visibility, above_horizon};
 use crate::stages::short_tests::{CellPoints, Masks, population};
 use crate::surface::SurfacePoint;
 
@@ -83,10 +83,11 @@ impl Interpolation<'_> {
                 let mask = self.masks.mask(slot);
                 let mut fell_back = false;
                 for (index, light) in lights.iter().enumerate() {
-                    shares.push(if !faces(&point, light, self.scene.reach(point.origin)) {
+                    let most = above_horizon(&point, light, self.scene.reach(point.origin));
+                    shares.push(if most == 0.0 {
                         0.0
                     } else if let Some(share) = values.mean(simd, &points, &point, self.mesh, mask, index) {
-                        share
+                        share.min(most)
                     } else {
                         fell_back = true;
                         fallback(self.job, self.scene, ray_key(self.list, ray), &point, index)

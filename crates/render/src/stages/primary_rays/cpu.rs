@@ -19,14 +19,14 @@ pub(crate) fn camera_rays(view: &View, rows: Range<u32>) -> RayList {
     RayList { rays, pixels, weights: Vec::new() }
 }
 
-/// The pixels of some rows in blocks of 4×2 within 16×16, so that consecutive rays stay together.
+/// The pixels of some rows in blocks of 4×2 within 8×8, so that consecutive rays stay together.
 fn blocks_of_pixels(width: u32, rows: Range<u32>) -> Vec<u32> {
     let mut pixels = Vec::with_capacity((width * (rows.end - rows.start)) as usize);
     let cut = |range: Range<u32>, size: u32| {
         range.clone().step_by(size as usize).map(move |first| first..range.end.min(first + size))
     };
-    for tile_rows in cut(rows, 16) {
-        for tile_columns in cut(0..width, 16) {
+    for tile_rows in cut(rows, 8) {
+        for tile_columns in cut(0..width, 8) {
             for block_rows in cut(tile_rows.clone(), 2) {
                 for block_columns in cut(tile_columns.clone(), 4) {
                     for y in block_rows.clone() {

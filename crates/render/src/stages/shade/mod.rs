@@ -118,9 +118,12 @@ impl LightTargets {
 
     pub(crate) fn new(lights: &[Light]) -> LightTargets {
         let pattern = Pattern::new(0, 0, 0);
-        let spread = |light: &Light| {
-            (0..Self::COUNT).map(|index| light_point(light, Vec3::ZERO, 0.0, pattern.point(index))).collect()
+        // In pairs on either side of the middle: what falls off linearly over the light is averaged exactly.
+        let pair = |light: &Light, index: u32| {
+            let point = light_point(light, Vec3::ZERO, 0.0, pattern.point(index));
+            [point, 2.0 * light_center(light, Vec3::ZERO, 0.0) - point]
         };
+        let spread = |light: &Light| (0..Self::COUNT / 2).flat_map(|index| pair(light, index)).collect();
         LightTargets {
             points: lights.iter().map(|light| if light.has_size() { spread(light) } else { Vec::new() }).collect(),
         }

@@ -32,11 +32,12 @@ pub(crate) fn shadow_rays(job: &Job, scene: &PreparedScene, list: &RayList, hits
         let first = batch * BATCH;
         let rays = share.len() / lights.len();
         let (mut segments, mut targets) = (Vec::with_capacity(share.len()), Vec::with_capacity(share.len()));
-        for ray in (0..rays).filter(|ray| hits[first + ray].is_some()) {
-            let point = object_point(scene, list, hits, first + ray);
-            let reach = scene.reach(point.origin);
-            for (light, target) in lights.iter().enumerate() {
-                let target = light_center(target, point.origin, reach);
+        let seen = (0..rays).filter(|ray| hits[first + ray].is_some());
+        let points: Vec<_> = seen.map(|ray| (ray, object_point(scene, list, hits, first + ray))).collect();
+        // Light by light: segments towards one light are traced together.
+        for (light, target) in lights.iter().enumerate() {
+            for (ray, point) in &points {
+                let target = light_center(target, point.origin, scene.reach(point.origin));
                 if point.normal.dot(target - point.origin) > 0.0 {
                     segments.push(long_segment(point.origin, target));
                     targets.push(ray * lights.len() + light);

@@ -8,7 +8,7 @@ pub(crate) mod cpu;
 mod tests;
 
 use glam::Vec3;
-use lightmesh_scene::Light;
+use lightmesh_scene::{Light, LightKind};
 
 use crate::sampling::{Pattern, light_center, light_point};
 use crate::surface::SurfacePoint;
@@ -27,16 +27,33 @@ pub struct Visibility {
     pub direct: Vec<Vec3>,
 }
 
-/// χ of formula (3) for a light: whether any part of it is on the outer side of the surface at `point`.
+/// χ of formula (3) for a light: 1 where it is on the outer side of the surface at `point`, 0 where it is behind.
+///
+/// A light with a size may stand across the horizon. Then χ is the share of it above, and bounds the visibility: light points
+/// higher up see more of the light than the surface can.
 #[inline(always)]
-pub(crate) fn faces(point: &SurfacePoint, light: &Light, reach: f32) -> bool {
-    let above = |target: Vec3| point.normal.dot(target - point.origin) > 0.0;
-    if above(light_center(light, point.origin, reach)) {
-        return true;
+pub(crate) fn above_horizon(point: &SurfacePoint, light: &Light, reach: f32) -> f32 {
+    let height = point.normal.dot(light_center(light, point.origin, reach) - point.origin);
+    if height.abs() >= size(light) {
+        return if height > 0.0 { 1.0 } else { 0.0 };
     }
-    // A light with a size may stand out over the horizon; its corners or eight points of it decide.
-    light.has_size() && {
-        let pattern = Pattern::new(0, 0, 0);
-        (0..8).any(|index| above(light_point(light, point.origin, reach, pattern.point(index))))
+    let pattern = Pattern::new(0, 0, 0);
+    let above = (0..HORIZON_SAMPLES)
+        .map(|index| light_point(light, point.origin, reach, pattern.point(index)))
+        .filter(|target| point.normal.dot(target - point.origin) > 0.0)
+        .count();
+    above as f32 / HORIZON_SAMPLES as f32
+}
+
+/// Points of a light that decide how much of it stands above the horizon.
+const HORIZON_SAMPLES: u32 = 64;
+
+/// The farthest that any point of `light` lies from its middle; 0 for all that have no size.
+#[inline(always)]
+fn size(light: &Light) -> f32 {
+    match light.kind {
+        LightKind::Sphere { radius, .. } | LightKind::Disk { radius, .. } => radius,
+        LightKind::Rectangle { half_u, half_v, .. } => (half_u.length_squared() + half_v.length_squared()).sqrt(),
+        LightKind::Point { .. } | LightKind::Directional { .. } | LightKind::Spot { .. } => 0.0,
     }
 }

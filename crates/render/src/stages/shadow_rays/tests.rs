@@ -3,20 +3,26 @@
 use glam::Vec3;
 use lightmesh_scene::{Light, LightKind};
 
-use super::faces;
+use super::above_horizon;
 use crate::surface::SurfacePoint;
 
 #[test]
-fn a_light_faces_a_surface_that_any_part_of_it_is_over() {
+fn a_light_counts_as_far_as_it_stands_above_the_horizon() {
     let point = SurfacePoint { position: Vec3::ZERO, origin: Vec3::ZERO, normal: Vec3::Y };
-    let ball = |height| Light { kind: LightKind::Sphere { position: Vec3::Y * height, radius: 1.0 }, ..lamp(0.0) };
-    let cases = [(lamp(0.1), true), (lamp(-0.1), false), (lamp(0.0), false)];
-    let balls = [(ball(2.0), true), (ball(0.1), true), (ball(-0.1), true), (ball(-1.1), false)];
-    for (light, expected) in cases.into_iter().chain(balls) {
-        assert_eq!(faces(&point, &light, 10.0), expected, "{:?}", light.kind);
+    for (light, expected) in [(lamp(0.1), 1.0), (lamp(-0.1), 0.0), (lamp(0.0), 0.0)] {
+        assert_eq!(above_horizon(&point, &light, 10.0), expected, "{:?}", light.kind);
     }
     let sun = |y| Light { kind: LightKind::Directional { direction: Vec3::new(0.6, y, 0.0) }, ..lamp(0.0) };
-    assert!(faces(&point, &sun(-0.8), 10.0) && !faces(&point, &sun(0.8), 10.0));
+    assert_eq!((above_horizon(&point, &sun(-0.8), 10.0), above_horizon(&point, &sun(0.8), 10.0)), (1.0, 0.0));
+
+    // A cap of height t of a ball of radius 1 holds t²(3 − t)/4 of it.
+    let ball = |height| Light { kind: LightKind::Sphere { position: Vec3::Y * height, radius: 1.0 }, ..lamp(0.0) };
+    for height in [2.0, 1.0, 0.6, 0.1, -0.1, -0.6, -1.0, -1.1] {
+        let cap = (1.0f32 + height).clamp(0.0, 2.0);
+        let (found, expected) = (above_horizon(&point, &ball(height), 10.0), 0.25 * cap * cap * (3.0 - cap));
+        assert!((found - expected).abs() < 0.04, "at {height}: {found}, not {expected}");
+        assert!((0.0 < height.abs() - 1.0) <= (found == expected), "at {height}: {found}");
+    }
 }
 
 fn lamp(height: f32) -> Light {

@@ -120,8 +120,8 @@ mod tests {
     fn a_triangle_around_the_origins_may_hide_everything() {
         let origins = Bounds { min: Vec3::splat(10.4), max: Vec3::splat(10.6) };
         let around = [Vec3::new(5.0, 5.0, 10.5), Vec3::new(20.0, 5.0, 10.2), Vec3::new(5.0, 20.0, 10.9)];
-        let reach = mesh().template.reach();
-        let expected = (IVec3::splat(1 - reach), IVec3::splat(reach));
+        // All light points nearer than 3.1 to the origins.
+        let expected = (IVec3::splat(-2), IVec3::splat(3));
         assert_eq!(shadow_box(&mesh(), IVec3::splat(10), &origins, &around), Some(expected));
     }
 }

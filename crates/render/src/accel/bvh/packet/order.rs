@@ -1,0 +1,79 @@
+//! Which rays share a packet.
+
+use super::RAYS;
+use crate::accel::Ray;
+use crate::accel::approach::{Approach, NearRay};
+
+/// Kinds of rays: three axes, eight octants.
+const KINDS: usize = 24;
+
+/// The rays of a chunk that can hit something, by kind.
+#[derive(Default)]
+pub(super) struct Order {
+    /// With their index in the chunk.
+    pub(super) rays: Vec<(NearRay, usize)>,
+    kinds: Vec<u8>,
+    /// Indices into `rays`, sorted by kind.
+    sorted: Vec<u16>,
+}
+
+impl Order {
+    #[inline(always)]
+    pub(super) fn sort(&mut self, approach: &Approach, rays: &[Ray]) {
+        self.rays.clear();
+        self.kinds.clear();
+        let mut starts = [0; KINDS + 1];
+        for (index, ray) in rays.iter().enumerate() {
+            if let Some(near) = approach.ray(ray) {
+                let kind = kind(&near);
+                starts[usize::from(kind) + 1] += 1;
+                self.kinds.push(kind);
+                self.rays.push((near, index));
+            }
+        }
+        // A counting sort, stable: neighbours stay together.
+        for kind in 0..KINDS {
+            starts[kind + 1] += starts[kind];
+        }
+        self.sorted.resize(self.rays.len(), 0);
+        for (index, &kind) in self.kinds.iter().enumerate() {
+            let place = &mut starts[usize::from(kind)];
+            self.sorted[*place] = index as u16;
+            *place += 1;
+        }
+    }
+
+    /// Up to as many rays of one kind as a packet takes, from `start` on.
+    #[inline(always)]
+    pub(super) fn packet(&self, start: usize) -> &[u16] {
+        let rest = &self.sorted[start..];
+        let kind = self.kind(rest[0]);
+        let mut count = 1;
+        while count < rest.len().min(RAYS) && self.kind(rest[count]) == kind {
+            count += 1;
+        }
+        &rest[..count]
+    }
+
+    #[inline(always)]
+    pub(super) fn kind(&self, index: u16) -> u8 {
+        self.kinds[usize::from(index)]
+    }
+}
+
+/// Signs of the direction (bit k: axis k negative), plus eight times the axis of its largest component.
+#[inline(always)]
+fn kind(near: &NearRay) -> u8 {
+    let direction = near.direction;
+    let negative = |component: f32| u8::from(component.is_sign_negative());
+    let signs = negative(direction.x) | negative(direction.y) << 1 | negative(direction.z) << 2;
+    let size = direction.abs();
+    let axis = if size.x >= size.y && size.x >= size.z {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    };
+    signs | axis << 3
+}
