@@ -9,6 +9,7 @@ use glam::IVec3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Template {
     radius: f32,
+    reach: i32,
     offsets: Vec<IVec3>,
     /// The points of each line along x, by z and y from `1 − reach` on: (first bit, its x, number of points).
     rows: Vec<(u16, i16, u16)>,
@@ -55,7 +56,7 @@ impl Template {
                 rows.push((first as u16, x as i16, (offsets.len() - first) as u16));
             }
         }
-        Ok(Template { radius, offsets, rows })
+        Ok(Template { radius, reach, offsets, rows })
     }
 
     /// R = r/h.
@@ -71,13 +72,13 @@ impl Template {
     /// The bits of the points with this `y` and `z` whose x lies in `low..=high`.
     #[inline(always)]
     pub fn row(&self, y: i32, z: i32, low: i32, high: i32) -> Range<usize> {
-        let (side, least) = (2 * self.reach(), 1 - self.reach());
+        let (side, least) = (2 * self.reach, 1 - self.reach);
         let (first, x, count) = self.rows[((z - least) * side + y - least) as usize];
-        let (first, x, end) = (i32::from(first), i32::from(x), i32::from(first) + i32::from(count));
+        let (x, count) = (i32::from(x), i32::from(count));
         // Where the row is empty or the range misses it, so is the result.
-        let from = (first + low - x).clamp(first, end);
-        let to = (first + high + 1 - x).clamp(from, end);
-        from as usize..to as usize
+        let from = (low - x).max(0);
+        let to = (high + 1 - x).clamp(from, count.max(from));
+        usize::from(first) + from as usize..usize::from(first) + to as usize
     }
 
     /// Number of light points.
@@ -93,7 +94,7 @@ impl Template {
 
     /// Largest component of an offset; the smallest is one less in the other direction.
     pub fn reach(&self) -> i32 {
-        self.radius.ceil() as i32
+        self.reach
     }
 }
 

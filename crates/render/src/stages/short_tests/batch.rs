@@ -1,9 +1,11 @@
 //! Eight object points of one cell at a time, one lane a point; light points and triangles are the same for all lanes.
 
+use std::ops::Range;
+
 use fearless_simd::{f32x8, prelude::*};
 use glam::Vec3;
 
-use super::cells::Candidate;
+use super::cells::CellOccluders;
 use super::lanes::{Axes, LANES, cross, difference, dot, scaled, splat};
 use super::{CellPoints, MaskCounts};
 use crate::light_mesh::LightMesh;
@@ -22,7 +24,8 @@ pub(super) struct Batch {
 impl Batch {
     pub(super) fn new(mesh: &LightMesh) -> Batch {
         let lanes = || [[0.0; LANES]; 3];
-        let seen = vec![0; mesh.template.words() * 32];
+        // Eight more, so that rows can be read eight points at a time.
+        let seen = vec![0; mesh.template.words() * 32 + 8];
         Batch { position: lanes(), origin: lanes(), normal: lanes(), lanes: 0, seen }
     }
 
@@ -46,7 +49,7 @@ impl Batch {
         simd: S,
         mesh: &LightMesh,
         points: &CellPoints,
-        candidates: &[Candidate],
+        triangles: &CellOccluders,
         masks: &mut [u32],
     ) -> MaskCounts {
         // 1, 2. The half-balls.
@@ -54,10 +57,10 @@ impl Batch {
 
         // 3. What stands in their way.
         let mut tested = 0;
-        for candidate in candidates {
+        for candidate in &triangles.candidates {
             if let Some((occluders, lanes)) = self.occluders(simd, mesh, &candidate.corners) {
                 tested |= lanes;
-                self.clear_blocked(simd, mesh, points, candidate, &occluders, lanes);
+                self.clear_blocked(simd, points, triangles.rows(candidate), &occluders, lanes);
             }
         }
 
@@ -117,7 +120,9 @@ impl Batch {
         let lanes = (above & faces).to_bitmask() as u8 & self.lanes;
         let sign = volume.simd_lt(zero).select(f32x8::splat(simd, -1.0), f32x8::splat(simd, 1.0));
         let sides = [scaled(sign, bc), scaled(sign, ca), scaled(sign, ab)];
-        (lanes != 0).then_some((Occluders { sides, volume: sign * volume }, lanes))
+        let slack = f32x8::splat(simd, 1e-5 * mesh.radius);
+        let slack = [slack * length(sides[0]), slack * length(sides[1]), slack * length(sides[2])];
+        (lanes != 0).then_some((Occluders { sides, volume: sign * volume, slack }, lanes))
     }
 
     /// [`Occluder::blocks`](crate::accel::triangle::Occluder::blocks) in each of `lanes`, for the light points that the
@@ -126,19 +131,25 @@ impl Batch {
     fn clear_blocked<S: Simd>(
         &mut self,
         simd: S,
-        mesh: &LightMesh,
         points: &CellPoints,
-        candidate: &Candidate,
+        rows: &[Range<u16>],
         occluders: &Occluders<S>,
         lanes: u8,
     ) {
         let zero = f32x8::splat(simd, 0.0);
         let origin = self.load(simd, &self.origin);
-        let Occluders { sides: [a, b, c], volume } = *occluders;
-        let (low, high) = (candidate.low, candidate.high);
-        for z in low.z..=high.z {
-            for y in low.y..=high.y {
-                for bit in mesh.template.row(y, z, low.x, high.x) {
+        let Occluders { sides: [a, b, c], volume, .. } = *occluders;
+        for row in rows {
+            // Rows are passed over eight points at a time where no lane sees any of them, or none lies in a shadow.
+            let (mut next, end) = (usize::from(row.start), usize::from(row.end));
+            while next < end {
+                let (first, count) = (next, 8.min(end - next));
+                next += count;
+                let ends = (points.get(first), points.get(first + count - 1));
+                if !self.any_seen(first, count, lanes) || occluders.reach(simd, origin, ends) & lanes == 0 {
+                    continue;
+                }
+                for bit in first..first + count {
                     if self.seen[bit] & lanes == 0 {
                         continue;
                     }
@@ -151,10 +162,19 @@ impl Batch {
         }
     }
 
+    /// Whether any of `lanes` still sees any of the `count` light points from `first` on, at most eight.
+    #[inline(always)]
+    fn any_seen(&self, first: usize, count: usize, lanes: u8) -> bool {
+        let mut bytes = [0; 8];
+        bytes.copy_from_slice(&self.seen[first..first + 8]);
+        let wanted = u64::from(lanes) * 0x0101_0101_0101_0101 & (!0 >> (8 * (8 - count)));
+        u64::from_le_bytes(bytes) & wanted != 0
+    }
+
     /// From lanes by light point to light points by lane: the masks, `words` for each object point.
     #[inline(always)]
     fn write(&self, words: usize, masks: &mut [u32]) {
-        for (group, seen) in self.seen.chunks_exact(8).enumerate() {
+        for (group, seen) in self.seen[..words * 32].chunks_exact(8).enumerate() {
             let rows = u64::from_le_bytes([seen[0], seen[1], seen[2], seen[3], seen[4], seen[5], seen[6], seen[7]]);
             let columns = transposed(rows).to_le_bytes();
             let (word, shift) = (group / 4, group % 4 * 8);
@@ -176,6 +196,35 @@ impl Batch {
 struct Occluders<S: Simd> {
     sides: [Axes<S>; 3],
     volume: f32x8<S>,
+    /// Far above the rounding of the products with each side, which is a few ε of the same.
+    slack: Axes<S>,
+}
+
+impl<S: Simd> Occluders<S> {
+    /// The lanes in which a light point between two on a line along x can be hidden. The functions that decide are linear:
+    /// their largest values on the line are at its ends.
+    #[inline(always)]
+    fn reach(&self, simd: S, origin: Axes<S>, (low, high): (Vec3, Vec3)) -> u8 {
+        let [a, b, c] = self.sides;
+        let [su, sv, sw] = self.slack;
+        let (dy, dz) = (f32x8::splat(simd, low.y) - origin[1], f32x8::splat(simd, low.z) - origin[2]);
+        let (from, to) = (f32x8::splat(simd, low.x) - origin[0], f32x8::splat(simd, high.x) - origin[0]);
+        let (u, v, w) = (a[1] * dy + a[2] * dz, b[1] * dy + b[2] * dz, c[1] * dy + c[2] * dz);
+        let (ua, va, wa) = (u + a[0] * from, v + b[0] * from, w + c[0] * from);
+        let (ub, vb, wb) = (u + a[0] * to, v + b[0] * to, w + c[0] * to);
+        let zero = f32x8::splat(simd, 0.0);
+        let reached = (ua.max(ub) + su).simd_ge(zero)
+            & (va.max(vb) + sv).simd_ge(zero)
+            & (wa.max(wb) + sw).simd_ge(zero)
+            & ((ua + va + wa).max(ub + vb + wb) + (su + sv + sw)).simd_ge(self.volume);
+        reached.to_bitmask() as u8
+    }
+}
+
+/// The sum of absolute components.
+#[inline(always)]
+fn length<S: Simd>(a: Axes<S>) -> f32x8<S> {
+    a[0].abs() + a[1].abs() + a[2].abs()
 }
 
 /// The 8×8 bit matrix mirrored at its diagonal (Warren: *Hacker's Delight*, 7-3). Bit j of byte i goes to bit i of byte j.

@@ -4,6 +4,8 @@
 //! An object point drops those that lie on or behind its tangent plane. If none is left, its whole half-ball is visible
 //! without a single test: so it is for most points of a scene with open spaces.
 
+use std::ops::Range;
+
 use glam::{IVec3, Vec3};
 use lightmesh_scene::Bounds;
 
@@ -15,9 +17,8 @@ use crate::surface::SurfacePoint;
 /// A triangle that may block segments which start in one cell.
 pub(super) struct Candidate {
     pub(super) corners: [Vec3; 3],
-    /// The light points that it can hide from any object point of the cell, as offsets from the cell; both ends included.
-    pub(super) low: IVec3,
-    pub(super) high: IVec3,
+    /// Where its rows are in [`CellOccluders::rows`].
+    rows: Range<usize>,
 }
 
 /// The triangles that can block a segment which starts in one cell.
@@ -25,6 +26,8 @@ pub(super) struct Candidate {
 pub(super) struct CellOccluders {
     found: Vec<u32>,
     pub(super) candidates: Vec<Candidate>,
+    /// Runs of bits of the template.
+    rows: Vec<Range<u16>>,
 }
 
 impl CellOccluders {
@@ -35,12 +38,35 @@ impl CellOccluders {
         let region = Bounds { min: origins.min - Vec3::splat(reach), max: origins.max + Vec3::splat(reach) };
         scene.accelerator.triangles_in(&region, &mut self.found);
         self.candidates.clear();
+        self.rows.clear();
         for &index in &self.found {
             let corners = scene.triangles[index as usize].corners();
             if plane_is_near(&corners, origins, reach)
                 && let Some((low, high)) = shadow_box(mesh, cell, origins, &corners)
             {
-                self.candidates.push(Candidate { corners, low, high });
+                let first = self.rows.len();
+                add_rows(&mut self.rows, mesh, low, high);
+                if self.rows.len() > first {
+                    self.candidates.push(Candidate { corners, rows: first..self.rows.len() });
+                }
+            }
+        }
+    }
+
+    /// The light points that `candidate` can hide from an object point of the cell, as runs of bits: neighbours along x.
+    #[inline(always)]
+    pub(super) fn rows(&self, candidate: &Candidate) -> &[Range<u16>] {
+        &self.rows[candidate.rows.clone()]
+    }
+}
+
+/// Adds the rows of the template between two offsets, both included.
+fn add_rows(rows: &mut Vec<Range<u16>>, mesh: &LightMesh, low: IVec3, high: IVec3) {
+    for z in low.z..=high.z {
+        for y in low.y..=high.y {
+            let row = mesh.template.row(y, z, low.x, high.x);
+            if !row.is_empty() {
+                rows.push(row.start as u16..row.end as u16);
             }
         }
     }

@@ -96,7 +96,7 @@ impl Run<'_> {
                 let lanes = first..slots.end.min(first + LANES);
                 let (masks, tail) = rest.split_at_mut(lanes.len() * words);
                 batch.fill(lanes.map(|slot| self.point(slot)));
-                counts = counts + batch.masks(simd, self.mesh, &points, &occluders.candidates, masks);
+                counts = counts + batch.masks(simd, self.mesh, &points, &occluders, masks);
                 rest = tail;
             }
         }
