@@ -167,7 +167,7 @@ impl Batch {
     fn any_seen(&self, first: usize, count: usize, lanes: u8) -> bool {
         let mut bytes = [0; 8];
         bytes.copy_from_slice(&self.seen[first..first + 8]);
-        let wanted = u64::from(lanes) * 0x0101_0101_0101_0101 & (!0 >> (8 * (8 - count)));
+        let wanted = (u64::from(lanes) * 0x0101_0101_0101_0101) & (!0 >> (8 * (8 - count)));
         u64::from_le_bytes(bytes) & wanted != 0
     }
 
