@@ -151,6 +151,7 @@ pub(crate) fn ray_key(list: &RayList, ray: usize) -> u64 {
     u64::from(list.pixels[ray]) << 1 | u64::from(!list.from_camera())
 }
 
+#[inline]
 pub(crate) fn object_point(scene: &PreparedScene, list: &RayList, hits: &[Hit], ray: usize) -> SurfacePoint {
     SurfacePoint::new(&list.rays[ray], &hits[ray], &scene.triangles[hits[ray].triangle as usize])
 }
