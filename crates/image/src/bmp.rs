@@ -15,6 +15,9 @@ const FILE_HEADER: u32 = 14;
 const INFO_HEADER: u32 = 40;
 const HEADERS: u32 = FILE_HEADER + INFO_HEADER;
 
+/// What the headers can state.
+pub(crate) const LIMIT: &str = "4 GiB a file";
+
 /// 72 dots per inch, in dots per metre.
 const RESOLUTION: i32 = 2835;
 
@@ -58,9 +61,15 @@ impl Layout {
     }
 }
 
+/// Whether the headers can state the sizes of such a picture.
+pub(crate) fn can_hold(width: u32, height: u32) -> bool {
+    Layout::new(width, height).is_some()
+}
+
 /// Writes `frame` with `transfer`; the format cannot say which one was used.
 pub(crate) fn write(frame: &Frame, transfer: Transfer, mut output: impl Write) -> Result<(), EncodeError> {
-    let layout = Layout::new(frame.width(), frame.height()).ok_or(EncodeError::TooLarge { limit: "4 GiB a file" })?;
+    let layout = Layout::new(frame.width(), frame.height());
+    let layout = layout.ok_or(EncodeError::TooLarge { limit: LIMIT })?;
     output.write_all(&layout.headers())?;
     let mut bytes = Vec::with_capacity(layout.row);
     for row in frame.rows().rev() {

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::path::Path;
 
+use crate::{bmp, jpg};
+
 /// A picture format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
@@ -36,6 +38,17 @@ impl Format {
         Self::ALL
             .into_iter()
             .find(|format| format.extensions().iter().any(|known| extension.eq_ignore_ascii_case(known)))
+    }
+
+    /// What the format can hold, in words, where a picture of this size is too large for it.
+    pub(crate) fn exceeded_limit(self, width: u32, height: u32) -> Option<&'static str> {
+        let longest = width.max(height);
+        let (exceeded, limit) = match self {
+            Self::Bmp => (!bmp::can_hold(width, height), bmp::LIMIT),
+            Self::Jpg => (longest > jpg::MAX_SIDE, "65535 pixels a side"),
+            Self::Png | Self::Exr => (longest > i32::MAX as u32, "2147483647 pixels a side"),
+        };
+        exceeded.then_some(limit)
     }
 
     /// The format whose signature `bytes` starts with.

@@ -6,11 +6,12 @@ use image::ImageError;
 use image::codecs::jpeg::{JpegDecoder, JpegEncoder};
 
 use crate::load::{DecodeError, read_with};
-use crate::save::EncodeError;
+use crate::save::{EncodeError, check_fits};
 use crate::{Format, Frame, Transfer};
 
 const QUALITY: u8 = 92;
-const MAX_SIDE: u32 = 65_535;
+/// The format counts the pixels of a side in 16 bits.
+pub(crate) const MAX_SIDE: u32 = 65_535;
 
 const START_OF_SCAN: [u8; 2] = [0xff, 0xda];
 const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
@@ -18,9 +19,7 @@ const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
 /// Writes `frame` with `transfer`; the format cannot say which one was used.
 pub(crate) fn write(frame: &Frame, transfer: Transfer, output: impl Write) -> Result<(), EncodeError> {
     let (width, height) = (frame.width(), frame.height());
-    if width.max(height) > MAX_SIDE {
-        return Err(EncodeError::TooLarge { limit: "65535 pixels a side" });
-    }
+    check_fits(Format::Jpg, frame)?;
     let mut bytes = Vec::with_capacity(3 * frame.color().len());
     transfer.encode_into(frame.color(), &mut bytes);
     JpegEncoder::new_with_quality(output, QUALITY)

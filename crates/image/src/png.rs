@@ -6,14 +6,12 @@ use png::{BitDepth, ColorType, Decoder, Encoder, EncodingError, ScaledFloat, Srg
 
 use crate::frame::Frame;
 use crate::load::{DecodeError, checked_pixels};
-use crate::save::EncodeError;
+use crate::save::{EncodeError, check_fits};
 use crate::{Format, Transfer};
 
 /// Writes `frame` as 8-bit RGB: an sRGB chunk says how to read it, or a gAMA chunk of 1.0 where it is linear.
 pub(crate) fn write(frame: &Frame, transfer: Transfer, output: impl Write) -> Result<(), EncodeError> {
-    if frame.width().max(frame.height()) > i32::MAX as u32 {
-        return Err(EncodeError::TooLarge { limit: "2147483647 pixels a side" });
-    }
+    check_fits(Format::Png, frame)?;
     let mut encoder = Encoder::new(output, frame.width(), frame.height());
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);

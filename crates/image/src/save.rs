@@ -68,6 +68,14 @@ pub(crate) enum EncodeError {
     Io(#[from] io::Error),
 }
 
+/// Fails where `format` cannot hold a picture of the size of `frame`.
+pub(crate) fn check_fits(format: Format, frame: &Frame) -> Result<(), EncodeError> {
+    match format.exceeded_limit(frame.width(), frame.height()) {
+        Some(limit) => Err(EncodeError::TooLarge { limit }),
+        None => Ok(()),
+    }
+}
+
 impl Frame {
     /// Saves the colours as bmp, png, exr or jpg, by the extension of `path`; 8-bit formats get the sRGB curve.
     ///
@@ -139,6 +147,19 @@ pub fn check_writable(path: impl AsRef<Path>) -> Result<(), SaveError> {
     let path = path.as_ref();
     known_format(path)?;
     Ok(lightmesh_files::check_writable(path)?)
+}
+
+/// Says whether the format that `path` names can hold a picture of this size.
+///
+/// # Errors
+/// [`SaveError::TooLarge`] or [`SaveError::UnknownExtension`], as [`Frame::save`] would end with.
+pub fn check_size(path: impl AsRef<Path>, width: u32, height: u32) -> Result<(), SaveError> {
+    let path = path.as_ref();
+    let format = known_format(path)?;
+    match format.exceeded_limit(width, height) {
+        Some(limit) => Err(SaveError::TooLarge { path: path.to_owned(), format, width, height, limit }),
+        None => Ok(()),
+    }
 }
 
 fn known_format(path: &Path) -> Result<Format, SaveError> {

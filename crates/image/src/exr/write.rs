@@ -11,8 +11,8 @@ use ::exr::meta::header::{Header, LayerAttributes};
 use ::exr::prelude::{Compression, WritableImage};
 
 use super::{COLOR, DEPTH, NORMAL, POSITION, USED, visibility_name};
-use crate::save::EncodeError;
-use crate::{Frame, Layers};
+use crate::save::{EncodeError, check_fits};
+use crate::{Format, Frame, Layers};
 
 /// Rows and a fixed order, so that every reader takes the file and threads do not change its bytes.
 const ENCODING: Encoding =
@@ -61,9 +61,7 @@ fn write_channels(
     channels: Vec<AnyChannel<Plane<'_>>>,
     output: impl Write + Seek,
 ) -> Result<(), EncodeError> {
-    if frame.width().max(frame.height()) > i32::MAX as u32 {
-        return Err(EncodeError::TooLarge { limit: "2147483647 pixels a side" });
-    }
+    check_fits(Format::Exr, frame)?;
     let size = (frame.width() as usize, frame.height() as usize);
     let channels = AnyChannels::sort(channels.into_iter().collect());
     let image = Image::from_layer(Layer::new(size, LayerAttributes::default(), ENCODING, channels));

@@ -40,7 +40,7 @@ pub(crate) fn light_points(job: &Job, masks: &Masks, mesh: &LightMesh) -> UsedPo
                 used[brick].fetch_or(points, Ordering::Relaxed);
             }
         });
-        job.observer.advance((masks.groups.slots(run.end - 1).end - masks.groups.slots(run.start).start) as u64);
+        job.observer.advance(masks.groups.slots_of(run).len() as u64);
     });
 
     // 3. Ranks.

@@ -7,7 +7,9 @@ pub(crate) mod cpu;
 
 use glam::Vec3;
 
-use crate::accel::Ray;
+use crate::accel::{Hit, Ray};
+use crate::prepared::PreparedScene;
+use crate::surface::SurfacePoint;
 
 /// Rays with the pixels that they bring light to. Each pixel has at most one ray in a list.
 #[derive(Clone, Debug, Default)]
@@ -31,4 +33,10 @@ impl RayList {
     pub fn from_camera(&self) -> bool {
         self.weights.is_empty()
     }
+}
+
+/// The object point that ray number `ray` sees; the ray must have hit something.
+#[inline(always)]
+pub(crate) fn object_point(scene: &PreparedScene, list: &RayList, hits: &[Hit], ray: usize) -> SurfacePoint {
+    SurfacePoint::new(&list.rays[ray], &hits[ray], &scene.triangles[hits[ray].triangle as usize])
 }

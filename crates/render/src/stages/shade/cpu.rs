@@ -8,9 +8,8 @@ use crate::Picture;
 use crate::accel::Hit;
 use crate::job::Job;
 use crate::prepared::PreparedScene;
-use crate::stages::primary_rays::RayList;
+use crate::stages::primary_rays::{RayList, object_point};
 use crate::stages::shadow_rays::Visibility;
-use crate::stages::shadow_rays::cpu::object_point;
 
 /// Rays that one task shades.
 const BATCH: usize = 2048;

@@ -9,7 +9,7 @@ use crate::accel::{Hit, Ray};
 use crate::job::{Job, Tally};
 use crate::prepared::PreparedScene;
 use crate::sampling::{Pattern, light_center, light_point};
-use crate::stages::primary_rays::RayList;
+use crate::stages::primary_rays::{RayList, object_point};
 use crate::stages::shade::Surface;
 use crate::surface::{SurfacePoint, long_segment};
 
@@ -149,11 +149,6 @@ impl<'a> AreaLight<'a> {
 /// What tells the random patterns of two object points apart: the pixel, and whether it is seen in a mirror.
 pub(crate) fn ray_key(list: &RayList, ray: usize) -> u64 {
     u64::from(list.pixels[ray]) << 1 | u64::from(!list.from_camera())
-}
-
-#[inline]
-pub(crate) fn object_point(scene: &PreparedScene, list: &RayList, hits: &[Hit], ray: usize) -> SurfacePoint {
-    SurfacePoint::new(&list.rays[ray], &hits[ray], &scene.triangles[hits[ray].triangle as usize])
 }
 
 fn trace(job: &Job, scene: &PreparedScene, segments: &[Ray]) -> Vec<bool> {

@@ -30,9 +30,9 @@ impl Batch {
     }
 
     /// Takes in object points, at most eight.
-    pub(super) fn fill(&mut self, points: impl Iterator<Item = SurfacePoint>) {
+    pub(super) fn fill(&mut self, points: &[SurfacePoint]) {
         self.lanes = 0;
-        for (lane, point) in points.enumerate() {
+        for (lane, point) in points.iter().enumerate() {
             for axis in 0..3 {
                 self.position[axis][lane] = point.position[axis];
                 self.origin[axis][lane] = point.origin[axis];

@@ -15,7 +15,7 @@ use crate::light_mesh::{LightMesh, point_of};
 use crate::prepared::PreparedScene;
 use crate::settings::ShortTests;
 use crate::simd::dispatch;
-use crate::stages::primary_rays::RayList;
+use crate::stages::primary_rays::{RayList, object_point};
 use crate::surface::SurfacePoint;
 
 /// Object points that one task takes.
@@ -37,8 +37,7 @@ pub(crate) fn short_tests(
     let mut pieces = Vec::with_capacity(runs.len());
     let mut rest = bits.as_mut_slice();
     for run in &runs {
-        let slots = groups.slots(run.end - 1).end - groups.slots(run.start).start;
-        let (piece, tail) = rest.split_at_mut(slots * words);
+        let (piece, tail) = rest.split_at_mut(groups.slots_of(run).len() * words);
         pieces.push((run.clone(), piece));
         rest = tail;
     }
@@ -85,17 +84,18 @@ impl Run<'_> {
         let mut points = CellPoints::new(self.mesh);
         let mut batch = Batch::new(self.mesh);
         let mut counts = MaskCounts::default();
+        let mut object_points = Vec::new();
         let mut rest = bits;
         for group in run {
             let cell = point_of(self.groups.cell(group));
-            let slots = self.groups.slots(group);
             points.place(self.mesh, cell);
-            let origins = Bounds::around(slots.clone().map(|slot| self.point(slot).origin));
+            object_points.clear();
+            object_points.extend(self.groups.slots(group).map(|slot| self.point(slot)));
+            let origins = Bounds::around(object_points.iter().map(|point| point.origin));
             occluders.collect(self.scene, self.mesh, cell, &origins);
-            for first in slots.clone().step_by(LANES) {
-                let lanes = first..slots.end.min(first + LANES);
+            for lanes in object_points.chunks(LANES) {
                 let (masks, tail) = rest.split_at_mut(lanes.len() * words);
-                batch.fill(lanes.map(|slot| self.point(slot)));
+                batch.fill(lanes);
                 counts = counts + batch.masks(simd, self.mesh, &points, &occluders, masks);
                 rest = tail;
             }
@@ -119,8 +119,6 @@ impl Run<'_> {
 
     #[inline(always)]
     fn point(&self, slot: usize) -> SurfacePoint {
-        let ray = self.groups.members()[slot] as usize;
-        let hit = &self.hits[ray];
-        SurfacePoint::new(&self.list.rays[ray], hit, &self.scene.triangles[hit.triangle as usize])
+        object_point(self.scene, self.list, self.hits, self.groups.members()[slot] as usize)
     }
 }

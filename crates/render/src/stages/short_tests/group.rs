@@ -7,8 +7,7 @@ use rayon::prelude::*;
 use crate::accel::Hit;
 use crate::light_mesh::{Lattice, PointKey, point_key};
 use crate::prepared::PreparedScene;
-use crate::stages::primary_rays::RayList;
-use crate::surface::SurfacePoint;
+use crate::stages::primary_rays::{RayList, object_point};
 
 /// The cells that hold object points, in ascending order of key, and the object points of each.
 #[derive(Clone, Debug, Default)]
@@ -26,8 +25,8 @@ impl CellGroups {
             .par_iter()
             .enumerate()
             .filter(|(_, hit)| hit.is_some())
-            .map(|(ray, hit)| {
-                let point = SurfacePoint::new(&list.rays[ray], hit, &scene.triangles[hit.triangle as usize]);
+            .map(|(ray, _)| {
+                let point = object_point(scene, list, hits, ray);
                 (point_key(lattice.cell(point.position)), ray as u32)
             })
             .collect();
@@ -64,6 +63,11 @@ impl CellGroups {
         self.starts[group] as usize..self.starts[group + 1] as usize
     }
 
+    /// The slots of the object points in some consecutive cells.
+    pub(crate) fn slots_of(&self, groups: &Range<usize>) -> Range<usize> {
+        self.starts[groups.start] as usize..self.starts[groups.end] as usize
+    }
+
     /// The ray of each slot.
     pub fn members(&self) -> &[u32] {
         &self.members
@@ -74,7 +78,7 @@ impl CellGroups {
         let mut runs = Vec::new();
         let mut first = 0;
         for group in 0..self.len() {
-            if self.slots(group).end - self.slots(first).start >= size || group + 1 == self.len() {
+            if self.slots_of(&(first..group + 1)).len() >= size || group + 1 == self.len() {
                 runs.push(first..group + 1);
                 first = group + 1;
             }
