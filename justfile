@@ -26,6 +26,10 @@ doc:
 licences:
     cargo xtask licences
 
+# The layout header, the kernels' PTX and the report about them
+kernels:
+    cargo xtask kernels
+
 # Everything a change must pass
 ci:
     .ci/run

@@ -1,9 +1,11 @@
-//! Checks of the repository itself: `cargo xtask licences` and `cargo xtask check-docs`.
+//! Checks of the repository itself, and what is made from its sources and committed: `cargo xtask licences`, `cargo xtask
+//! check-docs` and `cargo xtask kernels`.
 //!
 //! A check gives back what it found; only this file prints and exits.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
 
 mod docs;
+mod kernels;
 mod licences;
 
 use std::error::Error;
@@ -12,7 +14,9 @@ use std::process::ExitCode;
 
 const USAGE: &str = "\
 usage: cargo xtask licences      every dependency, for any target, is under a licence that the project may use
-       cargo xtask check-docs    every file that the documents point to exists";
+       cargo xtask check-docs    every file that the documents point to exists
+       cargo xtask kernels       makes the layout header, the kernels' PTX and docs/kernels.md; with --check, says whether they are
+                                 as they should be";
 
 /// What a check has to say; an error where it could not be made.
 type Outcome = Result<Verdict, Box<dyn Error>>;
@@ -41,6 +45,8 @@ fn main() -> ExitCode {
     let verdict = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["licences"] => licences::check(root),
         ["check-docs"] => docs::check(root),
+        ["kernels"] => kernels::run(root, false),
+        ["kernels", "--check"] => kernels::run(root, true),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

@@ -65,7 +65,11 @@ impl Failure {
             Failure::Signals(_) => UNABLE,
             Failure::Render(error) => match error {
                 RenderError::Cancelled => INTERRUPTED,
-                RenderError::Memory { .. } | RenderError::Device { .. } | RenderError::Threads { .. } => UNABLE,
+                RenderError::Memory { .. }
+                | RenderError::Threads { .. }
+                | RenderError::Device { .. }
+                | RenderError::DeviceMemory { .. }
+                | RenderError::DeviceFault { .. } => UNABLE,
                 RenderError::Lattice(_)
                 | RenderError::Template(_)
                 | RenderError::Grid(_)
@@ -85,9 +89,12 @@ mod tests {
     fn what_the_machine_cannot_do_is_told_from_bad_input() {
         let memory = RenderError::Memory { buffer: "masks", needed: 2, limit: 1 };
         let device = RenderError::Device { device: "cuda".into(), reason: "none".into() };
+        let full = RenderError::DeviceMemory { device: "Fake".into(), buffer: "masks", needed: 2, free: Some(1) };
+        let fault = RenderError::DeviceFault { device: "Fake".into(), reason: "none".into() };
         let setting = RenderError::Setting { what: "size", value: "0x0".into(), remedy: "choose another" };
-        let codes = [memory, device, setting, RenderError::Cancelled].map(|error| Failure::from(error).exit_code());
-        assert_eq!(codes, [UNABLE, UNABLE, BAD_INPUT, INTERRUPTED]);
+        let errors = [memory, device, full, fault, setting, RenderError::Cancelled];
+        let codes = errors.map(|error| Failure::from(error).exit_code());
+        assert_eq!(codes, [UNABLE, UNABLE, UNABLE, UNABLE, BAD_INPUT, INTERRUPTED]);
         assert_eq!(Failure::Exceeded("RMSE".into()).exit_code(), EXCEEDED);
     }
 }

@@ -19,7 +19,9 @@
 //!   `builtin:garden`), or put triangles together with [`SceneBuilder`](scene::SceneBuilder).
 //! * [`Settings`] says how: [`Mode`] (the method, hard-shadow ray tracing, or the area-shadow reference), picture size,
 //!   light-mesh step and radius, and so on. The defaults make a good picture.
-//! * [`Renderer`] does it on a [`Device`]. One call to [`Renderer::prepare`] serves any number of pictures.
+//! * [`Renderer`] does it on a [`Device`]: the CPU, on all of its cores, or a CUDA GPU; [`Device::Auto`] takes a GPU where one
+//!   works. One call to [`Renderer::prepare`] serves any number of pictures, and a GPU keeps its copy of the scene for as long.
+//!   [`render::devices`] lists what there is.
 //! * [`Frame`] is the picture with its [`Stats`]; an [`Observer`] watches progress and can stop the work.
 //!
 //! The parts live in crates of their own, which are re-exported whole as [`scene`], [`image`] and [`render`].

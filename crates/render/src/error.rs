@@ -56,6 +56,29 @@ pub enum RenderError {
         /// Why not, and what to do.
         reason: String,
     },
+    /// A device has not enough memory, however few rows are taken at once.
+    #[error(
+        "{device} cannot hold {buffer}: {needed} bytes are needed, {} are free; choose a smaller picture, a larger step or a smaller radius, or --device cpu",
+        free.map_or_else(|| "fewer".to_owned(), |free| free.to_string())
+    )]
+    DeviceMemory {
+        /// What the maker calls the device.
+        device: String,
+        /// The buffer that did not fit.
+        buffer: &'static str,
+        /// Its bytes.
+        needed: u64,
+        /// Bytes that were free, where the device tells.
+        free: Option<u64>,
+    },
+    /// A device failed.
+    #[error("{device} failed: {reason}; --device cpu renders without it")]
+    DeviceFault {
+        /// What the maker calls the device.
+        device: String,
+        /// What the driver said.
+        reason: String,
+    },
     /// The observer asked to stop.
     #[error("cancelled")]
     Cancelled,

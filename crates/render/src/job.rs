@@ -5,6 +5,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
+use crate::backend::Backend;
+use crate::settings::ShortTests;
 use crate::{Observer, RenderError, Stage};
 
 /// How lights with a size are sampled.
@@ -55,6 +57,26 @@ impl Tally {
     pub fn get(count: &AtomicU64) -> u64 {
         count.load(Ordering::Relaxed)
     }
+
+    /// What has been counted so far.
+    pub(crate) fn snapshot(&self) -> [u64; 11] {
+        self.all().map(Tally::get)
+    }
+
+    /// Goes back to an earlier state: what was counted since belongs to work that is done again.
+    pub(crate) fn restore(&self, snapshot: &[u64; 11]) {
+        for (count, &value) in self.all().into_iter().zip(snapshot) {
+            count.store(value, Ordering::Relaxed);
+        }
+    }
+
+    fn all(&self) -> [&AtomicU64; 11] {
+        let Tally { rays, hits, object_points, half_ball, used, fallbacks, light_points, .. } = self;
+        let Tally { short_tests, short_tests_culled, long_tests, shadow_rays, .. } = self;
+        let mesh = [half_ball, used, fallbacks, light_points, short_tests, short_tests_culled];
+        let [a, b, c, d, e, f] = mesh;
+        [rays, hits, object_points, a, b, c, d, e, f, long_tests, shadow_rays]
+    }
 }
 
 /// One picture in the making.
@@ -63,6 +85,8 @@ pub struct Job<'a> {
     pub observer: &'a dyn Observer,
     /// How lights with a size are sampled.
     pub sampling: Sampling,
+    /// How short tests are evaluated.
+    pub short_tests: ShortTests,
     /// What has been counted.
     pub tally: Tally,
     seconds: Mutex<HashMap<Stage, f64>>,
@@ -71,26 +95,43 @@ pub struct Job<'a> {
 impl<'a> Job<'a> {
     /// A job that has done nothing yet.
     pub fn new(observer: &'a dyn Observer, sampling: Sampling) -> Job<'a> {
-        Job { observer, sampling, tally: Tally::default(), seconds: Mutex::default() }
+        let short_tests = ShortTests::default();
+        Job { observer, sampling, short_tests, tally: Tally::default(), seconds: Mutex::default() }
     }
 
-    /// Runs one stage: tells the observer, takes the time, and fails if the observer has asked to stop.
-    pub fn stage<T>(
+    /// The same with short tests evaluated in another way.
+    pub fn with_short_tests(self, short_tests: ShortTests) -> Job<'a> {
+        Job { short_tests, ..self }
+    }
+
+    /// Runs one stage: tells the observer, lets the backend take the time, and fails if the observer has asked to stop.
+    pub fn stage<B: Backend, T>(
         &self,
+        backend: &B,
         stage: Stage,
         pieces: u64,
         work: impl FnOnce() -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
         self.check()?;
         self.observer.begin(stage, pieces);
-        let start = Instant::now();
-        let result = work();
-        let spent = start.elapsed().as_secs_f64();
-        *self.seconds.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).entry(stage).or_default() += spent;
+        let result = backend.timed(self, stage, work);
         self.observer.end(stage);
         let result = result?;
         self.check()?;
         Ok(result)
+    }
+
+    /// Takes the wall time of `work` for `stage`.
+    pub fn wall_time<T>(&self, stage: Stage, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let result = work();
+        self.add_seconds(stage, start.elapsed().as_secs_f64());
+        result
+    }
+
+    /// Adds to the seconds spent in `stage`.
+    pub fn add_seconds(&self, stage: Stage, seconds: f64) {
+        *self.seconds.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).entry(stage).or_default() += seconds;
     }
 
     /// Seconds spent in `stage`.
@@ -98,7 +139,8 @@ impl<'a> Job<'a> {
         self.seconds.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).get(&stage).copied().unwrap_or(0.0)
     }
 
-    fn check(&self) -> Result<(), RenderError> {
+    /// Fails if the observer has asked to stop.
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
         if self.observer.cancelled() { Err(RenderError::Cancelled) } else { Ok(()) }
     }
 }

@@ -3,11 +3,15 @@
 //! [`method`] is the file to read first: the whole method as a handful of calls. Each call is a stage with a folder of its own
 //! under `stages`, each device implements all of them behind [`backend::Backend`], and [`Renderer`] puts a picture together.
 //!
+//! Devices: [`backend::Cpu`] is the host's processor, [`backend::Cuda`] any CUDA device behind [`cuda::Runtime`]. [`devices`] lists
+//! them, [`Device`] names one.
+//!
 //! Data flows one way: [`Scene`](lightmesh_scene::Scene) ▶ [`PreparedScene`] ▶ hits ▶ masks ▶ light points ▶ visibility ▶
 //! radiance ▶ [`Frame`].
 
 pub mod accel;
 pub mod backend;
+pub mod cuda;
 mod device;
 mod error;
 mod job;
@@ -27,13 +31,14 @@ mod stats;
 mod surface;
 mod view;
 
-pub use device::{Device, DeviceReport, UnknownDevice, devices};
+pub use device::{Choice, Device, DeviceReport, UnknownDevice, devices};
 pub use error::RenderError;
 pub use job::{Job, Sampling, Tally};
+pub use modes::{Plan, Technique};
 pub use observer::{Observer, Stage, Unobserved};
 pub use picture::Picture;
 pub use prepared::PreparedScene;
-pub use renderer::{Frame, Renderer};
+pub use renderer::{Frame, Renderer, render_on};
 pub use settings::{Acceleration, Lookup, Mode, Settings, ShortTests, Step};
 pub use stages::long_tests::{Lit, LitBy};
 pub use stages::primary_rays::RayList;

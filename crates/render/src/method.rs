@@ -20,14 +20,14 @@ pub fn light_mesh<B: Backend>(
     let n = backend.ray_count(rays) as u64;
 
     // Which light points does each object point see?                                                     (2)
-    let masks = job.stage(Stage::ShortTests, n, || backend.short_tests(job, scene, rays, hits, mesh))?;
+    let masks = job.stage(backend, Stage::ShortTests, n, || backend.short_tests(job, scene, rays, hits, mesh))?;
 
     // Each of them once.                                                                                  (7)
-    let points = job.stage(Stage::Collect, n, || backend.light_points(job, &masks, mesh))?;
+    let points = job.stage(backend, Stage::Collect, n, || backend.light_points(job, &masks, mesh))?;
 
     // Which lights does each of them see?
-    let lit = job.stage(Stage::LongTests, n, || backend.long_tests(job, scene, &points, mesh))?;
+    let lit = job.stage(backend, Stage::LongTests, n, || backend.long_tests(job, scene, &points, mesh))?;
 
     // The weighted mean of what an object point's light points see.                                      (3)
-    job.stage(Stage::Shade, n, || backend.interpolate(job, scene, rays, hits, &masks, &points, &lit, mesh))
+    job.stage(backend, Stage::Shade, n, || backend.interpolate(job, scene, rays, hits, &masks, &points, &lit, mesh))
 }

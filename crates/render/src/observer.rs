@@ -5,6 +5,8 @@
 pub enum Stage {
     /// Building the acceleration structure.
     Build,
+    /// Copying the scene to a device that has memory of its own.
+    Upload,
     /// What does each pixel see?
     PrimaryRays,
     /// Which light points does each object point see?
@@ -15,22 +17,34 @@ pub enum Stage {
     LongTests,
     /// Formula (3), then (1).
     Shade,
+    /// Copying the picture from a device.
+    Download,
 }
 
 impl Stage {
     /// All of them, in order.
-    pub const ALL: [Stage; 6] =
-        [Stage::Build, Stage::PrimaryRays, Stage::ShortTests, Stage::Collect, Stage::LongTests, Stage::Shade];
+    pub const ALL: [Stage; 8] = [
+        Stage::Build,
+        Stage::Upload,
+        Stage::PrimaryRays,
+        Stage::ShortTests,
+        Stage::Collect,
+        Stage::LongTests,
+        Stage::Shade,
+        Stage::Download,
+    ];
 
     /// The word in statistics.
     pub fn name(self) -> &'static str {
         match self {
             Stage::Build => "build",
+            Stage::Upload => "upload",
             Stage::PrimaryRays => "primary_rays",
             Stage::ShortTests => "short_tests",
             Stage::Collect => "collect",
             Stage::LongTests => "long_tests",
             Stage::Shade => "shade",
+            Stage::Download => "download",
         }
     }
 }

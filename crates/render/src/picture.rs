@@ -1,22 +1,31 @@
 //! A picture in the making: colours that radiance is added to, and the layers of what each pixel saw.
 
+use std::ops::Range;
+
 use lightmesh_image::{Frame, Layers};
 
-/// Linear colours and, on request, layers; row 0 is the top.
+/// Linear colours and, on request, layers of some rows of a picture; row 0 is the top.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// Width and height in pixels.
+    /// Width and height of the whole picture in pixels.
     pub size: [u32; 2],
-    /// Linear radiance by pixel, y · width + x.
+    /// The rows that are here.
+    pub rows: Range<u32>,
+    /// Linear radiance by pixel of these rows.
     pub color: Vec<[f32; 3]>,
-    /// What each pixel saw.
+    /// What each of these pixels saw.
     pub layers: Option<Layers>,
 }
 
 impl Picture {
     /// A black picture of `size` pixels; with layers for `lights` lights on request.
     pub fn new(size: [u32; 2], lights: Option<usize>) -> Picture {
-        let pixels = size[0] as usize * size[1] as usize;
+        Picture::band(size, 0..size[1], lights)
+    }
+
+    /// The black rows `rows` of a picture of `size` pixels.
+    pub fn band(size: [u32; 2], rows: Range<u32>, lights: Option<usize>) -> Picture {
+        let pixels = size[0] as usize * rows.len();
         let layers = lights.map(|lights| Layers {
             depth: vec![f32::INFINITY; pixels],
             normal: vec![[0.0; 3]; pixels],
@@ -24,13 +33,44 @@ impl Picture {
             visibility: vec![vec![0.0; pixels]; lights],
             used: vec![0; pixels],
         });
-        Picture { size, color: vec![[0.0; 3]; pixels], layers }
+        Picture { size, rows, color: vec![[0.0; 3]; pixels], layers }
     }
 
-    /// Adds radiance to a pixel.
+    /// Where pixel y · width + x of the whole picture lies in the planes.
+    #[inline(always)]
+    pub fn index(&self, pixel: u32) -> usize {
+        pixel as usize - self.rows.start as usize * self.size[0] as usize
+    }
+
+    /// The places of some rows in the planes.
+    pub fn places(&self, rows: &Range<u32>) -> Range<usize> {
+        self.index(rows.start * self.size[0])..self.index(rows.end * self.size[0])
+    }
+
+    /// Adds radiance to a pixel of the whole picture.
     pub fn add(&mut self, pixel: u32, radiance: glam::Vec3) {
-        let color = &mut self.color[pixel as usize];
+        let index = self.index(pixel);
+        let color = &mut self.color[index];
         *color = (glam::Vec3::from_array(*color) + radiance).to_array();
+    }
+
+    /// Takes over the rows of a band, with its layers where both have them.
+    pub fn take(&mut self, band: Picture) {
+        if band.rows == self.rows {
+            *self = band;
+            return;
+        }
+        let places = self.places(&band.rows);
+        self.color[places.clone()].copy_from_slice(&band.color);
+        if let (Some(layers), Some(band)) = (&mut self.layers, &band.layers) {
+            layers.depth[places.clone()].copy_from_slice(&band.depth);
+            layers.normal[places.clone()].copy_from_slice(&band.normal);
+            layers.position[places.clone()].copy_from_slice(&band.position);
+            layers.used[places.clone()].copy_from_slice(&band.used);
+            for (plane, band) in layers.visibility.iter_mut().zip(&band.visibility) {
+                plane[places.clone()].copy_from_slice(band);
+            }
+        }
     }
 
     /// The finished frame.

@@ -1,5 +1,8 @@
 //! A scene made ready for rays.
 
+use std::any::Any;
+use std::sync::{Arc, Mutex};
+
 use glam::Vec3;
 use lightmesh_scene::{Bounds, Scene};
 
@@ -19,9 +22,11 @@ pub struct PreparedScene<'s> {
     pub bounds: Bounds,
     /// Seconds that building took.
     pub build_seconds: f64,
-    center: Vec3,
+    /// Copies that devices hold, by [`Runtime::id`](crate::cuda::Runtime::id).
+    pub(crate) resident: Mutex<Vec<(u64, Arc<dyn Any + Send + Sync>)>>,
+    pub(crate) center: Vec3,
     /// A little more than the diagonal of the bounds; 1 where there are none.
-    far: f32,
+    pub(crate) far: f32,
 }
 
 impl<'s> PreparedScene<'s> {
@@ -51,7 +56,16 @@ impl<'s> PreparedScene<'s> {
         let bounds = Bounds::around(usable.flat_map(Triangle::corners));
         let (center, far) =
             if bounds.is_empty() { (Vec3::ZERO, 1.0) } else { (bounds.center(), 1.25 * bounds.diagonal()) };
-        Ok(PreparedScene { scene, bounds, triangles, accelerator, build_seconds, center, far })
+        Ok(PreparedScene {
+            scene,
+            bounds,
+            triangles,
+            accelerator,
+            build_seconds,
+            resident: Mutex::default(),
+            center,
+            far,
+        })
     }
 
     /// How far a directional light stands from `from`: farther than any triangle. Asked for every segment, so without a root.

@@ -1,17 +1,19 @@
 //! From a scene and settings to a frame.
 
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use lightmesh_image::SaveError;
 use lightmesh_scene::{Camera, Projection, Scene, Weight};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::backend::Cpu;
-use crate::device::{NO_CUDA, cpu_name};
+use crate::backend::{Backend, Cpu, Cuda};
+use crate::cuda::Driver;
+use crate::device::{Chosen, choose};
 use crate::job::{Job, Sampling};
 use crate::light_mesh::{Lattice, LightMesh, Template, auto_step};
-use crate::modes::{self, Technique, rows_per_band};
+use crate::modes::{self, Plan, Technique};
 use crate::prepared::PreparedScene;
 use crate::settings::{Mode, Settings, ShortTests, Step};
 use crate::stages::shade::DEFAULT_AMBIENT;
@@ -19,7 +21,7 @@ use crate::stats::{
     CameraStats, Counts, DeviceStats, LatticeStats, MemoryStats, SceneStats, Seconds, SettingsStats, Stats,
 };
 use crate::view::View;
-use crate::{Device, Observer, Picture, RenderError, Unobserved, memory};
+use crate::{Device, Observer, Picture, RenderError, Unobserved};
 
 /// More threads than any machine has processors only wait for each other.
 const MAX_THREADS: usize = 1024;
@@ -46,6 +48,14 @@ impl Frame {
 /// Renders scenes on one device.
 pub struct Renderer {
     pool: ThreadPool,
+    engine: Engine,
+}
+
+/// What computes.
+enum Engine {
+    Cpu,
+    /// Pictures take turns: a device has one template in constant memory, and one set of counters.
+    Cuda(Box<Mutex<Cuda<Driver>>>),
 }
 
 impl Renderer {
@@ -63,9 +73,6 @@ impl Renderer {
     /// [`RenderError::Device`] where the device cannot be used, [`RenderError::Setting`] where the number of threads has no sense,
     /// [`RenderError::Threads`] where the threads cannot be started.
     pub fn with_threads(device: Device, threads: Option<usize>) -> Result<Renderer, RenderError> {
-        if let Device::Cuda(_) = device {
-            return Err(RenderError::Device { device: device.to_string(), reason: NO_CUDA.to_owned() });
-        }
         if threads.is_some_and(|threads| !(1..=MAX_THREADS).contains(&threads)) {
             return Err(RenderError::Setting {
                 what: "number of threads (--threads)",
@@ -76,7 +83,11 @@ impl Renderer {
         let threads = threads.unwrap_or(0);
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| RenderError::Threads { threads, reason: error.to_string() })?;
-        Ok(Renderer { pool })
+        let engine = match choose(device)? {
+            Chosen::Cpu => Engine::Cpu,
+            Chosen::Cuda(driver) => Engine::Cuda(Box::new(Mutex::new(Cuda::new(driver)))),
+        };
+        Ok(Renderer { pool, engine })
     }
 
     /// Renders one picture of `scene`.
@@ -111,101 +122,106 @@ impl Renderer {
         settings: &Settings,
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError> {
-        check(settings)?;
-        self.pool.install(|| self.render_here(scene, settings, observer))
-    }
-
-    fn render_here(
-        &self,
-        scene: &PreparedScene,
-        settings: &Settings,
-        observer: &dyn Observer,
-    ) -> Result<Frame, RenderError> {
-        let start = Instant::now();
-        let camera = camera(scene.scene, settings);
-        let view = View::new(&camera, settings.size);
-        let technique = technique(scene, settings, &view, observer)?;
-        let lights = scene.scene.lights.len();
-
-        let pixels = u64::from(settings.size[0]) * u64::from(settings.size[1]);
-        let picture_bytes = pixels * (12 + if settings.layers { 32 + 4 * lights as u64 } else { 0 });
-        let available = memory::available().map(|bytes| bytes - bytes / 8);
-        let rows = match settings.memory_limit {
-            // The limit is on the process: what it already holds counts.
-            Some(limit) => {
-                let resident = scene.memory() as u64 + picture_bytes;
-                rows_per_band(&technique, settings.size, lights, resident, Some(limit))?
+        self.pool.install(|| match &self.engine {
+            Engine::Cpu => render_on(&Cpu, scene, settings, observer),
+            Engine::Cuda(cuda) => {
+                let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
+                render_on(&*cuda, scene, settings, observer)
             }
-            None => rows_per_band(&technique, settings.size, lights, picture_bytes, available)?,
-        };
-
-        let sampling =
-            Sampling { samples: settings.samples(), seed: settings.seed, spread: settings.mode == Mode::Area };
-        let job = Job::new(observer, sampling);
-        let mut picture = Picture::new(settings.size, settings.layers.then_some(lights));
-        let backend = Cpu { short_tests: settings.short_tests };
-        modes::render(&backend, &job, scene, &view, &technique, settings.bounces, rows, &mut picture)?;
-
-        let mesh = match &technique {
-            Technique::LightMesh(mesh) => Some(mesh),
-            _ => None,
-        };
-        let stats = Stats {
-            version: 1,
-            scene: SceneStats { name: scene.scene.name.clone(), triangles: scene.triangles.len(), lights },
-            device: DeviceStats { kind: "cpu", name: cpu_name() },
-            settings: self.settings_stats(scene, settings, &camera, mesh, rows),
-            counts: Counts::new(&job, pixels, mesh),
-            seconds: Seconds::new(&job, scene.build_seconds, start.elapsed().as_secs_f64()),
-            memory: MemoryStats::now(),
-        };
-        Ok(Frame { image: picture.into_frame(), stats })
+        })
     }
+}
 
-    fn settings_stats(
-        &self,
-        scene: &PreparedScene,
-        settings: &Settings,
-        camera: &Camera,
-        mesh: Option<&LightMesh>,
-        rows_per_band: u32,
-    ) -> SettingsStats {
-        let aspect = settings.size[0] as f32 / settings.size[1] as f32;
-        let (vfov, height) = match camera.projection {
-            Projection::Perspective(fov) => (Some(fov.vertical(aspect)), None),
-            Projection::Orthographic { height } => (None, Some(height)),
-        };
-        SettingsStats {
-            mode: settings.mode.name(),
-            bounces: settings.bounces,
-            size: settings.size,
-            device: "cpu",
-            threads: self.pool.current_num_threads(),
-            step: mesh.map(|mesh| mesh.lattice.step),
-            step_auto: mesh.is_some() && chosen_step(scene.scene, settings) == Step::Auto,
-            radius: mesh.map(|mesh| mesh.template.radius()),
-            weight: mesh.map(|mesh| mesh.weight.name()),
-            lookup: mesh.map(|_| "half-ball"),
-            short_tests: mesh.map(|_| match settings.short_tests {
-                ShortTests::Cells => "cells",
-                ShortTests::Plain => "plain",
-            }),
-            samples: settings.samples(),
-            accel: scene.accelerator.name(),
-            camera: CameraStats {
-                position: scene.scene.to_world(camera.position).to_array(),
-                direction: camera.direction.to_array(),
-                up: camera.up.to_array(),
-                vfov,
-                height,
-            },
-            ambient: scene.scene.ambient.unwrap_or(DEFAULT_AMBIENT).to_array(),
-            background: scene.scene.background.unwrap_or_default().to_array(),
-            seed: settings.seed,
-            memory_limit: settings.memory_limit,
-            rows_per_band,
-            lattice: mesh.map(|mesh| LatticeStats::new(scene, &mesh.lattice)),
-        }
+/// Renders one picture of a prepared scene on a backend of the caller's own, on the caller's threads.
+///
+/// # Errors
+/// As [`Renderer::render_prepared`].
+pub fn render_on<B: Backend>(
+    backend: &B,
+    scene: &PreparedScene,
+    settings: &Settings,
+    observer: &dyn Observer,
+) -> Result<Frame, RenderError> {
+    check(settings)?;
+    let start = Instant::now();
+    let camera = camera(scene.scene, settings);
+    let view = View::new(&camera, settings.size);
+    let technique = technique(scene, settings, &view, observer)?;
+    let lights = scene.scene.lights.len();
+
+    let pixels = u64::from(settings.size[0]) * u64::from(settings.size[1]);
+    let plan = Plan {
+        technique,
+        size: settings.size,
+        bounces: settings.bounces,
+        layers: settings.layers.then_some(lights),
+        memory_limit: settings.memory_limit,
+    };
+    let sampling = Sampling { samples: settings.samples(), seed: settings.seed, spread: settings.mode == Mode::Area };
+    let job = Job::new(observer, sampling).with_short_tests(settings.short_tests);
+    let mut picture = Picture::new(settings.size, plan.layers);
+    backend.upload(&job, scene, &plan)?;
+    let rows = modes::render(backend, &job, scene, &view, &plan, &mut picture)?;
+
+    let mesh = match &plan.technique {
+        Technique::LightMesh(mesh) => Some(mesh),
+        _ => None,
+    };
+    let stats = Stats {
+        version: 1,
+        scene: SceneStats { name: scene.scene.name.clone(), triangles: scene.triangles.len(), lights },
+        device: DeviceStats { kind: backend.kind(), name: backend.name() },
+        settings: settings_stats(backend.kind(), scene, settings, &camera, mesh, rows),
+        counts: Counts::new(&job, pixels, mesh),
+        seconds: Seconds::new(&job, scene.build_seconds, start.elapsed().as_secs_f64()),
+        memory: MemoryStats::now(backend.peak_memory()),
+    };
+    Ok(Frame { image: picture.into_frame(), stats })
+}
+
+fn settings_stats(
+    device: &'static str,
+    scene: &PreparedScene,
+    settings: &Settings,
+    camera: &Camera,
+    mesh: Option<&LightMesh>,
+    rows_per_band: u32,
+) -> SettingsStats {
+    let aspect = settings.size[0] as f32 / settings.size[1] as f32;
+    let (vfov, height) = match camera.projection {
+        Projection::Perspective(fov) => (Some(fov.vertical(aspect)), None),
+        Projection::Orthographic { height } => (None, Some(height)),
+    };
+    SettingsStats {
+        mode: settings.mode.name(),
+        bounces: settings.bounces,
+        size: settings.size,
+        device,
+        threads: rayon::current_num_threads(),
+        step: mesh.map(|mesh| mesh.lattice.step),
+        step_auto: mesh.is_some() && chosen_step(scene.scene, settings) == Step::Auto,
+        radius: mesh.map(|mesh| mesh.template.radius()),
+        weight: mesh.map(|mesh| mesh.weight.name()),
+        lookup: mesh.map(|_| "half-ball"),
+        short_tests: mesh.map(|_| match settings.short_tests {
+            ShortTests::Cells => "cells",
+            ShortTests::Plain => "plain",
+        }),
+        samples: settings.samples(),
+        accel: scene.accelerator.name(),
+        camera: CameraStats {
+            position: scene.scene.to_world(camera.position).to_array(),
+            direction: camera.direction.to_array(),
+            up: camera.up.to_array(),
+            vfov,
+            height,
+        },
+        ambient: scene.scene.ambient.unwrap_or(DEFAULT_AMBIENT).to_array(),
+        background: scene.scene.background.unwrap_or_default().to_array(),
+        seed: settings.seed,
+        memory_limit: settings.memory_limit,
+        rows_per_band,
+        lattice: mesh.map(|mesh| LatticeStats::new(scene, &mesh.lattice)),
     }
 }
 

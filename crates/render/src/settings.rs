@@ -102,7 +102,7 @@ pub struct Settings {
     pub seed: u64,
     /// Keep depth, normals, positions and visibility of every pixel beside its colour.
     pub layers: bool,
-    /// Bytes to stay under; `None`: what is free, less a reserve.
+    /// Bytes to stay under: of the process on the CPU, of the device's own memory on a GPU; `None`: what is free, less a reserve.
     pub memory_limit: Option<u64>,
 }
 

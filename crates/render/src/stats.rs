@@ -116,7 +116,8 @@ pub struct Counts {
     pub shadow_rays: u64,
 }
 
-/// How long what took. `load`, `write`, `upload` and `download` are no part of `render`.
+/// How long what took. `load`, `build` and `write` are no part of `render`. On a device the stages from `primary_rays` to `shade`
+/// are the device's own time.
 #[derive(Clone, Debug, Default, Serialize)]
 #[allow(missing_docs, reason = "named as the stages are")]
 pub struct Seconds {
@@ -173,6 +174,8 @@ impl Seconds {
     pub(crate) fn new(job: &Job, build: f64, render: f64) -> Seconds {
         Seconds {
             build,
+            upload: job.seconds(Stage::Upload),
+            download: job.seconds(Stage::Download),
             primary_rays: job.seconds(Stage::PrimaryRays),
             short_tests: job.seconds(Stage::ShortTests),
             collect: job.seconds(Stage::Collect),
@@ -185,7 +188,7 @@ impl Seconds {
 }
 
 impl MemoryStats {
-    pub(crate) fn now() -> MemoryStats {
-        MemoryStats { host_peak_bytes: memory::peak().unwrap_or(0), device_peak_bytes: 0 }
+    pub(crate) fn now(device_peak_bytes: u64) -> MemoryStats {
+        MemoryStats { host_peak_bytes: memory::peak().unwrap_or(0), device_peak_bytes }
     }
 }

@@ -1,6 +1,7 @@
 //! Which ray belongs to which pixel.
 
 use glam::Vec3;
+use lightmesh_layout::geometry as layout;
 use lightmesh_scene::{Camera, Projection};
 
 use crate::accel::Ray;
@@ -36,6 +37,19 @@ impl View {
     /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size
+    }
+
+    /// The view as kernels know it.
+    pub(crate) fn record(&self) -> layout::View {
+        layout::View {
+            origin: layout::Vec3::from(self.origin.to_array()),
+            forward: layout::Vec3::from(self.forward.to_array()),
+            right: layout::Vec3::from(self.right.to_array()),
+            down: layout::Vec3::from(self.down.to_array()),
+            size: self.size,
+            perspective: u32::from(self.perspective),
+            spare: 0,
+        }
     }
 
     /// The ray through the centre of pixel `index` = y · width + x; its direction has unit length.

@@ -51,10 +51,20 @@ pub const MODELS: [Model; 21] = [
 ];
 
 impl Model {
+    /// Whether the file is there.
+    pub fn is_there(&self) -> bool {
+        self.path().is_file()
+    }
+
+    fn path(&self) -> PathBuf {
+        let shared = std::env::var_os("LIGHTMESH_SHARED")
+            .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared"), PathBuf::from);
+        shared.join("scenes").join(self.file)
+    }
+
     /// Reads the model, with the file's own lights, or a white point light where it has none.
     pub fn open(&self) -> Scene {
-        let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes").join(self.file);
-        let mut scene = Scene::open(path).unwrap_or_else(|error| panic!("{error}"));
+        let mut scene = Scene::open(self.path()).unwrap_or_else(|error| panic!("{error}"));
         let direction = (DVec3::from(self.target) - DVec3::from(self.eye)).normalize().as_vec3();
         let projection = Projection::Perspective(Fov::Vertical(self.vfov));
         let up = if self.file.starts_with("camera_light") { Vec3::Z } else { Vec3::Y };

@@ -94,7 +94,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "V", allow_hyphen_values = true, help_heading = "Scene")]
     pub(crate) ambient: Option<Color>,
 
-    /// Where to compute: auto, cpu, cuda or cuda:N; auto takes the fastest that works, and says which and why
+    /// Where to compute: auto, cpu, cuda (the first CUDA device that works) or cuda:N; auto takes the fastest that works, cuda
+    /// before cpu, and says which and why. `lightmesh info --devices` lists them; CUDA_VISIBLE_DEVICES hides and renumbers them
     #[arg(long, value_name = "DEVICE", default_value = "auto", help_heading = "Machine")]
     pub(crate) device: Device,
 

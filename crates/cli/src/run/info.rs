@@ -27,7 +27,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     Ok(output::print(&text)?)
 }
 
-fn device_line(DeviceReport { device, name, usable, remark }: &DeviceReport) -> String {
+fn device_line(DeviceReport { device, name, usable, remark, .. }: &DeviceReport) -> String {
     let state = if *usable { "usable" } else { "not usable" };
     let facts: Vec<&str> = [name.as_str(), remark].into_iter().filter(|fact| !fact.is_empty()).collect();
     format!("{device:8}{state}: {}\n", facts.join(", "))

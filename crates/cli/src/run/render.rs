@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use lightmesh::render::devices;
+use lightmesh::render::Choice;
 use lightmesh::{Device, Frame, Observer, RenderError, Renderer, Scene};
 
 use crate::args::RenderArgs;
@@ -15,14 +15,16 @@ use crate::{interrupt, output};
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let plan = RenderPlan::new(args)?;
     let watcher = Watcher::new(args.progress, args.quiet);
-    let renderer = Renderer::with_threads(plan.device, plan.threads.map(usize::from))?;
+    let choice = Choice::of(plan.device)?;
+    let renderer = Renderer::with_threads(choice.device, plan.threads.map(usize::from))?;
     let start = Instant::now();
     let mut scene = Scene::open(&plan.scene)?;
     let load = start.elapsed().as_secs_f64();
     scene.warnings.iter().for_each(|warning| watcher.warning(warning));
-    if plan.device == Device::Auto {
-        watcher.note(&chosen_device());
+    if matches!(plan.device, Device::Auto | Device::Cuda(None)) {
+        watcher.note(&format!("device {} takes {}", plan.device, choice.reason));
     }
+    drop(choice); // the renderer has a device of its own
 
     let mut settings = plan.settings;
     settings.camera = Some(plan.choices.apply(&mut scene, &watcher)?);
@@ -55,15 +57,6 @@ fn write(frame: &mut Frame, scene: &Scene, files: &PictureFiles) -> Result<(), F
         output::write(path, json(&report).as_bytes())?;
     }
     Ok(())
-}
-
-/// What `--device auto` takes, and why not something else.
-fn chosen_device() -> String {
-    let devices = devices();
-    let (usable, others): (Vec<_>, Vec<_>) = devices.iter().partition(|device| device.usable);
-    let taken = usable.first().map_or_else(String::new, |it| format!("{} ({}, {})", it.device, it.name, it.remark));
-    let others: String = others.iter().map(|other| format!("; not {}: {}", other.device, other.remark)).collect();
-    format!("device auto takes {taken}{others}")
 }
 
 fn summary(frame: &Frame, files: &PictureFiles) -> String {

@@ -1,6 +1,7 @@
 //! The command line as a user meets it: every subcommand and flag, exit codes, and the text of messages.
 
 mod compare;
+mod devices;
 mod help;
 mod messages;
 mod render;

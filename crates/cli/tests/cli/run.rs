@@ -83,8 +83,15 @@ impl Place {
         names
     }
 
-    /// Not yet started.
+    /// Not yet started. Sees no CUDA device, so that what is tested, bytes of pictures for instance, is the same on every machine.
     pub(crate) fn command(&self, args: &[&str]) -> Command {
+        let mut command = self.command_with_devices(args);
+        command.env("CUDA_VISIBLE_DEVICES", "-1");
+        command
+    }
+
+    /// Not yet started. Sees the devices that this process sees.
+    pub(crate) fn command_with_devices(&self, args: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_lightmesh"));
         command.current_dir(self.0.path()).args(args).stdin(Stdio::null());
         command

@@ -13,17 +13,7 @@ fn info_is_for_people_and_programs() {
     assert_eq!(json["triangles"], 300);
     assert_eq!(json["lights"].as_array().unwrap().len(), 3);
     assert!(json["bounds"]["min"].is_array() && json["cameras"][0]["vfov"].is_f64(), "{json}");
-}
-
-#[test]
-fn devices_are_listed() {
-    let place = Place::new();
-    assert!(place.good(&["info", "--devices"]).stdout.contains("cpu     usable: "));
-    let json: Value = serde_json::from_str(&place.good(&["info", "--devices", "--json"]).stdout).unwrap();
-    assert_eq!(json["devices"][0]["device"], "cpu");
-    assert_eq!(json["devices"][0]["usable"], true);
     place.refused(&["info"]);
-    place.refused(&["info", "room.toml", "--devices"]);
 }
 
 #[test]

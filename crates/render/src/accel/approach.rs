@@ -51,6 +51,11 @@ impl Approach {
         Approach::new(&bounds(triangles))
     }
 
+    /// Middle and radius.
+    pub(super) fn parts(&self) -> (Vec3, f32) {
+        (self.center, self.radius)
+    }
+
     /// Half the longest edge of the box around the triangles.
     pub(super) fn radius(&self) -> f32 {
         self.radius

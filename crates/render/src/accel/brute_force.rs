@@ -4,7 +4,7 @@ use lightmesh_scene::Bounds;
 
 use super::approach::{Approach, NearRay, overlap, usable};
 use super::triangle::RayShear;
-use super::{Accelerator, Hit, Ray, ShortSegments, Triangle};
+use super::{Accelerator, Form, Hit, Ray, ShortSegments, Triangle};
 
 /// A list of triangles, all of which are asked.
 #[derive(Clone, Debug)]
@@ -18,6 +18,16 @@ impl BruteForce {
     pub fn new(triangles: &[Triangle]) -> BruteForce {
         let triangles = usable(triangles);
         BruteForce { approach: Approach::around(&triangles), triangles }
+    }
+
+    /// The usable triangles.
+    pub(crate) fn triangles(&self) -> &[Triangle] {
+        &self.triangles
+    }
+
+    /// Middle and radius of the sphere of interest.
+    pub(crate) fn approach(&self) -> (glam::Vec3, f32) {
+        self.approach.parts()
     }
 
     fn closest(&self, ray: &NearRay) -> Hit {
@@ -57,6 +67,10 @@ impl Accelerator for BruteForce {
 
     fn name(&self) -> &'static str {
         "brute-force"
+    }
+
+    fn form(&self) -> Form<'_> {
+        Form::BruteForce(self)
     }
 
     fn memory(&self) -> usize {

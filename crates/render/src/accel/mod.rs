@@ -11,6 +11,9 @@
 //!   their box tests err on the side of asking, so that all three give the same bits.
 //! * Zero, negative-zero and subnormal direction components and far-away origins are ordinary input. A zero direction, a ray
 //!   that is not finite and a triangle that is not [usable](Triangle::is_usable) hit nothing.
+//!
+//! The structures are built here; devices hold copies ([`Form`]) and walk them by the `.cuh` files beside the Rust ones, under the
+//! same promises. `walk.cuh` is the twin of the trait.
 
 mod approach;
 mod brute_force;
@@ -105,6 +108,17 @@ impl ShortSegments<'_> {
     }
 }
 
+/// The structures there are.
+#[derive(Clone, Copy, Debug)]
+pub enum Form<'a> {
+    /// A wide BVH.
+    Bvh(&'a Bvh),
+    /// A regular grid.
+    Grid(&'a Grid),
+    /// A list.
+    BruteForce(&'a BruteForce),
+}
+
 /// Something that finds triangles.
 pub trait Accelerator: Send + Sync {
     /// Closest hit of every ray. `hits` is as long as `rays` and is overwritten.
@@ -126,4 +140,7 @@ pub trait Accelerator: Send + Sync {
 
     /// Bytes that it holds.
     fn memory(&self) -> usize;
+
+    /// What it is, for devices that hold a copy.
+    fn form(&self) -> Form<'_>;
 }

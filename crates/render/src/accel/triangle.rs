@@ -1,4 +1,5 @@
-//! The triangle tests. Everything that is decided about a triangle is decided here, for every structure alike.
+//! The triangle tests. Everything that is decided about a triangle is decided here, for every structure alike; `triangle.cuh` gives
+//! the same bits.
 //!
 //! * [`RayShear::intersect`]: rays and long segments. Watertight (Woop, Benthin, Wald: *Watertight Ray/Triangle
 //!   Intersection*, JCGT 2013): a ray cannot slip between two triangles that share an edge or a corner.
@@ -193,12 +194,19 @@ impl ShortTest {
     }
 }
 
+/// The inner product with the term of x added last: on a line along x the others are summed once. Every comparison of formula (2)
+/// uses it, on every device, so that all masks have the same bits.
+#[inline(always)]
+pub(crate) fn dot_along_x(a: Vec3, b: Vec3) -> f32 {
+    (a.z * b.z + a.y * b.y) + a.x * b.x
+}
+
 impl Occluder {
     /// Whether the triangle meets the segment from the origin along `direction` (the segment's end minus the origin).
     #[inline(always)]
     pub fn blocks(&self, direction: Vec3) -> bool {
         let [a, b, c] = self.sides;
-        let (u, v, w) = (a.dot(direction), b.dot(direction), c.dot(direction));
+        let (u, v, w) = (dot_along_x(a, direction), dot_along_x(b, direction), dot_along_x(c, direction));
         u >= 0.0 && v >= 0.0 && w >= 0.0 && u + v + w > self.volume
     }
 }

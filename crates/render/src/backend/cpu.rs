@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use super::Backend;
 use crate::accel::Hit;
+use crate::device::cpu_name;
 use crate::job::Job;
 use crate::light_mesh::{LightMesh, UsedPoints};
+use crate::modes::{Plan, bands};
 use crate::prepared::PreparedScene;
-use crate::settings::ShortTests;
 use crate::stages::interpolate::cpu::Interpolation;
 use crate::stages::long_tests::Lit;
 use crate::stages::primary_rays::RayList;
@@ -15,14 +16,11 @@ use crate::stages::shadow_rays::Visibility;
 use crate::stages::short_tests::Masks;
 use crate::stages::{light_points, long_tests, mirror_rays, primary_rays, shade, shadow_rays, short_tests};
 use crate::view::View;
-use crate::{Picture, RenderError};
+use crate::{Picture, RenderError, Stage};
 
 /// The host's processor. Results do not depend on the number of threads.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Cpu {
-    /// How short tests are evaluated.
-    pub short_tests: ShortTests,
-}
+#[derive(Clone, Copy, Debug)]
+pub struct Cpu;
 
 impl Backend for Cpu {
     type Rays = RayList;
@@ -31,6 +29,40 @@ impl Backend for Cpu {
     type Points = UsedPoints;
     type Lit = Lit;
     type Visibility = Visibility;
+    type Film = Picture;
+
+    fn kind(&self) -> &'static str {
+        "cpu"
+    }
+
+    fn name(&self) -> String {
+        cpu_name()
+    }
+
+    fn peak_memory(&self) -> u64 {
+        0
+    }
+
+    fn timed<T>(
+        &self,
+        job: &Job,
+        stage: Stage,
+        work: impl FnOnce() -> Result<T, RenderError>,
+    ) -> Result<T, RenderError> {
+        job.wall_time(stage, work)
+    }
+
+    fn upload(&self, _: &Job, _: &PreparedScene, _: &Plan) -> Result<(), RenderError> {
+        Ok(())
+    }
+
+    fn rows_at_once(&self, scene: &PreparedScene, plan: &Plan) -> Result<u32, RenderError> {
+        bands::rows_on_host(scene, plan)
+    }
+
+    fn film(&self, plan: &Plan, rows: Range<u32>) -> Result<Picture, RenderError> {
+        Ok(Picture::band(plan.size, rows, plan.layers))
+    }
 
     fn camera_rays(&self, view: &View, rows: Range<u32>) -> Result<RayList, RenderError> {
         Ok(primary_rays::cpu::camera_rays(view, rows))
@@ -52,7 +84,7 @@ impl Backend for Cpu {
         hits: &Vec<Hit>,
         mesh: &LightMesh,
     ) -> Result<Masks, RenderError> {
-        Ok(short_tests::cpu::short_tests(job, scene, rays, hits, mesh, self.short_tests))
+        Ok(short_tests::cpu::short_tests(job, scene, rays, hits, mesh, job.short_tests))
     }
 
     fn light_points(&self, job: &Job, masks: &Masks, mesh: &LightMesh) -> Result<UsedPoints, RenderError> {
@@ -110,13 +142,24 @@ impl Backend for Cpu {
         rays: &RayList,
         hits: &Vec<Hit>,
         visibility: &Visibility,
-        picture: &mut Picture,
+        film: &mut Picture,
     ) -> Result<(), RenderError> {
-        shade::cpu::shade(job, scene, rays, hits, visibility, picture);
+        shade::cpu::shade(job, scene, rays, hits, visibility, film);
         Ok(())
     }
 
-    fn mirror_rays(&self, scene: &PreparedScene, rays: &RayList, hits: &Vec<Hit>) -> Result<RayList, RenderError> {
+    fn develop(&self, _: &Job, _: &PreparedScene, film: Picture, picture: &mut Picture) -> Result<(), RenderError> {
+        picture.take(film);
+        Ok(())
+    }
+
+    fn mirror_rays(
+        &self,
+        _: &Job,
+        scene: &PreparedScene,
+        rays: &RayList,
+        hits: &Vec<Hit>,
+    ) -> Result<RayList, RenderError> {
         Ok(mirror_rays::cpu::mirror_rays(scene, rays, hits))
     }
 }

@@ -1,24 +1,36 @@
-//! How many rows of a picture fit into memory at once.
+//! How many rows of a picture fit into the host's memory at once.
 
-use super::Technique;
-use crate::RenderError;
+use super::{Plan, Technique};
 use crate::accel::{Hit, Ray};
+use crate::prepared::PreparedScene;
+use crate::{RenderError, memory};
 
 /// What is kept free for everything that is not counted below: stacks, the segments in flight, the allocator's waste.
 const RESERVE: u64 = 64 << 20;
 
+/// Rows that can be made at once on the host.
+pub(crate) fn rows_on_host(scene: &PreparedScene, plan: &Plan) -> Result<u32, RenderError> {
+    let lights = scene.scene.lights.len();
+    let picture = plan.size.map(u64::from).iter().product::<u64>() * film_bytes(plan);
+    match plan.memory_limit {
+        // The limit is on the process: what it already holds counts.
+        Some(limit) => rows_per_band(plan, lights, scene.memory() as u64 + picture, Some(limit)),
+        None => rows_per_band(plan, lights, picture, memory::available().map(|bytes| bytes - bytes / 8)),
+    }
+}
+
+/// Bytes of a picture per pixel.
+pub(crate) fn film_bytes(plan: &Plan) -> u64 {
+    12 + plan.layers.map_or(0, |lights| 32 + 4 * lights as u64)
+}
+
 /// Rows that fit under `limit` bytes beside the `resident` bytes of scene and picture.
 ///
 /// The estimate is an upper bound per pixel, taken at the stage that holds most; see the sum.
-pub(crate) fn rows_per_band(
-    technique: &Technique,
-    size: [u32; 2],
-    lights: usize,
-    resident: u64,
-    limit: Option<u64>,
-) -> Result<u32, RenderError> {
+fn rows_per_band(plan: &Plan, lights: usize, resident: u64, limit: Option<u64>) -> Result<u32, RenderError> {
+    let size = plan.size;
     let Some(limit) = limit else { return Ok(size[1]) };
-    let row = u64::from(size[0]) * bytes_per_ray(technique, lights as u64);
+    let row = u64::from(size[0]) * (bytes_per_ray(&plan.technique, lights as u64) + film_bytes(plan));
     let free = limit.saturating_sub(resident).saturating_sub(RESERVE);
     match free / row {
         0 => Err(RenderError::Memory {
@@ -53,7 +65,9 @@ mod tests {
 
     #[test]
     fn a_limit_splits_the_picture_and_none_does_not() {
-        let rows = |limit| rows_per_band(&Technique::Area, [1000, 1000], 3, 0, limit);
+        let plan =
+            Plan { technique: Technique::Area, size: [1000, 1000], bounces: 0, layers: None, memory_limit: None };
+        let rows = |limit| rows_per_band(&plan, 3, 0, limit);
         assert_eq!(rows(None).unwrap(), 1000);
         assert_eq!(rows(Some(u64::MAX)).unwrap(), 1000);
         let some = rows(Some(RESERVE + (20 << 20))).unwrap();

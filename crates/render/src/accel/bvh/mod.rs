@@ -2,7 +2,7 @@
 //! Through Compressed Wide BVHs* (HPG 2017).
 //!
 //! * `build`: the tree comes from `obvhs`; we check that every box holds its triangles, and lay these out in leaf order.
-//! * `walk`: the walk over the nodes, by a ray and by boxes. Nodes and triangles are plain arrays, ready for a device.
+//! * `walk`: the walk over the nodes, by a ray and by boxes. Nodes and triangles are plain arrays, which devices copy.
 //! * `packet`: the walk by many coherent rays at once.
 
 mod build;
@@ -10,11 +10,12 @@ mod packet;
 mod walk;
 
 use fearless_simd::Level;
+use glam::Vec3;
 use lightmesh_scene::Bounds;
 use obvhs::cwbvh::node::CwBvhNode as Node;
 
 use super::approach::Approach;
-use super::{Accelerator, Hit, Ray, ShortSegments, Triangle};
+use super::{Accelerator, Form, Hit, Ray, ShortSegments, Triangle};
 use crate::simd::dispatch;
 
 /// A compressed wide bounding volume hierarchy.
@@ -34,6 +35,26 @@ impl Bvh {
     /// Builds the tree over the usable triangles.
     pub fn new(triangles: &[Triangle]) -> Bvh {
         build::build(triangles)
+    }
+
+    /// The nodes, root first.
+    pub(crate) fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// The triangles in leaf order.
+    pub(crate) fn triangles(&self) -> &[Triangle] {
+        &self.triangles
+    }
+
+    /// Number of levels.
+    pub(crate) fn depth(&self) -> usize {
+        self.depth
+    }
+
+    /// Middle and radius of the sphere of interest.
+    pub(crate) fn approach(&self) -> (Vec3, f32) {
+        self.approach.parts()
     }
 
     /// The same tree walked at another SIMD level; every level gives the same bits.
@@ -71,6 +92,10 @@ impl Accelerator for Bvh {
 
     fn name(&self) -> &'static str {
         "bvh"
+    }
+
+    fn form(&self) -> Form<'_> {
+        Form::Bvh(self)
     }
 
     fn memory(&self) -> usize {

@@ -14,8 +14,10 @@
 //! * `lattice`: where cells lie, and how much they are enlarged so that rounding cannot lose a hit.
 //! * `overlap`: the exact test of a triangle against a box.
 //! * `build`: triangles to cells; `walk`: along a ray (Amanatides, Woo 1987); `file`: saved and loaded.
+//! * `distance`: how far each cell is from the nearest that is not empty, for the walks of devices.
 
 mod build;
+mod distance;
 mod file;
 mod lattice;
 pub(super) mod overlap;
@@ -27,7 +29,7 @@ use lightmesh_scene::Bounds;
 
 use super::approach::{Approach, overlap};
 use super::visit::{Any, Closest};
-use super::{Accelerator, Hit, Ray, ShortSegments, Triangle};
+use super::{Accelerator, Form, Hit, Ray, ShortSegments, Triangle};
 pub use file::{GridFault, GridFileError, GridSaveError};
 use lattice::{Lattice, cells_between};
 
@@ -112,6 +114,26 @@ impl Grid {
     /// bound that `walk` derives is wrong.
     pub fn overruns(&self) -> u64 {
         self.overruns.load(Ordering::Relaxed)
+    }
+
+    /// The flat nested form.
+    pub(crate) fn cells(&self) -> &[i32] {
+        &self.cells
+    }
+
+    /// The triangles of all cells.
+    pub(crate) fn triangles(&self) -> &[Triangle] {
+        &self.triangles
+    }
+
+    /// Lowest corner, and edges of a cell, of the outer grid.
+    pub(crate) fn geometry(&self) -> (glam::DVec3, glam::Vec3) {
+        (self.lattice.origin, self.lattice.size)
+    }
+
+    /// Middle and radius of the sphere of interest.
+    pub(crate) fn approach(&self) -> (glam::Vec3, f32) {
+        self.approach.parts()
     }
 
     /// The lowest corner of a cell of the outer grid.
@@ -218,6 +240,10 @@ impl Accelerator for Grid {
 
     fn name(&self) -> &'static str {
         "grid"
+    }
+
+    fn form(&self) -> Form<'_> {
+        Form::Grid(self)
     }
 
     fn memory(&self) -> usize {

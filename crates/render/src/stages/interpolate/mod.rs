@@ -5,5 +5,6 @@
 //! light points takes its own long tests.
 
 pub(crate) mod cpu;
+pub(crate) mod cuda;
 #[cfg(test)]
 mod tests;

@@ -4,6 +4,7 @@
 //! with a size a light point sees a share, found with a few stratified rays of its own.
 
 pub(crate) mod cpu;
+pub(crate) mod cuda;
 #[cfg(test)]
 mod tests;
 

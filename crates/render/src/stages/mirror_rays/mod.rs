@@ -4,5 +4,6 @@
 //! recursion of Whitted's tracer is a loop over such lists.
 
 pub(crate) mod cpu;
+pub(crate) mod cuda;
 #[cfg(test)]
 mod tests;

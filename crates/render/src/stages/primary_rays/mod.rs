@@ -4,6 +4,7 @@
 //! camera.
 
 pub(crate) mod cpu;
+pub(crate) mod cuda;
 
 use glam::Vec3;
 

@@ -75,9 +75,10 @@ fn surface_radiance(
 
 /// What each pixel saw.
 fn fill_layers(scene: &PreparedScene, list: &RayList, hits: &[Hit], visibility: &Visibility, picture: &mut Picture) {
+    let start = (picture.rows.start * picture.size[0]) as usize;
     let Some(layers) = &mut picture.layers else { return };
     for (ray, hit) in hits.iter().enumerate().filter(|(_, hit)| hit.is_some()) {
-        let pixel = list.pixels[ray] as usize;
+        let pixel = list.pixels[ray] as usize - start;
         let point = object_point(scene, list, hits, ray);
         layers.depth[pixel] = hit.t;
         layers.normal[pixel] = point.normal.to_array();

@@ -8,6 +8,7 @@
 //! ([`mirror_rays`](super::mirror_rays)). In: hits and visibility. Out: radiance, added to the pixels.
 
 pub(crate) mod cpu;
+pub(crate) mod cuda;
 #[cfg(test)]
 mod tests;
 
@@ -127,6 +128,14 @@ impl LightTargets {
         LightTargets {
             points: lights.iter().map(|light| if light.has_size() { spread(light) } else { Vec::new() }).collect(),
         }
+    }
+
+    /// The points of all lights one after the other, [`LightTargets::COUNT`] each; zeros for a light without a size.
+    pub(crate) fn flat(&self) -> Vec<Vec3> {
+        let padded = |points: &Vec<Vec3>| {
+            (0..Self::COUNT as usize).map(|i| points.get(i).copied().unwrap_or_default()).collect()
+        };
+        self.points.iter().flat_map(|points| -> Vec<Vec3> { padded(points) }).collect()
     }
 
     /// Unshadowed light of light number `index` at `surface`.

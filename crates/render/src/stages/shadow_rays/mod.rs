@@ -4,6 +4,7 @@
 //! many, to points spread over it.
 
 pub(crate) mod cpu;
+pub(crate) mod cuda;
 #[cfg(test)]
 mod tests;
 
@@ -50,7 +51,7 @@ const HORIZON_SAMPLES: u32 = 64;
 
 /// The farthest that any point of `light` lies from its middle; 0 for all that have no size.
 #[inline(always)]
-fn size(light: &Light) -> f32 {
+pub(crate) fn size(light: &Light) -> f32 {
     match light.kind {
         LightKind::Sphere { radius, .. } | LightKind::Disk { radius, .. } => radius,
         LightKind::Rectangle { half_u, half_v, .. } => (half_u.length_squared() + half_v.length_squared()).sqrt(),

@@ -6,7 +6,7 @@ use fearless_simd::{f32x8, prelude::*};
 use glam::Vec3;
 
 use super::cells::CellOccluders;
-use super::lanes::{Axes, LANES, cross, difference, dot, scaled, splat};
+use super::lanes::{Axes, LANES, cross, difference, dot, dot_along_x, scaled, splat};
 use super::{CellPoints, MaskCounts};
 use crate::light_mesh::LightMesh;
 use crate::surface::SurfacePoint;
@@ -85,7 +85,7 @@ impl Batch {
         let mut sizes = zero;
         for bit in 0..mesh.template.len() {
             let d = difference(splat(simd, points.get(bit)), position);
-            let inside = dot(d, d).simd_lt(square) & dot(normal, d).simd_gt(least);
+            let inside = dot_along_x(d, d).simd_lt(square) & dot_along_x(normal, d).simd_gt(least);
             sizes += inside.select(one, zero);
             self.seen[bit] = inside.to_bitmask() as u8 & self.lanes;
         }
@@ -149,12 +149,15 @@ impl Batch {
                 if !self.any_seen(first, count, lanes) || occluders.reach(simd, origin, ends) & lanes == 0 {
                     continue;
                 }
+                // What does not change along the row.
+                let (dy, dz) = (f32x8::splat(simd, ends.0.y) - origin[1], f32x8::splat(simd, ends.0.z) - origin[2]);
+                let (ua, va, wa) = (a[2] * dz + a[1] * dy, b[2] * dz + b[1] * dy, c[2] * dz + c[1] * dy);
                 for bit in first..first + count {
                     if self.seen[bit] & lanes == 0 {
                         continue;
                     }
-                    let d = difference(splat(simd, points.get(bit)), origin);
-                    let (u, v, w) = (dot(a, d), dot(b, d), dot(c, d));
+                    let dx = f32x8::splat(simd, points.get(bit).x) - origin[0];
+                    let (u, v, w) = (ua + a[0] * dx, va + b[0] * dx, wa + c[0] * dx);
                     let inside = u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero) & (u + v + w).simd_gt(volume);
                     self.seen[bit] &= !(inside.to_bitmask() as u8 & lanes);
                 }

@@ -121,6 +121,12 @@ pub(super) fn dot<S: Simd>(a: Axes<S>, b: Axes<S>) -> f32x8<S> {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// The same order of operations as [`dot_along_x`](crate::accel::triangle::dot_along_x).
+#[inline(always)]
+pub(super) fn dot_along_x<S: Simd>(a: Axes<S>, b: Axes<S>) -> f32x8<S> {
+    a[2] * b[2] + a[1] * b[1] + a[0] * b[0]
+}
+
 /// The same order of operations as [`Vec3::cross`].
 #[inline(always)]
 pub(super) fn cross<S: Simd>(a: Axes<S>, b: Axes<S>) -> Axes<S> {

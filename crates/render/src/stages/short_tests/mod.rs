@@ -8,11 +8,12 @@
 //!
 //! Object points are grouped by light-mesh cell, because all points of a cell share their template, its positions and the
 //! triangles that can matter. [`cells`] uses that; [`plain`] asks the acceleration structure segment by segment and is the
-//! oracle: both give the same masks in every bit.
+//! oracle: both give the same masks in every bit, and so do their twins on a CUDA device (`by_cell.cuh`, `plain.cuh`).
 
 mod batch;
 pub(crate) mod cells;
 pub(crate) mod cpu;
+pub(crate) mod cuda;
 pub(crate) mod group;
 mod lanes;
 pub(crate) mod plain;

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::{CellPoints, MaskCounts, population};
+use crate::accel::triangle::dot_along_x;
 use crate::accel::{ShortSegments, ShortTest};
 use crate::light_mesh::LightMesh;
 use crate::prepared::PreparedScene;
@@ -50,7 +51,7 @@ fn half_ball(mesh: &LightMesh, points: &CellPoints, point: &SurfacePoint, mask: 
     mask.fill(0);
     for bit in 0..mesh.template.len() {
         let d = points.get(bit) - point.position;
-        if d.dot(d) < mesh.radius * mesh.radius && point.normal.dot(d) > mesh.least_height() {
+        if dot_along_x(d, d) < mesh.radius * mesh.radius && dot_along_x(point.normal, d) > mesh.least_height() {
             mask[bit / 32] |= 1 << (bit % 32);
         }
     }

@@ -31,14 +31,14 @@ fn mesh(scene: &PreparedScene, step: f32, radius: f32) -> LightMesh {
 /// What the scene's first camera sees.
 fn look(scene: &PreparedScene, pixels: u32) -> (RayList, Vec<Hit>) {
     let view = View::new(&scene.scene.cameras[0], [pixels, pixels]);
-    let backend = Cpu::default();
+    let backend = Cpu;
     let rays = backend.camera_rays(&view, 0..pixels).unwrap();
     let hits = backend.primary_rays(&job(), scene, &rays).unwrap();
     (rays, hits)
 }
 
 fn masks(scene: &PreparedScene, seen: &(RayList, Vec<Hit>), mesh: &LightMesh, short_tests: ShortTests) -> Masks {
-    Cpu { short_tests }.short_tests(&job(), scene, &seen.0, &seen.1, mesh).unwrap()
+    Cpu.short_tests(&job().with_short_tests(short_tests), scene, &seen.0, &seen.1, mesh).unwrap()
 }
 
 /// The masks of every accelerator and every way of testing are those of the first accelerator's plain tests.

@@ -1,0 +1,117 @@
+//! Devices: what is listed, what is taken, and what is said where there is none. What holds depends on the machine, and the machine
+//! is asked through `lightmesh info --devices --json`.
+
+use serde_json::{Value, json};
+
+use crate::run::{Done, LAMP, Place};
+
+/// Runs with the devices that there are.
+fn run(place: &Place, args: &[&str]) -> Done {
+    place.command_with_devices(args).output().unwrap().into()
+}
+
+/// Asks for a device on the command line.
+fn render_on(place: &Place, device: &str) -> Done {
+    let base = ["render", "room.toml", "-o", "a.exr", "--size", "48x32", "--light", LAMP, "--stats", "a.json"];
+    run(place, &[&base[..], &["--device", device]].concat())
+}
+
+/// What `info --devices --json` lists.
+fn listed(done: &Done) -> Vec<Value> {
+    let json: Value = serde_json::from_str(&done.stdout).unwrap();
+    json["devices"].as_array().unwrap().clone()
+}
+
+fn devices(place: &Place) -> Vec<Value> {
+    listed(&run(place, &["info", "--devices", "--json"]))
+}
+
+/// The first CUDA device that can be used, if there is one.
+fn first_cuda(devices: &[Value]) -> Option<&str> {
+    let usable = devices.iter().find(|it| it["usable"] == true && it["device"] != "cpu")?;
+    usable["device"].as_str()
+}
+
+#[test]
+fn devices_are_listed() {
+    let place = Place::new();
+    let devices = devices(&place);
+    let text = run(&place, &["info", "--devices"]).stdout;
+    assert_eq!((&devices[0]["device"], &devices[0]["usable"]), (&json!("cpu"), &json!(true)));
+    assert!(devices.len() > 1, "CUDA is spoken of, whether it is there or not");
+    assert_eq!(text.lines().count(), devices.len());
+    for (line, device) in text.lines().zip(&devices) {
+        let state = if device["usable"] == true { "usable: " } else { "not usable: " };
+        let start = format!("{:8}{state}{}", device["device"].as_str().unwrap(), device["name"].as_str().unwrap());
+        assert!(line.starts_with(&start), "{line}: {device}");
+        assert_ne!(device["remark"], "", "{device}");
+    }
+    for cuda in devices[1..].iter().filter(|it| it["usable"] == true) {
+        assert!(cuda["memory_bytes"].as_u64().unwrap() >= cuda["free_bytes"].as_u64().unwrap(), "{cuda}");
+        assert!(cuda["compute_capability"].is_string() && cuda["driver_cuda_version"].is_string(), "{cuda}");
+    }
+    place.refused(&["info", "room.toml", "--devices"]);
+}
+
+#[test]
+fn every_usable_device_renders_the_picture_and_says_that_it_did() {
+    let place = Place::new();
+    assert_eq!(render_on(&place, "cpu").code, Some(0));
+    std::fs::rename(place.path("a.exr"), place.path("cpu.exr")).unwrap();
+    for device in devices(&place).iter().filter(|it| it["usable"] == true) {
+        let word = device["device"].as_str().unwrap();
+        let done = render_on(&place, word);
+        assert_eq!(done.code, Some(0), "{word}: {done:?}");
+        let stats = place.json("a.json")["device"].clone();
+        assert_eq!((&stats["kind"], &stats["name"]), (&json!(word.split(':').next()), &device["name"]));
+        place.good(&["compare", "cpu.exr", "a.exr", "--max-rmse", "0.001"]);
+    }
+}
+
+#[test]
+fn a_device_that_cannot_be_used_has_exit_code_3_and_says_why() {
+    let place = Place::new();
+    let before = place.files();
+    let devices = devices(&place);
+    let mut asked = vec![("cuda:4096", String::new())];
+    let unusable = devices.iter().filter(|it| it["usable"] == false);
+    asked.extend(unusable.map(|it| (it["device"].as_str().unwrap(), it["remark"].as_str().unwrap().to_owned())));
+    for (device, why) in asked {
+        let done = render_on(&place, device);
+        assert_eq!(done.code, Some(3), "{device}: {done:?}");
+        let error = done.stderr.lines().last().unwrap();
+        assert!(error.starts_with(&format!("error: device {device} cannot be used: ")), "{error}");
+        assert!(error.contains(&why), "{error}: {why}");
+    }
+    assert_eq!(place.files(), before);
+}
+
+#[test]
+fn what_auto_takes_is_said_with_the_reason() {
+    let place = Place::new();
+    let devices = devices(&place);
+    let done = render_on(&place, "auto");
+    let line = done.stderr.lines().find(|line| line.starts_with("device auto takes ")).unwrap();
+    match first_cuda(&devices) {
+        Some(device) => assert!(line.starts_with(&format!("device auto takes {device} (")), "{line}"),
+        None => {
+            assert!(line.starts_with("device auto takes cpu ("), "{line}");
+            let why = devices[1]["remark"].as_str().unwrap();
+            assert!(line.contains("; no CUDA device can be used: ") && line.contains(why), "{line}");
+        }
+    }
+    assert!(!render_on(&place, "cpu").stderr.contains("takes"));
+}
+
+#[test]
+fn devices_can_be_hidden() {
+    let place = Place::new();
+    let hidden = listed(&place.good(&["info", "--devices", "--json"]));
+    assert_eq!(first_cuda(&hidden), None);
+    let done = place.run(&["render", "room.toml", "-o", "a.exr", "--size", "24x16", "--device", "cuda"]);
+    assert_eq!(done.code, Some(3), "{done:?}");
+    assert!(done.stderr.contains(hidden[1]["remark"].as_str().unwrap()), "{done:?}");
+    if first_cuda(&devices(&place)).is_some() {
+        assert!(done.stderr.contains("CUDA_VISIBLE_DEVICES is \"-1\" and hides every device"), "{done:?}");
+    }
+}

@@ -1,0 +1,128 @@
+//! Compiles every kernel of the renderer as C++, together with the emulator's own.
+//!
+//! Kernel files are found by walking the folders. For each, a small file names the module and includes it. With
+//! `LIGHTMESH_EMULATE=primary_rays,scan` only these modules are built, which saves time while one of them is written.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!("cargo::rerun-if-env-changed=LIGHTMESH_EMULATE");
+    // Fibres are made as POSIX systems make them; elsewhere this crate is empty.
+    if env::var("CARGO_CFG_TARGET_FAMILY")? != "unix" {
+        return Ok(());
+    }
+    let here = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
+    let out = PathBuf::from(env::var("OUT_DIR")?);
+    let renderer = here.join("../render/src").canonicalize()?;
+    // Folders are watched whole, so that new files are noticed.
+    for folder in [&renderer, &here.join("shim"), &here.join("kernels")] {
+        println!("cargo::rerun-if-changed={}", folder.display());
+    }
+    let sources = sources(&[&renderer, &here])?;
+    let mut modules = modules(&sources)?;
+    if let Ok(chosen) = env::var("LIGHTMESH_EMULATE") {
+        modules.retain(|(module, _)| *module == "own" || chosen.split(',').any(|name| name == *module));
+    }
+    compile(&sources, &modules, &[&here.join("shim"), &renderer], &out)?;
+    println!("cargo::rustc-link-search=native={}", out.display());
+    println!("cargo::rustc-link-lib=static=emulated_kernels");
+    let library = if env::var("CARGO_CFG_TARGET_VENDOR")? == "apple" { "c++" } else { "stdc++" };
+    println!("cargo::rustc-link-lib={library}");
+    Ok(())
+}
+
+/// Compiles the modules into one library, unless that has been done with the same files.
+fn compile(
+    sources: &[PathBuf],
+    modules: &[(&str, &Path)],
+    include: &[&Path],
+    out: &Path,
+) -> Result<(), Box<dyn Error>> {
+    let state = state(sources, modules)?;
+    let state_file = out.join("state");
+    if fs::read(&state_file).is_ok_and(|built| built == state) {
+        return Ok(());
+    }
+    let mut build = cc::Build::new();
+    build.cargo_metadata(false).cpp(true).std("c++17").includes(include);
+    // The same bits as on a device: no operation is fused, none reordered.
+    build.opt_level(2).flag("-ffp-contract=off").flag("-fno-strict-aliasing").flag("-fno-math-errno");
+    // What is not set before it is read, shows.
+    build.flag_if_supported("-ftrivial-auto-var-init=pattern");
+    // `longjmp` to another stack is what fibres do; a fortified one refuses.
+    build.flag("-U_FORTIFY_SOURCE").warnings(true).extra_warnings(true);
+    // Pragmas for the device's compiler; and a warning that guesses, where poison knows.
+    build.flag_if_supported("-Wno-unknown-pragmas").flag_if_supported("-Wno-maybe-uninitialized");
+
+    for (module, file) in modules {
+        let text = format!(
+            "#define EMULATED_MODULE \"{module}\"\n#include \"{}\"\nnamespace emulator {{\nvoid link_{module}() {{}}\n}}\n",
+            file.display()
+        );
+        build.file(write(out, &format!("{module}.cpp"), &text)?);
+    }
+    build.file(write(out, "modules.cpp", &table(modules))?);
+    build.files(sources.iter().filter(|path| path.extension().is_some_and(|extension| extension == "cpp")));
+    build.try_compile("emulated_kernels")?;
+    fs::write(state_file, state)?;
+    Ok(())
+}
+
+/// A file that refers to every module, without which the linker would leave them out.
+fn table(modules: &[(&str, &Path)]) -> String {
+    let mut text = "namespace emulator {\n".to_owned();
+    modules.iter().for_each(|(module, _)| text += &format!("void link_{module}();\n"));
+    text += "void link_modules() {\n";
+    modules.iter().for_each(|(module, _)| text += &format!("    link_{module}();\n"));
+    text + "}\n}\n"
+}
+
+/// All that the library is made from.
+fn state(sources: &[PathBuf], modules: &[(&str, &Path)]) -> Result<Vec<u8>, Box<dyn Error>> {
+    let mut state = format!("{modules:?}{:?}", env::var("CXX")).into_bytes();
+    state.extend(fs::read(Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("build.rs"))?);
+    for path in sources {
+        state.extend(path.as_os_str().as_encoded_bytes());
+        state.extend(fs::read(path)?);
+    }
+    Ok(state)
+}
+
+/// The C++ files under some folders, in order.
+fn sources(folders: &[&Path]) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+    let mut found = Vec::new();
+    let mut folders: Vec<PathBuf> = folders.iter().map(|folder| folder.to_path_buf()).collect();
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder)? {
+            let path = entry?.path();
+            let extension = path.extension().and_then(|extension| extension.to_str());
+            if path.is_dir() {
+                folders.push(path);
+            } else if let Some("cu" | "cuh" | "cpp" | "h") = extension {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// The kernel files with the names of their modules: `kernel.cu` is named after its folder, every other after itself.
+fn modules(sources: &[PathBuf]) -> Result<Vec<(&str, &Path)>, Box<dyn Error>> {
+    let kernel_files = sources.iter().filter(|path| path.extension().is_some_and(|extension| extension == "cu"));
+    kernel_files
+        .map(|path| {
+            let named_by = if path.ends_with("kernel.cu") { path.parent() } else { Some(path.as_path()) };
+            let module = named_by.and_then(Path::file_stem).and_then(|name| name.to_str());
+            Ok((module.ok_or("a kernel file without a name")?, path.as_path()))
+        })
+        .collect()
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, Box<dyn Error>> {
+    let path = folder.join(name);
+    fs::write(&path, text)?;
+    Ok(path)
+}

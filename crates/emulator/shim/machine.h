@@ -1,0 +1,120 @@
+// What runs blocks: one machine for each thread of the host that takes part in a launch.
+#pragma once
+
+#include <csetjmp>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "block.h"
+#include "fibre.h"
+
+namespace emulator {
+
+// The value of a constant in one launch.
+struct ConstantImage {
+    const Constant *constant;
+    const void *bytes;
+};
+
+// What all blocks of a launch have in common. The host fills it.
+struct Launch {
+    const Kernel *kernel;
+    const void *arguments;
+    const ConstantImage *constants;
+    size_t constant_count;
+    unsigned blocks, threads, dynamic_shared;
+};
+
+// A thread of the block.
+struct Lane {
+    enum State : unsigned char { Unborn, Runs, Waits, Ended };
+    State state;
+    Meeting meeting;
+    unsigned mask, source;
+    Bits value, result;
+    Fibre *fibre;
+};
+
+class Machine {
+  public:
+    Machine();
+
+    // Gives the constants of the launch to the calling thread.
+    void prepare(const Launch &launch);
+
+    // Runs one block. False: it failed, and `message` says why.
+    bool run(const Launch &launch, unsigned block);
+    char message[512];
+
+    // What kernels call.
+    Bits meet(Meeting what, unsigned mask, Bits value, unsigned source);
+    unsigned meet_block(bool value);
+    void *shared(const void *declaration, const char *name, size_t bytes);
+    void *dynamic_shared();
+    [[noreturn]] __attribute__((format(printf, 2, 3))) void fail(const char *format, ...);
+
+    // The life of a fibre: one thread of the block after the other.
+    [[noreturn]] void live();
+
+    // Whether what happens on the calling thread happens in a block.
+    bool is_busy() const { return busy; }
+
+  private:
+    struct Shared {
+        const void *declaration;
+        const char *name;
+        size_t begin, end;
+    };
+
+    unsigned in_order(unsigned k) const { return reversed ? launch->threads - 1 - k : k; }
+    void enter(unsigned thread);
+    Fibre &idle_fibre();
+    void wait();
+    bool complete(unsigned warp, Meeting what, unsigned mask) const;
+    void settle(unsigned warp, Meeting what, unsigned mask);
+    void settle_block();
+    void release(unsigned thread);
+    void pass_on(Fibre &from);
+    [[noreturn]] void dead_end();
+    unsigned missing(unsigned thread, const Lane &waits) const;
+    [[noreturn]] void abandon();
+    size_t place_shared(const void *declaration, const char *name, size_t bytes);
+    const Shared *overrun() const;
+
+    const Launch *launch;
+    unsigned block;
+    // Blocks of odd number run their threads backwards: what depends on the order, shows.
+    bool reversed;
+
+    std::vector<Lane> lanes;
+    // Lanes of each warp that wait for others of it.
+    std::vector<unsigned> waiting;
+    unsigned at_barrier, barrier_sum, begun, ended;
+    // Threads that may run, a ring.
+    std::vector<unsigned> ready;
+    size_t ready_first, ready_count;
+
+    std::vector<std::unique_ptr<Fibre>> fibres;
+    std::vector<Fibre *> idle;
+    Fibre *running;
+    jmp_buf host;
+    bool failed;
+    // Whether a block runs.
+    bool busy;
+
+    std::unique_ptr<unsigned[]> memory;
+    std::vector<Shared> variables;
+    // Bytes in use with all zones, and without.
+    size_t shared_used, declared;
+};
+
+// The machine whose block runs on the calling thread.
+extern __thread Machine *current;
+
+const char *name_of(Meeting what);
+
+// Makes reading and writing at wild addresses a failure of the block that does it.
+void watch_addresses();
+
+} // namespace emulator

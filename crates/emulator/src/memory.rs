@@ -1,0 +1,180 @@
+//! Memory that looks like a device's: poisoned, fenced, and as small as a test wants it.
+
+use std::alloc::Layout;
+use std::collections::BTreeMap;
+use std::mem::MaybeUninit;
+use std::ptr::NonNull;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use lightmesh_render::cuda::Fault;
+
+/// What fresh memory holds, word by word: NaN as `f32` and `f64`, far out of range as an index or an address.
+pub(crate) const POISON: u32 = 0xfffa_5a5a;
+
+/// Bytes before and behind every allocation that nobody may write to. A multiple of the alignment.
+const ZONE: usize = 4096;
+/// What they hold.
+const ZONE_BYTE: u8 = 0xd7;
+/// As of `cuMemAlloc`.
+const ALIGNMENT: usize = 256;
+
+/// All memory of an emulated device.
+#[derive(Default)]
+pub(crate) struct Ledger(Mutex<State>);
+
+#[derive(Default)]
+struct State {
+    /// Sizes by address.
+    live: BTreeMap<usize, usize>,
+    taken: u64,
+    limit: Option<u64>,
+    /// Allocations until one fails; 0: none is to fail.
+    countdown: u64,
+}
+
+/// An allocation of an emulated device; freed when dropped.
+pub struct Memory {
+    /// The first of its own bytes.
+    start: NonNull<u8>,
+    bytes: usize,
+    ledger: Arc<Ledger>,
+}
+
+// SAFETY: it owns its bytes. Kernels and the host take turns, as in the queue of a device.
+unsafe impl Send for Memory {}
+// SAFETY: as above.
+unsafe impl Sync for Memory {}
+
+impl Ledger {
+    pub(crate) fn new(limit: Option<u64>) -> Ledger {
+        Ledger(Mutex::new(State { limit, ..State::default() }))
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Bytes that are left, where there is a limit.
+    pub(crate) fn free(&self) -> Option<u64> {
+        let state = self.state();
+        state.limit.map(|limit| limit.saturating_sub(state.taken))
+    }
+
+    /// Bytes that are taken.
+    pub(crate) fn taken(&self) -> u64 {
+        self.state().taken
+    }
+
+    /// Lets the `number`-th allocation from now on fail: 1 is the next.
+    pub(crate) fn fail_allocation(&self, number: u64) {
+        self.state().countdown = number;
+    }
+
+    /// Says which allocation was written outside of, if any was.
+    pub(crate) fn check(&self) -> Result<(), Fault> {
+        for (&address, &bytes) in &self.state().live {
+            // SAFETY: the allocation is live, since it leaves the ledger before it is freed, and the ledger is locked.
+            let (before, behind) = unsafe {
+                let behind = zone_behind(bytes);
+                let start = address as *const u8;
+                (
+                    std::slice::from_raw_parts(start.sub(ZONE), ZONE),
+                    std::slice::from_raw_parts(start.add(bytes), behind),
+                )
+            };
+            let broken = |zone: &[u8]| zone.iter().position(|&byte| byte != ZONE_BYTE);
+            if let Some(at) = broken(behind) {
+                return Err(Fault::Failed(format!(
+                    "something was written {at} bytes past the end of {bytes} bytes of memory"
+                )));
+            }
+            if let Some(at) = broken(before) {
+                let distance = ZONE - at;
+                return Err(Fault::Failed(format!(
+                    "something was written {distance} bytes before {bytes} bytes of memory"
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Bytes behind an allocation: a zone, and what it lacks to a multiple of the alignment.
+fn zone_behind(bytes: usize) -> usize {
+    ZONE + bytes.next_multiple_of(ALIGNMENT) - bytes
+}
+
+/// What the host must allocate for it, if it can.
+fn layout(bytes: u64) -> Option<Layout> {
+    let bytes = usize::try_from(bytes).ok()?.checked_next_multiple_of(ALIGNMENT)?;
+    Layout::from_size_align(bytes.checked_add(2 * ZONE)?, ALIGNMENT).ok()
+}
+
+impl Memory {
+    pub(crate) fn new(ledger: &Arc<Ledger>, bytes: u64) -> Result<Memory, Fault> {
+        let mut state = ledger.state();
+        let free = state.limit.map(|limit| limit.saturating_sub(state.taken));
+        let out_of_memory = || Fault::OutOfMemory { free };
+        let chosen = state.countdown == 1;
+        state.countdown = state.countdown.saturating_sub(1);
+        if chosen || free.is_some_and(|free| bytes > free) {
+            return Err(out_of_memory());
+        }
+        let layout = layout(bytes).ok_or_else(out_of_memory)?;
+        // SAFETY: the layout has a size, the zones at least.
+        let base = NonNull::new(unsafe { std::alloc::alloc(layout) }).ok_or_else(out_of_memory)?;
+        // SAFETY: all of it lies within the allocation.
+        let start = unsafe {
+            base.write_bytes(ZONE_BYTE, layout.size());
+            base.add(ZONE)
+        };
+        let bytes = bytes as usize;
+        let memory = Memory { start, bytes, ledger: Arc::clone(ledger) };
+        memory.poison();
+        state.live.insert(memory.address() as usize, bytes);
+        state.taken += bytes as u64;
+        Ok(memory)
+    }
+
+    pub(crate) fn address(&self) -> u64 {
+        self.start.as_ptr() as u64
+    }
+
+    /// A range of bytes, or the error where it is not within the memory.
+    pub(crate) fn range(&self, offset: u64, bytes: usize) -> Result<NonNull<u8>, Fault> {
+        let end = usize::try_from(offset).ok().and_then(|offset| offset.checked_add(bytes));
+        if end.is_none_or(|end| end > self.bytes) {
+            let all = self.bytes;
+            return Err(Fault::Failed(format!(
+                "{bytes} bytes from byte {offset} on are not within {all} bytes of memory"
+            )));
+        }
+        // SAFETY: within the allocation, as just found.
+        Ok(unsafe { self.start.add(offset as usize) })
+    }
+
+    fn poison(&self) {
+        // SAFETY: whole words within the allocation, which is aligned; nobody else has it now.
+        let words =
+            unsafe { std::slice::from_raw_parts_mut(self.start.as_ptr().cast::<MaybeUninit<u32>>(), self.bytes / 4) };
+        words.fill(MaybeUninit::new(POISON));
+        for at in words.len() * 4..self.bytes {
+            // SAFETY: within the allocation.
+            unsafe { self.start.add(at).write(POISON.to_ne_bytes()[at % 4]) };
+        }
+    }
+}
+
+impl Drop for Memory {
+    fn drop(&mut self) {
+        let mut state = self.ledger.state();
+        state.live.remove(&(self.address() as usize));
+        state.taken -= self.bytes as u64;
+        // Whoever still reads it, reads nonsense.
+        self.poison();
+        if let Some(layout) = layout(self.bytes as u64) {
+            // SAFETY: allocated with this layout, a zone before `start`.
+            unsafe { std::alloc::dealloc(self.start.sub(ZONE).as_ptr(), layout) };
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Whole pictures in all modes, with mirrors and layers.
+
+use lightmesh_image::{Layers, Transfer};
+use lightmesh_render::backend::{Cpu, Cuda};
+use lightmesh_render::{Frame, Mode, Settings, Step, Unobserved, render_on};
+
+use crate::scenes::{SUBJECTS, Subject};
+use crate::stages::{SHARE_TOLERANCE, alike};
+use crate::trials::{Case, Target};
+
+const SIZE: [u32; 2] = [45, 37];
+
+pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
+    let mut cases = Vec::new();
+    for subject in &SUBJECTS {
+        for mode in [Mode::LightMesh, Mode::RayTrace, Mode::Area] {
+            let name = format!("{}::picture::{}", subject.name, mode.name());
+            cases.push(Case::new(name, move |cuda| same_picture(cuda, subject, mode)));
+        }
+    }
+    cases
+}
+
+fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, mode: Mode) {
+    let scene = subject.prepared(0);
+    let settings = Settings {
+        mode,
+        size: SIZE,
+        bounces: 2,
+        layers: true,
+        samples: Some(4),
+        step: Some(Step::Fixed(subject.step)),
+        radius: Some(2.1),
+        ..Settings::default()
+    };
+    let host = render_on(&Cpu, scene, &settings, &Unobserved).unwrap();
+    let device = render_on(cuda, scene, &settings, &Unobserved).unwrap();
+    same_colors::<R>(&host, &device);
+    same_layers::<R>(host.image.layers().expect("asked for"), device.image.layers().expect("asked for"));
+    assert_eq!(counts(&host), counts(&device));
+
+    let again = render_on(cuda, scene, &settings, &Unobserved).unwrap();
+    let bits = |frame: &Frame| frame.image.color().iter().map(|color| color.map(f32::to_bits)).collect::<Vec<_>>();
+    assert!(bits(&device) == bits(&again), "the same picture twice");
+}
+
+/// All that is counted. How many short tests are decided without asking triangles is each device's own affair; their sum is not.
+fn counts(frame: &Frame) -> String {
+    let mut counts = frame.stats.counts.clone();
+    counts.short_tests += std::mem::take(&mut counts.short_tests_culled);
+    format!("{counts:?}")
+}
+
+/// 8-bit colours differ by one at most.
+fn same_colors<R: Target>(host: &Frame, device: &Frame) {
+    let near = |a: f32, b: f32| b.is_finite() && Transfer::Srgb.encode(a).abs_diff(Transfer::Srgb.encode(b)) <= 1;
+    let twins = || host.image.color().iter().zip(device.image.color()).enumerate();
+    let differ = || twins().filter(|(_, (a, b))| !a.iter().zip(*b).all(|(&a, &b)| near(a, b)));
+    let allowed = R::allowed(twins().count(), 1000);
+    assert!(differ().count() <= allowed, "pixels, on the CPU and on the device: {:?}", differ().collect::<Vec<_>>());
+}
+
+/// What was seen is the same in every bit; visibility within what a sum's order changes.
+fn same_layers<R: Target>(host: &Layers, device: &Layers) {
+    let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    assert!(bits(&host.depth) == bits(&device.depth), "depth");
+    assert!(bits(host.position.as_flattened()) == bits(device.position.as_flattened()), "position");
+    assert!(bits(host.normal.as_flattened()) == bits(device.normal.as_flattened()), "normal");
+    assert_eq!(host.used, device.used, "light points used");
+    for (light, (a, b)) in host.visibility.iter().zip(&device.visibility).enumerate() {
+        let differ = a.iter().zip(b).filter(|&(&a, &b)| !alike(a, b, SHARE_TOLERANCE)).count();
+        assert!(differ <= R::allowed(a.len(), 100), "{differ} visibilities of light {light} differ");
+    }
+}

@@ -1,0 +1,98 @@
+//! Scenes that devices are held against the CPU with.
+
+use std::path::Path;
+use std::sync::OnceLock;
+
+use glam::{DVec3, Vec3};
+use lightmesh_render::{Acceleration, PreparedScene, Unobserved, View};
+use lightmesh_scene::{Falloff, LightKind, Material, Scene};
+use lightmesh_testkit::{SceneDraft, half_plane, pile, soup};
+
+/// The structures, in the order of [`Subject::prepared`].
+pub(crate) const ACCELERATIONS: [Acceleration; 3] =
+    [Acceleration::Bvh, Acceleration::Grid(None), Acceleration::BruteForce];
+
+/// A scene that is built and prepared when it is first needed.
+pub(crate) struct Subject {
+    pub(crate) name: &'static str,
+    /// Light-mesh step for tests.
+    pub(crate) step: f32,
+    /// Few triangles: every stage may ask all of them.
+    pub(crate) small: bool,
+    build: fn() -> Scene,
+    scene: OnceLock<Scene>,
+    prepared: [OnceLock<PreparedScene<'static>>; 3],
+}
+
+const fn subject(name: &'static str, step: f32, small: bool, build: fn() -> Scene) -> Subject {
+    Subject { name, step, small, build, scene: OnceLock::new(), prepared: [const { OnceLock::new() }; 3] }
+}
+
+/// All scenes.
+pub(crate) static SUBJECTS: [Subject; 8] = [
+    subject("gazebo", 2.0, false, || builtin("gazebo")),
+    subject("childpark", 1.0, false, || builtin("childpark")),
+    subject("garden", 0.1, false, || builtin("garden")),
+    subject("still_life", 0.2, false, still_life),
+    subject("all_lights", 0.25, true, all_lights),
+    subject("half_plane", 0.2, true, half_plane),
+    subject("soup", 0.3, true, || soup(7, 200)),
+    subject("empty", 1.0, true, || SceneDraft::new().point_light([0.0; 3]).camera([1.0; 3], [0.0; 3]).finish("empty")),
+];
+
+impl Subject {
+    /// The scene.
+    pub(crate) fn scene(&'static self) -> &'static Scene {
+        self.scene.get_or_init(self.build)
+    }
+
+    /// With one of [`ACCELERATIONS`].
+    pub(crate) fn prepared(&'static self, acceleration: usize) -> &'static PreparedScene<'static> {
+        self.prepared[acceleration].get_or_init(|| {
+            PreparedScene::new(self.scene(), &ACCELERATIONS[acceleration], &Unobserved)
+                .unwrap_or_else(|error| panic!("{}: {error}", self.name))
+        })
+    }
+
+    /// What its first camera sees.
+    pub(crate) fn view(&'static self, size: [u32; 2]) -> View {
+        let scene = self.scene();
+        let camera = scene.cameras.first().cloned().unwrap_or_else(|| scene.default_camera(Default::default()));
+        View::new(&camera, size)
+    }
+}
+
+fn builtin(name: &str) -> Scene {
+    Scene::open(format!("builtin:{name}")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Mirrors, normals at vertices, lights with a size. Found from the repository's root too, where the test was built elsewhere.
+fn still_life() -> Scene {
+    let built_in = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/still_life.toml"));
+    let path = if built_in.exists() { built_in } else { Path::new("scenes/still_life.toml") };
+    Scene::open(path).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A light of every kind over a pile and a mirror, far from the world's origin.
+fn all_lights() -> Scene {
+    let position = Vec3::new(-1.5, 3.0, 1.0);
+    let (down, slanted) = (Vec3::NEG_Y, Vec3::new(0.6, -0.8, 0.0));
+    let kinds = [
+        LightKind::Point { position, spread: 0.2 },
+        LightKind::Directional { direction: slanted },
+        LightKind::Spot { position: Vec3::new(1.0, 3.0, 0.5), direction: down, inner: 0.2, outer: 0.6 },
+        LightKind::Sphere { position: Vec3::new(2.0, 2.5, -1.0), radius: 0.3 },
+        LightKind::Disk { position: Vec3::new(-2.0, 2.0, -2.0), normal: slanted, radius: 0.4 },
+        LightKind::Rectangle { position: Vec3::new(0.0, 1.5, 2.0), half_u: 0.3 * Vec3::X, half_v: 0.2 * Vec3::Z },
+    ];
+    let mut scene = pile(DVec3::new(1.0e5, -2.0e4, 3.0e5), &kinds);
+    for (light, index) in scene.lights.iter_mut().zip(0..) {
+        light.intensity = Vec3::new(0.3, 0.25, 0.2) * (1.0 + index as f32);
+        light.falloff = if index % 2 == 0 { Falloff::None } else { Falloff::InverseSquare };
+    }
+    let material = Material { ks: Vec3::new(0.4, 0.3, 0.2), ..scene.materials[0].clone() };
+    scene.materials.fill(material);
+    scene.ambient = Some(Vec3::splat(0.1));
+    scene.background = Some(Vec3::new(0.2, 0.3, 0.4));
+    scene
+}

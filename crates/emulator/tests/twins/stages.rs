@@ -1,0 +1,196 @@
+//! Stage by stage: hits, masks, used light points, what they see, and the visibility at object points.
+
+use std::collections::BTreeMap;
+
+use lightmesh_render::accel::Hit;
+use lightmesh_render::backend::{Backend, Cpu, Cuda, DeviceHits, DeviceLit, DevicePoints, DeviceRays};
+use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, UsedPoints};
+use lightmesh_render::{Job, Lit, LitBy, RayList, Sampling, ShortTests, Unobserved, Visibility};
+use lightmesh_scene::Weight;
+
+use crate::scenes::{SUBJECTS, Subject};
+use crate::trials::{Case, Target};
+
+/// Pixels of the cases that hold hits against each other.
+const HITS: [u32; 2] = [64, 64];
+/// Pixels of all others: no multiple of any tile.
+const SIZE: [u32; 2] = [45, 37];
+/// Shares may differ by what the order of a sum and roots of weights change.
+pub(crate) const SHARE_TOLERANCE: f32 = 1e-5;
+
+pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
+    let mut cases = Vec::new();
+    for subject in &SUBJECTS {
+        for (index, name) in ["bvh", "grid", "brute_force"].into_iter().enumerate() {
+            let mut add = |what: &str, run: fn(&Cuda<R>, &'static Subject, usize)| {
+                let name = format!("{}::{name}::{what}", subject.name);
+                cases.push(Case::new(name, move |cuda| run(cuda, subject, index)));
+            };
+            add("hits", |cuda, subject, index| drop(Twins::new(cuda, subject, index, HITS)));
+            if subject.small || name != "brute_force" {
+                add("shadow_rays", |cuda, subject, index| Twins::new(cuda, subject, index, SIZE).shadow_rays());
+                add("light_mesh_2.1", |cuda, subject, index| Twins::new(cuda, subject, index, SIZE).light_mesh(2.1));
+                add("light_mesh_3.1", |cuda, subject, index| Twins::new(cuda, subject, index, SIZE).light_mesh(3.1));
+            }
+        }
+    }
+    cases
+}
+
+/// The same rays and hits on both sides.
+struct Twins<'a, R: Target> {
+    cuda: &'a Cuda<R>,
+    subject: &'static Subject,
+    scene: &'static lightmesh_render::PreparedScene<'static>,
+    rays: RayList,
+    hits: Vec<Hit>,
+    device_rays: DeviceRays<R>,
+    device_hits: DeviceHits<R>,
+}
+
+fn job() -> Job<'static> {
+    Job::new(&Unobserved, Sampling { samples: 4, seed: 5, spread: true })
+}
+
+impl<'a, R: Target> Twins<'a, R> {
+    /// Step 1. The hits are the same in every bit.
+    fn new(cuda: &'a Cuda<R>, subject: &'static Subject, acceleration: usize, size: [u32; 2]) -> Twins<'a, R> {
+        let scene = subject.prepared(acceleration);
+        let view = subject.view(size);
+        let rays = Cpu.camera_rays(&view, 0..size[1]).unwrap();
+        let hits = Cpu.primary_rays(&job(), scene, &rays).unwrap();
+        let device_rays = cuda.camera_rays(&view, 0..size[1]).unwrap();
+        let device_hits = cuda.primary_rays(&job(), scene, &device_rays).unwrap();
+        let found = device_hits.read().unwrap();
+        assert_eq!(found.len(), hits.len());
+        for (hit, &pixel) in hits.iter().zip(&rays.pixels) {
+            let twin = &found[pixel as usize];
+            assert_eq!(bits(hit), bits(twin), "pixel {pixel}: {hit:?} on the CPU, {twin:?} on the device");
+        }
+        Twins { cuda, subject, scene, rays, hits, device_rays, device_hits }
+    }
+
+    /// Shadow rays, one and many a light.
+    fn shadow_rays(&self) {
+        let host = Cpu.shadow_rays(&job(), self.scene, &self.rays, &self.hits).unwrap();
+        let device = self.cuda.shadow_rays(&job(), self.scene, &self.device_rays, &self.device_hits).unwrap();
+        self.same_shares("hard shadows", &host, &device.read().unwrap(), 0.0, 0);
+        let host = Cpu.area_shadows(&job(), self.scene, &self.rays, &self.hits).unwrap();
+        let device = self.cuda.area_shadows(&job(), self.scene, &self.device_rays, &self.device_hits).unwrap();
+        let allowed = R::allowed(host.share.len(), 1000);
+        self.same_shares("area shadows", &host, &device.read().unwrap(), 0.0, allowed);
+    }
+
+    /// Steps 2 to 5.
+    fn light_mesh(&self, radius: f32) {
+        let step = self.subject.step;
+        let mesh = LightMesh {
+            lattice: Lattice::around(&self.scene.bounds, step, radius).unwrap(),
+            template: Template::new(radius).unwrap(),
+            radius: radius * step,
+            weight: Weight::Smooth,
+        };
+        let (rays, hits) = (&self.rays, &self.hits);
+        let masks = Cpu.short_tests(&job(), self.scene, rays, hits, &mesh).unwrap();
+        let mut expected: Vec<(u32, Vec<u32>)> = (masks.groups.members().iter().enumerate())
+            .map(|(slot, &ray)| (rays.pixels[ray as usize], masks.mask(slot).to_vec()))
+            .collect();
+        expected.sort_unstable();
+        let on_device = |how| {
+            let job = job().with_short_tests(how);
+            self.cuda.short_tests(&job, self.scene, &self.device_rays, &self.device_hits, &mesh).unwrap()
+        };
+        for how in [ShortTests::Plain, ShortTests::Cells] {
+            let found: Vec<_> = on_device(how).read().unwrap().into_iter().map(|(ray, _, mask)| (ray, mask)).collect();
+            assert_eq!(found.len(), expected.len(), "{how:?}: object points");
+            for (found, expected) in found.iter().zip(&expected) {
+                assert_eq!(found, expected, "{how:?}: pixel and mask");
+            }
+        }
+
+        let device_masks = on_device(ShortTests::Cells);
+        let points = Cpu.light_points(&job(), &masks, &mesh).unwrap();
+        let device_points = self.cuda.light_points(&job(), &device_masks, &mesh).unwrap();
+        same_points(&points, &device_points);
+
+        let lit = Cpu.long_tests(&job(), self.scene, &points, &mesh).unwrap();
+        let device_lit = self.cuda.long_tests(&job(), self.scene, &device_points, &mesh).unwrap();
+        same_light(&points, &lit, &device_points, &device_lit);
+
+        let host = Cpu.interpolate(&job(), self.scene, rays, hits, &masks, &points, &lit, &mesh).unwrap();
+        let (rays, hits) = (&self.device_rays, &self.device_hits);
+        let (masks, points, lit) = (&device_masks, &device_points, &device_lit);
+        let device = self.cuda.interpolate(&job(), self.scene, rays, hits, masks, points, lit, &mesh).unwrap();
+        let allowed = R::allowed(host.share.len(), 100);
+        self.same_shares("interpolated", &host, &device.read().unwrap(), SHARE_TOLERANCE, allowed);
+    }
+
+    /// The CPU has shares by its order of rays, then light; the device by light, then pixel.
+    fn same_shares(&self, what: &str, host: &Visibility, device: &[f32], tolerance: f32, allowed: usize) {
+        assert_eq!(host.share.len(), device.len(), "{what}");
+        let rays = self.rays.pixels.len();
+        let mut differ = Vec::new();
+        for (ray, &pixel) in self.rays.pixels.iter().enumerate() {
+            for light in 0..host.lights {
+                let (a, b) = (host.share[ray * host.lights + light], device[light * rays + pixel as usize]);
+                if !alike(a, b, tolerance) {
+                    differ.push((pixel, light, a, b));
+                }
+            }
+        }
+        assert!(differ.len() <= allowed, "{what}: pixel, light, share on the CPU and on the device: {differ:?}");
+    }
+}
+
+/// Whether two shares differ by `tolerance` at most; a NaN is like nothing.
+pub(crate) fn alike(a: f32, b: f32, tolerance: f32) -> bool {
+    (a - b).abs() <= tolerance
+}
+
+fn bits(hit: &Hit) -> [u32; 4] {
+    [hit.t.to_bits(), hit.u.to_bits(), hit.v.to_bits(), hit.triangle]
+}
+
+/// Step 3: the same bricks with the same points.
+fn same_points<R: Target>(host: &UsedPoints, device: &DevicePoints<R>) {
+    let expected: BTreeMap<u64, u64> = host.bricks().keys().iter().copied().zip(host.used().iter().copied()).collect();
+    let found: BTreeMap<u64, u64> =
+        device.read_bricks().unwrap().into_iter().map(|(_, key, used)| (key, used)).collect();
+    assert_eq!(found, expected, "used light points by brick");
+}
+
+/// Step 4: every light point sees the same of every light. The device has a word a slot of its table for each light without a size,
+/// then a number a light point, by rank, for each with one.
+fn same_light<R: Target>(points: &UsedPoints, lit: &Lit, device_points: &DevicePoints<R>, device_lit: &DeviceLit<R>) {
+    let (bricks, ranks) = (device_points.read_bricks().unwrap(), device_points.read_ranks().unwrap());
+    let (bits, counts) = device_lit.read().unwrap();
+    let plain = lit.lights.iter().filter(|light| matches!(light, LitBy::Bits(_))).count();
+    let slots = bits.len() / plain.max(1);
+    let (mut next_bits, mut next_count) = (0, 0);
+    let mut differ = Vec::new();
+    for (light, host) in lit.lights.iter().enumerate() {
+        for &(slot, key, used) in &bricks {
+            let brick = points.bricks().find(key).expect("the bricks are the same");
+            match host {
+                LitBy::Bits(words) => {
+                    assert_eq!(bits[next_bits + slot] & used, words[brick] & used, "light {light}, brick {key}");
+                }
+                LitBy::Share { seen, .. } => {
+                    for bit in (0..64).filter(|bit| used >> bit & 1 == 1) {
+                        let rank = ranks[slot] + (used & ((1 << bit) - 1)).count_ones();
+                        let (a, b) = (seen[points.rank(brick, bit)], counts[next_count + rank as usize]);
+                        if a != b {
+                            differ.push((light, key, bit, a, b));
+                        }
+                    }
+                }
+            }
+        }
+        match host {
+            LitBy::Bits(_) => next_bits += slots,
+            LitBy::Share { .. } => next_count += points.count(),
+        }
+    }
+    let allowed = R::allowed(next_count, 1000);
+    assert!(differ.len() <= allowed, "light, brick, point, rays on the CPU and on the device: {differ:?}");
+}

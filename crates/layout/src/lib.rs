@@ -1,0 +1,21 @@
+//! What host and device must lay out alike: written once, here.
+//!
+//! Each record is a Rust struct; [`header`] prints all of them as C++ with assertions about every size and offset. Kernels include
+//! that header, so a field that moves on one side alone does not compile.
+//!
+//! * [`geometry`]: rays, hits, triangles, acceleration structures.
+//! * [`scene`]: lights, materials, and the whole scene as a device holds it.
+//! * [`mesh`]: the light mesh and what is computed about it.
+//! * [`stages`]: the arguments of every kernel.
+//!
+//! A crate of its own, because the tool that makes the header and the kernels needs nothing else of the renderer.
+
+pub mod geometry;
+mod header;
+pub mod mesh;
+mod record;
+pub mod scene;
+pub mod stages;
+
+pub use header::header;
+pub use record::{DeviceType, Field, In, Out, Record};

@@ -1,0 +1,127 @@
+//! The scene as a device holds it.
+
+use crate::In;
+use crate::geometry::{BruteForce, Bvh, Grid, Triangle, Vec3};
+use crate::record::records;
+
+records! {
+    /// A light; what a kind does not need is zero. Kinds: see [`Light`]'s constants.
+    Light {
+        /// Middle of the light.
+        position: Vec3,
+        /// Kind of light.
+        kind: u32,
+        /// Where a directional light or a spot shines, or the normal of a disk.
+        direction: Vec3,
+        /// Radius of a sphere or disk, spread of a point light.
+        radius: f32,
+        /// Half edge of a rectangle, or a tangent of a disk.
+        half_u: Vec3,
+        /// The largest distance of a point of the light from its middle; 0 for all that have no size.
+        size: f32,
+        /// The other half edge or tangent.
+        half_v: Vec3,
+        /// 1: falls off with the square of the distance.
+        inverse_square: u32,
+        /// Strength.
+        intensity: Vec3,
+        /// Cosine of a spot's outer angle.
+        cos_outer: f32,
+        /// 1 / (cos inner − cos outer) of a spot.
+        cone_scale: f32,
+        /// For sixteen-byte steps.
+        spare: [u32; 3],
+    }
+
+    /// The vertices of a triangle.
+    Indices {
+        /// Vertex numbers.
+        vertices: [u32; 3],
+    }
+
+    /// The coefficients of formula (1).
+    Material {
+        /// Ambient.
+        ka: Vec3,
+        /// Phong's exponent.
+        shininess: f32,
+        /// Diffuse.
+        kd: Vec3,
+        /// For sixteen-byte steps.
+        spare_a: u32,
+        /// Specular.
+        ks: Vec3,
+        /// For sixteen-byte steps.
+        spare_b: u32,
+        /// Light of its own.
+        emission: Vec3,
+        /// For sixteen-byte steps.
+        spare_c: u32,
+    }
+
+    /// Everything about a scene that kernels ask for. Only one of the three structures is there.
+    Scene {
+        /// By index in the mesh.
+        triangles: In<Triangle>,
+        /// Three vertices a triangle; null where there are no normals.
+        indices: In<Indices>,
+        /// By vertex; null where there are none.
+        normals: In<Vec3>,
+        /// The material of each triangle.
+        triangle_materials: In<u32>,
+        /// Materials.
+        materials: In<Material>,
+        /// Lights.
+        lights: In<Light>,
+        /// [`Scene::LIGHT_TARGETS`] points on each light, from which its unshadowed light is computed.
+        light_targets: In<Vec3>,
+        /// The regular grid.
+        grid: Grid,
+        /// The wide BVH.
+        bvh: Bvh,
+        /// The oracle.
+        brute_force: BruteForce,
+        /// Number of lights.
+        light_count: u32,
+        /// I_a of formula (1).
+        ambient: Vec3,
+        /// What rays see that miss everything.
+        background: Vec3,
+        /// Middle of the scene.
+        center: Vec3,
+        /// How far a directional light stands away, at least.
+        far: f32,
+        /// For eight-byte size.
+        spare: u32,
+    }
+
+    /// How lights with a size are sampled.
+    Sampling {
+        /// The user's seed.
+        seed: u64,
+        /// Shadow rays per light with a size.
+        samples: u32,
+        /// 1: point lights are strewn over their spread.
+        spread: u32,
+    }
+}
+
+impl Light {
+    /// A point light.
+    pub const POINT: u32 = 0;
+    /// Parallel light.
+    pub const DIRECTIONAL: u32 = 1;
+    /// A spot.
+    pub const SPOT: u32 = 2;
+    /// A ball.
+    pub const SPHERE: u32 = 3;
+    /// A disk.
+    pub const DISK: u32 = 4;
+    /// A rectangle.
+    pub const RECTANGLE: u32 = 5;
+}
+
+impl Scene {
+    /// Points on each light that unshadowed light is averaged over.
+    pub const LIGHT_TARGETS: usize = 16;
+}

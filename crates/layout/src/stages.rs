@@ -1,0 +1,231 @@
+//! The arguments of every kernel: one record for the kernels of a stage.
+
+use crate::geometry::{Hit, ListedRay, Rays, Tally, Vec3};
+use crate::mesh::{BrickTable, Item, LightMesh, LitBy, UsedPoints};
+use crate::record::records;
+use crate::scene::{Sampling, Scene};
+use crate::{In, Out};
+
+records! {
+    /// `primary_rays`: one thread a ray.
+    PrimaryRays {
+        /// What is looked at.
+        scene: Scene,
+        /// What looks.
+        rays: Rays,
+        /// One hit a ray.
+        hits: Out<Hit>,
+        /// Counts object points.
+        tally: Tally,
+        /// The first block of this launch among all blocks.
+        first_block: u64,
+    }
+
+    /// `shadow_rays` and `area_shadows`: one thread a ray.
+    ShadowRays {
+        /// The scene.
+        scene: Scene,
+        /// Rays that saw the object points.
+        rays: Rays,
+        /// What they saw.
+        hits: In<Hit>,
+        /// Share of each light by light, then ray.
+        share: Out<f32>,
+        /// Light from all lights that reaches the eye, by ray (area shadows).
+        direct: Out<Vec3>,
+        /// How lights with a size are sampled.
+        sampling: Sampling,
+        /// Counts shadow rays.
+        tally: Tally,
+        /// The first block of this launch among all blocks.
+        first_block: u64,
+    }
+
+    /// `shade`: one thread a ray.
+    Shade {
+        /// The scene.
+        scene: Scene,
+        /// Rays.
+        rays: Rays,
+        /// What they saw.
+        hits: In<Hit>,
+        /// Share of each light by light, then ray.
+        share: In<f32>,
+        /// Light from all lights by ray; null where `share` gives it.
+        direct: In<Vec3>,
+        /// Light points used, by ray; null where none are.
+        used: In<u32>,
+        /// The first pixel of the film.
+        film_pixel: u64,
+        /// Radiance by pixel of the film: added to.
+        color: Out<Vec3>,
+        /// Distance by pixel; null where no layers are kept, as all that follow.
+        depth: Out<f32>,
+        /// Geometric normal by pixel.
+        normal: Out<Vec3>,
+        /// Object point by pixel, local frame.
+        position: Out<Vec3>,
+        /// Share of each light by light, then pixel of the film.
+        visibility: Out<f32>,
+        /// Light points used by pixel.
+        light_points: Out<u32>,
+        /// Pixels of the film.
+        film_pixels: u64,
+        /// The first block of this launch among all blocks.
+        first_block: u64,
+    }
+
+    /// `mirror_rays_count` and `mirror_rays_emit`: one thread a ray.
+    MirrorRays {
+        /// The scene.
+        scene: Scene,
+        /// Rays.
+        rays: Rays,
+        /// What they saw.
+        hits: In<Hit>,
+        /// Mirror rays of each block of 256 rays; after the scan, of all blocks before it.
+        counts: Out<u32>,
+        /// The mirror rays, in the order of the rays.
+        mirrored: Out<ListedRay>,
+    }
+
+    /// `group_points` and `gather_items`: one block a tile of 1024 rays.
+    GroupCells {
+        /// The scene.
+        scene: Scene,
+        /// Rays.
+        rays: Rays,
+        /// What they saw.
+        hits: In<Hit>,
+        /// The mesh whose cells group.
+        mesh: LightMesh,
+        /// Object points by tile, then cell: ray numbers, 1024 places a tile.
+        members: Out<u32>,
+        /// Items by tile, 1024 places a tile.
+        tile_items: Out<Item>,
+        /// Items of each tile; after the scan, of all tiles before it.
+        counts: Out<u32>,
+        /// All items, one after the other.
+        items: Out<Item>,
+        /// The first block of this launch among all blocks.
+        first_block: u64,
+    }
+
+    /// `short_tests`: one warp an item.
+    ShortTests {
+        /// The scene.
+        scene: Scene,
+        /// Rays.
+        rays: Rays,
+        /// What they saw.
+        hits: In<Hit>,
+        /// The light mesh.
+        mesh: LightMesh,
+        /// Ray numbers by slot.
+        members: In<u32>,
+        /// Up to 32 object points of a cell each.
+        items: In<Item>,
+        /// Masks: 32 · words words an item; bit l of word k says whether the item's l-th object point sees light point k.
+        masks: Out<u32>,
+        /// Counts.
+        tally: Tally,
+        /// The first item of this launch.
+        first_item: u64,
+        /// Items of this launch.
+        item_count: u64,
+        /// 1: a warp's masks fit into shared memory.
+        shared_masks: u64,
+    }
+
+    /// `insert_bricks` and `mark_points`: one warp an item; `count_points` and `list_points`: one thread a slot.
+    LightPoints {
+        /// The light mesh.
+        mesh: LightMesh,
+        /// Items.
+        items: In<Item>,
+        /// Their masks.
+        masks: In<u32>,
+        /// The first item of this launch.
+        first_item: u64,
+        /// Items of this launch.
+        item_count: u64,
+        /// The bricks that hold used points.
+        table: BrickTable,
+        /// Used points of each slot.
+        used: Out<u64>,
+        /// Used points of each slot; after the scan, of all slots before it.
+        rank: Out<u32>,
+        /// Every used point by rank.
+        points: Out<u64>,
+        /// Number of bricks in the table.
+        bricks: Out<u32>,
+    }
+
+    /// `long_tests`: one thread a light point.
+    LongTests {
+        /// The scene.
+        scene: Scene,
+        /// The light mesh.
+        mesh: LightMesh,
+        /// The used light points.
+        points: UsedPoints,
+        /// What is found out, by light.
+        lit: In<LitBy>,
+        /// How lights with a size are sampled.
+        sampling: Sampling,
+        /// Counts overruns.
+        tally: Tally,
+        /// The light.
+        light: u32,
+        /// Light points of this launch.
+        point_count: u32,
+        /// The first light point of this launch.
+        first_point: u64,
+    }
+
+    /// `interpolate`: one warp an item; `fallback`: one thread a ray.
+    Interpolate {
+        /// The scene.
+        scene: Scene,
+        /// Rays.
+        rays: Rays,
+        /// What they saw.
+        hits: In<Hit>,
+        /// The light mesh.
+        mesh: LightMesh,
+        /// Ray numbers by slot.
+        members: In<u32>,
+        /// Items.
+        items: In<Item>,
+        /// Their masks.
+        masks: In<u32>,
+        /// The used light points.
+        points: UsedPoints,
+        /// What they see, by light.
+        lit: In<LitBy>,
+        /// Share of each light by light, then ray; negative where the fallback must find it.
+        share: Out<f32>,
+        /// Light points used by ray.
+        used: Out<u32>,
+        /// Not 0 where some share is negative.
+        any_fallback: Out<u32>,
+        /// How lights with a size are sampled.
+        sampling: Sampling,
+        /// Counts.
+        tally: Tally,
+        /// The first item, or block of rays, of this launch.
+        first: u64,
+        /// Items of this launch.
+        count: u64,
+    }
+
+    /// `scan_blocks` and `add_offsets`: exclusive prefix sums of `u32`, in place.
+    Scan {
+        /// What is summed.
+        values: Out<u32>,
+        /// The sum of each block of 1024 values; after their own scan, of all blocks before it.
+        sums: Out<u32>,
+        /// Number of values.
+        count: u64,
+    }
+}

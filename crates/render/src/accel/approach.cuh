@@ -1,0 +1,66 @@
+// Brings a ray near the triangles before it is traced: twin of approach.rs.
+#pragma once
+
+#include "accel/ray.cuh"
+
+// Origins farther than this many radii from the middle of the triangles are moved.
+#define REACH 8.0f
+// Directions whose largest component lies outside 2^-40 to 2^40 are scaled.
+#define LARGEST_DIRECTION 1.099511627776e12f
+#define SMALLEST_DIRECTION (1.0f / LARGEST_DIRECTION)
+
+// A ray near the triangles, and how its parameter relates to that of the ray asked for: t = start + t' · scale.
+struct NearRay {
+    Ray ray;
+    // Zero where the ray cannot hit anything.
+    double scale;
+    double start;
+};
+
+// Where along the ray to begin; negative where it passes the triangles by or leads away from them.
+DEVICE double approach_start(float radius_of_triangles, DVec3 origin, DVec3 direction) {
+    const double radius = radius_of_triangles;
+    if (max_element(abs(origin)) <= (double)REACH * radius)
+        return 0.0;
+    const double nearest = -dot(origin, direction) / length_squared(direction);
+    // The box lies in a sphere of √3 radii; 2 leaves room for rounding.
+    const double sphere = 2.0 * radius;
+    const bool passes_by = length(origin + nearest * direction) > sphere;
+    return nearest > 0.0 && !passes_by ? nearest - 2.0 * sphere / length(direction) : -1.0;
+}
+
+COLD NearRay far_ray(Vec3 center, float radius, Ray ray) {
+    NearRay near = {ray, 0.0, 0.0};
+    const double largest = max_element(abs(ray.direction));
+    if (!(is_finite(ray.origin) && is_finite(ray.direction) && largest > 0.0 && ray.t_max > 0.0f))
+        return near;
+    // 2 to the floor of the binary logarithm: the number without its fraction. No f32 is below the normal numbers of f64.
+    const long long power = __double_as_longlong(largest) & 0x7ff0000000000000ll;
+    const double scale = 1.0 / __longlong_as_double(power);
+    const DVec3 origin = to_double(ray.origin), direction = scale * to_double(ray.direction);
+    const double start = approach_start(radius, origin - to_double(center), direction);
+    const float t_max = (float)((double)ray.t_max / scale - start);
+    if (start < 0.0 || !(t_max > 0.0f))
+        return near;
+    near.ray = Ray{to_single(origin + start * direction), to_single(direction), t_max};
+    near.scale = scale;
+    near.start = start * scale;
+    return near;
+}
+
+// The ray to trace.
+DEVICE NearRay near_ray(const Approach &approach, const Ray &ray) {
+    const float largest = max_element(abs(ray.direction));
+    const Vec3 distance = abs(ray.origin - approach.center);
+    const float reach = REACH * approach.radius;
+    const bool near = distance.x <= reach && distance.y <= reach && distance.z <= reach;
+    const bool usual = largest >= SMALLEST_DIRECTION && largest <= LARGEST_DIRECTION && is_finite(ray.direction);
+    if (near && usual && ray.t_max > 0.0f)
+        return NearRay{ray, 1.0, 0.0};
+    return far_ray(approach.center, approach.radius, ray);
+}
+
+// The parameter `t` of the near ray as that of the ray that was asked for.
+DEVICE float asked_parameter(const NearRay &near, float t) {
+    return near.start != 0.0 || near.scale != 1.0 ? (float)(near.start + (double)t * near.scale) : t;
+}

@@ -1,0 +1,146 @@
+// What is done with the triangles that a walk reaches; the same for every structure. Twin of visit.rs.
+//
+// A walk hands triangles over in sets, and asks how far it is still worth walking:
+//
+//     template <class Set> bool ask(Visitor &, const Triangle *triangles, Set set);   // false ends the walk
+//     float limit(const Visitor &);                                                    // what lies beyond need not be asked
+#pragma once
+
+#include "accel/triangle.cuh"
+
+// The triangles from `next` to before `end`.
+struct Run {
+    unsigned next, end;
+};
+
+DEVICE bool take(Run &run, unsigned &triangle) {
+    triangle = run.next++;
+    return triangle < run.end;
+}
+
+// For each bit of a word the triangle that lies as many places after `base`.
+struct Chosen {
+    unsigned base, bits;
+};
+
+DEVICE bool take(Chosen &chosen, unsigned &triangle) {
+    triangle = chosen.base + __ffs(chosen.bits) - 1;
+    const bool any = chosen.bits != 0;
+    chosen.bits &= chosen.bits - 1;
+    return any;
+}
+
+template <unsigned AXIS, class Set>
+DEVICE bool next_candidate_along(const RayShear &ray, const Triangle *triangles, Set &set, unsigned &triangle, Sheared &corners) {
+    while (take(set, triangle))
+        if (may_meet<AXIS>(ray, triangles + triangle, corners))
+            return true;
+    return false;
+}
+
+// The next triangle of the set that single precision cannot rule out. The loop is short, and most triangles go no further; those
+// that do are decided outside of it, by all lanes of a warp that have one at once.
+template <class Set>
+DEVICE bool next_candidate(const RayShear &ray, const Triangle *triangles, Set &set, unsigned &triangle, Sheared &corners) {
+    // Asked bit by bit, this becomes two branches and no jump through a table.
+    if (ray.axis & 1)
+        return next_candidate_along<1>(ray, triangles, set, triangle, corners);
+    if (ray.axis & 2)
+        return next_candidate_along<2>(ray, triangles, set, triangle, corners);
+    return next_candidate_along<0>(ray, triangles, set, triangle, corners);
+}
+
+// Looks for the closest hit.
+struct Closest {
+    RayShear ray;
+    // Ray parameter of the best hit, or where the ray ends.
+    float limit;
+    // Place of the triangle that was hit, in the structure's array.
+    unsigned best;
+};
+
+DEVICE Closest find_closest(const Ray &ray) { return Closest{ray_shear(ray.origin, ray.direction), ray.t_max, HIT_NONE}; }
+
+DEVICE float limit(const Closest &closest) { return closest.limit; }
+
+template <class Set>
+DEVICE bool ask(Closest &closest, const Triangle *triangles, Set set) {
+    unsigned triangle;
+    Sheared corners;
+    while (next_candidate(closest.ray, triangles, set, triangle, corners)) {
+        Weights weights;
+        if (!weigh(corners, weights))
+            continue;
+        const float t = hit_distance(closest.ray, corners, weights);
+        // As near as the best one: the smaller index wins.
+        const bool wins = t < closest.limit || (t == closest.limit && closest.best != HIT_NONE &&
+                                                triangle_index(triangles + triangle) < triangle_index(triangles + closest.best));
+        if (t > 0.0f && wins) {
+            closest.limit = t;
+            closest.best = triangle;
+        }
+    }
+    return true;
+}
+
+// The hit that was found. Its barycentric weights are computed only now, once.
+DEVICE Hit found_hit(const Closest &closest, const Triangle *triangles) {
+    if (closest.best == HIT_NONE)
+        return hit_nothing();
+    const Triangle *triangle = triangles + closest.best;
+    Sheared corners;
+    may_meet(closest.ray, triangle, corners);
+    Weights weights;
+    weigh(corners, weights);
+    const float u = (float)(weights.v / weights.det), v = (float)(weights.w / weights.det);
+    return Hit{closest.limit, u, v, triangle_index(triangle)};
+}
+
+// Looks for any hit.
+struct Any {
+    RayShear ray;
+    float t_max;
+    bool hit;
+};
+
+DEVICE Any find_any(const Ray &ray) { return Any{ray_shear(ray.origin, ray.direction), ray.t_max, false}; }
+
+DEVICE float limit(const Any &any) { return any.t_max; }
+
+template <class Set>
+DEVICE bool ask(Any &any, const Triangle *triangles, Set set) {
+    unsigned triangle;
+    Sheared corners;
+    while (next_candidate(any.ray, triangles, set, triangle, corners)) {
+        Weights weights;
+        if (!weigh(corners, weights))
+            continue;
+        const float t = hit_distance(any.ray, corners, weights);
+        if (t > 0.0f && t < any.t_max) {
+            any.hit = true;
+            return false;
+        }
+    }
+    return true;
+}
+
+// Looks for a triangle that blocks one short segment.
+struct Short {
+    ShortTest test;
+    Vec3 direction;
+    bool blocked;
+};
+
+DEVICE float limit(const Short &) { return 1.0f; }
+
+template <class Set>
+DEVICE bool ask(Short &segment, const Triangle *triangles, Set set) {
+    unsigned triangle;
+    while (take(set, triangle)) {
+        if (blocks_segment(segment.test, load_corners(triangles + triangle), segment.direction)) {
+            segment.blocked = true;
+            return false;
+        }
+    }
+    return true;
+}

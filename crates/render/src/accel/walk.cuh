@@ -1,0 +1,43 @@
+// The acceleration structures as kernels ask them, one ray or segment a thread: twin of the trait in mod.rs.
+//
+// Every function exists for each of the three structures. All three give the same bits.
+#pragma once
+
+#include "accel/approach.cuh"
+#include "accel/brute_force.cuh"
+#include "accel/bvh/walk.cuh"
+#include "accel/grid/short_walk.cuh"
+#include "accel/grid/walk.cuh"
+
+// The closest hit of a ray.
+template <class Structure>
+DEVICE Hit closest_hit(const Structure &structure, const Tally &tally, const Ray &ray) {
+    const NearRay near = near_ray(structure.approach, ray);
+    if (near.scale == 0.0)
+        return hit_nothing();
+    Closest closest = find_closest(near.ray);
+    walk(structure, tally, near.ray, closest);
+    Hit hit = found_hit(closest, structure.triangles);
+    hit.t = asked_parameter(near, hit.t);
+    return hit;
+}
+
+// Whether anything blocks a segment.
+template <class Structure>
+DEVICE bool occluded(const Structure &structure, const Tally &tally, const Ray &segment) {
+    const NearRay near = near_ray(structure.approach, segment);
+    if (near.scale == 0.0)
+        return false;
+    Any any = find_any(near.ray);
+    walk(structure, tally, near.ray, any);
+    return any.hit;
+}
+
+// Whether a triangle blocks the segment from the origin of a short test along `direction`. Triangles whose bounding box comes as
+// near as `slack` to it are asked.
+template <class Structure>
+DEVICE bool short_blocked(const Structure &structure, const Tally &, const ShortTest &test, Vec3 direction, float slack) {
+    Short segment = {test, direction, false};
+    walk_short(structure, segment, slack);
+    return segment.blocked;
+}

@@ -1,0 +1,166 @@
+//! Typed arrays in device memory, and the account of how much is taken.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use bytemuck::Pod;
+use lightmesh_layout::{In, Out};
+
+use super::{Fault, Runtime};
+use crate::RenderError;
+
+/// A device's memory, with an account of what is taken.
+pub struct Pool<R: Runtime> {
+    runtime: Arc<R>,
+    /// Bytes taken now.
+    taken: Arc<AtomicU64>,
+    /// Most bytes ever taken at once.
+    peak: AtomicU64,
+    /// Most bytes that may be taken at once.
+    limit: AtomicU64,
+}
+
+/// `len` values of type `T` on a device; freed when dropped.
+pub struct Buffer<R: Runtime, T> {
+    runtime: Arc<R>,
+    memory: R::Memory,
+    len: usize,
+    bytes: u64,
+    taken: Arc<AtomicU64>,
+    content: std::marker::PhantomData<fn() -> T>,
+}
+
+impl<R: Runtime> Pool<R> {
+    /// Nothing is taken yet.
+    pub fn new(runtime: Arc<R>) -> Pool<R> {
+        Pool { runtime, taken: Arc::default(), peak: AtomicU64::new(0), limit: AtomicU64::new(u64::MAX) }
+    }
+
+    /// The device.
+    pub fn runtime(&self) -> &R {
+        &self.runtime
+    }
+
+    /// Allows at most `limit` bytes to be taken at once from now on.
+    pub fn set_limit(&self, limit: Option<u64>) {
+        self.limit.store(limit.unwrap_or(u64::MAX), Ordering::Relaxed);
+    }
+
+    /// Bytes taken now.
+    pub fn taken(&self) -> u64 {
+        self.taken.load(Ordering::Relaxed)
+    }
+
+    /// Most bytes taken at once.
+    pub fn peak(&self) -> u64 {
+        self.peak.load(Ordering::Relaxed)
+    }
+
+    /// Room for `len` values, content undefined. `what` names it where there is not enough.
+    ///
+    /// # Errors
+    /// [`RenderError::DeviceMemory`] where it does not fit, [`RenderError::DeviceFault`] where the device fails.
+    pub fn room<T: Pod>(&self, what: &'static str, len: usize) -> Result<Buffer<R, T>, RenderError> {
+        let bytes = (size_of::<T>() as u64 * len as u64).max(1);
+        let short = |free| RenderError::DeviceMemory { device: self.runtime.name(), buffer: what, needed: bytes, free };
+        let allowed = self.limit.load(Ordering::Relaxed).saturating_sub(self.taken());
+        if bytes > allowed {
+            return Err(short(Some(allowed)));
+        }
+        let memory = self.runtime.allocate(bytes).map_err(|fault| match fault {
+            Fault::OutOfMemory { free } => short(free),
+            failed => self.fault(failed),
+        })?;
+        let taken = self.taken.fetch_add(bytes, Ordering::Relaxed) + bytes;
+        self.peak.fetch_max(taken, Ordering::Relaxed);
+        let (runtime, taken) = (Arc::clone(&self.runtime), Arc::clone(&self.taken));
+        Ok(Buffer { runtime, memory, len, bytes, taken, content: std::marker::PhantomData })
+    }
+
+    /// Room for `len` values that are all zero bits.
+    pub fn zeros<T: Pod>(&self, what: &'static str, len: usize) -> Result<Buffer<R, T>, RenderError> {
+        let buffer = self.room(what, len)?;
+        buffer.clear()?;
+        Ok(buffer)
+    }
+
+    /// A copy of `values`.
+    pub fn upload<T: Pod>(&self, what: &'static str, values: &[T]) -> Result<Buffer<R, T>, RenderError> {
+        let buffer = self.room(what, values.len())?;
+        buffer.write(values)?;
+        Ok(buffer)
+    }
+
+    /// The error for what the device could not do.
+    pub fn fault(&self, fault: Fault) -> RenderError {
+        fault_of(&*self.runtime, fault)
+    }
+}
+
+fn fault_of<R: Runtime>(runtime: &R, fault: Fault) -> RenderError {
+    let reason = match fault {
+        Fault::OutOfMemory { .. } => "out of memory".to_owned(),
+        Fault::Failed(reason) => reason,
+    };
+    RenderError::DeviceFault { device: runtime.name(), reason }
+}
+
+impl<R: Runtime, T: Pod> Buffer<R, T> {
+    /// Number of values.
+    #[allow(clippy::len_without_is_empty, reason = "nobody asks")]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Its address, to read from.
+    pub fn input(&self) -> In<T> {
+        In::to(self.runtime.address(&self.memory))
+    }
+
+    /// Its address, to write to.
+    pub fn output(&self) -> Out<T> {
+        Out::to(self.runtime.address(&self.memory))
+    }
+
+    /// Sets all bits to zero.
+    pub fn clear(&self) -> Result<(), RenderError> {
+        if self.len == 0 {
+            return Ok(());
+        }
+        self.runtime.clear(&self.memory, 0, self.bytes).map_err(|fault| fault_of(&*self.runtime, fault))
+    }
+
+    /// Overwrites the first values.
+    pub fn write(&self, values: &[T]) -> Result<(), RenderError> {
+        debug_assert!(values.len() <= self.len);
+        if values.is_empty() {
+            return Ok(());
+        }
+        let bytes = bytemuck::cast_slice(values);
+        self.runtime.write(&self.memory, 0, bytes).map_err(|fault| fault_of(&*self.runtime, fault))
+    }
+
+    /// Reads values from `first` on. Waits for all work queued before.
+    pub fn read_into(&self, first: usize, values: &mut [T]) -> Result<(), RenderError> {
+        debug_assert!(first + values.len() <= self.len);
+        if values.is_empty() {
+            return Ok(());
+        }
+        let offset = (first * size_of::<T>()) as u64;
+        let bytes = bytemuck::cast_slice_mut(values);
+        self.runtime.read(&self.memory, offset, bytes).map_err(|fault| fault_of(&*self.runtime, fault))
+    }
+
+    /// Reads all values. Waits for all work queued before.
+    pub fn read(&self) -> Result<Vec<T>, RenderError> {
+        let mut values = vec![T::zeroed(); self.len];
+        self.read_into(0, &mut values)?;
+        Ok(values)
+    }
+}
+
+impl<R: Runtime, T> Drop for Buffer<R, T> {
+    fn drop(&mut self) {
+        self.taken.fetch_sub(self.bytes, Ordering::Relaxed);
+    }
+}

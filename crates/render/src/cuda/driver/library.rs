@@ -1,0 +1,214 @@
+//! NVIDIA's driver library: whether it is there, what it is for, and which devices it shows.
+//!
+//! The library is loaded when it is first asked for, so that the same program starts where there is none. cudarc looks up each
+//! symbol at its first call, and panics where one is missing; so nothing beyond [`FIRST`] is called before the driver's version
+//! is known to be new enough.
+
+use cudarc::driver::sys::CUdevice_attribute_enum as Attribute;
+use cudarc::driver::sys::{self, CUdevice, CUresult};
+use cudarc::driver::{DriverError, result};
+
+use super::fault::describe;
+use super::ptx::{Needs, Version, capability};
+
+/// What is called before the version is known. All of it is in every driver since CUDA 6.0 (2014).
+const FIRST: [&str; 4] = ["cuInit", "cuDriverGetVersion", "cuGetErrorName", "cuGetErrorString"];
+
+/// Why CUDA cannot be used at all.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum Unavailable {
+    /// NVIDIA has no driver for this system.
+    #[error("there is no CUDA for {0}")]
+    NoPlatform(&'static str),
+    /// There is no driver.
+    #[error(
+        "NVIDIA's driver is not installed ({library} was not found): install version {needed} or newer; a container must be started \
+         with access to the GPUs"
+    )]
+    NoLibrary {
+        /// File that was looked for.
+        library: &'static str,
+        /// First branch that will do.
+        needed: u32,
+    },
+    /// Something else has the library's name, or it is ancient.
+    #[error("the CUDA library that was found lacks {symbol}: install NVIDIA's driver, version {needed} or newer")]
+    NotADriver {
+        /// The missing function.
+        symbol: &'static str,
+        /// First branch that will do.
+        needed: u32,
+    },
+    /// The driver does not know the kernels' version of PTX.
+    #[error(
+        "the driver is for CUDA {version}, and CUDA {} is needed: install NVIDIA's driver {} or newer",
+        needs.cuda,
+        needs.driver
+    )]
+    TooOld {
+        /// What it is for.
+        version: Version,
+        /// What will do.
+        needs: Needs,
+    },
+    /// The user has hidden all devices.
+    #[error("CUDA_VISIBLE_DEVICES is \"{0}\" and hides every device: unset it, or set it to the devices to use")]
+    Hidden(String),
+    /// The driver has nothing to drive.
+    #[error("the driver finds no CUDA device: see whether `nvidia-smi` lists one")]
+    NoDevice,
+    /// Anything else, in the driver's words.
+    #[error("the driver does not start ({0}): see whether `nvidia-smi` works; after an update of the driver, restart")]
+    Failed(String),
+}
+
+/// A device as the driver describes it.
+#[derive(Clone, Debug)]
+pub(crate) struct Gpu {
+    /// N of `cuda:N`, among the visible ones.
+    pub(crate) number: u32,
+    /// What the maker calls it.
+    pub(crate) name: String,
+    /// Compute capability times ten.
+    pub(crate) capability: u32,
+    /// Bytes of memory.
+    pub(crate) memory: u64,
+    /// Whether it has stream-ordered memory.
+    pub(crate) pools: bool,
+    /// What the driver calls it.
+    pub(crate) handle: CUdevice,
+}
+
+/// The driver, started, with the devices that it shows.
+#[derive(Clone, Debug)]
+pub(crate) struct Library {
+    /// What it is for.
+    pub(crate) version: Version,
+    /// At least one.
+    pub(crate) devices: Vec<Gpu>,
+}
+
+impl Library {
+    /// Starts the driver and asks for its devices.
+    pub(crate) fn open() -> Result<Library, Unavailable> {
+        let needs = Needs::of_kernels();
+        present(needs)?;
+        let version = version().map_err(|error| Unavailable::Failed(describe(error)))?;
+        if version < needs.cuda {
+            return Err(Unavailable::TooOld { version, needs });
+        }
+        let devices = result::init().and_then(|()| devices());
+        match devices {
+            Ok(devices) if !devices.is_empty() => Ok(Library { version, devices }),
+            Ok(_) | Err(DriverError(CUresult::CUDA_ERROR_NO_DEVICE)) => {
+                Err(visible_devices().map_or(Unavailable::NoDevice, Unavailable::Hidden))
+            }
+            Err(error) => Err(Unavailable::Failed(describe(error))),
+        }
+    }
+}
+
+impl Gpu {
+    /// Why the kernels cannot run on it.
+    pub(crate) fn refusal(&self, needs: Needs) -> Option<String> {
+        let [has, wants] = [self.capability, needs.capability].map(capability);
+        (self.capability < needs.capability).then(|| {
+            format!("compute capability {has}, and {wants} is needed (GeForce RTX 20, Quadro RTX, T4 and whatever came later)")
+        })
+    }
+}
+
+/// What CUDA_VISIBLE_DEVICES is set to. The driver itself obeys it: the devices that it names are all there are, numbered anew.
+pub(crate) fn visible_devices() -> Option<String> {
+    std::env::var_os("CUDA_VISIBLE_DEVICES").map(|value| value.to_string_lossy().into_owned())
+}
+
+/// Whether the library is there and has what comes first.
+fn present(needs: Needs) -> Result<(), Unavailable> {
+    if cfg!(target_vendor = "apple") {
+        return Err(Unavailable::NoPlatform(std::env::consts::OS));
+    }
+    let needed = needs.driver;
+    // SAFETY: loads the library by its own name; running its initialisers is what a driver is loaded for.
+    if !unsafe { sys::is_culib_present() } {
+        let library = if cfg!(windows) { "nvcuda.dll" } else { "libcuda.so.1" };
+        return Err(Unavailable::NoLibrary { library, needed });
+    }
+    // SAFETY: the library is there, so that this does not panic; the symbols are looked up and not called.
+    let library = unsafe { sys::culib() };
+    let missing = FIRST.iter().find(|symbol| {
+        // SAFETY: any function is a pointer that may be looked at as one.
+        unsafe { library.get::<unsafe extern "C" fn()>(symbol.as_bytes()) }.is_err()
+    });
+    missing.map_or(Ok(()), |&symbol| Err(Unavailable::NotADriver { symbol, needed }))
+}
+
+/// What the driver is for. May be asked before it is started.
+fn version() -> Result<Version, DriverError> {
+    let mut code = 0;
+    // SAFETY: writes one number.
+    unsafe { sys::cuDriverGetVersion(&mut code) }.result()?;
+    Ok(Version::from_code(code))
+}
+
+fn devices() -> Result<Vec<Gpu>, DriverError> {
+    let count = u32::try_from(result::device::get_count()?).unwrap_or(0);
+    (0..count).map(device).collect()
+}
+
+fn device(number: u32) -> Result<Gpu, DriverError> {
+    let handle = result::device::get(number as i32)?;
+    let attribute = |attribute| {
+        // SAFETY: the device was named by the driver.
+        unsafe { result::device::get_attribute(handle, attribute) }
+    };
+    let major = attribute(Attribute::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR)?;
+    let minor = attribute(Attribute::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR)?;
+    let pools = attribute(Attribute::CU_DEVICE_ATTRIBUTE_MEMORY_POOLS_SUPPORTED)?;
+    // SAFETY: as above.
+    let memory = unsafe { result::device::total_mem(handle) }? as u64;
+    Ok(Gpu {
+        number,
+        name: result::device::get_name(handle)?,
+        capability: (major * 10 + minor) as u32,
+        memory,
+        pools: pools != 0,
+        handle,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NEEDS: Needs = Needs { cuda: Version { major: 12, minor: 4 }, driver: 550, capability: 75 };
+
+    #[test]
+    fn what_is_missing_comes_with_what_to_do() {
+        let messages = [
+            (Unavailable::NoPlatform("macos"), ["no CUDA", "macos"]),
+            (Unavailable::NoLibrary { library: "libcuda.so.1", needed: 550 }, ["libcuda.so.1", "install version 550"]),
+            (Unavailable::NotADriver { symbol: "cuInit", needed: 550 }, ["lacks cuInit", "version 550"]),
+            (
+                Unavailable::TooOld { version: Version { major: 11, minor: 4 }, needs: NEEDS },
+                ["is for CUDA 11.4, and CUDA 12.4 is needed", "driver 550 or newer"],
+            ),
+            (Unavailable::Hidden("-1".into()), ["CUDA_VISIBLE_DEVICES is \"-1\"", "unset it"]),
+            (Unavailable::NoDevice, ["finds no CUDA device", "nvidia-smi"]),
+            (Unavailable::Failed("unknown".into()), ["does not start (unknown)", "nvidia-smi"]),
+        ];
+        for (reason, parts) in messages {
+            let text = reason.to_string();
+            assert!(parts.iter().all(|part| text.contains(part)), "{text}");
+        }
+    }
+
+    #[test]
+    fn devices_before_turing_are_refused() {
+        let gpu =
+            |capability| Gpu { number: 0, name: "Tesla".into(), capability, memory: 1 << 34, pools: true, handle: 0 };
+        assert!(gpu(70).refusal(NEEDS).unwrap().starts_with("compute capability 7.0, and 7.5 is needed"));
+        assert_eq!(gpu(75).refusal(NEEDS), None);
+        assert_eq!(gpu(120).refusal(NEEDS), None);
+    }
+}

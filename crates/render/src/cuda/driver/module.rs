@@ -1,0 +1,162 @@
+//! Modules and their kernels, loaded when they are first needed.
+
+use std::collections::HashMap;
+use std::ffi::{CString, c_void};
+use std::ptr;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use cudarc::driver::result::{function, module};
+use cudarc::driver::sys::{
+    self, CUdeviceptr, CUfunction, CUfunction_attribute_enum as FunctionAttribute, CUjit_option, CUmodule, CUresult,
+};
+
+use super::context::Context;
+use super::fault::describe;
+use super::ptx::{MODULES, Version};
+use crate::cuda::{Fault, Kernel};
+
+/// Room for what the driver's compiler has to say, in bytes.
+const LOG: usize = 8 << 10;
+
+/// All modules that were loaded.
+pub(super) struct Modules {
+    context: Arc<Context>,
+    /// What the driver is for, for messages.
+    version: Version,
+    loaded: Mutex<Loaded>,
+}
+
+#[derive(Default)]
+struct Loaded {
+    modules: HashMap<&'static str, CUmodule>,
+    functions: HashMap<Kernel, Function>,
+}
+
+/// A kernel on the device.
+#[derive(Clone, Copy)]
+struct Function {
+    handle: CUfunction,
+    /// Bytes of dynamic shared memory that a block may have so far.
+    shared: u32,
+    /// Whether shared memory takes precedence over cache.
+    carved: bool,
+}
+
+// SAFETY: the handles name objects of the driver, which may be used from any thread.
+unsafe impl Send for Loaded {}
+
+impl Modules {
+    /// Nothing is loaded yet.
+    pub(super) fn new(context: &Arc<Context>, version: Version) -> Modules {
+        Modules { context: Arc::clone(context), version, loaded: Mutex::default() }
+    }
+
+    /// Loads a module if it is not.
+    pub(super) fn load(&self, name: &str) -> Result<(), Fault> {
+        self.module(&mut self.loaded(), name).map(|_| ())
+    }
+
+    /// The kernel, allowed to have `shared` bytes of dynamic shared memory.
+    pub(super) fn function(&self, kernel: Kernel, shared: u32) -> Result<CUfunction, Fault> {
+        let mut loaded = self.loaded();
+        let mut function = match loaded.functions.get(&kernel) {
+            Some(function) => *function,
+            None => self.find(&mut loaded, kernel)?,
+        };
+        if shared > 0 && !function.carved {
+            // Shared memory decides how many blocks fit: let it be as large as it can.
+            let attribute = FunctionAttribute::CU_FUNC_ATTRIBUTE_PREFERRED_SHARED_MEMORY_CARVEOUT;
+            // SAFETY: the function's module is loaded.
+            let set = |_| unsafe { function::set_function_attribute(function.handle, attribute, 100) };
+            self.context.run(|| format!("giving {kernel} more shared memory than cache"), set)?;
+            function.carved = true;
+        }
+        if shared > function.shared {
+            // A block may have 48 KiB in all by default; more only where the kernel is said to want it.
+            let attribute = FunctionAttribute::CU_FUNC_ATTRIBUTE_MAX_DYNAMIC_SHARED_SIZE_BYTES;
+            // SAFETY: the function's module is loaded.
+            let set = |_| unsafe { function::set_function_attribute(function.handle, attribute, shared as i32) };
+            self.context.run(|| format!("giving {kernel} {shared} bytes of shared memory"), set)?;
+            function.shared = shared;
+        }
+        loaded.functions.insert(kernel, function);
+        Ok(function.handle)
+    }
+
+    /// Address and size of a module's variable.
+    pub(super) fn variable(&self, module: &'static str, name: &str) -> Result<(CUdeviceptr, u64), Fault> {
+        let handle = self.module(&mut self.loaded(), module)?;
+        let symbol = text(name)?;
+        // SAFETY: the module is loaded.
+        let find = |_| unsafe { module::get_global(handle, symbol) };
+        let (address, bytes) = self.context.run(|| format!("looking for the variable {module}::{name}"), find)?;
+        Ok((address, bytes as u64))
+    }
+
+    fn find(&self, loaded: &mut Loaded, kernel: Kernel) -> Result<Function, Fault> {
+        let module = self.module(loaded, kernel.module)?;
+        let name = text(kernel.name)?;
+        // SAFETY: the module is loaded.
+        let handle = self
+            .context
+            .run(|| format!("looking for the kernel {kernel}"), |_| unsafe { module::get_function(module, name) })?;
+        let attribute = FunctionAttribute::CU_FUNC_ATTRIBUTE_MAX_DYNAMIC_SHARED_SIZE_BYTES;
+        // SAFETY: the function was just found.
+        let read = |_| unsafe { function::get_function_attribute(handle, attribute) };
+        let shared = self.context.run(|| format!("asking what {kernel} may have"), read)?;
+        Ok(Function { handle, shared: u32::try_from(shared).unwrap_or(0), carved: false })
+    }
+
+    fn module(&self, loaded: &mut Loaded, name: &str) -> Result<CUmodule, Fault> {
+        let entry = MODULES.iter().find(|(module, _)| *module == name);
+        let &(name, ptx) = entry.ok_or_else(|| Fault::Failed(format!("there is no module {name}")))?;
+        if let Some(&module) = loaded.modules.get(name) {
+            return Ok(module);
+        }
+        let module = self.compile(name, ptx)?;
+        loaded.modules.insert(name, module);
+        Ok(module)
+    }
+
+    /// Hands PTX to the driver, which compiles it or takes what it has kept of the last time.
+    fn compile(&self, name: &str, ptx: &str) -> Result<CUmodule, Fault> {
+        let image = text(ptx)?;
+        let mut log = vec![0_u8; LOG];
+        let mut options = [CUjit_option::CU_JIT_ERROR_LOG_BUFFER, CUjit_option::CU_JIT_ERROR_LOG_BUFFER_SIZE_BYTES];
+        let mut values: [*mut c_void; 2] = [log.as_mut_ptr().cast(), ptr::without_provenance_mut(LOG)];
+        let mut module = ptr::null_mut();
+        let load = |_| {
+            let (options, values) = (options.as_mut_ptr(), values.as_mut_ptr());
+            // SAFETY: the image ends with a zero; there are as many options as values, and the log is as long as they say.
+            unsafe { sys::cuModuleLoadDataEx(&mut module, image.as_ptr().cast(), 2, options, values) }.result()
+        };
+        let Err(error) = self.context.call(load) else { return Ok(module) };
+        let mut reason = describe(error);
+        if error.0 == CUresult::CUDA_ERROR_UNSUPPORTED_PTX_VERSION {
+            reason += &format!("; the driver is for CUDA {}: install a newer one", self.version);
+        }
+        let log = String::from_utf8_lossy(&log);
+        let log = log.split('\0').next().unwrap_or_default().trim();
+        let said = if log.is_empty() { String::new() } else { format!("; its compiler says: {log}") };
+        Err(Fault::Failed(format!("loading the kernels of {name}: {reason}{said}")))
+    }
+
+    fn loaded(&self) -> MutexGuard<'_, Loaded> {
+        self.loaded.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Drop for Modules {
+    fn drop(&mut self) {
+        let _ = self.context.wait();
+        for &module in self.loaded().modules.values() {
+            // SAFETY: loaded above; nothing of it runs any more.
+            let _ = self.context.call(|_| unsafe { module::unload(module) });
+        }
+    }
+}
+
+/// Text for the driver, which ends at the first zero.
+fn text(text: &str) -> Result<CString, Fault> {
+    CString::new(text).map_err(|_| Fault::Failed("a name or PTX has a zero in it".to_owned()))
+}

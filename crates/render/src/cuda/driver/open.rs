@@ -1,0 +1,81 @@
+//! From a number to a device that is ready.
+
+use std::sync::Arc;
+
+use super::library::{Gpu, Library, visible_devices};
+use super::ptx::Needs;
+use super::{Driver, Fault};
+use crate::{Device, RenderError};
+
+/// Makes a CUDA device ready: the one with this number, or the first that works. The driver lists the fastest first.
+///
+/// Each call gives a device with a queue, modules and memory of its own, so that renderers do not meet.
+///
+/// # Errors
+/// [`RenderError::Device`] with what was asked for, why it cannot be used, and what to do.
+pub fn open_cuda(number: Option<u32>) -> Result<Arc<Driver>, RenderError> {
+    let opened = Library::open().map_err(|why| why.to_string()).and_then(|library| match number {
+        Some(number) => numbered(&library, number),
+        None => first(&library),
+    });
+    opened.map_err(|reason| RenderError::Device { device: Device::Cuda(number).to_string(), reason })
+}
+
+impl Library {
+    /// Makes one of the devices ready, or says why it cannot be used.
+    pub(crate) fn ready(&self, gpu: &Gpu) -> Result<Driver, String> {
+        if let Some(refusal) = gpu.refusal(Needs::of_kernels()) {
+            return Err(refusal);
+        }
+        Driver::new(gpu, self.version).map_err(|fault| match fault {
+            Fault::OutOfMemory { .. } => "its memory is used up".to_owned(),
+            Fault::Failed(reason) => reason,
+        })
+    }
+}
+
+fn numbered(library: &Library, number: u32) -> Result<Arc<Driver>, String> {
+    let gpu = library.devices.iter().find(|gpu| gpu.number == number);
+    let gpu = gpu.ok_or_else(|| no_such_device(&library.devices, visible_devices()))?;
+    library.ready(gpu).map(Arc::new).map_err(|reason| format!("{}: {reason}", gpu.name))
+}
+
+fn first(library: &Library) -> Result<Arc<Driver>, String> {
+    let mut reasons = Vec::new();
+    for gpu in &library.devices {
+        match library.ready(gpu) {
+            Ok(driver) => return Ok(Arc::new(driver)),
+            Err(reason) => reasons.push(format!("cuda:{} ({}): {reason}", gpu.number, gpu.name)),
+        }
+    }
+    Err(reasons.join("; "))
+}
+
+fn no_such_device(devices: &[Gpu], visible: Option<String>) -> String {
+    let there: Vec<String> = devices.iter().map(|gpu| format!("cuda:{} ({})", gpu.number, gpu.name)).collect();
+    let numbering = visible.map_or_else(String::new, |value| {
+        format!("; CUDA_VISIBLE_DEVICES is \"{value}\", which chooses and numbers them")
+    });
+    format!("there is no such device, only {}{numbering}", there.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gpu(number: u32, capability: u32) -> Gpu {
+        Gpu { number, name: "Fake".into(), capability, memory: 1 << 30, pools: false, handle: 0 }
+    }
+
+    #[test]
+    fn a_wrong_number_is_answered_with_what_there_is() {
+        let devices = [gpu(0, 75), gpu(1, 90)];
+        let text = no_such_device(&devices, None);
+        assert_eq!(text, "there is no such device, only cuda:0 (Fake), cuda:1 (Fake)");
+        let text = no_such_device(&devices[..1], Some("3".into()));
+        assert!(
+            text.ends_with("only cuda:0 (Fake); CUDA_VISIBLE_DEVICES is \"3\", which chooses and numbers them"),
+            "{text}"
+        );
+    }
+}

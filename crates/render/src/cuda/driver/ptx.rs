@@ -1,0 +1,135 @@
+//! The kernels as PTX, and what a driver must be to take them.
+//!
+//! PTX is text for a virtual machine. `cargo xtask kernels` writes it ahead of time; the driver compiles it for its device when a
+//! module is loaded, and keeps the result in a cache of its own (`~/.nv/ComputeCache`) for the next start.
+
+use std::fmt;
+
+/// A version of CUDA: what a driver was made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Version {
+    /// 12 of 12.4.
+    pub(crate) major: u32,
+    /// 4 of 12.4.
+    pub(crate) minor: u32,
+}
+
+impl Version {
+    /// From the driver's number: 12040 is 12.4.
+    pub(super) fn from_code(code: i32) -> Version {
+        let code = u32::try_from(code).unwrap_or(0);
+        Version { major: code / 1000, minor: code % 1000 / 10 }
+    }
+}
+
+impl fmt::Display for Version {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}.{}", self.major, self.minor)
+    }
+}
+
+/// All modules by name.
+pub(super) const MODULES: [(&str, &str); 9] = [
+    ("primary_rays", include_str!("../ptx/primary_rays.ptx")),
+    ("shadow_rays", include_str!("../ptx/shadow_rays.ptx")),
+    ("shade", include_str!("../ptx/shade.ptx")),
+    ("mirror_rays", include_str!("../ptx/mirror_rays.ptx")),
+    ("short_tests", include_str!("../ptx/short_tests.ptx")),
+    ("light_points", include_str!("../ptx/light_points.ptx")),
+    ("long_tests", include_str!("../ptx/long_tests.ptx")),
+    ("interpolate", include_str!("../ptx/interpolate.ptx")),
+    ("scan", include_str!("../ptx/scan.ptx")),
+];
+
+/// PTX version, the first CUDA version that takes it, and the first branch of NVIDIA's driver for that one ("Release History" in
+/// the PTX ISA document). Nothing older is listed: the bindings need a driver for CUDA 12.0 in any case.
+const VERSIONS: [(&str, Version, u32); 10] = [
+    ("8.0", Version { major: 12, minor: 0 }, 525),
+    ("8.1", Version { major: 12, minor: 1 }, 530),
+    ("8.2", Version { major: 12, minor: 2 }, 535),
+    ("8.3", Version { major: 12, minor: 3 }, 545),
+    ("8.4", Version { major: 12, minor: 4 }, 550),
+    ("8.5", Version { major: 12, minor: 5 }, 555),
+    ("8.6", Version { major: 12, minor: 7 }, 565),
+    ("8.7", Version { major: 12, minor: 8 }, 570),
+    ("8.8", Version { major: 12, minor: 9 }, 575),
+    ("9.0", Version { major: 13, minor: 0 }, 580),
+];
+
+/// What PTX asks of a machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Needs {
+    /// CUDA version that the driver must be for.
+    pub(crate) cuda: Version,
+    /// First branch of NVIDIA's driver for it.
+    pub(crate) driver: u32,
+    /// Compute capability that the device must have, times ten: 75 is 7.5.
+    pub(crate) capability: u32,
+}
+
+impl Needs {
+    /// What all modules together need.
+    pub(crate) fn of_kernels() -> Needs {
+        MODULES.iter().fold(Needs::of(""), |needs, (_, text)| needs.and(Needs::of(text)))
+    }
+
+    /// What one module needs. A version that is not in the table is left to the driver to judge.
+    fn of(text: &str) -> Needs {
+        let version = directive(text, ".version").and_then(|word| VERSIONS.iter().find(|row| row.0 == word));
+        let (_, cuda, driver) = *version.unwrap_or(&VERSIONS[0]);
+        let target = directive(text, ".target").and_then(|word| word.strip_prefix("sm_")?.parse().ok());
+        Needs { cuda, driver, capability: target.unwrap_or(0) }
+    }
+
+    fn and(self, other: Needs) -> Needs {
+        Needs {
+            cuda: self.cuda.max(other.cuda),
+            driver: self.driver.max(other.driver),
+            capability: self.capability.max(other.capability),
+        }
+    }
+}
+
+/// The first word after a directive at the beginning of a line.
+fn directive<'a>(text: &'a str, name: &str) -> Option<&'a str> {
+    let rest = text.lines().find_map(|line| line.trim_start().strip_prefix(name))?;
+    rest.split([' ', '\t', ',']).find(|word| !word.is_empty())
+}
+
+/// A compute capability times ten in the usual form.
+pub(crate) fn capability(tenfold: u32) -> String {
+    format!("{}.{}", tenfold / 10, tenfold % 10)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_driver_tells_its_version_as_a_number() {
+        assert_eq!(Version::from_code(12040).to_string(), "12.4");
+        assert_eq!(Version::from_code(11080).to_string(), "11.8");
+        assert!(Version::from_code(9020) < Version::from_code(12000));
+        assert_eq!(Version::from_code(-1), Version { major: 0, minor: 0 });
+    }
+
+    #[test]
+    fn newer_ptx_needs_newer_drivers() {
+        assert!(VERSIONS.is_sorted_by(|a, b| a.0 < b.0 && a.1 < b.1 && a.2 < b.2));
+        let text = "//\n// Generated\n//\n\n.version 8.4\n.target sm_75, debug\n.address_size 64\n";
+        let needs = Needs { cuda: Version { major: 12, minor: 4 }, driver: 550, capability: 75 };
+        assert_eq!(Needs::of(text), needs);
+        assert_eq!(Needs::of(".version 8.0\n.target sm_90\n").and(needs), Needs { capability: 90, ..needs });
+        assert_eq!(Needs::of("").cuda, Version { major: 12, minor: 0 });
+    }
+
+    #[test]
+    fn all_kernels_are_for_devices_from_7_5_on_and_their_version_is_in_the_table() {
+        for (name, text) in MODULES {
+            let version = directive(text, ".version").unwrap_or_else(|| panic!("{name} has no .version"));
+            assert!(VERSIONS.iter().any(|row| row.0 == version), "{name}: PTX {version} is not in the table");
+            assert_eq!(Needs::of(text).capability, 75, "{name}");
+        }
+        assert_eq!(capability(Needs::of_kernels().capability), "7.5");
+    }
+}

@@ -1,0 +1,612 @@
+// Made from crates/layout by `cargo xtask kernels`; do not edit.
+//
+// The records that host and device share.
+#pragma once
+
+#if defined(__CUDACC_RTC__)
+#define PLACE_OF(record, field) __INTADDR__(&(((record *)0)->field))
+#else
+#define PLACE_OF(record, field) __builtin_offsetof(record, field)
+#endif
+
+struct alignas(4) Vec3 {
+    float x;
+    float y;
+    float z;
+};
+static_assert(sizeof(Vec3) == 12, "size of Vec3");
+static_assert(PLACE_OF(Vec3, x) == 0, "place of Vec3::x");
+static_assert(PLACE_OF(Vec3, y) == 4, "place of Vec3::y");
+static_assert(PLACE_OF(Vec3, z) == 8, "place of Vec3::z");
+
+struct alignas(8) DVec3 {
+    double x;
+    double y;
+    double z;
+};
+static_assert(sizeof(DVec3) == 24, "size of DVec3");
+static_assert(PLACE_OF(DVec3, x) == 0, "place of DVec3::x");
+static_assert(PLACE_OF(DVec3, y) == 8, "place of DVec3::y");
+static_assert(PLACE_OF(DVec3, z) == 16, "place of DVec3::z");
+
+struct alignas(4) Hit {
+    float t;
+    float u;
+    float v;
+    unsigned triangle;
+};
+static_assert(sizeof(Hit) == 16, "size of Hit");
+static_assert(PLACE_OF(Hit, t) == 0, "place of Hit::t");
+static_assert(PLACE_OF(Hit, u) == 4, "place of Hit::u");
+static_assert(PLACE_OF(Hit, v) == 8, "place of Hit::v");
+static_assert(PLACE_OF(Hit, triangle) == 12, "place of Hit::triangle");
+
+struct alignas(4) Triangle {
+    float corners[3][4];
+};
+static_assert(sizeof(Triangle) == 48, "size of Triangle");
+static_assert(PLACE_OF(Triangle, corners) == 0, "place of Triangle::corners");
+
+struct alignas(4) BvhNode {
+    Vec3 p;
+    unsigned char e[3];
+    unsigned char imask;
+    unsigned child_base;
+    unsigned triangle_base;
+    unsigned char meta[8];
+    unsigned char min_x[8];
+    unsigned char max_x[8];
+    unsigned char min_y[8];
+    unsigned char max_y[8];
+    unsigned char min_z[8];
+    unsigned char max_z[8];
+};
+static_assert(sizeof(BvhNode) == 80, "size of BvhNode");
+static_assert(PLACE_OF(BvhNode, p) == 0, "place of BvhNode::p");
+static_assert(PLACE_OF(BvhNode, e) == 12, "place of BvhNode::e");
+static_assert(PLACE_OF(BvhNode, imask) == 15, "place of BvhNode::imask");
+static_assert(PLACE_OF(BvhNode, child_base) == 16, "place of BvhNode::child_base");
+static_assert(PLACE_OF(BvhNode, triangle_base) == 20, "place of BvhNode::triangle_base");
+static_assert(PLACE_OF(BvhNode, meta) == 24, "place of BvhNode::meta");
+static_assert(PLACE_OF(BvhNode, min_x) == 32, "place of BvhNode::min_x");
+static_assert(PLACE_OF(BvhNode, max_x) == 40, "place of BvhNode::max_x");
+static_assert(PLACE_OF(BvhNode, min_y) == 48, "place of BvhNode::min_y");
+static_assert(PLACE_OF(BvhNode, max_y) == 56, "place of BvhNode::max_y");
+static_assert(PLACE_OF(BvhNode, min_z) == 64, "place of BvhNode::min_z");
+static_assert(PLACE_OF(BvhNode, max_z) == 72, "place of BvhNode::max_z");
+
+struct alignas(4) Approach {
+    Vec3 center;
+    float radius;
+};
+static_assert(sizeof(Approach) == 16, "size of Approach");
+static_assert(PLACE_OF(Approach, center) == 0, "place of Approach::center");
+static_assert(PLACE_OF(Approach, radius) == 12, "place of Approach::radius");
+
+struct alignas(8) Bvh {
+    const BvhNode *nodes;
+    const Triangle *triangles;
+    Approach approach;
+    unsigned node_count;
+    unsigned depth;
+};
+static_assert(sizeof(Bvh) == 40, "size of Bvh");
+static_assert(PLACE_OF(Bvh, nodes) == 0, "place of Bvh::nodes");
+static_assert(PLACE_OF(Bvh, triangles) == 8, "place of Bvh::triangles");
+static_assert(PLACE_OF(Bvh, approach) == 16, "place of Bvh::approach");
+static_assert(PLACE_OF(Bvh, node_count) == 32, "place of Bvh::node_count");
+static_assert(PLACE_OF(Bvh, depth) == 36, "place of Bvh::depth");
+
+struct alignas(8) Grid {
+    const int *cells;
+    const Triangle *triangles;
+    const unsigned char *distances;
+    DVec3 origin;
+    Vec3 size;
+    unsigned dims[3];
+    Approach approach;
+    unsigned triangle_count;
+    unsigned spare;
+};
+static_assert(sizeof(Grid) == 96, "size of Grid");
+static_assert(PLACE_OF(Grid, cells) == 0, "place of Grid::cells");
+static_assert(PLACE_OF(Grid, triangles) == 8, "place of Grid::triangles");
+static_assert(PLACE_OF(Grid, distances) == 16, "place of Grid::distances");
+static_assert(PLACE_OF(Grid, origin) == 24, "place of Grid::origin");
+static_assert(PLACE_OF(Grid, size) == 48, "place of Grid::size");
+static_assert(PLACE_OF(Grid, dims) == 60, "place of Grid::dims");
+static_assert(PLACE_OF(Grid, approach) == 72, "place of Grid::approach");
+static_assert(PLACE_OF(Grid, triangle_count) == 88, "place of Grid::triangle_count");
+static_assert(PLACE_OF(Grid, spare) == 92, "place of Grid::spare");
+
+struct alignas(8) BruteForce {
+    const Triangle *triangles;
+    Approach approach;
+    unsigned count;
+    unsigned spare;
+};
+static_assert(sizeof(BruteForce) == 32, "size of BruteForce");
+static_assert(PLACE_OF(BruteForce, triangles) == 0, "place of BruteForce::triangles");
+static_assert(PLACE_OF(BruteForce, approach) == 8, "place of BruteForce::approach");
+static_assert(PLACE_OF(BruteForce, count) == 24, "place of BruteForce::count");
+static_assert(PLACE_OF(BruteForce, spare) == 28, "place of BruteForce::spare");
+
+struct alignas(4) View {
+    Vec3 origin;
+    Vec3 forward;
+    Vec3 right;
+    Vec3 down;
+    unsigned size[2];
+    unsigned perspective;
+    unsigned spare;
+};
+static_assert(sizeof(View) == 64, "size of View");
+static_assert(PLACE_OF(View, origin) == 0, "place of View::origin");
+static_assert(PLACE_OF(View, forward) == 12, "place of View::forward");
+static_assert(PLACE_OF(View, right) == 24, "place of View::right");
+static_assert(PLACE_OF(View, down) == 36, "place of View::down");
+static_assert(PLACE_OF(View, size) == 48, "place of View::size");
+static_assert(PLACE_OF(View, perspective) == 56, "place of View::perspective");
+static_assert(PLACE_OF(View, spare) == 60, "place of View::spare");
+
+struct alignas(4) ListedRay {
+    Vec3 origin;
+    unsigned pixel;
+    Vec3 direction;
+    unsigned spare;
+    Vec3 weight;
+    unsigned spare_too;
+};
+static_assert(sizeof(ListedRay) == 48, "size of ListedRay");
+static_assert(PLACE_OF(ListedRay, origin) == 0, "place of ListedRay::origin");
+static_assert(PLACE_OF(ListedRay, pixel) == 12, "place of ListedRay::pixel");
+static_assert(PLACE_OF(ListedRay, direction) == 16, "place of ListedRay::direction");
+static_assert(PLACE_OF(ListedRay, spare) == 28, "place of ListedRay::spare");
+static_assert(PLACE_OF(ListedRay, weight) == 32, "place of ListedRay::weight");
+static_assert(PLACE_OF(ListedRay, spare_too) == 44, "place of ListedRay::spare_too");
+
+struct alignas(8) Rays {
+    View view;
+    const ListedRay *list;
+    unsigned first_pixel;
+    unsigned count;
+};
+static_assert(sizeof(Rays) == 80, "size of Rays");
+static_assert(PLACE_OF(Rays, view) == 0, "place of Rays::view");
+static_assert(PLACE_OF(Rays, list) == 64, "place of Rays::list");
+static_assert(PLACE_OF(Rays, first_pixel) == 72, "place of Rays::first_pixel");
+static_assert(PLACE_OF(Rays, count) == 76, "place of Rays::count");
+
+struct alignas(8) Counters {
+    unsigned long long object_points;
+    unsigned long long half_ball;
+    unsigned long long used;
+    unsigned long long short_tests;
+    unsigned long long fallbacks;
+    unsigned long long shadow_rays;
+    unsigned long long overruns;
+    unsigned long long hits;
+};
+static_assert(sizeof(Counters) == 64, "size of Counters");
+static_assert(PLACE_OF(Counters, object_points) == 0, "place of Counters::object_points");
+static_assert(PLACE_OF(Counters, half_ball) == 8, "place of Counters::half_ball");
+static_assert(PLACE_OF(Counters, used) == 16, "place of Counters::used");
+static_assert(PLACE_OF(Counters, short_tests) == 24, "place of Counters::short_tests");
+static_assert(PLACE_OF(Counters, fallbacks) == 32, "place of Counters::fallbacks");
+static_assert(PLACE_OF(Counters, shadow_rays) == 40, "place of Counters::shadow_rays");
+static_assert(PLACE_OF(Counters, overruns) == 48, "place of Counters::overruns");
+static_assert(PLACE_OF(Counters, hits) == 56, "place of Counters::hits");
+
+struct alignas(8) Tally {
+    Counters *shards;
+};
+static_assert(sizeof(Tally) == 8, "size of Tally");
+static_assert(PLACE_OF(Tally, shards) == 0, "place of Tally::shards");
+
+struct alignas(4) Light {
+    Vec3 position;
+    unsigned kind;
+    Vec3 direction;
+    float radius;
+    Vec3 half_u;
+    float size;
+    Vec3 half_v;
+    unsigned inverse_square;
+    Vec3 intensity;
+    float cos_outer;
+    float cone_scale;
+    unsigned spare[3];
+};
+static_assert(sizeof(Light) == 96, "size of Light");
+static_assert(PLACE_OF(Light, position) == 0, "place of Light::position");
+static_assert(PLACE_OF(Light, kind) == 12, "place of Light::kind");
+static_assert(PLACE_OF(Light, direction) == 16, "place of Light::direction");
+static_assert(PLACE_OF(Light, radius) == 28, "place of Light::radius");
+static_assert(PLACE_OF(Light, half_u) == 32, "place of Light::half_u");
+static_assert(PLACE_OF(Light, size) == 44, "place of Light::size");
+static_assert(PLACE_OF(Light, half_v) == 48, "place of Light::half_v");
+static_assert(PLACE_OF(Light, inverse_square) == 60, "place of Light::inverse_square");
+static_assert(PLACE_OF(Light, intensity) == 64, "place of Light::intensity");
+static_assert(PLACE_OF(Light, cos_outer) == 76, "place of Light::cos_outer");
+static_assert(PLACE_OF(Light, cone_scale) == 80, "place of Light::cone_scale");
+static_assert(PLACE_OF(Light, spare) == 84, "place of Light::spare");
+
+struct alignas(4) Indices {
+    unsigned vertices[3];
+};
+static_assert(sizeof(Indices) == 12, "size of Indices");
+static_assert(PLACE_OF(Indices, vertices) == 0, "place of Indices::vertices");
+
+struct alignas(4) Material {
+    Vec3 ka;
+    float shininess;
+    Vec3 kd;
+    unsigned spare_a;
+    Vec3 ks;
+    unsigned spare_b;
+    Vec3 emission;
+    unsigned spare_c;
+};
+static_assert(sizeof(Material) == 64, "size of Material");
+static_assert(PLACE_OF(Material, ka) == 0, "place of Material::ka");
+static_assert(PLACE_OF(Material, shininess) == 12, "place of Material::shininess");
+static_assert(PLACE_OF(Material, kd) == 16, "place of Material::kd");
+static_assert(PLACE_OF(Material, spare_a) == 28, "place of Material::spare_a");
+static_assert(PLACE_OF(Material, ks) == 32, "place of Material::ks");
+static_assert(PLACE_OF(Material, spare_b) == 44, "place of Material::spare_b");
+static_assert(PLACE_OF(Material, emission) == 48, "place of Material::emission");
+static_assert(PLACE_OF(Material, spare_c) == 60, "place of Material::spare_c");
+
+struct alignas(8) Scene {
+    const Triangle *triangles;
+    const Indices *indices;
+    const Vec3 *normals;
+    const unsigned *triangle_materials;
+    const Material *materials;
+    const Light *lights;
+    const Vec3 *light_targets;
+    Grid grid;
+    Bvh bvh;
+    BruteForce brute_force;
+    unsigned light_count;
+    Vec3 ambient;
+    Vec3 background;
+    Vec3 center;
+    float far;
+    unsigned spare;
+};
+static_assert(sizeof(Scene) == 272, "size of Scene");
+static_assert(PLACE_OF(Scene, triangles) == 0, "place of Scene::triangles");
+static_assert(PLACE_OF(Scene, indices) == 8, "place of Scene::indices");
+static_assert(PLACE_OF(Scene, normals) == 16, "place of Scene::normals");
+static_assert(PLACE_OF(Scene, triangle_materials) == 24, "place of Scene::triangle_materials");
+static_assert(PLACE_OF(Scene, materials) == 32, "place of Scene::materials");
+static_assert(PLACE_OF(Scene, lights) == 40, "place of Scene::lights");
+static_assert(PLACE_OF(Scene, light_targets) == 48, "place of Scene::light_targets");
+static_assert(PLACE_OF(Scene, grid) == 56, "place of Scene::grid");
+static_assert(PLACE_OF(Scene, bvh) == 152, "place of Scene::bvh");
+static_assert(PLACE_OF(Scene, brute_force) == 192, "place of Scene::brute_force");
+static_assert(PLACE_OF(Scene, light_count) == 224, "place of Scene::light_count");
+static_assert(PLACE_OF(Scene, ambient) == 228, "place of Scene::ambient");
+static_assert(PLACE_OF(Scene, background) == 240, "place of Scene::background");
+static_assert(PLACE_OF(Scene, center) == 252, "place of Scene::center");
+static_assert(PLACE_OF(Scene, far) == 264, "place of Scene::far");
+static_assert(PLACE_OF(Scene, spare) == 268, "place of Scene::spare");
+
+struct alignas(8) Sampling {
+    unsigned long long seed;
+    unsigned samples;
+    unsigned spread;
+};
+static_assert(sizeof(Sampling) == 16, "size of Sampling");
+static_assert(PLACE_OF(Sampling, seed) == 0, "place of Sampling::seed");
+static_assert(PLACE_OF(Sampling, samples) == 8, "place of Sampling::samples");
+static_assert(PLACE_OF(Sampling, spread) == 12, "place of Sampling::spread");
+
+struct alignas(8) LightMesh {
+    Vec3 origin;
+    float step;
+    float radius;
+    float least_height;
+    float edge_on;
+    float slack;
+    unsigned weight;
+    unsigned points;
+    unsigned words;
+    int reach;
+    unsigned dims[3];
+    unsigned lines;
+    const unsigned *offsets;
+    const unsigned *rows;
+};
+static_assert(sizeof(LightMesh) == 80, "size of LightMesh");
+static_assert(PLACE_OF(LightMesh, origin) == 0, "place of LightMesh::origin");
+static_assert(PLACE_OF(LightMesh, step) == 12, "place of LightMesh::step");
+static_assert(PLACE_OF(LightMesh, radius) == 16, "place of LightMesh::radius");
+static_assert(PLACE_OF(LightMesh, least_height) == 20, "place of LightMesh::least_height");
+static_assert(PLACE_OF(LightMesh, edge_on) == 24, "place of LightMesh::edge_on");
+static_assert(PLACE_OF(LightMesh, slack) == 28, "place of LightMesh::slack");
+static_assert(PLACE_OF(LightMesh, weight) == 32, "place of LightMesh::weight");
+static_assert(PLACE_OF(LightMesh, points) == 36, "place of LightMesh::points");
+static_assert(PLACE_OF(LightMesh, words) == 40, "place of LightMesh::words");
+static_assert(PLACE_OF(LightMesh, reach) == 44, "place of LightMesh::reach");
+static_assert(PLACE_OF(LightMesh, dims) == 48, "place of LightMesh::dims");
+static_assert(PLACE_OF(LightMesh, lines) == 60, "place of LightMesh::lines");
+static_assert(PLACE_OF(LightMesh, offsets) == 64, "place of LightMesh::offsets");
+static_assert(PLACE_OF(LightMesh, rows) == 72, "place of LightMesh::rows");
+
+struct alignas(4) TemplateRow {
+    unsigned short bit;
+    unsigned short count;
+    int x;
+    int y;
+    int z;
+};
+static_assert(sizeof(TemplateRow) == 16, "size of TemplateRow");
+static_assert(PLACE_OF(TemplateRow, bit) == 0, "place of TemplateRow::bit");
+static_assert(PLACE_OF(TemplateRow, count) == 2, "place of TemplateRow::count");
+static_assert(PLACE_OF(TemplateRow, x) == 4, "place of TemplateRow::x");
+static_assert(PLACE_OF(TemplateRow, y) == 8, "place of TemplateRow::y");
+static_assert(PLACE_OF(TemplateRow, z) == 12, "place of TemplateRow::z");
+
+struct alignas(8) Item {
+    unsigned long long cell;
+    unsigned first;
+    unsigned count;
+};
+static_assert(sizeof(Item) == 16, "size of Item");
+static_assert(PLACE_OF(Item, cell) == 0, "place of Item::cell");
+static_assert(PLACE_OF(Item, first) == 8, "place of Item::first");
+static_assert(PLACE_OF(Item, count) == 12, "place of Item::count");
+
+struct alignas(8) BrickTable {
+    unsigned long long *keys;
+    unsigned capacity;
+    unsigned spare;
+};
+static_assert(sizeof(BrickTable) == 16, "size of BrickTable");
+static_assert(PLACE_OF(BrickTable, keys) == 0, "place of BrickTable::keys");
+static_assert(PLACE_OF(BrickTable, capacity) == 8, "place of BrickTable::capacity");
+static_assert(PLACE_OF(BrickTable, spare) == 12, "place of BrickTable::spare");
+
+struct alignas(8) LitBy {
+    unsigned long long *bits;
+    unsigned short *seen;
+};
+static_assert(sizeof(LitBy) == 16, "size of LitBy");
+static_assert(PLACE_OF(LitBy, bits) == 0, "place of LitBy::bits");
+static_assert(PLACE_OF(LitBy, seen) == 8, "place of LitBy::seen");
+
+struct alignas(8) UsedPoints {
+    BrickTable table;
+    const unsigned long long *used;
+    const unsigned *rank;
+    const unsigned long long *points;
+};
+static_assert(sizeof(UsedPoints) == 40, "size of UsedPoints");
+static_assert(PLACE_OF(UsedPoints, table) == 0, "place of UsedPoints::table");
+static_assert(PLACE_OF(UsedPoints, used) == 16, "place of UsedPoints::used");
+static_assert(PLACE_OF(UsedPoints, rank) == 24, "place of UsedPoints::rank");
+static_assert(PLACE_OF(UsedPoints, points) == 32, "place of UsedPoints::points");
+
+struct alignas(8) PrimaryRays {
+    Scene scene;
+    Rays rays;
+    Hit *hits;
+    Tally tally;
+    unsigned long long first_block;
+};
+static_assert(sizeof(PrimaryRays) == 376, "size of PrimaryRays");
+static_assert(PLACE_OF(PrimaryRays, scene) == 0, "place of PrimaryRays::scene");
+static_assert(PLACE_OF(PrimaryRays, rays) == 272, "place of PrimaryRays::rays");
+static_assert(PLACE_OF(PrimaryRays, hits) == 352, "place of PrimaryRays::hits");
+static_assert(PLACE_OF(PrimaryRays, tally) == 360, "place of PrimaryRays::tally");
+static_assert(PLACE_OF(PrimaryRays, first_block) == 368, "place of PrimaryRays::first_block");
+
+struct alignas(8) ShadowRays {
+    Scene scene;
+    Rays rays;
+    const Hit *hits;
+    float *share;
+    Vec3 *direct;
+    Sampling sampling;
+    Tally tally;
+    unsigned long long first_block;
+};
+static_assert(sizeof(ShadowRays) == 408, "size of ShadowRays");
+static_assert(PLACE_OF(ShadowRays, scene) == 0, "place of ShadowRays::scene");
+static_assert(PLACE_OF(ShadowRays, rays) == 272, "place of ShadowRays::rays");
+static_assert(PLACE_OF(ShadowRays, hits) == 352, "place of ShadowRays::hits");
+static_assert(PLACE_OF(ShadowRays, share) == 360, "place of ShadowRays::share");
+static_assert(PLACE_OF(ShadowRays, direct) == 368, "place of ShadowRays::direct");
+static_assert(PLACE_OF(ShadowRays, sampling) == 376, "place of ShadowRays::sampling");
+static_assert(PLACE_OF(ShadowRays, tally) == 392, "place of ShadowRays::tally");
+static_assert(PLACE_OF(ShadowRays, first_block) == 400, "place of ShadowRays::first_block");
+
+struct alignas(8) Shade {
+    Scene scene;
+    Rays rays;
+    const Hit *hits;
+    const float *share;
+    const Vec3 *direct;
+    const unsigned *used;
+    unsigned long long film_pixel;
+    Vec3 *color;
+    float *depth;
+    Vec3 *normal;
+    Vec3 *position;
+    float *visibility;
+    unsigned *light_points;
+    unsigned long long film_pixels;
+    unsigned long long first_block;
+};
+static_assert(sizeof(Shade) == 456, "size of Shade");
+static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
+static_assert(PLACE_OF(Shade, rays) == 272, "place of Shade::rays");
+static_assert(PLACE_OF(Shade, hits) == 352, "place of Shade::hits");
+static_assert(PLACE_OF(Shade, share) == 360, "place of Shade::share");
+static_assert(PLACE_OF(Shade, direct) == 368, "place of Shade::direct");
+static_assert(PLACE_OF(Shade, used) == 376, "place of Shade::used");
+static_assert(PLACE_OF(Shade, film_pixel) == 384, "place of Shade::film_pixel");
+static_assert(PLACE_OF(Shade, color) == 392, "place of Shade::color");
+static_assert(PLACE_OF(Shade, depth) == 400, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 408, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 416, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 424, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 432, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, film_pixels) == 440, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 448, "place of Shade::first_block");
+
+struct alignas(8) MirrorRays {
+    Scene scene;
+    Rays rays;
+    const Hit *hits;
+    unsigned *counts;
+    ListedRay *mirrored;
+};
+static_assert(sizeof(MirrorRays) == 376, "size of MirrorRays");
+static_assert(PLACE_OF(MirrorRays, scene) == 0, "place of MirrorRays::scene");
+static_assert(PLACE_OF(MirrorRays, rays) == 272, "place of MirrorRays::rays");
+static_assert(PLACE_OF(MirrorRays, hits) == 352, "place of MirrorRays::hits");
+static_assert(PLACE_OF(MirrorRays, counts) == 360, "place of MirrorRays::counts");
+static_assert(PLACE_OF(MirrorRays, mirrored) == 368, "place of MirrorRays::mirrored");
+
+struct alignas(8) GroupCells {
+    Scene scene;
+    Rays rays;
+    const Hit *hits;
+    LightMesh mesh;
+    unsigned *members;
+    Item *tile_items;
+    unsigned *counts;
+    Item *items;
+    unsigned long long first_block;
+};
+static_assert(sizeof(GroupCells) == 480, "size of GroupCells");
+static_assert(PLACE_OF(GroupCells, scene) == 0, "place of GroupCells::scene");
+static_assert(PLACE_OF(GroupCells, rays) == 272, "place of GroupCells::rays");
+static_assert(PLACE_OF(GroupCells, hits) == 352, "place of GroupCells::hits");
+static_assert(PLACE_OF(GroupCells, mesh) == 360, "place of GroupCells::mesh");
+static_assert(PLACE_OF(GroupCells, members) == 440, "place of GroupCells::members");
+static_assert(PLACE_OF(GroupCells, tile_items) == 448, "place of GroupCells::tile_items");
+static_assert(PLACE_OF(GroupCells, counts) == 456, "place of GroupCells::counts");
+static_assert(PLACE_OF(GroupCells, items) == 464, "place of GroupCells::items");
+static_assert(PLACE_OF(GroupCells, first_block) == 472, "place of GroupCells::first_block");
+
+struct alignas(8) ShortTests {
+    Scene scene;
+    Rays rays;
+    const Hit *hits;
+    LightMesh mesh;
+    const unsigned *members;
+    const Item *items;
+    unsigned *masks;
+    Tally tally;
+    unsigned long long first_item;
+    unsigned long long item_count;
+    unsigned long long shared_masks;
+};
+static_assert(sizeof(ShortTests) == 496, "size of ShortTests");
+static_assert(PLACE_OF(ShortTests, scene) == 0, "place of ShortTests::scene");
+static_assert(PLACE_OF(ShortTests, rays) == 272, "place of ShortTests::rays");
+static_assert(PLACE_OF(ShortTests, hits) == 352, "place of ShortTests::hits");
+static_assert(PLACE_OF(ShortTests, mesh) == 360, "place of ShortTests::mesh");
+static_assert(PLACE_OF(ShortTests, members) == 440, "place of ShortTests::members");
+static_assert(PLACE_OF(ShortTests, items) == 448, "place of ShortTests::items");
+static_assert(PLACE_OF(ShortTests, masks) == 456, "place of ShortTests::masks");
+static_assert(PLACE_OF(ShortTests, tally) == 464, "place of ShortTests::tally");
+static_assert(PLACE_OF(ShortTests, first_item) == 472, "place of ShortTests::first_item");
+static_assert(PLACE_OF(ShortTests, item_count) == 480, "place of ShortTests::item_count");
+static_assert(PLACE_OF(ShortTests, shared_masks) == 488, "place of ShortTests::shared_masks");
+
+struct alignas(8) LightPoints {
+    LightMesh mesh;
+    const Item *items;
+    const unsigned *masks;
+    unsigned long long first_item;
+    unsigned long long item_count;
+    BrickTable table;
+    unsigned long long *used;
+    unsigned *rank;
+    unsigned long long *points;
+    unsigned *bricks;
+};
+static_assert(sizeof(LightPoints) == 160, "size of LightPoints");
+static_assert(PLACE_OF(LightPoints, mesh) == 0, "place of LightPoints::mesh");
+static_assert(PLACE_OF(LightPoints, items) == 80, "place of LightPoints::items");
+static_assert(PLACE_OF(LightPoints, masks) == 88, "place of LightPoints::masks");
+static_assert(PLACE_OF(LightPoints, first_item) == 96, "place of LightPoints::first_item");
+static_assert(PLACE_OF(LightPoints, item_count) == 104, "place of LightPoints::item_count");
+static_assert(PLACE_OF(LightPoints, table) == 112, "place of LightPoints::table");
+static_assert(PLACE_OF(LightPoints, used) == 128, "place of LightPoints::used");
+static_assert(PLACE_OF(LightPoints, rank) == 136, "place of LightPoints::rank");
+static_assert(PLACE_OF(LightPoints, points) == 144, "place of LightPoints::points");
+static_assert(PLACE_OF(LightPoints, bricks) == 152, "place of LightPoints::bricks");
+
+struct alignas(8) LongTests {
+    Scene scene;
+    LightMesh mesh;
+    UsedPoints points;
+    const LitBy *lit;
+    Sampling sampling;
+    Tally tally;
+    unsigned light;
+    unsigned point_count;
+    unsigned long long first_point;
+};
+static_assert(sizeof(LongTests) == 440, "size of LongTests");
+static_assert(PLACE_OF(LongTests, scene) == 0, "place of LongTests::scene");
+static_assert(PLACE_OF(LongTests, mesh) == 272, "place of LongTests::mesh");
+static_assert(PLACE_OF(LongTests, points) == 352, "place of LongTests::points");
+static_assert(PLACE_OF(LongTests, lit) == 392, "place of LongTests::lit");
+static_assert(PLACE_OF(LongTests, sampling) == 400, "place of LongTests::sampling");
+static_assert(PLACE_OF(LongTests, tally) == 416, "place of LongTests::tally");
+static_assert(PLACE_OF(LongTests, light) == 424, "place of LongTests::light");
+static_assert(PLACE_OF(LongTests, point_count) == 428, "place of LongTests::point_count");
+static_assert(PLACE_OF(LongTests, first_point) == 432, "place of LongTests::first_point");
+
+struct alignas(8) Interpolate {
+    Scene scene;
+    Rays rays;
+    const Hit *hits;
+    LightMesh mesh;
+    const unsigned *members;
+    const Item *items;
+    const unsigned *masks;
+    UsedPoints points;
+    const LitBy *lit;
+    float *share;
+    unsigned *used;
+    unsigned *any_fallback;
+    Sampling sampling;
+    Tally tally;
+    unsigned long long first;
+    unsigned long long count;
+};
+static_assert(sizeof(Interpolate) == 576, "size of Interpolate");
+static_assert(PLACE_OF(Interpolate, scene) == 0, "place of Interpolate::scene");
+static_assert(PLACE_OF(Interpolate, rays) == 272, "place of Interpolate::rays");
+static_assert(PLACE_OF(Interpolate, hits) == 352, "place of Interpolate::hits");
+static_assert(PLACE_OF(Interpolate, mesh) == 360, "place of Interpolate::mesh");
+static_assert(PLACE_OF(Interpolate, members) == 440, "place of Interpolate::members");
+static_assert(PLACE_OF(Interpolate, items) == 448, "place of Interpolate::items");
+static_assert(PLACE_OF(Interpolate, masks) == 456, "place of Interpolate::masks");
+static_assert(PLACE_OF(Interpolate, points) == 464, "place of Interpolate::points");
+static_assert(PLACE_OF(Interpolate, lit) == 504, "place of Interpolate::lit");
+static_assert(PLACE_OF(Interpolate, share) == 512, "place of Interpolate::share");
+static_assert(PLACE_OF(Interpolate, used) == 520, "place of Interpolate::used");
+static_assert(PLACE_OF(Interpolate, any_fallback) == 528, "place of Interpolate::any_fallback");
+static_assert(PLACE_OF(Interpolate, sampling) == 536, "place of Interpolate::sampling");
+static_assert(PLACE_OF(Interpolate, tally) == 552, "place of Interpolate::tally");
+static_assert(PLACE_OF(Interpolate, first) == 560, "place of Interpolate::first");
+static_assert(PLACE_OF(Interpolate, count) == 568, "place of Interpolate::count");
+
+struct alignas(8) Scan {
+    unsigned *values;
+    unsigned *sums;
+    unsigned long long count;
+};
+static_assert(sizeof(Scan) == 24, "size of Scan");
+static_assert(PLACE_OF(Scan, values) == 0, "place of Scan::values");
+static_assert(PLACE_OF(Scan, sums) == 8, "place of Scan::sums");
+static_assert(PLACE_OF(Scan, count) == 16, "place of Scan::count");

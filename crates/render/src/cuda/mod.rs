@@ -1,0 +1,13 @@
+//! What a CUDA device, or something that stands in for one, must be able to do; and typed memory on it.
+//!
+//! Everything above this module is the same for every [`Runtime`]: the driver is the real device, and the emulator that the tests
+//! use runs the same kernels, compiled as C++ for the host. So every launch, every buffer and every plan is tested without a GPU.
+
+mod buffer;
+mod driver;
+mod runtime;
+
+pub use buffer::{Buffer, Pool};
+pub use driver::{DeviceMemory, Driver, Event, open_cuda};
+pub(crate) use driver::{Gpu, Library, Version, capability, visible_devices};
+pub use runtime::{Fault, Kernel, Launch, Runtime, new_id};

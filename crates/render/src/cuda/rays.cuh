@@ -1,0 +1,75 @@
+// Rays as kernels number them: those of some rows of a camera's picture, or a list. Twin of view.rs and of the ray lists of
+// primary_rays.
+//
+// A ray of a camera is computed where it is needed. Threads take a camera's pixels by square tiles, left to right, top to bottom; a
+// warp takes 8 × 4 pixels, so that its rays stay together. The rays of a list are taken in their order.
+#pragma once
+
+#include "accel/ray.cuh"
+
+// The ray of a thread whose block takes SIDE × SIDE pixels; false where there is none.
+template <unsigned SIDE>
+DEVICE bool ray_in_tile(const Rays &rays, unsigned tile, unsigned thread, unsigned &ray) {
+    if (rays.list != nullptr) {
+        ray = tile * (SIDE * SIDE) + thread;
+        return ray < rays.count;
+    }
+    const unsigned width = rays.view.size[0], across = (width + SIDE - 1) / SIDE;
+    const unsigned warp = thread / 32, lane = thread % 32;
+    const unsigned x = tile % across * SIDE + warp % (SIDE / 8) * 8 + lane % 8;
+    const unsigned y = tile / across * SIDE + warp / (SIDE / 8) * 4 + lane / 8;
+    ray = y * width + x;
+    // In 64 bits: the last tile may reach beyond the last row that 32 bits can number.
+    return x < width && (unsigned long long)y * width + x < rays.count;
+}
+
+// The ray of a thread of a block of 256.
+DEVICE bool ray_of_thread(const Rays &rays, unsigned block, unsigned thread, unsigned &ray) {
+    return ray_in_tile<16>(rays, block, thread, ray);
+}
+
+// The same for blocks of 1024.
+DEVICE bool tile_ray_of_thread(const Rays &rays, unsigned block, unsigned thread, unsigned &ray) {
+    return ray_in_tile<32>(rays, block, thread, ray);
+}
+
+// The pixel of a ray, y · width + x of the whole picture.
+DEVICE unsigned pixel_of(const Rays &rays, unsigned ray) {
+    return rays.list != nullptr ? __ldg(&rays.list[ray].pixel) : rays.first_pixel + ray;
+}
+
+// The ray of a camera through the centre of a pixel.
+DEVICE Ray view_ray(const View &view, unsigned pixel) {
+    const unsigned width = view.size[0], height = view.size[1];
+    const float x = (float)(pixel % width) + 0.5f - 0.5f * (float)width;
+    const float y = (float)(pixel / width) + 0.5f - 0.5f * (float)height;
+    const Vec3 aside = x * view.right + y * view.down;
+    if (view.perspective) {
+        const Vec3 direction = view.forward + aside;
+        return Ray{view.origin, direction / length(direction), INFINITE};
+    }
+    return Ray{view.origin + aside, view.forward, INFINITE};
+}
+
+// Sixteen bytes of a listed ray: origin and pixel, direction, weight.
+DEVICE Vec3 load_listed(const ListedRay *listed, unsigned part) {
+    const float4 values = __ldg(reinterpret_cast<const float4 *>(listed) + part);
+    return Vec3{values.x, values.y, values.z};
+}
+
+DEVICE Ray ray_at(const Rays &rays, unsigned ray) {
+    if (rays.list == nullptr)
+        return view_ray(rays.view, rays.first_pixel + ray);
+    const ListedRay *listed = rays.list + ray;
+    return Ray{load_listed(listed, 0), load_listed(listed, 1), INFINITE};
+}
+
+// The share of a ray's radiance that reaches its pixel.
+DEVICE Vec3 weight_of(const Rays &rays, unsigned ray) {
+    return rays.list == nullptr ? Vec3{1.0f, 1.0f, 1.0f} : load_listed(rays.list + ray, 2);
+}
+
+// What tells the random patterns of two object points apart: the pixel, and whether it is seen in a mirror.
+DEVICE unsigned long long ray_key(const Rays &rays, unsigned ray) {
+    return (unsigned long long)pixel_of(rays, ray) << 1 | (rays.list != nullptr ? 1 : 0);
+}

@@ -1,0 +1,49 @@
+// Exclusive prefix sums of unsigned numbers, in place: a block of 256 threads sums 1024 values; the sums of blocks are summed by
+// another scan, then added.
+#include "cuda/prelude.cuh"
+
+#include "cuda/warp.cuh"
+
+#define SCAN_THREADS 256
+#define VALUES_OF_THREAD 4
+
+KERNEL(scan_blocks, Scan, SCAN_THREADS, 4) {
+    SHARED(unsigned, warps, [SCAN_THREADS / 32]);
+    const unsigned lane = lane_of_thread(), warp = threadIdx.x / 32;
+    const unsigned long long first = ((unsigned long long)blockIdx.x * SCAN_THREADS + threadIdx.x) * VALUES_OF_THREAD;
+
+    // 1. The values of this thread and their sum.
+    unsigned values[VALUES_OF_THREAD], sum = 0;
+    for (unsigned i = 0; i < VALUES_OF_THREAD; i++) {
+        values[i] = first + i < args.count ? args.values[first + i] : 0;
+        sum += values[i];
+    }
+    // 2. The sums of the threads before: in the warp, then of the warps before.
+    unsigned until = sum;
+    for (unsigned step = 1; step < 32; step *= 2) {
+        const unsigned other = __shfl_up_sync(ALL_LANES, until, step);
+        until += lane >= step ? other : 0;
+    }
+    if (lane == 31)
+        warps[warp] = until;
+    __syncthreads();
+    unsigned before = until - sum;
+    for (unsigned other = 0; other < warp; other++)
+        before += warps[other];
+    if (threadIdx.x == SCAN_THREADS - 1)
+        args.sums[blockIdx.x] = before + sum;
+    // 3. The sums before each value.
+    for (unsigned i = 0; i < VALUES_OF_THREAD; i++) {
+        if (first + i < args.count)
+            args.values[first + i] = before;
+        before += values[i];
+    }
+}
+
+KERNEL(add_offsets, Scan, SCAN_THREADS, 4) {
+    const unsigned long long first = ((unsigned long long)blockIdx.x * SCAN_THREADS + threadIdx.x) * VALUES_OF_THREAD;
+    const unsigned before = args.sums[blockIdx.x];
+    for (unsigned i = 0; i < VALUES_OF_THREAD; i++)
+        if (first + i < args.count)
+            args.values[first + i] += before;
+}

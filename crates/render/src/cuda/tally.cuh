@@ -1,0 +1,18 @@
+// Counting: sums over a warp, then one atomic addition to the block's shard.
+#pragma once
+
+#include "cuda/warp.cuh"
+
+// Number of shards; the host sums them.
+#define TALLY_SHARDS 64
+
+DEVICE Counters &tally_shard(const Tally &tally) {
+    return tally.shards[blockIdx.x % TALLY_SHARDS];
+}
+
+// Adds the amounts of all lanes. All lanes of the warp take part.
+DEVICE void count(unsigned long long &counter, unsigned amount) {
+    const unsigned sum = warp_sum(amount);
+    if (lane_of_thread() == 0 && sum > 0)
+        atomicAdd(&counter, (unsigned long long)sum);
+}

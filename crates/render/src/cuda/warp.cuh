@@ -1,0 +1,64 @@
+// What the 32 threads of a warp do together.
+#pragma once
+
+#include "cuda/prelude.cuh"
+
+// All lanes take part.
+#define ALL_LANES 0xffffffffu
+
+DEVICE unsigned lane_of_thread() {
+    return threadIdx.x & 31;
+}
+
+// The lanes below this one.
+DEVICE unsigned lanes_below(unsigned lane) {
+    return (1u << lane) - 1;
+}
+
+DEVICE unsigned warp_or(unsigned value) {
+    for (int step = 16; step > 0; step /= 2)
+        value |= __shfl_xor_sync(ALL_LANES, value, step);
+    return value;
+}
+
+DEVICE unsigned warp_sum(unsigned value) {
+    for (int step = 16; step > 0; step /= 2)
+        value += __shfl_xor_sync(ALL_LANES, value, step);
+    return value;
+}
+
+// The sum of this lane's value and those of all lanes before.
+DEVICE unsigned warp_running_sum(unsigned value) {
+    const unsigned lane = lane_of_thread();
+    for (unsigned step = 1; step < 32; step *= 2) {
+        const unsigned other = __shfl_up_sync(ALL_LANES, value, step);
+        value += lane >= step ? other : 0;
+    }
+    return value;
+}
+
+DEVICE float warp_min(float value) {
+    for (int step = 16; step > 0; step /= 2)
+        value = fminf(value, __shfl_xor_sync(ALL_LANES, value, step));
+    return value;
+}
+
+DEVICE float warp_max(float value) {
+    for (int step = 16; step > 0; step /= 2)
+        value = fmaxf(value, __shfl_xor_sync(ALL_LANES, value, step));
+    return value;
+}
+
+// The 32 x 32 bit matrix whose rows the lanes hold, mirrored at its diagonal: bit j of lane i goes to bit i of lane j (Warren:
+// Hacker's Delight, 7-3).
+DEVICE unsigned warp_transposed(unsigned row) {
+    const unsigned lane = lane_of_thread();
+    unsigned keep = 0xffff0000u;
+    for (int step = 16; step > 0; step /= 2) {
+        const unsigned other = __shfl_xor_sync(ALL_LANES, row, step);
+        // `keep` has the upper half of each pair of groups of `step` bits.
+        row = (lane & step) ? (row & keep) | ((other & keep) >> step) : (row & ~keep) | ((other & ~keep) << step);
+        keep ^= keep >> (step / 2);
+    }
+    return row;
+}

@@ -1,0 +1,100 @@
+//! From what was asked for to one device that is ready.
+
+use std::sync::Arc;
+
+use super::Device;
+use super::report::{cpu, ready};
+use crate::RenderError;
+use crate::cuda::{Driver, open_cuda};
+
+/// What became of a [`Device`] that was asked for.
+pub struct Choice {
+    /// [`Device::Cpu`], or [`Device::Cuda`] with a number.
+    pub device: Device,
+    /// Which device it is and, where that was left open, why it is no other.
+    pub reason: String,
+    chosen: Chosen,
+}
+
+/// A device that is ready.
+pub(crate) enum Chosen {
+    /// The host's processor.
+    Cpu,
+    /// A CUDA device.
+    Cuda(Arc<Driver>),
+}
+
+/// Makes ready what is asked for. See [`Choice::of`].
+pub(crate) fn choose(device: Device) -> Result<Chosen, RenderError> {
+    Choice::of(device).map(|choice| choice.chosen)
+}
+
+impl Choice {
+    /// Makes the device ready that is asked for. For [`Device::Auto`] that is the first CUDA device that works, or else the host's
+    /// processor. As long as the choice is kept, a [`Renderer`](crate::Renderer) on the same device starts faster.
+    ///
+    /// # Errors
+    /// [`RenderError::Device`] where a CUDA device is asked for and cannot be used.
+    pub fn of(device: Device) -> Result<Choice, RenderError> {
+        match device {
+            Device::Cpu => Ok(Choice::cpu("")),
+            Device::Cuda(number) => open_cuda(number).map(Choice::cuda),
+            Device::Auto => Ok(open_cuda(None).map_or_else(Choice::instead_of_cuda, Choice::cuda)),
+        }
+    }
+
+    fn instead_of_cuda(error: RenderError) -> Choice {
+        let why = match error {
+            RenderError::Device { reason, .. } => reason,
+            other => other.to_string(),
+        };
+        Choice::cpu(&format!("; no CUDA device can be used: {why}"))
+    }
+
+    fn cpu(why: &str) -> Choice {
+        let report = cpu();
+        let reason = format!("{} ({}, {}){why}", report.device, report.name, report.remark);
+        Choice { device: Device::Cpu, reason, chosen: Chosen::Cpu }
+    }
+
+    fn cuda(driver: Arc<Driver>) -> Choice {
+        let report = ready(&driver);
+        let device = Device::Cuda(Some(driver.number()));
+        let reason = format!("{} ({}, {})", report.device, report.name, report.remark);
+        Choice { device, reason, chosen: Chosen::Cuda(driver) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_processor_can_always_be_chosen() {
+        let choice = Choice::of(Device::Cpu).unwrap();
+        assert_eq!(choice.device, Device::Cpu);
+        assert!(choice.reason.starts_with("cpu (") && !choice.reason.contains("CUDA"), "{}", choice.reason);
+    }
+
+    #[test]
+    fn what_is_left_open_is_decided_and_explained() {
+        let choice = Choice::of(Device::Auto).unwrap();
+        match choice.device {
+            Device::Cuda(Some(number)) => {
+                assert!(choice.reason.starts_with(&format!("cuda:{number} (")), "{}", choice.reason)
+            }
+            Device::Cpu => assert!(choice.reason.contains("; no CUDA device can be used: "), "{}", choice.reason),
+            other => panic!("{other} is not decided"),
+        }
+    }
+
+    #[test]
+    fn a_device_that_is_not_there_is_an_error() {
+        let refused = Choice::of(Device::Cuda(Some(4096)));
+        let Err(RenderError::Device { device, reason }) = refused.map(|choice| choice.device) else {
+            panic!("4097 devices")
+        };
+        assert_eq!(device, "cuda:4096");
+        assert!(!reason.is_empty());
+    }
+}

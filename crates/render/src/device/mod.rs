@@ -1,0 +1,73 @@
+//! Where a picture is computed.
+
+mod choice;
+mod report;
+
+use std::fmt;
+use std::str::FromStr;
+
+pub use choice::Choice;
+pub(crate) use choice::{Chosen, choose};
+pub(crate) use report::cpu_name;
+pub use report::{DeviceReport, devices};
+
+/// A device that can be asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Device {
+    /// The fastest that works: a CUDA device before the host's processor.
+    #[default]
+    Auto,
+    /// The host's processor.
+    Cpu,
+    /// A CUDA device: the first that works, or the one with this number. The driver lists the fastest first, and only those that
+    /// CUDA_VISIBLE_DEVICES names where that is set.
+    Cuda(Option<u32>),
+}
+
+/// A word that names no device.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("there is no device '{0}': choose auto, cpu, cuda or cuda:N")]
+pub struct UnknownDevice(pub String);
+
+impl FromStr for Device {
+    type Err = UnknownDevice;
+
+    fn from_str(word: &str) -> Result<Device, UnknownDevice> {
+        let unknown = || UnknownDevice(word.to_owned());
+        match word {
+            "auto" => Ok(Device::Auto),
+            "cpu" => Ok(Device::Cpu),
+            "cuda" => Ok(Device::Cuda(None)),
+            _ => {
+                let number = word.strip_prefix("cuda:").ok_or_else(unknown)?;
+                Ok(Device::Cuda(Some(number.parse().map_err(|_| unknown())?)))
+            }
+        }
+    }
+}
+
+impl fmt::Display for Device {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Device::Auto => f.write_str("auto"),
+            Device::Cpu => f.write_str("cpu"),
+            Device::Cuda(None) => f.write_str("cuda"),
+            Device::Cuda(Some(number)) => write!(f, "cuda:{number}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_devices_are_read_and_written() {
+        for word in ["auto", "cpu", "cuda", "cuda:0", "cuda:17"] {
+            assert_eq!(word.parse::<Device>().unwrap().to_string(), word);
+        }
+        for word in ["", "gpu", "cuda:", "cuda:x", "cuda:-1"] {
+            assert!(word.parse::<Device>().is_err(), "{word}");
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Which devices there are, and why some of them cannot be used.
+
+use serde::Serialize;
+
+use super::Device;
+use crate::cuda::{Driver, Gpu, Library, Runtime, Version, capability, visible_devices};
+
+/// A device that was looked for, and whether it can be used.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct DeviceReport {
+    /// `cpu`, `cuda` or `cuda:N`.
+    pub device: String,
+    /// What the maker calls it, as far as the system tells.
+    pub name: String,
+    /// Whether pictures can be computed on it.
+    pub usable: bool,
+    /// Why not, and what to do; or what there is to know about it.
+    pub remark: String,
+    /// Memory of a CUDA device in bytes.
+    pub memory_bytes: Option<u64>,
+    /// How much of it is free; known where the device can be used.
+    pub free_bytes: Option<u64>,
+    /// Compute capability of a CUDA device, such as `9.0`.
+    pub compute_capability: Option<String>,
+    /// The CUDA version that the driver is for, such as `12.4`.
+    pub driver_cuda_version: Option<String>,
+}
+
+/// All devices that were looked for: the host's processor, then every CUDA device that the driver shows, or one entry `cuda` that
+/// says why there is none. Each CUDA device is made ready for a moment, to see that it works and what is free.
+pub fn devices() -> Vec<DeviceReport> {
+    let cuda = match Library::open() {
+        Ok(library) => library.devices.iter().map(|gpu| report(&library, gpu)).collect(),
+        Err(why) => {
+            vec![DeviceReport { device: "cuda".to_owned(), remark: why.to_string(), ..DeviceReport::default() }]
+        }
+    };
+    std::iter::once(cpu()).chain(cuda).collect()
+}
+
+/// The host's processor.
+pub(super) fn cpu() -> DeviceReport {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    DeviceReport {
+        device: Device::Cpu.to_string(),
+        name: cpu_name(),
+        usable: true,
+        remark: format!("{threads} threads, {}", simd_name()),
+        ..DeviceReport::default()
+    }
+}
+
+/// A CUDA device that can be used.
+pub(super) fn ready(driver: &Driver) -> DeviceReport {
+    let free = driver.free_memory();
+    let remark = facts(driver.gpu(), free, driver.version(), visible_devices().as_deref());
+    DeviceReport { usable: true, remark, free_bytes: free, ..described(driver.gpu(), driver.version()) }
+}
+
+fn report(library: &Library, gpu: &Gpu) -> DeviceReport {
+    match library.ready(gpu) {
+        Ok(driver) => ready(&driver),
+        Err(remark) => DeviceReport { remark, ..described(gpu, library.version) },
+    }
+}
+
+/// What is known of a CUDA device whether it can be used or not.
+fn described(gpu: &Gpu, version: Version) -> DeviceReport {
+    DeviceReport {
+        device: Device::Cuda(Some(gpu.number)).to_string(),
+        name: gpu.name.clone(),
+        memory_bytes: Some(gpu.memory),
+        compute_capability: Some(capability(gpu.capability)),
+        driver_cuda_version: Some(version.to_string()),
+        ..DeviceReport::default()
+    }
+}
+
+/// What there is to know about a CUDA device, in one line.
+fn facts(gpu: &Gpu, free: Option<u64>, version: Version, visible: Option<&str>) -> String {
+    let gibibytes = |bytes: u64| format!("{:.1} GiB", bytes as f64 / f64::from(1 << 30));
+    let (memory, capability) = (gibibytes(gpu.memory), capability(gpu.capability));
+    let free = free.map_or_else(String::new, |free| format!(" ({} free)", gibibytes(free)));
+    let visible = visible.map_or_else(String::new, |value| format!(", numbered by CUDA_VISIBLE_DEVICES={value}"));
+    format!("{memory}{free}, compute capability {capability}, driver for CUDA {version}{visible}")
+}
+
+/// Which of the two versions of SIMD code runs here.
+fn simd_name() -> &'static str {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if fearless_simd::Level::new().as_avx2().is_some() {
+        return "AVX2";
+    }
+    "baseline SIMD"
+}
+
+/// The processor's name, or its architecture where the system does not tell.
+pub(crate) fn cpu_name() -> String {
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    name.map_or_else(|| std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_processor_comes_first_and_cuda_is_always_spoken_of() {
+        let devices = devices();
+        assert_eq!((devices[0].device.as_str(), devices[0].usable), ("cpu", true));
+        assert!(
+            devices.len() > 1 && devices[1..].iter().all(|report| report.device.starts_with("cuda")),
+            "{devices:?}"
+        );
+        assert!(devices.iter().all(|report| !report.remark.is_empty()), "{devices:?}");
+    }
+
+    #[test]
+    fn a_cuda_device_is_described_in_one_line() {
+        let gpu = Gpu { number: 1, name: "Fake".into(), capability: 90, memory: 3 << 30, pools: true, handle: 0 };
+        let version = Version { major: 12, minor: 4 };
+        let text = "3.0 GiB (1.5 GiB free), compute capability 9.0, driver for CUDA 12.4";
+        assert_eq!(facts(&gpu, Some(3 << 29), version, None), text);
+        assert_eq!(
+            facts(&gpu, Some(3 << 29), version, Some("1,0")),
+            format!("{text}, numbered by CUDA_VISIBLE_DEVICES=1,0")
+        );
+        let report = described(&gpu, version);
+        assert_eq!((report.device.as_str(), report.usable), ("cuda:1", false));
+        assert_eq!(report.compute_capability.as_deref(), Some("9.0"));
+    }
+}

@@ -1,0 +1,116 @@
+// Where the shadow rays towards a light with a size end: twin of sampling.rs.
+#pragma once
+
+#include "cuda/prelude.cuh"
+
+// Kinds of light, as the record `Light` numbers them.
+#define LIGHT_POINT 0
+#define LIGHT_DIRECTIONAL 1
+#define LIGHT_SPOT 2
+#define LIGHT_SPHERE 3
+#define LIGHT_DISK 4
+#define LIGHT_RECTANGLE 5
+
+#define TAU 6.28318530717958647692f
+
+// A stream of stratified points in the unit cube, different for each key.
+struct Pattern {
+    unsigned seeds[4];
+};
+
+// The finaliser of SplitMix64.
+DEVICE unsigned long long mix(unsigned long long value) {
+    value += 0x9e3779b97f4a7c15ull;
+    value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9ull;
+    value = (value ^ (value >> 27)) * 0x94d049bb133111ebull;
+    return value ^ (value >> 31);
+}
+
+DEVICE Pattern pattern_of(unsigned long long seed, unsigned long long key, unsigned light) {
+    const unsigned long long base = mix(seed ^ mix(key ^ mix((unsigned long long)light + 1)));
+    return Pattern{{(unsigned)mix(base), (unsigned)mix(base + 1), (unsigned)mix(base + 2), (unsigned)mix(base + 3)}};
+}
+
+// Owen scrambling of a number whose most significant bit is the first binary digit.
+DEVICE unsigned scramble(unsigned value, unsigned seed) {
+    unsigned x = __brev(value);
+    x += seed;
+    x ^= x * 0x6c50b47cu;
+    x ^= x * 0xb82f1e52u;
+    x ^= x * 0xc7afe638u;
+    x ^= x * 0x8d22f6e6u;
+    return __brev(x);
+}
+
+// Second dimension of Sobol's sequence. The loops of both run over all bits, so that their numbers are known to the compiler.
+DEVICE unsigned sobol_1(unsigned index) {
+    unsigned direction = 1u << 31, result = 0;
+    UNROLL
+    for (int bit = 0; bit < 32; ++bit) {
+        result ^= index >> bit & 1 ? direction : 0;
+        direction ^= direction >> 1;
+    }
+    return result;
+}
+
+// Third dimension of Sobol's sequence.
+DEVICE unsigned sobol_2(unsigned index) {
+    unsigned direction = 1u << 31, next = 3u << 30, result = 0;
+    UNROLL
+    for (int bit = 0; bit < 32; ++bit) {
+        result ^= index >> bit & 1 ? direction : 0;
+        const unsigned after = next ^ direction ^ (direction >> 2);
+        direction = next;
+        next = after;
+    }
+    return result;
+}
+
+DEVICE float unit_interval(unsigned bits, unsigned seed) {
+    return (float)(scramble(bits, seed) >> 8) * (1.0f / 16777216.0f);
+}
+
+// Point `index` of the sequence, each component in [0, 1).
+DEVICE Vec3 pattern_point(const Pattern &pattern, unsigned index) {
+    index = scramble(index, pattern.seeds[0]);
+    return Vec3{unit_interval(__brev(index), pattern.seeds[1]), unit_interval(sobol_1(index), pattern.seeds[2]),
+                unit_interval(sobol_2(index), pattern.seeds[3])};
+}
+
+// An even map from the cube to the unit ball.
+DEVICE Vec3 in_ball(Vec3 u) {
+    const float z = 2.0f * u.x - 1.0f;
+    float sine, cosine;
+    sincosf(TAU * u.y, &sine, &cosine);
+    const float ring = sqrtf(fmaxf(1.0f - z * z, 0.0f));
+    return cbrtf(u.z) * Vec3{ring * cosine, ring * sine, z};
+}
+
+// Whether the light has a size of its own.
+DEVICE bool has_size(const Light &light) { return light.kind >= LIGHT_SPHERE; }
+
+// The point of a light that the numbers `u` in [0, 1)³ stand for; a directional light lies `reach` away from `from`.
+DEVICE Vec3 light_point(const Light &light, Vec3 from, float reach, Vec3 u) {
+    if (light.kind == LIGHT_DIRECTIONAL)
+        return from - reach * light.direction;
+    if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPHERE)
+        return light.position + light.radius * in_ball(u);
+    if (light.kind == LIGHT_DISK) {
+        float sine, cosine;
+        sincosf(TAU * u.x, &sine, &cosine);
+        return light.position + light.radius * sqrtf(u.y) * (cosine * light.half_u + sine * light.half_v);
+    }
+    if (light.kind == LIGHT_RECTANGLE)
+        return light.position + (2.0f * u.x - 1.0f) * light.half_u + (2.0f * u.y - 1.0f) * light.half_v;
+    return light.position;
+}
+
+// The middle of a light; a directional light lies `reach` away from `from`.
+DEVICE Vec3 light_center(const Light &light, Vec3 from, float reach) {
+    return light.kind == LIGHT_DIRECTIONAL ? from - reach * light.direction : light.position;
+}
+
+// How far a directional light stands from `from`: twin of prepared.rs.
+DEVICE float scene_reach(const Scene &scene, Vec3 from) {
+    return scene.far + 2.0f * element_sum(abs(from - scene.center));
+}

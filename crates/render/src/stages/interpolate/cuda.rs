@@ -1,0 +1,80 @@
+//! Formula (3) on a CUDA device: a warp for each item, then long tests where no light point counts.
+
+use lightmesh_layout::stages::Interpolate;
+
+use crate::RenderError;
+use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays, DeviceVisibility, WARP, kernel_of, sampling};
+use crate::cuda::{Kernel, Launch, Runtime};
+use crate::job::Job;
+use crate::light_mesh::LightMesh;
+use crate::prepared::PreparedScene;
+use crate::stages::light_points::cuda::{DevicePoints, window_bricks};
+use crate::stages::long_tests::cuda::DeviceLit;
+use crate::stages::short_tests::cuda::DeviceMasks;
+
+/// What formula (3) needs.
+pub(crate) struct Interpolation<'a, R: Runtime> {
+    pub(crate) cuda: &'a Cuda<R>,
+    pub(crate) job: &'a Job<'a>,
+    pub(crate) scene: &'a PreparedScene<'a>,
+    pub(crate) rays: &'a DeviceRays<R>,
+    pub(crate) hits: &'a DeviceHits<R>,
+    pub(crate) masks: &'a DeviceMasks<R>,
+    pub(crate) points: &'a DevicePoints<R>,
+    pub(crate) lit: &'a DeviceLit<R>,
+    pub(crate) mesh: &'a LightMesh,
+}
+
+const INTERPOLATE: Kernel = Kernel { module: "interpolate", name: "interpolate" };
+/// Warps of a block, and lights without a size that one takes at once: see `kernel.cu`.
+const WARPS: u32 = 4;
+const LIGHTS: u32 = 3;
+/// Items, and blocks of rays, of the first launches ever.
+const FIRST_ITEMS: u64 = 4096;
+const FIRST_BLOCKS: u64 = 256;
+
+impl<R: Runtime> Interpolation<'_, R> {
+    pub(crate) fn run(&self) -> Result<DeviceVisibility<R>, RenderError> {
+        let Interpolation { cuda, job, scene, rays, hits, masks, points, lit, mesh } = *self;
+        let lights = scene.scene.lights.len();
+        let scene = cuda.scene(scene)?;
+        let share = cuda.pool().zeros("shares of lights", rays.len() * lights)?;
+        let used = cuda.pool().zeros("light points used", rays.len())?;
+        let any_fallback = cuda.pool().zeros("whether rays fall back", 1)?;
+        let record = Interpolate {
+            scene: scene.record,
+            rays: rays.record,
+            hits: hits.hits.input(),
+            mesh: cuda.mesh(mesh)?,
+            members: masks.members.input(),
+            items: masks.items.input(),
+            masks: masks.masks.input(),
+            points: points.record(),
+            lit: lit.lit.input(),
+            share: share.output(),
+            used: used.output(),
+            any_fallback: any_fallback.output(),
+            sampling: sampling(job),
+            tally: cuda.tally()?,
+            first: 0,
+            count: 0,
+        };
+        // 1. The weighted means.
+        cuda.in_pieces(job, INTERPOLATE, masks.count as u64, FIRST_ITEMS, rays.len() as u64, |piece| {
+            let count = piece.end - piece.start;
+            let words = window_bricks(mesh.template.reach()) + LIGHTS * mesh.template.words() as u32;
+            let launch =
+                Launch { blocks: (count as u32).div_ceil(WARPS), threads: WARPS * WARP, shared: WARPS * 4 * words };
+            cuda.launch(INTERPOLATE, launch, &Interpolate { first: piece.start, count, ..record })
+        })?;
+        // 2. Object points without light points take their own long tests.
+        let names = ["fallback_bvh", "fallback_grid", "fallback_brute_force"];
+        let kernel = kernel_of("interpolate", names, scene.structure);
+        cuda.in_pieces(job, kernel, rays.blocks(16), FIRST_BLOCKS, 0, |piece| {
+            let count = piece.end - piece.start;
+            let launch = Launch { blocks: count as u32, threads: BLOCK, shared: 0 };
+            cuda.launch(kernel, launch, &Interpolate { first: piece.start, count, ..record })
+        })?;
+        Ok(DeviceVisibility { share, used: Some(used), direct: None })
+    }
+}

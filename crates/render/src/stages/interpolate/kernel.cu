@@ -1,0 +1,304 @@
+// Step 5, first half, on a CUDA device: the weighted mean of what an object point's light points see. Formula (3).
+//
+// `interpolate`: a warp an item; `fallback_*`: long tests of object points that no light point speaks for.
+#include "cuda/prelude.cuh"
+
+#include "accel/walk.cuh"
+#include "cuda/rays.cuh"
+#include "cuda/tally.cuh"
+#include "cuda/warp.cuh"
+#include "light_mesh/lattice.cuh"
+#include "light_mesh/window.cuh"
+#include "stages/shadow_rays/shadow_rays.cuh"
+#include "surface.cuh"
+
+// Warps of a block.
+#define ITEM_WARPS 4
+// Lights without a size that are taken at once.
+#define LIGHTS 3
+// What tells the fallback to find a share.
+#define UNKNOWN -1.0f
+
+// Where an item's light points are kept.
+struct ItemPoints {
+    IVec3 cell;
+    Window window;
+    // The table's slot of each brick of the window.
+    unsigned *slots;
+    const unsigned *seen;
+};
+
+// The share of a light with a size that a light point sees.
+DEVICE float light_point_share(const Interpolate &args, const LitBy &lit, const ItemPoints &points, IVec3 point) {
+    const unsigned slot = points.slots[window_place(points.window, point)];
+    if (slot == NO_SLOT)
+        return 0.0f;
+    const unsigned bit = point_bit(point);
+    const unsigned long long used = args.points.used[slot];
+    if (!(used >> bit & 1))
+        return 0.0f;
+    const unsigned rank = args.points.rank[slot] + __popcll(used & ((1ull << bit) - 1));
+    return (float)lit.seen[rank] / (float)args.sampling.samples;
+}
+
+// w of formula (3) as a function of q² = (distance / radius)².
+DEVICE float falling_weight(const LightMesh &mesh, float q2) {
+    const float falling = fmaxf(1.0f - q2, 0.0f);
+    return mesh.weight == 0 ? 1.0f : mesh.weight == 1 ? falling : falling * falling;
+}
+
+// The lanes, by what their light points see of a light.
+struct LitLanes {
+    // Have a light point; have one that sees some of the light; have one that does not see all of it.
+    unsigned any, some, not_full;
+};
+
+DEVICE LitLanes lit_lanes(const Interpolate &args, const LitBy &lit, const ItemPoints &points) {
+    LitLanes lanes = {0, 0, 0};
+    for (unsigned k = lane_of_thread(); k < args.mesh.points; k += 32) {
+        const unsigned seen = points.seen[k];
+        if (seen == 0)
+            continue;
+        const IVec3 offset = template_offset(args.mesh, k);
+        const IVec3 point = {points.cell.x + offset.x, points.cell.y + offset.y, points.cell.z + offset.z};
+        const float share = light_point_share(args, lit, points, point);
+        lanes.any |= seen;
+        lanes.some |= share > 0.0f ? seen : 0;
+        lanes.not_full |= share < 1.0f ? seen : 0;
+    }
+    lanes.any = warp_or(lanes.any);
+    lanes.some = warp_or(lanes.some);
+    lanes.not_full = warp_or(lanes.not_full);
+    return lanes;
+}
+
+// Formula (3) without χ for the lanes in `mixed`; negative where the weights vanish altogether.
+DEVICE float weighted_mean(const Interpolate &args, const LitBy &lit, const ItemPoints &points, const Vec3 &position,
+                           unsigned mixed) {
+    const LightMesh &mesh = args.mesh;
+    const unsigned lane = lane_of_thread();
+    const float scale = 1.0f / (mesh.radius * mesh.radius);
+    float weights = 0.0f, products = 0.0f;
+    for (unsigned row = 0; row < mesh.lines; row++) {
+        const TemplateRow line = template_rows[row];
+        const int y = points.cell.y + line.y, z = points.cell.z + line.z;
+        const float dy = lattice_coordinate(mesh.origin.y, mesh.step, y) - position.y;
+        const float dz = lattice_coordinate(mesh.origin.z, mesh.step, z) - position.z;
+        for (int i = 0; i < line.count; i++) {
+            const unsigned seen = points.seen[line.bit + i] & mixed;
+            if (seen == 0)
+                continue;
+            const int x = points.cell.x + line.x + i;
+            const float share = light_point_share(args, lit, points, IVec3{x, y, z});
+            const float dx = lattice_coordinate(mesh.origin.x, mesh.step, x) - position.x;
+            const float weight = seen >> lane & 1 ? falling_weight(mesh, (dx * dx + dy * dy + dz * dz) * scale) : 0.0f;
+            weights += weight;
+            products += weight * share;
+        }
+    }
+    return weights > 0.0f ? fminf(products / weights, 1.0f) : UNKNOWN;
+}
+
+// Lights without a size, LIGHTS of them from `first` on: which light points see them is a bit each.
+//
+// 2. A lane's light points that see a light are the common bits of its mask and a word that is the same for the warp. Returns the
+// number of the lane's light points.
+DEVICE unsigned count_lit(const Interpolate &args, const ItemPoints &points, unsigned first, unsigned *lit_words,
+                          unsigned (&lit)[LIGHTS]) {
+    const LightMesh &mesh = args.mesh;
+    const unsigned lane = lane_of_thread();
+    unsigned used = 0;
+    for (unsigned word = 0; word < mesh.words; word++) {
+        const unsigned k = 32 * word + lane;
+        const unsigned seen = points.seen[k];
+        // Half of the points lie below the tangent plane.
+        if (!__any_sync(ALL_LANES, seen != 0)) {
+            if (lane < LIGHTS)
+                lit_words[lane * mesh.words + word] = 0;
+            continue;
+        }
+        unsigned slot = NO_SLOT, bit = 0;
+        if (seen != 0) {
+            const IVec3 offset = template_offset(mesh, k);
+            const IVec3 point = {points.cell.x + offset.x, points.cell.y + offset.y, points.cell.z + offset.z};
+            slot = points.slots[window_place(points.window, point)];
+            bit = point_bit(point);
+        }
+        const unsigned mine = warp_transposed(seen);
+        used += __popc(mine);
+        for (unsigned i = 0; i < LIGHTS; i++) {
+            const unsigned long long *bits = first + i < args.scene.light_count ? args.lit[first + i].bits : nullptr;
+            const unsigned word_of_light =
+                __ballot_sync(ALL_LANES, bits != nullptr && slot != NO_SLOT && (bits[slot] >> bit & 1));
+            lit[i] += __popc(mine & word_of_light);
+            if (lane == 0)
+                lit_words[i * mesh.words + word] = word_of_light;
+        }
+    }
+    __syncwarp();
+    return used;
+}
+
+// 3. The weighted means for the lanes in `mixed`, whose light points do not all see the same.
+DEVICE void weighted_means(const Interpolate &args, const ItemPoints &points, const Vec3 &position, unsigned mixed,
+                           const unsigned *lit_words, float (&means)[LIGHTS]) {
+    const LightMesh &mesh = args.mesh;
+    const unsigned lane = lane_of_thread();
+    const float scale = 1.0f / (mesh.radius * mesh.radius);
+    float weights = 0.0f, products[LIGHTS] = {};
+    for (unsigned row = 0; row < mesh.lines; row++) {
+        const TemplateRow line = template_rows[row];
+        const float dy = lattice_coordinate(mesh.origin.y, mesh.step, points.cell.y + line.y) - position.y;
+        const float dz = lattice_coordinate(mesh.origin.z, mesh.step, points.cell.z + line.z) - position.z;
+        for (int i = 0; i < line.count; i++) {
+            const unsigned k = line.bit + i;
+            const unsigned seen = points.seen[k] & mixed;
+            if (seen == 0)
+                continue;
+            const float dx = lattice_coordinate(mesh.origin.x, mesh.step, points.cell.x + line.x + i) - position.x;
+            const float weight = seen >> lane & 1 ? falling_weight(mesh, (dx * dx + dy * dy + dz * dz) * scale) : 0.0f;
+            weights += weight;
+            for (unsigned light = 0; light < LIGHTS; light++)
+                products[light] += lit_words[light * mesh.words + k / 32] >> k % 32 & 1 ? weight : 0.0f;
+        }
+    }
+    // Weights that vanish at the rim may vanish altogether.
+    for (unsigned light = 0; light < LIGHTS; light++)
+        means[light] = weights > 0.0f ? fminf(products[light] / weights, 1.0f) : UNKNOWN;
+}
+
+// Everything about one item, as its lane sees it.
+struct ItemLane {
+    SurfacePoint point;
+    float reach;
+    unsigned ray;
+    bool alive;
+};
+
+// 4. χ; and what must be found otherwise. Returns whether that is so.
+DEVICE bool write_share(const Interpolate &args, const ItemLane &lane, unsigned light, float most, float share) {
+    share = most == 0.0f ? 0.0f : fminf(share, most);
+    if (lane.alive)
+        args.share[(unsigned long long)light * args.rays.count + lane.ray] = share;
+    return share < 0.0f;
+}
+
+// The shares of LIGHTS lights without a size. Returns whether the lane falls back.
+DEVICE bool lights_without_size(const Interpolate &args, const ItemPoints &points, const ItemLane &lane, unsigned first,
+                                unsigned *lit_words, unsigned &used) {
+    unsigned lit[LIGHTS] = {};
+    used = count_lit(args, points, first, lit_words, lit);
+    float most[LIGHTS], means[LIGHTS];
+    bool mixed = false;
+    for (unsigned i = 0; i < LIGHTS; i++) {
+        const bool is_here = first + i < args.scene.light_count && args.lit[first + i].bits != nullptr;
+        most[i] = is_here && lane.alive ? above_horizon(lane.point, args.scene.lights[first + i], lane.reach) : 0.0f;
+        // Where all weights are 1, and where all light points see the same, numbers give the mean.
+        means[i] = used > 0 ? (float)lit[i] / (float)used : UNKNOWN;
+        mixed |= args.mesh.weight != 0 && most[i] > 0.0f && lit[i] > 0 && lit[i] < used;
+    }
+    const unsigned lanes = __ballot_sync(ALL_LANES, mixed);
+    if (lanes != 0) {
+        float weighted[LIGHTS];
+        weighted_means(args, points, lane.point.position, lanes, lit_words, weighted);
+        for (unsigned i = 0; i < LIGHTS; i++)
+            means[i] = lit[i] > 0 && lit[i] < used ? weighted[i] : means[i];
+    }
+    bool fell_back = false;
+    for (unsigned i = 0; i < LIGHTS; i++)
+        if (first + i < args.scene.light_count && args.lit[first + i].bits != nullptr)
+            fell_back |= write_share(args, lane, first + i, most[i], means[i]);
+    __syncwarp();
+    return fell_back;
+}
+
+// The share of one light with a size. Returns whether the lane falls back.
+DEVICE bool light_with_size(const Interpolate &args, const ItemPoints &points, const ItemLane &lane, unsigned light) {
+    const LitBy lit = args.lit[light];
+    const unsigned index = lane_of_thread();
+    const float most = lane.alive ? above_horizon(lane.point, args.scene.lights[light], lane.reach) : 0.0f;
+    // 2. All alike: the mean is known without weights.
+    const LitLanes lanes = lit_lanes(args, lit, points);
+    float share = lanes.some >> index & 1 ? 1.0f : 0.0f;
+    // 3. The weighted mean.
+    const unsigned mixed = lanes.some & lanes.not_full & __ballot_sync(ALL_LANES, most > 0.0f);
+    if (mixed != 0) {
+        const float mean = weighted_mean(args, lit, points, lane.point.position, mixed);
+        share = mixed >> index & 1 ? mean : share;
+    }
+    if (!(lanes.any >> index & 1))
+        share = UNKNOWN;
+    return write_share(args, lane, light, most, share);
+}
+
+KERNEL(interpolate, Interpolate, 128, 8) {
+    DYNAMIC_SHARED(unsigned, shared);
+    const LightMesh &mesh = args.mesh;
+    const unsigned lane = lane_of_thread();
+    const unsigned long long number = (unsigned long long)blockIdx.x * ITEM_WARPS + threadIdx.x / 32;
+    if (number >= args.count)
+        return;
+    const unsigned long long index = args.first + number;
+    const Item item = args.items[index];
+    ItemLane own;
+    own.alive = lane < item.count;
+    own.ray = args.members[item.first + (own.alive ? lane : 0)];
+    own.point = object_point(args.scene, args.rays, args.hits, own.ray);
+    own.reach = scene_reach(args.scene, own.point.origin);
+
+    // 1. The bricks around the cell.
+    ItemPoints points;
+    points.cell = point_of(item.cell);
+    points.window = window_around(mesh, points.cell);
+    const int bricks = window_size(points.window);
+    points.slots = shared + threadIdx.x / 32 * (bricks + LIGHTS * mesh.words);
+    unsigned *lit_words = points.slots + bricks;
+    points.seen = args.masks + index * 32 * mesh.words;
+    for (int place = lane; place < bricks; place += 32)
+        points.slots[place] = find_slot(args.points.table, window_key(points.window, place));
+    __syncwarp();
+
+    bool fell_back = false;
+    unsigned used = 0, first = 0;
+    do {
+        fell_back |= lights_without_size(args, points, own, first, lit_words, used);
+        first += LIGHTS;
+    } while (first < args.scene.light_count);
+    for (unsigned light = 0; light < args.scene.light_count; light++)
+        if (args.lit[light].seen != nullptr)
+            fell_back |= light_with_size(args, points, own, light);
+    if (own.alive)
+        args.used[own.ray] = used;
+    count(tally_shard(args.tally).fallbacks, fell_back);
+    if (fell_back)
+        *args.any_fallback = 1;
+}
+
+// The visible share of each light that is still unknown, from rays of the object point's own.
+template <typename Structure>
+DEVICE void fallback(const Interpolate &args, const Structure &structure) {
+    unsigned ray;
+    if (*args.any_fallback == 0)
+        return;
+    if (!ray_of_thread(args.rays, args.first + blockIdx.x, threadIdx.x, ray) || args.hits[ray].triangle == HIT_NONE)
+        return;
+    for (unsigned light = 0; light < args.scene.light_count; light++) {
+        float &share = args.share[(unsigned long long)light * args.rays.count + ray];
+        if (share < 0.0f) {
+            const SurfacePoint point = object_point(args.scene, args.rays, args.hits, ray);
+            share = fallback_share(structure, args.scene, args.sampling, args.tally, point, ray_key(args.rays, ray), light);
+        }
+    }
+}
+
+KERNEL(fallback_bvh, Interpolate, 256, 2) {
+    fallback(args, args.scene.bvh);
+}
+
+KERNEL(fallback_grid, Interpolate, 256, 2) {
+    fallback(args, args.scene.grid);
+}
+
+KERNEL(fallback_brute_force, Interpolate, 256, 2) {
+    fallback(args, args.scene.brute_force);
+}

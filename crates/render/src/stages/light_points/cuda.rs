@@ -1,0 +1,126 @@
+//! Step 3 on a CUDA device: a table of bricks, marks in them, ranks, a list.
+//!
+//! The table is filled so that it looks the same whatever the order of the threads (Shun, Blelloch: *Phase-Concurrent Hash Tables for
+//! Determinism*, SPAA 2014). So slots, ranks and lists repeat from run to run.
+
+use bytemuck::Zeroable;
+use lightmesh_layout::mesh::{BrickTable, UsedPoints};
+use lightmesh_layout::stages::LightPoints;
+
+use crate::RenderError;
+use crate::backend::cuda::{BLOCK, Cuda, WARP};
+use crate::cuda::{Buffer, Kernel, Launch, Runtime};
+use crate::job::{Job, Tally};
+use crate::light_mesh::{BrickKey, LightMesh};
+use crate::stages::short_tests::cuda::DeviceMasks;
+
+/// The used light points of a picture on a device.
+pub struct DevicePoints<R: Runtime> {
+    keys: Buffer<R, u64>,
+    used: Buffer<R, u64>,
+    rank: Buffer<R, u32>,
+    points: Buffer<R, u64>,
+    /// S_total.
+    pub(crate) count: usize,
+}
+
+const INSERT: Kernel = Kernel { module: "light_points", name: "insert_bricks" };
+const MARK: Kernel = Kernel { module: "light_points", name: "mark_points" };
+const COUNT: Kernel = Kernel { module: "light_points", name: "count_points" };
+const LIST: Kernel = Kernel { module: "light_points", name: "list_points" };
+
+/// Items of the first launch ever.
+const FIRST: u64 = 4096;
+/// Slots of the smallest table.
+const LEAST_CAPACITY: usize = 1024;
+
+pub(crate) fn light_points<R: Runtime>(
+    cuda: &Cuda<R>,
+    job: &Job,
+    masks: &DeviceMasks<R>,
+    mesh: &LightMesh,
+) -> Result<DevicePoints<R>, RenderError> {
+    // 1. The bricks that hold a used point, in a table that is at most half full.
+    let mut capacity = masks.count.next_power_of_two().max(LEAST_CAPACITY);
+    let (keys, record) = loop {
+        let keys = cuda.pool().zeros("table of bricks", capacity)?;
+        let bricks = cuda.pool().zeros("number of bricks", 1)?;
+        let table = BrickTable { keys: keys.output(), capacity: capacity as u32, spare: 0 };
+        let record = LightPoints {
+            mesh: cuda.mesh(mesh)?,
+            items: masks.items.input(),
+            masks: masks.masks.input(),
+            item_count: masks.count as u64,
+            table,
+            bricks: bricks.output(),
+            ..LightPoints::zeroed()
+        };
+        each_item(cuda, job, INSERT, &record)?;
+        let mut count = [0u32];
+        bricks.read_into(0, &mut count)?;
+        if count[0] as usize <= capacity / 2 {
+            break (keys, record);
+        }
+        capacity *= 2;
+    };
+    // 2. The used points in each. The order of marking does not matter to an "or".
+    let used = cuda.pool().zeros("used light points", capacity)?;
+    let record = LightPoints { used: used.output(), ..record };
+    each_item(cuda, job, MARK, &record)?;
+    // 3. Ranks.
+    let rank = cuda.pool().room("ranks of bricks", capacity + 1)?;
+    let record = LightPoints { rank: rank.output(), ..record };
+    let launch = Launch { blocks: (capacity as u32).div_ceil(BLOCK), threads: BLOCK, shared: 0 };
+    cuda.launch(COUNT, launch, &record)?;
+    let count = cuda.scan_total(&rank)?;
+    // 4. The list.
+    let points = cuda.pool().room("light points", count)?;
+    cuda.launch(LIST, launch, &LightPoints { points: points.output(), ..record })?;
+    Tally::add(&job.tally.light_points, count as u64);
+    Ok(DevicePoints { keys, used, rank, points, count })
+}
+
+/// Launches a kernel that takes one item a warp, over all items.
+fn each_item<R: Runtime>(cuda: &Cuda<R>, job: &Job, kernel: Kernel, record: &LightPoints) -> Result<(), RenderError> {
+    cuda.in_pieces(job, kernel, record.item_count, FIRST, 0, |piece| {
+        let count = piece.end - piece.start;
+        let warps = BLOCK / WARP;
+        let shared = warps * 8 * window_bricks(record.mesh.reach);
+        let launch = Launch { blocks: (count as u32).div_ceil(warps), threads: BLOCK, shared };
+        cuda.launch(kernel, launch, &LightPoints { first_item: piece.start, item_count: count, ..*record })
+    })
+}
+
+/// Bricks of the window around a cell, see `window.cuh`.
+pub(crate) fn window_bricks(reach: i32) -> u32 {
+    ((2 * reach + 2) / 4 + 1).pow(3) as u32
+}
+
+impl<R: Runtime> DevicePoints<R> {
+    /// Slots of the table.
+    pub(crate) fn capacity(&self) -> usize {
+        self.keys.len()
+    }
+
+    /// Where everything is.
+    pub(crate) fn record(&self) -> UsedPoints {
+        UsedPoints {
+            table: BrickTable { keys: self.keys.output(), capacity: self.keys.len() as u32, spare: 0 },
+            used: self.used.input(),
+            rank: self.rank.input(),
+            points: self.points.input(),
+        }
+    }
+
+    /// Reads the bricks that hold used points: slot, key and used points of each.
+    pub fn read_bricks(&self) -> Result<Vec<(usize, BrickKey, u64)>, RenderError> {
+        let (keys, used) = (self.keys.read()?, self.used.read()?);
+        let slots = keys.into_iter().zip(used).enumerate();
+        Ok(slots.filter(|(_, (key, _))| *key != 0).map(|(slot, (key, used))| (slot, key - 1, used)).collect())
+    }
+
+    /// Reads the rank of the first used point of each slot.
+    pub fn read_ranks(&self) -> Result<Vec<u32>, RenderError> {
+        self.rank.read()
+    }
+}

@@ -1,0 +1,46 @@
+//! Mirror rays on a CUDA device: counted, summed, written in the order of the rays.
+
+use bytemuck::Zeroable;
+use lightmesh_layout::geometry::Rays;
+use lightmesh_layout::stages::MirrorRays;
+
+use crate::RenderError;
+use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays};
+use crate::cuda::{Kernel, Launch, Runtime};
+use crate::job::Job;
+use crate::prepared::PreparedScene;
+
+const COUNT: Kernel = Kernel { module: "mirror_rays", name: "mirror_rays_count" };
+const EMIT: Kernel = Kernel { module: "mirror_rays", name: "mirror_rays_emit" };
+
+pub(crate) fn mirror_rays<R: Runtime>(
+    cuda: &Cuda<R>,
+    job: &Job,
+    scene: &PreparedScene,
+    rays: &DeviceRays<R>,
+    hits: &DeviceHits<R>,
+) -> Result<DeviceRays<R>, RenderError> {
+    job.check()?;
+    let scene = cuda.scene(scene)?;
+    let blocks = rays.record.count.div_ceil(BLOCK);
+    let counts = cuda.pool().room("counts of mirror rays", blocks as usize + 1)?;
+    let launch = Launch { blocks, threads: BLOCK, shared: 0 };
+    let arguments = MirrorRays {
+        scene: scene.record,
+        rays: rays.record,
+        hits: hits.hits.input(),
+        counts: counts.output(),
+        ..MirrorRays::zeroed()
+    };
+    // 1. How many rays of each block are mirrored?
+    cuda.launch(COUNT, launch, &arguments)?;
+    // 2. Where do those of each block begin?
+    let total = cuda.scan_total(&counts)?;
+    // 3. The mirror rays.
+    let list = cuda.pool().room("mirror rays", total)?;
+    if total > 0 {
+        cuda.launch(EMIT, launch, &MirrorRays { mirrored: list.output(), ..arguments })?;
+    }
+    let record = Rays { list: list.input(), first_pixel: 0, count: total as u32, ..rays.record };
+    Ok(DeviceRays { record, list: Some(list) })
+}

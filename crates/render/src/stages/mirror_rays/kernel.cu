@@ -1,0 +1,59 @@
+// The last term of formula (1) on a CUDA device: twin of cpu.rs, one thread a ray.
+//
+// 1. `mirror_rays_count`: how many rays of each block of 256 are mirrored; then a scan.
+// 2. `mirror_rays_emit`: the mirror rays, in the order of the rays.
+#include "cuda/prelude.cuh"
+
+#include "cuda/warp.cuh"
+#include "stages/shade/shade.cuh"
+
+#define MIRROR_THREADS 256
+
+// The share of what a mirror at the object point of `ray` shows that reaches the pixel; zero where there is none.
+DEVICE Vec3 mirror_weight(const MirrorRays &args, unsigned ray) {
+    if (ray >= args.rays.count)
+        return splat(0.0f);
+    const unsigned triangle = load_hit(args.hits, ray).triangle;
+    if (triangle == HIT_NONE)
+        return splat(0.0f);
+    return weight_of(args.rays, ray) * args.scene.materials[__ldg(args.scene.triangle_materials + triangle)].ks;
+}
+
+// How many threads of the block before this one have a flag, and how many have one in all.
+DEVICE unsigned flags_before(bool flag, unsigned &all) {
+    SHARED(unsigned, warps, [MIRROR_THREADS / 32]);
+    const unsigned lane = lane_of_thread(), warp = threadIdx.x / 32;
+    const unsigned flags = __ballot_sync(ALL_LANES, flag);
+    if (lane == 0)
+        warps[warp] = __popc(flags);
+    __syncthreads();
+    unsigned before = __popc(flags & lanes_below(lane));
+    all = 0;
+    for (unsigned other = 0; other < MIRROR_THREADS / 32; ++other) {
+        before += other < warp ? warps[other] : 0;
+        all += warps[other];
+    }
+    return before;
+}
+
+KERNEL(mirror_rays_count, MirrorRays, MIRROR_THREADS, 4) {
+    const Vec3 weight = mirror_weight(args, blockIdx.x * MIRROR_THREADS + threadIdx.x);
+    unsigned all;
+    flags_before(weight != splat(0.0f), all);
+    if (threadIdx.x == 0)
+        args.counts[blockIdx.x] = all;
+}
+
+KERNEL(mirror_rays_emit, MirrorRays, MIRROR_THREADS, 4) {
+    const unsigned ray = blockIdx.x * MIRROR_THREADS + threadIdx.x;
+    const Vec3 weight = mirror_weight(args, ray);
+    const bool mirrors = weight != splat(0.0f);
+    unsigned all;
+    const unsigned before = flags_before(mirrors, all);
+    if (!mirrors)
+        return;
+    const Surface surface = surface_at(args.scene, args.rays, args.hits, ray);
+    const Vec3 direction = normalize(mirrored(surface));
+    args.mirrored[args.counts[blockIdx.x] + before] =
+        ListedRay{surface.point.origin, pixel_of(args.rays, ray), direction, 0, weight, 0};
+}

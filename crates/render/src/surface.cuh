@@ -1,0 +1,71 @@
+// From a hit to the object point that everything else starts from: twin of surface.rs.
+#pragma once
+
+#include "accel/triangle.cuh"
+#include "cuda/rays.cuh"
+
+// γ(32): relative rounding error of a chain of 32 operations.
+#define GAMMA_32 (32.0f * 5.9604644775390625e-8f / (1.0f - 32.0f * 5.9604644775390625e-8f))
+// Below this square of twice its area a triangle's normal has lost its bits to underflow.
+#define LEAST_SQUARE 1e-30f
+
+// An object point P.
+struct SurfacePoint {
+    Vec3 position, origin, normal;
+};
+
+// The unit normal of a tiny or very narrow triangle; the direction to the viewer where double precision sees no area either.
+COLD Vec3 needle_normal(Corners corners, Vec3 direction) {
+    const DVec3 a = to_double(corners.a), b = to_double(corners.b), c = to_double(corners.c);
+    const Vec3 normal = to_single(normalize_or_zero(cross(b - a, c - a)));
+    return normal == splat(0.0f) ? -normalize_or_zero(direction) : normal;
+}
+
+// The object point that `ray` sees at `hit` on the triangle with these corners.
+DEVICE SurfacePoint surface_point(const Ray &ray, const Hit &hit, const Corners &corners) {
+    const Vec3 a = corners.a, b = corners.b, c = corners.c;
+    const Vec3 position = (1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c;
+    Vec3 outward = cross(b - a, c - a);
+    const float square = length_squared(outward);
+    outward = square > LEAST_SQUARE ? outward / sqrtf(square) : needle_normal(corners, ray.direction);
+    const Vec3 normal = dot(outward, ray.direction) > 0.0f ? -outward : outward;
+    const float error = GAMMA_32 * max_element(abs(a) + abs(b) + abs(c));
+    return SurfacePoint{position, position + error * normal, normal};
+}
+
+// The object point that ray number `ray` sees; the ray must have hit something.
+DEVICE SurfacePoint object_point(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray) {
+    const Hit hit = load_hit(hits, ray);
+    return surface_point(ray_at(rays, ray), hit, load_corners(scene.triangles + hit.triangle));
+}
+
+DEVICE Vec3 load_normal(const Vec3 *normals, unsigned vertex) {
+    const float *normal = &normals[vertex].x;
+    return Vec3{__ldg(normal), __ldg(normal + 1), __ldg(normal + 2)};
+}
+
+// The unit normal that shading uses, on the side of the geometric normal `facing`.
+DEVICE Vec3 shading_normal(const Scene &scene, const Hit &hit, Vec3 facing) {
+    if (scene.normals == nullptr)
+        return facing;
+    const unsigned *vertices = scene.indices[hit.triangle].vertices;
+    const Vec3 a = load_normal(scene.normals, __ldg(vertices)), b = load_normal(scene.normals, __ldg(vertices + 1)),
+               c = load_normal(scene.normals, __ldg(vertices + 2));
+    const Vec3 smooth = (1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c;
+    const float square = length_squared(smooth);
+    // A corner without a normal makes the triangle flat; so do normals that cancel out.
+    const Vec3 none = splat(0.0f);
+    if (a == none || b == none || c == none || square < 1e-12f)
+        return facing;
+    const Vec3 normal = smooth / sqrtf(square);
+    return dot(normal, facing) < 0.0f ? -normal : normal;
+}
+
+// The segment from `origin` to `target` for a long test, its far end spared.
+DEVICE Ray long_segment(Vec3 origin, Vec3 target) {
+    const Vec3 direction = target - origin;
+    const float length = max_element(abs(direction));
+    const float error = GAMMA_32 * max_element(max(abs(origin), abs(target)));
+    const float spared = error < 0.5f * length ? error / length : 0.5f;
+    return Ray{origin, direction, 1.0f - spared};
+}
