@@ -93,7 +93,7 @@ mod tests {
                 let occupied: Vec<bool> = (0..cells)
                     .map(|_| {
                         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                        (state >> 33) % rarity == 0
+                        (state >> 33).is_multiple_of(rarity)
                     })
                     .collect();
                 let mut distances: Vec<u8> = occupied.iter().map(|&held| if held { 0 } else { u8::MAX }).collect();
