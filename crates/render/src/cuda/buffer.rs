@@ -130,6 +130,13 @@ impl<R: Runtime, T: Pod> Buffer<R, T> {
         self.runtime.clear(&self.memory, 0, self.bytes).map_err(|fault| fault_of(&*self.runtime, fault))
     }
 
+    /// Sets the last value to zero.
+    pub fn clear_last(&self) -> Result<(), RenderError> {
+        let bytes = size_of::<T>() as u64;
+        let cleared = self.runtime.clear(&self.memory, self.bytes - bytes, bytes);
+        cleared.map_err(|fault| fault_of(&*self.runtime, fault))
+    }
+
     /// Overwrites the first values.
     pub fn write(&self, values: &[T]) -> Result<(), RenderError> {
         debug_assert!(values.len() <= self.len);

@@ -2,8 +2,9 @@
 //!
 //! Crossing parameters are computed from the planes anew at each step, not summed up, so that their error does not grow.
 //! Each step moves one cell onward on one axis and never back: a grid of nx × ny × nz cells is left after at most
-//! nx + ny + nz − 2 cells. The loop is bounded by that; should it ever end there, all triangles are asked and the event is
-//! counted, see [`Grid::overruns`].
+//! nx + ny + nz − 2 cells. By rounding, a ray may come to a border of a nested grid before it leaves the cell that holds it; then
+//! it stays in its cell, once on each axis. The loop is bounded by nx + ny + nz + 1; should it ever end there, all triangles are
+//! asked and the event is counted, see [`Grid::overruns`].
 //!
 //! A triangle may be met in one cell and hit in a later one. The walk therefore keeps the best hit and ends only when it lies
 //! before the way out of the current cell.
@@ -133,7 +134,7 @@ impl Grid {
         let mut cell = march.cell(enter);
         let mut next = [march.crossing(0, cell[0]), march.crossing(1, cell[1]), march.crossing(2, cell[2])];
         let mut enter = enter;
-        for _ in 0..march.dims.as_u64vec3().element_sum() {
+        for _ in 0..=march.dims.as_u64vec3().element_sum() {
             // 2. The nearest of the three planes ahead.
             let axis = if next[0] <= next[1] && next[0] <= next[2] {
                 0
@@ -142,7 +143,7 @@ impl Grid {
             } else {
                 2
             };
-            let exit = next[axis];
+            let exit = next[axis].min(leave);
 
             // 3. Ask what the cell holds.
             let index = (cell[2] as usize * dims[1] as usize + cell[1] as usize) * dims[0] as usize + cell[0] as usize;
@@ -172,11 +173,16 @@ impl Grid {
             }
 
             // 5. Step into the next cell.
-            cell[axis] += step[axis];
-            if cell[axis] < 0 || cell[axis] >= dims[axis] {
+            let onward = cell[axis] + step[axis];
+            if (0..dims[axis]).contains(&onward) {
+                cell[axis] = onward;
+                next[axis] = march.crossing(axis, onward);
+            } else if LEVEL == 0 {
                 return Outcome::Left;
+            } else {
+                // The border of the outer cell, which the ray has not reached yet.
+                next[axis] = f32::INFINITY;
             }
-            next[axis] = march.crossing(axis, cell[axis]);
             enter = enter.max(exit);
         }
         Outcome::Overrun

@@ -30,6 +30,7 @@ impl<R: Runtime> Cuda<R> {
     /// The same for values with one more place at their end, whose content does not matter: it receives the sum of all, which is
     /// returned. Waits for the device.
     pub(crate) fn scan_total(&self, values: &Buffer<R, u32>) -> Result<usize, RenderError> {
+        values.clear_last()?;
         self.scan(values)?;
         let mut total = [0];
         values.read_into(values.len() - 1, &mut total)?;

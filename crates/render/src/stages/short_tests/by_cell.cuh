@@ -435,6 +435,8 @@ DEVICE unsigned filter_targets(const LightMesh &mesh, const CellItem &item, cons
                    may_hide(mesh, item, memory.candidates[packed >> 16], Vec3{target.x, target.y, target.z});
         }
         const unsigned lanes = __ballot_sync(ALL_LANES, keep);
+        // All have read before any writes.
+        __syncwarp();
         if (keep)
             memory.targets[kept + __popc(lanes & lanes_below(lane))] = target;
         kept += __popc(lanes);
@@ -490,6 +492,8 @@ DEVICE bool clear_blocked(const ShortTests &args, const CellLane &lane, const Ce
             blocked &= lanes;
             edges_known = true;
         }
+        // All have read before one writes.
+        __syncwarp();
         if (lane_of_thread() == 0)
             memory.seen[point] = seen & ~blocked;
         __syncwarp();
