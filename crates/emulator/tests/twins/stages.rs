@@ -15,6 +15,8 @@ use crate::trials::{Case, Target};
 const HITS: [u32; 2] = [64, 64];
 /// Pixels of all others: no multiple of any tile.
 const SIZE: [u32; 2] = [45, 37];
+/// Pixels of those with large templates.
+const SMALL: [u32; 2] = [18, 13];
 /// Shares may differ by what the order of a sum and roots of weights change.
 pub(crate) const SHARE_TOLERANCE: f32 = 1e-5;
 
@@ -29,8 +31,21 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
             add("hits", |cuda, subject, index| drop(Twins::new(cuda, subject, index, HITS)));
             if subject.small || name != "brute_force" {
                 add("shadow_rays", |cuda, subject, index| Twins::new(cuda, subject, index, SIZE).shadow_rays());
-                add("light_mesh_2.1", |cuda, subject, index| Twins::new(cuda, subject, index, SIZE).light_mesh(2.1));
-                add("light_mesh_3.1", |cuda, subject, index| Twins::new(cuda, subject, index, SIZE).light_mesh(3.1));
+                add("light_mesh_2.1", |cuda, subject, index| {
+                    Twins::new(cuda, subject, index, SIZE).light_mesh(2.1, Weight::Smooth);
+                });
+                add("light_mesh_3.1", |cuda, subject, index| {
+                    Twins::new(cuda, subject, index, SIZE).light_mesh(3.1, Weight::Quadratic);
+                });
+            }
+            if subject.small && name == "bvh" {
+                // Templates of one brick and of many, masks in shared memory and out of it, kernels unrolled and not.
+                add("light_mesh_other", |cuda, subject, index| {
+                    let twins = Twins::new(cuda, subject, index, SMALL);
+                    for radius in [0.5, 1.5, 4.1, 5.1, 9.0, 16.0] {
+                        twins.light_mesh(radius, Weight::Constant);
+                    }
+                });
             }
         }
     }
@@ -82,13 +97,13 @@ impl<'a, R: Target> Twins<'a, R> {
     }
 
     /// Steps 2 to 5.
-    fn light_mesh(&self, radius: f32) {
+    fn light_mesh(&self, radius: f32, weight: Weight) {
         let step = self.subject.step;
         let mesh = LightMesh {
             lattice: Lattice::around(&self.scene.bounds, step, radius).unwrap(),
             template: Template::new(radius).unwrap(),
             radius: radius * step,
-            weight: Weight::Smooth,
+            weight,
         };
         let (rays, hits) = (&self.rays, &self.hits);
         let masks = Cpu.short_tests(&job(), self.scene, rays, hits, &mesh).unwrap();

@@ -59,16 +59,29 @@ fn rays_agree(triangles: &[Triangle], mut batch: impl FnMut(&Targets) -> Vec<Ray
     Ok(hits.iter().filter(|hit| hit.is_some()).count())
 }
 
+/// Rays of all kinds through a scene.
+fn single_rays_agree(scene: Scene, seed: u64) -> Result<(), TestCaseError> {
+    let random = &mut Random(seed);
+    let triangles = scene.triangles(random);
+    let hits = rays_agree(&triangles, |targets| (0..400).map(|_| targets.ray(random)).collect())?;
+    // A comparison of misses would prove little.
+    prop_assert!(matches!(scene, Scene::Empty | Scene::One | Scene::Flat) || hits > 40, "{} rays hit", hits);
+    Ok(())
+}
+
+/// By rounding, a ray that all but keeps to a plane came to the border of a nested grid before it left the cell around it, and the
+/// walk through the nested grid ended there, before the hit.
+#[test]
+fn a_nested_grid_is_not_left_before_the_cell_that_holds_it() {
+    single_rays_agree(Scene::Sheet, 10_938_381_108_378_275_224).unwrap();
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(96) })]
 
     #[test]
     fn closest_and_any_hits_agree(scene in prop::sample::select(&scenes::ALL), seed: u64) {
-        let random = &mut Random(seed);
-        let triangles = scene.triangles(random);
-        let hits = rays_agree(&triangles, |targets| (0..400).map(|_| targets.ray(random)).collect())?;
-        // A comparison of misses would prove little.
-        prop_assert!(matches!(scene, Scene::Empty | Scene::One | Scene::Flat) || hits > 40, "{} rays hit", hits);
+        single_rays_agree(scene, seed)?;
     }
 
     #[test]
