@@ -10,7 +10,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::backend::{Backend, Cpu, Cuda};
 use crate::cuda::Driver;
-use crate::device::{Chosen, choose};
+use crate::device::{Choice, Chosen};
 use crate::job::{Job, Sampling};
 use crate::light_mesh::{Lattice, LightMesh, Template, auto_step};
 use crate::modes::{self, Plan, Technique};
@@ -73,17 +73,21 @@ impl Renderer {
     /// [`RenderError::Device`] where the device cannot be used, [`RenderError::Setting`] where the number of threads has no sense,
     /// [`RenderError::Threads`] where the threads cannot be started.
     pub fn with_threads(device: Device, threads: Option<usize>) -> Result<Renderer, RenderError> {
-        if threads.is_some_and(|threads| !(1..=MAX_THREADS).contains(&threads)) {
-            return Err(RenderError::Setting {
-                what: "number of threads (--threads)",
-                value: threads.unwrap_or(0).to_string(),
-                remedy: "choose 1 to 1024; the number of processors is best",
-            });
-        }
+        check_threads(threads)?;
+        Renderer::on(Choice::of(device)?, threads)
+    }
+
+    /// A renderer on a device that was made ready, with a number of threads of its own; `None`: one for each processor.
+    ///
+    /// # Errors
+    /// [`RenderError::Setting`] where the number of threads has no sense, [`RenderError::Threads`] where the threads cannot be
+    /// started.
+    pub fn on(choice: Choice, threads: Option<usize>) -> Result<Renderer, RenderError> {
+        check_threads(threads)?;
         let threads = threads.unwrap_or(0);
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| RenderError::Threads { threads, reason: error.to_string() })?;
-        let engine = match choose(device)? {
+        let engine = match choice.chosen {
             Chosen::Cpu => Engine::Cpu,
             Chosen::Cuda(driver) => Engine::Cuda(Box::new(Mutex::new(Cuda::new(driver)))),
         };
@@ -222,6 +226,18 @@ fn settings_stats(
         memory_limit: settings.memory_limit,
         rows_per_band,
         lattice: mesh.map(|mesh| LatticeStats::new(scene, &mesh.lattice)),
+    }
+}
+
+/// A number of threads without sense is refused before any work.
+fn check_threads(threads: Option<usize>) -> Result<(), RenderError> {
+    match threads {
+        Some(threads) if !(1..=MAX_THREADS).contains(&threads) => Err(RenderError::Setting {
+            what: "number of threads (--threads)",
+            value: threads.to_string(),
+            remedy: "choose 1 to 1024; the number of processors is best",
+        }),
+        _ => Ok(()),
     }
 }
 

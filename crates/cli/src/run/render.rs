@@ -16,15 +16,15 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let plan = RenderPlan::new(args)?;
     let watcher = Watcher::new(args.progress, args.quiet);
     let choice = Choice::of(plan.device)?;
-    let renderer = Renderer::with_threads(choice.device, plan.threads.map(usize::from))?;
+    let reason = choice.reason.clone();
+    let renderer = Renderer::on(choice, plan.threads.map(usize::from))?;
     let start = Instant::now();
     let mut scene = Scene::open(&plan.scene)?;
     let load = start.elapsed().as_secs_f64();
     scene.warnings.iter().for_each(|warning| watcher.warning(warning));
     if matches!(plan.device, Device::Auto | Device::Cuda(None)) {
-        watcher.note(&format!("device {} takes {}", plan.device, choice.reason));
+        watcher.note(&format!("device {} takes {}", plan.device, reason));
     }
-    drop(choice); // the renderer has a device of its own
 
     let mut settings = plan.settings;
     settings.camera = Some(plan.choices.apply(&mut scene, &watcher)?);

@@ -13,7 +13,7 @@ pub struct Choice {
     pub device: Device,
     /// Which device it is and, where that was left open, why it is no other.
     pub reason: String,
-    chosen: Chosen,
+    pub(crate) chosen: Chosen,
 }
 
 /// A device that is ready.
@@ -24,14 +24,9 @@ pub(crate) enum Chosen {
     Cuda(Arc<Driver>),
 }
 
-/// Makes ready what is asked for. See [`Choice::of`].
-pub(crate) fn choose(device: Device) -> Result<Chosen, RenderError> {
-    Choice::of(device).map(|choice| choice.chosen)
-}
-
 impl Choice {
     /// Makes the device ready that is asked for. For [`Device::Auto`] that is the first CUDA device that works, or else the host's
-    /// processor. As long as the choice is kept, a [`Renderer`](crate::Renderer) on the same device starts faster.
+    /// processor. [`Renderer::on`](crate::Renderer::on) takes it.
     ///
     /// # Errors
     /// [`RenderError::Device`] where a CUDA device is asked for and cannot be used.

@@ -7,7 +7,7 @@ use std::fmt;
 use std::str::FromStr;
 
 pub use choice::Choice;
-pub(crate) use choice::{Chosen, choose};
+pub(crate) use choice::Chosen;
 pub(crate) use report::cpu_name;
 pub use report::{DeviceReport, devices};
 
