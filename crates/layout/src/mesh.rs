@@ -93,8 +93,3 @@ records! {
         points: In<u64>,
     }
 }
-
-impl TemplateRow {
-    /// Rows of the largest template.
-    pub const MAX: usize = 32 * 32;
-}

@@ -59,7 +59,8 @@ records! {
         spare_c: u32,
     }
 
-    /// Everything about a scene that kernels ask for. Only one of the three structures is there.
+    /// Everything about a scene that kernels ask for. Of the three structures that one is there which rays walk; and the BVH, where
+    /// short tests go by cell.
     Scene {
         /// By index in the mesh.
         triangles: In<Triangle>,

@@ -11,6 +11,7 @@ mod scan;
 mod scene;
 mod trait_impl;
 
+use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use bytemuck::Pod;
@@ -30,6 +31,17 @@ pub(crate) use scene::{DeviceScene, kernel_of};
 pub(crate) const BLOCK: u32 = 256;
 /// Threads of a warp.
 pub(crate) const WARP: u32 = 32;
+
+/// A launch of one block of `threads` threads for each unit of a piece of work.
+pub(crate) fn blocks_for(piece: &Range<u64>, threads: u32) -> Launch {
+    Launch { blocks: (piece.end - piece.start) as u32, threads, shared: 0 }
+}
+
+/// A launch of one warp for each unit of a piece of work, `warps` to a block, with `words` 32-bit words of shared memory a warp.
+pub(crate) fn warps_for(piece: &Range<u64>, warps: u32, words: u32) -> Launch {
+    let blocks = ((piece.end - piece.start) as u32).div_ceil(warps);
+    Launch { blocks, threads: warps * WARP, shared: warps * 4 * words }
+}
 
 /// A CUDA device, or what stands in for one.
 pub struct Cuda<R: Runtime> {
@@ -128,8 +140,7 @@ impl<R: Runtime> Cuda<R> {
 
     /// Reads counters and clocks: a band is done.
     fn end_band(&self, job: &Job) -> Result<(), RenderError> {
-        let sum = self.counters()?.read()?.into_iter().fold(Counts::default(), Counts::plus);
-        sum.add_to(job);
+        add_counts(job, &self.counters()?.read()?);
         for (stage, from, to) in locked(&self.spans).drain(..) {
             let seconds = self.pool.runtime().seconds(&from, &to).map_err(|fault| self.pool.fault(fault))?;
             job.add_seconds(stage, seconds);
@@ -138,43 +149,20 @@ impl<R: Runtime> Cuda<R> {
     }
 }
 
-/// The counters of all shards together.
-#[derive(Clone, Copy, Debug, Default)]
-struct Counts {
-    object_points: u64,
-    half_ball: u64,
-    used: u64,
-    short_tests: u64,
-    fallbacks: u64,
-    shadow_rays: u64,
-    hits: u64,
-}
-
-impl Counts {
-    fn plus(self, shard: Counters) -> Counts {
-        Counts {
-            object_points: self.object_points + shard.object_points,
-            half_ball: self.half_ball + shard.half_ball,
-            used: self.used + shard.used,
-            short_tests: self.short_tests + shard.short_tests,
-            fallbacks: self.fallbacks + shard.fallbacks,
-            shadow_rays: self.shadow_rays + shard.shadow_rays,
-            hits: self.hits + shard.hits,
-        }
-    }
-
-    fn add_to(self, job: &Job) {
-        use crate::job::Tally;
-        let tally = &job.tally;
-        Tally::add(&tally.object_points, self.object_points);
-        Tally::add(&tally.half_ball, self.half_ball);
-        Tally::add(&tally.used, self.used);
-        Tally::add(&tally.short_tests, self.short_tests);
-        Tally::add(&tally.short_tests_culled, self.half_ball - self.short_tests);
-        Tally::add(&tally.fallbacks, self.fallbacks);
-        Tally::add(&tally.shadow_rays, self.shadow_rays);
-        Tally::add(&tally.hits, self.hits);
-    }
+/// Adds what all shards counted.
+fn add_counts(job: &Job, shards: &[Counters]) {
+    use crate::job::Tally;
+    let tally = &job.tally;
+    let sum = |count: fn(&Counters) -> u64| shards.iter().map(count).sum::<u64>();
+    let (half_ball, tested) = (sum(|shard| shard.half_ball), sum(|shard| shard.short_tests));
+    Tally::add(&tally.object_points, sum(|shard| shard.object_points));
+    Tally::add(&tally.half_ball, half_ball);
+    Tally::add(&tally.used, sum(|shard| shard.used));
+    Tally::add(&tally.short_tests, tested);
+    Tally::add(&tally.short_tests_culled, half_ball - tested);
+    Tally::add(&tally.fallbacks, sum(|shard| shard.fallbacks));
+    Tally::add(&tally.shadow_rays, sum(|shard| shard.shadow_rays));
+    Tally::add(&tally.hits, sum(|shard| shard.hits));
 }
 
 impl<R: Runtime> DeviceVisibility<R> {

@@ -2,9 +2,9 @@
 
 use lightmesh_layout::stages::Scan;
 
-use super::{BLOCK, Cuda};
+use super::{BLOCK, Cuda, blocks_for};
 use crate::RenderError;
-use crate::cuda::{Buffer, Kernel, Launch, Runtime};
+use crate::cuda::{Buffer, Kernel, Runtime};
 
 /// Values that one block sums.
 const VALUES: usize = 1024;
@@ -18,7 +18,7 @@ impl<R: Runtime> Cuda<R> {
         }
         let sums = self.pool.room("sums of a scan", blocks)?;
         let arguments = Scan { values: values.output(), sums: sums.output(), count: values.len() as u64 };
-        let launch = Launch { blocks: blocks as u32, threads: BLOCK, shared: 0 };
+        let launch = blocks_for(&(0..blocks as u64), BLOCK);
         self.launch(Kernel { module: "scan", name: "scan_blocks" }, launch, &arguments)?;
         if blocks > 1 {
             self.scan(&sums)?;

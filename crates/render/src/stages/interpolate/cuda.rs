@@ -3,8 +3,10 @@
 use lightmesh_layout::stages::Interpolate;
 
 use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays, DeviceVisibility, WARP, kernel_of, sampling};
-use crate::cuda::{Kernel, Launch, Runtime};
+use crate::backend::cuda::{
+    BLOCK, Cuda, DeviceHits, DeviceRays, DeviceVisibility, blocks_for, kernel_of, sampling, warps_for,
+};
+use crate::cuda::{Kernel, Runtime};
 use crate::job::Job;
 use crate::light_mesh::LightMesh;
 use crate::prepared::PreparedScene;
@@ -63,17 +65,18 @@ impl<R: Runtime> Interpolation<'_, R> {
         cuda.in_pieces(job, INTERPOLATE, masks.count as u64, FIRST_ITEMS, rays.len() as u64, |piece| {
             let count = piece.end - piece.start;
             let words = window_bricks(mesh.template.reach()) + LIGHTS * mesh.template.words() as u32;
-            let launch =
-                Launch { blocks: (count as u32).div_ceil(WARPS), threads: WARPS * WARP, shared: WARPS * 4 * words };
-            cuda.launch(INTERPOLATE, launch, &Interpolate { first: piece.start, count, ..record })
+            cuda.launch(
+                INTERPOLATE,
+                warps_for(&piece, WARPS, words),
+                &Interpolate { first: piece.start, count, ..record },
+            )
         })?;
         // 2. Object points without light points take their own long tests.
         let names = ["fallback_bvh", "fallback_grid", "fallback_brute_force"];
         let kernel = kernel_of("interpolate", names, scene.structure);
         cuda.in_pieces(job, kernel, rays.blocks(16), FIRST_BLOCKS, 0, |piece| {
             let count = piece.end - piece.start;
-            let launch = Launch { blocks: count as u32, threads: BLOCK, shared: 0 };
-            cuda.launch(kernel, launch, &Interpolate { first: piece.start, count, ..record })
+            cuda.launch(kernel, blocks_for(&piece, BLOCK), &Interpolate { first: piece.start, count, ..record })
         })?;
         Ok(DeviceVisibility { share, used: Some(used), direct: None })
     }

@@ -7,9 +7,10 @@ use bytemuck::Zeroable;
 use lightmesh_layout::mesh::{BrickTable, UsedPoints};
 use lightmesh_layout::stages::LightPoints;
 
+use super::window_side;
 use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, WARP};
-use crate::cuda::{Buffer, Kernel, Launch, Runtime};
+use crate::backend::cuda::{BLOCK, Cuda, WARP, blocks_for, warps_for};
+use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::job::{Job, Tally};
 use crate::light_mesh::{BrickKey, LightMesh};
 use crate::stages::short_tests::cuda::DeviceMasks;
@@ -70,7 +71,7 @@ pub(crate) fn light_points<R: Runtime>(
     // 3. Ranks.
     let rank = cuda.pool().room("ranks of bricks", capacity + 1)?;
     let record = LightPoints { rank: rank.output(), ..record };
-    let launch = Launch { blocks: (capacity as u32).div_ceil(BLOCK), threads: BLOCK, shared: 0 };
+    let launch = blocks_for(&(0..capacity.div_ceil(BLOCK as usize) as u64), BLOCK);
     cuda.launch(COUNT, launch, &record)?;
     let count = cuda.scan_total(&rank)?;
     // 4. The list.
@@ -83,17 +84,15 @@ pub(crate) fn light_points<R: Runtime>(
 /// Launches a kernel that takes one item a warp, over all items.
 fn each_item<R: Runtime>(cuda: &Cuda<R>, job: &Job, kernel: Kernel, record: &LightPoints) -> Result<(), RenderError> {
     cuda.in_pieces(job, kernel, record.item_count, FIRST, 0, |piece| {
-        let count = piece.end - piece.start;
-        let warps = BLOCK / WARP;
-        let shared = warps * 8 * window_bricks(record.mesh.reach);
-        let launch = Launch { blocks: (count as u32).div_ceil(warps), threads: BLOCK, shared };
-        cuda.launch(kernel, launch, &LightPoints { first_item: piece.start, item_count: count, ..*record })
+        let launch = warps_for(&piece, BLOCK / WARP, 2 * window_bricks(record.mesh.reach));
+        let item_count = piece.end - piece.start;
+        cuda.launch(kernel, launch, &LightPoints { first_item: piece.start, item_count, ..*record })
     })
 }
 
-/// Bricks of the window around a cell, see `window.cuh`.
+/// Bricks of the window around a cell.
 pub(crate) fn window_bricks(reach: i32) -> u32 {
-    ((2 * reach + 2) / 4 + 1).pow(3) as u32
+    window_side(reach).pow(3) as u32
 }
 
 impl<R: Runtime> DevicePoints<R> {

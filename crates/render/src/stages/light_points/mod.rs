@@ -40,11 +40,15 @@ pub(crate) struct Window<'a> {
     pub(crate) places: &'a [Place],
 }
 
+/// Bricks of a window along each axis. Offsets run from 1 − reach to reach; a run of n points meets at most (n + 2) / 4 + 1 bricks.
+pub(crate) fn window_side(reach: i32) -> i32 {
+    (2 * reach + 2) / 4 + 1
+}
+
 impl Windows {
     pub(crate) fn new(template: &Template) -> Windows {
         let reach = template.reach();
-        // Offsets run from 1 − reach to reach; a run of n points meets at most (n + 2) / 4 + 1 bricks.
-        let side = (2 * reach + 2) / 4 + 1;
+        let side = window_side(reach);
         let places = |bit: i32| {
             let cell = IVec3::new(bit & 3, bit >> 2 & 3, bit >> 4);
             let low = (cell + 1 - reach) >> 2;

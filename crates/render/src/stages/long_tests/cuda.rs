@@ -5,8 +5,8 @@ use lightmesh_layout::mesh::LitBy;
 use lightmesh_layout::stages::LongTests;
 
 use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, kernel_of, sampling};
-use crate::cuda::{Buffer, Launch, Runtime};
+use crate::backend::cuda::{BLOCK, Cuda, blocks_for, kernel_of, sampling};
+use crate::cuda::{Buffer, Runtime};
 use crate::job::{Job, Tally};
 use crate::light_mesh::LightMesh;
 use crate::prepared::PreparedScene;
@@ -53,7 +53,7 @@ pub(crate) fn long_tests<R: Runtime>(
                 point_count: rest.min((piece.end - piece.start) * u64::from(BLOCK)) as u32,
                 first_point,
             };
-            let launch = Launch { blocks: (piece.end - piece.start) as u32, threads: BLOCK, shared: 0 };
+            let launch = blocks_for(&piece, BLOCK);
             cuda.launch(kernel, launch, &arguments)
         })?;
         Tally::add(&job.tally.long_tests, points.count as u64 * u64::from(samples));

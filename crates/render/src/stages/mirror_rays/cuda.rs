@@ -5,8 +5,8 @@ use lightmesh_layout::geometry::Rays;
 use lightmesh_layout::stages::MirrorRays;
 
 use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays};
-use crate::cuda::{Kernel, Launch, Runtime};
+use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays, blocks_for};
+use crate::cuda::{Kernel, Runtime};
 use crate::job::Job;
 use crate::prepared::PreparedScene;
 
@@ -24,7 +24,7 @@ pub(crate) fn mirror_rays<R: Runtime>(
     let scene = cuda.scene(scene)?;
     let blocks = rays.record.count.div_ceil(BLOCK);
     let counts = cuda.pool().room("counts of mirror rays", blocks as usize + 1)?;
-    let launch = Launch { blocks, threads: BLOCK, shared: 0 };
+    let launch = blocks_for(&(0..u64::from(blocks)), BLOCK);
     let arguments = MirrorRays {
         scene: scene.record,
         rays: rays.record,

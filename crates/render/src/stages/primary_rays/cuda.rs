@@ -3,8 +3,8 @@
 use lightmesh_layout::stages::PrimaryRays;
 
 use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays, kernel_of};
-use crate::cuda::{Launch, Runtime};
+use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays, blocks_for, kernel_of};
+use crate::cuda::Runtime;
 use crate::job::{Job, Tally};
 use crate::prepared::PreparedScene;
 
@@ -30,7 +30,7 @@ pub(crate) fn primary_rays<R: Runtime>(
             tally: cuda.tally()?,
             first_block: piece.start,
         };
-        let launch = Launch { blocks: (piece.end - piece.start) as u32, threads: BLOCK, shared: 0 };
+        let launch = blocks_for(&piece, BLOCK);
         cuda.launch(kernel, launch, &arguments)
     })?;
     Tally::add(&job.tally.rays, rays.len() as u64);

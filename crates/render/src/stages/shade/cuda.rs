@@ -5,8 +5,8 @@ use lightmesh_layout::In;
 use lightmesh_layout::stages::Shade;
 
 use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, DeviceFilm, DeviceHits, DeviceRays, DeviceVisibility};
-use crate::cuda::{Buffer, Kernel, Launch, Runtime};
+use crate::backend::cuda::{BLOCK, Cuda, DeviceFilm, DeviceHits, DeviceRays, DeviceVisibility, blocks_for};
+use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::job::Job;
 use crate::prepared::PreparedScene;
 
@@ -36,7 +36,7 @@ pub(crate) fn shade<R: Runtime>(
             ..Shade::zeroed()
         };
         film.expose(rays.is_from_camera(), &mut arguments);
-        let launch = Launch { blocks: (piece.end - piece.start) as u32, threads: BLOCK, shared: 0 };
+        let launch = blocks_for(&piece, BLOCK);
         cuda.launch(KERNEL, launch, &arguments)
     })
 }

@@ -5,8 +5,8 @@ use lightmesh_layout::geometry::Vec3;
 use lightmesh_layout::stages::ShadowRays;
 
 use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays, DeviceVisibility, kernel_of, sampling};
-use crate::cuda::{Buffer, Launch, Runtime};
+use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays, DeviceVisibility, blocks_for, kernel_of, sampling};
+use crate::cuda::{Buffer, Runtime};
 use crate::job::Job;
 use crate::prepared::PreparedScene;
 
@@ -65,7 +65,7 @@ fn trace<R: Runtime>(
             tally: cuda.tally()?,
             first_block: piece.start,
         };
-        let launch = Launch { blocks: (piece.end - piece.start) as u32, threads: BLOCK, shared: 0 };
+        let launch = blocks_for(&piece, BLOCK);
         cuda.launch(kernel, launch, &arguments)
     })?;
     Ok(DeviceVisibility { share, used: None, direct })

@@ -5,8 +5,8 @@ use lightmesh_layout::mesh::Item;
 use lightmesh_layout::stages::{GroupCells, ShortTests};
 
 use crate::RenderError;
-use crate::backend::cuda::{Cuda, DeviceHits, DeviceRays, DeviceScene, kernel_of};
-use crate::cuda::{Buffer, Kernel, Launch, Runtime};
+use crate::backend::cuda::{Cuda, DeviceHits, DeviceRays, DeviceScene, blocks_for, kernel_of, warps_for};
+use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::job::Job;
 use crate::light_mesh::LightMesh;
 use crate::prepared::PreparedScene;
@@ -59,7 +59,7 @@ pub(crate) fn short_tests<R: Runtime>(
     let all = search + 32 * mesh.template.words() as u32;
     // Masks of large templates stay where they end up anyway.
     let shared_masks = 4 * WARPS * all <= SHARED_MEMORY;
-    let shared = if by_cell { 4 * WARPS * if shared_masks { all } else { search } } else { 0 };
+    let words = if by_cell { if shared_masks { all } else { search } } else { 0 };
     cuda.in_pieces(job, kernel, masks.count as u64, FIRST_ITEMS, rays.len() as u64, |piece| {
         let count = piece.end - piece.start;
         let arguments = ShortTests {
@@ -75,8 +75,7 @@ pub(crate) fn short_tests<R: Runtime>(
             item_count: count,
             shared_masks: u64::from(shared_masks),
         };
-        let launch = Launch { blocks: (count as u32).div_ceil(WARPS), threads: 32 * WARPS, shared };
-        cuda.launch(kernel, launch, &arguments)
+        cuda.launch(kernel, warps_for(&piece, WARPS, words), &arguments)
     })?;
     Ok(masks)
 }
@@ -105,18 +104,13 @@ fn group<R: Runtime>(
         ..GroupCells::zeroed()
     };
     // a. Each tile sorts its object points by cell and cuts them into items.
-    let launch = |piece: &std::ops::Range<u64>| Launch {
-        blocks: (piece.end - piece.start) as u32,
-        threads: TILE as u32,
-        shared: 0,
-    };
     cuda.in_pieces(job, GROUP, tiles, FIRST_TILES, 0, |piece| {
-        cuda.launch(GROUP, launch(&piece), &GroupCells { first_block: piece.start, ..record })
+        cuda.launch(GROUP, blocks_for(&piece, TILE as u32), &GroupCells { first_block: piece.start, ..record })
     })?;
     // b. The items of all tiles in one list.
     let count = cuda.scan_total(&counts)?;
     let items = pool.room("items", count)?;
-    cuda.launch(GATHER, launch(&(0..tiles)), &GroupCells { items: items.output(), ..record })?;
+    cuda.launch(GATHER, blocks_for(&(0..tiles), TILE as u32), &GroupCells { items: items.output(), ..record })?;
     drop(tile_items);
     let words = mesh.template.words();
     let masks = pool.room("masks", count * 32 * words)?;
