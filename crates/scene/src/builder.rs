@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3, Vec2, Vec3};
 use crate::{Mesh, Scene};
 
 /// One mesh as a file holds it, before it is placed. Slices are as long as `positions` or empty.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct MeshPart<'a> {
     /// Vertices in the part's own coordinates.
     pub positions: &'a [DVec3],
@@ -13,6 +13,8 @@ pub struct MeshPart<'a> {
     pub normals: &'a [Vec3],
     /// Texture coordinates by vertex.
     pub uvs: &'a [Vec2],
+    /// Linear colours by vertex.
+    pub colors: &'a [Vec3],
     /// Three vertex indices a triangle, all in range.
     pub triangles: &'a [[u32; 3]],
 }
@@ -23,6 +25,7 @@ pub struct SceneBuilder {
     positions: Vec<DVec3>,
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
+    colors: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
     materials: Vec<u32>,
     origin: Option<DVec3>,
@@ -42,10 +45,12 @@ impl SceneBuilder {
 
         let normal_transform = transform.inverse().transpose();
         let normal = |n: &Vec3| normal_transform.transform_vector3(n.as_dvec3()).normalize_or_zero().as_vec3();
-        fill_to(&mut self.normals, first, !part.normals.is_empty());
+        fill_to(&mut self.normals, first, Vec3::ZERO, !part.normals.is_empty());
         self.normals.extend(part.normals.iter().map(normal));
-        fill_to(&mut self.uvs, first, !part.uvs.is_empty());
+        fill_to(&mut self.uvs, first, Vec2::ZERO, !part.uvs.is_empty());
         self.uvs.extend(part.uvs);
+        fill_to(&mut self.colors, first, Vec3::ONE, !part.colors.is_empty());
+        self.colors.extend(part.colors);
 
         let mirrored = transform.determinant() < 0.0;
         self.triangles.extend(part.triangles.iter().map(|&[a, b, c]| {
@@ -83,13 +88,14 @@ impl SceneBuilder {
     pub fn finish(mut self) -> (DVec3, Mesh) {
         let origin = self.origin.unwrap_or_else(|| self.bounds().map_or(DVec3::ZERO, local_origin));
         let vertices = self.positions.len() as u32;
-        let (has_normals, has_uvs) = (!self.normals.is_empty(), !self.uvs.is_empty());
-        fill_to(&mut self.normals, vertices, has_normals);
-        fill_to(&mut self.uvs, vertices, has_uvs);
+        fill_to(&mut self.normals, vertices, Vec3::ZERO, false);
+        fill_to(&mut self.uvs, vertices, Vec2::ZERO, false);
+        fill_to(&mut self.colors, vertices, Vec3::ONE, false);
         let mesh = Mesh {
             positions: self.positions.iter().map(|&position| (position - origin).as_vec3()).collect(),
             normals: self.normals,
             uvs: self.uvs,
+            colors: self.colors,
             triangles: self.triangles,
             materials: self.materials,
         };
@@ -104,6 +110,7 @@ impl SceneBuilder {
             origin,
             mesh,
             materials: Vec::new(),
+            textures: Vec::new(),
             lights: Vec::new(),
             cameras: Vec::new(),
             ambient: None,
@@ -114,10 +121,10 @@ impl SceneBuilder {
     }
 }
 
-/// Lengthens an attribute with "none" up to `count` vertices, where the attribute is used at all.
-fn fill_to<T: Default + Clone>(attribute: &mut Vec<T>, count: u32, used: bool) {
+/// Lengthens an attribute with `none` up to `count` vertices, where the attribute is used at all.
+fn fill_to<T: Clone>(attribute: &mut Vec<T>, count: u32, none: T, used: bool) {
     if used || !attribute.is_empty() {
-        attribute.resize(count as usize, T::default());
+        attribute.resize(count as usize, none);
     }
 }
 
@@ -142,7 +149,7 @@ mod tests {
     const CORNERS: [DVec3; 3] = [DVec3::ZERO, DVec3::X, DVec3::Y];
 
     fn part() -> MeshPart<'static> {
-        MeshPart { positions: &CORNERS, normals: &[], uvs: &[], triangles: &[[0, 1, 2]] }
+        MeshPart { positions: &CORNERS, triangles: &[[0, 1, 2]], ..Default::default() }
     }
 
     #[test]

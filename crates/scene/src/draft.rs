@@ -1,11 +1,14 @@
 //! A scene while it is read: everything in world coordinates and double precision, until the last triangle is known and the
 //! local frame can be chosen.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use glam::{DMat4, DVec3, Vec3};
 
-use crate::{Camera, Light, LightKind, LightMeshDefaults, LoadError, Material, MeshPart, Scene, SceneBuilder};
+use crate::{
+    Camera, Light, LightKind, LightMeshDefaults, LoadError, LoadOptions, Material, MeshPart, Place, Scene,
+    SceneBuilder, Texture,
+};
 
 /// Where a model goes in the scene, and what of it.
 #[derive(Clone, Debug)]
@@ -31,6 +34,7 @@ pub(crate) const LARGEST_COORDINATE: f64 = 1e18;
 #[derive(Debug)]
 pub(crate) struct Draft {
     path: PathBuf,
+    options: LoadOptions,
     builder: SceneBuilder,
     unusable_triangles: usize,
     /// World position of each camera beside it; the camera's own is not looked at.
@@ -38,6 +42,7 @@ pub(crate) struct Draft {
     /// World position of each light beside it; the light's own is not looked at.
     pub(crate) lights: Vec<(Light, DVec3)>,
     pub(crate) materials: Vec<Material>,
+    pub(crate) textures: Vec<Texture>,
     pub(crate) ambient: Option<Vec3>,
     pub(crate) background: Option<Vec3>,
     pub(crate) light_mesh: LightMeshDefaults,
@@ -46,14 +51,16 @@ pub(crate) struct Draft {
 
 impl Draft {
     /// An empty scene, to be read from `path`.
-    pub(crate) fn new(path: &Path) -> Draft {
+    pub(crate) fn new(path: &Path, options: &LoadOptions) -> Draft {
         Draft {
             path: path.to_owned(),
+            options: options.clone(),
             builder: SceneBuilder::new(),
             unusable_triangles: 0,
             cameras: Vec::new(),
             lights: Vec::new(),
             materials: Vec::new(),
+            textures: Vec::new(),
             ambient: None,
             background: None,
             light_mesh: LightMeshDefaults::default(),
@@ -104,6 +111,30 @@ impl Draft {
         self.builder.add(part, transform, |index| material(kept[index]));
     }
 
+    /// The path of what `source`, one of the scene's files, calls `name`: relative to its own folder, with either kind of slash.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError::Outside`] where that is a URL or lies outside the folder of the file that was opened, unless the options
+    /// allow it.
+    pub(crate) fn path_beside(&self, source: &Path, name: &str) -> Result<PathBuf, LoadError> {
+        let outside = || LoadError::Outside { place: Place::file(source).into(), name: name.to_owned() };
+        let is_url =
+            name.split_once("://").is_some_and(|(scheme, _)| scheme.chars().all(|c| c.is_ascii_alphanumeric()));
+        let named = name.replace('\\', "/");
+        let has_drive =
+            matches!(named.as_bytes(), [letter, b':', ..] if letter.is_ascii_alphabetic()) && cfg!(not(windows));
+        if is_url || has_drive {
+            return Err(outside());
+        }
+        let path = source.parent().unwrap_or(Path::new("")).join(named);
+        let folder = tidy(self.path.parent().unwrap_or(Path::new("")));
+        let in_folder = tidy(&path)
+            .strip_prefix(folder)
+            .is_ok_and(|rest| matches!(rest.components().next(), None | Some(Component::Normal(_))));
+        if self.options.allow_outside || in_folder { Ok(path) } else { Err(outside()) }
+    }
+
     /// The local frame that the scene was written from, where its file says so: then it is read to the same `f32`.
     pub(crate) fn prefer_origin(&mut self, origin: DVec3) {
         self.builder.prefer_origin(origin);
@@ -125,7 +156,11 @@ impl Draft {
     }
 
     /// Chooses the local frame and moves everything there.
-    pub(crate) fn finish(mut self) -> Scene {
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError::Warnings`] where the options are strict and there is something to warn of.
+    pub(crate) fn finish(mut self) -> Result<Scene, LoadError> {
         if self.unusable_triangles > 0 {
             self.warnings.push(format!(
                 "{} triangles with infinite, undefined or far too large coordinates were left out",
@@ -135,6 +170,9 @@ impl Draft {
         if self.builder.triangle_count() == 0 {
             self.warnings.push("the scene has no triangles".to_owned());
         }
+        if self.options.strict && !self.warnings.is_empty() {
+            return Err(LoadError::Warnings { path: self.path, warnings: self.warnings });
+        }
         let name = self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut scene = self.builder.finish_scene(name);
         let local = |world: DVec3| (world - scene.origin).as_vec3();
@@ -142,12 +180,28 @@ impl Draft {
             self.cameras.into_iter().map(|(camera, world)| Camera { position: local(world), ..camera }).collect();
         scene.lights = self.lights.into_iter().map(|(light, world)| moved(light, local(world))).collect();
         scene.materials = self.materials;
+        scene.textures = self.textures;
         scene.ambient = self.ambient;
         scene.background = self.background;
         scene.light_mesh = self.light_mesh;
         scene.warnings = self.warnings;
-        scene
+        Ok(scene)
     }
+}
+
+/// The path without `.` and `..`, by its text alone.
+fn tidy(path: &Path) -> PathBuf {
+    let mut tidy = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(tidy.components().next_back(), Some(Component::Normal(_))) => {
+                tidy.pop();
+            }
+            part => tidy.push(part),
+        }
+    }
+    tidy
 }
 
 /// The light at another place.
@@ -171,13 +225,38 @@ mod tests {
     fn triangles_without_a_place_are_left_out_and_counted() {
         let positions = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(f64::NAN, 0.0, 0.0), DVec3::splat(1e300)];
         let triangles = [[0, 1, 3], [0, 1, 2], [2, 1, 4]];
-        let part = MeshPart { positions: &positions, normals: &[], uvs: &[], triangles: &triangles };
-        let mut draft = Draft::new(Path::new("scene.obj"));
+        let part = MeshPart { positions: &positions, triangles: &triangles, ..Default::default() };
+        let mut draft = Draft::new(Path::new("scene.obj"), &LoadOptions::default());
         draft.add(part, &DMat4::IDENTITY, |index| index as u32).unwrap();
-        let scene = draft.finish();
+        let scene = draft.finish().unwrap();
         assert_eq!(scene.mesh.triangles, [[0, 1, 2]]);
         assert_eq!(scene.mesh.materials, [1]);
         assert_eq!(scene.mesh.corners(0), [Vec3::X, Vec3::Y, Vec3::Z]);
         assert!(scene.warnings[0].starts_with("2 triangles"), "{:?}", scene.warnings);
+    }
+
+    #[test]
+    fn references_stay_in_the_scenes_folder() {
+        let beside = |scene: &str, source: &str, name: &str| {
+            Draft::new(Path::new(scene), &LoadOptions::default()).path_beside(Path::new(source), name).ok()
+        };
+        let inside = |path: &str| Some(PathBuf::from(path));
+        assert_eq!(beside("room.toml", "room.toml", r".\maps\oak.png"), inside("./maps/oak.png"));
+        assert_eq!(beside("a/room.toml", "a/parts/door.gltf", "../oak.png"), inside("a/parts/../oak.png"));
+        assert_eq!(beside("../a/room.toml", "../a/room.toml", "oak.png"), inside("../a/oak.png"));
+        for name in ["../oak.png", "/etc/passwd", "maps/../../oak.png", r"C:\oak.png", "https://example.org/oak.png"] {
+            assert_eq!(beside("room.toml", "room.toml", name), None, "{name}");
+            assert_eq!(beside("../room.toml", "../room.toml", name), None, "{name}");
+        }
+        let free = Draft::new(Path::new("a/room.toml"), &LoadOptions { allow_outside: true, ..Default::default() });
+        let path = |name| free.path_beside(Path::new("a/room.toml"), name).ok();
+        assert_eq!([path("../oak.png"), path("http://oak.png")], [inside("a/../oak.png"), None]);
+    }
+
+    #[test]
+    fn strict_reading_ends_at_a_warning() {
+        let strict = LoadOptions { strict: true, ..Default::default() };
+        let message = Draft::new(Path::new("a.obj"), &strict).finish().unwrap_err().to_string();
+        assert_eq!(message, "the scene has no triangles, a.obj; mend it, or leave out --strict");
     }
 }

@@ -53,6 +53,12 @@ pub enum LoadError {
         /// The system's reason.
         cause: io::Error,
     },
+    /// A folder, a pipe or a device.
+    #[error("this is not a regular file, {}; name a file", path.display())]
+    NoFile {
+        /// What was named.
+        path: PathBuf,
+    },
     /// The name's ending is not that of a known format.
     #[error("`.{extension}` is not a format that can be read, {}; known are {}, and builtin:NAME", path.display(), known.join(", "))]
     UnknownFormat {
@@ -160,6 +166,22 @@ pub enum LoadError {
         extension: String,
         /// Extensions that are known.
         known: Vec<String>,
+    },
+    /// A reference that leads out of the scene's folder.
+    #[error("`{name}` lies outside the scene's folder, {place}; move it there, or allow it (--allow-outside)")]
+    Outside {
+        /// The file that refers to it.
+        place: Box<Place>,
+        /// The reference.
+        name: String,
+    },
+    /// Something to warn of, where warnings count as errors.
+    #[error("{}, {}; mend it, or leave out --strict", warnings.join("; "), path.display())]
+    Warnings {
+        /// The file.
+        path: PathBuf,
+        /// All warnings.
+        warnings: Vec<String>,
     },
     /// More vertices than 32-bit indices can tell apart.
     #[error("the scene has more than {} vertices, {}; split it or thin it out", u32::MAX, path.display())]

@@ -25,6 +25,7 @@ mod mesh;
 mod open;
 mod scene;
 mod shapes;
+mod texture;
 
 pub use builder::{MeshPart, SceneBuilder};
 pub use camera::{Camera, Fov, Projection};
@@ -35,4 +36,6 @@ pub use info::{BoundsInfo, CameraInfo, LightInfo, SceneInfo};
 pub use light::{Falloff, Light, LightKind};
 pub use material::Material;
 pub use mesh::{Bounds, Mesh};
+pub use open::LoadOptions;
 pub use scene::{LightMeshDefaults, Scene, Weight};
+pub use texture::{Texture, TextureUse, Wrap};

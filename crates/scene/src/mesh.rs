@@ -54,7 +54,7 @@ impl Bounds {
 
 /// All triangles of a scene in its local frame, instances resolved.
 ///
-/// `normals` and `uvs` are empty or as long as `positions`. A zero normal means that the vertex has none: its triangles are
+/// `normals`, `uvs` and `colors` are empty or as long as `positions`. A zero normal means that the vertex has none: its triangles are
 /// shaded flat.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
@@ -62,8 +62,10 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Shading normals by vertex, unit length or zero.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates by vertex.
+    /// Texture coordinates by vertex: u to the right, v downwards, as in glTF.
     pub uvs: Vec<Vec2>,
+    /// Colours by vertex, linear: they tint the material, see [`Material`](crate::Material).
+    pub colors: Vec<Vec3>,
     /// Three vertex indices a triangle, counter-clockwise seen from outside (both sides are rendered).
     pub triangles: Vec<[u32; 3]>,
     /// Material index by triangle.

@@ -13,6 +13,15 @@ use crate::{
 /// Endings of scene files that can be read.
 const SCENE_FORMATS: [&str; 4] = ["toml", "obj", "gltf", "glb"];
 
+/// How strictly a scene is read, and what it may refer to.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LoadOptions {
+    /// Follow references out of the folder of the opened file. Not by default: a scene from elsewhere must not look around.
+    pub allow_outside: bool,
+    /// Whatever would be a warning is an error.
+    pub strict: bool,
+}
+
 impl Scene {
     /// Reads a scene: `.toml`, `.obj`, `.gltf` or `.glb`, or a built-in one named `builtin:NAME` or
     /// `builtin:NAME?key=value&…`.
@@ -23,17 +32,26 @@ impl Scene {
     ///
     /// [`LoadError`] names the file, where possible the line, and the remedy.
     pub fn open(path: impl AsRef<Path>) -> Result<Scene, LoadError> {
+        Scene::open_with(path, &LoadOptions::default())
+    }
+
+    /// [`Scene::open`] with other options.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError`] names the file, where possible the line, and the remedy.
+    pub fn open_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Scene, LoadError> {
         let path = path.as_ref();
         if let Some(query) = path.to_str().and_then(|name| name.strip_prefix("builtin:")) {
             return crate::builtin::open(query);
         }
-        let mut draft = Draft::new(path);
+        let mut draft = Draft::new(path, options);
         if extension(path) == "toml" {
             formats::toml::read(path, &mut draft)?;
         } else {
             read_model(path, &Placement::default(), &mut draft)?;
         }
-        Ok(draft.finish())
+        draft.finish()
     }
 }
 
@@ -60,9 +78,13 @@ pub(crate) fn read_part(
     read_model(path, &Placement { transform, material, part: true }, draft)
 }
 
-/// The whole file.
+/// The whole file. Only of a regular one: a pipe or a device might never end.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, LoadError> {
-    fs::read(path).map_err(|cause| LoadError::Read { path: path.to_owned(), cause })
+    let failed = |cause| LoadError::Read { path: path.to_owned(), cause };
+    if !fs::metadata(path).map_err(failed)?.is_file() {
+        return Err(LoadError::NoFile { path: path.to_owned() });
+    }
+    fs::read(path).map_err(failed)
 }
 
 /// The ending of the file's name in lower case, without the dot.
@@ -91,6 +113,14 @@ mod tests {
             let message = error(path);
             assert!(message.contains(path) && message.contains("; check that it exists"), "{message}");
         }
+    }
+
+    #[test]
+    fn a_folder_is_no_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.obj");
+        fs::create_dir(&path).unwrap();
+        assert!(error(path.to_str().unwrap()).starts_with("this is not a regular file"));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::{Camera, Light, Material, Mesh};
+use crate::{Camera, Light, Material, Mesh, Texture};
 
 /// The weight w of formula (3) as a function of q = distance / radius.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,6 +54,8 @@ pub struct Scene {
     pub mesh: Mesh,
     /// Materials, at least one where there are triangles.
     pub materials: Vec<Material>,
+    /// Textures of the materials.
+    pub textures: Vec<Texture>,
     /// Lights; may be empty.
     pub lights: Vec<Light>,
     /// Cameras; may be empty.

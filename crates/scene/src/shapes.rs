@@ -23,7 +23,12 @@ pub(crate) struct Shape {
 impl Shape {
     /// For [`SceneBuilder::add`](crate::SceneBuilder::add).
     pub(crate) fn part(&self) -> MeshPart<'_> {
-        MeshPart { positions: &self.positions, normals: &self.normals, uvs: &[], triangles: &self.triangles }
+        MeshPart {
+            positions: &self.positions,
+            normals: &self.normals,
+            triangles: &self.triangles,
+            ..Default::default()
+        }
     }
 
     /// A triangle with a flat surface.

@@ -52,7 +52,7 @@ impl SceneDraft {
     /// Adds triangles that share vertices.
     pub fn triangles(mut self, positions: &[DVec3], triangles: &[[u32; 3]]) -> SceneDraft {
         let material = self.materials.len() as u32 - 1;
-        let part = MeshPart { positions, normals: &[], uvs: &[], triangles };
+        let part = MeshPart { positions, triangles, ..Default::default() };
         self.builder.add(part, &DMat4::from_translation(self.offset), |_| material);
         self
     }

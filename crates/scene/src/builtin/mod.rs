@@ -83,6 +83,7 @@ impl Composition {
             name: self.name.into(),
             origin: DVec3::ZERO,
             mesh: self.mesh,
+            textures: Vec::new(),
             materials: self.palette.0,
             lights: self.lights,
             cameras: vec![camera],

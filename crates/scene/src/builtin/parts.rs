@@ -29,7 +29,7 @@ impl Palette {
             kd: color,
             ks: Vec3::splat(ks),
             shininess,
-            emission: Vec3::ZERO,
+            ..Material::default()
         });
         self.0.len() as Paint - 1
     }

@@ -13,7 +13,8 @@ fn scene(offset: DVec3) -> Scene {
     let uvs = [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::new(0.3, 0.7)];
     let triangles = [[0, 1, 2], [1, 3, 2], [0, 3, 1]];
     let mut builder = SceneBuilder::new();
-    let smooth = MeshPart { positions: &positions, normals: &normals, uvs: &uvs, triangles: &triangles };
+    let smooth =
+        MeshPart { positions: &positions, normals: &normals, uvs: &uvs, triangles: &triangles, ..Default::default() };
     builder.add(smooth, &DMat4::from_translation(offset), |index| [1, 0, 1][index]);
     let flat = MeshPart { normals: &[], uvs: &[], ..smooth };
     builder.add(flat, &DMat4::from_translation(offset + DVec3::X), |_| 2);
@@ -27,6 +28,7 @@ fn scene(offset: DVec3) -> Scene {
             ks: Vec3::new(0.7, 0.8, 0.9),
             shininess: 77.7,
             emission: Vec3::new(0.0, 2.5, 0.1),
+            ..Material::default()
         },
         Material::default(),
     ];

@@ -33,6 +33,7 @@ pub(super) fn read(path: &Path, material: &gltf::Material, exact: &Exact) -> Res
             ks: own.ks.into(),
             shininess: own.shininess,
             emission: own.emission.into(),
+            ..Material::default()
         });
     }
     let pbr = material.pbr_metallic_roughness();

@@ -98,7 +98,13 @@ impl<'a> Primitives<'a> {
         }
         let triangles = self.triangles(primitive, positions.len())?;
         let material = self.material_index(primitive, draft)?;
-        let part = MeshPart { positions: &positions, normals: &normals, uvs: &uvs, triangles: &triangles };
+        let part = MeshPart {
+            positions: &positions,
+            normals: &normals,
+            uvs: &uvs,
+            triangles: &triangles,
+            ..Default::default()
+        };
         draft.add(part, transform, |_| material)
     }
 

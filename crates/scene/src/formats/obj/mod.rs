@@ -59,7 +59,8 @@ fn add(mesh: &tobj::Mesh, placement: &Placement, material: u32, draft: &mut Draf
     let positions = triples(&mesh.positions);
     let normals: Vec<Vec3> = triples(&mesh.normals).iter().map(|normal| normal.as_vec3()).collect();
     let uvs: Vec<Vec2> = mesh.texcoords.as_chunks().0.iter().map(|&[u, v]| Vec2::new(u as f32, v as f32)).collect();
-    let part = MeshPart { positions: &positions, normals: &normals, uvs: &uvs, triangles: mesh.indices.as_chunks().0 };
+    let triangles = mesh.indices.as_chunks().0;
+    let part = MeshPart { positions: &positions, normals: &normals, uvs: &uvs, triangles, ..Default::default() };
     draft.add(part, &placement.transform, |_| material)
 }
 

@@ -105,5 +105,6 @@ pub(super) fn material(mtl: &tobj::Material) -> Material {
         ks: color(mtl.specular).unwrap_or(default.ks),
         shininess: mtl.shininess.map_or(default.shininess, |exponent| (exponent as f32).max(1.0)),
         emission: color(mtl.emissive).unwrap_or(default.emission),
+        ..default
     }
 }

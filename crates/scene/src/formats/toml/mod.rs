@@ -88,6 +88,7 @@ fn read_material(source: &Source, entry: &MaterialEntry) -> Result<Material, Loa
         ks: entry.ks.as_ref().map_or(Ok(default.ks), |ks| source.color("ks", ks))?,
         shininess,
         emission: entry.emission.as_ref().map_or(Ok(default.emission), |color| source.color("emission", color))?,
+        ..default
     })
 }
 

@@ -1,7 +1,5 @@
 //! `[[mesh]]` and the solids to triangles.
 
-use std::path::Path;
-
 use glam::{DMat4, DVec3};
 use toml::Spanned;
 
@@ -57,7 +55,7 @@ pub(super) fn read(source: &Source, file: &SceneFile, names: &[String], draft: &
 }
 
 fn read_mesh(source: &Source, entry: &MeshEntry, names: &[String], draft: &mut Draft) -> Result<(), LoadError> {
-    let path = source.path.parent().unwrap_or(Path::new("")).join(entry.file.get_ref());
+    let path = draft.path_beside(source.path, entry.file.get_ref())?;
     if let Err(cause) = std::fs::metadata(&path) {
         let problem = format!("cannot be read ({cause})");
         let remedy = "name an OBJ, glTF or GLB file, by its path from the scene file's folder";
