@@ -127,24 +127,24 @@ records! {
         items: In<Item>,
         /// Masks: 32 · words words an item; bit l of word k says whether the item's l-th object point sees light point k.
         masks: Out<u32>,
+        /// The used points of each brick of the window around each item's cell.
+        marks: Out<u64>,
         /// Counts.
         tally: Tally,
         /// The first item of this launch.
         first_item: u64,
         /// Items of this launch.
         item_count: u64,
-        /// 1: a warp's masks fit into shared memory.
-        shared_masks: u64,
     }
 
-    /// `insert_bricks` and `mark_points`: one warp an item; `count_points` and `list_points`: one thread a slot.
+    /// `insert_bricks` and `mark_points`: one thread a brick of an item's window; `count_points` and `list_points`: one thread a slot.
     LightPoints {
         /// The light mesh.
         mesh: LightMesh,
         /// Items.
         items: In<Item>,
-        /// Their masks.
-        masks: In<u32>,
+        /// The used points of each brick of the window around each item's cell.
+        marks: In<u64>,
         /// The first item of this launch.
         first_item: u64,
         /// Items of this launch.
@@ -159,6 +159,8 @@ records! {
         points: Out<u64>,
         /// Number of bricks in the table.
         bricks: Out<u32>,
+        /// The slot of each brick of each item's window that has used points.
+        slots: Out<u32>,
     }
 
     /// `long_tests`: one thread a light point.
@@ -201,6 +203,8 @@ records! {
         masks: In<u32>,
         /// The used light points.
         points: UsedPoints,
+        /// The slot of each brick of the window around each item's cell that has used points.
+        slots: In<u32>,
         /// What they see, by light.
         lit: In<LitBy>,
         /// Share of each light by light, then ray; negative where the fallback must find it.

@@ -501,10 +501,10 @@ struct alignas(8) ShortTests {
     const unsigned *members;
     const Item *items;
     unsigned *masks;
+    unsigned long long *marks;
     Tally tally;
     unsigned long long first_item;
     unsigned long long item_count;
-    unsigned long long shared_masks;
 };
 static_assert(sizeof(ShortTests) == 496, "size of ShortTests");
 static_assert(PLACE_OF(ShortTests, scene) == 0, "place of ShortTests::scene");
@@ -514,15 +514,15 @@ static_assert(PLACE_OF(ShortTests, mesh) == 360, "place of ShortTests::mesh");
 static_assert(PLACE_OF(ShortTests, members) == 440, "place of ShortTests::members");
 static_assert(PLACE_OF(ShortTests, items) == 448, "place of ShortTests::items");
 static_assert(PLACE_OF(ShortTests, masks) == 456, "place of ShortTests::masks");
-static_assert(PLACE_OF(ShortTests, tally) == 464, "place of ShortTests::tally");
-static_assert(PLACE_OF(ShortTests, first_item) == 472, "place of ShortTests::first_item");
-static_assert(PLACE_OF(ShortTests, item_count) == 480, "place of ShortTests::item_count");
-static_assert(PLACE_OF(ShortTests, shared_masks) == 488, "place of ShortTests::shared_masks");
+static_assert(PLACE_OF(ShortTests, marks) == 464, "place of ShortTests::marks");
+static_assert(PLACE_OF(ShortTests, tally) == 472, "place of ShortTests::tally");
+static_assert(PLACE_OF(ShortTests, first_item) == 480, "place of ShortTests::first_item");
+static_assert(PLACE_OF(ShortTests, item_count) == 488, "place of ShortTests::item_count");
 
 struct alignas(8) LightPoints {
     LightMesh mesh;
     const Item *items;
-    const unsigned *masks;
+    const unsigned long long *marks;
     unsigned long long first_item;
     unsigned long long item_count;
     BrickTable table;
@@ -530,11 +530,12 @@ struct alignas(8) LightPoints {
     unsigned *rank;
     unsigned long long *points;
     unsigned *bricks;
+    unsigned *slots;
 };
-static_assert(sizeof(LightPoints) == 160, "size of LightPoints");
+static_assert(sizeof(LightPoints) == 168, "size of LightPoints");
 static_assert(PLACE_OF(LightPoints, mesh) == 0, "place of LightPoints::mesh");
 static_assert(PLACE_OF(LightPoints, items) == 80, "place of LightPoints::items");
-static_assert(PLACE_OF(LightPoints, masks) == 88, "place of LightPoints::masks");
+static_assert(PLACE_OF(LightPoints, marks) == 88, "place of LightPoints::marks");
 static_assert(PLACE_OF(LightPoints, first_item) == 96, "place of LightPoints::first_item");
 static_assert(PLACE_OF(LightPoints, item_count) == 104, "place of LightPoints::item_count");
 static_assert(PLACE_OF(LightPoints, table) == 112, "place of LightPoints::table");
@@ -542,6 +543,7 @@ static_assert(PLACE_OF(LightPoints, used) == 128, "place of LightPoints::used");
 static_assert(PLACE_OF(LightPoints, rank) == 136, "place of LightPoints::rank");
 static_assert(PLACE_OF(LightPoints, points) == 144, "place of LightPoints::points");
 static_assert(PLACE_OF(LightPoints, bricks) == 152, "place of LightPoints::bricks");
+static_assert(PLACE_OF(LightPoints, slots) == 160, "place of LightPoints::slots");
 
 struct alignas(8) LongTests {
     Scene scene;
@@ -574,6 +576,7 @@ struct alignas(8) Interpolate {
     const Item *items;
     const unsigned *masks;
     UsedPoints points;
+    const unsigned *slots;
     const LitBy *lit;
     float *share;
     unsigned *used;
@@ -583,7 +586,7 @@ struct alignas(8) Interpolate {
     unsigned long long first;
     unsigned long long count;
 };
-static_assert(sizeof(Interpolate) == 576, "size of Interpolate");
+static_assert(sizeof(Interpolate) == 584, "size of Interpolate");
 static_assert(PLACE_OF(Interpolate, scene) == 0, "place of Interpolate::scene");
 static_assert(PLACE_OF(Interpolate, rays) == 272, "place of Interpolate::rays");
 static_assert(PLACE_OF(Interpolate, hits) == 352, "place of Interpolate::hits");
@@ -592,14 +595,15 @@ static_assert(PLACE_OF(Interpolate, members) == 440, "place of Interpolate::memb
 static_assert(PLACE_OF(Interpolate, items) == 448, "place of Interpolate::items");
 static_assert(PLACE_OF(Interpolate, masks) == 456, "place of Interpolate::masks");
 static_assert(PLACE_OF(Interpolate, points) == 464, "place of Interpolate::points");
-static_assert(PLACE_OF(Interpolate, lit) == 504, "place of Interpolate::lit");
-static_assert(PLACE_OF(Interpolate, share) == 512, "place of Interpolate::share");
-static_assert(PLACE_OF(Interpolate, used) == 520, "place of Interpolate::used");
-static_assert(PLACE_OF(Interpolate, any_fallback) == 528, "place of Interpolate::any_fallback");
-static_assert(PLACE_OF(Interpolate, sampling) == 536, "place of Interpolate::sampling");
-static_assert(PLACE_OF(Interpolate, tally) == 552, "place of Interpolate::tally");
-static_assert(PLACE_OF(Interpolate, first) == 560, "place of Interpolate::first");
-static_assert(PLACE_OF(Interpolate, count) == 568, "place of Interpolate::count");
+static_assert(PLACE_OF(Interpolate, slots) == 504, "place of Interpolate::slots");
+static_assert(PLACE_OF(Interpolate, lit) == 512, "place of Interpolate::lit");
+static_assert(PLACE_OF(Interpolate, share) == 520, "place of Interpolate::share");
+static_assert(PLACE_OF(Interpolate, used) == 528, "place of Interpolate::used");
+static_assert(PLACE_OF(Interpolate, any_fallback) == 536, "place of Interpolate::any_fallback");
+static_assert(PLACE_OF(Interpolate, sampling) == 544, "place of Interpolate::sampling");
+static_assert(PLACE_OF(Interpolate, tally) == 560, "place of Interpolate::tally");
+static_assert(PLACE_OF(Interpolate, first) == 568, "place of Interpolate::first");
+static_assert(PLACE_OF(Interpolate, count) == 576, "place of Interpolate::count");
 
 struct alignas(8) Scan {
     unsigned *values;

@@ -5,6 +5,8 @@ struct IVec3 {
     int x, y, z;
 };
 
+DEVICE IVec3 operator+(IVec3 a, IVec3 b) { return IVec3{a.x + b.x, a.y + b.y, a.z + b.z}; }
+
 DEVICE Vec3 splat(float value) { return Vec3{value, value, value}; }
 
 DEVICE Vec3 operator+(Vec3 a, Vec3 b) { return Vec3{a.x + b.x, a.y + b.y, a.z + b.z}; }

@@ -37,6 +37,12 @@ DEVICE unsigned warp_running_sum(unsigned value) {
     return value;
 }
 
+// The value of one lane.
+DEVICE Vec3 warp_broadcast(const Vec3 &value, unsigned lane) {
+    return Vec3{__shfl_sync(ALL_LANES, value.x, lane), __shfl_sync(ALL_LANES, value.y, lane),
+                __shfl_sync(ALL_LANES, value.z, lane)};
+}
+
 DEVICE float warp_min(float value) {
     for (int step = 16; step > 0; step /= 2)
         value = fminf(value, __shfl_xor_sync(ALL_LANES, value, step));

@@ -9,6 +9,7 @@ use crate::cuda::Runtime;
 use crate::modes::bands::film_bytes;
 use crate::modes::{Plan, Technique};
 use crate::prepared::PreparedScene;
+use crate::stages::light_points::cuda::window_bricks;
 
 /// Object points that an item is expected to have: a cell's points fill warps of 32, and cells are cut at the borders of tiles.
 const POINTS_PER_ITEM: u64 = 8;
@@ -50,9 +51,10 @@ fn bytes_per_ray(plan: &Plan, lights: u64) -> u64 {
     let share = 4 * lights;
     let technique = match &plan.technique {
         Technique::LightMesh(mesh) => {
-            // Members and items of tiles; items with their masks.
+            // Members and items of tiles; items with their masks, and the used points and slots of the bricks around them.
             let grouping = 4 + size_of::<Item>() as u64;
-            let masks = (size_of::<Item>() + 32 * 4 * mesh.template.words()) as u64 / POINTS_PER_ITEM;
+            let bricks = (8 + 4) * window_bricks(mesh.template.reach()) as usize;
+            let masks = (size_of::<Item>() + 32 * 4 * mesh.template.words() + bricks) as u64 / POINTS_PER_ITEM;
             // Half a light point a pixel: its entry and share, and its part of a brick that is a quarter full.
             let points = (8 + 2 * lights + 2 * (8 + 8 + 4 + 8 * lights) / 16) / 2;
             grouping + masks + points + 4

@@ -28,7 +28,7 @@ pub(crate) struct Interpolation<'a, R: Runtime> {
 }
 
 const INTERPOLATE: Kernel = Kernel { module: "interpolate", name: "interpolate" };
-/// Warps of a block, and lights without a size that one takes at once: see `kernel.cu`.
+/// Warps of a block, and lights without a size that one takes at once, at most: see `kernel.cu`.
 const WARPS: u32 = 4;
 const LIGHTS: u32 = 3;
 /// Items, and blocks of rays, of the first launches ever.
@@ -52,6 +52,7 @@ impl<R: Runtime> Interpolation<'_, R> {
             items: masks.items.input(),
             masks: masks.masks.input(),
             points: points.record(),
+            slots: points.slots.input(),
             lit: lit.lit.input(),
             share: share.output(),
             used: used.output(),

@@ -14,8 +14,8 @@
 
 // Warps of a block.
 #define ITEM_WARPS 4
-// Lights without a size that are taken at once.
-#define LIGHTS 3
+// Lights without a size that are taken at once, at most.
+#define MOST_LIGHTS 3
 // What tells the fallback to find a share.
 #define UNKNOWN -1.0f
 
@@ -31,12 +31,8 @@ struct ItemPoints {
 // The share of a light with a size that a light point sees.
 DEVICE float light_point_share(const Interpolate &args, const LitBy &lit, const ItemPoints &points, IVec3 point) {
     const unsigned slot = points.slots[window_place(points.window, point)];
-    if (slot == NO_SLOT)
-        return 0.0f;
     const unsigned bit = point_bit(point);
     const unsigned long long used = args.points.used[slot];
-    if (!(used >> bit & 1))
-        return 0.0f;
     const unsigned rank = args.points.rank[slot] + __popcll(used & ((1ull << bit) - 1));
     return (float)lit.seen[rank] / (float)args.sampling.samples;
 }
@@ -60,7 +56,7 @@ DEVICE LitLanes lit_lanes(const Interpolate &args, const LitBy &lit, const ItemP
         if (seen == 0)
             continue;
         const IVec3 offset = template_offset(args.mesh, k);
-        const IVec3 point = {points.cell.x + offset.x, points.cell.y + offset.y, points.cell.z + offset.z};
+        const IVec3 point = points.cell + offset;
         const float share = light_point_share(args, lit, points, point);
         lanes.any |= seen;
         lanes.some |= share > 0.0f ? seen : 0;
@@ -103,6 +99,7 @@ DEVICE float weighted_mean(const Interpolate &args, const LitBy &lit, const Item
 //
 // 2. A lane's light points that see a light are the common bits of its mask and a word that is the same for the warp. Returns the
 // number of the lane's light points.
+template <unsigned LIGHTS>
 DEVICE unsigned count_lit(const Interpolate &args, const ItemPoints &points, unsigned first, unsigned *lit_words,
                           unsigned (&lit)[LIGHTS]) {
     const LightMesh &mesh = args.mesh;
@@ -117,10 +114,10 @@ DEVICE unsigned count_lit(const Interpolate &args, const ItemPoints &points, uns
                 lit_words[lane * mesh.words + word] = 0;
             continue;
         }
-        unsigned slot = NO_SLOT, bit = 0;
+        unsigned slot = 0, bit = 0;
         if (seen != 0) {
             const IVec3 offset = template_offset(mesh, k);
-            const IVec3 point = {points.cell.x + offset.x, points.cell.y + offset.y, points.cell.z + offset.z};
+            const IVec3 point = points.cell + offset;
             slot = points.slots[window_place(points.window, point)];
             bit = point_bit(point);
         }
@@ -129,7 +126,7 @@ DEVICE unsigned count_lit(const Interpolate &args, const ItemPoints &points, uns
         for (unsigned i = 0; i < LIGHTS; i++) {
             const unsigned long long *bits = first + i < args.scene.light_count ? args.lit[first + i].bits : nullptr;
             const unsigned word_of_light =
-                __ballot_sync(ALL_LANES, bits != nullptr && slot != NO_SLOT && (bits[slot] >> bit & 1));
+                __ballot_sync(ALL_LANES, bits != nullptr && seen != 0 && (bits[slot] >> bit & 1));
             lit[i] += __popc(mine & word_of_light);
             if (lane == 0)
                 lit_words[i * mesh.words + word] = word_of_light;
@@ -140,6 +137,7 @@ DEVICE unsigned count_lit(const Interpolate &args, const ItemPoints &points, uns
 }
 
 // 3. The weighted means for the lanes in `mixed`, whose light points do not all see the same.
+template <unsigned LIGHTS>
 DEVICE void weighted_means(const Interpolate &args, const ItemPoints &points, const Vec3 &position, unsigned mixed,
                            const unsigned *lit_words, float (&means)[LIGHTS]) {
     const LightMesh &mesh = args.mesh;
@@ -184,6 +182,7 @@ DEVICE bool write_share(const Interpolate &args, const ItemLane &lane, unsigned 
 }
 
 // The shares of LIGHTS lights without a size. Returns whether the lane falls back.
+template <unsigned LIGHTS>
 DEVICE bool lights_without_size(const Interpolate &args, const ItemPoints &points, const ItemLane &lane, unsigned first,
                                 unsigned *lit_words, unsigned &used) {
     unsigned lit[LIGHTS] = {};
@@ -251,18 +250,21 @@ KERNEL(interpolate, Interpolate, 128, 8) {
     points.cell = point_of(item.cell);
     points.window = window_around(mesh, points.cell);
     const int bricks = window_size(points.window);
-    points.slots = shared + threadIdx.x / 32 * (bricks + LIGHTS * mesh.words);
+    points.slots = shared + threadIdx.x / 32 * (bricks + MOST_LIGHTS * mesh.words);
     unsigned *lit_words = points.slots + bricks;
     points.seen = args.masks + index * 32 * mesh.words;
     for (int place = lane; place < bricks; place += 32)
-        points.slots[place] = find_slot(args.points.table, window_key(points.window, place));
+        points.slots[place] = args.slots[index * bricks + place];
     __syncwarp();
 
     bool fell_back = false;
     unsigned used = 0, first = 0;
     do {
-        fell_back |= lights_without_size(args, points, own, first, lit_words, used);
-        first += LIGHTS;
+        // Most scenes have one light.
+        fell_back |= args.scene.light_count == 1
+                         ? lights_without_size<1>(args, points, own, first, lit_words, used)
+                         : lights_without_size<MOST_LIGHTS>(args, points, own, first, lit_words, used);
+        first += MOST_LIGHTS;
     } while (first < args.scene.light_count);
     for (unsigned light = 0; light < args.scene.light_count; light++)
         if (args.lit[light].seen != nullptr)

@@ -9,7 +9,7 @@ use lightmesh_layout::stages::LightPoints;
 
 use super::window_side;
 use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, WARP, blocks_for, warps_for};
+use crate::backend::cuda::{BLOCK, Cuda, blocks_for};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::job::{Job, Tally};
 use crate::light_mesh::{BrickKey, LightMesh};
@@ -21,6 +21,8 @@ pub struct DevicePoints<R: Runtime> {
     used: Buffer<R, u64>,
     rank: Buffer<R, u32>,
     points: Buffer<R, u64>,
+    /// The slot of each brick of the window around each item's cell that has used points.
+    pub(crate) slots: Buffer<R, u32>,
     /// S_total.
     pub(crate) count: usize,
 }
@@ -50,7 +52,7 @@ pub(crate) fn light_points<R: Runtime>(
         let record = LightPoints {
             mesh: cuda.mesh(mesh)?,
             items: masks.items.input(),
-            masks: masks.masks.input(),
+            marks: masks.marks.input(),
             item_count: masks.count as u64,
             table,
             bricks: bricks.output(),
@@ -66,7 +68,8 @@ pub(crate) fn light_points<R: Runtime>(
     };
     // 2. The used points in each. The order of marking does not matter to an "or".
     let used = cuda.pool().zeros("used light points", capacity)?;
-    let record = LightPoints { used: used.output(), ..record };
+    let slots = cuda.pool().room("bricks around items", masks.marks.len())?;
+    let record = LightPoints { used: used.output(), slots: slots.output(), ..record };
     each_item(cuda, job, MARK, &record)?;
     // 3. Ranks.
     let rank = cuda.pool().room("ranks of bricks", capacity + 1)?;
@@ -78,14 +81,15 @@ pub(crate) fn light_points<R: Runtime>(
     let points = cuda.pool().room("light points", count)?;
     cuda.launch(LIST, launch, &LightPoints { points: points.output(), ..record })?;
     Tally::add(&job.tally.light_points, count as u64);
-    Ok(DevicePoints { keys, used, rank, points, count })
+    Ok(DevicePoints { keys, used, rank, points, slots, count })
 }
 
-/// Launches a kernel that takes one item a warp, over all items.
+/// Launches a kernel that takes a brick of an item's window a thread, over all items.
 fn each_item<R: Runtime>(cuda: &Cuda<R>, job: &Job, kernel: Kernel, record: &LightPoints) -> Result<(), RenderError> {
     cuda.in_pieces(job, kernel, record.item_count, FIRST, 0, |piece| {
-        let launch = warps_for(&piece, BLOCK / WARP, 2 * window_bricks(record.mesh.reach));
         let item_count = piece.end - piece.start;
+        let bricks = item_count * u64::from(window_bricks(record.mesh.reach));
+        let launch = blocks_for(&(0..bricks.div_ceil(u64::from(BLOCK))), BLOCK);
         cuda.launch(kernel, launch, &LightPoints { first_item: piece.start, item_count, ..*record })
     })
 }

@@ -1,7 +1,7 @@
 // Step 3 on a CUDA device: each light point that some object point uses, once. Formula (7).
 //
 // 1. `insert_bricks`: the bricks that hold a used point, in a table.
-// 2. `mark_points`: the used points in each.
+// 2. `mark_points`: the used points in each, and for each item where its bricks are.
 // 3. `count_points`, then a scan: ranks.
 // 4. `list_points`: all of them.
 //
@@ -37,53 +37,45 @@ DEVICE void insert(const LightPoints &args, unsigned long long key) {
     atomicOr(args.bricks, 0x80000000u);
 }
 
-// Calls `mark` for each brick that a cell's object points use points of, with these points.
-template <typename Mark>
-DEVICE void each_brick(const LightPoints &args, const Mark &mark) {
-    DYNAMIC_SHARED(unsigned, shared);
-    const LightMesh &mesh = args.mesh;
-    const unsigned lane = lane_of_thread();
-    const unsigned long long number = (unsigned long long)blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
-    if (number >= args.item_count)
-        return;
-    const unsigned long long index = args.first_item + number;
-    const IVec3 cell = point_of(args.items[index].cell);
-    const Window window = window_around(mesh, cell);
-    // Two words a brick: shared memory has no 64-bit "or" of its own.
-    unsigned *marks = shared + threadIdx.x / 32 * 2 * window_size(window);
-    for (int word = lane; word < 2 * window_size(window); word += 32)
-        marks[word] = 0;
-    __syncwarp();
-    const unsigned *seen = args.masks + index * 32 * mesh.words;
-    for (unsigned k = lane; k < mesh.points; k += 32) {
-        if (seen[k] == 0)
-            continue;
-        const IVec3 offset = template_offset(mesh, k);
-        const IVec3 point = {cell.x + offset.x, cell.y + offset.y, cell.z + offset.z};
-        const unsigned bit = point_bit(point);
-        atomicOr(&marks[2 * window_place(window, point) + bit / 32], 1u << bit % 32);
-    }
-    __syncwarp();
-    for (int place = lane; place < window_size(window); place += 32) {
-        const unsigned long long points = (unsigned long long)marks[2 * place + 1] << 32 | marks[2 * place];
-        if (points != 0)
-            mark(window_key(window, place), points);
-    }
+// A brick of the window around an item's cell.
+struct WindowBrick {
+    unsigned long long key;
+    // Its points that the item's object points use.
+    unsigned long long points;
+    // Its number among all of the launch's windows.
+    unsigned long long index;
+};
+
+// The brick of a thread; `false` where there is none.
+DEVICE bool brick_of_thread(const LightPoints &args, WindowBrick &brick) {
+    const int side = window_side(args.mesh);
+    const unsigned bricks = side * side * side;
+    const unsigned number = blockIdx.x * blockDim.x + threadIdx.x;
+    if (number >= args.item_count * bricks)
+        return false;
+    brick.index = args.first_item * bricks + number;
+    brick.points = args.marks[brick.index];
+    const IVec3 cell = point_of(args.items[args.first_item + number / bricks].cell);
+    brick.key = window_key(window_around(args.mesh, cell), number % bricks);
+    return true;
 }
 
 KERNEL(insert_bricks, LightPoints, 256, 4) {
-    // A table that is more than half full is given up: the host makes a larger one. One lane asks for all, so that a warp goes on
-    // together or not at all.
-    const unsigned bricks = lane_of_thread() == 0 ? atomicAdd(args.bricks, 0u) : 0;
-    if (__shfl_sync(ALL_LANES, bricks, 0) > args.table.capacity / 2)
-        return;
-    each_brick(args, [&](unsigned long long key, unsigned long long) { insert(args, key); });
+    // A table that is more than half full is given up: the host makes a larger one.
+    WindowBrick brick;
+    if (*(volatile unsigned *)args.bricks <= args.table.capacity / 2 && brick_of_thread(args, brick) &&
+        brick.points != 0)
+        insert(args, brick.key);
 }
 
 KERNEL(mark_points, LightPoints, 256, 4) {
-    each_brick(args, [&](unsigned long long key, unsigned long long points) {
-        atomicOr(&args.used[find_slot(args.table, key)], points);
-    });
+    WindowBrick brick;
+    if (!brick_of_thread(args, brick))
+        return;
+    const unsigned slot = brick.points != 0 ? find_slot(args.table, brick.key) : NO_SLOT;
+    if (brick.points != 0)
+        atomicOr(&args.used[slot], brick.points);
+    args.slots[brick.index] = slot;
 }
 
 KERNEL(count_points, LightPoints, 256, 4) {

@@ -9,6 +9,7 @@
 #include "light_mesh/bricks.cuh"
 #include "light_mesh/lattice.cuh"
 #include "light_mesh/template.cuh"
+#include "stages/short_tests/masks.cuh"
 #include "surface.cuh"
 
 // Warps of a block: items differ in cost, and a block keeps its place until its last warp is done.
@@ -16,13 +17,15 @@
 // Tangent planes that are told apart.
 #define TANGENT_PLANES 4
 // Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of the search adds.
-#define FOUND_TRIANGLES 128
+#define FOUND_TRIANGLES 128u
 // Entries of the search's stack up to which rounds take four nodes, and those kept for each level of the tree: see `next_nodes`.
 #define STACK_OF_ROUNDS 64
 #define STACK_PER_LEVEL 7
 
 // Points that are tested in one go.
 #define LISTED_TARGETS 96u
+// What comes after the last of them.
+#define NO_TARGET 0xffffffffu
 
 // A triangle that can matter: its corners, and all q - P with q on it and P an origin of the item.
 struct Candidate {
@@ -81,8 +84,7 @@ DEVICE CellItem cell_item(const LightMesh &mesh, const Item &item, const CellLan
     unsigned rest = __ballot_sync(ALL_LANES, lane.alive);
     for (result.planes = 0; rest != 0 && result.planes < TANGENT_PLANES; result.planes++) {
         const unsigned leader = __ffs(rest) - 1;
-        const Vec3 shared = {__shfl_sync(ALL_LANES, normal.x, leader), __shfl_sync(ALL_LANES, normal.y, leader),
-                             __shfl_sync(ALL_LANES, normal.z, leader)};
+        const Vec3 shared = warp_broadcast(normal, leader);
         const bool same = lane.alive && normal == shared;
         const float lowest = warp_min(same ? dot(shared, origin - result.low) : far);
         if (lane_of_thread() == 0)
@@ -95,89 +97,74 @@ DEVICE CellItem cell_item(const LightMesh &mesh, const Item &item, const CellLan
     return result;
 }
 
+// What formula (2) makes of one lane's object point and a light point: conditions 1 and 2.
+DEVICE bool in_half_ball(const LightMesh &mesh, const SurfacePoint &point, const Vec3 &light_point) {
+    const Vec3 d = light_point - point.position;
+    return (d.z * d.z + d.y * d.y) + d.x * d.x < mesh.radius * mesh.radius && dot_along_x(point.normal, d) > mesh.least_height;
+}
+
+// An interval.
+struct Span {
+    float low, high;
+};
+
+DEVICE Span operator+(const Span &a, const Span &b) { return Span{a.low + b.low, a.high + b.high}; }
+
+DEVICE Span operator*(const Span &a, const Span &b) {
+    const float ll = a.low * b.low, lh = a.low * b.high, hl = a.high * b.low, hh = a.high * b.high;
+    return Span{fminf(fminf(ll, lh), fminf(hl, hh)), fmaxf(fmaxf(ll, lh), fmaxf(hl, hh))};
+}
+
+DEVICE Span squared(const Span &a) {
+    const float least = fmaxf(fmaxf(a.low, -a.high), 0.0f), most = fmaxf(-a.low, a.high);
+    return Span{least * least, most * most};
+}
+
+// All values of a lane's variable over the warp.
+DEVICE Span warp_span(float value) { return Span{warp_min(value), warp_max(value)}; }
+
 // 1, 2. The half-balls: conditions 1 and 2 of formula (2). Returns how many light points the lane's has.
-DEVICE unsigned half_balls_of_any_size(const LightMesh &mesh, const CellItem &item, const CellLane &lane, unsigned *seen) {
-    const float square = mesh.radius * mesh.radius;
-    const Vec3 &position = lane.point.position, &normal = lane.point.normal;
-    unsigned size = 0;
-    for (unsigned row = 0; row < mesh.lines; row++) {
-        const TemplateRow line = template_rows[row];
-        const float dy = lattice_coordinate(mesh.origin.y, mesh.step, item.cell.y + line.y) - position.y;
-        const float dz = lattice_coordinate(mesh.origin.z, mesh.step, item.cell.z + line.z) - position.z;
-        const float square_yz = dz * dz + dy * dy, height_yz = normal.z * dz + normal.y * dy;
-        for (int i = 0; i < line.count; i++) {
-            const float dx = lattice_coordinate(mesh.origin.x, mesh.step, item.cell.x + line.x + i) - position.x;
-            const bool inside = lane.alive && square_yz + dx * dx < square && height_yz + normal.x * dx > mesh.least_height;
-            const unsigned lanes = __ballot_sync(ALL_LANES, inside);
-            size += inside;
-            if (lane_of_thread() == 0)
-                seen[line.bit + i] = lanes;
-        }
-    }
-    return size;
-}
-
-// The same for templates of one reach: what depends on x alone is computed once, and kept in registers.
-template <int REACH>
-DEVICE unsigned half_balls_of_reach(const LightMesh &mesh, const CellItem &item, const CellLane &lane, unsigned *seen) {
-    // A lane without an object point has an empty ball.
-    const float square = lane.alive ? mesh.radius * mesh.radius : -1.0f;
-    const Vec3 &position = lane.point.position, &normal = lane.point.normal;
-    float square_x[2 * REACH], height_x[2 * REACH];
-#pragma unroll
-    for (int i = 0; i < 2 * REACH; i++) {
-        const float dx = lattice_coordinate(mesh.origin.x, mesh.step, item.cell.x + 1 - REACH + i) - position.x;
-        square_x[i] = dx * dx;
-        height_x[i] = normal.x * dx;
-    }
-    float highest_x = height_x[0];
-#pragma unroll
-    for (int i = 1; i < 2 * REACH; i++)
-        highest_x = fmaxf(highest_x, height_x[i]);
-    for (unsigned k = lane_of_thread(); k < mesh.points; k += 32)
-        seen[k] = 0;
-    __syncwarp();
-    const bool writes = lane_of_thread() == 0;
-    unsigned size = 0;
-    for (unsigned row = 0; row < mesh.lines; row++) {
-        const TemplateRow line = template_rows[row];
-        const float dy = lattice_coordinate(mesh.origin.y, mesh.step, item.cell.y + line.y) - position.y;
-        const float dz = lattice_coordinate(mesh.origin.z, mesh.step, item.cell.z + line.z) - position.z;
-        const float square_yz = dz * dz + dy * dy, height_yz = normal.z * dz + normal.y * dy;
-        // Half of the rows lie below the tangent plane.
-        if (!__any_sync(ALL_LANES, square_yz < square && height_yz + highest_x > mesh.least_height))
-            continue;
-        // From the cell outwards: a row of 2 n points reaches from 1 - n to n.
-        unsigned *middle = seen + line.bit + line.count / 2;
-#pragma unroll
-        for (int out = 0; out < REACH; out++) {
-            if (2 * out >= line.count)
-                break;
-#pragma unroll
-            for (int side = 0; side < 2; side++) {
-                const int x = side == 0 ? -1 - out : out, i = REACH + x;
-                const bool inside = square_yz + square_x[i] < square && height_yz + height_x[i] > mesh.least_height;
-                const unsigned lanes = __ballot_sync(ALL_LANES, inside);
-                size += inside;
-                if (writes)
-                    middle[x] = lanes;
-            }
-        }
-    }
-    return size;
-}
-
+//
+// Lanes take a light point each and bound the two conditions over all object points of the item. Few light points are left that some
+// object points use and others do not: the warp asks all for those. Rounding is monotonic and the bounds follow the order of
+// operations of `in_half_ball`, so they hold bit by bit.
 DEVICE unsigned half_balls(const LightMesh &mesh, const CellItem &item, const CellLane &lane, unsigned *seen) {
-    switch (mesh.reach) {
-    case 2:
-        return half_balls_of_reach<2>(mesh, item, lane, seen);
-    case 3:
-        return half_balls_of_reach<3>(mesh, item, lane, seen);
-    case 4:
-        return half_balls_of_reach<4>(mesh, item, lane, seen);
-    default:
-        return half_balls_of_any_size(mesh, item, lane, seen);
+    const SurfacePoint &point = lane.point;
+    const Span x = warp_span(point.position.x), y = warp_span(point.position.y), z = warp_span(point.position.z);
+    Span nx = {point.normal.x, point.normal.x}, ny = {point.normal.y, point.normal.y}, nz = {point.normal.z, point.normal.z};
+    if (item.planes != 1) {
+        nx = warp_span(point.normal.x);
+        ny = warp_span(point.normal.y);
+        nz = warp_span(point.normal.z);
     }
+    const float square = mesh.radius * mesh.radius;
+    const unsigned alive = __ballot_sync(ALL_LANES, lane.alive);
+    unsigned size = 0;
+    for (unsigned first = 0; first < 32 * mesh.words; first += 32) {
+        const unsigned k = first + lane_of_thread();
+        bool all = false, some = false;
+        Vec3 light_point = {};
+        if (k < mesh.points) {
+            light_point = lattice_point(mesh, item.cell + template_offset(mesh, k));
+            const Span dx = {light_point.x - x.high, light_point.x - x.low}, dy = {light_point.y - y.high, light_point.y - y.low},
+                       dz = {light_point.z - z.high, light_point.z - z.low};
+            const Span distance = (squared(dz) + squared(dy)) + squared(dx), height = (nz * dz + ny * dy) + nx * dx;
+            all = distance.high < square && height.low > mesh.least_height;
+            some = !all && distance.low < square && height.high > mesh.least_height;
+        }
+        unsigned lanes = all ? alive : 0;
+        size += __popc(__ballot_sync(ALL_LANES, all));
+        for (unsigned rest = __ballot_sync(ALL_LANES, some); rest != 0; rest &= rest - 1) {
+            const unsigned owner = __ffs(rest) - 1;
+            const Vec3 asked = warp_broadcast(light_point, owner);
+            const bool inside = lane.alive && in_half_ball(mesh, point, asked);
+            const unsigned users = __ballot_sync(ALL_LANES, inside);
+            size += inside;
+            lanes = lane_of_thread() == owner ? users : lanes;
+        }
+        seen[k] = lanes;
+    }
+    return lane.alive ? size : 0;
 }
 
 // Whether the box of a slot may hold a triangle that matters: whether it comes within reach of the origins, on the upper side of a
@@ -263,10 +250,6 @@ DEVICE bool is_behind(const CellItem &item, const float4 *planes, const Vec3 &a,
 
 // One axis of the box of light points, as offsets from the cell, that a triangle can hide from the item's object points: see
 // `shadow_box` in cells.rs. `most` is the farthest that a shadow is stretched.
-struct Span {
-    float low, high;
-};
-
 DEVICE Span span_to(float low, float high, float a, float b, float c, float slack) {
     return Span{fminf(fminf(a, b), c) - high - slack, fmaxf(fmaxf(a, b), c) - low + slack};
 }
@@ -421,8 +404,8 @@ DEVICE bool may_hide(const LightMesh &mesh, const CellItem &item, const Candidat
            sign * dot(all, middle) + dot(abs(all), half) + 3.0f * rounding >= sign * volume;
 }
 
-// Keeps the targets that some lane still sees and that their candidate may hide. Returns how many.
-DEVICE unsigned filter_targets(const LightMesh &mesh, const CellItem &item, const CellMemory &memory, unsigned count) {
+// Keeps the targets that some lane still sees and that their candidate may hide, and marks the end.
+DEVICE void filter_targets(const LightMesh &mesh, const CellItem &item, const CellMemory &memory, unsigned count) {
     const unsigned lane = lane_of_thread();
     unsigned kept = 0;
     for (unsigned first = 0; first < count; first += 32) {
@@ -442,62 +425,61 @@ DEVICE unsigned filter_targets(const LightMesh &mesh, const CellItem &item, cons
         kept += __popc(lanes);
         __syncwarp();
     }
-    return kept;
+    if (lane == 0)
+        memory.targets[kept].w = __uint_as_float(NO_TARGET);
+    __syncwarp();
 }
 
-// 3. c. Clears the light points that the candidates hide from the lanes. Targets of one candidate follow each other. Returns whether
-// the lane asked a triangle.
-DEVICE bool clear_blocked(const ShortTests &args, const CellLane &lane, const CellMemory &memory, unsigned count) {
-    const LightMesh &mesh = args.mesh;
+// A triangle as the lane's object point sees it.
+DEVICE Occluder occluder_of(const Candidate &candidate, const CellLane &lane, bool &above) {
     const Vec3 &origin = lane.point.origin, &normal = lane.point.normal;
+    const Vec3 a = corner_of(candidate.corners[0]) - origin, b = corner_of(candidate.corners[1]) - origin,
+               c = corner_of(candidate.corners[2]) - origin;
+    above = lane.alive && (dot(normal, a) > 0.0f || dot(normal, b) > 0.0f || dot(normal, c) > 0.0f);
+    const Vec3 bc = cross(b, c);
+    const float volume = dot(a, bc), sign = volume < 0.0f ? -1.0f : 1.0f;
+    return Occluder{sign * bc, sign * cross(c, a), sign * cross(a, b), sign * volume};
+}
+
+// Whether the lane's object point sees the triangle from its edge.
+DEVICE bool is_edge_on(const LightMesh &mesh, const Candidate &candidate, const CellLane &lane, const Occluder &occluder) {
+    const Vec3 &origin = lane.point.origin;
+    const Vec3 a = corner_of(candidate.corners[0]) - origin, b = corner_of(candidate.corners[1]) - origin,
+               c = corner_of(candidate.corners[2]) - origin;
+    const Vec3 outward = cross(b - a, c - a);
+    return !(occluder.volume * occluder.volume > mesh.edge_on * mesh.edge_on * dot(outward, outward));
+}
+
+// 3. c. Clears the light points that the candidates hide from the lanes. Targets of one candidate follow each other, and after the
+// last of all comes one of no candidate. Returns whether the lane asked a triangle.
+DEVICE bool clear_blocked(const ShortTests &args, const CellLane &lane, const CellMemory &memory) {
     bool asked = false;
-    unsigned current = 0xffffffff, lanes = 0;
-    bool edges_known = false;
-    Occluder occluder;
-    for (unsigned i = 0; i < count; i++) {
-        const Target target = memory.targets[i];
-        const unsigned packed = __float_as_uint(target.w);
-        if (packed >> 16 != current) {
-            // ShortTest::occluder; whether it is edge-on is asked only once something is hidden.
-            current = packed >> 16;
-            const Candidate &candidate = memory.candidates[current];
-            const Vec3 a = corner_of(candidate.corners[0]) - origin, b = corner_of(candidate.corners[1]) - origin,
-                       c = corner_of(candidate.corners[2]) - origin;
-            const bool above = lane.alive && (dot(normal, a) > 0.0f || dot(normal, b) > 0.0f || dot(normal, c) > 0.0f);
-            lanes = __ballot_sync(ALL_LANES, above);
-            asked |= above;
-            if (lanes != 0) {
-                const Vec3 bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
-                const float volume = dot(a, bc);
-                const float sign = volume < 0.0f ? -1.0f : 1.0f;
-                occluder = Occluder{sign * bc, sign * ca, sign * ab, sign * volume};
-                edges_known = false;
+    Target target = memory.targets[0];
+    for (unsigned i = 0; __float_as_uint(target.w) != NO_TARGET;) {
+        // ShortTest::occluder; whether it is edge-on is asked only once something is hidden.
+        const unsigned current = __float_as_uint(target.w) >> 16;
+        const Candidate &candidate = memory.candidates[current];
+        bool above, edges_known = false;
+        const Occluder occluder = occluder_of(candidate, lane, above);
+        unsigned lanes = __ballot_sync(ALL_LANES, above);
+        asked |= above;
+        do {
+            const unsigned point = __float_as_uint(target.w) & 0xffff;
+            const Vec3 d = Vec3{target.x, target.y, target.z} - lane.point.origin;
+            target = memory.targets[++i];
+            unsigned blocked = __ballot_sync(ALL_LANES, blocks(occluder, d)) & lanes;
+            if (blocked == 0)
+                continue;
+            if (!edges_known) {
+                lanes &= ~__ballot_sync(ALL_LANES, is_edge_on(args.mesh, candidate, lane, occluder));
+                blocked &= lanes;
+                edges_known = true;
             }
-        }
-        const unsigned point = packed & 0xffff;
-        const unsigned seen = memory.seen[point];
-        if ((seen & lanes) == 0)
-            continue;
-        const Vec3 d = Vec3{target.x, target.y, target.z} - origin;
-        unsigned blocked = __ballot_sync(ALL_LANES, blocks(occluder, d)) & lanes;
-        if (blocked == 0)
-            continue;
-        if (!edges_known) {
-            const Candidate &candidate = memory.candidates[current];
-            const Vec3 a = corner_of(candidate.corners[0]) - origin, b = corner_of(candidate.corners[1]) - origin,
-                       c = corner_of(candidate.corners[2]) - origin;
-            const Vec3 outward = cross(b - a, c - a);
-            const float edge_on = mesh.edge_on * mesh.edge_on * dot(outward, outward);
-            lanes &= __ballot_sync(ALL_LANES, occluder.volume * occluder.volume > edge_on);
-            blocked &= lanes;
-            edges_known = true;
-        }
-        // All have read before one writes.
-        __syncwarp();
-        if (lane_of_thread() == 0)
-            memory.seen[point] = seen & ~blocked;
-        __syncwarp();
+            if (lane_of_thread() == 0)
+                memory.seen[point] &= ~blocked;
+        } while (__float_as_uint(target.w) >> 16 == current);
     }
+    __syncwarp();
     return asked;
 }
 
@@ -548,9 +530,8 @@ DEVICE bool test_candidates(const ShortTests &args, const CellItem &item, const 
                 }
             }
             __syncwarp();
-            const unsigned count = filter_targets(mesh, item, memory, listed);
-            asked |= clear_blocked(args, own, memory, count);
-            __syncwarp();
+            filter_targets(mesh, item, memory, listed);
+            asked |= clear_blocked(args, own, memory);
         }
     }
     return asked;
@@ -578,32 +559,29 @@ DEVICE bool test_occluders(const ShortTests &args, const CellItem &item, const C
     return asked;
 }
 
-// Adds what a warp counted. `used` may be of any part of the warp's masks, the others are of the lane.
-DEVICE void count_short_tests(const Tally &tally, unsigned half_ball, unsigned used, unsigned tested) {
-    Counters &shard = tally_shard(tally);
-    count(shard.half_ball, half_ball);
-    count(shard.used, used);
-    count(shard.short_tests, tested);
-}
-
-// Cuts the block's shared memory into that of its warps.
+// Cuts the block's shared memory into that of its warps. Whether masks are kept there is known to the compiler, which then knows
+// what kind of memory they are in.
+template <bool SHARED_MASKS>
 DEVICE CellMemory cell_memory(const ShortTests &args, unsigned *shared, unsigned long long item) {
-    const unsigned points = 32 * args.mesh.words, seen = args.shared_masks ? points : 0;
+    const unsigned points = 32 * args.mesh.words, seen = SHARED_MASKS ? points : 0;
+    // Later the marks are there.
+    const unsigned side = window_side(args.mesh), found = max(FOUND_TRIANGLES, 2 * side * side * side);
     const unsigned stack = 4 * ((STACK_OF_ROUNDS + STACK_PER_LEVEL * args.scene.bvh.depth + 3) / 4);
-    const unsigned candidates = sizeof(Candidate) / 4 * 32, targets = (unsigned)sizeof(Target) / 4 * LISTED_TARGETS;
+    const unsigned candidates = sizeof(Candidate) / 4 * 32, targets = (unsigned)sizeof(Target) / 4 * (LISTED_TARGETS + 1);
     const unsigned planes = 4 * TANGENT_PLANES;
-    const unsigned size = candidates + targets + planes + FOUND_TRIANGLES + stack + seen;
+    const unsigned size = candidates + targets + planes + found + stack + seen;
     unsigned *own = shared + (threadIdx.x / 32) * size;
     CellMemory memory;
     memory.candidates = (Candidate *)own;
     memory.targets = (Target *)(own + candidates);
     memory.planes = (float4 *)(own + candidates + targets);
     memory.found = own + candidates + targets + planes;
-    memory.stack = memory.found + FOUND_TRIANGLES;
-    memory.seen = args.shared_masks ? memory.stack + stack : args.masks + item * points;
+    memory.stack = memory.found + found;
+    memory.seen = SHARED_MASKS ? memory.stack + stack : args.masks + item * points;
     return memory;
 }
 
+template <bool SHARED_MASKS>
 DEVICE void short_tests_by_cell_of_item(const ShortTests &args) {
     DYNAMIC_SHARED(unsigned, shared);
     const unsigned lane = lane_of_thread();
@@ -611,7 +589,7 @@ DEVICE void short_tests_by_cell_of_item(const ShortTests &args) {
     if (number >= args.item_count)
         return;
     const unsigned long long index = args.first_item + number;
-    const CellMemory memory = cell_memory(args, shared, index);
+    const CellMemory memory = cell_memory<SHARED_MASKS>(args, shared, index);
     const Item item = args.items[index];
     CellLane own;
     own.alive = lane < item.count;
@@ -620,22 +598,13 @@ DEVICE void short_tests_by_cell_of_item(const ShortTests &args) {
     own.point = object_point(args.scene, args.rays, args.hits, ray);
     const CellItem shape = cell_item(args.mesh, item, own, memory.planes);
 
-    // 1, 2. The half-balls; points that pad the last word belong to nobody.
+    // 1, 2. The half-balls.
     const unsigned size = half_balls(args.mesh, shape, own, memory.seen);
-    const unsigned points = 32 * args.mesh.words;
-    for (unsigned k = args.mesh.points + lane; k < points; k += 32)
-        memory.seen[k] = 0;
     __syncwarp();
     // 3. What stands in their way.
     const bool asked = test_occluders(args, shape, own, memory);
 
     // 4. The masks, and what was counted.
-    unsigned used = 0;
-    for (unsigned k = lane; k < points; k += 32) {
-        const unsigned lanes = memory.seen[k];
-        used += __popc(lanes);
-        if (args.shared_masks)
-            args.masks[index * points + k] = lanes;
-    }
+    const unsigned used = write_masks(args, index, shape.cell, memory.seen, memory.found);
     count_short_tests(args.tally, size, used, asked ? size : 0);
 }

@@ -11,6 +11,7 @@ use crate::job::Job;
 use crate::light_mesh::LightMesh;
 use crate::prepared::PreparedScene;
 use crate::settings;
+use crate::stages::light_points::cuda::window_bricks;
 
 /// The masks of all object points on a device, transposed: a block of 32 · words words for each item.
 pub struct DeviceMasks<R: Runtime> {
@@ -20,6 +21,8 @@ pub struct DeviceMasks<R: Runtime> {
     /// Number of items.
     pub(crate) count: usize,
     pub(crate) masks: Buffer<R, u32>,
+    /// The used points of each brick of the window around each item's cell.
+    pub(crate) marks: Buffer<R, u64>,
     words: usize,
 }
 
@@ -48,18 +51,18 @@ pub(crate) fn short_tests<R: Runtime>(
     // 1. Which object points share a cell?
     let masks = group(cuda, job, &scene, rays, hits, mesh)?;
     // 2. Their masks.
-    let kernel = match by_cell {
-        true => Kernel { module: "short_tests", name: "short_tests_by_cell" },
-        false => {
-            let names = ["short_tests_plain_bvh", "short_tests_plain_grid", "short_tests_plain_brute_force"];
-            kernel_of("short_tests", names, scene.structure)
-        }
-    };
-    let search = shared_words(scene.record.bvh.depth);
+    let marks = 2 * window_bricks(mesh.template.reach());
+    let search = shared_words(scene.record.bvh.depth, marks);
     let all = search + 32 * mesh.template.words() as u32;
-    // Masks of large templates stay where they end up anyway.
-    let shared_masks = 4 * WARPS * all <= SHARED_MEMORY;
-    let words = if by_cell { if shared_masks { all } else { search } } else { 0 };
+    let (kernel, words) = if !by_cell {
+        let names = ["short_tests_plain_bvh", "short_tests_plain_grid", "short_tests_plain_brute_force"];
+        (kernel_of("short_tests", names, scene.structure), marks)
+    } else if 4 * WARPS * all <= SHARED_MEMORY {
+        (Kernel { module: "short_tests", name: "short_tests_by_cell" }, all)
+    } else {
+        // Masks of large templates stay where they end up anyway.
+        (Kernel { module: "short_tests", name: "short_tests_by_cell_large" }, search)
+    };
     cuda.in_pieces(job, kernel, masks.count as u64, FIRST_ITEMS, rays.len() as u64, |piece| {
         let count = piece.end - piece.start;
         let arguments = ShortTests {
@@ -70,10 +73,10 @@ pub(crate) fn short_tests<R: Runtime>(
             members: masks.members.input(),
             items: masks.items.input(),
             masks: masks.masks.output(),
+            marks: masks.marks.output(),
             tally: cuda.tally()?,
             first_item: piece.start,
             item_count: count,
-            shared_masks: u64::from(shared_masks),
         };
         cuda.launch(kernel, warps_for(&piece, WARPS, words), &arguments)
     })?;
@@ -114,7 +117,8 @@ fn group<R: Runtime>(
     drop(tile_items);
     let words = mesh.template.words();
     let masks = pool.room("masks", count * 32 * words)?;
-    Ok(DeviceMasks { members, items, count, masks, words })
+    let marks = pool.room("used points around items", count * window_bricks(mesh.template.reach()) as usize)?;
+    Ok(DeviceMasks { members, items, count, masks, marks, words })
 }
 
 impl<R: Runtime> DeviceMasks<R> {
@@ -136,13 +140,13 @@ impl<R: Runtime> DeviceMasks<R> {
 }
 
 /// Shared memory of a warp that tests by cell, in 32-bit words, its masks apart: candidates and targets of one round, triangles
-/// found, and the stack of the search through a BVH of `depth` levels. See `cell_memory` in `by_cell.cuh`.
-fn shared_words(depth: u32) -> u32 {
+/// found (later `marks`), and the stack of the search through a BVH of `depth` levels. See `cell_memory` in `by_cell.cuh`.
+fn shared_words(depth: u32, marks: u32) -> u32 {
     const CANDIDATES: u32 = 32 * 24;
-    const TARGETS: u32 = 96 * 4;
+    const TARGETS: u32 = 97 * 4;
     const PLANES: u32 = 4 * 4;
     const FOUND: u32 = 128;
     const STACK_OF_ROUNDS: u32 = 64;
     const STACK_PER_LEVEL: u32 = 7;
-    CANDIDATES + TARGETS + PLANES + FOUND + (STACK_OF_ROUNDS + STACK_PER_LEVEL * depth).next_multiple_of(4)
+    CANDIDATES + TARGETS + PLANES + marks.max(FOUND) + (STACK_OF_ROUNDS + STACK_PER_LEVEL * depth).next_multiple_of(4)
 }

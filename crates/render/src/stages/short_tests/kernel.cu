@@ -21,7 +21,12 @@ KERNEL(gather_items, GroupCells, 1024, 1) {
 }
 
 KERNEL(short_tests_by_cell, ShortTests, 32, 28) {
-    short_tests_by_cell_of_item(args);
+    short_tests_by_cell_of_item<true>(args);
+}
+
+// For templates whose masks do not fit into shared memory.
+KERNEL(short_tests_by_cell_large, ShortTests, 32, 28) {
+    short_tests_by_cell_of_item<false>(args);
 }
 
 KERNEL(short_tests_plain_bvh, ShortTests, 32, 32) {

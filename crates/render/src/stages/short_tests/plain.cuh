@@ -6,6 +6,7 @@
 
 template <typename Structure>
 DEVICE void short_tests_plain_of_item(const ShortTests &args, const Structure &structure) {
+    DYNAMIC_SHARED(unsigned, shared);
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
     const unsigned long long number = (unsigned long long)blockIdx.x * CELL_WARPS + threadIdx.x / 32;
@@ -19,15 +20,14 @@ DEVICE void short_tests_plain_of_item(const ShortTests &args, const Structure &s
     own.point = object_point(args.scene, args.rays, args.hits, ray);
     CellItem shape;
     shape.cell = point_of(item.cell);
+    shape.planes = 0;
 
     // 1, 2. The half-balls.
-    const unsigned points = 32 * mesh.words;
-    unsigned *seen = args.masks + index * points;
+    unsigned *seen = args.masks + index * 32 * mesh.words;
     const unsigned size = half_balls(mesh, shape, own, seen);
     __syncwarp();
     // 3. Their segments.
     const ShortTest test = {own.point.origin, own.point.normal, mesh.edge_on};
-    unsigned used = 0;
     for (unsigned row = 0; row < mesh.lines; row++) {
         const TemplateRow line = template_rows[row];
         const float py = lattice_coordinate(mesh.origin.y, mesh.step, shape.cell.y + line.y);
@@ -41,12 +41,12 @@ DEVICE void short_tests_plain_of_item(const ShortTests &args, const Structure &s
             const bool sees =
                 (inside >> lane & 1) && !short_blocked(structure, args.tally, test, direction, mesh.slack);
             const unsigned lanes = __ballot_sync(ALL_LANES, sees);
-            used += sees;
             if (lane == 0)
                 seen[line.bit + i] = lanes;
         }
     }
-    for (unsigned k = mesh.points + lane; k < points; k += 32)
-        seen[k] = 0;
+    __syncwarp();
+    // 4. The masks, and what was counted.
+    const unsigned used = write_masks(args, index, shape.cell, seen, shared);
     count_short_tests(args.tally, size, used, size);
 }
