@@ -17,6 +17,8 @@ use crate::cuda::{Fault, Kernel};
 
 /// Room for what the driver's compiler has to say, in bytes.
 const LOG: usize = 8 << 10;
+/// Dynamic shared memory of a block, in bytes, above which the driver's own choice leaves room for too few blocks.
+const MUCH_SHARED_MEMORY: u32 = 4 << 10;
 
 /// All modules that were loaded.
 pub(super) struct Modules {
@@ -63,8 +65,9 @@ impl Modules {
             Some(function) => *function,
             None => self.find(&mut loaded, kernel)?,
         };
-        if shared > 0 && !function.carved {
-            // Shared memory decides how many blocks fit: let it be as large as it can.
+        if shared > MUCH_SHARED_MEMORY && !function.carved {
+            // Shared memory decides how many blocks fit: let it be as large as it can. It is taken from the cache, which others
+            // have more use for.
             let attribute = FunctionAttribute::CU_FUNC_ATTRIBUTE_PREFERRED_SHARED_MEMORY_CARVEOUT;
             // SAFETY: the function's module is loaded.
             let set = |_| unsafe { function::set_function_attribute(function.handle, attribute, 100) };

@@ -104,10 +104,13 @@ DEVICE unsigned count_lit(const Interpolate &args, const ItemPoints &points, uns
                           unsigned (&lit)[LIGHTS]) {
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
-    unsigned used = 0;
+    unsigned used = 0, next_seen = points.seen[lane];
     for (unsigned word = 0; word < mesh.words; word++) {
         const unsigned k = 32 * word + lane;
-        const unsigned seen = points.seen[k];
+        const unsigned seen = next_seen;
+        // Asked for a round before it is needed: masks come from afar.
+        if (word + 1 < mesh.words)
+            next_seen = points.seen[k + 32];
         // Half of the points lie below the tangent plane.
         if (!__any_sync(ALL_LANES, seen != 0)) {
             if (lane < LIGHTS)
@@ -121,12 +124,15 @@ DEVICE unsigned count_lit(const Interpolate &args, const ItemPoints &points, uns
             slot = points.slots[window_place(points.window, point)];
             bit = point_bit(point);
         }
+        unsigned long long lit_by[LIGHTS];
+        for (unsigned i = 0; i < LIGHTS; i++) {
+            const unsigned long long *bits = first + i < args.scene.light_count ? args.lit[first + i].bits : nullptr;
+            lit_by[i] = bits != nullptr && seen != 0 ? bits[slot] : 0;
+        }
         const unsigned mine = warp_transposed(seen);
         used += __popc(mine);
         for (unsigned i = 0; i < LIGHTS; i++) {
-            const unsigned long long *bits = first + i < args.scene.light_count ? args.lit[first + i].bits : nullptr;
-            const unsigned word_of_light =
-                __ballot_sync(ALL_LANES, bits != nullptr && seen != 0 && (bits[slot] >> bit & 1));
+            const unsigned word_of_light = __ballot_sync(ALL_LANES, lit_by[i] >> bit & 1);
             lit[i] += __popc(mine & word_of_light);
             if (lane == 0)
                 lit_words[i * mesh.words + word] = word_of_light;

@@ -12,8 +12,6 @@
 #include "stages/short_tests/masks.cuh"
 #include "surface.cuh"
 
-// Warps of a block: items differ in cost, and a block keeps its place until its last warp is done.
-#define CELL_WARPS 1
 // Tangent planes that are told apart.
 #define TANGENT_PLANES 4
 // Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of the search adds.
@@ -23,7 +21,7 @@
 #define STACK_PER_LEVEL 7
 
 // Points that are tested in one go.
-#define LISTED_TARGETS 96u
+#define LISTED_TARGETS 64u
 // What comes after the last of them.
 #define NO_TARGET 0xffffffffu
 
@@ -559,25 +557,23 @@ DEVICE bool test_occluders(const ShortTests &args, const CellItem &item, const C
     return asked;
 }
 
-// Cuts the block's shared memory into that of its warps. Whether masks are kept there is known to the compiler, which then knows
+// Cuts a block's shared memory up. A block is one warp: items differ in cost, and a block keeps its place until its last warp is
+// done. Whether masks are kept there is known to the compiler, which then knows
 // what kind of memory they are in.
 template <bool SHARED_MASKS>
 DEVICE CellMemory cell_memory(const ShortTests &args, unsigned *shared, unsigned long long item) {
-    const unsigned points = 32 * args.mesh.words, seen = SHARED_MASKS ? points : 0;
     // Later the marks are there.
     const unsigned side = window_side(args.mesh), found = max(FOUND_TRIANGLES, 2 * side * side * side);
     const unsigned stack = 4 * ((STACK_OF_ROUNDS + STACK_PER_LEVEL * args.scene.bvh.depth + 3) / 4);
     const unsigned candidates = sizeof(Candidate) / 4 * 32, targets = (unsigned)sizeof(Target) / 4 * (LISTED_TARGETS + 1);
     const unsigned planes = 4 * TANGENT_PLANES;
-    const unsigned size = candidates + targets + planes + found + stack + seen;
-    unsigned *own = shared + (threadIdx.x / 32) * size;
     CellMemory memory;
-    memory.candidates = (Candidate *)own;
-    memory.targets = (Target *)(own + candidates);
-    memory.planes = (float4 *)(own + candidates + targets);
-    memory.found = own + candidates + targets + planes;
+    memory.candidates = (Candidate *)shared;
+    memory.targets = (Target *)(shared + candidates);
+    memory.planes = (float4 *)(shared + candidates + targets);
+    memory.found = shared + candidates + targets + planes;
     memory.stack = memory.found + found;
-    memory.seen = SHARED_MASKS ? memory.stack + stack : args.masks + item * points;
+    memory.seen = SHARED_MASKS ? memory.stack + stack : args.masks + item * 32 * args.mesh.words;
     return memory;
 }
 
@@ -585,10 +581,9 @@ template <bool SHARED_MASKS>
 DEVICE void short_tests_by_cell_of_item(const ShortTests &args) {
     DYNAMIC_SHARED(unsigned, shared);
     const unsigned lane = lane_of_thread();
-    const unsigned long long number = (unsigned long long)blockIdx.x * CELL_WARPS + threadIdx.x / 32;
-    if (number >= args.item_count)
-        return;
-    const unsigned long long index = args.first_item + number;
+    // Last come first: a picture's upper items are the far ones, each of which has much to look at, or empty sky. Where a slow item
+    // begins late, the device waits for it alone.
+    const unsigned long long index = args.first_item + (args.item_count - 1 - blockIdx.x);
     const CellMemory memory = cell_memory<SHARED_MASKS>(args, shared, index);
     const Item item = args.items[index];
     CellLane own;

@@ -28,9 +28,10 @@ pub struct DeviceMasks<R: Runtime> {
 
 const GROUP: Kernel = Kernel { module: "short_tests", name: "group_points" };
 const GATHER: Kernel = Kernel { module: "short_tests", name: "gather_items" };
+const HALF_BALLS: Kernel = Kernel { module: "short_tests", name: "half_balls_of_items" };
 /// Rays of a tile: one block groups them.
 const TILE: usize = 1024;
-/// Warps of a block that tests: see `by_cell.cuh`.
+/// Warps of a block that tests.
 const WARPS: u32 = 1;
 /// Shared memory that every device gives a block, bytes.
 const SHARED_MEMORY: u32 = 48 << 10;
@@ -63,23 +64,30 @@ pub(crate) fn short_tests<R: Runtime>(
         // Masks of large templates stay where they end up anyway.
         (Kernel { module: "short_tests", name: "short_tests_by_cell_large" }, search)
     };
-    cuda.in_pieces(job, kernel, masks.count as u64, FIRST_ITEMS, rays.len() as u64, |piece| {
-        let count = piece.end - piece.start;
-        let arguments = ShortTests {
-            scene: scene.record,
-            rays: rays.record,
-            hits: hits.hits.input(),
-            mesh: cuda.mesh(mesh)?,
-            members: masks.members.input(),
-            items: masks.items.input(),
-            masks: masks.masks.output(),
-            marks: masks.marks.output(),
-            tally: cuda.tally()?,
-            first_item: piece.start,
-            item_count: count,
-        };
-        cuda.launch(kernel, warps_for(&piece, WARPS, words), &arguments)
-    })?;
+    let record = ShortTests {
+        scene: scene.record,
+        rays: rays.record,
+        hits: hits.hits.input(),
+        mesh: cuda.mesh(mesh)?,
+        members: masks.members.input(),
+        items: masks.items.input(),
+        masks: masks.masks.output(),
+        marks: masks.marks.output(),
+        tally: cuda.tally()?,
+        first_item: 0,
+        item_count: 0,
+    };
+    let each_item = |kernel, words, pieces| {
+        cuda.in_pieces(job, kernel, masks.count as u64, FIRST_ITEMS, pieces, |piece| {
+            let item_count = piece.end - piece.start;
+            let arguments = ShortTests { first_item: piece.start, item_count, ..record };
+            cuda.launch(kernel, warps_for(&piece, WARPS, words), &arguments)
+        })
+    };
+    if !by_cell {
+        each_item(HALF_BALLS, 0, 0)?;
+    }
+    each_item(kernel, words, rays.len() as u64)?;
     Ok(masks)
 }
 
@@ -143,7 +151,7 @@ impl<R: Runtime> DeviceMasks<R> {
 /// found (later `marks`), and the stack of the search through a BVH of `depth` levels. See `cell_memory` in `by_cell.cuh`.
 fn shared_words(depth: u32, marks: u32) -> u32 {
     const CANDIDATES: u32 = 32 * 24;
-    const TARGETS: u32 = 97 * 4;
+    const TARGETS: u32 = 65 * 4;
     const PLANES: u32 = 4 * 4;
     const FOUND: u32 = 128;
     const STACK_OF_ROUNDS: u32 = 64;

@@ -1,42 +1,53 @@
 // The plain short tests: every segment through the acceleration structure. The oracle: twin of plain.rs.
+//
+// The half-balls are a kernel of their own: together both would need more registers than there are, and the walk would pay for it.
 #pragma once
 
 #include "accel/walk.cuh"
 #include "stages/short_tests/by_cell.cuh"
 
+// The lane's object point of an item. Lanes without one take the first one's, and no part.
+DEVICE CellLane plain_lane(const ShortTests &args, const Item &item) {
+    const unsigned lane = lane_of_thread();
+    CellLane own;
+    own.alive = lane < item.count;
+    own.point = object_point(args.scene, args.rays, args.hits, args.members[item.first + (own.alive ? lane : 0)]);
+    return own;
+}
+
+// 1, 2. The half-balls.
+DEVICE void half_balls_of_item(const ShortTests &args) {
+    const unsigned long long index = args.first_item + blockIdx.x;
+    const Item item = args.items[index];
+    CellItem shape;
+    shape.cell = point_of(item.cell);
+    shape.planes = 0;
+    const CellLane own = plain_lane(args, item);
+    const unsigned size = half_balls(args.mesh, shape, own, args.masks + index * 32 * args.mesh.words);
+    count_short_tests(args.tally, size, 0, size);
+}
+
+// 3. Their segments.
 template <typename Structure>
 DEVICE void short_tests_plain_of_item(const ShortTests &args, const Structure &structure) {
     DYNAMIC_SHARED(unsigned, shared);
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
-    const unsigned long long number = (unsigned long long)blockIdx.x * CELL_WARPS + threadIdx.x / 32;
-    if (number >= args.item_count)
-        return;
-    const unsigned long long index = args.first_item + number;
+    const unsigned long long index = args.first_item + blockIdx.x;
     const Item item = args.items[index];
-    CellLane own;
-    own.alive = lane < item.count;
-    const unsigned ray = args.members[item.first + (own.alive ? lane : 0)];
-    own.point = object_point(args.scene, args.rays, args.hits, ray);
-    CellItem shape;
-    shape.cell = point_of(item.cell);
-    shape.planes = 0;
-
-    // 1, 2. The half-balls.
-    unsigned *seen = args.masks + index * 32 * mesh.words;
-    const unsigned size = half_balls(mesh, shape, own, seen);
-    __syncwarp();
-    // 3. Their segments.
+    const IVec3 cell = point_of(item.cell);
+    const CellLane own = plain_lane(args, item);
     const ShortTest test = {own.point.origin, own.point.normal, mesh.edge_on};
+    unsigned *seen = args.masks + index * 32 * mesh.words;
     for (unsigned row = 0; row < mesh.lines; row++) {
         const TemplateRow line = template_rows[row];
-        const float py = lattice_coordinate(mesh.origin.y, mesh.step, shape.cell.y + line.y);
-        const float pz = lattice_coordinate(mesh.origin.z, mesh.step, shape.cell.z + line.z);
+        const float py = lattice_coordinate(mesh.origin.y, mesh.step, cell.y + line.y);
+        const float pz = lattice_coordinate(mesh.origin.z, mesh.step, cell.z + line.z);
         for (int i = 0; i < line.count; i++) {
             const unsigned inside = seen[line.bit + i];
             if (inside == 0)
                 continue;
-            const float px = lattice_coordinate(mesh.origin.x, mesh.step, shape.cell.x + line.x + i);
+            const float px = lattice_coordinate(mesh.origin.x, mesh.step, cell.x + line.x + i);
             const Vec3 direction = Vec3{px, py, pz} - test.origin;
             const bool sees =
                 (inside >> lane & 1) && !short_blocked(structure, args.tally, test, direction, mesh.slack);
@@ -47,6 +58,6 @@ DEVICE void short_tests_plain_of_item(const ShortTests &args, const Structure &s
     }
     __syncwarp();
     // 4. The masks, and what was counted.
-    const unsigned used = write_masks(args, index, shape.cell, seen, shared);
-    count_short_tests(args.tally, size, used, size);
+    const unsigned used = write_masks(args, index, cell, seen, shared);
+    count_short_tests(args.tally, 0, used, 0);
 }
