@@ -211,13 +211,15 @@ records! {
         share: Out<f32>,
         /// Light points used by ray.
         used: Out<u32>,
-        /// Not 0 where some share is negative.
-        any_fallback: Out<u32>,
+        /// The rays that have a negative share.
+        fallback_rays: Out<u32>,
+        /// How many they are.
+        fallback_count: Out<u32>,
         /// How lights with a size are sampled.
         sampling: Sampling,
         /// Counts.
         tally: Tally,
-        /// The first item, or block of rays, of this launch.
+        /// The first item, or block of rays that fall back, of this launch.
         first: u64,
         /// Items of this launch.
         count: u64,

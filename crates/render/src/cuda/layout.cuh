@@ -580,13 +580,14 @@ struct alignas(8) Interpolate {
     const LitBy *lit;
     float *share;
     unsigned *used;
-    unsigned *any_fallback;
+    unsigned *fallback_rays;
+    unsigned *fallback_count;
     Sampling sampling;
     Tally tally;
     unsigned long long first;
     unsigned long long count;
 };
-static_assert(sizeof(Interpolate) == 584, "size of Interpolate");
+static_assert(sizeof(Interpolate) == 592, "size of Interpolate");
 static_assert(PLACE_OF(Interpolate, scene) == 0, "place of Interpolate::scene");
 static_assert(PLACE_OF(Interpolate, rays) == 272, "place of Interpolate::rays");
 static_assert(PLACE_OF(Interpolate, hits) == 352, "place of Interpolate::hits");
@@ -599,11 +600,12 @@ static_assert(PLACE_OF(Interpolate, slots) == 504, "place of Interpolate::slots"
 static_assert(PLACE_OF(Interpolate, lit) == 512, "place of Interpolate::lit");
 static_assert(PLACE_OF(Interpolate, share) == 520, "place of Interpolate::share");
 static_assert(PLACE_OF(Interpolate, used) == 528, "place of Interpolate::used");
-static_assert(PLACE_OF(Interpolate, any_fallback) == 536, "place of Interpolate::any_fallback");
-static_assert(PLACE_OF(Interpolate, sampling) == 544, "place of Interpolate::sampling");
-static_assert(PLACE_OF(Interpolate, tally) == 560, "place of Interpolate::tally");
-static_assert(PLACE_OF(Interpolate, first) == 568, "place of Interpolate::first");
-static_assert(PLACE_OF(Interpolate, count) == 576, "place of Interpolate::count");
+static_assert(PLACE_OF(Interpolate, fallback_rays) == 536, "place of Interpolate::fallback_rays");
+static_assert(PLACE_OF(Interpolate, fallback_count) == 544, "place of Interpolate::fallback_count");
+static_assert(PLACE_OF(Interpolate, sampling) == 552, "place of Interpolate::sampling");
+static_assert(PLACE_OF(Interpolate, tally) == 568, "place of Interpolate::tally");
+static_assert(PLACE_OF(Interpolate, first) == 576, "place of Interpolate::first");
+static_assert(PLACE_OF(Interpolate, count) == 584, "place of Interpolate::count");
 
 struct alignas(8) Scan {
     unsigned *values;

@@ -57,7 +57,8 @@ fn bytes_per_ray(plan: &Plan, lights: u64) -> u64 {
             let masks = (size_of::<Item>() + 32 * 4 * mesh.template.words() + bricks) as u64 / POINTS_PER_ITEM;
             // Half a light point a pixel: its entry and share, and its part of a brick that is a quarter full.
             let points = (8 + 2 * lights + 2 * (8 + 8 + 4 + 8 * lights) / 16) / 2;
-            grouping + masks + points + 4
+            // Light points used, and the list of rays that fall back.
+            grouping + masks + points + 4 + 4
         }
         Technique::RayTrace => 0,
         Technique::Area => size_of::<Vec3>() as u64,

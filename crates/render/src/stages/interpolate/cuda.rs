@@ -42,7 +42,8 @@ impl<R: Runtime> Interpolation<'_, R> {
         let scene = cuda.scene(scene)?;
         let share = cuda.pool().zeros("shares of lights", rays.len() * lights)?;
         let used = cuda.pool().zeros("light points used", rays.len())?;
-        let any_fallback = cuda.pool().zeros("whether rays fall back", 1)?;
+        let fallback_rays = cuda.pool().room("rays that fall back", rays.len())?;
+        let fallback_count = cuda.pool().zeros("number of rays that fall back", 1)?;
         let record = Interpolate {
             scene: scene.record,
             rays: rays.record,
@@ -56,7 +57,8 @@ impl<R: Runtime> Interpolation<'_, R> {
             lit: lit.lit.input(),
             share: share.output(),
             used: used.output(),
-            any_fallback: any_fallback.output(),
+            fallback_rays: fallback_rays.output(),
+            fallback_count: fallback_count.output(),
             sampling: sampling(job),
             tally: cuda.tally()?,
             first: 0,
@@ -75,7 +77,7 @@ impl<R: Runtime> Interpolation<'_, R> {
         // 2. Object points without light points take their own long tests.
         let names = ["fallback_bvh", "fallback_grid", "fallback_brute_force"];
         let kernel = kernel_of("interpolate", names, scene.structure);
-        cuda.in_pieces(job, kernel, rays.blocks(16), FIRST_BLOCKS, 0, |piece| {
+        cuda.in_pieces(job, kernel, (rays.len() as u64).div_ceil(u64::from(BLOCK)), FIRST_BLOCKS, 0, |piece| {
             let count = piece.end - piece.start;
             cuda.launch(kernel, blocks_for(&piece, BLOCK), &Interpolate { first: piece.start, count, ..record })
         })?;

@@ -10,6 +10,7 @@
 #include "light_mesh/lattice.cuh"
 #include "light_mesh/window.cuh"
 #include "stages/shadow_rays/shadow_rays.cuh"
+#include "stages/short_tests/item.cuh"
 #include "surface.cuh"
 
 // Warps of a block.
@@ -171,14 +172,6 @@ DEVICE void weighted_means(const Interpolate &args, const ItemPoints &points, co
         means[light] = weights > 0.0f ? fminf(products[light] / weights, 1.0f) : UNKNOWN;
 }
 
-// Everything about one item, as its lane sees it.
-struct ItemLane {
-    SurfacePoint point;
-    float reach;
-    unsigned ray;
-    bool alive;
-};
-
 // 4. χ; and what must be found otherwise. Returns whether that is so.
 DEVICE bool write_share(const Interpolate &args, const ItemLane &lane, unsigned light, float most, float share) {
     share = most == 0.0f ? 0.0f : fminf(share, most);
@@ -191,13 +184,14 @@ DEVICE bool write_share(const Interpolate &args, const ItemLane &lane, unsigned 
 template <unsigned LIGHTS>
 DEVICE bool lights_without_size(const Interpolate &args, const ItemPoints &points, const ItemLane &lane, unsigned first,
                                 unsigned *lit_words, unsigned &used) {
+    const float reach = scene_reach(args.scene, lane.point.origin);
     unsigned lit[LIGHTS] = {};
     used = count_lit(args, points, first, lit_words, lit);
     float most[LIGHTS], means[LIGHTS];
     bool mixed = false;
     for (unsigned i = 0; i < LIGHTS; i++) {
         const bool is_here = first + i < args.scene.light_count && args.lit[first + i].bits != nullptr;
-        most[i] = is_here && lane.alive ? above_horizon(lane.point, args.scene.lights[first + i], lane.reach) : 0.0f;
+        most[i] = is_here && lane.alive ? above_horizon(lane.point, args.scene.lights[first + i], reach) : 0.0f;
         // Where all weights are 1, and where all light points see the same, numbers give the mean.
         means[i] = used > 0 ? (float)lit[i] / (float)used : UNKNOWN;
         mixed |= args.mesh.weight != 0 && most[i] > 0.0f && lit[i] > 0 && lit[i] < used;
@@ -221,7 +215,8 @@ DEVICE bool lights_without_size(const Interpolate &args, const ItemPoints &point
 DEVICE bool light_with_size(const Interpolate &args, const ItemPoints &points, const ItemLane &lane, unsigned light) {
     const LitBy lit = args.lit[light];
     const unsigned index = lane_of_thread();
-    const float most = lane.alive ? above_horizon(lane.point, args.scene.lights[light], lane.reach) : 0.0f;
+    const float reach = scene_reach(args.scene, lane.point.origin);
+    const float most = lane.alive ? above_horizon(lane.point, args.scene.lights[light], reach) : 0.0f;
     // 2. All alike: the mean is known without weights.
     const LitLanes lanes = lit_lanes(args, lit, points);
     float share = lanes.some >> index & 1 ? 1.0f : 0.0f;
@@ -236,6 +231,17 @@ DEVICE bool light_with_size(const Interpolate &args, const ItemPoints &points, c
     return write_share(args, lane, light, most, share);
 }
 
+// Lists the rays of lanes that fall back. Their order changes from run to run; what they find does not depend on it.
+DEVICE void list_fallbacks(const Interpolate &args, unsigned ray, bool falls_back) {
+    const unsigned lanes = __ballot_sync(ALL_LANES, falls_back), lane = lane_of_thread();
+    if (lanes == 0)
+        return;
+    const unsigned first = lane == 0 ? atomicAdd(args.fallback_count, __popc(lanes)) : 0;
+    const unsigned place = __shfl_sync(ALL_LANES, first, 0) + __popc(lanes & lanes_below(lane));
+    if (falls_back)
+        args.fallback_rays[place] = ray;
+}
+
 KERNEL(interpolate, Interpolate, 128, 8) {
     DYNAMIC_SHARED(unsigned, shared);
     const LightMesh &mesh = args.mesh;
@@ -245,11 +251,7 @@ KERNEL(interpolate, Interpolate, 128, 8) {
         return;
     const unsigned long long index = args.first + number;
     const Item item = args.items[index];
-    ItemLane own;
-    own.alive = lane < item.count;
-    own.ray = args.members[item.first + (own.alive ? lane : 0)];
-    own.point = object_point(args.scene, args.rays, args.hits, own.ray);
-    own.reach = scene_reach(args.scene, own.point.origin);
+    const ItemLane own = lane_of_item(args.scene, args.rays, args.hits, args.members, item);
 
     // 1. The bricks around the cell.
     ItemPoints points;
@@ -278,18 +280,16 @@ KERNEL(interpolate, Interpolate, 128, 8) {
     if (own.alive)
         args.used[own.ray] = used;
     count(tally_shard(args.tally).fallbacks, fell_back);
-    if (fell_back)
-        *args.any_fallback = 1;
+    list_fallbacks(args, own.ray, fell_back);
 }
 
 // The visible share of each light that is still unknown, from rays of the object point's own.
 template <typename Structure>
 DEVICE void fallback(const Interpolate &args, const Structure &structure) {
-    unsigned ray;
-    if (*args.any_fallback == 0)
+    const unsigned long long number = (args.first + blockIdx.x) * blockDim.x + threadIdx.x;
+    if (number >= *args.fallback_count)
         return;
-    if (!ray_of_thread(args.rays, args.first + blockIdx.x, threadIdx.x, ray) || args.hits[ray].triangle == HIT_NONE)
-        return;
+    const unsigned ray = args.fallback_rays[number];
     for (unsigned light = 0; light < args.scene.light_count; light++) {
         float &share = args.share[(unsigned long long)light * args.rays.count + ray];
         if (share < 0.0f) {

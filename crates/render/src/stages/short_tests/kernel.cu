@@ -13,7 +13,7 @@
 
 #include "stages/short_tests/plain.cuh"
 
-KERNEL(group_points, GroupCells, 1024, 1) {
+KERNEL(group_points, GroupCells, 1024, 2) {
     group_points_of_tile(args);
 }
 

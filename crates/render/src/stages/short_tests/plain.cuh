@@ -4,16 +4,8 @@
 #pragma once
 
 #include "accel/walk.cuh"
-#include "stages/short_tests/by_cell.cuh"
-
-// The lane's object point of an item. Lanes without one take the first one's, and no part.
-DEVICE CellLane plain_lane(const ShortTests &args, const Item &item) {
-    const unsigned lane = lane_of_thread();
-    CellLane own;
-    own.alive = lane < item.count;
-    own.point = object_point(args.scene, args.rays, args.hits, args.members[item.first + (own.alive ? lane : 0)]);
-    return own;
-}
+#include "stages/short_tests/half_balls.cuh"
+#include "stages/short_tests/masks.cuh"
 
 // 1, 2. The half-balls.
 DEVICE void half_balls_of_item(const ShortTests &args) {
@@ -21,8 +13,9 @@ DEVICE void half_balls_of_item(const ShortTests &args) {
     const Item item = args.items[index];
     CellItem shape;
     shape.cell = point_of(item.cell);
+    // Whether planes are shared does not pay here.
     shape.planes = 0;
-    const CellLane own = plain_lane(args, item);
+    const ItemLane own = lane_of_item(args.scene, args.rays, args.hits, args.members, item);
     const unsigned size = half_balls(args.mesh, shape, own, args.masks + index * 32 * args.mesh.words);
     count_short_tests(args.tally, size, 0, size);
 }
@@ -36,7 +29,7 @@ DEVICE void short_tests_plain_of_item(const ShortTests &args, const Structure &s
     const unsigned long long index = args.first_item + blockIdx.x;
     const Item item = args.items[index];
     const IVec3 cell = point_of(item.cell);
-    const CellLane own = plain_lane(args, item);
+    const ItemLane own = lane_of_item(args.scene, args.rays, args.hits, args.members, item);
     const ShortTest test = {own.point.origin, own.point.normal, mesh.edge_on};
     unsigned *seen = args.masks + index * 32 * mesh.words;
     for (unsigned row = 0; row < mesh.lines; row++) {

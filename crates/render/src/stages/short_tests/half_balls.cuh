@@ -1,0 +1,57 @@
+// The half-balls of an item's object points: conditions 1 and 2 of formula (2).
+#pragma once
+
+#include "light_mesh/lattice.cuh"
+#include "light_mesh/template.cuh"
+#include "stages/short_tests/item.cuh"
+#include "stages/short_tests/span.cuh"
+
+// What formula (2) makes of one lane's object point and a light point: conditions 1 and 2.
+DEVICE bool in_half_ball(const LightMesh &mesh, const SurfacePoint &point, const Vec3 &light_point) {
+    const Vec3 d = light_point - point.position;
+    return (d.z * d.z + d.y * d.y) + d.x * d.x < mesh.radius * mesh.radius && dot_along_x(point.normal, d) > mesh.least_height;
+}
+
+// 1, 2. The half-balls: conditions 1 and 2 of formula (2). Returns how many light points the lane's has.
+//
+// Lanes take a light point each and bound the two conditions over all object points of the item. Few light points are left that some
+// object points use and others do not: the warp asks all for those. Rounding is monotonic and the bounds follow the order of
+// operations of `in_half_ball`, so they hold bit by bit.
+DEVICE unsigned half_balls(const LightMesh &mesh, const CellItem &item, const ItemLane &lane, unsigned *seen) {
+    const SurfacePoint &point = lane.point;
+    const Span x = warp_span(point.position.x), y = warp_span(point.position.y), z = warp_span(point.position.z);
+    Span nx = {point.normal.x, point.normal.x}, ny = {point.normal.y, point.normal.y}, nz = {point.normal.z, point.normal.z};
+    if (item.planes != 1) {
+        nx = warp_span(point.normal.x);
+        ny = warp_span(point.normal.y);
+        nz = warp_span(point.normal.z);
+    }
+    const float square = mesh.radius * mesh.radius;
+    const unsigned alive = __ballot_sync(ALL_LANES, lane.alive);
+    unsigned size = 0;
+    for (unsigned first = 0; first < 32 * mesh.words; first += 32) {
+        const unsigned k = first + lane_of_thread();
+        bool all = false, some = false;
+        Vec3 light_point = {};
+        if (k < mesh.points) {
+            light_point = lattice_point(mesh, item.cell + template_offset(mesh, k));
+            const Span dx = {light_point.x - x.high, light_point.x - x.low}, dy = {light_point.y - y.high, light_point.y - y.low},
+                       dz = {light_point.z - z.high, light_point.z - z.low};
+            const Span distance = (squared(dz) + squared(dy)) + squared(dx), height = (nz * dz + ny * dy) + nx * dx;
+            all = distance.high < square && height.low > mesh.least_height;
+            some = !all && distance.low < square && height.high > mesh.least_height;
+        }
+        unsigned lanes = all ? alive : 0;
+        size += __popc(__ballot_sync(ALL_LANES, all));
+        for (unsigned rest = __ballot_sync(ALL_LANES, some); rest != 0; rest &= rest - 1) {
+            const unsigned owner = __ffs(rest) - 1;
+            const Vec3 asked = warp_broadcast(light_point, owner);
+            const bool inside = lane.alive && in_half_ball(mesh, point, asked);
+            const unsigned users = __ballot_sync(ALL_LANES, inside);
+            size += inside;
+            lanes = lane_of_thread() == owner ? users : lanes;
+        }
+        seen[k] = lanes;
+    }
+    return lane.alive ? size : 0;
+}

@@ -1,0 +1,63 @@
+// The shared memory of a warp that tests by cell.
+#pragma once
+
+#include "accel/triangle.cuh"
+#include "light_mesh/window.cuh"
+#include "stages/short_tests/item.cuh"
+
+// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of the search adds.
+#define FOUND_TRIANGLES 128u
+// Entries of the search's stack up to which rounds take four nodes, and those kept for each level of the tree: see `next_nodes`.
+#define STACK_OF_ROUNDS 64
+#define STACK_PER_LEVEL 7
+
+// Points that are tested in one go.
+#define LISTED_TARGETS 64u
+// What comes after the last of them.
+#define NO_TARGET 0xffffffffu
+
+// A triangle that can matter: its corners, and all q - P with q on it and P an origin of the item.
+struct Candidate {
+    // The unused parts: the packed box of light points that it can hide, then low and high x of q - P.
+    float4 corners[3];
+    // Low and high y, low and high z; and their reciprocals.
+    float4 span_yz, inverse_yz;
+    // The farthest that its shadow is stretched, and the reciprocal of the number of lines in a plane of its box.
+    float4 most;
+};
+
+// A light point that a candidate may hide: its position, and packed its template point and its candidate.
+typedef float4 Target;
+
+// The shared memory of one warp.
+struct CellMemory {
+    // For each template point the lanes that see it. In global memory where the template is too large.
+    unsigned *seen;
+    Candidate *candidates;
+    Target *targets;
+    // Normals, and how high the lowest origin lies along each above the corner of the box around all.
+    float4 *planes;
+    unsigned *found;
+    unsigned *stack;
+};
+
+// Cuts a block's shared memory up. A block is one warp: items differ in cost, and a block keeps its place until its last warp is
+// done. Whether masks are kept there is known to the compiler, which then knows what kind of memory they are in.
+template <bool SHARED_MASKS>
+DEVICE CellMemory cell_memory(const ShortTests &args, unsigned *shared, unsigned long long item) {
+    // Later the marks are there.
+    const unsigned side = window_side(args.mesh), found = max(FOUND_TRIANGLES, 2 * side * side * side);
+    const unsigned stack = 4 * ((STACK_OF_ROUNDS + STACK_PER_LEVEL * args.scene.bvh.depth + 3) / 4);
+    const unsigned candidates = sizeof(Candidate) / 4 * 32, targets = (unsigned)sizeof(Target) / 4 * (LISTED_TARGETS + 1);
+    const unsigned planes = 4 * TANGENT_PLANES;
+    CellMemory memory;
+    memory.candidates = (Candidate *)shared;
+    memory.targets = (Target *)(shared + candidates);
+    memory.planes = (float4 *)(shared + candidates + targets);
+    memory.found = shared + candidates + targets + planes;
+    memory.stack = memory.found + found;
+    memory.seen = SHARED_MASKS ? memory.stack + stack : args.masks + item * 32 * args.mesh.words;
+    return memory;
+}
+
+DEVICE Vec3 corner_of(const float4 &corner) { return Vec3{corner.x, corner.y, corner.z}; }

@@ -1,0 +1,193 @@
+// The light points that candidates may hide, and their tests: lanes are object points, triangle and light point are the same
+// for all, as in batch.rs.
+#pragma once
+
+#include "light_mesh/template.cuh"
+#include "stages/short_tests/memory.cuh"
+#include "stages/short_tests/span.cuh"
+
+// Narrows the range of s to where s [low, high] can meet [from, to]. The reciprocals stand for divisions.
+DEVICE void narrow(float low, float high, float inverse_low, float inverse_high, float from, float to, float &least, float &most) {
+    // s high >= from. No branches: lanes differ.
+    const float at_high = from * inverse_high, at_low = to * inverse_low;
+    least = from > 0.0f ? (high > 0.0f ? fmaxf(least, at_high) : 1e30f) : least;
+    most = from <= 0.0f && high < 0.0f ? fminf(most, at_high) : most;
+    // s low <= to.
+    least = to < 0.0f ? (low < 0.0f ? fmaxf(least, at_low) : 1e30f) : least;
+    most = to >= 0.0f && low > 0.0f ? fminf(most, at_low) : most;
+}
+
+// The light points of one row that a candidate may hide and that some lane still sees: one bit each, from the row's first point.
+//
+// A hidden light point lies at P + s (q - P) with s >= 1 (`shadow_box` in cells.rs). Its y and z, which the row knows, narrow s; that
+// narrows its x.
+DEVICE unsigned row_targets(const LightMesh &mesh, const CellItem &item, const Candidate &candidate, float py, float pz,
+                            unsigned bit, int count, int x, const unsigned *seen) {
+    const float4 yz = candidate.span_yz, inverse = candidate.inverse_yz;
+    float least = 1.0f, most = candidate.most.x;
+    narrow(yz.x, yz.y, inverse.x, inverse.y, py - item.high.y - mesh.slack, py - item.low.y + mesh.slack, least, most);
+    narrow(yz.z, yz.w, inverse.z, inverse.w, pz - item.high.z - mesh.slack, pz - item.low.z + mesh.slack, least, most);
+    // Products are rounded, by far less than this.
+    if (least > most * 1.000001f)
+        return 0;
+    const float low_x = candidate.corners[1].w, high_x = candidate.corners[2].w;
+    const Span reached = {fminf(least * low_x, most * low_x), fmaxf(least * high_x, most * high_x)};
+    int first, last;
+    span_in_steps(mesh, item.inverse_step, reached, item.low.x, item.high.x, mesh.origin.x, item.cell.x, first, last);
+    first = max(first - x, 0);
+    last = min(last - x, count - 1);
+    unsigned targets = 0;
+    for (int i = first; i <= last; i++)
+        targets |= seen[bit + i] != 0 ? 1u << i : 0;
+    return targets;
+}
+
+// Whether a triangle may stand between a light point and an object point of the item: whether the light point, looking through the
+// triangle, sees any of the box around the origins beyond it.
+DEVICE bool may_hide(const LightMesh &mesh, const CellItem &item, const Candidate &candidate, const Vec3 &target) {
+    const Vec3 a = corner_of(candidate.corners[0]) - target, b = corner_of(candidate.corners[1]) - target,
+               c = corner_of(candidate.corners[2]) - target;
+    const Vec3 bc = cross(b, c), ca = cross(c, a), ab = cross(a, b), all = bc + ca + ab;
+    const float volume = dot(a, bc), sign = volume < 0.0f ? -1.0f : 1.0f;
+    const Vec3 middle = 0.5f * (item.low + item.high) - target, half = 0.5f * (item.high - item.low) + splat(mesh.slack);
+    // The largest products of three lengths that are rounded below and in the test itself, which begins at the other end.
+    const float reach = mesh.radius + mesh.slack, size = max_element(max(max(abs(a), abs(b)), abs(c))) + reach;
+    const float rounding = 128.0f / 16777216.0f * size * size * reach;
+    return sign * dot(bc, middle) + dot(abs(bc), half) + rounding >= 0.0f &&
+           sign * dot(ca, middle) + dot(abs(ca), half) + rounding >= 0.0f &&
+           sign * dot(ab, middle) + dot(abs(ab), half) + rounding >= 0.0f &&
+           sign * dot(all, middle) + dot(abs(all), half) + 3.0f * rounding >= sign * volume;
+}
+
+// Keeps the targets that some lane still sees and that their candidate may hide, and marks the end.
+DEVICE void filter_targets(const LightMesh &mesh, const CellItem &item, const CellMemory &memory, unsigned count) {
+    const unsigned lane = lane_of_thread();
+    unsigned kept = 0;
+    for (unsigned first = 0; first < count; first += 32) {
+        bool keep = false;
+        Target target = {};
+        if (first + lane < count) {
+            target = memory.targets[first + lane];
+            const unsigned packed = __float_as_uint(target.w);
+            keep = memory.seen[packed & 0xffff] != 0 &&
+                   may_hide(mesh, item, memory.candidates[packed >> 16], Vec3{target.x, target.y, target.z});
+        }
+        const unsigned lanes = __ballot_sync(ALL_LANES, keep);
+        // All have read before any writes.
+        __syncwarp();
+        if (keep)
+            memory.targets[kept + __popc(lanes & lanes_below(lane))] = target;
+        kept += __popc(lanes);
+        __syncwarp();
+    }
+    if (lane == 0)
+        memory.targets[kept].w = __uint_as_float(NO_TARGET);
+    __syncwarp();
+}
+
+// A triangle as the lane's object point sees it.
+DEVICE Occluder occluder_of(const Candidate &candidate, const ItemLane &lane, bool &above) {
+    const Vec3 &origin = lane.point.origin, &normal = lane.point.normal;
+    const Vec3 a = corner_of(candidate.corners[0]) - origin, b = corner_of(candidate.corners[1]) - origin,
+               c = corner_of(candidate.corners[2]) - origin;
+    above = lane.alive && (dot(normal, a) > 0.0f || dot(normal, b) > 0.0f || dot(normal, c) > 0.0f);
+    const Vec3 bc = cross(b, c);
+    const float volume = dot(a, bc), sign = volume < 0.0f ? -1.0f : 1.0f;
+    return Occluder{sign * bc, sign * cross(c, a), sign * cross(a, b), sign * volume};
+}
+
+// Whether the lane's object point sees the triangle from its edge.
+DEVICE bool is_edge_on(const LightMesh &mesh, const Candidate &candidate, const ItemLane &lane, const Occluder &occluder) {
+    const Vec3 &origin = lane.point.origin;
+    const Vec3 a = corner_of(candidate.corners[0]) - origin, b = corner_of(candidate.corners[1]) - origin,
+               c = corner_of(candidate.corners[2]) - origin;
+    const Vec3 outward = cross(b - a, c - a);
+    return !(occluder.volume * occluder.volume > mesh.edge_on * mesh.edge_on * dot(outward, outward));
+}
+
+// 3. d. Clears the light points that the candidates hide from the lanes. Targets of one candidate follow each other, and after the
+// last of all comes one of no candidate. Returns whether the lane asked a triangle.
+DEVICE bool clear_blocked(const ShortTests &args, const ItemLane &lane, const CellMemory &memory) {
+    bool asked = false;
+    Target target = memory.targets[0];
+    for (unsigned i = 0; __float_as_uint(target.w) != NO_TARGET;) {
+        // ShortTest::occluder; whether it is edge-on is asked only once something is hidden.
+        const unsigned current = __float_as_uint(target.w) >> 16;
+        const Candidate &candidate = memory.candidates[current];
+        bool above, edges_known = false;
+        const Occluder occluder = occluder_of(candidate, lane, above);
+        unsigned lanes = __ballot_sync(ALL_LANES, above);
+        asked |= above;
+        do {
+            const unsigned point = __float_as_uint(target.w) & 0xffff;
+            const Vec3 d = Vec3{target.x, target.y, target.z} - lane.point.origin;
+            target = memory.targets[++i];
+            unsigned blocked = __ballot_sync(ALL_LANES, blocks(occluder, d)) & lanes;
+            if (blocked == 0)
+                continue;
+            if (!edges_known) {
+                lanes &= ~__ballot_sync(ALL_LANES, is_edge_on(args.mesh, candidate, lane, occluder));
+                blocked &= lanes;
+                edges_known = true;
+            }
+            if (lane_of_thread() == 0)
+                memory.seen[point] &= ~blocked;
+        } while (__float_as_uint(target.w) >> 16 == current);
+    }
+    __syncwarp();
+    return asked;
+}
+
+// 3. c. Lanes take the rows of light points that the candidates reach, and list the points that may be hidden; the warp tests them.
+// `rows` is the number of rows of the lane's candidate.
+DEVICE bool test_candidates(const ShortTests &args, const CellItem &item, const ItemLane &own, const CellMemory &memory,
+                            unsigned rows) {
+    const LightMesh &mesh = args.mesh;
+    const unsigned lane = lane_of_thread();
+    const unsigned end = warp_running_sum(rows), all = __shfl_sync(ALL_LANES, end, 31);
+    bool asked = false;
+    for (unsigned first = 0; first < all; first += 32) {
+        // The candidate of a row: the number of candidates whose rows end before.
+        const unsigned number = first + lane;
+        unsigned owner = 0;
+        for (unsigned step = 16; step > 0; step /= 2) {
+            const unsigned other = __shfl_sync(ALL_LANES, end, owner + step - 1);
+            owner += other <= number ? step : 0;
+        }
+        const unsigned before = __shfl_sync(ALL_LANES, end - rows, owner);
+        unsigned targets = 0, bit = 0;
+        int x = 0;
+        float py = 0.0f, pz = 0.0f;
+        if (number < all) {
+            const Candidate &candidate = memory.candidates[owner];
+            const unsigned box = __float_as_uint(candidate.corners[0].w);
+            const unsigned lines = box_bound(box, 3) - box_bound(box, 2) + 1, row = number - before;
+            // Fewer than 1024 rows: the quotient of floats, moved off whole numbers, is exact.
+            const unsigned plane = __float2int_rd(((float)row + 0.5f) * candidate.most.y);
+            const int y = box_bound(box, 2) + (int)(row - plane * lines), z = box_bound(box, 4) + (int)plane;
+            py = lattice_coordinate(mesh.origin.y, mesh.step, item.cell.y + y);
+            pz = lattice_coordinate(mesh.origin.z, mesh.step, item.cell.z + z);
+            int count;
+            template_row(mesh, row_of(mesh, y, z), bit, count, x);
+            targets = row_targets(mesh, item, candidate, py, pz, bit, count, x, memory.seen);
+        }
+        // As many lanes as there is room for list their points; then those are tested.
+        while (__any_sync(ALL_LANES, targets != 0)) {
+            const unsigned amount = __popc(targets), until = warp_running_sum(amount);
+            const bool fits = until <= LISTED_TARGETS;
+            const unsigned listed = __shfl_sync(ALL_LANES, until, 31 - __clz(__ballot_sync(ALL_LANES, fits)));
+            if (fits) {
+                for (unsigned place = until - amount; targets != 0; place++) {
+                    const int i = __ffs(targets) - 1;
+                    targets &= targets - 1;
+                    const float px = lattice_coordinate(mesh.origin.x, mesh.step, item.cell.x + x + i);
+                    memory.targets[place] = Target{px, py, pz, __uint_as_float(owner << 16 | (bit + i))};
+                }
+            }
+            __syncwarp();
+            filter_targets(mesh, item, memory, listed);
+            asked |= clear_blocked(args, own, memory);
+        }
+    }
+    return asked;
+}
