@@ -1,14 +1,14 @@
-//! Collects the parts of a scene in double precision and chooses the local frame once all are known.
+//! Collects the parts of a scene and chooses the local frame once all are known.
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
-use crate::{Mesh, Scene};
+use crate::{Mesh, Position, Scene, vertices::Vertices};
 
 /// One mesh as a file holds it, before it is placed. Slices are as long as `positions` or empty.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct MeshPart<'a> {
-    /// Vertices in the part's own coordinates.
-    pub positions: &'a [DVec3],
+#[derive(Clone, Copy, Debug)]
+pub struct MeshPart<'a, P = DVec3> {
+    /// Vertices in the part's own coordinates, `Vec3` or `DVec3`.
+    pub positions: &'a [P],
     /// Normals by vertex; need not be unit length.
     pub normals: &'a [Vec3],
     /// Texture coordinates by vertex.
@@ -19,10 +19,27 @@ pub struct MeshPart<'a> {
     pub triangles: &'a [[u32; 3]],
 }
 
+impl<P> Default for MeshPart<'_, P> {
+    fn default() -> Self {
+        MeshPart { positions: &[], normals: &[], uvs: &[], colors: &[], triangles: &[] }
+    }
+}
+
+/// How much room a scene needs, where that is known before it is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Room {
+    pub(crate) vertices: usize,
+    pub(crate) triangles: usize,
+    /// Whether any part has them.
+    pub(crate) normals: bool,
+    pub(crate) uvs: bool,
+    pub(crate) colors: bool,
+}
+
 /// Gathers placed meshes; [`SceneBuilder::finish`] makes them one [`Mesh`] in a local frame.
 #[derive(Debug, Default)]
 pub struct SceneBuilder {
-    positions: Vec<DVec3>,
+    vertices: Vertices,
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
     colors: Vec<Vec3>,
@@ -39,9 +56,9 @@ impl SceneBuilder {
 
     /// Adds `part` placed by `transform`; `material` gives the material of each of its triangles. A transform that mirrors
     /// turns the triangles' order round, so that front faces stay front faces.
-    pub fn add(&mut self, part: MeshPart, transform: &DMat4, material: impl Fn(usize) -> u32) {
-        let first = self.positions.len() as u32;
-        self.positions.extend(part.positions.iter().map(|&position| transform.transform_point3(position)));
+    pub fn add<P: Position>(&mut self, part: MeshPart<P>, transform: &DMat4, material: impl Fn(usize) -> u32) {
+        let first = self.vertices.len() as u32;
+        self.vertices.add(P::slice(part.positions), transform);
 
         let normal_transform = transform.inverse().transpose();
         let normal = |n: &Vec3| normal_transform.transform_vector3(n.as_dvec3()).normalize_or_zero().as_vec3();
@@ -60,6 +77,17 @@ impl SceneBuilder {
         self.materials.extend((0..part.triangles.len()).map(material));
     }
 
+    /// Makes room for what is to come; `false` where there is not enough memory.
+    pub(crate) fn reserve(&mut self, room: &Room) -> bool {
+        let of = |used: bool| if used { room.vertices } else { 0 };
+        self.vertices.reserve(room.vertices)
+            && self.normals.try_reserve_exact(of(room.normals)).is_ok()
+            && self.uvs.try_reserve_exact(of(room.uvs)).is_ok()
+            && self.colors.try_reserve_exact(of(room.colors)).is_ok()
+            && self.triangles.try_reserve_exact(room.triangles).is_ok()
+            && self.materials.try_reserve_exact(room.triangles).is_ok()
+    }
+
     /// Number of triangles so far.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
@@ -67,13 +95,12 @@ impl SceneBuilder {
 
     /// Number of vertices so far.
     pub fn vertex_count(&self) -> usize {
-        self.positions.len()
+        self.vertices.len()
     }
 
     /// Lowest and highest corner of the box around all finite vertices so far; `None` without any.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let finite = self.positions.iter().copied().filter(|position| position.is_finite());
-        finite.map(|position| (position, position)).reduce(|(min, max), (p, _)| (min.min(p), max.max(p)))
+        self.vertices.bounds()
     }
 
     /// Takes this origin instead of choosing one. For scenes that were written with an origin: they are read to the same `f32`.
@@ -87,12 +114,12 @@ impl SceneBuilder {
     /// point near the middle, rounded to a power of two of the scene's size so that the subtraction loses nothing.
     pub fn finish(mut self) -> (DVec3, Mesh) {
         let origin = self.origin.unwrap_or_else(|| self.bounds().map_or(DVec3::ZERO, local_origin));
-        let vertices = self.positions.len() as u32;
+        let vertices = self.vertices.len() as u32;
         fill_to(&mut self.normals, vertices, Vec3::ZERO, false);
         fill_to(&mut self.uvs, vertices, Vec2::ZERO, false);
         fill_to(&mut self.colors, vertices, Vec3::ONE, false);
         let mesh = Mesh {
-            positions: self.positions.iter().map(|&position| (position - origin).as_vec3()).collect(),
+            positions: self.vertices.finish(origin),
             normals: self.normals,
             uvs: self.uvs,
             colors: self.colors,

@@ -26,6 +26,7 @@ mod open;
 mod scene;
 mod shapes;
 mod texture;
+mod vertices;
 
 pub use builder::{MeshPart, SceneBuilder};
 pub use camera::{Camera, Fov, Projection};
@@ -39,3 +40,4 @@ pub use mesh::{Bounds, Mesh};
 pub use open::LoadOptions;
 pub use scene::{LightMeshDefaults, Scene, Weight};
 pub use texture::{Texture, TextureUse, Wrap};
+pub use vertices::{Position, Positions};
