@@ -36,6 +36,20 @@ pub(crate) struct Room {
     pub(crate) colors: bool,
 }
 
+impl Room {
+    /// Room for this, and for `count` times `more`.
+    pub(crate) fn and(&self, more: &Room, count: usize) -> Room {
+        let sum = |a: usize, b: usize| a.saturating_add(b.saturating_mul(count));
+        Room {
+            vertices: sum(self.vertices, more.vertices),
+            triangles: sum(self.triangles, more.triangles),
+            normals: self.normals || more.normals,
+            uvs: self.uvs || more.uvs,
+            colors: self.colors || more.colors,
+        }
+    }
+}
+
 /// Gathers placed meshes; [`SceneBuilder::finish`] makes them one [`Mesh`] in a local frame.
 #[derive(Debug, Default)]
 pub struct SceneBuilder {
