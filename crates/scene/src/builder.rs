@@ -19,6 +19,31 @@ pub struct MeshPart<'a> {
     pub triangles: &'a [[u32; 3]],
 }
 
+/// One mesh as a loader has put it together. It is handed over: of a large file nothing is held twice.
+#[derive(Debug, Default)]
+pub(crate) struct LoadedMesh {
+    /// Vertices in the file's coordinates.
+    pub(crate) positions: Vec<DVec3>,
+    /// Normals by vertex, or none; need not be unit length.
+    pub(crate) normals: Vec<Vec3>,
+    /// Texture coordinates by vertex, or none.
+    pub(crate) uvs: Vec<Vec2>,
+    /// Linear colours by vertex, or none.
+    pub(crate) colors: Vec<Vec3>,
+    /// Three vertex indices a triangle, all in range.
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// Material by triangle.
+    pub(crate) materials: Vec<u32>,
+}
+
+impl LoadedMesh {
+    /// The mesh without its materials.
+    pub(crate) fn part(&self) -> MeshPart<'_> {
+        let LoadedMesh { positions, normals, uvs, colors, triangles, .. } = self;
+        MeshPart { positions, normals, uvs, colors, triangles }
+    }
+}
+
 /// Gathers placed meshes; [`SceneBuilder::finish`] makes them one [`Mesh`] in a local frame.
 #[derive(Debug, Default)]
 pub struct SceneBuilder {
@@ -43,21 +68,43 @@ impl SceneBuilder {
         let first = self.positions.len() as u32;
         self.positions.extend(part.positions.iter().map(|&position| transform.transform_point3(position)));
 
-        let normal_transform = transform.inverse().transpose();
-        let normal = |n: &Vec3| normal_transform.transform_vector3(n.as_dvec3()).normalize_or_zero().as_vec3();
+        let place_normal = normal_placement(transform);
         fill_to(&mut self.normals, first, Vec3::ZERO, !part.normals.is_empty());
-        self.normals.extend(part.normals.iter().map(normal));
+        self.normals.extend(part.normals.iter().map(|&normal| place_normal(normal)));
         fill_to(&mut self.uvs, first, Vec2::ZERO, !part.uvs.is_empty());
         self.uvs.extend(part.uvs);
         fill_to(&mut self.colors, first, Vec3::ONE, !part.colors.is_empty());
         self.colors.extend(part.colors);
 
-        let mirrored = transform.determinant() < 0.0;
+        let mirrored = mirrors(transform);
         self.triangles.extend(part.triangles.iter().map(|&[a, b, c]| {
             let [b, c] = if mirrored { [c, b] } else { [b, c] };
             [first + a, first + b, first + c]
         }));
         self.materials.extend((0..part.triangles.len()).map(material));
+    }
+
+    /// [`SceneBuilder::add`] of a mesh that is handed over: the first one is placed where it lies in memory.
+    pub(crate) fn take(&mut self, mut mesh: LoadedMesh, transform: &DMat4) {
+        if self.vertex_count() > 0 || self.triangle_count() > 0 {
+            let materials = std::mem::take(&mut mesh.materials);
+            self.add(mesh.part(), transform, |index| materials[index]);
+            return;
+        }
+        if *transform != DMat4::IDENTITY {
+            mesh.positions.iter_mut().for_each(|position| *position = transform.transform_point3(*position));
+        }
+        let place_normal = normal_placement(transform);
+        mesh.normals.iter_mut().for_each(|normal| *normal = place_normal(*normal));
+        if mirrors(transform) {
+            mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+        self.positions = mesh.positions;
+        self.normals = mesh.normals;
+        self.uvs = mesh.uvs;
+        self.colors = mesh.colors;
+        self.triangles = mesh.triangles;
+        self.materials = mesh.materials;
     }
 
     /// Number of triangles so far.
@@ -121,6 +168,16 @@ impl SceneBuilder {
     }
 }
 
+/// Normals are turned by the inverse transpose of what places positions.
+fn normal_placement(transform: &DMat4) -> impl Fn(Vec3) -> Vec3 + use<> {
+    let matrix = transform.inverse().transpose();
+    move |normal| matrix.transform_vector3(normal.as_dvec3()).normalize_or_zero().as_vec3()
+}
+
+fn mirrors(transform: &DMat4) -> bool {
+    transform.determinant() < 0.0
+}
+
 /// Lengthens an attribute with `none` up to `count` vertices, where the attribute is used at all.
 fn fill_to<T: Clone>(attribute: &mut Vec<T>, count: u32, none: T, used: bool) {
     if used || !attribute.is_empty() {
@@ -178,6 +235,31 @@ mod tests {
         builder.add(part(), &DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)), |_| 0);
         let [a, b, c] = builder.finish().1.corners(0);
         assert!((b - a).cross(c - a).z > 0.0);
+    }
+
+    #[test]
+    fn a_mesh_handed_over_is_the_same_as_a_part_added() {
+        let placements = [DMat4::IDENTITY, DMat4::from_scale(DVec3::new(-2.0, 3.0, 1.0)) * DMat4::from_rotation_x(1.0)];
+        let loaded = || LoadedMesh {
+            positions: CORNERS.to_vec(),
+            normals: vec![Vec3::new(1.0, 2.0, 3.0); 3],
+            colors: vec![Vec3::X; 3],
+            triangles: vec![[0, 1, 2]],
+            materials: vec![7],
+            ..Default::default()
+        };
+        for placement in placements {
+            let (mut added, mut taken) = (SceneBuilder::new(), SceneBuilder::new());
+            // The first is moved in, the second copied behind it.
+            for _ in 0..2 {
+                added.add(loaded().part(), &placement, |_| 7);
+                taken.take(loaded(), &placement);
+            }
+            let (added, taken) = (added.finish().1, taken.finish().1);
+            assert_eq!((added.positions, added.normals), (taken.positions, taken.normals));
+            assert_eq!((added.triangles, added.materials), (taken.triangles, taken.materials));
+            assert_eq!((added.colors, added.uvs), (taken.colors, taken.uvs));
+        }
     }
 
     #[test]

@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3, Vec3};
 
 use crate::{
     Camera, Light, LightKind, LightMeshDefaults, LoadError, LoadOptions, Material, MeshPart, Place, Scene,
-    SceneBuilder, Texture,
+    SceneBuilder, Texture, builder::LoadedMesh,
 };
 
 /// Where a model goes in the scene, and what of it.
@@ -76,14 +76,31 @@ impl Draft {
         transform: &DMat4,
         material: impl Fn(usize) -> u32,
     ) -> Result<(), LoadError> {
-        if self.builder.vertex_count() + part.positions.len() > u32::MAX as usize {
-            return Err(LoadError::TooLarge { path: self.path.clone() });
-        }
-        let usable = |p: &DVec3| transform.transform_point3(*p).abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all();
-        if part.positions.iter().all(usable) {
+        self.check_room(part.positions.len())?;
+        let usable = usable_in(transform);
+        if part.positions.iter().all(&usable) {
             self.builder.add(part, transform, material);
         } else {
             self.add_usable(part, transform, material, usable);
+        }
+        Ok(())
+    }
+
+    /// [`Draft::add`] of a mesh that is handed over.
+    pub(crate) fn take(&mut self, mesh: LoadedMesh, transform: &DMat4) -> Result<(), LoadError> {
+        self.check_room(mesh.positions.len())?;
+        let usable = usable_in(transform);
+        if mesh.positions.iter().all(&usable) {
+            self.builder.take(mesh, transform);
+        } else {
+            self.add_usable(mesh.part(), transform, |index| mesh.materials[index], usable);
+        }
+        Ok(())
+    }
+
+    fn check_room(&self, vertices: usize) -> Result<(), LoadError> {
+        if self.builder.vertex_count() + vertices > u32::MAX as usize {
+            return Err(LoadError::TooLarge { path: self.path.clone() });
         }
         Ok(())
     }
@@ -187,6 +204,11 @@ impl Draft {
         scene.warnings = self.warnings;
         Ok(scene)
     }
+}
+
+/// Whether a vertex has a place once it is placed.
+fn usable_in(transform: &DMat4) -> impl Fn(&DVec3) -> bool + '_ {
+    |position| transform.transform_point3(*position).abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all()
 }
 
 /// The path without `.` and `..`, by its text alone.
