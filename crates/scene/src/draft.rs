@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3, Vec3};
 
 use crate::{
     Camera, Light, LightKind, LightMeshDefaults, LoadError, LoadOptions, Material, MeshPart, Place, Scene,
-    SceneBuilder, Texture, builder::LoadedMesh,
+    SceneBuilder, Texture, builder::LoadedMesh, texture::TextureFiles,
 };
 
 /// Where a model goes in the scene, and what of it.
@@ -43,6 +43,7 @@ pub(crate) struct Draft {
     pub(crate) lights: Vec<(Light, DVec3)>,
     pub(crate) materials: Vec<Material>,
     pub(crate) textures: Vec<Texture>,
+    pub(crate) texture_files: TextureFiles,
     pub(crate) ambient: Option<Vec3>,
     pub(crate) background: Option<Vec3>,
     pub(crate) light_mesh: LightMeshDefaults,
@@ -61,6 +62,7 @@ impl Draft {
             lights: Vec::new(),
             materials: Vec::new(),
             textures: Vec::new(),
+            texture_files: TextureFiles::default(),
             ambient: None,
             background: None,
             light_mesh: LightMeshDefaults::default(),
@@ -184,6 +186,7 @@ impl Draft {
                 self.unusable_triangles
             ));
         }
+        self.warnings.extend(self.texture_files.warning());
         if self.builder.triangle_count() == 0 {
             self.warnings.push("the scene has no triangles".to_owned());
         }

@@ -1,6 +1,12 @@
 //! Textures: pictures that colour surfaces.
 
+mod decode;
+mod files;
+
 use glam::Affine2;
+
+pub(crate) use decode::decode;
+pub(crate) use files::TextureFiles;
 
 /// A picture in memory.
 ///
