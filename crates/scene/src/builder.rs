@@ -42,6 +42,36 @@ impl LoadedMesh {
         let LoadedMesh { positions, normals, uvs, colors, triangles, .. } = self;
         MeshPart { positions, normals, uvs, colors, triangles }
     }
+
+    /// Makes the vertices those that `chosen` names, in that order. Triangles are left as they are.
+    pub(crate) fn choose_vertices(&mut self, chosen: impl Iterator<Item = u32> + Clone) {
+        fn choose<T: Copy>(values: &mut Vec<T>, chosen: impl Iterator<Item = u32>) {
+            if !values.is_empty() {
+                *values = chosen.map(|vertex| values[vertex as usize]).collect();
+            }
+        }
+        choose(&mut self.positions, chosen.clone());
+        choose(&mut self.normals, chosen.clone());
+        choose(&mut self.uvs, chosen.clone());
+        choose(&mut self.colors, chosen);
+    }
+
+    /// Drops vertices that no triangle uses: one that lies far away would move the local frame.
+    pub(crate) fn drop_unused_vertices(&mut self) {
+        let mut used = vec![false; self.positions.len()];
+        self.triangles.iter().flatten().for_each(|&vertex| used[vertex as usize] = true);
+        if used.iter().all(|&used| used) {
+            return;
+        }
+        let mut place = Vec::with_capacity(used.len());
+        let mut kept = 0;
+        for &used in &used {
+            place.push(kept);
+            kept += u32::from(used);
+        }
+        self.choose_vertices((0..used.len() as u32).filter(|&vertex| used[vertex as usize]));
+        self.triangles.iter_mut().flatten().for_each(|vertex| *vertex = place[*vertex as usize]);
+    }
 }
 
 /// Gathers placed meshes; [`SceneBuilder::finish`] makes them one [`Mesh`] in a local frame.
@@ -260,6 +290,24 @@ mod tests {
             assert_eq!((added.triangles, added.materials), (taken.triangles, taken.materials));
             assert_eq!((added.colors, added.uvs), (taken.colors, taken.uvs));
         }
+    }
+
+    #[test]
+    fn vertices_without_a_triangle_are_dropped() {
+        let mut mesh = LoadedMesh {
+            positions: (0..6).map(|x| DVec3::splat(f64::from(x))).collect(),
+            colors: (0..6).map(|x| Vec3::splat(x as f32)).collect(),
+            triangles: vec![[5, 1, 3], [1, 3, 4]],
+            ..Default::default()
+        };
+        let corners =
+            |mesh: &LoadedMesh| mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize]).collect();
+        let before: Vec<DVec3> = corners(&mesh);
+        mesh.drop_unused_vertices();
+        assert_eq!(mesh.positions.len(), 4);
+        assert_eq!(corners(&mesh), before);
+        assert!(mesh.colors.iter().zip(&mesh.positions).all(|(color, position)| color.as_dvec3() == *position));
+        assert!(mesh.normals.is_empty());
     }
 
     #[test]

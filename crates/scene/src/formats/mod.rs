@@ -4,7 +4,9 @@
 mod colors;
 pub(crate) mod gltf;
 pub(crate) mod obj;
+pub(crate) mod ply;
 mod polygon;
+pub(crate) mod stl;
 mod text;
 pub(crate) mod toml;
 mod vertices;
