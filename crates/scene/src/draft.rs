@@ -7,7 +7,9 @@ use glam::{DMat4, DVec3, Vec3};
 
 use crate::{
     Camera, Light, LightKind, LightMeshDefaults, LoadError, LoadOptions, Material, MeshPart, Place, Position, Scene,
-    SceneBuilder, Texture, builder::Room, texture::TextureFiles,
+    SceneBuilder, Texture,
+    builder::{LoadedMesh, Room},
+    texture::TextureFiles,
 };
 
 /// Where a model goes in the scene, and what of it.
@@ -97,15 +99,31 @@ impl Draft {
         transform: &DMat4,
         material: impl Fn(usize) -> u32,
     ) -> Result<(), LoadError> {
-        if self.builder.vertex_count() + part.positions.len() > u32::MAX as usize {
-            return Err(LoadError::TooLarge { path: self.path.clone() });
-        }
-        let usable =
-            |p: &P| transform.transform_point3(p.to_double()).abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all();
-        if part.positions.iter().all(usable) {
+        self.check_room(part.positions.len())?;
+        let usable = usable_in(transform);
+        if part.positions.iter().all(&usable) {
             self.builder.add(part, transform, material);
         } else {
             self.add_usable(part, transform, material, usable);
+        }
+        Ok(())
+    }
+
+    /// [`Draft::add`] of a mesh that is handed over.
+    pub(crate) fn take(&mut self, mesh: LoadedMesh, transform: &DMat4) -> Result<(), LoadError> {
+        self.check_room(mesh.positions.len())?;
+        let usable = usable_in(transform);
+        if mesh.positions.iter().all(&usable) {
+            self.builder.take(mesh, transform);
+        } else {
+            self.add_usable(mesh.part(), transform, |index| mesh.materials[index], usable);
+        }
+        Ok(())
+    }
+
+    fn check_room(&self, vertices: usize) -> Result<(), LoadError> {
+        if self.builder.vertex_count() + vertices > u32::MAX as usize {
+            return Err(LoadError::TooLarge { path: self.path.clone() });
         }
         Ok(())
     }
@@ -210,6 +228,11 @@ impl Draft {
         scene.warnings = self.warnings;
         Ok(scene)
     }
+}
+
+/// Whether a vertex has a place once it is placed.
+fn usable_in<P: Position>(transform: &DMat4) -> impl Fn(&P) -> bool + '_ {
+    |position| transform.transform_point3(position.to_double()).abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all()
 }
 
 /// The path without `.` and `..`, by its text alone.

@@ -46,11 +46,13 @@ impl Position for DVec3 {
 /// Placed vertices without a local frame.
 #[derive(Debug, Default)]
 pub(crate) struct Vertices {
-    /// One entry a vertex: of a single-precision run in its part's coordinates, of a double-precision run not yet set.
+    /// One entry a vertex: of a single-precision run in its part's coordinates, of a double-precision run not yet set. Empty where all
+    /// runs are of double precision.
     single: Vec<Vec3>,
     /// World positions of the double-precision runs, one after the other.
     double: Vec<DVec3>,
     runs: Vec<Run>,
+    count: usize,
     bounds: Option<(DVec3, DVec3)>,
 }
 
@@ -69,24 +71,38 @@ impl Vertices {
         match positions {
             Positions::Single(positions) => {
                 self.include(positions, transform);
+                self.single.resize(self.count, Vec3::ZERO);
                 self.single.extend_from_slice(positions);
                 self.runs.push(Run::Single(positions.len(), Box::new(*transform)));
+                self.count += positions.len();
             }
             Positions::Double(positions) => {
                 self.include(positions, transform);
                 self.double.extend(positions.iter().map(|&position| transform.transform_point3(position)));
-                self.single.resize(self.single.len() + positions.len(), Vec3::ZERO);
-                match self.runs.last_mut() {
-                    Some(Run::Double(count)) => *count += positions.len(),
-                    _ => self.runs.push(Run::Double(positions.len())),
-                }
+                self.push_double(positions.len());
             }
+        }
+    }
+
+    /// [`Vertices::add`] of placed vertices that are handed over, before all others.
+    pub(crate) fn take(&mut self, placed: Vec<DVec3>) {
+        debug_assert!(self.count == 0, "the first vertices");
+        self.include(&placed, &DMat4::IDENTITY);
+        self.push_double(placed.len());
+        self.double = placed;
+    }
+
+    fn push_double(&mut self, more: usize) {
+        self.count += more;
+        match self.runs.last_mut() {
+            Some(Run::Double(count)) => *count += more,
+            _ => self.runs.push(Run::Double(more)),
         }
     }
 
     /// Number of vertices.
     pub(crate) fn len(&self) -> usize {
-        self.single.len()
+        self.count
     }
 
     /// Lowest and highest corner of the box around all finite vertices; `None` without any.
@@ -96,12 +112,16 @@ impl Vertices {
 
     /// Makes room for `more` vertices; `false` where there is not enough memory.
     pub(crate) fn reserve(&mut self, more: usize) -> bool {
-        self.single.try_reserve_exact(more).is_ok()
+        self.single.try_reserve_exact(self.count - self.single.len() + more).is_ok()
     }
 
     /// All vertices relative to `origin`.
     pub(crate) fn finish(self, origin: DVec3) -> Vec<Vec3> {
-        let Vertices { mut single, double, runs, .. } = self;
+        let Vertices { mut single, double, runs, count, .. } = self;
+        if single.is_empty() {
+            return double.into_iter().map(|world| (world - origin).as_vec3()).collect();
+        }
+        single.resize(count, Vec3::ZERO);
         let mut rest = &mut single[..];
         let mut double = double.iter();
         for run in runs {
@@ -147,6 +167,19 @@ mod tests {
         assert_eq!(vertices.len(), 5);
         assert_eq!(vertices.bounds(), Some((far, far + DVec3::ONE)));
         assert_eq!(vertices.finish(far), [Vec3::X, Vec3::ZERO, Vec3::Y, Vec3::ZERO, Vec3::Z]);
+    }
+
+    #[test]
+    fn vertices_that_are_handed_over_come_first() {
+        let mut vertices = Vertices::default();
+        vertices.take(vec![DVec3::X, DVec3::Y]);
+        assert_eq!((vertices.len(), vertices.bounds()), (2, Some((DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)))));
+        vertices.add(Positions::Single(&[Vec3::Z]), &DMat4::IDENTITY);
+        vertices.add(Positions::Double(&[DVec3::ONE]), &DMat4::IDENTITY);
+        assert_eq!(vertices.finish(DVec3::ZERO), [Vec3::X, Vec3::Y, Vec3::Z, Vec3::ONE]);
+        let mut alone = Vertices::default();
+        alone.take(vec![DVec3::X]);
+        assert_eq!(alone.finish(DVec3::ONE), [Vec3::new(0.0, -1.0, -1.0)]);
     }
 
     #[test]
