@@ -1,13 +1,15 @@
 //! A scene while it is read: everything in world coordinates and double precision, until the last triangle is known and the
 //! local frame can be chosen.
 
+use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
 use glam::{DMat4, DVec3, Vec3};
 
 use crate::{
     Camera, Light, LightKind, LightMeshDefaults, LoadError, LoadOptions, Material, MeshPart, Place, Scene,
-    SceneBuilder, Texture, texture::TextureFiles,
+    SceneBuilder, Texture,
+    texture::{TextureFiles, untextured},
 };
 
 /// Where a model goes in the scene, and what of it.
@@ -37,6 +39,8 @@ pub(crate) struct Draft {
     options: LoadOptions,
     builder: SceneBuilder,
     unusable_triangles: usize,
+    /// Triangles of parts without texture coordinates.
+    without_uvs: Vec<Range<usize>>,
     /// World position of each camera beside it; the camera's own is not looked at.
     pub(crate) cameras: Vec<(Camera, DVec3)>,
     /// World position of each light beside it; the light's own is not looked at.
@@ -58,6 +62,7 @@ impl Draft {
             options: options.clone(),
             builder: SceneBuilder::new(),
             unusable_triangles: 0,
+            without_uvs: Vec::new(),
             cameras: Vec::new(),
             lights: Vec::new(),
             materials: Vec::new(),
@@ -84,6 +89,7 @@ impl Draft {
         let usable = |p: &DVec3| transform.transform_point3(*p).abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all();
         if part.positions.iter().all(usable) {
             self.builder.add(part, transform, material);
+            self.note_uvs(&part);
         } else {
             self.add_usable(part, transform, material, usable);
         }
@@ -111,6 +117,15 @@ impl Draft {
         let triangles: Vec<[u32; 3]> = kept.iter().map(|&index| part.triangles[index]).collect();
         let part = MeshPart { positions: &positions, triangles: &triangles, ..part };
         self.builder.add(part, transform, |index| material(kept[index]));
+        self.note_uvs(&part);
+    }
+
+    /// Remembers the triangles of `part`, which were added last, where it has no texture coordinates.
+    fn note_uvs(&mut self, part: &MeshPart) {
+        if part.uvs.is_empty() {
+            let end = self.builder.triangle_count();
+            self.without_uvs.push(end - part.triangles.len()..end);
+        }
     }
 
     /// The path of what `source`, one of the scene's files, calls `name`: relative to its own folder, with either kind of slash.
@@ -173,11 +188,12 @@ impl Draft {
         if self.builder.triangle_count() == 0 {
             self.warnings.push("the scene has no triangles".to_owned());
         }
+        let name = self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let mut scene = self.builder.finish_scene(name);
+        self.warnings.extend(untextured(&mut scene.mesh, &mut self.materials, &self.without_uvs));
         if self.options.strict && !self.warnings.is_empty() {
             return Err(LoadError::Warnings { path: self.path, warnings: self.warnings });
         }
-        let name = self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let mut scene = self.builder.finish_scene(name);
         let local = |world: DVec3| (world - scene.origin).as_vec3();
         scene.cameras =
             self.cameras.into_iter().map(|(camera, world)| Camera { position: local(world), ..camera }).collect();
