@@ -6,13 +6,7 @@
 //! known on Linux alone.
 #![allow(clippy::print_stdout, reason = "a benchmark prints its result")]
 
-use std::{
-    fmt::Write as _,
-    fs,
-    path::Path,
-    process::Command,
-    time::Instant,
-};
+use std::{fmt::Write as _, fs, path::Path, process::Command, time::Instant};
 
 use lightmesh::Scene;
 
@@ -31,9 +25,11 @@ struct Kind {
 }
 
 /// All rows of the table.
-const KINDS: [Kind; 2] = [
+const KINDS: [Kind; 4] = [
     Kind { name: "obj, positions alone", ending: "obj", encode: obj_plain, bytes_per_vertex: 80 },
     Kind { name: "obj, v/vt/vn", ending: "obj", encode: obj_full, bytes_per_vertex: 190 },
+    Kind { name: "glb, positions alone", ending: "glb", encode: glb_plain, bytes_per_vertex: 36 },
+    Kind { name: "glb, with normals and uvs", ending: "glb", encode: glb_full, bytes_per_vertex: 56 },
 ];
 
 /// A square grid of vertices with heights.
@@ -106,6 +102,58 @@ fn obj_full(landscape: &Landscape) -> Vec<u8> {
         writeln!(text, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}").expect("memory takes all");
     }
     text.into_bytes()
+}
+
+fn glb_plain(landscape: &Landscape) -> Vec<u8> {
+    let (bytes, count) = (floats(landscape.vertices()), landscape.edge * landscape.edge);
+    glb(landscape, &[("POSITION", "VEC3", bytes)], count)
+}
+
+fn glb_full(landscape: &Landscape) -> Vec<u8> {
+    let attributes = [
+        ("POSITION", "VEC3", floats(landscape.vertices())),
+        ("NORMAL", "VEC3", floats(landscape.normals())),
+        ("TEXCOORD_0", "VEC2", floats(landscape.uvs())),
+    ];
+    glb(landscape, &attributes, landscape.edge * landscape.edge)
+}
+
+fn floats<const N: usize>(vectors: impl Iterator<Item = [f64; N]>) -> Vec<u8> {
+    vectors.flatten().flat_map(|number| (number as f32).to_le_bytes()).collect()
+}
+
+/// One primitive with these attributes, by name, type and bytes, and 32-bit indices.
+fn glb(landscape: &Landscape, attributes: &[(&str, &str, Vec<u8>)], count: usize) -> Vec<u8> {
+    let indices: Vec<u8> = landscape.triangles().flatten().flat_map(|corner| (corner as u32).to_le_bytes()).collect();
+    let (mut views, mut accessors, mut names) = (Vec::new(), Vec::new(), Vec::new());
+    let mut bin = Vec::new();
+    for (index, (name, kind, bytes)) in attributes.iter().enumerate() {
+        views.push(format!(r#"{{"buffer":0,"byteOffset":{},"byteLength":{}}}"#, bin.len(), bytes.len()));
+        accessors.push(format!(r#"{{"bufferView":{index},"componentType":5126,"count":{count},"type":"{kind}"}}"#));
+        names.push(format!(r#""{name}":{index}"#));
+        bin.extend(bytes);
+    }
+    views.push(format!(r#"{{"buffer":0,"byteOffset":{},"byteLength":{}}}"#, bin.len(), indices.len()));
+    let (view, corners) = (attributes.len(), indices.len() / size_of::<u32>());
+    accessors.push(format!(r#"{{"bufferView":{view},"componentType":5125,"count":{corners},"type":"SCALAR"}}"#));
+    bin.extend(indices);
+    let mut json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"attributes":{{{}}},"indices":{view}}}]}}],"accessors":[{}],"bufferViews":[{}],"buffers":[{{"byteLength":{}}}]}}"#,
+        names.join(","),
+        accessors.join(","),
+        views.join(","),
+        bin.len(),
+    );
+    json.extend(std::iter::repeat_n(' ', json.len().next_multiple_of(4) - json.len()));
+    let mut file = b"glTF".to_vec();
+    for word in [2, 28 + json.len() + bin.len(), json.len()] {
+        file.extend((word as u32).to_le_bytes());
+    }
+    file.extend([b"JSON".as_slice(), json.as_bytes()].concat());
+    file.extend((bin.len() as u32).to_le_bytes());
+    file.extend(b"BIN\0");
+    file.extend(bin);
+    file
 }
 
 /// Seconds and peak bytes of one reading, in this process.

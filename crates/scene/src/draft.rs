@@ -1,6 +1,7 @@
 //! A scene while it is read: everything in world coordinates and double precision, until the last triangle is known and the
 //! local frame can be chosen.
 
+use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
 use glam::{DMat4, DVec3, Vec3};
@@ -9,7 +10,7 @@ use crate::{
     Camera, Light, LightKind, LightMeshDefaults, LoadError, LoadOptions, Material, MeshPart, Place, Position, Scene,
     SceneBuilder, Texture,
     builder::{LoadedMesh, Room},
-    texture::TextureFiles,
+    texture::{TextureFiles, untextured},
 };
 
 /// Where a model goes in the scene, and what of it.
@@ -39,6 +40,8 @@ pub(crate) struct Draft {
     options: LoadOptions,
     builder: SceneBuilder,
     unusable_triangles: usize,
+    /// Triangles of parts without texture coordinates.
+    without_uvs: Vec<Range<usize>>,
     /// World position of each camera beside it; the camera's own is not looked at.
     pub(crate) cameras: Vec<(Camera, DVec3)>,
     /// World position of each light beside it; the light's own is not looked at.
@@ -60,6 +63,7 @@ impl Draft {
             options: options.clone(),
             builder: SceneBuilder::new(),
             unusable_triangles: 0,
+            without_uvs: Vec::new(),
             cameras: Vec::new(),
             lights: Vec::new(),
             materials: Vec::new(),
@@ -103,6 +107,7 @@ impl Draft {
         let usable = usable_in(transform);
         if part.positions.iter().all(&usable) {
             self.builder.add(part, transform, material);
+            self.note_uvs(part.triangles.len(), !part.uvs.is_empty());
         } else {
             self.add_usable(part, transform, material, usable);
         }
@@ -114,7 +119,9 @@ impl Draft {
         self.check_room(mesh.positions.len())?;
         let usable = usable_in(transform);
         if mesh.positions.iter().all(&usable) {
+            let (triangles, has_uvs) = (mesh.triangles.len(), !mesh.uvs.is_empty());
             self.builder.take(mesh, transform);
+            self.note_uvs(triangles, has_uvs);
         } else {
             self.add_usable(mesh.part(), transform, |index| mesh.materials[index], usable);
         }
@@ -149,6 +156,15 @@ impl Draft {
         let triangles: Vec<[u32; 3]> = kept.iter().map(|&index| part.triangles[index]).collect();
         let part = MeshPart { positions: &positions, triangles: &triangles, ..part };
         self.builder.add(part, transform, |index| material(kept[index]));
+        self.note_uvs(part.triangles.len(), !part.uvs.is_empty());
+    }
+
+    /// Remembers the triangles that were added last, where they have no texture coordinates.
+    fn note_uvs(&mut self, triangles: usize, has_uvs: bool) {
+        if !has_uvs {
+            let end = self.builder.triangle_count();
+            self.without_uvs.push(end - triangles..end);
+        }
     }
 
     /// The path of what `source`, one of the scene's files, calls `name`: relative to its own folder, with either kind of slash.
@@ -211,11 +227,12 @@ impl Draft {
         if self.builder.triangle_count() == 0 {
             self.warnings.push("the scene has no triangles".to_owned());
         }
+        let name = self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let mut scene = self.builder.finish_scene(name);
+        self.warnings.extend(untextured(&mut scene.mesh, &mut self.materials, &self.without_uvs));
         if self.options.strict && !self.warnings.is_empty() {
             return Err(LoadError::Warnings { path: self.path, warnings: self.warnings });
         }
-        let name = self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let mut scene = self.builder.finish_scene(name);
         let local = |world: DVec3| (world - scene.origin).as_vec3();
         scene.cameras =
             self.cameras.into_iter().map(|(camera, world)| Camera { position: local(world), ..camera }).collect();

@@ -40,6 +40,8 @@ pub(crate) enum Command {
     Grid(GridArgs),
     /// Write a built-in or loaded scene as files
     Export(ExportArgs),
+    /// Print the JSON Schema of scene files in TOML, for editors and checkers
+    Schema,
     /// Print a script that completes command lines in a shell
     Completions(CompletionsArgs),
     /// Print the manual page

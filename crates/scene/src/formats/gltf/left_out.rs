@@ -16,8 +16,6 @@ pub(super) struct LeftOut {
     pub(super) placeless: usize,
     pub(super) skinned: usize,
     pub(super) morphed: usize,
-    /// Primitives whose texture finds no coordinates.
-    pub(super) unmapped: usize,
     /// Primitives whose material is not there.
     pub(super) missing_materials: usize,
     /// Of materials.
@@ -41,11 +39,6 @@ impl LeftOut {
             (self.placeless, "primitive", "without positions: left out"),
             (self.skinned, "skinned mesh", "shown as if at rest, without its skeleton"),
             (self.morphed, "mesh", "shown without the morph targets that the file blends in"),
-            (
-                self.unmapped,
-                "primitive",
-                "without the texture coordinates that the texture needs: shown in plain colour",
-            ),
             (self.missing_materials, "primitive", "with a material that the file does not hold: shown white"),
             (self.see_through, "material", "with cut-outs or transparency (alphaMode): shown opaque"),
             (self.roughness_textures, "metallic-roughness texture", "not shown: the material's factors are used"),

@@ -1,6 +1,6 @@
 //! The materials of a file in the draft, with their textures, and which of them a primitive gets.
 
-use std::{collections::HashMap, path::Path};
+use std::path::Path;
 
 use super::{
     document::{self, Document, Primitive},
@@ -22,8 +22,6 @@ pub(super) struct Materials {
     read: Vec<(u32, Option<u32>)>,
     /// Index of glTF's own default material, once a primitive has used it.
     default: Option<u32>,
-    /// By index in the draft: the same material without its texture.
-    plain: HashMap<u32, u32>,
 }
 
 /// What a primitive is made of.
@@ -87,24 +85,12 @@ impl Materials {
             Some(1) => attributes.texcoord_1,
             Some(_) => None,
         };
-        if set.is_some() && uvs.is_none() {
-            left_out.unmapped += 1;
-            return Chosen { material: self.plain(material, draft), uvs: None, colors };
-        }
         Chosen { material, uvs, colors }
     }
 
     fn default_material(&mut self, draft: &mut Draft) -> u32 {
         *self.default.get_or_insert_with(|| {
             draft.materials.push(material::translated(&document::Material::default(), true));
-            draft.materials.len() as u32 - 1
-        })
-    }
-
-    fn plain(&mut self, material: u32, draft: &mut Draft) -> u32 {
-        *self.plain.entry(material).or_insert_with(|| {
-            let plain = Material { texture: None, ..draft.materials[material as usize].clone() };
-            draft.materials.push(plain);
             draft.materials.len() as u32 - 1
         })
     }

@@ -121,7 +121,7 @@ fn a_texture_without_coordinates_is_left_out_of_that_primitive() {
     assert_eq!(scene.materials.len(), 2);
     assert_eq!(scene.mesh.materials, [0, 1, 1]);
     assert!(scene.materials[0].texture.is_some() && scene.materials[1].texture.is_none());
-    assert!(warnings(&document).contains("2 primitives without the texture coordinates"));
+    assert!(warnings(&document).contains("2 triangles have a texture but no texture coordinates"));
     let mut document = textured();
     info(&mut document)["texCoord"] = json!(5);
     assert!(open(&document).materials[1].texture.is_none());
