@@ -149,11 +149,11 @@ impl SceneBuilder {
     pub(crate) fn reserve(&mut self, room: &Room) -> bool {
         let of = |used: bool| if used { room.vertices } else { 0 };
         self.vertices.reserve(room.vertices)
-            && self.normals.try_reserve_exact(of(room.normals)).is_ok()
-            && self.uvs.try_reserve_exact(of(room.uvs)).is_ok()
-            && self.colors.try_reserve_exact(of(room.colors)).is_ok()
-            && self.triangles.try_reserve_exact(room.triangles).is_ok()
-            && self.materials.try_reserve_exact(room.triangles).is_ok()
+            && reserve(&mut self.normals, of(room.normals))
+            && reserve(&mut self.uvs, of(room.uvs))
+            && reserve(&mut self.colors, of(room.colors))
+            && reserve(&mut self.triangles, room.triangles)
+            && reserve(&mut self.materials, room.triangles)
     }
 
     /// [`SceneBuilder::add`] of a mesh that is handed over: the first one is placed where it lies in memory.
@@ -237,6 +237,12 @@ impl SceneBuilder {
             warnings: Vec::new(),
         }
     }
+}
+
+/// Makes room for `more` elements, and for no others in what is the first file of a scene and may be the only one.
+pub(crate) fn reserve<T>(elements: &mut Vec<T>, more: usize) -> bool {
+    let reserved = if elements.is_empty() { elements.try_reserve_exact(more) } else { elements.try_reserve(more) };
+    reserved.is_ok()
 }
 
 /// Normals are turned by the inverse transpose of what places positions.

@@ -5,6 +5,8 @@
 
 use glam::{DMat4, DVec3, Vec3};
 
+use crate::builder::reserve;
+
 /// A vertex as a loader has it, in single or double precision.
 pub trait Position: Copy {
     /// The same place in double precision.
@@ -112,7 +114,8 @@ impl Vertices {
 
     /// Makes room for `more` vertices; `false` where there is not enough memory.
     pub(crate) fn reserve(&mut self, more: usize) -> bool {
-        self.single.try_reserve_exact(self.count - self.single.len() + more).is_ok()
+        let missing = self.count - self.single.len();
+        reserve(&mut self.single, missing + more)
     }
 
     /// All vertices relative to `origin`.

@@ -87,7 +87,7 @@ impl<'a> Accessors<'a> {
             let all = all.to_mut();
             for (at, value) in indices.integers().into_iter().zip(convert(values)) {
                 *all.get_mut(at as usize).ok_or_else(|| {
-                    let problem = format!("has {} elements, but its sparse part replaces {at}", elements.count);
+                    let problem = format!("has {} elements, but its sparse part replaces number {at}", elements.count);
                     self.broken(index, &problem)
                 })? = value;
             }
@@ -107,6 +107,10 @@ impl<'a> Accessors<'a> {
                 .map(|found| Strided { normalized: accessor.normalized, ..found })
         };
         let sparse = match accessor.sparse.as_deref() {
+            Some(Sparse { count, .. }) if *count > accessor.count => {
+                let problem = format!("has {} elements, but its sparse part replaces {count}", accessor.count);
+                return Err(self.broken(index, &problem));
+            }
             Some(Sparse { count, indices, values }) => {
                 let kind = self.component(index, indices.component_type)?;
                 if !kind.is_unsigned() {

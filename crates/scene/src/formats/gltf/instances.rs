@@ -9,36 +9,44 @@ use crate::LoadError;
 
 /// Where a node's mesh stands: an own transform for each instance, below that of the node.
 pub(super) struct Instances<'a> {
-    pub(super) count: usize,
+    count: usize,
     translations: Option<Cow<'a, [[f32; 3]]>>,
     rotations: Option<Cow<'a, [[f32; 4]]>>,
     scales: Option<Cow<'a, [[f32; 3]]>>,
 }
 
+/// The attributes that place instances.
+const ATTRIBUTES: [&str; 3] = ["TRANSLATION", "ROTATION", "SCALE"];
+
+/// Number of instances of node number `node`, without reading them.
+pub(super) fn count(accessors: &Accessors, node: usize, instancing: &Instancing) -> Result<usize, LoadError> {
+    let named = ATTRIBUTES.iter().filter_map(|name| instancing.attributes.get(*name));
+    let counts = named.map(|&accessor| accessors.count(accessor)).collect::<Result<Vec<usize>, LoadError>>()?;
+    // Without any of the three all instances stand in one place, and show as one.
+    let Some((&count, others)) = counts.split_first() else { return Ok(1) };
+    match others.iter().find(|&&other| other != count) {
+        None => Ok(count),
+        Some(other) => {
+            let problem = format!("the instances of node {node} are {count} by one attribute and {other} by another");
+            Err(malformed(accessors.path, problem))
+        }
+    }
+}
+
 impl<'a> Instances<'a> {
-    /// Reads the attributes of node number `node`.
+    /// Reads the attributes, which were found to give so many instances.
     pub(super) fn read(
         accessors: &Accessors<'a>,
-        node: usize,
         instancing: &Instancing,
+        count: usize,
     ) -> Result<Instances<'a>, LoadError> {
-        let find = |name: &str| instancing.attributes.get(name).copied();
-        let translations = find("TRANSLATION").map(|index| accessors.vectors(index)).transpose()?;
-        let rotations = find("ROTATION").map(|index| accessors.vectors(index)).transpose()?;
-        let scales = find("SCALE").map(|index| accessors.vectors(index)).transpose()?;
-        let lengths = [
-            translations.as_deref().map(<[_]>::len),
-            rotations.as_deref().map(<[_]>::len),
-            scales.as_deref().map(<[_]>::len),
-        ];
-        let mut counts = lengths.into_iter().flatten();
-        // Without any of the three all instances stand in one place, and show as one.
-        let count = counts.next().unwrap_or(1);
-        if let Some(other) = counts.find(|&other| other != count) {
-            let problem = format!("the instances of node {node} are {count} by one attribute and {other} by another");
-            return Err(malformed(accessors.path, problem));
-        }
-        Ok(Instances { count, translations, rotations, scales })
+        let [translations, rotations, scales] = ATTRIBUTES.map(|name| instancing.attributes.get(name).copied());
+        Ok(Instances {
+            count,
+            translations: translations.map(|accessor| accessors.vectors(accessor)).transpose()?,
+            rotations: rotations.map(|accessor| accessors.vectors(accessor)).transpose()?,
+            scales: scales.map(|accessor| accessors.vectors(accessor)).transpose()?,
+        })
     }
 
     /// From the mesh's coordinates to the node's, instance by instance.

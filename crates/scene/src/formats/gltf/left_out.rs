@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::nodes::Placed;
 use crate::draft::Draft;
 
 /// How often each kind was met.
@@ -29,6 +30,12 @@ pub(super) struct LeftOut {
 }
 
 impl LeftOut {
+    /// Counts the cameras and lights of all nodes.
+    pub(super) fn count_views(&mut self, all: &[Placed]) {
+        self.cameras += all.iter().filter(|placed| placed.node.camera.is_some()).count();
+        self.lights += all.iter().filter(|placed| placed.light().is_some()).count();
+    }
+
     /// Adds the sentences to the draft's warnings.
     pub(super) fn warn(&self, path: &Path, draft: &mut Draft) {
         let sentences = [

@@ -12,25 +12,24 @@ use super::{
     axes::Axes,
     container::malformed,
     document::{self, Spot},
-    extras::{self, LightExtras, ShapeExtras},
+    extras::{LightExtras, ShapeExtras},
     nodes::Placed,
 };
 use crate::{Falloff, Light, LightKind, LoadError, formats::toml::unit};
 
-/// The node's light, number `index` of the document, at the local frame's zero. `None` where its type is unknown.
-pub(super) fn read(
+/// Light number `index` of the document in its node, at the local frame's zero, yet without a name. `None` where its type is unknown.
+pub(super) fn placed(
     axes: &Axes,
     placed: &Placed,
     index: u32,
     light: &document::Light,
+    own: &LightExtras,
 ) -> Result<Option<Light>, LoadError> {
     let color = light.color.as_deref().map_or(DVec3::ONE, |&color| color.into());
     let intensity = (light.intensity.unwrap_or(1.0) * color).as_vec3();
     if !(intensity.is_finite() && intensity.cmpge(Vec3::ZERO).all()) {
         return Err(malformed(axes.path, format!("light {index} has the intensity {intensity}")));
     }
-    let own: Option<LightExtras> = extras::read(axes.path, &format!("light {index}"), light.extras)?;
-    let own = own.unwrap_or_default();
     let position = Vec3::ZERO;
     let kind = match (&*light.kind, &own.shape) {
         (_, Some(shape)) => shaped(shape, &placed.transform)
@@ -43,9 +42,8 @@ pub(super) fn read(
         ("point", None) => LightKind::Point { position, spread: own.spread.unwrap_or(0.0).max(0.0) },
         _ => return Ok(None),
     };
-    let name = light.name.as_deref().filter(|name| !name.is_empty()).or(placed.node.name.as_deref());
     Ok(Some(Light {
-        name: name.unwrap_or_default().to_owned(),
+        name: String::new(),
         kind,
         intensity,
         falloff: if own.no_falloff { Falloff::None } else { Falloff::InverseSquare },

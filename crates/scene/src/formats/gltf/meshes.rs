@@ -10,7 +10,7 @@ use glam::{DMat4, Vec3};
 use super::{
     accessor::Accessors,
     container::malformed,
-    document::{Mesh, Primitive},
+    document::{Instancing, Mesh, Primitive},
     instances::Instances,
     left_out::LeftOut,
     materials::{Chosen, Materials},
@@ -60,12 +60,13 @@ struct Survey<'a> {
 pub(super) struct Shown<'a> {
     pub(super) mesh: u32,
     pub(super) transform: DMat4,
-    pub(super) instances: Option<Instances<'a>>,
+    /// How many instances there are, and where.
+    pub(super) instances: Option<(usize, &'a Instancing)>,
 }
 
 impl Shown<'_> {
     fn count(&self) -> usize {
-        self.instances.as_ref().map_or(1, |instances| instances.count)
+        self.instances.map_or(1, |(count, _)| count)
     }
 }
 
@@ -100,9 +101,16 @@ impl<'a> Meshes<'a> {
         draft.reserve(&room)?;
         for shown in all {
             let survey = self.surveys[shown.mesh as usize].as_ref().expect("surveyed above");
+            // Read no sooner than this: the attributes of all nodes together might not fit.
+            let instances = match shown.instances {
+                Some((count, instancing)) if !survey.primitives.is_empty() => {
+                    Some(Instances::read(&self.accessors, instancing, count)?)
+                }
+                _ => None,
+            };
             for &(primitive, mode) in &survey.primitives {
                 let chosen = materials.choose(primitive, left_out, draft);
-                self.add_primitive(primitive, mode, &chosen, shown, draft)?;
+                self.add_primitive(primitive, mode, &chosen, &shown.transform, instances.as_ref(), draft)?;
             }
         }
         Ok(())
@@ -125,7 +133,8 @@ impl<'a> Meshes<'a> {
         primitive: &Primitive,
         mode: Mode,
         chosen: &Chosen,
-        shown: &Shown,
+        transform: &DMat4,
+        instances: Option<&Instances>,
         draft: &mut Draft,
     ) -> Result<(), LoadError> {
         let accessors = &self.accessors;
@@ -154,12 +163,11 @@ impl<'a> Meshes<'a> {
             colors: bytemuck::cast_slice(&colors),
             triangles: &triangles(mode, &indices),
         };
-        let Some(instances) = &shown.instances else {
-            return draft.add(part, &shown.transform, |_| chosen.material);
+        let Some(instances) = instances else {
+            return draft.add(part, transform, |_| chosen.material);
         };
-        instances
-            .transforms()
-            .try_for_each(|instance| draft.add(part, &(shown.transform * instance), |_| chosen.material))
+        let mut transforms = instances.transforms();
+        transforms.try_for_each(|instance| draft.add(part, &(transform * instance), |_| chosen.material))
     }
 
     fn indices(&self, primitive: &Primitive, vertices: usize) -> Result<Cow<'a, [u32]>, LoadError> {

@@ -9,7 +9,7 @@
 //! 4. [`materials`] of [`material`] and [`picture`].
 //! 5. [`meshes`] through [`accessor`], [`strided`] and [`buffers`]: counted first, then added, borrowed from the bytes where they
 //!    lie as they are needed.
-//! 6. [`cameras`], [`lights`], and [`extras`] of our own.
+//! 6. [`views`]: [`cameras`], [`lights`], and [`extras`] of our own.
 //!
 //! Animations are left out: the scene is shown as its nodes stand. What else is not shown is counted in [`left_out`] and becomes a
 //! warning.
@@ -34,6 +34,7 @@ mod strided;
 #[cfg(test)]
 mod tests;
 mod uri;
+mod views;
 
 use std::path::Path;
 
@@ -41,17 +42,16 @@ use glam::Vec3;
 
 use self::{
     accessor::Accessors,
-    axes::Axes,
     buffers::Buffers,
     container::{Container, malformed},
     document::{Document, Node},
     extras::SceneExtras,
-    instances::Instances,
     left_out::LeftOut,
     materials::Materials,
     meshes::{Meshes, Shown},
     nodes::Placed,
     picture::Pictures,
+    views::Views,
 };
 use crate::{
     LightMeshDefaults, LoadError, Weight,
@@ -74,8 +74,10 @@ pub(crate) fn read(path: &Path, placement: &Placement, draft: &mut Draft) -> Res
     let placed = nodes::placed(path, &document, placement.transform, draft)?;
     let shown = shown(&accessors, &placed, &mut left_out)?;
     Meshes::new(accessors).add(&shown, &mut materials, &mut left_out, draft)?;
-    read_views(path, &document, &placed, placement, &mut left_out, draft)?;
-    if !placement.part {
+    if placement.part {
+        left_out.count_views(&placed);
+    } else {
+        Views::new(path, &document).add(&placed, &mut left_out, draft)?;
         read_scene_extras(path, &document, draft)?;
     }
     left_out.warn(path, draft);
@@ -85,14 +87,17 @@ pub(crate) fn read(path: &Path, placement: &Placement, draft: &mut Draft) -> Res
 /// The meshes of all nodes.
 fn shown<'a>(
     accessors: &Accessors<'a>,
-    placed: &[Placed],
+    placed: &[Placed<'a>],
     left_out: &mut LeftOut,
 ) -> Result<Vec<Shown<'a>>, LoadError> {
     let mut all = Vec::new();
     for &Placed { index, node, transform } in placed {
         let Some(mesh) = node.mesh else { continue };
         let instancing = node.extensions.as_ref().and_then(|extensions| extensions.instancing.as_ref());
-        let instances = instancing.map(|instancing| Instances::read(accessors, index, instancing)).transpose()?;
+        let instances = match instancing {
+            Some(instancing) => Some((instances::count(accessors, index, instancing)?, instancing)),
+            None => None,
+        };
         all.push(Shown { mesh, transform, instances });
         left_out.skinned += usize::from(node.skin.is_some());
         left_out.morphed += usize::from(is_morphed(accessors.document, node, mesh));
@@ -105,42 +110,6 @@ fn is_morphed(document: &Document, node: &Node, mesh: u32) -> bool {
     let of_mesh = document.meshes.get(mesh as usize).map_or(&[][..], |mesh| &mesh.weights);
     let weights = if node.weights.is_empty() { of_mesh } else { &node.weights };
     weights.iter().any(|&weight| weight != 0.0)
-}
-
-/// Adds the cameras and lights of all nodes; of a file that is part of another scene they are only counted.
-fn read_views(
-    path: &Path,
-    document: &Document,
-    placed: &[Placed],
-    placement: &Placement,
-    left_out: &mut LeftOut,
-    draft: &mut Draft,
-) -> Result<(), LoadError> {
-    let axes = Axes { path };
-    let missing = |what: &str, index: u32| malformed(path, format!("there is no {what} {index}, but it is asked for"));
-    for placed in placed {
-        let camera = placed.node.camera;
-        let light = placed.node.extensions.as_ref().and_then(|extensions| extensions.light.as_ref());
-        if placement.part {
-            left_out.cameras += usize::from(camera.is_some());
-            left_out.lights += usize::from(light.is_some());
-            continue;
-        }
-        let position = placed.transform.w_axis.truncate();
-        if let Some(index) = camera {
-            let camera = document.cameras.get(index as usize).ok_or_else(|| missing("camera", index))?;
-            draft.cameras.push((cameras::read(&axes, placed, index, camera)?, position));
-        }
-        if let Some(index) = light.map(|reference| reference.light) {
-            let lights = &document.extensions.lights_punctual.lights;
-            let light = lights.get(index as usize).ok_or_else(|| missing("light", index))?;
-            match lights::read(&axes, placed, index, light)? {
-                Some(light) => draft.lights.push((light, position)),
-                None => left_out.unknown_lights += 1,
-            }
-        }
-    }
-    Ok(())
 }
 
 /// Ambient term, background and the like, from our own extras.

@@ -17,6 +17,13 @@ pub(super) struct Placed<'a> {
     pub(super) transform: DMat4,
 }
 
+impl Placed<'_> {
+    /// Number of the node's light.
+    pub(super) fn light(&self) -> Option<u32> {
+        self.node.extensions.as_ref()?.light.as_ref().map(|reference| reference.light)
+    }
+}
+
 /// The nodes of the document's scene, depth first, the whole placed by `transform`.
 pub(super) fn placed<'a>(
     path: &Path,

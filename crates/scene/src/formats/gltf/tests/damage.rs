@@ -190,8 +190,10 @@ fn sparse_parts_that_do_not_fit_are_refused() {
         change(&mut document["accessors"][0]["sparse"]);
         error(&document)
     };
-    assert!(sparse(&|_| ()).contains("accessor 0 has 3 elements, but its sparse part replaces 3"));
-    assert!(sparse(&|sparse| sparse["count"] = json!(u64::MAX)).contains("reaches beyond its buffer view"));
+    assert!(sparse(&|_| ()).contains("accessor 0 has 3 elements, but its sparse part replaces number 3"));
+    assert!(
+        sparse(&|sparse| sparse["count"] = json!(u64::MAX)).contains("3 elements, but its sparse part replaces 1844")
+    );
     assert!(sparse(&|sparse| sparse["count"] = json!(2)).contains("reaches beyond its buffer view"));
     assert!(sparse(&|sparse| sparse["indices"]["componentType"] = json!(FLOAT)).contains("no unsigned integers"));
     assert!(sparse(&|sparse| sparse["values"]["bufferView"] = json!(99)).contains("buffer view 99 is not there"));
@@ -208,6 +210,27 @@ fn attributes_of_other_lengths_are_refused() {
         assert!(error(&document).contains(message), "{}", error(&document));
         assert!(error(&document).contains("for 3 vertices"));
     }
+}
+
+#[test]
+fn instances_of_nothing_take_no_memory() {
+    let mut document = triangle();
+    document["meshes"][0]["primitives"] = json!([{"attributes": {"POSITION": 0}, "mode": 0}]);
+    let rotations = add_accessor(&mut document, &vec![1u8; 4 << 20], BYTE, "VEC4", 1 << 20);
+    let node = json!({"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"ROTATION": rotations}}}});
+    document["nodes"] = json!(vec![node; 5000]);
+    document["scenes"][0]["nodes"] = json!((0..5000).collect::<Vec<_>>());
+    assert!(warnings(&document).contains("5000 primitives of points or lines"));
+}
+
+#[test]
+fn a_long_name_is_not_kept_in_every_node() {
+    let mut document = furnished();
+    document["extensions"]["KHR_lights_punctual"]["lights"][0]["name"] = json!("lamp ".repeat(100_000));
+    document["cameras"][0]["name"] = json!("ü".repeat(100_000));
+    let scene = open(&document);
+    assert!(scene.lights[0].name.starts_with("lamp lamp") && scene.lights[0].name.len() == 200);
+    assert_eq!(scene.cameras[0].name.chars().count(), 200);
 }
 
 /// Nodes times primitives times vertices, from a small file: refused at once, and not when the memory is full.
