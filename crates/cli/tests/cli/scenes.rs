@@ -42,3 +42,29 @@ fn an_exported_scene_gives_the_same_picture() {
     let refused = place.refused(&["export", "room.toml", "-o", "room.obj"]);
     assert!(refused.contains("`.obj` is not a format that can be written"), "{refused}");
 }
+
+#[test]
+fn info_says_which_way_is_up() {
+    let place = Place::new();
+    let up = |name: &str| {
+        let json: Value = serde_json::from_str(&place.good(&["info", name, "--json"]).stdout).unwrap();
+        json["up"].clone()
+    };
+    place.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n");
+    place.write("table.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\nf 1 2 3\nf 1 4 5\n");
+    assert_eq!(up("sheet.obj")["axis"], "y");
+    assert!(up("sheet.obj")["reason"].as_str().unwrap().contains(".obj files mostly"), "{}", up("sheet.obj"));
+    assert_eq!(
+        up("table.obj"),
+        serde_json::json!({"axis": "z", "reason": "it stands on a flat ground at its lowest z"})
+    );
+    assert!(place.good(&["info", "room.toml"]).stdout.contains("up      y: its cameras stand that way"));
+}
+
+#[test]
+fn the_schema_is_the_published_one() {
+    let published =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scene.schema.json")).unwrap();
+    let printed: Value = serde_json::from_str(&Place::new().good(&["schema"]).stdout).unwrap();
+    assert!(printed == serde_json::from_str::<Value>(&published).unwrap());
+}
