@@ -27,6 +27,7 @@ mod scene;
 mod shapes;
 mod texture;
 mod up;
+mod vertices;
 
 pub use builder::{MeshPart, SceneBuilder};
 pub use camera::{Camera, Fov, Projection};
@@ -41,3 +42,4 @@ pub use open::LoadOptions;
 pub use scene::{LightMeshDefaults, Scene, Weight};
 pub use texture::{Texture, TextureUse, Wrap};
 pub use up::{Up, UpInfo};
+pub use vertices::{Position, Positions};

@@ -57,7 +57,7 @@ fn faces_with_and_without_normals_may_follow_each_other() {
     let uvs = |i: usize| mesh.triangles[i].map(|vertex| mesh.uvs[vertex as usize].to_array());
     let (flat, smooth) = ([Vec3::ZERO; 3], [Vec3::Z; 3]);
     assert_eq!([0, 1, 2, 3, 4].map(normals), [flat, smooth, flat, smooth, smooth]);
-    assert_eq!([0, 1, 4].map(uvs), [[[0.0; 2]; 3], [[0.5, 0.25]; 3], [[0.0; 2]; 3]]);
+    assert_eq!([0, 1, 4].map(uvs), [[[0.0; 2]; 3], [[0.5, 0.75]; 3], [[0.0; 2]; 3]]);
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn odd_but_lawful_lines_are_read() {
     let obj = "\u{feff}# caf\u{e9}\r\nv 0 0 0 1\r\nv 1 0 0 0.5 0.5 0.5\r\nv\t0 1 0\r\nvt 0.5\ng a b\nl 1 2\np 1\nf 1/1 \\\n2/1 3/1\n";
     let scene = open(obj);
     assert_eq!(scene.mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
-    assert_eq!(scene.mesh.uvs[0].to_array(), [0.5, 0.0]);
+    assert_eq!(scene.mesh.uvs[0].to_array(), [0.5, 1.0]);
     assert!(scene.warnings[0].contains("2 points and lines"), "{:?}", scene.warnings);
 }
 
@@ -100,7 +100,7 @@ fn damage_is_named_with_its_line() {
     #[rustfmt::skip]
     const MISTAKES: [(&str, &str); 8] = [
         ("v 0 0\n", "`v 0 0` has fewer than 3 numbers, shape.obj:1; "),
-        ("v 0 0 zero\n", "`v 0 0 zero` cannot be read (position parse error), shape.obj:1; "),
+        ("v 0 0 zero\n", "`zero` in `v 0 0 zero` is no number, shape.obj:1; "),
         ("v 0 0 0\n\nf 1 1 2\n", "the face's corner `2` asks for position 2 of 1, shape.obj:3; "),
         ("v 0 0 0\nf 1 1 0\n", "the face's corner `0` asks for position 0 of 1, shape.obj:2; "),
         ("v 0 0 0\nf -2 1 1\n", "asks for position -2 of 1, shape.obj:2; "),

@@ -63,7 +63,7 @@ fn read_mesh(source: &Source, entry: &MeshEntry, names: &[String], draft: &mut D
     })?;
     if let Err(cause) = std::fs::metadata(&path) {
         let problem = format!("cannot be read ({cause})");
-        let remedy = "name an OBJ, glTF or GLB file, by its path from the scene file's folder";
+        let remedy = "name an OBJ, glTF, GLB, PLY or STL file, by its path from the scene file's folder";
         return Err(source.refuse("file", &entry.file, &problem, remedy));
     }
     let material = match &entry.material {
