@@ -68,3 +68,30 @@ fn the_schema_is_the_published_one() {
     let printed: Value = serde_json::from_str(&Place::new().good(&["schema"]).stdout).unwrap();
     assert!(printed == serde_json::from_str::<Value>(&published).unwrap());
 }
+
+/// A picture of 2 x 2 texels: red, green, blue and white.
+const TILES: &[u8] = b"BM\x46\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\x02\0\0\0\x02\0\0\0\x01\0\x18\0\0\0\0\0\x10\0\0\0\
+    \0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\xff\0\0\xff\xff\xff\0\0\0\0\xff\0\xff\0\0\0";
+
+#[test]
+fn an_exported_scene_keeps_its_textures_in_every_byte_of_the_picture() {
+    let place = Place::new();
+    std::fs::write(place.path("tiles.bmp"), TILES).unwrap();
+    let material = "[[material]]\nname = \"tiles\"\nks = 0.2\ntexture = \"tiles.bmp\"\ntexture_scale = [3, 2]\ntexture_rotate = 20\n";
+    let look = "[camera]\nposition = [2, 3, 5]\ndirection = [0, 0, -1]\nup = [0, 1, 0]\nvfov = 60\n";
+    let shapes = "[[plane]]\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nsize = [12, 12]\nmaterial = \"tiles\"\n\
+                  [[sphere]]\ncenter = [2, 3, 1]\nradius = 1\nmaterial = \"tiles\"\n";
+    place.write("tiled.toml", &format!("{look}{material}{shapes}"));
+    let render = |scene: &str| {
+        place.good(&["render", scene, "-o", "a.exr", "--size", "64x48", "-q", "--mode", "ray-trace", "--bounces", "1"]);
+        place.read("a.exr")
+    };
+    let original = render("tiled.toml");
+    place.write("plain.toml", &format!("{look}[[material]]\nname = \"tiles\"\nks = 0.2\n{shapes}"));
+    assert!(original != render("plain.toml"));
+    for name in ["copy.glb", "copy.toml"] {
+        place.good(&["export", "tiled.toml", "-o", name, "--quiet"]);
+        assert!(original == render(name), "{name}");
+    }
+    assert!(!place.files().contains(&"copy.bmp".to_owned()));
+}

@@ -38,6 +38,7 @@ mod uri;
 use std::path::Path;
 
 use glam::Vec3;
+pub(crate) use picture::affine;
 
 use self::{
     accessor::Accessors,
