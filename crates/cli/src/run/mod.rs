@@ -6,6 +6,7 @@ mod export;
 mod grid;
 mod info;
 mod man;
+mod open;
 mod render;
 
 use lightmesh::Scene;

@@ -12,6 +12,7 @@ use crate::RenderError;
 use crate::accel::{self, Form};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::prepared::PreparedScene;
+use crate::stages::shade::tint::is_tinted;
 use crate::stages::shade::{DEFAULT_AMBIENT, LightTargets};
 
 /// Which acceleration structure rays walk.
@@ -100,8 +101,8 @@ impl<R: Runtime> Upload<'_, R> {
 
     fn scene(mut self, scene: &PreparedScene, with_bvh: bool) -> Result<DeviceScene<R>, RenderError> {
         let mesh = &scene.scene.mesh;
-        let bare = mesh.normals.is_empty() && mesh.uvs.is_empty() && mesh.colors.is_empty();
-        let indices: &[[u32; 3]] = if bare { &[] } else { &mesh.triangles };
+        let tinted = scene.scene.materials.iter().any(|material| is_tinted(scene.scene, material));
+        let indices: &[[u32; 3]] = if tinted || !mesh.normals.is_empty() { &mesh.triangles } else { &[] };
         let lights: Vec<Light> = scene.scene.lights.iter().map(light).collect();
         let targets = LightTargets::new(&scene.scene.lights).flat();
         let mut record = Scene {

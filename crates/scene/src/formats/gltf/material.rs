@@ -17,7 +17,7 @@
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Affine2, Vec3};
 
 use super::{
     container::malformed,
@@ -46,6 +46,16 @@ pub(super) fn read(path: &Path, index: usize, of: &document::Material, tinted: b
         return Ok(own.into_material(name));
     }
     Ok(Material { name, ..translated(of, tinted) })
+}
+
+/// How the material places its texture, where our own extras say it.
+pub(super) fn texture_transform(
+    path: &Path,
+    index: usize,
+    of: &document::Material,
+) -> Result<Option<Affine2>, LoadError> {
+    let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
+    Ok(own.and_then(|own| own.texture_transform).map(|columns| Affine2::from_cols_array(&columns)))
 }
 
 /// Counts what of the material is not shown.

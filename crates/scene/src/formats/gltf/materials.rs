@@ -58,7 +58,10 @@ impl Materials {
             let info = entry.pbr_metallic_roughness.as_deref().and_then(|pbr| pbr.base_color_texture.as_ref());
             let found = info.and_then(|info| pictures.find(info, draft));
             let material = material::read(path, index, entry, colored || found.is_some())?;
-            let (texture, set) = found.unzip();
+            let (mut texture, set) = found.unzip();
+            if let (Some(texture), Some(exact)) = (&mut texture, material::texture_transform(path, index, entry)?) {
+                texture.transform = exact;
+            }
             materials.read.push((draft.materials.len() as u32, set));
             draft.materials.push(Material { texture, ..material });
         }

@@ -39,6 +39,7 @@ mod views;
 use std::path::Path;
 
 use glam::Vec3;
+pub(crate) use picture::affine;
 
 use self::{
     accessor::Accessors,

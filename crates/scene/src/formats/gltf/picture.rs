@@ -6,7 +6,7 @@ use glam::{Affine2, Mat2, Vec2};
 
 use super::{
     buffers::Buffers,
-    document::{Document, TextureInfo, TextureTransform},
+    document::{Document, TextureInfo},
     uri::{self, Uri},
 };
 use crate::{TextureUse, Wrap, draft::Draft};
@@ -42,7 +42,7 @@ impl<'a> Pictures<'a> {
         let found = TextureUse {
             texture: index,
             wrap: sampler.map_or([Wrap::Repeat; 2], |sampler| [sampler.wrap_s, sampler.wrap_t].map(wrap)),
-            transform: transform.map_or(Affine2::IDENTITY, affine),
+            transform: transform.map_or(Affine2::IDENTITY, |it| affine(it.scale.into(), it.rotation, it.offset.into())),
         };
         Some((found, transform.and_then(|transform| transform.tex_coord).unwrap_or(info.tex_coord)))
     }
@@ -86,11 +86,10 @@ fn wrap(number: Option<u32>) -> Wrap {
 
 /// Scale, then rotation, then offset. Positive rotations turn the coordinates counter-clockwise as they are seen, with v downwards:
 /// so the extension's text and its examples have it, while its shader code turns the other way.
-fn affine(transform: &TextureTransform) -> Affine2 {
-    let (sin, cos) = transform.rotation.sin_cos();
+pub(crate) fn affine(scale: Vec2, rotation: f32, offset: Vec2) -> Affine2 {
+    let (sin, cos) = rotation.sin_cos();
     let rotation = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));
-    let matrix2 = rotation * Mat2::from_diagonal(transform.scale.into());
-    Affine2 { matrix2, translation: transform.offset.into() }
+    Affine2 { matrix2: rotation * Mat2::from_diagonal(scale), translation: offset }
 }
 
 #[cfg(test)]
@@ -102,9 +101,8 @@ mod tests {
     /// The example of the extension's text: the lower left quarter of the picture, turned clockwise by a right angle.
     #[test]
     fn a_quarter_of_a_picture_is_shown_turned() {
-        let transform =
-            TextureTransform { offset: [0.0, 1.0], rotation: FRAC_PI_2, scale: [0.5, 0.5], tex_coord: None };
-        let at = |u, v| affine(&transform).transform_point2(Vec2::new(u, v));
+        let transform = affine(Vec2::splat(0.5), FRAC_PI_2, Vec2::Y);
+        let at = |u, v| transform.transform_point2(Vec2::new(u, v));
         // What was in the lower left corner of the quarter is in its upper left one, seen on the surface.
         for (surface, picture) in
             [((0.0, 0.0), (0.0, 1.0)), ((1.0, 0.0), (0.0, 0.5)), ((1.0, 1.0), (0.5, 0.5)), ((0.0, 1.0), (0.5, 1.0))]
@@ -116,7 +114,7 @@ mod tests {
 
     #[test]
     fn scale_comes_before_offset() {
-        let transform = TextureTransform { offset: [0.0, 1.0], rotation: 0.0, scale: [2.0, -1.0], tex_coord: None };
-        assert_eq!(affine(&transform).transform_point2(Vec2::new(0.25, 0.25)), Vec2::new(0.5, 0.75));
+        let transform = affine(Vec2::new(2.0, -1.0), 0.0, Vec2::Y);
+        assert_eq!(transform.transform_point2(Vec2::new(0.25, 0.25)), Vec2::new(0.5, 0.75));
     }
 }

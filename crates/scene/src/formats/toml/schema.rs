@@ -205,7 +205,7 @@ pub(crate) struct MaterialEntry {
     /// direction. Default: 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture_scale: Option<Spanned<TextureScale>>,
-    /// Turns texture coordinates, degrees. Default: 0.
+    /// Turns texture coordinates from u towards v, degrees. Default: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture_rotate: Option<Number>,
     /// Added to texture coordinates last, in widths and heights of the picture. Default: 0.
