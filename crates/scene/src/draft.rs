@@ -6,8 +6,8 @@ use std::path::{Component, Path, PathBuf};
 use glam::{DMat4, DVec3, Vec3};
 
 use crate::{
-    Camera, Light, LightKind, LightMeshDefaults, LoadError, LoadOptions, Material, MeshPart, Place, Scene,
-    SceneBuilder, Texture, builder::LoadedMesh, texture::TextureFiles,
+    Camera, Light, LightKind, LightMeshDefaults, LoadError, LoadOptions, Material, MeshPart, Place, Position, Scene,
+    SceneBuilder, Texture, builder::Room, loaded_mesh::LoadedMesh, texture::TextureFiles,
 };
 
 /// Where a model goes in the scene, and what of it.
@@ -70,11 +70,30 @@ impl Draft {
         }
     }
 
+    /// Makes room for what a file is going to add.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError::TooLarge`] where that is more than indices can tell apart, [`LoadError::Memory`] where there is not so much.
+    pub(crate) fn reserve(&mut self, room: &Room) -> Result<(), LoadError> {
+        let limit = u32::MAX as usize;
+        let vertices = self.builder.vertex_count().saturating_add(room.vertices);
+        let triangles = self.builder.triangle_count().saturating_add(room.triangles);
+        if vertices > limit || triangles > limit {
+            return Err(LoadError::TooLarge { path: self.path.clone() });
+        }
+        if self.builder.reserve(room) {
+            Ok(())
+        } else {
+            Err(LoadError::Memory { path: self.path.clone(), vertices, triangles })
+        }
+    }
+
     /// Adds placed triangles. Triangles with a vertex that is no number, or too far away to compute with, are left out and
     /// counted in a warning.
-    pub(crate) fn add(
+    pub(crate) fn add<P: Position>(
         &mut self,
-        part: MeshPart,
+        part: MeshPart<P>,
         transform: &DMat4,
         material: impl Fn(usize) -> u32,
     ) -> Result<(), LoadError> {
@@ -89,7 +108,7 @@ impl Draft {
     }
 
     /// [`Draft::add`] of a mesh that is handed over.
-    pub(crate) fn take(&mut self, mesh: LoadedMesh, transform: &DMat4) -> Result<(), LoadError> {
+    pub(crate) fn take<P: Position>(&mut self, mesh: LoadedMesh<P>, transform: &DMat4) -> Result<(), LoadError> {
         self.check_room(mesh.positions.len())?;
         let usable = usable_in(transform);
         if mesh.positions.iter().all(&usable) {
@@ -108,19 +127,19 @@ impl Draft {
     }
 
     /// [`Draft::add`] without the triangles that use a vertex that is not usable.
-    fn add_usable(
+    fn add_usable<P: Position>(
         &mut self,
-        part: MeshPart,
+        part: MeshPart<P>,
         transform: &DMat4,
         material: impl Fn(usize) -> u32,
-        usable: impl Fn(&DVec3) -> bool,
+        usable: impl Fn(&P) -> bool,
     ) {
         // The vertices stay, so that indices stay, but as copies of a good one: they must not move the local frame.
         let Some(&good) = part.positions.iter().find(|position| usable(position)) else {
             self.unusable_triangles += part.triangles.len();
             return;
         };
-        let positions: Vec<DVec3> = part.positions.iter().map(|&p| if usable(&p) { p } else { good }).collect();
+        let positions: Vec<P> = part.positions.iter().map(|&p| if usable(&p) { p } else { good }).collect();
         let kept: Vec<usize> = (0..part.triangles.len())
             .filter(|&index| part.triangles[index].iter().all(|&vertex| usable(&part.positions[vertex as usize])))
             .collect();
@@ -210,8 +229,8 @@ impl Draft {
 }
 
 /// Whether a vertex has a place once it is placed.
-fn usable_in(transform: &DMat4) -> impl Fn(&DVec3) -> bool + '_ {
-    |position| transform.transform_point3(*position).abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all()
+fn usable_in<P: Position>(transform: &DMat4) -> impl Fn(&P) -> bool + use<'_, P> {
+    |position| transform.transform_point3(position.to_double()).abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all()
 }
 
 /// The path without `.` and `..`, by its text alone.

@@ -225,6 +225,8 @@ fn material(material: &Material) -> Value {
         ks: material.ks.to_array(),
         shininess: material.shininess,
         emission: material.emission.to_array(),
+        ks_tinted: material.ks_tinted.to_array(),
+        emission_tinted: material.emission_tinted.to_array(),
     };
     json!({
         "name": material.name,
