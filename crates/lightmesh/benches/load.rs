@@ -6,13 +6,7 @@
 //! known on Linux alone.
 #![allow(clippy::print_stdout, reason = "a benchmark prints its result")]
 
-use std::{
-    fmt::Write as _,
-    fs,
-    path::Path,
-    process::Command,
-    time::Instant,
-};
+use std::{fmt::Write as _, fs, path::Path, process::Command, time::Instant};
 
 use lightmesh::Scene;
 
@@ -30,10 +24,12 @@ struct Kind {
     bytes_per_vertex: usize,
 }
 
-/// All rows of the table.
-const KINDS: [Kind; 2] = [
+/// All rows of the table: a format has its rows here and its writer below.
+const KINDS: [Kind; 4] = [
     Kind { name: "obj, positions alone", ending: "obj", encode: obj_plain, bytes_per_vertex: 80 },
     Kind { name: "obj, v/vt/vn", ending: "obj", encode: obj_full, bytes_per_vertex: 190 },
+    Kind { name: "ply, binary", ending: "ply", encode: ply, bytes_per_vertex: 38 },
+    Kind { name: "stl, binary", ending: "stl", encode: stl, bytes_per_vertex: 100 },
 ];
 
 /// A square grid of vertices with heights.
@@ -108,6 +104,39 @@ fn obj_full(landscape: &Landscape) -> Vec<u8> {
     text.into_bytes()
 }
 
+fn ply(landscape: &Landscape) -> Vec<u8> {
+    let header = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+         element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        landscape.vertices().count(),
+        landscape.triangles().count()
+    );
+    let mut bytes = header.into_bytes();
+    bytes.extend(landscape.vertices().flat_map(floats));
+    for corners in landscape.triangles() {
+        bytes.push(3);
+        bytes.extend(corners.iter().flat_map(|&corner| (corner as u32).to_le_bytes()));
+    }
+    bytes
+}
+
+fn stl(landscape: &Landscape) -> Vec<u8> {
+    let positions: Vec<[f64; 3]> = landscape.vertices().collect();
+    let mut bytes = vec![b' '; 80];
+    bytes.extend((landscape.triangles().count() as u32).to_le_bytes());
+    for corners in landscape.triangles() {
+        bytes.extend(floats([0.0, 1.0, 0.0]));
+        bytes.extend(corners.iter().flat_map(|&corner| floats(positions[corner])));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+/// The bytes of a vector in single precision.
+fn floats(vector: [f64; 3]) -> impl Iterator<Item = u8> {
+    vector.into_iter().flat_map(|value| (value as f32).to_le_bytes())
+}
+
 /// Seconds and peak bytes of one reading, in this process.
 fn read(path: &str) {
     let start = Instant::now();
@@ -144,7 +173,7 @@ fn print_row(kind: &Kind, megabytes: f64, runs: usize, folder: &Path) {
     results.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let [seconds, peak, triangles] = results[runs / 2];
     let (megabytes, speed) = (size / MEGABYTE, size / MEGABYTE / seconds);
-    println!("{:24} {megabytes:6.1} {triangles:11} {seconds:8.3} {speed:8.0} {:8.2}", kind.name, peak / size);
+    println!("{:22} {megabytes:8.1} {triangles:11} {seconds:8.3} {speed:8.0} {:8.2}", kind.name, peak / size);
 }
 
 fn main() {
@@ -156,7 +185,7 @@ fn main() {
     let megabytes = numbers.first().copied().unwrap_or(100.0);
     let runs = numbers.get(1).map_or(5, |&runs| runs.max(1.0) as usize);
     let folder = tempfile::tempdir().expect("the system has a temporary folder");
-    println!("file                         MB   triangles        s     MB/s   peak/file");
+    println!("file                         MB   triangles        s     MB/s peak/file");
     for kind in &KINDS {
         print_row(kind, megabytes, runs, folder.path());
     }

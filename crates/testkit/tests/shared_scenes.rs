@@ -40,3 +40,21 @@ fn no_model_is_speckled() {
     assert!(all_looked_at > 20_000, "{all_looked_at} pixels on smooth pieces of surface");
     assert!(1000 * all_isolated < all_looked_at, "{all_isolated} of {all_looked_at}");
 }
+
+#[test]
+#[cfg_attr(not(shared_scenes), ignore = "needs ../shared/scenes")]
+fn files_of_one_mesh_in_two_formats_give_one_picture() {
+    let pairs = [
+        ["bunny/bunny.ply", "bunny/stanford-bunny.obj"],
+        ["spider/spider_ascii.stl", "spider/spider_binary.stl"],
+        ["spider/spider_ascii.stl", "suzanne/suzanne.ply"],
+    ];
+    for (pair, same) in pairs.into_iter().zip([true, true, false]) {
+        let pictures = pair.map(|file| {
+            let scene = MODELS.iter().find(|model| model.file == file).expect("a shared model").open();
+            let frame = render(&scene, &Settings { mode: Mode::LightMesh, size: [256, 256], ..Settings::default() });
+            frame.image.color().to_vec()
+        });
+        assert_eq!(pictures[0] == pictures[1], same, "{pair:?}");
+    }
+}

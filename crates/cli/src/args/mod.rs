@@ -49,8 +49,8 @@ pub(crate) enum Command {
 /// Where a scene comes from.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArg {
-    /// A .toml, .obj, .gltf or .glb file, or builtin:gazebo, builtin:childpark, builtin:garden (also with options, as in
-    /// builtin:garden?lights=3)
+    /// A .toml, .obj, .gltf, .glb, .ply or .stl file, or builtin:gazebo, builtin:childpark, builtin:garden (also with
+    /// options, as in builtin:garden?lights=3)
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 }
