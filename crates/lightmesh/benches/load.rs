@@ -24,10 +24,12 @@ struct Kind {
     bytes_per_vertex: usize,
 }
 
-/// All rows of the table.
-const KINDS: [Kind; 4] = [
+/// All rows of the table: a format has its rows here and its writer below.
+const KINDS: [Kind; 6] = [
     Kind { name: "obj, positions alone", ending: "obj", encode: obj_plain, bytes_per_vertex: 80 },
     Kind { name: "obj, v/vt/vn", ending: "obj", encode: obj_full, bytes_per_vertex: 190 },
+    Kind { name: "ply, binary", ending: "ply", encode: ply, bytes_per_vertex: 38 },
+    Kind { name: "stl, binary", ending: "stl", encode: stl, bytes_per_vertex: 100 },
     Kind { name: "glb, positions alone", ending: "glb", encode: glb_plain, bytes_per_vertex: 36 },
     Kind { name: "glb, with normals and uvs", ending: "glb", encode: glb_full, bytes_per_vertex: 56 },
 ];
@@ -105,25 +107,21 @@ fn obj_full(landscape: &Landscape) -> Vec<u8> {
 }
 
 fn glb_plain(landscape: &Landscape) -> Vec<u8> {
-    let (bytes, count) = (floats(landscape.vertices()), landscape.edge * landscape.edge);
-    glb(landscape, &[("POSITION", "VEC3", bytes)], count)
+    glb(landscape, &[("POSITION", "VEC3", landscape.vertices().flat_map(floats).collect())])
 }
 
 fn glb_full(landscape: &Landscape) -> Vec<u8> {
     let attributes = [
-        ("POSITION", "VEC3", floats(landscape.vertices())),
-        ("NORMAL", "VEC3", floats(landscape.normals())),
-        ("TEXCOORD_0", "VEC2", floats(landscape.uvs())),
+        ("POSITION", "VEC3", landscape.vertices().flat_map(floats).collect()),
+        ("NORMAL", "VEC3", landscape.normals().flat_map(floats).collect()),
+        ("TEXCOORD_0", "VEC2", landscape.uvs().flat_map(floats).collect()),
     ];
-    glb(landscape, &attributes, landscape.edge * landscape.edge)
-}
-
-fn floats<const N: usize>(vectors: impl Iterator<Item = [f64; N]>) -> Vec<u8> {
-    vectors.flatten().flat_map(|number| (number as f32).to_le_bytes()).collect()
+    glb(landscape, &attributes)
 }
 
 /// One primitive with these attributes, by name, type and bytes, and 32-bit indices.
-fn glb(landscape: &Landscape, attributes: &[(&str, &str, Vec<u8>)], count: usize) -> Vec<u8> {
+fn glb(landscape: &Landscape, attributes: &[(&str, &str, Vec<u8>)]) -> Vec<u8> {
+    let count = landscape.edge * landscape.edge;
     let indices: Vec<u8> = landscape.triangles().flatten().flat_map(|corner| (corner as u32).to_le_bytes()).collect();
     let (mut views, mut accessors, mut names) = (Vec::new(), Vec::new(), Vec::new());
     let mut bin = Vec::new();
@@ -154,6 +152,39 @@ fn glb(landscape: &Landscape, attributes: &[(&str, &str, Vec<u8>)], count: usize
     file.extend(b"BIN\0");
     file.extend(bin);
     file
+}
+
+fn ply(landscape: &Landscape) -> Vec<u8> {
+    let header = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+         element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        landscape.vertices().count(),
+        landscape.triangles().count()
+    );
+    let mut bytes = header.into_bytes();
+    bytes.extend(landscape.vertices().flat_map(floats));
+    for corners in landscape.triangles() {
+        bytes.push(3);
+        bytes.extend(corners.iter().flat_map(|&corner| (corner as u32).to_le_bytes()));
+    }
+    bytes
+}
+
+fn stl(landscape: &Landscape) -> Vec<u8> {
+    let positions: Vec<[f64; 3]> = landscape.vertices().collect();
+    let mut bytes = vec![b' '; 80];
+    bytes.extend((landscape.triangles().count() as u32).to_le_bytes());
+    for corners in landscape.triangles() {
+        bytes.extend(floats([0.0, 1.0, 0.0]));
+        bytes.extend(corners.iter().flat_map(|&corner| floats(positions[corner])));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+/// The bytes of a vector in single precision.
+fn floats<const N: usize>(vector: [f64; N]) -> impl Iterator<Item = u8> {
+    vector.into_iter().flat_map(|value| (value as f32).to_le_bytes())
 }
 
 /// Seconds and peak bytes of one reading, in this process.
@@ -192,7 +223,7 @@ fn print_row(kind: &Kind, megabytes: f64, runs: usize, folder: &Path) {
     results.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let [seconds, peak, triangles] = results[runs / 2];
     let (megabytes, speed) = (size / MEGABYTE, size / MEGABYTE / seconds);
-    println!("{:24} {megabytes:6.1} {triangles:11} {seconds:8.3} {speed:8.0} {:8.2}", kind.name, peak / size);
+    println!("{:22} {megabytes:8.1} {triangles:11} {seconds:8.3} {speed:8.0} {:8.2}", kind.name, peak / size);
 }
 
 fn main() {
@@ -204,7 +235,7 @@ fn main() {
     let megabytes = numbers.first().copied().unwrap_or(100.0);
     let runs = numbers.get(1).map_or(5, |&runs| runs.max(1.0) as usize);
     let folder = tempfile::tempdir().expect("the system has a temporary folder");
-    println!("file                         MB   triangles        s     MB/s   peak/file");
+    println!("file                         MB   triangles        s     MB/s peak/file");
     for kind in &KINDS {
         print_row(kind, megabytes, runs, folder.path());
     }

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
-use crate::{Mesh, Position, Scene, vertices::Vertices};
+use crate::{Mesh, Position, Scene, loaded_mesh::LoadedMesh, vertices::Vertices};
 
 /// One mesh as a file holds it, before it is placed. Slices are as long as `positions` or empty.
 #[derive(Clone, Copy, Debug)]
@@ -50,61 +50,6 @@ impl Room {
     }
 }
 
-/// One mesh as a loader has put it together. It is handed over: of a large file nothing is held twice.
-#[derive(Debug, Default)]
-pub(crate) struct LoadedMesh {
-    /// Vertices in the file's coordinates.
-    pub(crate) positions: Vec<DVec3>,
-    /// Normals by vertex, or none; need not be unit length.
-    pub(crate) normals: Vec<Vec3>,
-    /// Texture coordinates by vertex, or none.
-    pub(crate) uvs: Vec<Vec2>,
-    /// Linear colours by vertex, or none.
-    pub(crate) colors: Vec<Vec3>,
-    /// Three vertex indices a triangle, all in range.
-    pub(crate) triangles: Vec<[u32; 3]>,
-    /// Material by triangle.
-    pub(crate) materials: Vec<u32>,
-}
-
-impl LoadedMesh {
-    /// The mesh without its materials.
-    pub(crate) fn part(&self) -> MeshPart<'_> {
-        let LoadedMesh { positions, normals, uvs, colors, triangles, .. } = self;
-        MeshPart { positions, normals, uvs, colors, triangles }
-    }
-
-    /// Makes the vertices those that `chosen` names, in that order. Triangles are left as they are.
-    pub(crate) fn choose_vertices(&mut self, chosen: impl Iterator<Item = u32> + Clone) {
-        fn choose<T: Copy>(values: &mut Vec<T>, chosen: impl Iterator<Item = u32>) {
-            if !values.is_empty() {
-                *values = chosen.map(|vertex| values[vertex as usize]).collect();
-            }
-        }
-        choose(&mut self.positions, chosen.clone());
-        choose(&mut self.normals, chosen.clone());
-        choose(&mut self.uvs, chosen.clone());
-        choose(&mut self.colors, chosen);
-    }
-
-    /// Drops vertices that no triangle uses: one that lies far away would move the local frame.
-    pub(crate) fn drop_unused_vertices(&mut self) {
-        let mut used = vec![false; self.positions.len()];
-        self.triangles.iter().flatten().for_each(|&vertex| used[vertex as usize] = true);
-        if used.iter().all(|&used| used) {
-            return;
-        }
-        let mut place = Vec::with_capacity(used.len());
-        let mut kept = 0;
-        for &used in &used {
-            place.push(kept);
-            kept += u32::from(used);
-        }
-        self.choose_vertices((0..used.len() as u32).filter(|&vertex| used[vertex as usize]));
-        self.triangles.iter_mut().flatten().for_each(|vertex| *vertex = place[*vertex as usize]);
-    }
-}
-
 /// Gathers placed meshes; [`SceneBuilder::finish`] makes them one [`Mesh`] in a local frame.
 #[derive(Debug, Default)]
 pub struct SceneBuilder {
@@ -145,6 +90,26 @@ impl SceneBuilder {
         self.materials.extend((0..part.triangles.len()).map(material));
     }
 
+    /// [`SceneBuilder::add`] of a mesh that is handed over: the first one is placed where it lies in memory.
+    pub(crate) fn take<P: Position>(&mut self, mut mesh: LoadedMesh<P>, transform: &DMat4) {
+        if self.vertex_count() > 0 || self.triangle_count() > 0 {
+            let materials = std::mem::take(&mut mesh.materials);
+            self.add(mesh.part(), transform, |index| materials[index]);
+            return;
+        }
+        self.vertices.take(P::owned(mesh.positions), transform);
+        let place_normal = normal_placement(transform);
+        mesh.normals.iter_mut().for_each(|normal| *normal = place_normal(*normal));
+        if mirrors(transform) {
+            mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+        self.normals = mesh.normals;
+        self.uvs = mesh.uvs;
+        self.colors = mesh.colors;
+        self.triangles = mesh.triangles;
+        self.materials = mesh.materials;
+    }
+
     /// Makes room for what is to come; `false` where there is not enough memory.
     pub(crate) fn reserve(&mut self, room: &Room) -> bool {
         let of = |used: bool| if used { room.vertices } else { 0 };
@@ -154,29 +119,6 @@ impl SceneBuilder {
             && reserve(&mut self.colors, of(room.colors))
             && reserve(&mut self.triangles, room.triangles)
             && reserve(&mut self.materials, room.triangles)
-    }
-
-    /// [`SceneBuilder::add`] of a mesh that is handed over: the first one is placed where it lies in memory.
-    pub(crate) fn take(&mut self, mut mesh: LoadedMesh, transform: &DMat4) {
-        if self.vertex_count() > 0 || self.triangle_count() > 0 {
-            let materials = std::mem::take(&mut mesh.materials);
-            self.add(mesh.part(), transform, |index| materials[index]);
-            return;
-        }
-        if *transform != DMat4::IDENTITY {
-            mesh.positions.iter_mut().for_each(|position| *position = transform.transform_point3(*position));
-        }
-        let place_normal = normal_placement(transform);
-        mesh.normals.iter_mut().for_each(|normal| *normal = place_normal(*normal));
-        if mirrors(transform) {
-            mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-        }
-        self.vertices.take(mesh.positions);
-        self.normals = mesh.normals;
-        self.uvs = mesh.uvs;
-        self.colors = mesh.colors;
-        self.triangles = mesh.triangles;
-        self.materials = mesh.materials;
     }
 
     /// Number of triangles so far.
@@ -316,45 +258,32 @@ mod tests {
 
     #[test]
     fn a_mesh_handed_over_is_the_same_as_a_part_added() {
-        let placements = [DMat4::IDENTITY, DMat4::from_scale(DVec3::new(-2.0, 3.0, 1.0)) * DMat4::from_rotation_x(1.0)];
-        let loaded = || LoadedMesh {
-            positions: CORNERS.to_vec(),
-            normals: vec![Vec3::new(1.0, 2.0, 3.0); 3],
-            colors: vec![Vec3::X; 3],
-            triangles: vec![[0, 1, 2]],
-            materials: vec![7],
-            ..Default::default()
-        };
-        for placement in placements {
+        fn check<P: Position>(positions: [P; 3], placement: DMat4) {
+            let loaded = || LoadedMesh {
+                positions: positions.to_vec(),
+                normals: vec![Vec3::new(1.0, 2.0, 3.0); 3],
+                uvs: Vec::new(),
+                colors: vec![Vec3::X; 3],
+                triangles: vec![[0, 1, 2]],
+                materials: vec![7],
+            };
             let (mut added, mut taken) = (SceneBuilder::new(), SceneBuilder::new());
             // The first is moved in, the second copied behind it.
             for _ in 0..2 {
                 added.add(loaded().part(), &placement, |_| 7);
                 taken.take(loaded(), &placement);
             }
+            assert_eq!(added.bounds(), taken.bounds());
             let (added, taken) = (added.finish().1, taken.finish().1);
             assert_eq!((added.positions, added.normals), (taken.positions, taken.normals));
             assert_eq!((added.triangles, added.materials), (taken.triangles, taken.materials));
             assert_eq!((added.colors, added.uvs), (taken.colors, taken.uvs));
         }
-    }
-
-    #[test]
-    fn vertices_without_a_triangle_are_dropped() {
-        let mut mesh = LoadedMesh {
-            positions: (0..6).map(|x| DVec3::splat(f64::from(x))).collect(),
-            colors: (0..6).map(|x| Vec3::splat(x as f32)).collect(),
-            triangles: vec![[5, 1, 3], [1, 3, 4]],
-            ..Default::default()
-        };
-        let corners =
-            |mesh: &LoadedMesh| mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize]).collect();
-        let before: Vec<DVec3> = corners(&mesh);
-        mesh.drop_unused_vertices();
-        assert_eq!(mesh.positions.len(), 4);
-        assert_eq!(corners(&mesh), before);
-        assert!(mesh.colors.iter().zip(&mesh.positions).all(|(color, position)| color.as_dvec3() == *position));
-        assert!(mesh.normals.is_empty());
+        let mirrored = DMat4::from_scale(DVec3::new(-2.0, 3.0, 1.0)) * DMat4::from_rotation_x(1.0);
+        for placement in [DMat4::IDENTITY, mirrored] {
+            check(CORNERS, placement);
+            check(CORNERS.map(|corner| corner.as_vec3()), placement);
+        }
     }
 
     #[test]

@@ -9,7 +9,8 @@ use glam::{DMat4, DVec3, Vec3};
 use crate::{
     Camera, Light, LightKind, LightMeshDefaults, LoadError, LoadOptions, Material, MeshPart, Place, Position, Scene,
     SceneBuilder, Texture,
-    builder::{LoadedMesh, Room},
+    builder::Room,
+    loaded_mesh::LoadedMesh,
     texture::{TextureFiles, untextured},
 };
 
@@ -115,7 +116,7 @@ impl Draft {
     }
 
     /// [`Draft::add`] of a mesh that is handed over.
-    pub(crate) fn take(&mut self, mesh: LoadedMesh, transform: &DMat4) -> Result<(), LoadError> {
+    pub(crate) fn take<P: Position>(&mut self, mesh: LoadedMesh<P>, transform: &DMat4) -> Result<(), LoadError> {
         self.check_room(mesh.positions.len())?;
         let usable = usable_in(transform);
         if mesh.positions.iter().all(&usable) {
@@ -248,7 +249,7 @@ impl Draft {
 }
 
 /// Whether a vertex has a place once it is placed.
-fn usable_in<P: Position>(transform: &DMat4) -> impl Fn(&P) -> bool + '_ {
+fn usable_in<P: Position>(transform: &DMat4) -> impl Fn(&P) -> bool + use<'_, P> {
     |position| transform.transform_point3(position.to_double()).abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all()
 }
 

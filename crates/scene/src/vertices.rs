@@ -14,6 +14,9 @@ pub trait Position: Copy {
 
     /// The slice, by its precision.
     fn slice(positions: &[Self]) -> Positions<'_>;
+
+    /// The vector, by its precision.
+    fn owned(positions: Vec<Self>) -> OwnedPositions;
 }
 
 /// A slice of vertices in either precision.
@@ -25,6 +28,15 @@ pub enum Positions<'a> {
     Double(&'a [DVec3]),
 }
 
+/// Vertices in either precision that are handed over.
+#[derive(Clone, Debug)]
+pub enum OwnedPositions {
+    /// As most binary files hold them.
+    Single(Vec<Vec3>),
+    /// As texts may hold them.
+    Double(Vec<DVec3>),
+}
+
 impl Position for Vec3 {
     fn to_double(self) -> DVec3 {
         self.as_dvec3()
@@ -32,6 +44,10 @@ impl Position for Vec3 {
 
     fn slice(positions: &[Vec3]) -> Positions<'_> {
         Positions::Single(positions)
+    }
+
+    fn owned(positions: Vec<Vec3>) -> OwnedPositions {
+        OwnedPositions::Single(positions)
     }
 }
 
@@ -42,6 +58,10 @@ impl Position for DVec3 {
 
     fn slice(positions: &[DVec3]) -> Positions<'_> {
         Positions::Double(positions)
+    }
+
+    fn owned(positions: Vec<DVec3>) -> OwnedPositions {
+        OwnedPositions::Double(positions)
     }
 }
 
@@ -86,12 +106,24 @@ impl Vertices {
         }
     }
 
-    /// [`Vertices::add`] of placed vertices that are handed over, before all others.
-    pub(crate) fn take(&mut self, placed: Vec<DVec3>) {
-        debug_assert!(self.count == 0, "the first vertices");
-        self.include(&placed, &DMat4::IDENTITY);
-        self.push_double(placed.len());
-        self.double = placed;
+    /// [`Vertices::add`] of vertices that are handed over: the first ones are placed where they lie in memory.
+    pub(crate) fn take(&mut self, positions: OwnedPositions, transform: &DMat4) {
+        match positions {
+            OwnedPositions::Single(positions) if self.count == 0 => {
+                self.include(&positions, transform);
+                self.runs.push(Run::Single(positions.len(), Box::new(*transform)));
+                self.count = positions.len();
+                self.single = positions;
+            }
+            OwnedPositions::Double(mut positions) if self.double.is_empty() => {
+                self.include(&positions, transform);
+                positions.iter_mut().for_each(|position| *position = transform.transform_point3(*position));
+                self.push_double(positions.len());
+                self.double = positions;
+            }
+            OwnedPositions::Single(positions) => self.add(Positions::Single(&positions), transform),
+            OwnedPositions::Double(positions) => self.add(Positions::Double(&positions), transform),
+        }
     }
 
     fn push_double(&mut self, more: usize) {
@@ -170,19 +202,6 @@ mod tests {
         assert_eq!(vertices.len(), 5);
         assert_eq!(vertices.bounds(), Some((far, far + DVec3::ONE)));
         assert_eq!(vertices.finish(far), [Vec3::X, Vec3::ZERO, Vec3::Y, Vec3::ZERO, Vec3::Z]);
-    }
-
-    #[test]
-    fn vertices_that_are_handed_over_come_first() {
-        let mut vertices = Vertices::default();
-        vertices.take(vec![DVec3::X, DVec3::Y]);
-        assert_eq!((vertices.len(), vertices.bounds()), (2, Some((DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)))));
-        vertices.add(Positions::Single(&[Vec3::Z]), &DMat4::IDENTITY);
-        vertices.add(Positions::Double(&[DVec3::ONE]), &DMat4::IDENTITY);
-        assert_eq!(vertices.finish(DVec3::ZERO), [Vec3::X, Vec3::Y, Vec3::Z, Vec3::ONE]);
-        let mut alone = Vertices::default();
-        alone.take(vec![DVec3::X]);
-        assert_eq!(alone.finish(DVec3::ONE), [Vec3::new(0.0, -1.0, -1.0)]);
     }
 
     #[test]

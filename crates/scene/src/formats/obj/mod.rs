@@ -28,9 +28,9 @@ use super::{
 };
 use crate::{
     LoadError,
-    builder::LoadedMesh,
     draft::{Draft, Placement},
     error::Place,
+    loaded_mesh::LoadedMesh,
     open::read_bytes,
 };
 
@@ -85,7 +85,7 @@ fn find_materials(path: &Path, content: &Content, draft: &mut Draft) -> Result<V
 }
 
 /// The vertices that faces use, with the attributes that any of them has.
-fn mesh(content: Content, materials: Vec<u32>) -> LoadedMesh {
+fn mesh(content: Content, materials: Vec<u32>) -> LoadedMesh<DVec3> {
     let Content { points, corners, triangles, .. } = content;
     let Points { positions, uvs, normals, colors } = points;
     let has = |kind: usize| corners.iter().any(|corner| corner[kind] != NONE);

@@ -18,7 +18,7 @@ mod vertex;
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use self::{
     face::Faces,
@@ -29,9 +29,9 @@ use self::{
 use super::text::line_of;
 use crate::{
     LoadError, Material, TextureUse,
-    builder::LoadedMesh,
     draft::{Draft, Placement},
     error::Place,
+    loaded_mesh::LoadedMesh,
     open::read_bytes,
 };
 
@@ -67,7 +67,7 @@ fn textured(path: &Path, header: &Header, points: &Points, draft: &mut Draft) ->
     Some(draft.materials.len() as u32 - 1)
 }
 
-fn mesh(points: Points, faces: Faces, material: u32) -> LoadedMesh {
+fn mesh(points: Points, faces: Faces, material: u32) -> LoadedMesh<DVec3> {
     let Points { positions, normals, uvs, colors } = points;
     let materials = vec![material; faces.triangles.len()];
     let triangles = faces.triangles;

@@ -8,10 +8,9 @@ use std::path::Path;
 use glam::DVec3;
 use memchr::memchr;
 
-use super::{BEGINNING, malformed};
+use super::{BEGINNING, Soup, malformed};
 use crate::{
     LoadError,
-    builder::LoadedMesh,
     formats::{
         polygon::Cutter,
         text::{line_of, number, quoted},
@@ -21,8 +20,9 @@ use crate::{
 /// A facet's first word.
 const FACET: &[u8] = b"facet";
 
-/// Reads all solids; the result is what to warn of.
-pub(super) fn read(path: &Path, text: &[u8], mesh: &mut LoadedMesh) -> Result<Option<String>, LoadError> {
+/// Reads all solids.
+pub(super) fn read(path: &Path, text: &[u8]) -> Result<Soup<DVec3>, LoadError> {
+    let mut soup = Soup::default();
     let mut reader = Reader { path, text, at: 0 };
     let mut cutter = Cutter::default();
     let mut corners = Vec::new();
@@ -33,18 +33,19 @@ pub(super) fn read(path: &Path, text: &[u8], mesh: &mut LoadedMesh) -> Result<Op
         } else if is(word, FACET) {
             reader.facet(&mut corners)?;
             left_out += usize::from(corners.len() < 3);
-            if mesh.positions.len() + corners.len() > u32::MAX as usize {
+            if soup.positions.len() + corners.len() > u32::MAX as usize {
                 return Err(LoadError::TooLarge { path: path.to_owned() });
             }
-            let first = mesh.positions.len() as u32;
-            mesh.positions.extend(&corners);
-            cutter.cut(&corners, |triangle| mesh.triangles.push(triangle.map(|corner| first + corner as u32)));
+            let first = soup.positions.len() as u32;
+            soup.positions.extend(&corners);
+            cutter.cut(&corners, |triangle| soup.triangles.push(triangle.map(|corner| first + corner as u32)));
         } else {
             return Err(reader.refuse(format!("`{}` stands where a facet should begin", quoted(word))));
         }
     }
     let short = (left_out > 0).then(|| format!("{left_out} facets with fewer than three corners were left out"));
-    Ok(short.or_else(|| cutter.warning()))
+    soup.warning = short.or_else(|| cutter.warning());
+    Ok(soup)
 }
 
 fn is(word: &[u8], name: &[u8]) -> bool {

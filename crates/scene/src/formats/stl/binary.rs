@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use glam::DVec3;
+use glam::Vec3;
 
-use super::malformed;
-use crate::{LoadError, builder::LoadedMesh};
+use super::{Soup, malformed};
+use crate::LoadError;
 
 /// Bytes before the count.
 const HEADER: usize = 80;
@@ -27,35 +27,35 @@ pub(super) fn has_exact_length(bytes: &[u8]) -> bool {
     facets(bytes).is_some_and(|(count, facets)| facets.len() as u64 == FACET as u64 * u64::from(count))
 }
 
-/// Reads all facets; the result is what to warn of.
-pub(super) fn read(path: &Path, bytes: &[u8], mesh: &mut LoadedMesh) -> Result<Option<String>, LoadError> {
+/// Reads all facets.
+pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Soup<Vec3>, LoadError> {
     let Some((count, facets)) = facets(bytes) else {
         let least = HEADER + COUNT;
         let problem =
             format!("{} bytes are neither STL as text nor binary STL, which has {least} at least", bytes.len());
         return Err(malformed(path, None, problem));
     };
-    let (whole, rest) = facets.as_chunks::<FACET>();
+    let (whole, _) = facets.as_chunks::<FACET>();
     if whole.len() < count as usize {
         let problem = format!("the header promises {count} facets, the rest of the file has room for {}", whole.len());
         return Err(malformed(path, None, problem));
     }
     let whole = &whole[..count as usize];
-    mesh.positions.reserve_exact(3 * whole.len());
-    for facet in whole {
-        let corners = facet[VECTOR..].as_chunks::<VECTOR>().0;
-        mesh.positions.extend(corners.iter().map(vector));
-    }
-    if mesh.positions.len() > u32::MAX as usize {
+    if whole.len() > (u32::MAX / 3) as usize {
         return Err(LoadError::TooLarge { path: path.to_owned() });
     }
-    mesh.triangles = (0..count).map(|facet| [3 * facet, 3 * facet + 1, 3 * facet + 2]).collect();
+    let mut positions = Vec::with_capacity(3 * whole.len());
+    for facet in whole {
+        positions.extend(facet[VECTOR..].as_chunks::<VECTOR>().0.iter().map(vector));
+    }
+    let triangles = (0..count).map(|facet| [3 * facet, 3 * facet + 1, 3 * facet + 2]).collect();
     let surplus = facets.len() - FACET * whole.len();
-    let warned = surplus > 0 || !rest.is_empty();
-    Ok(warned.then(|| format!("{surplus} bytes behind the {count} facets of the header were left out")))
+    let warning =
+        (surplus > 0).then(|| format!("{surplus} bytes behind the {count} facets of the header were left out"));
+    Ok(Soup { positions, triangles, warning })
 }
 
-fn vector(bytes: &[u8; VECTOR]) -> DVec3 {
+fn vector(bytes: &[u8; VECTOR]) -> Vec3 {
     let (numbers, _) = bytes.as_chunks();
-    DVec3::from_array([0, 1, 2].map(|axis| f64::from(f32::from_le_bytes(numbers[axis]))))
+    Vec3::from_array([0, 1, 2].map(|axis| f32::from_le_bytes(numbers[axis])))
 }

@@ -16,10 +16,10 @@ use std::path::Path;
 
 use super::text::with_line_feeds;
 use crate::{
-    LoadError,
-    builder::LoadedMesh,
+    LoadError, Position,
     draft::{Draft, Placement},
     error::Place,
+    loaded_mesh::LoadedMesh,
     open::read_bytes,
 };
 
@@ -29,17 +29,42 @@ const BEGINNING: usize = 4096;
 /// Reads an STL file into `draft`.
 pub(crate) fn read(path: &Path, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
     let mut bytes = read_bytes(path)?;
-    let mut mesh = LoadedMesh::default();
-    let warnings = if !binary::has_exact_length(&bytes) && is_text(&bytes) {
-        ascii::read(path, with_line_feeds(&mut bytes), &mut mesh)?
+    if !binary::has_exact_length(&bytes) && is_text(&bytes) {
+        let soup = ascii::read(path, with_line_feeds(&mut bytes))?;
+        hand_over(path, soup, bytes, placement, draft)
     } else {
-        binary::read(path, &bytes, &mut mesh)?
-    };
+        let soup = binary::read(path, &bytes)?;
+        hand_over(path, soup, bytes, placement, draft)
+    }
+}
+
+/// Triangles with vertices of their own.
+#[derive(Debug, Default)]
+struct Soup<P> {
+    positions: Vec<P>,
+    triangles: Vec<[u32; 3]>,
+    warning: Option<String>,
+}
+
+fn hand_over<P: Position>(
+    path: &Path,
+    soup: Soup<P>,
+    bytes: Vec<u8>,
+    placement: &Placement,
+    draft: &mut Draft,
+) -> Result<(), LoadError> {
     // From here on its memory is needed for the scene.
     drop(bytes);
-    draft.warnings.extend(warnings.into_iter().map(|warning| format!("{}: {warning}", path.display())));
+    draft.warnings.extend(soup.warning.map(|warning| format!("{}: {warning}", path.display())));
     let material = placement.material.unwrap_or_else(|| draft.default_material());
-    mesh.materials = vec![material; mesh.triangles.len()];
+    let mesh = LoadedMesh {
+        positions: soup.positions,
+        normals: Vec::new(),
+        uvs: Vec::new(),
+        colors: Vec::new(),
+        materials: vec![material; soup.triangles.len()],
+        triangles: soup.triangles,
+    };
     draft.take(mesh, &placement.transform)
 }
 
