@@ -22,17 +22,19 @@ struct AllSettings<'a> {
     #[serde(flatten)]
     render: &'a SettingsStats,
     transfer: &'static str,
+    /// Stops, 0 for an exr.
+    exposure: f32,
     /// As `lightmesh info` describes them.
     lights: &'a [LightInfo],
 }
 
 impl<'a> Report<'a> {
-    pub(crate) fn new(stats: &'a Stats, transfer: &'static str, lights: &'a [LightInfo]) -> Report<'a> {
+    pub(crate) fn new(stats: &'a Stats, transfer: &'static str, exposure: f32, lights: &'a [LightInfo]) -> Report<'a> {
         Report {
             version: stats.version,
             scene: &stats.scene,
             device: &stats.device,
-            settings: AllSettings { render: &stats.settings, transfer, lights },
+            settings: AllSettings { render: &stats.settings, transfer, exposure, lights },
             counts: &stats.counts,
             seconds: &stats.seconds,
             memory: &stats.memory,

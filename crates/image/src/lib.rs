@@ -26,6 +26,7 @@
 
 mod bmp;
 mod compare;
+mod exposure;
 mod exr;
 mod format;
 mod frame;

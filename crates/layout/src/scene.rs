@@ -39,6 +39,25 @@ records! {
         vertices: [u32; 3],
     }
 
+    /// Texture coordinates of a vertex.
+    Uv { u: f32, v: f32, }
+
+    /// A texture on a material: the picture, and how texture coordinates lead into it.
+    Texture {
+        /// Row by row, red in the lowest byte, encoded as sRGB.
+        texels: In<u32>,
+        /// Width and height; at least 1.
+        size: [u32; 2],
+        /// What it shows beyond its edge, horizontally and vertically: see [`Texture`]'s constants.
+        wrap: [u32; 2],
+        /// Where a step in u leads in the picture.
+        u_axis: [f32; 2],
+        /// Where a step in v leads.
+        v_axis: [f32; 2],
+        /// Where texture coordinates (0, 0) lie.
+        translation: [f32; 2],
+    }
+
     /// The coefficients of formula (1).
     Material {
         /// Ambient.
@@ -47,14 +66,22 @@ records! {
         shininess: f32,
         /// Diffuse.
         kd: Vec3,
-        /// For sixteen-byte steps.
-        spare_a: u32,
+        /// 1: surface points have a tint; 0: the coefficients are what they are, and those to be tinted are added to the others.
+        tinted: u32,
         /// Specular.
         ks: Vec3,
-        /// For sixteen-byte steps.
-        spare_b: u32,
+        /// Index of its texture, or [`Material::NO_TEXTURE`].
+        texture: u32,
         /// Light of its own.
         emission: Vec3,
+        /// For sixteen-byte steps.
+        spare_a: u32,
+        /// The specular part that takes on the tint.
+        ks_tinted: Vec3,
+        /// For sixteen-byte steps.
+        spare_b: u32,
+        /// The light of its own that takes on the tint.
+        emission_tinted: Vec3,
         /// For sixteen-byte steps.
         spare_c: u32,
     }
@@ -64,10 +91,18 @@ records! {
     Scene {
         /// By index in the mesh.
         triangles: In<Triangle>,
-        /// Three vertices a triangle; null where there are no normals.
+        /// Three vertices a triangle; null where vertices have nothing.
         indices: In<Indices>,
         /// By vertex; null where there are none.
         normals: In<Vec3>,
+        /// Texture coordinates by vertex; null where no texture needs them.
+        uvs: In<Uv>,
+        /// Colours by vertex; null where there are none.
+        colors: In<Vec3>,
+        /// Textures, by material.
+        textures: In<Texture>,
+        /// Linear values of the 256 codes of sRGB.
+        srgb: In<f32>,
         /// The material of each triangle.
         triangle_materials: In<u32>,
         /// Materials.
@@ -120,6 +155,20 @@ impl Light {
     pub const DISK: u32 = 4;
     /// A rectangle.
     pub const RECTANGLE: u32 = 5;
+}
+
+impl Texture {
+    /// The same again.
+    pub const REPEAT: u32 = 0;
+    /// The same again, every other time mirrored.
+    pub const MIRROR: u32 = 1;
+    /// The outermost texels.
+    pub const CLAMP: u32 = 2;
+}
+
+impl Material {
+    /// The material has no texture.
+    pub const NO_TEXTURE: u32 = u32::MAX;
 }
 
 impl Scene {

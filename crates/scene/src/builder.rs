@@ -1,14 +1,14 @@
-//! Collects the parts of a scene in double precision and chooses the local frame once all are known.
+//! Collects the parts of a scene and chooses the local frame once all are known.
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
-use crate::{Mesh, Scene};
+use crate::{Mesh, Position, Scene, loaded_mesh::LoadedMesh, vertices::Vertices};
 
 /// One mesh as a file holds it, before it is placed. Slices are as long as `positions` or empty.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct MeshPart<'a> {
-    /// Vertices in the part's own coordinates.
-    pub positions: &'a [DVec3],
+#[derive(Clone, Copy, Debug)]
+pub struct MeshPart<'a, P = DVec3> {
+    /// Vertices in the part's own coordinates, `Vec3` or `DVec3`.
+    pub positions: &'a [P],
     /// Normals by vertex; need not be unit length.
     pub normals: &'a [Vec3],
     /// Texture coordinates by vertex.
@@ -19,10 +19,41 @@ pub struct MeshPart<'a> {
     pub triangles: &'a [[u32; 3]],
 }
 
+impl<P> Default for MeshPart<'_, P> {
+    fn default() -> Self {
+        MeshPart { positions: &[], normals: &[], uvs: &[], colors: &[], triangles: &[] }
+    }
+}
+
+/// How much room a scene needs, where that is known before it is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Room {
+    pub(crate) vertices: usize,
+    pub(crate) triangles: usize,
+    /// Whether any part has them.
+    pub(crate) normals: bool,
+    pub(crate) uvs: bool,
+    pub(crate) colors: bool,
+}
+
+impl Room {
+    /// Room for this, and for `count` times `more`.
+    pub(crate) fn and(&self, more: &Room, count: usize) -> Room {
+        let sum = |a: usize, b: usize| a.saturating_add(b.saturating_mul(count));
+        Room {
+            vertices: sum(self.vertices, more.vertices),
+            triangles: sum(self.triangles, more.triangles),
+            normals: self.normals || more.normals,
+            uvs: self.uvs || more.uvs,
+            colors: self.colors || more.colors,
+        }
+    }
+}
+
 /// Gathers placed meshes; [`SceneBuilder::finish`] makes them one [`Mesh`] in a local frame.
 #[derive(Debug, Default)]
 pub struct SceneBuilder {
-    positions: Vec<DVec3>,
+    vertices: Vertices,
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
     colors: Vec<Vec3>,
@@ -39,25 +70,55 @@ impl SceneBuilder {
 
     /// Adds `part` placed by `transform`; `material` gives the material of each of its triangles. A transform that mirrors
     /// turns the triangles' order round, so that front faces stay front faces.
-    pub fn add(&mut self, part: MeshPart, transform: &DMat4, material: impl Fn(usize) -> u32) {
-        let first = self.positions.len() as u32;
-        self.positions.extend(part.positions.iter().map(|&position| transform.transform_point3(position)));
+    pub fn add<P: Position>(&mut self, part: MeshPart<P>, transform: &DMat4, material: impl Fn(usize) -> u32) {
+        let first = self.vertices.len() as u32;
+        self.vertices.add(P::slice(part.positions), transform);
 
-        let normal_transform = transform.inverse().transpose();
-        let normal = |n: &Vec3| normal_transform.transform_vector3(n.as_dvec3()).normalize_or_zero().as_vec3();
+        let place_normal = normal_placement(transform);
         fill_to(&mut self.normals, first, Vec3::ZERO, !part.normals.is_empty());
-        self.normals.extend(part.normals.iter().map(normal));
+        self.normals.extend(part.normals.iter().map(|&normal| place_normal(normal)));
         fill_to(&mut self.uvs, first, Vec2::ZERO, !part.uvs.is_empty());
         self.uvs.extend(part.uvs);
         fill_to(&mut self.colors, first, Vec3::ONE, !part.colors.is_empty());
         self.colors.extend(part.colors);
 
-        let mirrored = transform.determinant() < 0.0;
+        let mirrored = mirrors(transform);
         self.triangles.extend(part.triangles.iter().map(|&[a, b, c]| {
             let [b, c] = if mirrored { [c, b] } else { [b, c] };
             [first + a, first + b, first + c]
         }));
         self.materials.extend((0..part.triangles.len()).map(material));
+    }
+
+    /// [`SceneBuilder::add`] of a mesh that is handed over: the first one is placed where it lies in memory.
+    pub(crate) fn take<P: Position>(&mut self, mut mesh: LoadedMesh<P>, transform: &DMat4) {
+        if self.vertex_count() > 0 || self.triangle_count() > 0 {
+            let materials = std::mem::take(&mut mesh.materials);
+            self.add(mesh.part(), transform, |index| materials[index]);
+            return;
+        }
+        self.vertices.take(P::owned(mesh.positions), transform);
+        let place_normal = normal_placement(transform);
+        mesh.normals.iter_mut().for_each(|normal| *normal = place_normal(*normal));
+        if mirrors(transform) {
+            mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+        self.normals = mesh.normals;
+        self.uvs = mesh.uvs;
+        self.colors = mesh.colors;
+        self.triangles = mesh.triangles;
+        self.materials = mesh.materials;
+    }
+
+    /// Makes room for what is to come; `false` where there is not enough memory.
+    pub(crate) fn reserve(&mut self, room: &Room) -> bool {
+        let of = |used: bool| if used { room.vertices } else { 0 };
+        self.vertices.reserve(room.vertices)
+            && reserve(&mut self.normals, of(room.normals))
+            && reserve(&mut self.uvs, of(room.uvs))
+            && reserve(&mut self.colors, of(room.colors))
+            && reserve(&mut self.triangles, room.triangles)
+            && reserve(&mut self.materials, room.triangles)
     }
 
     /// Number of triangles so far.
@@ -67,13 +128,12 @@ impl SceneBuilder {
 
     /// Number of vertices so far.
     pub fn vertex_count(&self) -> usize {
-        self.positions.len()
+        self.vertices.len()
     }
 
     /// Lowest and highest corner of the box around all finite vertices so far; `None` without any.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let finite = self.positions.iter().copied().filter(|position| position.is_finite());
-        finite.map(|position| (position, position)).reduce(|(min, max), (p, _)| (min.min(p), max.max(p)))
+        self.vertices.bounds()
     }
 
     /// Takes this origin instead of choosing one. For scenes that were written with an origin: they are read to the same `f32`.
@@ -87,12 +147,12 @@ impl SceneBuilder {
     /// point near the middle, rounded to a power of two of the scene's size so that the subtraction loses nothing.
     pub fn finish(mut self) -> (DVec3, Mesh) {
         let origin = self.origin.unwrap_or_else(|| self.bounds().map_or(DVec3::ZERO, local_origin));
-        let vertices = self.positions.len() as u32;
+        let vertices = self.vertices.len() as u32;
         fill_to(&mut self.normals, vertices, Vec3::ZERO, false);
         fill_to(&mut self.uvs, vertices, Vec2::ZERO, false);
         fill_to(&mut self.colors, vertices, Vec3::ONE, false);
         let mesh = Mesh {
-            positions: self.positions.iter().map(|&position| (position - origin).as_vec3()).collect(),
+            positions: self.vertices.finish(origin),
             normals: self.normals,
             uvs: self.uvs,
             colors: self.colors,
@@ -119,6 +179,22 @@ impl SceneBuilder {
             warnings: Vec::new(),
         }
     }
+}
+
+/// Makes room for `more` elements, and for no others in what is the first file of a scene and may be the only one.
+pub(crate) fn reserve<T>(elements: &mut Vec<T>, more: usize) -> bool {
+    let reserved = if elements.is_empty() { elements.try_reserve_exact(more) } else { elements.try_reserve(more) };
+    reserved.is_ok()
+}
+
+/// Normals are turned by the inverse transpose of what places positions.
+fn normal_placement(transform: &DMat4) -> impl Fn(Vec3) -> Vec3 + use<> {
+    let matrix = transform.inverse().transpose();
+    move |normal| matrix.transform_vector3(normal.as_dvec3()).normalize_or_zero().as_vec3()
+}
+
+fn mirrors(transform: &DMat4) -> bool {
+    transform.determinant() < 0.0
 }
 
 /// Lengthens an attribute with `none` up to `count` vertices, where the attribute is used at all.
@@ -178,6 +254,36 @@ mod tests {
         builder.add(part(), &DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)), |_| 0);
         let [a, b, c] = builder.finish().1.corners(0);
         assert!((b - a).cross(c - a).z > 0.0);
+    }
+
+    #[test]
+    fn a_mesh_handed_over_is_the_same_as_a_part_added() {
+        fn check<P: Position>(positions: [P; 3], placement: DMat4) {
+            let loaded = || LoadedMesh {
+                positions: positions.to_vec(),
+                normals: vec![Vec3::new(1.0, 2.0, 3.0); 3],
+                uvs: Vec::new(),
+                colors: vec![Vec3::X; 3],
+                triangles: vec![[0, 1, 2]],
+                materials: vec![7],
+            };
+            let (mut added, mut taken) = (SceneBuilder::new(), SceneBuilder::new());
+            // The first is moved in, the second copied behind it.
+            for _ in 0..2 {
+                added.add(loaded().part(), &placement, |_| 7);
+                taken.take(loaded(), &placement);
+            }
+            assert_eq!(added.bounds(), taken.bounds());
+            let (added, taken) = (added.finish().1, taken.finish().1);
+            assert_eq!((added.positions, added.normals), (taken.positions, taken.normals));
+            assert_eq!((added.triangles, added.materials), (taken.triangles, taken.materials));
+            assert_eq!((added.colors, added.uvs), (taken.colors, taken.uvs));
+        }
+        let mirrored = DMat4::from_scale(DVec3::new(-2.0, 3.0, 1.0)) * DMat4::from_rotation_x(1.0);
+        for placement in [DMat4::IDENTITY, mirrored] {
+            check(CORNERS, placement);
+            check(CORNERS.map(|corner| corner.as_vec3()), placement);
+        }
     }
 
     #[test]

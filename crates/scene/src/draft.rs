@@ -1,13 +1,17 @@
 //! A scene while it is read: everything in world coordinates and double precision, until the last triangle is known and the
 //! local frame can be chosen.
 
+use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
 use glam::{DMat4, DVec3, Vec3};
 
 use crate::{
-    Camera, Light, LightKind, LightMeshDefaults, LoadError, LoadOptions, Material, MeshPart, Place, Scene,
+    Camera, Light, LightKind, LightMeshDefaults, LoadError, LoadOptions, Material, MeshPart, Place, Position, Scene,
     SceneBuilder, Texture,
+    builder::Room,
+    loaded_mesh::LoadedMesh,
+    texture::{TextureFiles, untextured},
 };
 
 /// Where a model goes in the scene, and what of it.
@@ -37,12 +41,15 @@ pub(crate) struct Draft {
     options: LoadOptions,
     builder: SceneBuilder,
     unusable_triangles: usize,
+    /// Triangles of parts without texture coordinates.
+    without_uvs: Vec<Range<usize>>,
     /// World position of each camera beside it; the camera's own is not looked at.
     pub(crate) cameras: Vec<(Camera, DVec3)>,
     /// World position of each light beside it; the light's own is not looked at.
     pub(crate) lights: Vec<(Light, DVec3)>,
     pub(crate) materials: Vec<Material>,
     pub(crate) textures: Vec<Texture>,
+    pub(crate) texture_files: TextureFiles,
     pub(crate) ambient: Option<Vec3>,
     pub(crate) background: Option<Vec3>,
     pub(crate) light_mesh: LightMeshDefaults,
@@ -57,10 +64,12 @@ impl Draft {
             options: options.clone(),
             builder: SceneBuilder::new(),
             unusable_triangles: 0,
+            without_uvs: Vec::new(),
             cameras: Vec::new(),
             lights: Vec::new(),
             materials: Vec::new(),
             textures: Vec::new(),
+            texture_files: TextureFiles::default(),
             ambient: None,
             background: None,
             light_mesh: LightMeshDefaults::default(),
@@ -68,40 +77,79 @@ impl Draft {
         }
     }
 
+    /// Makes room for what a file is going to add.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError::TooLarge`] where that is more than indices can tell apart, [`LoadError::Memory`] where there is not so much.
+    pub(crate) fn reserve(&mut self, room: &Room) -> Result<(), LoadError> {
+        let limit = u32::MAX as usize;
+        let vertices = self.builder.vertex_count().saturating_add(room.vertices);
+        let triangles = self.builder.triangle_count().saturating_add(room.triangles);
+        if vertices > limit || triangles > limit {
+            return Err(LoadError::TooLarge { path: self.path.clone() });
+        }
+        if self.builder.reserve(room) {
+            Ok(())
+        } else {
+            Err(LoadError::Memory { path: self.path.clone(), vertices, triangles })
+        }
+    }
+
     /// Adds placed triangles. Triangles with a vertex that is no number, or too far away to compute with, are left out and
     /// counted in a warning.
-    pub(crate) fn add(
+    pub(crate) fn add<P: Position>(
         &mut self,
-        part: MeshPart,
+        part: MeshPart<P>,
         transform: &DMat4,
         material: impl Fn(usize) -> u32,
     ) -> Result<(), LoadError> {
-        if self.builder.vertex_count() + part.positions.len() > u32::MAX as usize {
-            return Err(LoadError::TooLarge { path: self.path.clone() });
-        }
-        let usable = |p: &DVec3| transform.transform_point3(*p).abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all();
-        if part.positions.iter().all(usable) {
+        self.check_room(part.positions.len())?;
+        let usable = usable_in(transform);
+        if part.positions.iter().all(&usable) {
             self.builder.add(part, transform, material);
+            self.note_uvs(part.triangles.len(), !part.uvs.is_empty());
         } else {
             self.add_usable(part, transform, material, usable);
         }
         Ok(())
     }
 
+    /// [`Draft::add`] of a mesh that is handed over.
+    pub(crate) fn take<P: Position>(&mut self, mesh: LoadedMesh<P>, transform: &DMat4) -> Result<(), LoadError> {
+        self.check_room(mesh.positions.len())?;
+        let usable = usable_in(transform);
+        if mesh.positions.iter().all(&usable) {
+            let (triangles, has_uvs) = (mesh.triangles.len(), !mesh.uvs.is_empty());
+            self.builder.take(mesh, transform);
+            self.note_uvs(triangles, has_uvs);
+        } else {
+            self.add_usable(mesh.part(), transform, |index| mesh.materials[index], usable);
+        }
+        Ok(())
+    }
+
+    fn check_room(&self, vertices: usize) -> Result<(), LoadError> {
+        if self.builder.vertex_count() + vertices > u32::MAX as usize {
+            return Err(LoadError::TooLarge { path: self.path.clone() });
+        }
+        Ok(())
+    }
+
     /// [`Draft::add`] without the triangles that use a vertex that is not usable.
-    fn add_usable(
+    fn add_usable<P: Position>(
         &mut self,
-        part: MeshPart,
+        part: MeshPart<P>,
         transform: &DMat4,
         material: impl Fn(usize) -> u32,
-        usable: impl Fn(&DVec3) -> bool,
+        usable: impl Fn(&P) -> bool,
     ) {
         // The vertices stay, so that indices stay, but as copies of a good one: they must not move the local frame.
         let Some(&good) = part.positions.iter().find(|position| usable(position)) else {
             self.unusable_triangles += part.triangles.len();
             return;
         };
-        let positions: Vec<DVec3> = part.positions.iter().map(|&p| if usable(&p) { p } else { good }).collect();
+        let positions: Vec<P> = part.positions.iter().map(|&p| if usable(&p) { p } else { good }).collect();
         let kept: Vec<usize> = (0..part.triangles.len())
             .filter(|&index| part.triangles[index].iter().all(|&vertex| usable(&part.positions[vertex as usize])))
             .collect();
@@ -109,6 +157,15 @@ impl Draft {
         let triangles: Vec<[u32; 3]> = kept.iter().map(|&index| part.triangles[index]).collect();
         let part = MeshPart { positions: &positions, triangles: &triangles, ..part };
         self.builder.add(part, transform, |index| material(kept[index]));
+        self.note_uvs(part.triangles.len(), !part.uvs.is_empty());
+    }
+
+    /// Remembers the triangles that were added last, where they have no texture coordinates.
+    fn note_uvs(&mut self, triangles: usize, has_uvs: bool) {
+        if !has_uvs {
+            let end = self.builder.triangle_count();
+            self.without_uvs.push(end - triangles..end);
+        }
     }
 
     /// The path of what `source`, one of the scene's files, calls `name`: relative to its own folder, with either kind of slash.
@@ -167,14 +224,16 @@ impl Draft {
                 self.unusable_triangles
             ));
         }
+        self.warnings.extend(self.texture_files.warning());
         if self.builder.triangle_count() == 0 {
             self.warnings.push("the scene has no triangles".to_owned());
         }
+        let name = self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let mut scene = self.builder.finish_scene(name);
+        self.warnings.extend(untextured(&mut scene.mesh, &mut self.materials, &self.without_uvs));
         if self.options.strict && !self.warnings.is_empty() {
             return Err(LoadError::Warnings { path: self.path, warnings: self.warnings });
         }
-        let name = self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let mut scene = self.builder.finish_scene(name);
         let local = |world: DVec3| (world - scene.origin).as_vec3();
         scene.cameras =
             self.cameras.into_iter().map(|(camera, world)| Camera { position: local(world), ..camera }).collect();
@@ -187,6 +246,11 @@ impl Draft {
         scene.warnings = self.warnings;
         Ok(scene)
     }
+}
+
+/// Whether a vertex has a place once it is placed.
+fn usable_in<P: Position>(transform: &DMat4) -> impl Fn(&P) -> bool + use<'_, P> {
+    |position| transform.transform_point3(position.to_double()).abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all()
 }
 
 /// The path without `.` and `..`, by its text alone.

@@ -183,8 +183,18 @@ pub enum LoadError {
         /// All warnings.
         warnings: Vec<String>,
     },
-    /// More vertices than 32-bit indices can tell apart.
-    #[error("the scene has more than {} vertices, {}; split it or thin it out", u32::MAX, path.display())]
+    /// More than there is memory for.
+    #[error("there is no memory for {vertices} vertices and {triangles} triangles, {}; split the scene or thin it out", path.display())]
+    Memory {
+        /// The file that is opened.
+        path: PathBuf,
+        /// Vertices, every use of a mesh counted.
+        vertices: usize,
+        /// Triangles, every use of a mesh counted.
+        triangles: usize,
+    },
+    /// More vertices or triangles than 32-bit indices can tell apart.
+    #[error("the scene has more than {} vertices or triangles, {}; split it or thin it out", u32::MAX, path.display())]
     TooLarge {
         /// The file that went over the limit.
         path: PathBuf,

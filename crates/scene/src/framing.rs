@@ -2,35 +2,7 @@
 
 use glam::Vec3;
 
-use crate::{Bounds, Camera, Fov, Light, LightKind, Projection, Scene};
-
-/// Which axis points up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Up {
-    /// +Y: glTF, most OBJ.
-    #[default]
-    Y,
-    /// +Z: CAD, most STL.
-    Z,
-}
-
-impl Up {
-    /// The axis as a unit vector.
-    pub fn axis(self) -> Vec3 {
-        match self {
-            Up::Y => Vec3::Y,
-            Up::Z => Vec3::Z,
-        }
-    }
-
-    /// Right and towards the viewer, for someone who looks at the front of a model.
-    fn sides(self) -> (Vec3, Vec3) {
-        match self {
-            Up::Y => (Vec3::X, Vec3::Z),
-            Up::Z => (Vec3::X, Vec3::NEG_Y),
-        }
-    }
-}
+use crate::{Bounds, Camera, Fov, Light, LightKind, Projection, Scene, Up};
 
 /// No camera of the scene has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -56,14 +28,17 @@ const FILL: f32 = 0.92;
 /// Where the framing camera stands, seen from the middle of the scene: to the right, above and in front.
 const VIEW: [f32; 3] = [0.55, 0.45, 1.0];
 
-/// Radius over which area mode strews the key light, as a share of the scene's diagonal.
-const KEY_LIGHT_SPREAD: f32 = 0.02;
+/// Radius over which area mode strews these lights, as a share of the scene's diagonal.
+const DEFAULT_LIGHT_SPREAD: f32 = 0.02;
+
+/// Strength of the fill light; that of the key light is 1.
+const FILL_LIGHT: f32 = 0.25;
 
 impl Scene {
     /// A camera that shows the whole scene from the front, the right and above, for square pictures and wider ones.
     pub fn default_camera(&self, up: Up) -> Camera {
         let bounds = framed(self.mesh.bounds());
-        let (right, front) = up.sides();
+        let (right, front) = sides(up);
         let direction = -(VIEW[0] * right + VIEW[1] * up.axis() + VIEW[2] * front).normalize();
         let mut camera = Camera {
             name: "default".to_owned(),
@@ -76,15 +51,19 @@ impl Scene {
         camera
     }
 
-    /// One white point light without falloff, above and beside the camera's eye, so that shadows fall away from the viewer and
-    /// to the side.
-    pub fn default_light(&self, camera: &Camera) -> Light {
+    /// Two white point lights without falloff. The key light stands above and beside the camera's eye, so that shadows fall away from
+    /// the viewer and to the side; the fill light, weaker and lower, on its other side, so that they are not black.
+    pub fn default_lights(&self, camera: &Camera) -> [Light; 2] {
         let bounds = framed(self.mesh.bounds());
         let (right, up, _) = camera.basis();
         let reach = camera.position.distance(bounds.center()).max(bounds.diagonal());
-        let position = camera.position + reach * (0.8 * up - 0.5 * right);
-        let spread = KEY_LIGHT_SPREAD * bounds.diagonal();
-        Light { kind: LightKind::Point { position, spread }, ..Light::point(position, Vec3::ONE) }
+        let spread = DEFAULT_LIGHT_SPREAD * bounds.diagonal();
+        let light = |name: &str, beside: f32, above: f32, intensity: f32| {
+            let position = camera.position + reach * (above * up + beside * right);
+            let kind = LightKind::Point { position, spread };
+            Light { name: name.to_owned(), kind, ..Light::point(position, Vec3::splat(intensity)) }
+        };
+        [light("key", -0.5, 0.8, 1.0), light("fill", 0.9, 0.2, FILL_LIGHT)]
     }
 
     /// The camera of this name.
@@ -98,6 +77,14 @@ impl Scene {
             scene: self.name.clone(),
             known: self.cameras.iter().map(|camera| camera.name.clone()).filter(|name| !name.is_empty()).collect(),
         })
+    }
+}
+
+/// Right and towards the viewer, for someone who looks at the front of a model.
+fn sides(up: Up) -> (Vec3, Vec3) {
+    match up {
+        Up::Y => (Vec3::X, Vec3::Z),
+        Up::Z => (Vec3::X, Vec3::NEG_Y),
     }
 }
 
@@ -162,16 +149,20 @@ mod tests {
         let empty = SceneBuilder::new().finish_scene("empty");
         let camera = empty.default_camera(Up::Y);
         assert!(camera.position.is_finite() && camera.position.length() > 1.0);
-        assert!(empty.default_light(&camera).position().unwrap().is_finite());
+        assert!(empty.default_lights(&camera).iter().all(|light| light.position().unwrap().is_finite()));
     }
 
     #[test]
-    fn the_key_light_is_above_the_camera() {
+    fn the_key_light_is_above_the_camera_and_a_weaker_one_on_its_other_side() {
         for up in [Up::Y, Up::Z] {
             let scene = scene(Vec3::splat(-3.0), Vec3::splat(5.0));
             let camera = scene.default_camera(up);
-            let light = scene.default_light(&camera).position().unwrap();
-            assert!((light - camera.position).dot(up.axis()) > 1.0);
+            let (right, ..) = camera.basis();
+            let [key, fill] = scene.default_lights(&camera);
+            let from_camera = |light: &Light| light.position().unwrap() - camera.position;
+            assert!(from_camera(&key).dot(up.axis()) > from_camera(&fill).dot(up.axis()) + 1.0);
+            assert!(from_camera(&key).dot(right) < -1.0 && from_camera(&fill).dot(right) > 1.0);
+            assert!(fill.intensity.max_element() < 0.5 * key.intensity.min_element());
         }
     }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::{Camera, Falloff, Fov, Light, LightKind, Projection, Scene};
+use crate::{Camera, Falloff, Fov, Light, LightKind, Projection, Scene, UpInfo};
 
 /// A scene in figures. World coordinates, scene units and degrees.
 #[derive(Clone, Debug, Serialize, PartialEq)]
@@ -19,6 +19,10 @@ pub struct SceneInfo {
     pub cameras: Vec<CameraInfo>,
     /// Number of materials.
     pub materials: usize,
+    /// Number of textures.
+    pub textures: usize,
+    /// Which way is up; `None` where neither cameras nor shape tell.
+    pub up: Option<UpInfo>,
     /// What was mended, left out or guessed.
     pub warnings: Vec<String>,
 }
@@ -98,6 +102,8 @@ impl Scene {
             lights: self.lights.iter().map(|light| light_info(self, light)).collect(),
             cameras: self.cameras.iter().map(|camera| camera_info(self, camera)).collect(),
             materials: self.materials.len(),
+            textures: self.textures.len(),
+            up: self.suggested_up(),
             warnings: self.warnings.clone(),
         }
     }
@@ -172,7 +178,11 @@ impl Falloff {
 
 impl fmt::Display for SceneInfo {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        writeln!(f, "{} triangles, {} materials", self.triangles, self.materials)?;
+        write!(f, "{} triangles, {} materials", self.triangles, self.materials)?;
+        match self.textures {
+            0 => writeln!(f)?,
+            textures => writeln!(f, ", {textures} textures")?,
+        }
         if let Some(bounds) = &self.bounds {
             writeln!(f, "bounds  {} .. {}", triple(&bounds.min), triple(&bounds.max))?;
         }
@@ -181,6 +191,9 @@ impl fmt::Display for SceneInfo {
         }
         for camera in &self.cameras {
             writeln!(f, "camera  {camera}")?;
+        }
+        if let Some(up) = &self.up {
+            writeln!(f, "up      {}: {}", up.axis, up.reason)?;
         }
         self.warnings.iter().try_for_each(|warning| writeln!(f, "warning {warning}"))
     }
@@ -276,6 +289,8 @@ mod tests {
                  "vfov": null, "height": 4.0},
             ],
             "materials": 0,
+            "textures": 0,
+            "up": {"axis": "y", "reason": "its cameras stand that way"},
             "warnings": [],
         });
         assert_eq!(json, expected);
@@ -286,6 +301,7 @@ mod tests {
         let text = scene().info().to_string();
         assert!(text.contains("light   point, at 1000 0 1, intensity 0.1 0.1 0.1, falloff none"), "{text}");
         assert!(text.contains("camera  `main` at 1000 0 1, along 0 0 -1, vfov 50°"), "{text}");
+        assert!(text.contains("0 materials\n") && text.contains("up      y: its cameras stand that way"), "{text}");
     }
 
     #[test]

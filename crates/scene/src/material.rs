@@ -7,7 +7,7 @@ use crate::TextureUse;
 /// How a surface answers light: ambient, diffuse and Phong terms (Whitted 1980, Phong 1975).
 ///
 /// Where a texture or vertex colours give a surface point a tint t — their product, white where there are neither — its
-/// coefficients are `ka` t, `kd` t and `ks` + `ks_tinted` t.
+/// coefficients are `ka` t, `kd` t and `ks` + `ks_tinted` t, and it gives off `emission` + `emission_tinted` t.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Name in the file; empty where it has none.
@@ -24,6 +24,8 @@ pub struct Material {
     pub shininess: f32,
     /// Radiance that the surface gives off by itself; it is seen but lights nothing.
     pub emission: Vec3,
+    /// The part of that radiance that takes on the tint: a surface that shows its picture unlit. It counts without a tint, too.
+    pub emission_tinted: Vec3,
     /// A picture that tints the surface.
     pub texture: Option<TextureUse>,
 }
@@ -39,6 +41,7 @@ impl Default for Material {
             ks_tinted: Vec3::ZERO,
             shininess: 20.0,
             emission: Vec3::ZERO,
+            emission_tinted: Vec3::ZERO,
             texture: None,
         }
     }

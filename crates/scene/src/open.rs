@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// Endings of scene files that can be read.
-const SCENE_FORMATS: [&str; 4] = ["toml", "obj", "gltf", "glb"];
+const SCENE_FORMATS: [&str; 6] = ["toml", "obj", "gltf", "glb", "ply", "stl"];
 
 /// How strictly a scene is read, and what it may refer to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub struct LoadOptions {
 }
 
 impl Scene {
-    /// Reads a scene: `.toml`, `.obj`, `.gltf` or `.glb`, or a built-in one named `builtin:NAME` or
+    /// Reads a scene: `.toml`, `.obj`, `.gltf`, `.glb`, `.ply` or `.stl`, or a built-in one named `builtin:NAME` or
     /// `builtin:NAME?key=value&…`.
     ///
     /// What a file holds beyond the scene's model is left out, with a sentence in [`Scene::warnings`].
@@ -60,6 +60,8 @@ fn read_model(path: &Path, placement: &Placement, draft: &mut Draft) -> Result<(
     match extension(path).as_str() {
         "obj" => formats::obj::read(path, placement, draft),
         "gltf" | "glb" => formats::gltf::read(path, placement, draft),
+        "ply" => formats::ply::read(path, placement, draft),
+        "stl" => formats::stl::read(path, placement, draft),
         extension => Err(LoadError::UnknownFormat {
             path: path.to_owned(),
             extension: extension.to_owned(),
@@ -102,14 +104,14 @@ mod tests {
 
     #[test]
     fn a_format_that_cannot_be_read_is_answered_with_those_that_can() {
-        let known = "known are .toml, .obj, .gltf, .glb, and builtin:NAME";
-        assert_eq!(error("bunny.ply"), format!("`.ply` is not a format that can be read, bunny.ply; {known}"));
+        let known = "known are .toml, .obj, .gltf, .glb, .ply, .stl, and builtin:NAME";
+        assert_eq!(error("bunny.fbx"), format!("`.fbx` is not a format that can be read, bunny.fbx; {known}"));
         assert!(error("bunny").contains(known));
     }
 
     #[test]
     fn a_file_that_is_not_there_is_named() {
-        for path in ["none.toml", "none.obj", "none.gltf", "none.GLB"] {
+        for path in ["none.toml", "none.obj", "none.gltf", "none.GLB", "none.ply", "none.STL"] {
             let message = error(path);
             assert!(message.contains(path) && message.contains("; check that it exists"), "{message}");
         }

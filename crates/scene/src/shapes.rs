@@ -2,10 +2,14 @@
 //!
 //! Boxes and rectangles are exact. Spheres and cylinders are inscribed: every vertex lies on the true surface and carries
 //! its true normal; with n segments the flats lie up to r (1 − cos(π/n)) inside it, 0.05 % of the radius for 96.
+//!
+//! A picture covers every face once, upright seen from outside: each side of a box, the mantle of a cylinder and each of its ends,
+//! a sphere from its north pole (Y) to its south pole. Where it goes around, it begins and ends at +X.
 
+use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DQuat, DVec2, DVec3, Vec2, Vec3};
 
 use crate::MeshPart;
 
@@ -18,6 +22,10 @@ pub(crate) struct Shape {
     positions: Vec<DVec3>,
     normals: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
+    /// Texture coordinates of the corners of each triangle.
+    corners: Vec<[Vec2; 3]>,
+    /// Texture coordinates by vertex, where they are asked for.
+    uvs: Vec<Vec2>,
 }
 
 impl Shape {
@@ -26,21 +34,53 @@ impl Shape {
         MeshPart {
             positions: &self.positions,
             normals: &self.normals,
+            uvs: &self.uvs,
             triangles: &self.triangles,
             ..Default::default()
         }
     }
 
+    /// With texture coordinates. Vertices where several places of the picture meet are doubled.
+    pub(crate) fn textured(self) -> Shape {
+        let mut shape = Shape { corners: self.corners, ..Shape::default() };
+        let mut known: HashMap<(u32, [u32; 2]), u32> = HashMap::new();
+        for (triangle, uvs) in self.triangles.iter().zip(&shape.corners) {
+            shape.triangles.push(std::array::from_fn(|corner| {
+                let (vertex, uv) = (triangle[corner], uvs[corner]);
+                *known.entry((vertex, uv.to_array().map(f32::to_bits))).or_insert_with(|| {
+                    shape.positions.push(self.positions[vertex as usize]);
+                    shape.normals.extend(self.normals.get(vertex as usize));
+                    shape.uvs.push(uv);
+                    shape.positions.len() as u32 - 1
+                })
+            }));
+        }
+        shape
+    }
+
+    fn add(&mut self, triangle: [u32; 3], corners: [Vec2; 3]) {
+        self.triangles.push(triangle);
+        self.corners.push(corners);
+    }
+
+    /// Two triangles; `corners` in order round the border.
+    fn add_quad(&mut self, [a, b, c, d]: [u32; 4], [ta, tb, tc, td]: [Vec2; 4]) {
+        self.add([a, b, c], [ta, tb, tc]);
+        self.add([a, c, d], [ta, tc, td]);
+    }
+
     /// A triangle with a flat surface.
-    pub(crate) fn triangle(corners: [DVec3; 3]) -> Shape {
-        Shape { positions: corners.to_vec(), normals: Vec::new(), triangles: vec![[0, 1, 2]] }
+    pub(crate) fn triangle(corners: [DVec3; 3], uvs: [Vec2; 3]) -> Shape {
+        Shape { positions: corners.to_vec(), triangles: vec![[0, 1, 2]], corners: vec![uvs], ..Shape::default() }
     }
 
     /// A parallelogram around `center` with the edges `u` and `v`; its front is the side of u × v.
     pub(crate) fn rectangle(center: DVec3, u: DVec3, v: DVec3) -> Shape {
         let corner = |a: f64, b: f64| center + 0.5 * (a * u + b * v);
         let positions = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-        Shape { positions, normals: Vec::new(), triangles: vec![[0, 1, 2], [0, 2, 3]] }
+        let mut shape = Shape { positions, ..Shape::default() };
+        shape.add_quad([0, 1, 2, 3], [Vec2::Y, Vec2::ONE, Vec2::X, Vec2::ZERO]);
+        shape
     }
 
     /// A box between two corners.
@@ -51,11 +91,14 @@ impl Shape {
         // Corner i has its x, y and z at max where bit 0, 1 and 2 of i are set.
         const FACES: [[u32; 4]; 6] =
             [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-        Shape {
-            positions: (0..8).map(corner).collect(),
-            normals: Vec::new(),
-            triangles: FACES.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
+        let mut shape = Shape { positions: (0..8).map(corner).collect(), ..Shape::default() };
+        for (face, corners) in FACES.iter().enumerate() {
+            shape.add_quad(
+                *corners,
+                corners.map(|i| uv_of_box(face, (i as usize & 1, i as usize >> 1 & 1, i as usize >> 2))),
+            );
         }
+        shape
     }
 
     /// A sphere with `segments` triangles around and half as many rings from pole to pole, poles up and down (Y).
@@ -70,20 +113,25 @@ impl Shape {
 
         let at = |ring: u32, segment: u32| 1 + (ring - 1) * segments + segment % segments;
         let last = directions.len() as u32 - 1;
-        let mut triangles = Vec::with_capacity(2 * (segments * (rings - 1)) as usize);
-        for s in 0..segments {
-            triangles.push([0, at(1, s + 1), at(1, s)]);
-            for ring in 1..rings - 1 {
-                let [a, b, c, d] = [at(ring, s), at(ring, s + 1), at(ring + 1, s + 1), at(ring + 1, s)];
-                triangles.extend([[a, b, c], [a, c, d]]);
-            }
-            triangles.push([last, at(rings - 1, s), at(rings - 1, s + 1)]);
-        }
-        Shape {
+        let uv = |ring: u32, s: f32| Vec2::new(1.0 - s / segments as f32, ring as f32 / rings as f32);
+        let mut shape = Shape {
             positions: directions.iter().map(|&direction| center + radius * direction).collect(),
             normals: directions.iter().map(|direction| direction.as_vec3()).collect(),
-            triangles,
+            ..Shape::default()
+        };
+        for s in 0..segments {
+            let (here, middle, there) = (s as f32, s as f32 + 0.5, s as f32 + 1.0);
+            shape.add([0, at(1, s + 1), at(1, s)], [uv(0, middle), uv(1, there), uv(1, here)]);
+            for ring in 1..rings - 1 {
+                shape.add_quad(
+                    [at(ring, s), at(ring, s + 1), at(ring + 1, s + 1), at(ring + 1, s)],
+                    [uv(ring, here), uv(ring, there), uv(ring + 1, there), uv(ring + 1, here)],
+                );
+            }
+            let ring = rings - 1;
+            shape.add([last, at(ring, s), at(ring, s + 1)], [uv(rings, middle), uv(ring, here), uv(ring, there)]);
         }
+        shape
     }
 
     /// A cylinder from the middle of one end to the middle of the other, which must not coincide; with `caps` its ends are
@@ -98,11 +146,14 @@ impl Shape {
         for s in 0..segments {
             let next = (s + 1) % segments;
             let [a, b, c, d] = [s, next, segments + next, segments + s];
-            shape.triangles.extend([[a, c, b], [a, d, c]]);
+            let uv = |s: u32, v: f32| Vec2::new(1.0 - s as f32 / segments as f32, v);
+            let [ta, tb, tc, td] = [uv(s, 1.0), uv(s + 1, 1.0), uv(s + 1, 0.0), uv(s, 0.0)];
+            shape.add([a, c, b], [ta, tc, tb]);
+            shape.add([a, d, c], [ta, td, tc]);
         }
         if caps {
-            shape.add_cap(base, -axis, radius, &spokes);
-            shape.add_cap(top, axis, radius, &spokes);
+            shape.add_cap(base, -axis, radius, &spokes, -1.0);
+            shape.add_cap(top, axis, radius, &spokes, 1.0);
         }
         shape
     }
@@ -112,8 +163,9 @@ impl Shape {
         self.normals.extend(spokes.iter().map(|&spoke| normal(spoke).as_vec3()));
     }
 
-    /// A fan around the middle of an end. It has vertices of its own, as its normals differ from the side's.
-    fn add_cap(&mut self, center: DVec3, axis: DVec3, radius: f64, spokes: &[DVec3]) {
+    /// A fan around the middle of an end. It has vertices of its own, as its normals differ from the side's. `upright` is -1 where
+    /// the picture is seen from below.
+    fn add_cap(&mut self, center: DVec3, axis: DVec3, radius: f64, spokes: &[DVec3], upright: f64) {
         let middle = self.positions.len() as u32;
         self.positions.push(center);
         self.normals.push(axis.as_vec3());
@@ -121,11 +173,32 @@ impl Shape {
         let segments = spokes.len() as u32;
         // The spokes run clockwise seen from where the side's axis points.
         let outward = axis.dot(spokes[0].cross(spokes[1])) > 0.0;
-        self.triangles.extend((0..segments).map(|s| {
-            let (a, b) = (middle + 1 + s, middle + 1 + (s + 1) % segments);
-            if outward { [middle, a, b] } else { [middle, b, a] }
-        }));
+        let rim: Vec<Vec2> = circle(segments)
+            .map(|(x, z)| 0.5 * DVec2::new(1.0 + x, 1.0 + upright * z))
+            .map(|uv| uv.as_vec2())
+            .collect();
+        for s in 0..segments {
+            let next = (s + 1) % segments;
+            let [(a, ta), (b, tb)] = [s, next].map(|s| (middle + 1 + s, rim[s as usize]));
+            match outward {
+                true => self.add([middle, a, b], [Vec2::splat(0.5), ta, tb]),
+                false => self.add([middle, b, a], [Vec2::splat(0.5), tb, ta]),
+            }
+        }
     }
+}
+
+/// Texture coordinates of a box's corner, which lies at max where x, y or z are 1, on one of its faces: -X, +X, -Y, +Y, -Z, +Z.
+fn uv_of_box(face: usize, (x, y, z): (usize, usize, usize)) -> Vec2 {
+    let (u, v) = match face {
+        0 => (z, 1 - y),
+        1 => (1 - z, 1 - y),
+        2 => (x, 1 - z),
+        3 => (x, z),
+        4 => (1 - x, 1 - y),
+        _ => (x, 1 - y),
+    };
+    Vec2::new(u as f32, v as f32)
 }
 
 /// Two directions that span the plane with this unit normal, right-handed with it: the first is horizontal; for a normal along
@@ -197,6 +270,59 @@ mod tests {
     fn the_smallest_solids_are_closed_too() {
         assert!(volume_and_closed(&Shape::sphere(DVec3::ZERO, 1.0, 3)).1);
         assert!(volume_and_closed(&Shape::cylinder(DVec3::Y, DVec3::NEG_Y, 1.0, 3, true)).1);
+    }
+
+    /// Area in the picture, with a sign: positive where the picture is not mirrored seen from outside. v runs down.
+    fn covered(shape: &Shape) -> Vec<f32> {
+        shape.corners.iter().map(|[a, b, c]| -0.5 * (*b - *a).perp_dot(*c - *a)).collect()
+    }
+
+    #[test]
+    fn a_picture_covers_every_face_once_and_is_not_mirrored() {
+        let solids = [
+            (Shape::rectangle(DVec3::ZERO, DVec3::X, DVec3::Y), 1.0),
+            (Shape::cuboid(DVec3::ZERO, DVec3::ONE), 6.0),
+            (Shape::sphere(DVec3::ZERO, 1.0, 12), 1.0 - 1.0 / 6.0),
+            (Shape::cylinder(DVec3::ZERO, DVec3::Y, 1.0, 96, false), 1.0),
+            (Shape::cylinder(DVec3::ZERO, DVec3::Y, 1.0, 96, true), 1.0 + 2.0 * 0.25 * std::f32::consts::PI),
+        ];
+        for (shape, area) in solids {
+            let covered = covered(&shape);
+            assert!(covered.iter().all(|&area| area > 0.0), "{covered:?}");
+            let sum: f32 = covered.iter().sum();
+            assert!((sum - area).abs() < 2e-3, "{sum} of {area}");
+        }
+    }
+
+    #[test]
+    fn textured_solids_keep_their_triangles() {
+        for shape in [Shape::sphere(DVec3::ONE, 2.0, 7), Shape::cuboid(DVec3::ZERO, DVec3::ONE)] {
+            let textured = shape.clone().textured();
+            assert_eq!(textured.triangles.len(), shape.triangles.len());
+            for (index, (a, b)) in shape.triangles.iter().zip(&textured.triangles).enumerate() {
+                for corner in 0..3 {
+                    let (a, b) = (a[corner] as usize, b[corner] as usize);
+                    assert_eq!(shape.positions[a], textured.positions[b]);
+                    assert_eq!(shape.normals.get(a), textured.normals.get(b));
+                    assert_eq!(textured.uvs[b], shape.corners[index][corner]);
+                }
+            }
+        }
+        // A seam from pole to pole.
+        let (plain, textured) = (Shape::sphere(DVec3::ZERO, 1.0, 8), Shape::sphere(DVec3::ZERO, 1.0, 8).textured());
+        assert_eq!(textured.positions.len() - plain.positions.len(), 3 + 2 * 7);
+    }
+
+    #[test]
+    fn pictures_stand_upright() {
+        // The middle of the upper edge of the picture on each side of a box that is 2 wide.
+        let shape = Shape::cuboid(DVec3::splat(-1.0), DVec3::ONE).textured();
+        for face in [0, 1, 4, 5] {
+            for &vertex in shape.triangles[2 * face..][..2].iter().flatten() {
+                let (position, uv) = (shape.positions[vertex as usize], shape.uvs[vertex as usize]);
+                assert_eq!(f64::from(uv.y), 0.5 - 0.5 * position.y, "face {face}");
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,14 @@
 //! Textures: pictures that colour surfaces.
 
+mod decode;
+mod files;
+mod missing_uvs;
+
 use glam::Affine2;
+
+pub(crate) use decode::decode;
+pub(crate) use files::TextureFiles;
+pub(crate) use missing_uvs::untextured;
 
 /// A picture in memory.
 ///

@@ -1,7 +1,9 @@
 //! Every shared model renders in all modes.
 
-use lightmesh_render::{Mode, Settings};
-use lightmesh_testkit::{MODELS, MODES, Picture, render};
+use glam::Vec3;
+use lightmesh_render::{Frame, Mode, Settings};
+use lightmesh_scene::Scene;
+use lightmesh_testkit::{MODELS, MODES, Picture, mean_difference, render};
 
 const SIZE: [u32; 2] = [48, 48];
 
@@ -39,4 +41,79 @@ fn no_model_is_speckled() {
     }
     assert!(all_looked_at > 20_000, "{all_looked_at} pixels on smooth pieces of surface");
     assert!(1000 * all_isolated < all_looked_at, "{all_isolated} of {all_looked_at}");
+}
+
+#[test]
+#[cfg_attr(not(shared_scenes), ignore = "needs ../shared/scenes")]
+fn files_of_one_mesh_in_two_formats_show_the_same() {
+    // One file of each pair was rounded when it was written, to some 1e-6: the triangles agree to that, and the pictures but for
+    // pixels on edges.
+    for pair in
+        [["bunny/bunny.ply", "bunny/stanford-bunny.obj"], ["spider/spider_ascii.stl", "spider/spider_binary.stl"]]
+    {
+        let [a, b] = pair.map(open);
+        let distance = corners(&a).iter().zip(corners(&b)).map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
+        assert!(corners(&a).len() == corners(&b).len() && distance < 2e-6, "{pair:?}: {distance}");
+        let [a, b] = [a, b].map(|scene| picture(&scene).image.color().as_flattened().to_vec());
+        let difference = mean_difference(&a, &b);
+        assert!(difference < 2e-4, "{pair:?}: {difference}");
+    }
+}
+
+#[test]
+#[cfg_attr(not(shared_scenes), ignore = "needs ../shared/scenes")]
+fn the_same_numbers_in_another_format_give_the_same_picture() {
+    for (file, format) in
+        [("bunny/bunny.ply", "obj"), ("spider/spider_binary.stl", "stl"), ("spider/spider_binary.stl", "ply")]
+    {
+        let scene = open(file);
+        let path = std::env::temp_dir().join(format!("lightmesh-{}-copy.{format}", std::process::id()));
+        std::fs::write(&path, text(&scene, format)).expect("the temporary folder takes files");
+        let mut copy = Scene::open(&path).expect("what was just written can be read");
+        std::fs::remove_file(&path).expect("the file was just written");
+        (copy.cameras, copy.lights) = (scene.cameras.clone(), scene.lights.clone());
+        assert!(corners(&copy) == corners(&scene), "{file} as {format}");
+        assert!(picture(&copy).image.color() == picture(&scene).image.color(), "{file} as {format}");
+    }
+}
+
+fn open(file: &str) -> Scene {
+    MODELS.iter().find(|model| model.file == file).expect("a shared model").open()
+}
+
+fn picture(scene: &Scene) -> Frame {
+    render(scene, &Settings { mode: Mode::LightMesh, size: [256, 256], ..Settings::default() })
+}
+
+fn corners(scene: &Scene) -> Vec<Vec3> {
+    (0..scene.mesh.triangles.len()).flat_map(|index| scene.mesh.corners(index)).collect()
+}
+
+/// The triangles as text of a format, each with vertices of its own, with all digits.
+fn text(scene: &Scene, format: &str) -> String {
+    let corners = corners(scene);
+    let point = |p: &Vec3| format!("{} {} {}\n", p.x, p.y, p.z);
+    let triangle = |index: usize| [3 * index, 3 * index + 1, 3 * index + 2];
+    let triangles = (0..corners.len() / 3).map(triangle);
+    match format {
+        "obj" => {
+            let points: String = corners.iter().map(|p| format!("v {}", point(p))).collect();
+            points + &triangles.map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1)).collect::<String>()
+        }
+        "ply" => {
+            let coordinates = ["x", "y", "z"].map(|name| format!("property float {name}\n")).concat();
+            let (vertices, faces) = (corners.len(), corners.len() / 3);
+            let header = format!(
+                "ply\nformat ascii 1.0\nelement vertex {vertices}\n{coordinates}element face {faces}\n\
+                 property list uchar int vertex_indices\nend_header\n"
+            );
+            let points: String = corners.iter().map(point).collect();
+            header + &points + &triangles.map(|[a, b, c]| format!("3 {a} {b} {c}\n")).collect::<String>()
+        }
+        _ => {
+            let vertices = |triangle: [usize; 3]| triangle.map(|i| format!("vertex {}", point(&corners[i]))).concat();
+            let facet = |t| format!("facet normal 0 0 0\nouter loop\n{}endloop\nendfacet\n", vertices(t));
+            format!("solid\n{}endsolid\n", triangles.map(facet).collect::<String>())
+        }
+    }
 }

@@ -40,6 +40,8 @@ pub(crate) enum Command {
     Grid(GridArgs),
     /// Write a built-in or loaded scene as files
     Export(ExportArgs),
+    /// Print the JSON Schema of scene files in TOML, for editors and checkers
+    Schema,
     /// Print a script that completes command lines in a shell
     Completions(CompletionsArgs),
     /// Print the manual page
@@ -47,12 +49,27 @@ pub(crate) enum Command {
 }
 
 /// Where a scene comes from.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct SceneArg {
-    /// A .toml, .obj, .gltf or .glb file, or builtin:gazebo, builtin:childpark, builtin:garden (also with options, as in
+    /// A .toml, .obj, .gltf, .glb, .ply or .stl file, or builtin:gazebo, builtin:childpark, builtin:garden (also with options, as in
     /// builtin:garden?lights=3)
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
+}
+
+/// How a scene is read.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct ReadingArgs {
+    /// Follow references out of the folder that the scene lies in; elsewhere lies what its author cannot know
+    #[arg(long, help_heading = "Reading")]
+    pub(crate) allow_outside: bool,
+
+    /// End with exit code 2 where there is something to warn of
+    #[arg(long, help_heading = "Reading")]
+    pub(crate) strict: bool,
 }
 
 /// Say what is in a scene, or which devices can be used
@@ -61,6 +78,9 @@ pub(crate) struct InfoArgs {
     /// The scene to describe
     #[arg(value_name = "SCENE", required_unless_present = "devices", conflicts_with = "devices")]
     pub(crate) scene: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
 
     /// List the devices, and why those that cannot be used cannot
     #[arg(long)]

@@ -6,7 +6,7 @@ use clap::Args;
 use lightmesh::Device;
 
 use super::{Accel, Falloff, Lookup, Mode, Progress, SceneArg, ShortTests, Transfer, Up, Weight};
-use crate::value::{ByteSize, CameraView, Color, Dims, LightSpec, Positive, Size, StepValue};
+use crate::value::{ByteSize, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size, StepValue};
 
 /// Render one picture of a scene
 #[derive(Debug, Args)]
@@ -62,6 +62,17 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_enum, default_value_t = Transfer::Srgb, help_heading = "Picture")]
     pub(crate) transfer: Transfer,
 
+    /// How many stops brighter 8-bit files show the picture, one stop doubling it; auto brings any light level into range. An exr
+    /// and --layers hold what was computed
+    #[arg(
+        long,
+        value_name = "STOPS|auto",
+        allow_negative_numbers = true,
+        default_value = "0",
+        help_heading = "Picture"
+    )]
+    pub(crate) exposure: Exposure,
+
     /// Write what each pixel saw as a multilayer exr: colour, depth, normal, position, visibility of each light, light
     /// points used [default: off]
     #[arg(long, value_name = "F.exr", help_heading = "Picture")]
@@ -77,12 +88,12 @@ pub(crate) struct RenderArgs {
     pub(crate) camera_name: Option<String>,
 
     /// Which way is up for --camera and for the camera that frames the scene
-    #[arg(long, value_enum, default_value_t = Up::Y, help_heading = "Scene")]
+    #[arg(long, value_enum, default_value_t = Up::Auto, help_heading = "Scene")]
     pub(crate) up: Up,
 
     /// Replace the scene's lights: position, intensity (one number or r,g,b; 1 where left out) and radius, as in
     /// "3,8,2;0.9,0.8,0.7;0.25"; repeatable. A radius above 0 makes a ball, which area and light-mesh mode sample
-    /// [default: the scene's, else one key light above the camera]
+    /// [default: the scene's, else a key light above the camera and a weaker fill light on its other side]
     #[arg(long = "light", value_name = "P[;I[;RADIUS]]", allow_hyphen_values = true, help_heading = "Scene")]
     pub(crate) lights: Vec<LightSpec>,
 

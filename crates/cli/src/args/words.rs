@@ -1,5 +1,7 @@
 //! The values of flags that are chosen from a list, and what they stand for in the library.
 
+use std::path::Path;
+
 use clap::ValueEnum;
 use lightmesh::{render, scene};
 
@@ -95,15 +97,19 @@ pub(crate) enum Accel {
 /// Which axis points up.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Up {
+    /// What files of the scene's kind have: z for STL, else y
+    Auto,
     /// glTF, most OBJ
     Y,
     /// CAD, most STL
     Z,
 }
 
-impl From<Up> for scene::Up {
-    fn from(up: Up) -> scene::Up {
-        match up {
+impl Up {
+    /// The axis, for the scene in this file.
+    pub(crate) fn of(self, scene: &Path) -> scene::Up {
+        match self {
+            Up::Auto => scene::Up::of_file(scene),
             Up::Y => scene::Up::Y,
             Up::Z => scene::Up::Z,
         }

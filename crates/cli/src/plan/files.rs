@@ -8,6 +8,7 @@ use lightmesh::{SaveError, Transfer};
 use super::PlanError;
 use crate::args::RenderArgs;
 use crate::output;
+use crate::value::Exposure;
 
 /// What to write, and how.
 pub(crate) struct PictureFiles {
@@ -15,6 +16,8 @@ pub(crate) struct PictureFiles {
     pub(crate) picture: PathBuf,
     /// Transfer function of 8-bit pictures, and the word for it.
     pub(crate) transfer: (Transfer, &'static str),
+    /// How much brighter 8-bit pictures are.
+    pub(crate) exposure: Exposure,
     /// The multilayer exr.
     pub(crate) layers: Option<PathBuf>,
     /// The statistics.
@@ -44,6 +47,7 @@ impl PictureFiles {
         Ok(PictureFiles {
             picture: args.output.clone(),
             transfer: (args.transfer.into(), args.transfer.name()),
+            exposure: args.exposure,
             layers: args.layers.clone(),
             stats: args.stats.clone(),
         })

@@ -5,11 +5,10 @@ mod scene;
 mod settings;
 
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
 
 use lightmesh::{Device, SaveError, Settings};
 
-use crate::args::RenderArgs;
+use crate::args::{RenderArgs, SceneArg};
 use crate::output::OutputError;
 pub(crate) use files::PictureFiles;
 pub(crate) use scene::SceneChoices;
@@ -32,7 +31,7 @@ pub(crate) enum PlanError {
 /// A render, checked as far as it can be without the scene.
 pub(crate) struct RenderPlan {
     /// The scene to open.
-    pub(crate) scene: PathBuf,
+    pub(crate) scene: SceneArg,
     /// What replaces parts of it.
     pub(crate) choices: SceneChoices,
     /// Everything else about the picture; the camera comes from `choices`.
@@ -51,7 +50,7 @@ impl RenderPlan {
         let settings = settings::settings(args)?;
         let files = PictureFiles::new(args)?;
         Ok(RenderPlan {
-            scene: args.scene.scene.clone(),
+            scene: args.scene.clone(),
             choices: SceneChoices::new(args),
             settings,
             device: args.device,

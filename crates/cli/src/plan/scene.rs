@@ -22,7 +22,7 @@ impl SceneChoices {
         SceneChoices {
             camera: args.camera,
             camera_name: args.camera_name.clone(),
-            up: args.up.into(),
+            up: args.up.of(&args.scene.scene),
             lights: args.lights.clone(),
             falloff: args.falloff.into(),
             ambient: args.ambient,
@@ -35,8 +35,11 @@ impl SceneChoices {
         if !self.lights.is_empty() {
             scene.lights = self.lights.iter().map(|light| self.light(scene, light)).collect();
         } else if scene.lights.is_empty() {
-            observer.note("the scene has no light: taking a key light above the camera (--light places others)");
-            scene.lights.push(scene.default_light(&camera));
+            observer.note(
+                "the scene has no light: taking a key light above the camera and a weaker fill light on its other side (--light \
+                 places others)",
+            );
+            scene.lights.extend(scene.default_lights(&camera));
         }
         if let Some(Color(ambient)) = self.ambient {
             scene.ambient = Some(ambient);
@@ -52,7 +55,10 @@ impl SceneChoices {
             return Ok(placed(scene, view, self.up));
         }
         Ok(scene.cameras.first().cloned().unwrap_or_else(|| {
-            observer.note("the scene has no camera: taking one that frames it (--camera and --up set another)");
+            let up = self.up.name();
+            observer.note(&format!(
+                "the scene has no camera: taking one that frames it from the front, with {up} up (--camera and --up set another)"
+            ));
             scene.default_camera(self.up)
         }))
     }

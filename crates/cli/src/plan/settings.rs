@@ -12,7 +12,7 @@ pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
         bounces: args.bounces,
         size: args.size.0,
         camera: None,
-        up: args.up.into(),
+        up: args.up.of(&args.scene.scene),
         step: args.step.map(|step| step.0),
         radius: args.radius.map(|radius| radius.0),
         weight: args.weight.map(Into::into),

@@ -1,7 +1,6 @@
 //! `lightmesh export`.
 
-use lightmesh::Scene;
-
+use super::open::open;
 use crate::args::ExportArgs;
 use crate::failure::Failure;
 use crate::progress::Watcher;
@@ -11,8 +10,7 @@ pub(super) fn run(args: &ExportArgs) -> Result<(), Failure> {
     output::check_writable(&args.output)?;
     output::check_distinct(&[("the scene", Some(&args.scene.scene)), ("-o", Some(&args.output))])?;
     let watcher = Watcher::plain(args.quiet);
-    let scene = Scene::open(&args.scene.scene)?;
-    scene.warnings.iter().for_each(|warning| watcher.warning(warning));
+    let scene = open(&args.scene, &watcher)?;
     interrupt::watch();
     scene.export(&args.output)?;
     watcher.summary(&format!("{}, {} triangles: {}", scene.name, scene.mesh.triangles.len(), args.output.display()));

@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use lightmesh::Scene;
 use lightmesh::render::accel::{Grid, GridOptions, Levels, Triangle};
 
+use super::open::open;
 use crate::args::GridArgs;
 use crate::failure::Failure;
 use crate::progress::Watcher;
@@ -14,8 +14,7 @@ pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
     output::check_writable(&args.output)?;
     output::check_distinct(&[("the scene", Some(&args.scene.scene)), ("-o", Some(&args.output))])?;
     let watcher = Watcher::plain(args.quiet);
-    let scene = Scene::open(&args.scene.scene)?;
-    scene.warnings.iter().for_each(|warning| watcher.warning(warning));
+    let scene = open(&args.scene, &watcher)?;
 
     let start = Instant::now();
     let levels = if args.levels == 1 { Levels::One } else { Levels::Two };

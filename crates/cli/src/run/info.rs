@@ -1,9 +1,12 @@
 //! `lightmesh info`.
 
-use lightmesh::Scene;
+use std::path::Path;
+
 use lightmesh::render::{DeviceReport, devices};
+use lightmesh::scene::{Up, UpInfo};
 use serde::Serialize;
 
+use super::open::read;
 use crate::args::InfoArgs;
 use crate::failure::Failure;
 use crate::output;
@@ -17,14 +20,22 @@ struct Devices {
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let text = match &args.scene {
         Some(path) => {
-            let scene = Scene::open(path)?;
-            let info = scene.info();
+            let scene = read(path, args.reading)?;
+            let mut info = scene.info();
+            info.up.get_or_insert_with(|| usual_up(path));
             if args.json { json(&info) } else { format!("scene   {}\n{info}", scene.name) }
         }
         None if args.json => json(&Devices { devices: devices() }),
         None => devices().iter().map(device_line).collect(),
     };
     Ok(output::print(&text)?)
+}
+
+/// For scenes that do not show it themselves.
+fn usual_up(path: &Path) -> UpInfo {
+    let kind =
+        path.extension().map_or_else(|| "built-in scenes".to_owned(), |ending| format!(".{} files", ending.display()));
+    UpInfo { axis: Up::of_file(path).name(), reason: format!("its shape does not tell, and {kind} mostly have it so") }
 }
 
 fn device_line(DeviceReport { device, name, usable, remark, .. }: &DeviceReport) -> String {

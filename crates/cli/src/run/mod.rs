@@ -6,10 +6,14 @@ mod export;
 mod grid;
 mod info;
 mod man;
+mod open;
 mod render;
+
+use lightmesh::Scene;
 
 use crate::args::Command;
 use crate::failure::Failure;
+use crate::output;
 
 /// Does what was asked for; gives the exit code.
 pub(crate) fn run(command: Command) -> Result<u8, Failure> {
@@ -19,6 +23,7 @@ pub(crate) fn run(command: Command) -> Result<u8, Failure> {
         Command::Compare(args) => compare::run(&args),
         Command::Grid(args) => grid::run(&args),
         Command::Export(args) => export::run(&args),
+        Command::Schema => output::print(&Scene::file_schema()).map_err(Failure::from),
         Command::Completions(args) => completions::run(&args),
         Command::Man(args) => man::run(&args),
     }?;

@@ -2,14 +2,17 @@
 
 use std::time::Instant;
 
+use lightmesh::image::{self, Format};
 use lightmesh::render::Choice;
 use lightmesh::{Device, Frame, Observer, RenderError, Renderer, Scene};
 
+use super::open::open;
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::plan::{PictureFiles, RenderPlan};
 use crate::progress::Watcher;
 use crate::report::{Report, json};
+use crate::value::Exposure;
 use crate::{interrupt, output};
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
@@ -19,9 +22,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let reason = choice.reason.clone();
     let renderer = Renderer::on(choice, plan.threads.map(usize::from))?;
     let start = Instant::now();
-    let mut scene = Scene::open(&plan.scene)?;
+    let mut scene = open(&plan.scene, &watcher)?;
     let load = start.elapsed().as_secs_f64();
-    scene.warnings.iter().for_each(|warning| watcher.warning(warning));
     if matches!(plan.device, Device::Auto | Device::Cuda(None)) {
         watcher.note(&format!("device {} takes {}", plan.device, reason));
     }
@@ -37,26 +39,43 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
 
     frame.stats.seconds.load = load;
-    write(&mut frame, &scene, &plan.files)?;
+    write(&mut frame, &scene, &plan.files, &watcher)?;
     watcher.summary(&summary(&frame, &plan.files));
     Ok(())
 }
 
 /// Writes all files; the statistics last, because they say how long the others took.
-fn write(frame: &mut Frame, scene: &Scene, files: &PictureFiles) -> Result<(), Failure> {
+fn write(frame: &mut Frame, scene: &Scene, files: &PictureFiles, watcher: &Watcher) -> Result<(), Failure> {
     let start = Instant::now();
     let (transfer, transfer_name) = files.transfer;
-    frame.image.save_with(&files.picture, transfer)?;
     if let Some(path) = &files.layers {
         frame.image.save_layers(path)?;
     }
+    let stops = exposure(&frame.image, files, watcher);
+    if stops != 0.0 {
+        frame.image.expose(stops);
+    }
+    frame.image.save_with(&files.picture, transfer)?;
     frame.stats.seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &files.stats {
         let lights = scene.info().lights;
-        let report = Report::new(&frame.stats, transfer_name, &lights);
+        let report = Report::new(&frame.stats, transfer_name, stops, &lights);
         output::write(path, json(&report).as_bytes())?;
     }
     Ok(())
+}
+
+/// Stops that the picture's file is brightened by: none where it holds linear values.
+fn exposure(image: &image::Frame, files: &PictureFiles, watcher: &Watcher) -> f32 {
+    match files.exposure {
+        _ if Format::from_path(&files.picture) == Some(Format::Exr) => 0.0,
+        Exposure::Stops(stops) => stops,
+        Exposure::Auto => {
+            let stops = image.auto_exposure();
+            watcher.note(&format!("exposure auto takes {stops} stops (--exposure {stops} keeps them)"));
+            stops
+        }
+    }
 }
 
 fn summary(frame: &Frame, files: &PictureFiles) -> String {

@@ -11,7 +11,7 @@ mod size;
 pub(crate) use camera::CameraView;
 pub(crate) use light::{Color, LightSpec};
 pub(crate) use memory::ByteSize;
-pub(crate) use number::{Bound, Positive, StepValue};
+pub(crate) use number::{Bound, Exposure, Positive, StepValue};
 pub(crate) use size::{Dims, Size};
 
 /// What is wrong with the text of a value. The parser of the command line puts the flag and the text before it.

@@ -63,6 +63,37 @@ impl FromStr for Bound {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StepValue(pub(crate) Step);
 
+/// How much brighter a picture is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Exposure {
+    /// As the picture needs it.
+    Auto,
+    /// By so many stops.
+    Stops(f32),
+}
+
+/// Stops beyond which single precision has no brightness left.
+const MAX_STOPS: f32 = 100.0;
+
+impl FromStr for Exposure {
+    type Err = ValueError;
+
+    fn from_str(text: &str) -> Result<Exposure, ValueError> {
+        if text == "auto" {
+            return Ok(Exposure::Auto);
+        }
+        let stops = number(text)? as f32;
+        if stops.abs() <= MAX_STOPS {
+            return Ok(Exposure::Stops(stops));
+        }
+        Err(ValueError::OutOfRange {
+            what: "the exposure",
+            text: text.trim().to_owned(),
+            range: "from -100 to 100 stops",
+        })
+    }
+}
+
 impl FromStr for StepValue {
     type Err = ValueError;
 
@@ -90,6 +121,11 @@ mod tests {
 
     #[test]
     fn a_step_is_a_number_or_auto() {
+        assert_eq!(["auto".parse(), "-2.5".parse()], [Ok(Exposure::Auto), Ok(Exposure::Stops(-2.5))]);
+        assert_eq!(
+            "1e9".parse::<Exposure>().unwrap_err().to_string(),
+            "the exposure 1e9 is not from -100 to 100 stops"
+        );
         assert_eq!("auto".parse(), Ok(StepValue(Step::Auto)));
         assert_eq!("1e-1".parse(), Ok(StepValue(Step::Fixed(0.1))));
         let message = "-2".parse::<StepValue>().unwrap_err().to_string();

@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::run::Place;
 
 /// The flags of `render` that other programs rely on.
-const FLAGS: [&str; 29] = [
+const FLAGS: [&str; 32] = [
     "--mode",
     "--bounces",
     "--size",
@@ -27,6 +27,9 @@ const FLAGS: [&str; 29] = [
     "--ambient",
     "--layers",
     "--transfer",
+    "--exposure",
+    "--allow-outside",
+    "--strict",
     "--seed",
     "--stats",
     "--progress",

@@ -34,11 +34,12 @@ fn values_of_another_form_are_shown_the_form() {
     let size = "error: invalid value '640' for '--size <WxH>': write WIDTHxHEIGHT, both whole numbers of at least 1, for \
                 instance 1024x768";
     assert_eq!(place.refused(&["render", "room.toml", "-o", "a.png", "--size", "640"]), size);
-    let cases: [(&[&str], &str); 14] = [
+    let cases: [(&[&str], &str); 15] = [
         (&["--camera", "1,2,3"], "write POSITION;TARGET;VERTICAL ANGLE"),
         (&["--camera", "0,0,1;0,0,1;40"], "position and target are the same point"),
         (&["--light", "1,2"], "write POSITION, POSITION;INTENSITY or"),
         (&["--light", "1,2,3;1;-2"], "the radius -2 is not 0 or more"),
+        (&["--exposure", "bright"], "`bright` is not a number"),
         (&["--ambient", "1,2"], "red,green,blue"),
         (&["--step", "-1"], "the number -1 is not above 0"),
         (&["--radius", "nan"], "`nan` is not a number"),
@@ -65,7 +66,7 @@ fn an_unknown_word_is_answered_with_the_known() {
         ("--lookup", "auto, half-ball"),
         ("--short-tests", "cells, plain"),
         ("--accel", "auto, grid, bvh"),
-        ("--up", "y, z"),
+        ("--up", "auto, y, z"),
         ("--falloff", "none, inverse-square"),
         ("--transfer", "srgb, linear"),
         ("--progress", "auto, bar, json, none"),

@@ -23,7 +23,10 @@ fn choices_made_for_the_user_are_said_and_quiet_is_quiet() {
     let place = Place::new();
     let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16"]);
     assert!(done.stderr.contains("device auto takes "), "{done:?}");
-    assert!(done.stderr.contains("the scene has no light: taking a key light above the camera (--light"), "{done:?}");
+    assert!(
+        done.stderr.contains("the scene has no light: taking a key light above the camera and a weaker fill light"),
+        "{done:?}"
+    );
     assert!(done.stderr.contains("chosen for this picture (--step sets another)"), "{done:?}");
     assert!(!done.stderr.contains("no camera"), "{done:?}");
     let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16", "-q"]);
@@ -36,7 +39,11 @@ fn a_scene_without_camera_is_framed() {
     place.write("ball.toml", "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n");
     let pictures = ["y", "z"].map(|up| {
         let done = place.good(&["render", "ball.toml", "-o", "a.exr", "--size", "16x16", "--up", up]);
-        assert!(done.stderr.contains("the scene has no camera: taking one that frames it (--camera"), "{done:?}");
+        assert!(
+            done.stderr
+                .contains(&format!("the scene has no camera: taking one that frames it from the front, with {up} up")),
+            "{done:?}"
+        );
         place.read("a.exr")
     });
     assert_ne!(pictures[0], pictures[1]);
@@ -190,4 +197,69 @@ fn progress_is_one_json_object_a_line() {
     // A bar is for terminals: here there is none.
     let bar = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16", "--progress", "bar", "-q"]);
     assert_eq!(bar.stderr, "");
+}
+
+#[test]
+fn exposure_brightens_8_bit_files_alone() {
+    let place = Place::new();
+    let render = |name: &str, flags: &[&str]| {
+        let base = ["render", "room.toml", "-o", name, "--size", "32x24", "--light", LAMP, "--stats", "s.json"];
+        let done = place.good(&[&base, flags].concat());
+        (Frame::load(place.path(name)).unwrap(), place.json("s.json")["settings"]["exposure"].as_f64().unwrap(), done)
+    };
+    let linear = ["--transfer", "linear"];
+    let (plain, zero, _) = render("a.png", &linear);
+    let (darker, stops, _) = render("b.png", &[&linear[..], &["--exposure", "-1"]].concat());
+    assert_eq!((zero, stops), (0.0, -1.0));
+    for (plain, darker) in plain.color().as_flattened().iter().zip(darker.color().as_flattened()) {
+        assert!(*plain >= 1.0 || (0.5 * plain - darker).abs() < 1.6 / 255.0, "{plain} {darker}");
+    }
+    let (as_computed, ..) = render("a.exr", &[]);
+    let (exposed, none, _) = render("b.exr", &["--exposure", "5", "--layers", "c.exr"]);
+    assert_eq!((as_computed.color(), none), (exposed.color(), 0.0));
+    let (_, stops, _) = render("a.png", &["--exposure", "5", "--layers", "d.exr"]);
+    let layers = Frame::load(place.path("d.exr")).unwrap();
+    assert_eq!((layers.color(), stops), (as_computed.color(), 5.0));
+}
+
+#[test]
+fn any_light_level_comes_into_range() {
+    let place = Place::new();
+    let pictures = ["1e-4", "0.9", "5e6"].map(|intensity| {
+        let light = format!("3,5,2;{intensity}");
+        let base = ["render", "room.toml", "-o", "a.png", "--size", "32x24", "--ambient", "0", "--exposure", "auto"];
+        let done = place.good(&[&base[..], &["--light", &light]].concat());
+        assert!(done.stderr.contains("exposure auto takes "), "{done:?}");
+        place.read("a.png")
+    });
+    let mean = |bytes: &[u8]| {
+        let frame = Frame::decode(bytes).unwrap();
+        frame.color().as_flattened().iter().sum::<f32>() / frame.color().as_flattened().len() as f32
+    };
+    for picture in &pictures {
+        assert!((mean(picture) - mean(&pictures[0])).abs() < 0.01 && mean(picture) > 0.05, "{}", mean(picture));
+    }
+}
+
+#[test]
+fn strict_reading_ends_with_the_warnings() {
+    let place = Place::new();
+    place.write(
+        "bare.toml",
+        "[[material]]\nname = \"oak\"\ntexture = \"../oak.png\"\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n",
+    );
+    for command in [
+        &["render", "-o", "a.png", "--size", "8x8"][..],
+        &["info"],
+        &["grid", "-o", "a.grid"],
+        &["export", "-o", "a.glb"],
+    ] {
+        let message = place.refused(&[command, &["bare.toml", "--strict"]].concat());
+        assert!(message.contains("`../oak.png` lies outside the scene's folder, bare.toml"), "{message}");
+        let message = place.refused(&[command, &["bare.toml", "--strict", "--allow-outside"]].concat());
+        assert!(message.contains("../oak.png; check that it exists"), "{message}");
+    }
+    let done = place.good(&["render", "-o", "a.png", "--size", "8x8", "bare.toml"]);
+    let warnings = done.stderr.lines().filter(|line| line.starts_with("warning: ")).count();
+    assert_eq!(warnings, 1, "{done:?}");
 }

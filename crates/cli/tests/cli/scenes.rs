@@ -42,3 +42,56 @@ fn an_exported_scene_gives_the_same_picture() {
     let refused = place.refused(&["export", "room.toml", "-o", "room.obj"]);
     assert!(refused.contains("`.obj` is not a format that can be written"), "{refused}");
 }
+
+#[test]
+fn info_says_which_way_is_up() {
+    let place = Place::new();
+    let up = |name: &str| {
+        let json: Value = serde_json::from_str(&place.good(&["info", name, "--json"]).stdout).unwrap();
+        json["up"].clone()
+    };
+    place.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n");
+    place.write("table.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\nf 1 2 3\nf 1 4 5\n");
+    assert_eq!(up("sheet.obj")["axis"], "y");
+    assert!(up("sheet.obj")["reason"].as_str().unwrap().contains(".obj files mostly"), "{}", up("sheet.obj"));
+    assert_eq!(
+        up("table.obj"),
+        serde_json::json!({"axis": "z", "reason": "it stands on a flat ground at its lowest z"})
+    );
+    assert!(place.good(&["info", "room.toml"]).stdout.contains("up      y: its cameras stand that way"));
+}
+
+#[test]
+fn the_schema_is_the_published_one() {
+    let published =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scene.schema.json")).unwrap();
+    let printed: Value = serde_json::from_str(&Place::new().good(&["schema"]).stdout).unwrap();
+    assert!(printed == serde_json::from_str::<Value>(&published).unwrap());
+}
+
+/// A picture of 2 x 2 texels: red, green, blue and white.
+const TILES: &[u8] = b"BM\x46\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\x02\0\0\0\x02\0\0\0\x01\0\x18\0\0\0\0\0\x10\0\0\0\
+    \0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\xff\0\0\xff\xff\xff\0\0\0\0\xff\0\xff\0\0\0";
+
+#[test]
+fn an_exported_scene_keeps_its_textures_in_every_byte_of_the_picture() {
+    let place = Place::new();
+    std::fs::write(place.path("tiles.bmp"), TILES).unwrap();
+    let material = "[[material]]\nname = \"tiles\"\nks = 0.2\ntexture = \"tiles.bmp\"\ntexture_scale = [3, 2]\ntexture_rotate = 20\n";
+    let look = "[camera]\nposition = [2, 3, 5]\ndirection = [0, 0, -1]\nup = [0, 1, 0]\nvfov = 60\n";
+    let shapes = "[[plane]]\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nsize = [12, 12]\nmaterial = \"tiles\"\n\
+                  [[sphere]]\ncenter = [2, 3, 1]\nradius = 1\nmaterial = \"tiles\"\n";
+    place.write("tiled.toml", &format!("{look}{material}{shapes}"));
+    let render = |scene: &str| {
+        place.good(&["render", scene, "-o", "a.exr", "--size", "64x48", "-q", "--mode", "ray-trace", "--bounces", "1"]);
+        place.read("a.exr")
+    };
+    let original = render("tiled.toml");
+    place.write("plain.toml", &format!("{look}[[material]]\nname = \"tiles\"\nks = 0.2\n{shapes}"));
+    assert!(original != render("plain.toml"));
+    for name in ["copy.glb", "copy.toml"] {
+        place.good(&["export", "tiled.toml", "-o", name, "--quiet"]);
+        assert!(original == render(name), "{name}");
+    }
+    assert!(!place.files().contains(&"copy.bmp".to_owned()));
+}

@@ -10,6 +10,8 @@ mod scenes;
 #[cfg(unix)]
 mod stages;
 #[cfg(unix)]
+mod textured;
+#[cfg(unix)]
 mod trials;
 
 fn main() -> std::process::ExitCode {

@@ -4,7 +4,7 @@ use lightmesh_image::{Layers, Transfer};
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{Frame, Mode, Settings, Step, Unobserved, render_on};
 
-use crate::scenes::{SUBJECTS, Subject};
+use crate::scenes::{SUBJECTS, Subject, TEXTURED};
 use crate::stages::{SHARE_TOLERANCE, alike};
 use crate::trials::{Case, Target};
 
@@ -12,7 +12,7 @@ const SIZE: [u32; 2] = [45, 37];
 
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     let mut cases = Vec::new();
-    for subject in &SUBJECTS {
+    for subject in SUBJECTS.iter().chain([&TEXTURED]) {
         for mode in [Mode::LightMesh, Mode::RayTrace, Mode::Area] {
             let name = format!("{}::picture::{}", subject.name, mode.name());
             cases.push(Case::new(name, move |cuda| same_picture(cuda, subject, mode)));

@@ -40,6 +40,9 @@ pub(crate) static SUBJECTS: [Subject; 8] = [
     subject("empty", 1.0, true, || SceneDraft::new().point_light([0.0; 3]).camera([1.0; 3], [0.0; 3]).finish("empty")),
 ];
 
+/// For pictures alone: what it adds matters to no other stage than shading.
+pub(crate) static TEXTURED: Subject = subject("textured", 0.25, true, crate::textured::textured);
+
 impl Subject {
     /// The scene.
     pub(crate) fn scene(&'static self) -> &'static Scene {

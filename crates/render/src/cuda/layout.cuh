@@ -237,30 +237,66 @@ struct alignas(4) Indices {
 static_assert(sizeof(Indices) == 12, "size of Indices");
 static_assert(PLACE_OF(Indices, vertices) == 0, "place of Indices::vertices");
 
+struct alignas(4) Uv {
+    float u;
+    float v;
+};
+static_assert(sizeof(Uv) == 8, "size of Uv");
+static_assert(PLACE_OF(Uv, u) == 0, "place of Uv::u");
+static_assert(PLACE_OF(Uv, v) == 4, "place of Uv::v");
+
+struct alignas(8) Texture {
+    const unsigned *texels;
+    unsigned size[2];
+    unsigned wrap[2];
+    float u_axis[2];
+    float v_axis[2];
+    float translation[2];
+};
+static_assert(sizeof(Texture) == 48, "size of Texture");
+static_assert(PLACE_OF(Texture, texels) == 0, "place of Texture::texels");
+static_assert(PLACE_OF(Texture, size) == 8, "place of Texture::size");
+static_assert(PLACE_OF(Texture, wrap) == 16, "place of Texture::wrap");
+static_assert(PLACE_OF(Texture, u_axis) == 24, "place of Texture::u_axis");
+static_assert(PLACE_OF(Texture, v_axis) == 32, "place of Texture::v_axis");
+static_assert(PLACE_OF(Texture, translation) == 40, "place of Texture::translation");
+
 struct alignas(4) Material {
     Vec3 ka;
     float shininess;
     Vec3 kd;
-    unsigned spare_a;
+    unsigned tinted;
     Vec3 ks;
-    unsigned spare_b;
+    unsigned texture;
     Vec3 emission;
+    unsigned spare_a;
+    Vec3 ks_tinted;
+    unsigned spare_b;
+    Vec3 emission_tinted;
     unsigned spare_c;
 };
-static_assert(sizeof(Material) == 64, "size of Material");
+static_assert(sizeof(Material) == 96, "size of Material");
 static_assert(PLACE_OF(Material, ka) == 0, "place of Material::ka");
 static_assert(PLACE_OF(Material, shininess) == 12, "place of Material::shininess");
 static_assert(PLACE_OF(Material, kd) == 16, "place of Material::kd");
-static_assert(PLACE_OF(Material, spare_a) == 28, "place of Material::spare_a");
+static_assert(PLACE_OF(Material, tinted) == 28, "place of Material::tinted");
 static_assert(PLACE_OF(Material, ks) == 32, "place of Material::ks");
-static_assert(PLACE_OF(Material, spare_b) == 44, "place of Material::spare_b");
+static_assert(PLACE_OF(Material, texture) == 44, "place of Material::texture");
 static_assert(PLACE_OF(Material, emission) == 48, "place of Material::emission");
-static_assert(PLACE_OF(Material, spare_c) == 60, "place of Material::spare_c");
+static_assert(PLACE_OF(Material, spare_a) == 60, "place of Material::spare_a");
+static_assert(PLACE_OF(Material, ks_tinted) == 64, "place of Material::ks_tinted");
+static_assert(PLACE_OF(Material, spare_b) == 76, "place of Material::spare_b");
+static_assert(PLACE_OF(Material, emission_tinted) == 80, "place of Material::emission_tinted");
+static_assert(PLACE_OF(Material, spare_c) == 92, "place of Material::spare_c");
 
 struct alignas(8) Scene {
     const Triangle *triangles;
     const Indices *indices;
     const Vec3 *normals;
+    const Uv *uvs;
+    const Vec3 *colors;
+    const Texture *textures;
+    const float *srgb;
     const unsigned *triangle_materials;
     const Material *materials;
     const Light *lights;
@@ -275,23 +311,27 @@ struct alignas(8) Scene {
     float far;
     unsigned spare;
 };
-static_assert(sizeof(Scene) == 272, "size of Scene");
+static_assert(sizeof(Scene) == 304, "size of Scene");
 static_assert(PLACE_OF(Scene, triangles) == 0, "place of Scene::triangles");
 static_assert(PLACE_OF(Scene, indices) == 8, "place of Scene::indices");
 static_assert(PLACE_OF(Scene, normals) == 16, "place of Scene::normals");
-static_assert(PLACE_OF(Scene, triangle_materials) == 24, "place of Scene::triangle_materials");
-static_assert(PLACE_OF(Scene, materials) == 32, "place of Scene::materials");
-static_assert(PLACE_OF(Scene, lights) == 40, "place of Scene::lights");
-static_assert(PLACE_OF(Scene, light_targets) == 48, "place of Scene::light_targets");
-static_assert(PLACE_OF(Scene, grid) == 56, "place of Scene::grid");
-static_assert(PLACE_OF(Scene, bvh) == 152, "place of Scene::bvh");
-static_assert(PLACE_OF(Scene, brute_force) == 192, "place of Scene::brute_force");
-static_assert(PLACE_OF(Scene, light_count) == 224, "place of Scene::light_count");
-static_assert(PLACE_OF(Scene, ambient) == 228, "place of Scene::ambient");
-static_assert(PLACE_OF(Scene, background) == 240, "place of Scene::background");
-static_assert(PLACE_OF(Scene, center) == 252, "place of Scene::center");
-static_assert(PLACE_OF(Scene, far) == 264, "place of Scene::far");
-static_assert(PLACE_OF(Scene, spare) == 268, "place of Scene::spare");
+static_assert(PLACE_OF(Scene, uvs) == 24, "place of Scene::uvs");
+static_assert(PLACE_OF(Scene, colors) == 32, "place of Scene::colors");
+static_assert(PLACE_OF(Scene, textures) == 40, "place of Scene::textures");
+static_assert(PLACE_OF(Scene, srgb) == 48, "place of Scene::srgb");
+static_assert(PLACE_OF(Scene, triangle_materials) == 56, "place of Scene::triangle_materials");
+static_assert(PLACE_OF(Scene, materials) == 64, "place of Scene::materials");
+static_assert(PLACE_OF(Scene, lights) == 72, "place of Scene::lights");
+static_assert(PLACE_OF(Scene, light_targets) == 80, "place of Scene::light_targets");
+static_assert(PLACE_OF(Scene, grid) == 88, "place of Scene::grid");
+static_assert(PLACE_OF(Scene, bvh) == 184, "place of Scene::bvh");
+static_assert(PLACE_OF(Scene, brute_force) == 224, "place of Scene::brute_force");
+static_assert(PLACE_OF(Scene, light_count) == 256, "place of Scene::light_count");
+static_assert(PLACE_OF(Scene, ambient) == 260, "place of Scene::ambient");
+static_assert(PLACE_OF(Scene, background) == 272, "place of Scene::background");
+static_assert(PLACE_OF(Scene, center) == 284, "place of Scene::center");
+static_assert(PLACE_OF(Scene, far) == 296, "place of Scene::far");
+static_assert(PLACE_OF(Scene, spare) == 300, "place of Scene::spare");
 
 struct alignas(8) Sampling {
     unsigned long long seed;
@@ -396,12 +436,12 @@ struct alignas(8) PrimaryRays {
     Tally tally;
     unsigned long long first_block;
 };
-static_assert(sizeof(PrimaryRays) == 376, "size of PrimaryRays");
+static_assert(sizeof(PrimaryRays) == 408, "size of PrimaryRays");
 static_assert(PLACE_OF(PrimaryRays, scene) == 0, "place of PrimaryRays::scene");
-static_assert(PLACE_OF(PrimaryRays, rays) == 272, "place of PrimaryRays::rays");
-static_assert(PLACE_OF(PrimaryRays, hits) == 352, "place of PrimaryRays::hits");
-static_assert(PLACE_OF(PrimaryRays, tally) == 360, "place of PrimaryRays::tally");
-static_assert(PLACE_OF(PrimaryRays, first_block) == 368, "place of PrimaryRays::first_block");
+static_assert(PLACE_OF(PrimaryRays, rays) == 304, "place of PrimaryRays::rays");
+static_assert(PLACE_OF(PrimaryRays, hits) == 384, "place of PrimaryRays::hits");
+static_assert(PLACE_OF(PrimaryRays, tally) == 392, "place of PrimaryRays::tally");
+static_assert(PLACE_OF(PrimaryRays, first_block) == 400, "place of PrimaryRays::first_block");
 
 struct alignas(8) ShadowRays {
     Scene scene;
@@ -413,15 +453,15 @@ struct alignas(8) ShadowRays {
     Tally tally;
     unsigned long long first_block;
 };
-static_assert(sizeof(ShadowRays) == 408, "size of ShadowRays");
+static_assert(sizeof(ShadowRays) == 440, "size of ShadowRays");
 static_assert(PLACE_OF(ShadowRays, scene) == 0, "place of ShadowRays::scene");
-static_assert(PLACE_OF(ShadowRays, rays) == 272, "place of ShadowRays::rays");
-static_assert(PLACE_OF(ShadowRays, hits) == 352, "place of ShadowRays::hits");
-static_assert(PLACE_OF(ShadowRays, share) == 360, "place of ShadowRays::share");
-static_assert(PLACE_OF(ShadowRays, direct) == 368, "place of ShadowRays::direct");
-static_assert(PLACE_OF(ShadowRays, sampling) == 376, "place of ShadowRays::sampling");
-static_assert(PLACE_OF(ShadowRays, tally) == 392, "place of ShadowRays::tally");
-static_assert(PLACE_OF(ShadowRays, first_block) == 400, "place of ShadowRays::first_block");
+static_assert(PLACE_OF(ShadowRays, rays) == 304, "place of ShadowRays::rays");
+static_assert(PLACE_OF(ShadowRays, hits) == 384, "place of ShadowRays::hits");
+static_assert(PLACE_OF(ShadowRays, share) == 392, "place of ShadowRays::share");
+static_assert(PLACE_OF(ShadowRays, direct) == 400, "place of ShadowRays::direct");
+static_assert(PLACE_OF(ShadowRays, sampling) == 408, "place of ShadowRays::sampling");
+static_assert(PLACE_OF(ShadowRays, tally) == 424, "place of ShadowRays::tally");
+static_assert(PLACE_OF(ShadowRays, first_block) == 432, "place of ShadowRays::first_block");
 
 struct alignas(8) Shade {
     Scene scene;
@@ -440,22 +480,22 @@ struct alignas(8) Shade {
     unsigned long long film_pixels;
     unsigned long long first_block;
 };
-static_assert(sizeof(Shade) == 456, "size of Shade");
+static_assert(sizeof(Shade) == 488, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
-static_assert(PLACE_OF(Shade, rays) == 272, "place of Shade::rays");
-static_assert(PLACE_OF(Shade, hits) == 352, "place of Shade::hits");
-static_assert(PLACE_OF(Shade, share) == 360, "place of Shade::share");
-static_assert(PLACE_OF(Shade, direct) == 368, "place of Shade::direct");
-static_assert(PLACE_OF(Shade, used) == 376, "place of Shade::used");
-static_assert(PLACE_OF(Shade, film_pixel) == 384, "place of Shade::film_pixel");
-static_assert(PLACE_OF(Shade, color) == 392, "place of Shade::color");
-static_assert(PLACE_OF(Shade, depth) == 400, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 408, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 416, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 424, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 432, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, film_pixels) == 440, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 448, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, rays) == 304, "place of Shade::rays");
+static_assert(PLACE_OF(Shade, hits) == 384, "place of Shade::hits");
+static_assert(PLACE_OF(Shade, share) == 392, "place of Shade::share");
+static_assert(PLACE_OF(Shade, direct) == 400, "place of Shade::direct");
+static_assert(PLACE_OF(Shade, used) == 408, "place of Shade::used");
+static_assert(PLACE_OF(Shade, film_pixel) == 416, "place of Shade::film_pixel");
+static_assert(PLACE_OF(Shade, color) == 424, "place of Shade::color");
+static_assert(PLACE_OF(Shade, depth) == 432, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 440, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 448, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 456, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 464, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, film_pixels) == 472, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 480, "place of Shade::first_block");
 
 struct alignas(8) MirrorRays {
     Scene scene;
@@ -464,12 +504,12 @@ struct alignas(8) MirrorRays {
     unsigned *counts;
     ListedRay *mirrored;
 };
-static_assert(sizeof(MirrorRays) == 376, "size of MirrorRays");
+static_assert(sizeof(MirrorRays) == 408, "size of MirrorRays");
 static_assert(PLACE_OF(MirrorRays, scene) == 0, "place of MirrorRays::scene");
-static_assert(PLACE_OF(MirrorRays, rays) == 272, "place of MirrorRays::rays");
-static_assert(PLACE_OF(MirrorRays, hits) == 352, "place of MirrorRays::hits");
-static_assert(PLACE_OF(MirrorRays, counts) == 360, "place of MirrorRays::counts");
-static_assert(PLACE_OF(MirrorRays, mirrored) == 368, "place of MirrorRays::mirrored");
+static_assert(PLACE_OF(MirrorRays, rays) == 304, "place of MirrorRays::rays");
+static_assert(PLACE_OF(MirrorRays, hits) == 384, "place of MirrorRays::hits");
+static_assert(PLACE_OF(MirrorRays, counts) == 392, "place of MirrorRays::counts");
+static_assert(PLACE_OF(MirrorRays, mirrored) == 400, "place of MirrorRays::mirrored");
 
 struct alignas(8) GroupCells {
     Scene scene;
@@ -482,16 +522,16 @@ struct alignas(8) GroupCells {
     Item *items;
     unsigned long long first_block;
 };
-static_assert(sizeof(GroupCells) == 480, "size of GroupCells");
+static_assert(sizeof(GroupCells) == 512, "size of GroupCells");
 static_assert(PLACE_OF(GroupCells, scene) == 0, "place of GroupCells::scene");
-static_assert(PLACE_OF(GroupCells, rays) == 272, "place of GroupCells::rays");
-static_assert(PLACE_OF(GroupCells, hits) == 352, "place of GroupCells::hits");
-static_assert(PLACE_OF(GroupCells, mesh) == 360, "place of GroupCells::mesh");
-static_assert(PLACE_OF(GroupCells, members) == 440, "place of GroupCells::members");
-static_assert(PLACE_OF(GroupCells, tile_items) == 448, "place of GroupCells::tile_items");
-static_assert(PLACE_OF(GroupCells, counts) == 456, "place of GroupCells::counts");
-static_assert(PLACE_OF(GroupCells, items) == 464, "place of GroupCells::items");
-static_assert(PLACE_OF(GroupCells, first_block) == 472, "place of GroupCells::first_block");
+static_assert(PLACE_OF(GroupCells, rays) == 304, "place of GroupCells::rays");
+static_assert(PLACE_OF(GroupCells, hits) == 384, "place of GroupCells::hits");
+static_assert(PLACE_OF(GroupCells, mesh) == 392, "place of GroupCells::mesh");
+static_assert(PLACE_OF(GroupCells, members) == 472, "place of GroupCells::members");
+static_assert(PLACE_OF(GroupCells, tile_items) == 480, "place of GroupCells::tile_items");
+static_assert(PLACE_OF(GroupCells, counts) == 488, "place of GroupCells::counts");
+static_assert(PLACE_OF(GroupCells, items) == 496, "place of GroupCells::items");
+static_assert(PLACE_OF(GroupCells, first_block) == 504, "place of GroupCells::first_block");
 
 struct alignas(8) ShortTests {
     Scene scene;
@@ -506,18 +546,18 @@ struct alignas(8) ShortTests {
     unsigned long long first_item;
     unsigned long long item_count;
 };
-static_assert(sizeof(ShortTests) == 496, "size of ShortTests");
+static_assert(sizeof(ShortTests) == 528, "size of ShortTests");
 static_assert(PLACE_OF(ShortTests, scene) == 0, "place of ShortTests::scene");
-static_assert(PLACE_OF(ShortTests, rays) == 272, "place of ShortTests::rays");
-static_assert(PLACE_OF(ShortTests, hits) == 352, "place of ShortTests::hits");
-static_assert(PLACE_OF(ShortTests, mesh) == 360, "place of ShortTests::mesh");
-static_assert(PLACE_OF(ShortTests, members) == 440, "place of ShortTests::members");
-static_assert(PLACE_OF(ShortTests, items) == 448, "place of ShortTests::items");
-static_assert(PLACE_OF(ShortTests, masks) == 456, "place of ShortTests::masks");
-static_assert(PLACE_OF(ShortTests, marks) == 464, "place of ShortTests::marks");
-static_assert(PLACE_OF(ShortTests, tally) == 472, "place of ShortTests::tally");
-static_assert(PLACE_OF(ShortTests, first_item) == 480, "place of ShortTests::first_item");
-static_assert(PLACE_OF(ShortTests, item_count) == 488, "place of ShortTests::item_count");
+static_assert(PLACE_OF(ShortTests, rays) == 304, "place of ShortTests::rays");
+static_assert(PLACE_OF(ShortTests, hits) == 384, "place of ShortTests::hits");
+static_assert(PLACE_OF(ShortTests, mesh) == 392, "place of ShortTests::mesh");
+static_assert(PLACE_OF(ShortTests, members) == 472, "place of ShortTests::members");
+static_assert(PLACE_OF(ShortTests, items) == 480, "place of ShortTests::items");
+static_assert(PLACE_OF(ShortTests, masks) == 488, "place of ShortTests::masks");
+static_assert(PLACE_OF(ShortTests, marks) == 496, "place of ShortTests::marks");
+static_assert(PLACE_OF(ShortTests, tally) == 504, "place of ShortTests::tally");
+static_assert(PLACE_OF(ShortTests, first_item) == 512, "place of ShortTests::first_item");
+static_assert(PLACE_OF(ShortTests, item_count) == 520, "place of ShortTests::item_count");
 
 struct alignas(8) LightPoints {
     LightMesh mesh;
@@ -556,16 +596,16 @@ struct alignas(8) LongTests {
     unsigned point_count;
     unsigned long long first_point;
 };
-static_assert(sizeof(LongTests) == 440, "size of LongTests");
+static_assert(sizeof(LongTests) == 472, "size of LongTests");
 static_assert(PLACE_OF(LongTests, scene) == 0, "place of LongTests::scene");
-static_assert(PLACE_OF(LongTests, mesh) == 272, "place of LongTests::mesh");
-static_assert(PLACE_OF(LongTests, points) == 352, "place of LongTests::points");
-static_assert(PLACE_OF(LongTests, lit) == 392, "place of LongTests::lit");
-static_assert(PLACE_OF(LongTests, sampling) == 400, "place of LongTests::sampling");
-static_assert(PLACE_OF(LongTests, tally) == 416, "place of LongTests::tally");
-static_assert(PLACE_OF(LongTests, light) == 424, "place of LongTests::light");
-static_assert(PLACE_OF(LongTests, point_count) == 428, "place of LongTests::point_count");
-static_assert(PLACE_OF(LongTests, first_point) == 432, "place of LongTests::first_point");
+static_assert(PLACE_OF(LongTests, mesh) == 304, "place of LongTests::mesh");
+static_assert(PLACE_OF(LongTests, points) == 384, "place of LongTests::points");
+static_assert(PLACE_OF(LongTests, lit) == 424, "place of LongTests::lit");
+static_assert(PLACE_OF(LongTests, sampling) == 432, "place of LongTests::sampling");
+static_assert(PLACE_OF(LongTests, tally) == 448, "place of LongTests::tally");
+static_assert(PLACE_OF(LongTests, light) == 456, "place of LongTests::light");
+static_assert(PLACE_OF(LongTests, point_count) == 460, "place of LongTests::point_count");
+static_assert(PLACE_OF(LongTests, first_point) == 464, "place of LongTests::first_point");
 
 struct alignas(8) Interpolate {
     Scene scene;
@@ -587,25 +627,25 @@ struct alignas(8) Interpolate {
     unsigned long long first;
     unsigned long long count;
 };
-static_assert(sizeof(Interpolate) == 592, "size of Interpolate");
+static_assert(sizeof(Interpolate) == 624, "size of Interpolate");
 static_assert(PLACE_OF(Interpolate, scene) == 0, "place of Interpolate::scene");
-static_assert(PLACE_OF(Interpolate, rays) == 272, "place of Interpolate::rays");
-static_assert(PLACE_OF(Interpolate, hits) == 352, "place of Interpolate::hits");
-static_assert(PLACE_OF(Interpolate, mesh) == 360, "place of Interpolate::mesh");
-static_assert(PLACE_OF(Interpolate, members) == 440, "place of Interpolate::members");
-static_assert(PLACE_OF(Interpolate, items) == 448, "place of Interpolate::items");
-static_assert(PLACE_OF(Interpolate, masks) == 456, "place of Interpolate::masks");
-static_assert(PLACE_OF(Interpolate, points) == 464, "place of Interpolate::points");
-static_assert(PLACE_OF(Interpolate, slots) == 504, "place of Interpolate::slots");
-static_assert(PLACE_OF(Interpolate, lit) == 512, "place of Interpolate::lit");
-static_assert(PLACE_OF(Interpolate, share) == 520, "place of Interpolate::share");
-static_assert(PLACE_OF(Interpolate, used) == 528, "place of Interpolate::used");
-static_assert(PLACE_OF(Interpolate, fallback_rays) == 536, "place of Interpolate::fallback_rays");
-static_assert(PLACE_OF(Interpolate, fallback_count) == 544, "place of Interpolate::fallback_count");
-static_assert(PLACE_OF(Interpolate, sampling) == 552, "place of Interpolate::sampling");
-static_assert(PLACE_OF(Interpolate, tally) == 568, "place of Interpolate::tally");
-static_assert(PLACE_OF(Interpolate, first) == 576, "place of Interpolate::first");
-static_assert(PLACE_OF(Interpolate, count) == 584, "place of Interpolate::count");
+static_assert(PLACE_OF(Interpolate, rays) == 304, "place of Interpolate::rays");
+static_assert(PLACE_OF(Interpolate, hits) == 384, "place of Interpolate::hits");
+static_assert(PLACE_OF(Interpolate, mesh) == 392, "place of Interpolate::mesh");
+static_assert(PLACE_OF(Interpolate, members) == 472, "place of Interpolate::members");
+static_assert(PLACE_OF(Interpolate, items) == 480, "place of Interpolate::items");
+static_assert(PLACE_OF(Interpolate, masks) == 488, "place of Interpolate::masks");
+static_assert(PLACE_OF(Interpolate, points) == 496, "place of Interpolate::points");
+static_assert(PLACE_OF(Interpolate, slots) == 536, "place of Interpolate::slots");
+static_assert(PLACE_OF(Interpolate, lit) == 544, "place of Interpolate::lit");
+static_assert(PLACE_OF(Interpolate, share) == 552, "place of Interpolate::share");
+static_assert(PLACE_OF(Interpolate, used) == 560, "place of Interpolate::used");
+static_assert(PLACE_OF(Interpolate, fallback_rays) == 568, "place of Interpolate::fallback_rays");
+static_assert(PLACE_OF(Interpolate, fallback_count) == 576, "place of Interpolate::fallback_count");
+static_assert(PLACE_OF(Interpolate, sampling) == 584, "place of Interpolate::sampling");
+static_assert(PLACE_OF(Interpolate, tally) == 600, "place of Interpolate::tally");
+static_assert(PLACE_OF(Interpolate, first) == 608, "place of Interpolate::first");
+static_assert(PLACE_OF(Interpolate, count) == 616, "place of Interpolate::count");
 
 struct alignas(8) Scan {
     unsigned *values;

@@ -8,7 +8,7 @@ use std::{collections::HashMap, path::Path};
 use glam::{DVec3, Vec3};
 use serde_json::{Map, Value, json};
 
-use super::ExportError;
+use super::{ExportError, pictures::Pictures};
 use crate::{
     Camera, Falloff, Fov, Light, LightKind, Material, Mesh, Projection, Scene,
     formats::{
@@ -32,11 +32,18 @@ pub(super) fn encode(scene: &Scene, content: Content, path: &Path) -> Result<Vec
     let mut nodes = Vec::new();
     let mut root = json!({"asset": {"version": "2.0", "generator": "lightmesh"}, "scene": 0});
     let mut bin = Vec::new();
+    let mut extensions = Vec::new();
     if !scene.mesh.triangles.is_empty() {
-        root["materials"] = scene.materials.iter().map(material).collect();
+        let pictures = Pictures::new(scene).map_err(|cause| ExportError::Write { path: path.to_owned(), cause })?;
+        root["materials"] =
+            scene.materials.iter().enumerate().map(|(index, it)| material(it, index, &pictures)).collect();
+        if pictures.transformed() {
+            extensions.push("KHR_texture_transform");
+        }
         let arrays = Arrays::new(&scene.mesh);
         (root["accessors"], root["bufferViews"], root["meshes"]) = arrays.describe();
         bin = arrays.into_bytes();
+        pictures.write(scene, &mut bin, &mut root);
         root["buffers"] = json!([{"byteLength": bin.len()}]);
         nodes.push(json!({"name": scene.name, "mesh": 0, "translation": scene.origin.to_array()}));
     }
@@ -48,11 +55,14 @@ pub(super) fn encode(scene: &Scene, content: Content, path: &Path) -> Result<Vec
         nodes.extend(scene.cameras.iter().enumerate().map(|(index, camera)| camera_node(scene, index, camera)));
         if !scene.lights.is_empty() {
             let lights: Value = scene.lights.iter().map(light_entry).collect();
-            root["extensionsUsed"] = json!(["KHR_lights_punctual"]);
+            extensions.push("KHR_lights_punctual");
             root["extensions"] = json!({"KHR_lights_punctual": {"lights": lights}});
         }
         nodes.extend(scene.lights.iter().enumerate().map(|(index, light)| light_node(scene, index, light)));
         extras.insert("lightmesh".to_owned(), json!(scene_extras(scene)));
+    }
+    if !extensions.is_empty() {
+        root["extensionsUsed"] = json!(extensions);
     }
     let mut entry = json!({"name": scene.name});
     // glTF forbids empty arrays and objects without need.
@@ -102,19 +112,28 @@ struct Primitive {
     has_normals: bool,
 }
 
+/// Numbers of the buffer views, in the order of the bytes.
+#[derive(Default)]
+struct Views {
+    normals: usize,
+    uvs: usize,
+    colors: usize,
+}
+
 /// The vertex and index arrays of all primitives, one after the other.
+#[derive(Default)]
 struct Arrays {
     primitives: Vec<Primitive>,
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
     uvs: Vec<[f32; 2]>,
+    colors: Vec<[f32; 3]>,
     indices: Vec<u32>,
 }
 
 impl Arrays {
     fn new(mesh: &Mesh) -> Arrays {
-        let mut arrays =
-            Arrays { primitives: vec![], positions: vec![], normals: vec![], uvs: vec![], indices: vec![] };
+        let mut arrays = Arrays::default();
         let mut first = 0;
         for run in mesh.materials.chunk_by(|a, b| a == b) {
             arrays.add(mesh, &mesh.triangles[first..first + run.len()], run[0]);
@@ -133,6 +152,7 @@ impl Arrays {
                 self.positions.push(mesh.positions[vertex].to_array());
                 self.normals.extend(mesh.normals.get(vertex).map(|normal| normal.to_array()));
                 self.uvs.extend(mesh.uvs.get(vertex).map(|uv| uv.to_array()));
+                self.colors.extend(mesh.colors.get(vertex).map(|color| color.to_array()));
                 next
             });
             self.indices.push(index);
@@ -158,6 +178,7 @@ impl Arrays {
         };
         const FLOAT: u32 = 5126;
         const UNSIGNED_INT: u32 = 5125;
+        let views = self.view_numbers();
         let mut primitives = Vec::new();
         let mut bounds = Vec::new();
         for primitive in &self.primitives {
@@ -166,11 +187,13 @@ impl Arrays {
             bounds.push((position, bounds_of(&self.positions[first..first + count])));
             let mut attributes = json!({"POSITION": position});
             if primitive.has_normals {
-                attributes["NORMAL"] = json!(accessor(2, "VEC3", FLOAT, 12 * first, count));
+                attributes["NORMAL"] = json!(accessor(views.normals, "VEC3", FLOAT, 12 * first, count));
             }
             if !self.uvs.is_empty() {
-                let view = if self.normals.is_empty() { 2 } else { 3 };
-                attributes["TEXCOORD_0"] = json!(accessor(view, "VEC2", FLOAT, 8 * first, count));
+                attributes["TEXCOORD_0"] = json!(accessor(views.uvs, "VEC2", FLOAT, 8 * first, count));
+            }
+            if !self.colors.is_empty() {
+                attributes["COLOR_0"] = json!(accessor(views.colors, "VEC3", FLOAT, 12 * first, count));
             }
             let indices = accessor(1, "SCALAR", UNSIGNED_INT, 4 * primitive.first_index, primitive.indices);
             primitives.push(json!({"attributes": attributes, "indices": indices, "material": primitive.material}));
@@ -182,7 +205,14 @@ impl Arrays {
         (Value::Array(accessors), self.views(), json!([{"primitives": primitives}]))
     }
 
-    /// Positions, indices, and normals and texture coordinates where there are any: the order of the bytes.
+    /// Positions are in view 0, indices in view 1.
+    fn view_numbers(&self) -> Views {
+        let normals = 2;
+        let uvs = normals + usize::from(!self.normals.is_empty());
+        Views { normals, uvs, colors: uvs + usize::from(!self.uvs.is_empty()) }
+    }
+
+    /// Positions, indices, and normals, texture coordinates and colours where there are any: the order of the bytes.
     fn views(&self) -> Value {
         let mut offset = 0;
         let arrays = [
@@ -190,6 +220,7 @@ impl Arrays {
             (4 * self.indices.len(), 34963),
             (12 * self.normals.len(), 34962),
             (8 * self.uvs.len(), 34962),
+            (12 * self.colors.len(), 34962),
         ];
         let views = arrays.into_iter().filter(|(length, _)| *length > 0).map(|(length, target)| {
             let view = json!({"buffer": 0, "byteOffset": offset, "byteLength": length, "target": target});
@@ -205,6 +236,7 @@ impl Arrays {
         bytes.extend(self.indices.iter().flat_map(|x| x.to_le_bytes()));
         bytes.extend(self.normals.iter().flatten().flat_map(|x| x.to_le_bytes()));
         bytes.extend(self.uvs.iter().flatten().flat_map(|x| x.to_le_bytes()));
+        bytes.extend(self.colors.iter().flatten().flat_map(|x| x.to_le_bytes()));
         bytes
     }
 }
@@ -215,7 +247,7 @@ fn bounds_of(positions: &[[f32; 3]]) -> [[f32; 3]; 2] {
 }
 
 /// Metallic-roughness for others (the lobe of `formats::gltf::material`, backwards), our coefficients in the extras.
-fn material(material: &Material) -> Value {
+fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
     let clamped = |color: Vec3| color.clamp(Vec3::ZERO, Vec3::ONE).to_array();
     let [r, g, b] = clamped(material.kd);
     let roughness = if material.ks == Vec3::ZERO { 1.0 } else { (2.0 / (material.shininess + 2.0)).powf(0.25) };
@@ -225,15 +257,22 @@ fn material(material: &Material) -> Value {
         ks: material.ks.to_array(),
         shininess: material.shininess,
         emission: material.emission.to_array(),
+        ks_tinted: material.ks_tinted.to_array(),
+        emission_tinted: material.emission_tinted.to_array(),
+        texture_transform: pictures.exact_transform(index),
     };
-    json!({
+    let mut entry = json!({
         "name": material.name,
         "pbrMetallicRoughness":
             {"baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": roughness},
         "emissiveFactor": clamped(material.emission),
         "doubleSided": true,
         "extras": {"lightmesh": extras},
-    })
+    });
+    if let Some(texture) = pictures.of_material(index) {
+        entry["pbrMetallicRoughness"]["baseColorTexture"] = texture;
+    }
+    entry
 }
 
 fn camera_entry(scene: &Scene, camera: &Camera) -> Value {

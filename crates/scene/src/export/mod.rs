@@ -9,6 +9,7 @@
 //! origin may round its smallest ones. Files are written beside their place and renamed: never half-written.
 
 mod glb;
+mod pictures;
 #[cfg(test)]
 mod tests;
 mod text;

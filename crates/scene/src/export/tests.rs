@@ -2,9 +2,12 @@
 
 use std::fs;
 
-use glam::{DMat4, DVec3, Vec2, Vec3};
+use glam::{Affine2, DMat4, DVec3, Vec2, Vec3};
 
-use crate::{Camera, Falloff, Fov, Light, LightKind, Material, MeshPart, Projection, Scene, SceneBuilder, Weight};
+use crate::{
+    Camera, Falloff, Fov, Light, LightKind, Material, MeshPart, Projection, Scene, SceneBuilder, Texture, TextureUse,
+    Weight, Wrap,
+};
 
 /// Everything that a scene can hold, around `offset`.
 fn scene(offset: DVec3) -> Scene {
@@ -13,10 +16,11 @@ fn scene(offset: DVec3) -> Scene {
     let uvs = [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::new(0.3, 0.7)];
     let triangles = [[0, 1, 2], [1, 3, 2], [0, 3, 1]];
     let mut builder = SceneBuilder::new();
+    let colors = [Vec3::new(0.1, 0.7, 0.3), Vec3::ONE, Vec3::ZERO, Vec3::splat(0.3)];
     let smooth =
-        MeshPart { positions: &positions, normals: &normals, uvs: &uvs, triangles: &triangles, ..Default::default() };
-    builder.add(smooth, &DMat4::from_translation(offset), |index| [1, 0, 1][index]);
-    let flat = MeshPart { normals: &[], uvs: &[], ..smooth };
+        MeshPart { positions: &positions, normals: &normals, uvs: &uvs, colors: &colors, triangles: &triangles };
+    builder.add(smooth, &DMat4::from_translation(offset), |index| [1, 0, 3][index]);
+    let flat = MeshPart { normals: &[], uvs: &[], colors: &[], ..smooth };
     builder.add(flat, &DMat4::from_translation(offset + DVec3::X), |_| 2);
     let mut scene = builder.finish_scene("round trip");
     scene.materials = vec![
@@ -28,10 +32,22 @@ fn scene(offset: DVec3) -> Scene {
             ks: Vec3::new(0.7, 0.8, 0.9),
             shininess: 77.7,
             emission: Vec3::new(0.0, 2.5, 0.1),
-            ..Material::default()
+            ks_tinted: Vec3::new(0.3, 0.2, 0.1),
+            emission_tinted: Vec3::new(0.0, 0.0, 0.7),
+            texture: Some(TextureUse {
+                texture: 0,
+                wrap: [Wrap::Clamp, Wrap::Mirror],
+                transform: Affine2::from_scale_angle_translation(Vec2::new(1.3, -0.7), 0.77, Vec2::new(0.1, -3.3)),
+            }),
         },
         Material::default(),
+        Material {
+            name: "tiles".into(),
+            texture: Some(TextureUse { transform: Affine2::from_scale(Vec2::splat(10.0)), ..TextureUse::new(1) }),
+            ..Material::default()
+        },
     ];
+    scene.textures = vec![texture("oak.png", [3, 2]), texture("tiles", [1, 7])];
     let origin = scene.origin;
     let at = |x, y, z| (offset + DVec3::new(x, y, z) - origin).as_vec3();
     let direction = Vec3::new(0.3, -0.8, 0.2).normalize();
@@ -64,6 +80,11 @@ fn scene(offset: DVec3) -> Scene {
     scene
 }
 
+fn texture(name: &str, size: [u32; 2]) -> Texture {
+    let texel = |index: u32| [11 * index as u8, 255 - 40 * (index as u8 % 7), 90, 255 - index as u8];
+    Texture { name: name.into(), size, texels: (0..size[0] * size[1]).map(texel).collect() }
+}
+
 fn reread(scene: &Scene, name: &str) -> Scene {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
@@ -71,12 +92,12 @@ fn reread(scene: &Scene, name: &str) -> Scene {
     Scene::open(&path).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Triangle by triangle: corners, normals and texture coordinates.
-fn corners(scene: &Scene) -> Vec<[(Vec3, Vec3, Vec2); 3]> {
+/// Triangle by triangle: corners, normals, texture coordinates and colours.
+fn corners(scene: &Scene) -> Vec<[(Vec3, Vec3, Vec2, Vec3); 3]> {
     let mesh = &scene.mesh;
     let corner = |vertex: u32| {
         let vertex = vertex as usize;
-        (mesh.positions[vertex], mesh.normals[vertex], mesh.uvs[vertex])
+        (mesh.positions[vertex], mesh.normals[vertex], mesh.uvs[vertex], mesh.colors[vertex])
     };
     mesh.triangles.iter().map(|triangle| triangle.map(corner)).collect()
 }
@@ -89,6 +110,7 @@ fn a_scene_at_home_is_the_same_to_the_last_bit() {
         assert_eq!(corners(&read), corners(&written), "{name}");
         assert_eq!(read.mesh.materials, written.mesh.materials, "{name}");
         assert_eq!(read.materials, written.materials, "{name}");
+        assert_eq!(read.textures, written.textures, "{name}");
         assert_eq!(read.lights, written.lights, "{name}");
         assert_eq!(read.cameras, written.cameras, "{name}");
         assert_eq!((read.ambient, read.background), (written.ambient, written.background), "{name}");
@@ -106,7 +128,7 @@ fn a_scene_far_away_keeps_its_frame_and_shape() {
         assert_eq!(read.origin, written.origin, "{name}");
         for (read, written) in corners(&read).iter().flatten().zip(corners(&written).iter().flatten()) {
             assert!(read.0.distance(written.0) < 1e-9, "{name}: {} {}", read.0, written.0);
-            assert_eq!((read.1, read.2), (written.1, written.2), "{name}");
+            assert_eq!((read.1, read.2, read.3), (written.1, written.2, written.3), "{name}");
         }
         for (read, written) in read.cameras.iter().zip(&written.cameras) {
             assert!(read.position.distance(written.position) < 1e-6, "{name}");
@@ -147,4 +169,14 @@ fn written_files_may_be_read_by_others() {
     fs::write(&ordinary, "").unwrap();
     let mode = |path: &std::path::Path| fs::metadata(path).unwrap().permissions().mode();
     assert_eq!(mode(&path), mode(&ordinary));
+}
+
+#[test]
+fn textures_that_nobody_can_use_are_left_out() {
+    let mut scene = scene(DVec3::ZERO);
+    scene.textures[0].texels.pop();
+    scene.textures.push(texture("unused", [2, 2]));
+    let read = reread(&scene, "scene.glb");
+    assert_eq!(read.textures, scene.textures[1..2]);
+    assert_eq!((read.materials[1].texture, read.materials[3].texture.map(|uses| uses.texture)), (None, Some(0)));
 }

@@ -1,7 +1,6 @@
 //! A scene file that refers to its triangles in a GLB beside it.
 
 use glam::{DVec3, Vec3};
-use toml::Spanned;
 
 use crate::{
     Camera, Falloff, Fov, Light, LightKind, Projection, Scene, Weight,
@@ -10,6 +9,7 @@ use crate::{
             AmbientEntry, CameraEntry, Color, FalloffName, LightEntry, LightKindName, LightMeshEntry, MeshEntry,
             ProjectionName, SceneFile, WeightName,
         },
+        spanned::Spanned,
         upright,
     },
     info::shortest,

@@ -4,6 +4,7 @@
 //! the scene ([`scene`]), launches cut into pieces that no watchdog minds ([`pieces`]), counters, clocks, and the plan of memory.
 
 mod film;
+mod materials;
 mod memory;
 mod mesh;
 mod pieces;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use lightmesh_layout::geometry::{Approach, BruteForce, Bvh, BvhNode, DVec3, Grid, Triangle, Vec3};
-use lightmesh_layout::scene::{Indices, Light, Material, Scene};
+use lightmesh_layout::scene::{Indices, Light, Scene};
 use lightmesh_layout::{DeviceType, In};
 use lightmesh_scene::{Falloff, LightKind};
 
@@ -12,6 +12,7 @@ use crate::RenderError;
 use crate::accel::{self, Form};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::prepared::PreparedScene;
+use crate::stages::shade::tint::is_tinted;
 use crate::stages::shade::{DEFAULT_AMBIENT, LightTargets};
 
 /// Which acceleration structure rays walk.
@@ -82,13 +83,13 @@ impl<R: Runtime> Cuda<R> {
 }
 
 /// An upload in progress.
-struct Upload<'a, R: Runtime> {
+pub(super) struct Upload<'a, R: Runtime> {
     cuda: &'a Cuda<R>,
     buffers: Vec<Box<dyn Held>>,
 }
 
 impl<R: Runtime> Upload<'_, R> {
-    fn array<T: DeviceType>(&mut self, what: &'static str, values: &[T]) -> Result<In<T>, RenderError> {
+    pub(super) fn array<T: DeviceType>(&mut self, what: &'static str, values: &[T]) -> Result<In<T>, RenderError> {
         if values.is_empty() {
             return Ok(In::NULL);
         }
@@ -100,18 +101,14 @@ impl<R: Runtime> Upload<'_, R> {
 
     fn scene(mut self, scene: &PreparedScene, with_bvh: bool) -> Result<DeviceScene<R>, RenderError> {
         let mesh = &scene.scene.mesh;
-        let smooth = !mesh.normals.is_empty();
-        let normals: &[glam::Vec3] = if smooth { &mesh.normals } else { &[] };
-        let indices: &[[u32; 3]] = if smooth { &mesh.triangles } else { &[] };
-        let materials: Vec<Material> = scene.scene.materials.iter().map(material).collect();
+        let tinted = scene.scene.materials.iter().any(|material| is_tinted(scene.scene, material));
+        let indices: &[[u32; 3]] = if tinted || !mesh.normals.is_empty() { &mesh.triangles } else { &[] };
         let lights: Vec<Light> = scene.scene.lights.iter().map(light).collect();
         let targets = LightTargets::new(&scene.scene.lights).flat();
         let mut record = Scene {
             triangles: self.triangles(&scene.triangles)?,
             indices: self.array::<Indices>("indices", bytemuck::cast_slice(indices))?,
-            normals: self.array::<Vec3>("normals", bytemuck::cast_slice(normals))?,
-            triangle_materials: self.array("materials of triangles", &mesh.materials)?,
-            materials: self.array("materials", &materials)?,
+            normals: self.array::<Vec3>("normals", bytemuck::cast_slice(&mesh.normals))?,
             lights: self.array("lights", &lights)?,
             light_targets: self.array::<Vec3>("points on lights", bytemuck::cast_slice(&targets))?,
             light_count: lights.len() as u32,
@@ -121,6 +118,7 @@ impl<R: Runtime> Upload<'_, R> {
             far: scene.far,
             ..bytemuck::Zeroable::zeroed()
         };
+        self.materials(scene.scene, &mut record)?;
         let structure = match scene.accelerator.form() {
             Form::Bvh(bvh) => {
                 record.bvh = self.bvh(bvh)?;
@@ -194,23 +192,12 @@ impl<R: Runtime> Upload<'_, R> {
 /// Levels that the walk's stack has room for.
 const MAX_DEPTH: usize = 64;
 
-fn vec3(v: glam::Vec3) -> Vec3 {
+pub(super) fn vec3(v: glam::Vec3) -> Vec3 {
     Vec3::from(v.to_array())
 }
 
 fn approach((center, radius): (glam::Vec3, f32)) -> Approach {
     Approach { center: vec3(center), radius }
-}
-
-fn material(material: &lightmesh_scene::Material) -> Material {
-    Material {
-        ka: vec3(material.ka),
-        kd: vec3(material.kd),
-        ks: vec3(material.ks),
-        emission: vec3(material.emission),
-        shininess: material.shininess,
-        ..bytemuck::Zeroable::zeroed()
-    }
 }
 
 fn light(light: &lightmesh_scene::Light) -> Light {

@@ -11,7 +11,7 @@ pub(crate) fn mirror_rays(scene: &PreparedScene, list: &RayList, hits: &[Hit]) -
     let mut next = RayList::default();
     for ray in (0..hits.len()).filter(|&ray| hits[ray].is_some()) {
         let surface = Surface::new(scene, list, hits, ray);
-        let weight = list.weight(ray) * surface.material.ks;
+        let weight = list.weight(ray) * surface.coefficients.ks;
         if weight == Vec3::ZERO {
             continue;
         }

@@ -13,10 +13,11 @@
 DEVICE Vec3 mirror_weight(const MirrorRays &args, unsigned ray) {
     if (ray >= args.rays.count)
         return splat(0.0f);
-    const unsigned triangle = load_hit(args.hits, ray).triangle;
-    if (triangle == HIT_NONE)
+    const Hit hit = load_hit(args.hits, ray);
+    if (hit.triangle == HIT_NONE)
         return splat(0.0f);
-    return weight_of(args.rays, ray) * args.scene.materials[__ldg(args.scene.triangle_materials + triangle)].ks;
+    Material own;
+    return weight_of(args.rays, ray) * material_at(args.scene, hit, own)->ks;
 }
 
 // How many threads of the block before this one have a flag, and how many have one in all.
@@ -52,7 +53,8 @@ KERNEL(mirror_rays_emit, MirrorRays, MIRROR_THREADS, 4) {
     const unsigned before = flags_before(mirrors, all);
     if (!mirrors)
         return;
-    const Surface surface = surface_at(args.scene, args.rays, args.hits, ray);
+    Material own;
+    const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
     const Vec3 direction = normalize(mirrored(surface));
     args.mirrored[args.counts[blockIdx.x] + before] =
         ListedRay{surface.point.origin, pixel_of(args.rays, ray), direction, 0, weight, 0};

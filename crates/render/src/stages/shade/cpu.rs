@@ -59,7 +59,7 @@ fn surface_radiance(
 ) -> Vec3 {
     let surface = Surface::new(scene, list, hits, ray);
     let ambient = scene.scene.ambient.unwrap_or(DEFAULT_AMBIENT);
-    let mut radiance = ambient * surface.material.ka + surface.material.emission;
+    let mut radiance = ambient * surface.coefficients.ka + surface.coefficients.emission;
     if let Some(&direct) = visibility.direct.get(ray) {
         return radiance + direct;
     }

@@ -34,7 +34,8 @@ KERNEL(shade, Shade, 256, 4) {
     const unsigned long long place = pixel_of(args.rays, ray) - args.film_pixel;
     Vec3 radiance = args.scene.background;
     if (load_hit(args.hits, ray).triangle != HIT_NONE) {
-        const Surface surface = surface_at(args.scene, args.rays, args.hits, ray);
+        Material own;
+        const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
         radiance = surface_radiance(args, ray, surface);
         if (args.depth != nullptr)
             fill_layers(args, ray, surface, place);

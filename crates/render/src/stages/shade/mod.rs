@@ -11,42 +11,48 @@ pub(crate) mod cpu;
 pub(crate) mod cuda;
 #[cfg(test)]
 mod tests;
+pub(crate) mod tint;
 
 use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
-use lightmesh_scene::{Falloff, Light, LightKind, Material};
+use lightmesh_scene::{Falloff, Light, LightKind};
 
 use crate::accel::Hit;
 use crate::prepared::PreparedScene;
 use crate::sampling::{Pattern, light_center, light_point};
 use crate::stages::primary_rays::RayList;
 use crate::surface::{SurfacePoint, shading_normal};
+use tint::Coefficients;
 
 /// I_a where neither the scene nor the user says.
 pub(crate) const DEFAULT_AMBIENT: Vec3 = Vec3::splat(0.1);
 
 /// An object point with what formula (1) needs.
-pub(crate) struct Surface<'a> {
+pub(crate) struct Surface {
     pub(crate) point: SurfacePoint,
     normal: Vec3,
     /// Unit vector to the viewer.
     view: Vec3,
-    pub(crate) material: &'a Material,
+    pub(crate) coefficients: Coefficients,
+    /// Phong's exponent.
+    shininess: f32,
 }
 
-impl<'a> Surface<'a> {
+impl Surface {
     #[inline(always)]
-    pub(crate) fn new(scene: &PreparedScene<'a>, list: &RayList, hits: &[Hit], ray: usize) -> Surface<'a> {
+    pub(crate) fn new(scene: &PreparedScene, list: &RayList, hits: &[Hit], ray: usize) -> Surface {
         let (ray, hit) = (&list.rays[ray], &hits[ray]);
         let triangle = hit.triangle as usize;
         let point = SurfacePoint::new(ray, hit, &scene.triangles[triangle]);
         let mesh = &scene.scene.mesh;
+        let material = &scene.scene.materials[mesh.materials[triangle] as usize];
         Surface {
             normal: shading_normal(mesh, hit, point.normal),
             point,
             view: -ray.direction,
-            material: &scene.scene.materials[mesh.materials[triangle] as usize],
+            coefficients: Coefficients::at(scene.scene, material, hit),
+            shininess: material.shininess,
         }
     }
 
@@ -63,10 +69,10 @@ impl<'a> Surface<'a> {
         if cosine <= 0.0 {
             return Vec3::ZERO;
         }
-        let mut answer = cosine * self.material.kd;
-        if self.material.ks != Vec3::ZERO {
+        let mut answer = cosine * self.coefficients.kd;
+        if self.coefficients.ks != Vec3::ZERO {
             let mirrored = 2.0 * cosine * self.normal - direction;
-            answer += mirrored.dot(self.view).max(0.0).powf(self.material.shininess) * self.material.ks;
+            answer += mirrored.dot(self.view).max(0.0).powf(self.shininess) * self.coefficients.ks;
         }
         strength(light, direction, distance) * answer
     }

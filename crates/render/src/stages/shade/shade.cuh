@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sampling.cuh"
+#include "stages/shade/tint.cuh"
 #include "surface.cuh"
 
 #define FRAC_1_PI 0.318309886183790671538f
@@ -16,11 +17,12 @@ struct Surface {
     const Material *material;
 };
 
-DEVICE Surface surface_at(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray) {
+// The object point that ray number `ray` sees; `own` is room for its material.
+DEVICE Surface surface_at(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray, Material &own) {
     const Hit hit = load_hit(hits, ray);
     const Ray seen_along = ray_at(rays, ray);
     const SurfacePoint point = surface_point(seen_along, hit, load_corners(scene.triangles + hit.triangle));
-    const Material *material = scene.materials + __ldg(scene.triangle_materials + hit.triangle);
+    const Material *material = material_at(scene, hit, own);
     return Surface{point, shading_normal(scene, hit, point.normal), -seen_along.direction, material};
 }
 

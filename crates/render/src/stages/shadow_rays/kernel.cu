@@ -82,7 +82,8 @@ DEVICE float gather_light(const ShadowRays &args, const Structure &structure, un
 // Many rays from an object point to each light. Returns how many were cast.
 template <class Structure>
 DEVICE unsigned trace_area(const ShadowRays &args, const Structure &structure, unsigned ray) {
-    const Surface surface = surface_at(args.scene, args.rays, args.hits, ray);
+    Material own;
+    const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
     Vec3 direct = splat(0.0f);
     unsigned cast = 0;
     for (unsigned light = 0; light < args.scene.light_count; ++light)

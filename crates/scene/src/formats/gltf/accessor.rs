@@ -1,157 +1,190 @@
-//! Reads accessors: every range is checked against its buffer first, so that a damaged file is an error, never a panic.
+//! Reads accessors: every range is checked against its buffer first, so that a damaged file is an error, never a panic, and no
+//! memory is taken before the bytes are there. What lies in the file as it is needed is borrowed from there.
 
-use std::path::Path;
+use std::{borrow::Cow, path::Path};
 
-use gltf::{
-    Accessor,
-    accessor::{DataType, Dimensions, Item, Iter},
-    buffer::View,
+use bytemuck::AnyBitPattern;
+
+use super::{
+    buffers::Buffers,
+    container::malformed,
+    document::{Accessor, Document, Sparse},
+    strided::{Component, Strided},
 };
-
-use super::container::malformed;
 use crate::LoadError;
 
-/// Buffers and the name of the file that they belong to.
+/// Accessors and what they refer to.
 #[derive(Clone, Copy)]
 pub(super) struct Accessors<'a> {
     pub(super) path: &'a Path,
-    pub(super) buffers: &'a [Vec<u8>],
+    pub(super) document: &'a Document<'a>,
+    pub(super) buffers: &'a Buffers<'a>,
 }
 
-/// A component as a number; integers are mapped to [0, 1] or [-1, 1] where the accessor says "normalized".
-trait Component: Item + Copy + Into<f64> {
-    const LARGEST: f64;
-}
-
-impl Component for f32 {
-    const LARGEST: f64 = 1.0;
-}
-impl Component for i8 {
-    const LARGEST: f64 = i8::MAX as f64;
-}
-impl Component for u8 {
-    const LARGEST: f64 = u8::MAX as f64;
-}
-impl Component for i16 {
-    const LARGEST: f64 = i16::MAX as f64;
-}
-impl Component for u16 {
-    const LARGEST: f64 = u16::MAX as f64;
-}
-impl Component for u32 {
-    const LARGEST: f64 = u32::MAX as f64;
+/// An accessor whose bytes are known to be there.
+struct Elements<'a> {
+    kind: &'a str,
+    component: Component,
+    count: usize,
+    /// `None`: zeros.
+    base: Option<Strided<'a>>,
+    /// Which elements are replaced, and by what.
+    sparse: Option<(Strided<'a>, Strided<'a>)>,
 }
 
 impl<'a> Accessors<'a> {
-    /// Three-component vectors: positions and normals.
-    pub(super) fn triples(&self, accessor: &Accessor) -> Result<Vec<[f64; 3]>, LoadError> {
-        self.vectors(accessor, Dimensions::Vec3)
+    /// Number of elements, once it is known that they are there.
+    pub(super) fn count(&self, index: u32) -> Result<usize, LoadError> {
+        Ok(self.elements(index)?.count)
     }
 
-    /// Two-component vectors: texture coordinates.
-    pub(super) fn pairs(&self, accessor: &Accessor) -> Result<Vec<[f64; 2]>, LoadError> {
-        self.vectors(accessor, Dimensions::Vec2)
+    /// Vectors of `N` numbers; integers are mapped to [0, 1] or [-1, 1] where the accessor says "normalized".
+    pub(super) fn vectors<const N: usize>(&self, index: u32) -> Result<Cow<'a, [[f32; N]]>, LoadError>
+    where
+        [f32; N]: AnyBitPattern,
+    {
+        let elements = self.elements(index)?;
+        if dimensions(elements.kind) != Some(N) {
+            return Err(self.broken(index, &format!("holds {} where VEC{N} is expected", elements.kind)));
+        }
+        let is_float = elements.component == Component::F32;
+        self.read(index, &elements, [0.0; N], is_float, |elements| elements.numbers())
+    }
+
+    /// Colours with or without coverage, which is left out: surfaces are opaque.
+    pub(super) fn colors(&self, index: u32) -> Result<Cow<'a, [[f32; 3]]>, LoadError> {
+        if self.elements(index)?.kind == "VEC4" {
+            Ok(self.vectors(index)?.iter().map(|&[r, g, b, _]| [r, g, b]).collect())
+        } else {
+            self.vectors(index)
+        }
     }
 
     /// Vertex indices.
-    pub(super) fn indices(&self, accessor: &Accessor) -> Result<Vec<u32>, LoadError> {
-        self.expect(accessor, Dimensions::Scalar)?;
-        match accessor.data_type() {
-            DataType::U8 => Ok(self.items::<u8>(accessor)?.into_iter().map(u32::from).collect()),
-            DataType::U16 => Ok(self.items::<u16>(accessor)?.into_iter().map(u32::from).collect()),
-            DataType::U32 => self.items(accessor),
-            _ => Err(self.broken(accessor, "holds no unsigned integers, but indices are asked of it")),
+    pub(super) fn indices(&self, index: u32) -> Result<Cow<'a, [u32]>, LoadError> {
+        let elements = self.elements(index)?;
+        if elements.kind != "SCALAR" || !elements.component.is_unsigned() {
+            return Err(self.broken(index, "holds no unsigned integers, but indices are asked of it"));
         }
+        self.read(index, &elements, 0, elements.component == Component::U32, |elements| elements.integers())
     }
 
-    fn vectors<const N: usize>(&self, accessor: &Accessor, dimensions: Dimensions) -> Result<Vec<[f64; N]>, LoadError>
-    where
-        [f32; N]: Item,
-        [i8; N]: Item,
-        [u8; N]: Item,
-        [i16; N]: Item,
-        [u16; N]: Item,
-        [u32; N]: Item,
-    {
-        self.expect(accessor, dimensions)?;
-        match accessor.data_type() {
-            DataType::F32 => self.numbers::<f32, N>(accessor),
-            DataType::I8 => self.numbers::<i8, N>(accessor),
-            DataType::U8 => self.numbers::<u8, N>(accessor),
-            DataType::I16 => self.numbers::<i16, N>(accessor),
-            DataType::U16 => self.numbers::<u16, N>(accessor),
-            DataType::U32 => self.numbers::<u32, N>(accessor),
-        }
-    }
-
-    fn numbers<T: Component, const N: usize>(&self, accessor: &Accessor) -> Result<Vec<[f64; N]>, LoadError>
-    where
-        [T; N]: Item,
-    {
-        let scale = if accessor.normalized() { T::LARGEST.recip() } else { 1.0 };
-        let number = |component: T| (component.into() * scale).max(if accessor.normalized() { -1.0 } else { f64::MIN });
-        Ok(self.items::<[T; N]>(accessor)?.into_iter().map(|item| item.map(number)).collect())
-    }
-
-    fn items<T: Item>(&self, accessor: &Accessor) -> Result<Vec<T>, LoadError> {
-        self.check(accessor)?;
-        if accessor.count() == 0 {
-            return Ok(Vec::new());
-        }
-        let items = Iter::new(accessor.clone(), |buffer| self.buffers.get(buffer.index()).map(Vec::as_slice))
-            .ok_or_else(|| self.broken(accessor, "cannot be read"))?;
-        Ok(items.collect())
-    }
-
-    fn expect(&self, accessor: &Accessor, dimensions: Dimensions) -> Result<(), LoadError> {
-        if accessor.dimensions() == dimensions {
-            Ok(())
-        } else {
-            let problem = format!("holds {:?} where {dimensions:?} is expected", accessor.dimensions());
-            Err(self.broken(accessor, &problem))
-        }
-    }
-
-    /// Every byte that reading will touch lies in its view, and every view in its buffer.
-    fn check(&self, accessor: &Accessor) -> Result<(), LoadError> {
-        let size = accessor.size();
-        match accessor.view() {
-            Some(view) => self.check_range(accessor, &view, accessor.offset(), accessor.count(), size)?,
-            // glTF means zeros here, which are no shape; and nothing bounds how many.
-            None => return Err(self.broken(accessor, "has no buffer view")),
-        }
-        if let Some(sparse) = accessor.sparse() {
-            if sparse.count() == 0 {
-                return Err(self.broken(accessor, "has a sparse part without items"));
-            }
-            let (indices, values) = (sparse.indices(), sparse.values());
-            let index_size = indices.index_type().size();
-            self.check_range(accessor, &indices.view(), indices.offset(), sparse.count(), index_size)?;
-            self.check_range(accessor, &values.view(), values.offset(), sparse.count(), size)?;
-        }
-        Ok(())
-    }
-
-    fn check_range(
+    /// The elements, borrowed where they lie in the file `as_is` and nothing replaces them.
+    fn read<T: AnyBitPattern>(
         &self,
-        accessor: &Accessor,
-        view: &View,
-        offset: usize,
-        count: usize,
-        size: usize,
-    ) -> Result<(), LoadError> {
-        let stride = view.stride().unwrap_or(size);
-        if stride < size {
-            return Err(self.broken(accessor, &format!("has items of {size} bytes, {stride} bytes apart")));
+        index: u32,
+        elements: &Elements<'a>,
+        zero: T,
+        as_is: bool,
+        convert: impl Fn(&Strided) -> Vec<T>,
+    ) -> Result<Cow<'a, [T]>, LoadError> {
+        let mut all = match &elements.base {
+            Some(base) if as_is => base.borrowed().map_or_else(|| convert(base).into(), Cow::Borrowed),
+            Some(base) => convert(base).into(),
+            None => vec![zero; elements.count].into(),
+        };
+        if let Some((indices, values)) = &elements.sparse {
+            let all = all.to_mut();
+            for (at, value) in indices.integers().into_iter().zip(convert(values)) {
+                *all.get_mut(at as usize).ok_or_else(|| {
+                    let problem = format!("has {} elements, but its sparse part replaces number {at}", elements.count);
+                    self.broken(index, &problem)
+                })? = value;
+            }
         }
-        let end = count.saturating_sub(1).checked_mul(stride).and_then(|n| n.checked_add(size)?.checked_add(offset));
-        let view_end = view.offset().checked_add(view.length());
-        let buffer = self.buffers.get(view.buffer().index()).map_or(0, Vec::len);
-        let fits = end.is_some_and(|end| end <= view.length()) && view_end.is_some_and(|end| end <= buffer);
-        if fits || count == 0 { Ok(()) } else { Err(self.broken(accessor, "reaches beyond its buffer")) }
+        Ok(all)
     }
 
-    fn broken(&self, accessor: &Accessor, problem: &str) -> LoadError {
-        malformed(self.path, format!("accessor {} {problem}", accessor.index()))
+    fn elements(&self, index: u32) -> Result<Elements<'a>, LoadError> {
+        let accessor = self.document.accessors.get(index as usize).ok_or_else(|| {
+            malformed(self.path, format!("something is asked of accessor {index}, which is not there"))
+        })?;
+        let component = self.component(index, accessor.component_type)?;
+        let dimensions = dimensions(&accessor.kind)
+            .ok_or_else(|| self.broken(index, &format!("holds {}, which is of no use here", accessor.kind)))?;
+        let range = |view, range, dimensions, component| {
+            self.range(index, view, range, dimensions, component)
+                .map(|found| Strided { normalized: accessor.normalized, ..found })
+        };
+        let sparse = match accessor.sparse.as_deref() {
+            Some(Sparse { count, .. }) if *count > accessor.count => {
+                let problem = format!("has {} elements, but its sparse part replaces {count}", accessor.count);
+                return Err(self.broken(index, &problem));
+            }
+            Some(Sparse { count, indices, values }) => {
+                let kind = self.component(index, indices.component_type)?;
+                if !kind.is_unsigned() {
+                    return Err(self.broken(index, "has a sparse part whose indices are no unsigned integers"));
+                }
+                let indices = range(indices.buffer_view, (indices.byte_offset, *count), 1, kind)?;
+                let values = range(values.buffer_view, (values.byte_offset, *count), dimensions, component)?;
+                Some((indices, values))
+            }
+            None => None,
+        };
+        let view = accessor.buffer_view;
+        let base =
+            view.map(|view| range(view, (accessor.byte_offset, accessor.count), dimensions, component)).transpose()?;
+        let count = match &base {
+            Some(base) => base.count,
+            None => self.count_of_zeros(index, accessor)?,
+        };
+        Ok(Elements { kind: &accessor.kind, component, count, base, sparse })
     }
+
+    fn component(&self, index: u32, number: u32) -> Result<Component, LoadError> {
+        Component::new(number).ok_or_else(|| self.broken(index, &format!("has the component type {number}")))
+    }
+
+    /// Elements without a buffer view are zeros. There may be as many as the buffers have bytes: nothing in the file could tell more
+    /// of them apart.
+    fn count_of_zeros(&self, index: u32, accessor: &Accessor) -> Result<usize, LoadError> {
+        match usize::try_from(accessor.count) {
+            Ok(count) if count <= self.buffers.bytes_read() => Ok(count),
+            _ => Err(self.broken(index, &format!("has {} elements, but no buffer view", accessor.count))),
+        }
+    }
+
+    /// `count` elements from `offset` bytes on in a view.
+    fn range(
+        &self,
+        index: u32,
+        view: u32,
+        (offset, count): (u64, u64),
+        dimensions: usize,
+        component: Component,
+    ) -> Result<Strided<'a>, LoadError> {
+        let (bytes, stride) = self.buffers.view(view)?;
+        let size = (dimensions * component.size()) as u64;
+        let stride = stride.unwrap_or(size);
+        if stride < size {
+            return Err(self.broken(index, &format!("has elements of {size} bytes, {stride} bytes apart")));
+        }
+        let last = count.saturating_sub(1).checked_mul(stride);
+        let end = last.and_then(|last| last.checked_add(size)?.checked_add(offset));
+        if count > 0 && end.is_none_or(|end| end > bytes.len() as u64) {
+            let length = bytes.len();
+            let problem = format!("reaches beyond its buffer view of {length} bytes with {count} elements");
+            return Err(self.broken(index, &problem));
+        }
+        // The offset is in range where there are elements. A stride may be any where there is but one.
+        let bytes = if count == 0 { &[] } else { &bytes[offset as usize..] };
+        let stride = usize::try_from(stride).unwrap_or(usize::MAX);
+        Ok(Strided { bytes, count: count as usize, stride, component, normalized: false })
+    }
+
+    fn broken(&self, index: u32, problem: &str) -> LoadError {
+        malformed(self.path, format!("accessor {index} {problem}"))
+    }
+}
+
+/// Components of one element; `None` for matrices, which no mesh has.
+fn dimensions(kind: &str) -> Option<usize> {
+    Some(match kind {
+        "SCALAR" => 1,
+        "VEC2" => 2,
+        "VEC3" => 3,
+        "VEC4" => 4,
+        _ => return None,
+    })
 }

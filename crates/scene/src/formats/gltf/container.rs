@@ -1,155 +1,135 @@
-//! From bytes to a checked document and its buffers.
+//! From the bytes of a file to its document and its binary chunk (glTF 2.0, section 4).
 
 use std::path::Path;
 
-use base64::{
-    Engine, alphabet,
-    engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig},
-};
-use gltf::{
-    Document, Glb,
-    buffer::Source,
-    json::{Image, Root, mesh::Semantic, validation::Checked::Valid},
-};
-use percent_encoding::percent_decode_str;
+use serde::Deserialize;
 
-use super::exact::Exact;
-use crate::{LoadError, error::Place, open::read_bytes};
+use super::document::{Asset, Document};
+use crate::{LoadError, error::Place};
 
-/// Extensions that a file may require.
-const KNOWN_EXTENSIONS: [&str; 3] = ["KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_mesh_quantization"];
+const MAGIC: &[u8] = b"glTF";
+/// Magic, version, length.
+const HEADER: usize = 12;
+/// Length and kind of a chunk.
+const CHUNK_HEADER: usize = 8;
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// A file taken apart.
-pub(super) struct Container {
-    pub(super) document: Document,
-    pub(super) exact: Exact,
-    /// In the document's order, each as long as it says.
-    pub(super) buffers: Vec<Vec<u8>>,
-    /// What was mended.
-    pub(super) warnings: Vec<String>,
+/// The parts of a file, as they lie in its bytes.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Container<'a> {
+    pub(super) json: &'a [u8],
+    pub(super) bin: Option<&'a [u8]>,
+    /// A GLB file, whose JSON has no lines to point at.
+    binary: bool,
 }
 
-impl Container {
-    pub(super) fn open(path: &Path) -> Result<Container, LoadError> {
-        let bytes = read_bytes(path)?;
-        if !bytes.starts_with(b"glTF") {
-            return Container::from_parts(path, &bytes, None);
+impl<'a> Container<'a> {
+    /// Takes a GLB file apart; anything else is JSON.
+    pub(super) fn split(path: &Path, bytes: &'a [u8]) -> Result<Container<'a>, LoadError> {
+        if !bytes.starts_with(MAGIC) {
+            return Ok(Container { json: trim(bytes), bin: None, binary: false });
         }
-        // The crate subtracts the header from the stated length unseen.
-        let stated =
-            bytes.get(8..12).map_or(0, |length| u32::from_le_bytes([length[0], length[1], length[2], length[3]]));
-        if stated < 20 {
-            return Err(malformed(path, format!("the binary container states a length of {stated} bytes")));
+        let damaged = |problem: String| malformed(path, format!("the binary container {problem}"));
+        let (Some(version), Some(length)) = (word(bytes, 4), word(bytes, 8)) else {
+            return Err(damaged(format!("ends after {} bytes", bytes.len())));
+        };
+        if version != 2 {
+            return Err(old(path, &version.to_string()));
         }
-        let glb = Glb::from_slice(&bytes)
-            .map_err(|error| malformed(path, format!("the binary container is damaged ({error})")))?;
-        Container::from_parts(path, &glb.json, glb.bin.as_deref())
-    }
-
-    fn from_parts(path: &Path, json: &[u8], bin: Option<&[u8]>) -> Result<Container, LoadError> {
-        let mut root: Root = serde_json::from_slice(json).map_err(|error| syntax(path, &error))?;
-        let exact: Exact = serde_json::from_slice(json).map_err(|error| syntax(path, &error))?;
-        if let Some(extension) = root.extensions_required.iter().find(|name| !KNOWN_EXTENSIONS.contains(&name.as_str()))
-        {
-            return Err(LoadError::UnsupportedExtension {
-                path: path.to_owned(),
-                extension: extension.clone(),
-                known: KNOWN_EXTENSIONS.map(str::to_owned).to_vec(),
-            });
+        let whole = bytes.get(..length as usize).ok_or_else(|| {
+            damaged(format!("states a length of {length} bytes, but the file has {}: it was cut off", bytes.len()))
+        })?;
+        let (kind, json, rest) = chunk(whole.get(HEADER..).unwrap_or_default())
+            .ok_or_else(|| damaged(format!("states a length of {length} bytes, which do not hold its JSON chunk")))?;
+        if kind != b"JSON" {
+            return Err(damaged("does not begin with a JSON chunk".to_owned()));
         }
-        check_positions(path, &root)?;
-        // The crate knows fewer extensions than we read, and would refuse the rest.
-        root.extensions_required.clear();
-        let warnings = supply_missing_images(path, &mut root);
-        let document = Document::from_json(root)
-            .map_err(|error| malformed(path, format!("the file breaks the rules of glTF ({error})")))?;
-        let buffers = document.buffers().map(|buffer| read_buffer(path, &buffer, bin)).collect::<Result<_, _>>()?;
-        Ok(Container { document, exact, buffers, warnings })
+        // Chunks of other kinds may follow, and are for others.
+        let bin = if rest.len() < CHUNK_HEADER {
+            None
+        } else {
+            let (kind, bin, _) = chunk(rest).ok_or_else(|| {
+                damaged(format!("states a length of {length} bytes, which do not hold its second chunk"))
+            })?;
+            (kind == b"BIN\0").then_some(bin)
+        };
+        Ok(Container { json: trim(json), bin, binary: true })
+    }
+
+    /// Reads the JSON.
+    pub(super) fn parse(&self, path: &Path) -> Result<Document<'a>, LoadError> {
+        let document = serde_json::from_slice::<Document>(self.json);
+        // A file of another version differs in its very structure: say that, and not where it first shows.
+        match document {
+            Ok(document) => {
+                check_version(path, &document.asset)?;
+                Ok(document)
+            }
+            Err(error) => {
+                if let Ok(AssetAlone { asset: Some(asset) }) = serde_json::from_slice(self.json) {
+                    check_version(path, &asset)?;
+                }
+                Err(self.syntax(path, &error))
+            }
+        }
+    }
+
+    fn syntax(&self, path: &Path, error: &serde_json::Error) -> LoadError {
+        let problem = if self.json.is_empty() {
+            "the file holds no JSON".to_owned()
+        } else {
+            format!("the JSON cannot be read as glTF ({error})")
+        };
+        let line = (!self.binary).then_some((error.line(), error.column()));
+        LoadError::Syntax {
+            place: Place { path: path.to_owned(), line }.into(),
+            problem,
+            remedy: "export the file again".to_owned(),
+        }
     }
 }
 
-/// The crate's validation takes it for granted that these accessors exist.
-fn check_positions(path: &Path, root: &Root) -> Result<(), LoadError> {
-    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    let mut positions = primitives.filter_map(|primitive| primitive.attributes.get(&Valid(Semantic::Positions)));
-    match positions.find(|accessor| accessor.value() >= root.accessors.len()) {
-        Some(accessor) => Err(malformed(
-            path,
-            format!("a primitive has its positions in accessor {}, which is not there", accessor.value()),
-        )),
-        None => Ok(()),
+#[derive(Deserialize)]
+struct AssetAlone {
+    asset: Option<Asset>,
+}
+
+fn check_version(path: &Path, asset: &Asset) -> Result<(), LoadError> {
+    let major = |version: &str| version.split('.').next().and_then(|major| major.trim().parse::<u32>().ok());
+    if major(&asset.version) != Some(2) {
+        return Err(old(path, &asset.version));
+    }
+    match &asset.min_version {
+        Some(least) if least != "2.0" => Err(old(path, least)),
+        _ => Ok(()),
     }
 }
 
-/// A texture without its image must not keep the shape from being read: it gets an empty one, and a warning.
-fn supply_missing_images(path: &Path, root: &mut Root) -> Vec<String> {
-    let there = root.images.len();
-    let wanted = root.textures.iter().map(|texture| texture.source.value().saturating_add(1)).max().unwrap_or(0);
-    let missing = root.textures.iter().filter(|texture| texture.source.value() >= there).count();
-    if missing == 0 {
-        return Vec::new();
+fn old(path: &Path, version: &str) -> LoadError {
+    LoadError::Malformed {
+        place: Place::file(path).into(),
+        problem: format!("the file is of glTF version `{version}`"),
+        remedy: "export it as glTF 2.0".to_owned(),
     }
-    let empty = || Image {
-        buffer_view: None,
-        mime_type: None,
-        name: None,
-        uri: Some(String::new()),
-        extensions: None,
-        extras: Default::default(),
-    };
-    if wanted <= there + root.textures.len() {
-        root.images.resize_with(wanted, empty);
-    }
-    vec![format!("{}: {missing} textures have no image", path.display())]
 }
 
-/// The bytes of one buffer: the binary chunk, a data URI or a file beside.
-fn read_buffer(path: &Path, buffer: &gltf::Buffer, bin: Option<&[u8]>) -> Result<Vec<u8>, LoadError> {
-    let mut bytes = match buffer.source() {
-        Source::Bin => bin.ok_or_else(|| malformed(path, "the binary chunk is missing".to_owned()))?.to_vec(),
-        Source::Uri(uri) => match uri.strip_prefix("data:") {
-            Some(data) => decode_data(data).ok_or_else(|| {
-                malformed(path, format!("the data URI of buffer {} cannot be decoded", buffer.index()))
-            })?,
-            None => read_file(path, uri)?,
-        },
-    };
-    if bytes.len() < buffer.length() {
-        let (index, there, wanted) = (buffer.index(), bytes.len(), buffer.length());
-        return Err(malformed(path, format!("buffer {index} holds {there} bytes of {wanted}")));
-    }
-    bytes.truncate(buffer.length());
-    Ok(bytes)
+/// Kind and data of the first chunk, and what follows it.
+fn chunk(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
+    let length = word(bytes, 0)? as usize;
+    let (header, rest) = bytes.split_at_checked(CHUNK_HEADER)?;
+    let (data, rest) = rest.split_at_checked(length)?;
+    Some((&header[4..], data, rest))
 }
 
-fn read_file(path: &Path, uri: &str) -> Result<Vec<u8>, LoadError> {
-    if uri.contains("://") {
-        return Err(LoadError::Malformed {
-            place: Place::file(path).into(),
-            problem: format!("the buffer {uri} is not a file"),
-            remedy: "download it and name it by its path".to_owned(),
-        });
-    }
-    let name = percent_decode_str(uri).decode_utf8_lossy();
-    read_bytes(&path.parent().unwrap_or(Path::new("")).join(&*name))
+fn word(bytes: &[u8], at: usize) -> Option<u32> {
+    bytes.get(at..)?.first_chunk().map(|&bytes| u32::from_le_bytes(bytes))
 }
 
-/// The data of `mediatype;base64,DATA` or `mediatype,DATA`.
-fn decode_data(data: &str) -> Option<Vec<u8>> {
-    let (header, data) = data.split_once(',')?;
-    if !header.ends_with(";base64") {
-        return Some(percent_decode_str(data).collect());
-    }
-    let config = GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
-    GeneralPurpose::new(&alphabet::STANDARD, config).decode(data).ok()
-}
-
-fn syntax(path: &Path, error: &serde_json::Error) -> LoadError {
-    LoadError::Syntax {
-        place: Place { path: path.to_owned(), line: Some((error.line(), error.column())) }.into(),
-        problem: format!("the JSON cannot be read as glTF ({error})"),
-        remedy: "export the file again".to_owned(),
-    }
+/// Without the byte order mark that some editors write, and without the zeros that some exporters pad with.
+fn trim(json: &[u8]) -> &[u8] {
+    let json = json.strip_prefix(BYTE_ORDER_MARK).unwrap_or(json);
+    let end = json.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
+    json[..end].trim_ascii()
 }
 
 /// The error for a file that contradicts itself.

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use glam::Vec3;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
-use serde_json::Value;
+use serde_json::value::RawValue;
 
 use super::container::malformed;
-use crate::LoadError;
+use crate::{LoadError, Material};
 
 /// Of a material: the coefficients that metallic-roughness cannot say.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
@@ -17,6 +18,34 @@ pub(crate) struct MaterialExtras {
     pub(crate) ks: [f32; 3],
     pub(crate) shininess: f32,
     pub(crate) emission: [f32; 3],
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub(crate) ks_tinted: [f32; 3],
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub(crate) emission_tinted: [f32; 3],
+    /// From texture coordinates to the picture's, by columns, where an angle and factors would round it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) texture_transform: Option<[f32; 6]>,
+}
+
+impl MaterialExtras {
+    /// The material of this name, without a texture.
+    pub(super) fn into_material(self, name: String) -> Material {
+        Material {
+            name,
+            ka: self.ka.into(),
+            kd: self.kd.into(),
+            ks: self.ks.into(),
+            ks_tinted: self.ks_tinted.into(),
+            shininess: self.shininess,
+            emission: self.emission.into(),
+            emission_tinted: self.emission_tinted.into(),
+            texture: None,
+        }
+    }
+}
+
+fn is_zero(color: &[f32; 3]) -> bool {
+    Vec3::from(*color) == Vec3::ZERO
 }
 
 /// Of a light: its size, in the node's coordinates, and that distance does not weaken it.
@@ -68,15 +97,20 @@ pub(crate) struct SceneExtras {
     pub(crate) weight: Option<String>,
 }
 
-/// Reads our extras of `what`, such as "material 3"; `None` where there are none.
+/// Reads our extras of `what`, such as "material 3"; `None` where there are none, or others'.
 pub(super) fn read<T: DeserializeOwned>(
     path: &Path,
     what: &str,
-    value: Option<&Value>,
+    extras: Option<&RawValue>,
 ) -> Result<Option<T>, LoadError> {
-    let parse = |value: &Value| {
-        T::deserialize(value)
-            .map_err(|error| malformed(path, format!("extras.lightmesh of {what} is damaged ({error})")))
-    };
-    value.map(parse).transpose()
+    #[derive(Deserialize)]
+    #[serde(bound = "T: DeserializeOwned")]
+    struct Ours<T> {
+        lightmesh: Option<T>,
+    }
+    // Extras may be of any kind; ours are an object.
+    let Some(extras) = extras.filter(|extras| extras.get().starts_with('{')) else { return Ok(None) };
+    serde_json::from_str::<Ours<T>>(extras.get())
+        .map(|ours| ours.lightmesh)
+        .map_err(|error| malformed(path, format!("extras.lightmesh of {what} is damaged ({error})")))
 }

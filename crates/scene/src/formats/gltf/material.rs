@@ -1,58 +1,125 @@
 //! Metallic-roughness to the coefficients of formula (1).
 //!
-//! With the base colour b, metalness m and roughness r, s = (1 − r)² is how much of a mirror the surface is, and
-//! F₀ = 0.04 + (b − 0.04) m its reflectance at right angles (glTF 2.0, appendix B):
+//! With the base colour b, metalness m, roughness r and the reflectance f of a dielectric at right angles (0.04, unless
+//! `KHR_materials_ior` or `KHR_materials_specular` say otherwise), s = (1 − r)² is how much of a mirror the surface is (glTF 2.0,
+//! appendix B):
 //!
 //! ```text
-//! k_d = b (1 − m s)    k_s = F₀ s    pow = 2/r⁴ − 2  (Walter et al. 2007: the Phong lobe as wide as a facet lobe of α = r²)
+//! k_d = b (1 − m s)    k_s = (f (1 − m) + b m) s    pow = 2/r⁴ − 2  (Walter et al. 2007: the Phong lobe as wide as a facet
+//!                                                                    lobe of α = r²)
 //! ```
 //!
-//! so that a rough metal is matt in its own colour, as it looks under point lights, and a smooth one mirrors.
+//! so that a rough metal is matt in its own colour, as it looks under point lights, and a smooth one mirrors. Where a texture or
+//! vertex colours tint b, the part b m s of k_s is tinted with it.
+//!
+//! An unlit material (`KHR_materials_unlit`) shows its base colour, tinted, whatever the lights: k_a = k_d = k_s = 0, and the colour
+//! is what the surface gives off. It still throws shadows, like everything.
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Affine2, Vec3};
 
-use super::{container::malformed, exact::Exact, extras, extras::MaterialExtras};
+use super::{
+    container::malformed,
+    document::{self, MaterialExtensions, MetallicRoughness},
+    extras::{self, MaterialExtras},
+    left_out::LeftOut,
+};
 use crate::{LoadError, Material};
 
-/// The material, by our own extras where the file has them.
-pub(super) fn read(path: &Path, material: &gltf::Material, exact: &Exact) -> Result<Material, LoadError> {
-    let name = material.name().unwrap_or_default().to_owned();
-    let index = material.index().unwrap_or(usize::MAX);
-    let own = extras::read::<MaterialExtras>(path, &format!("material {index}"), exact.material_extras(index))?;
+/// Reflectance of a dielectric at right angles, by the index of refraction 1.5.
+const DIELECTRIC: f32 = 0.04;
+
+/// Phong exponents beyond this are mirrors to the eye, and hard on `f32`.
+const SHARPEST: f32 = 10_000.0;
+
+/// The material without its texture, by our own extras where the file has them. `tinted`: a texture or vertex colours are going to
+/// tint it.
+pub(super) fn read(path: &Path, index: usize, of: &document::Material, tinted: bool) -> Result<Material, LoadError> {
+    let name = of.name.as_deref().unwrap_or_default().to_owned();
+    let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
     if let Some(own) = own {
-        if own.shininess <= 0.0 {
+        if own.shininess.is_nan() || own.shininess <= 0.0 {
             let problem = format!("extras.lightmesh of material {index} has shininess = {}", own.shininess);
             return Err(malformed(path, problem));
         }
-        return Ok(Material {
-            name,
-            ka: own.ka.into(),
-            kd: own.kd.into(),
-            ks: own.ks.into(),
-            shininess: own.shininess,
-            emission: own.emission.into(),
-            ..Material::default()
-        });
+        return Ok(own.into_material(name));
     }
-    let pbr = material.pbr_metallic_roughness();
-    let [r, g, b, _] = pbr.base_color_factor();
-    let emission = material.emissive_strength().unwrap_or(1.0) * Vec3::from(material.emissive_factor());
-    let phong = phong(Vec3::new(r, g, b), pbr.metallic_factor(), pbr.roughness_factor());
-    Ok(Material { name, emission, ..phong })
+    Ok(Material { name, ..translated(of, tinted) })
 }
 
-fn phong(base: Vec3, metallic: f32, roughness: f32) -> Material {
+/// How the material places its texture, where our own extras say it.
+pub(super) fn texture_transform(
+    path: &Path,
+    index: usize,
+    of: &document::Material,
+) -> Result<Option<Affine2>, LoadError> {
+    let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
+    Ok(own.and_then(|own| own.texture_transform).map(|columns| Affine2::from_cols_array(&columns)))
+}
+
+/// Counts what of the material is not shown.
+pub(super) fn count_left_out(of: &document::Material, left_out: &mut LeftOut) {
+    let pbr = of.pbr_metallic_roughness.as_deref();
+    let specular = of.extensions.as_deref().and_then(|extensions| extensions.specular.as_ref());
+    left_out.see_through += usize::from(of.alpha_mode.as_deref().is_some_and(|mode| mode != "OPAQUE"));
+    left_out.roughness_textures += usize::from(pbr.is_some_and(|pbr| pbr.metallic_roughness_texture.is_some()));
+    left_out.normal_textures += usize::from(of.normal_texture.is_some());
+    left_out.occlusion_textures += usize::from(of.occlusion_texture.is_some());
+    left_out.emissive_textures += usize::from(of.emissive_texture.is_some());
+    left_out.specular_textures += usize::from(
+        specular
+            .is_some_and(|specular| specular.specular_texture.is_some() || specular.specular_color_texture.is_some()),
+    );
+}
+
+/// The material by glTF's own terms.
+pub(super) fn translated(of: &document::Material, tinted: bool) -> Material {
+    let defaults = MetallicRoughness::default();
+    let pbr = of.pbr_metallic_roughness.as_deref().unwrap_or(&defaults);
+    let [r, g, b, _] = pbr.base_color_factor;
+    let base = Vec3::new(r, g, b).max(Vec3::ZERO);
+    let extensions = of.extensions.as_deref();
+    if extensions.is_some_and(|extensions| extensions.unlit.is_some()) {
+        return unlit(base, tinted);
+    }
+    let mut material = phong(base, pbr.metallic_factor, pbr.roughness_factor, dielectric(extensions), tinted);
+    let strength = extensions.and_then(|extensions| extensions.emissive_strength.as_ref());
+    // Such a texture is black nearly everywhere: better no light than light from all of the surface.
+    if of.emissive_texture.is_none() {
+        let strength = strength.map_or(1.0, |strength| strength.emissive_strength);
+        material.emission = (strength * Vec3::from(of.emissive_factor)).max(Vec3::ZERO);
+    }
+    material
+}
+
+fn phong(base: Vec3, metallic: f32, roughness: f32, dielectric: Vec3, tinted: bool) -> Material {
+    let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));
     let mirror = (1.0 - roughness).powi(2);
     let kd = base * (1.0 - metallic * mirror);
-    Material {
-        ka: kd,
-        kd,
-        ks: Vec3::splat(0.04).lerp(base, metallic) * mirror,
-        shininess: (2.0 / roughness.powi(4) - 2.0).clamp(1.0, 10_000.0),
-        ..Material::default()
-    }
+    let plain = dielectric * (1.0 - metallic) * mirror;
+    let colored = base * metallic * mirror;
+    let (ks, ks_tinted) = if tinted { (plain, colored) } else { (plain + colored, Vec3::ZERO) };
+    let shininess = (2.0 / roughness.powi(4) - 2.0).clamp(1.0, SHARPEST);
+    Material { ka: kd, kd, ks, ks_tinted, shininess, ..Material::default() }
+}
+
+fn unlit(base: Vec3, tinted: bool) -> Material {
+    let (emission, emission_tinted) = if tinted { (Vec3::ZERO, base) } else { (base, Vec3::ZERO) };
+    Material { ka: Vec3::ZERO, kd: Vec3::ZERO, ks: Vec3::ZERO, emission, emission_tinted, ..Material::default() }
+}
+
+/// Reflectance of the surface at right angles, as far as it is not a metal.
+fn dielectric(extensions: Option<&MaterialExtensions>) -> Vec3 {
+    let ior = extensions.and_then(|extensions| extensions.ior.as_ref()).map_or(DIELECTRIC, |ior| match ior.ior {
+        // As the extension has it: a surface that reflects everything.
+        0.0 => 1.0,
+        ior => ((ior.max(1.0) - 1.0) / (ior.max(1.0) + 1.0)).powi(2),
+    });
+    let (factor, color) = extensions
+        .and_then(|extensions| extensions.specular.as_ref())
+        .map_or((1.0, Vec3::ONE), |specular| (specular.specular_factor, specular.specular_color_factor.into()));
+    (ior * color).clamp(Vec3::ZERO, Vec3::ONE) * factor.clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -61,10 +128,14 @@ mod tests {
 
     const COPPER: Vec3 = Vec3::new(0.95, 0.64, 0.54);
 
+    fn plain(metallic: f32, roughness: f32) -> Material {
+        phong(COPPER, metallic, roughness, dielectric(None), false)
+    }
+
     #[test]
     fn a_rough_surface_is_matt_in_its_own_colour() {
         for metallic in [0.0, 1.0] {
-            let material = phong(COPPER, metallic, 1.0);
+            let material = plain(metallic, 1.0);
             assert_eq!((material.kd, material.ka, material.ks), (COPPER, COPPER, Vec3::ZERO));
             assert_eq!(material.shininess, 1.0);
         }
@@ -72,17 +143,43 @@ mod tests {
 
     #[test]
     fn a_smooth_metal_is_a_mirror_of_its_colour() {
-        let material = phong(COPPER, 1.0, 0.0);
+        let material = plain(1.0, 0.0);
         assert_eq!(material.kd, Vec3::ZERO);
         assert!((material.ks - COPPER).length() < 1e-6);
-        assert_eq!(material.shininess, 10_000.0);
+        assert_eq!(material.shininess, SHARPEST);
     }
 
     #[test]
     fn a_smooth_dielectric_reflects_four_percent() {
-        let material = phong(COPPER, 0.0, 0.5);
+        let material = plain(0.0, 0.5);
         assert_eq!(material.kd, COPPER);
         assert!((material.ks - Vec3::splat(0.01)).length() < 1e-7);
         assert!((material.shininess - 30.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn a_tint_reaches_the_reflection_of_the_metal_alone() {
+        let material = phong(COPPER, 0.25, 0.5, dielectric(None), true);
+        assert!((material.ks - Vec3::splat(0.0075)).length() < 1e-7, "{}", material.ks);
+        assert!((material.ks_tinted - COPPER / 16.0).length() < 1e-7, "{}", material.ks_tinted);
+        assert!((material.ks + material.ks_tinted - plain(0.25, 0.5).ks).length() < 1e-7);
+        assert_eq!(plain(0.25, 0.5).ks_tinted, Vec3::ZERO);
+    }
+
+    #[test]
+    fn factors_out_of_range_are_brought_back() {
+        assert_eq!(plain(7.0, -1.0), plain(1.0, 0.0));
+        assert_eq!(plain(-1.0, 3.0), plain(0.0, 1.0));
+    }
+
+    #[test]
+    fn the_index_of_refraction_and_the_specular_factor_set_the_reflectance() {
+        let of = |extensions: &str| dielectric(Some(&serde_json::from_str(extensions).unwrap()));
+        let near = |found: Vec3, expected: [f32; 3]| (found - Vec3::from(expected)).length() < 1e-6;
+        assert!(near(of(r#"{"KHR_materials_ior": {}}"#), [0.04; 3]));
+        assert!(near(of(r#"{"KHR_materials_ior": {"ior": 2}}"#), [1.0 / 9.0; 3]));
+        assert!(near(of(r#"{"KHR_materials_ior": {"ior": 1}}"#), [0.0; 3]));
+        let halved = r#"{"KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [1, 0, 100]}}"#;
+        assert!(near(of(halved), [0.02, 0.0, 0.5]));
     }
 }

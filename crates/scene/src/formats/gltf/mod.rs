@@ -1,114 +1,134 @@
-//! glTF 2.0 and GLB, through the `gltf` crate: triangles of the node hierarchy, materials, cameras and punctual lights.
+//! glTF 2.0 and GLB: triangles of the node hierarchy, materials with their base colour textures, cameras and punctual lights.
 //!
-//! The crate keeps numbers of the JSON as `f32`; where a node lies far from the origin that would lose its place, so
-//! [`exact`] reads those once more in double precision. Accessors are checked against their buffers before they are read.
-//! Images are not decoded. Skins, morph targets and animations are left out.
+//! By hand, over `serde_json`, because the `gltf` crate keeps nodes as `f32`, refuses extensions that we read, copies the binary
+//! chunk, and reads accessors element by element.
+//!
+//! 1. [`container`]: the bytes are read once; JSON and binary chunk are parts of them.
+//! 2. [`document`]: the JSON, its numbers in double precision; [`extensions`]: is it ours to read?
+//! 3. [`nodes`], [`instances`]: what stands where.
+//! 4. [`materials`] of [`material`] and [`picture`].
+//! 5. [`meshes`] through [`accessor`], [`strided`] and [`buffers`]: counted first, then added, borrowed from the bytes where they
+//!    lie as they are needed.
+//! 6. [`views`]: [`cameras`], [`lights`], and [`extras`] of our own.
+//!
+//! Animations are left out: the scene is shown as its nodes stand. What else is not shown is counted in [`left_out`] and becomes a
+//! warning.
 
 mod accessor;
+mod axes;
+mod buffers;
+mod cameras;
 mod container;
-mod exact;
+mod document;
+mod extensions;
 pub(crate) mod extras;
+mod instances;
+mod left_out;
+mod lights;
 mod material;
-mod primitive;
+mod materials;
+mod meshes;
+mod nodes;
+mod picture;
+mod strided;
 #[cfg(test)]
 mod tests;
+mod uri;
 mod views;
 
 use std::path::Path;
 
-use glam::DMat4;
-use gltf::{Document, Node};
+use glam::Vec3;
+pub(crate) use picture::affine;
 
-use self::{container::Container, exact::Exact, primitive::Primitives};
+use self::{
+    accessor::Accessors,
+    buffers::Buffers,
+    container::{Container, malformed},
+    document::{Document, Node},
+    extras::SceneExtras,
+    left_out::LeftOut,
+    materials::Materials,
+    meshes::{Meshes, Shown},
+    nodes::Placed,
+    picture::Pictures,
+    views::Views,
+};
 use crate::{
-    LoadError,
+    LightMeshDefaults, LoadError, Weight,
     draft::{Draft, Placement},
-    error::Place,
+    open::read_bytes,
 };
 
 /// Reads a glTF or GLB file into `draft`.
 pub(crate) fn read(path: &Path, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
-    let Container { document, exact, buffers, warnings } = Container::open(path)?;
-    draft.warnings.extend(warnings);
-    let mut loader = Loader { path, placement, document: &document, exact: &exact, left_out: LeftOut::default() };
-    let mut primitives = Primitives::new(path, &document, &exact, &buffers, placement, draft)?;
-    for (node, transform) in loader.placed_nodes(draft)? {
-        if let Some(mesh) = node.mesh() {
-            primitives.add(&mesh, &transform, draft)?;
-        }
-        loader.read_views(&node, &transform, draft)?;
+    let bytes = read_bytes(path)?;
+    let container = Container::split(path, &bytes)?;
+    let document = container.parse(path)?;
+    extensions::check(path, &document, draft)?;
+    let buffers = Buffers::new(path, &document, container.bin, draft)?;
+    let accessors = Accessors { path, document: &document, buffers: &buffers };
+    let mut left_out = LeftOut::default();
+
+    let pictures = Pictures::new(path, &document, &buffers);
+    let mut materials = Materials::read(path, &document, pictures, placement, &mut left_out, draft)?;
+    let placed = nodes::placed(path, &document, placement.transform, draft)?;
+    let shown = shown(&accessors, &placed, &mut left_out)?;
+    Meshes::new(accessors).add(&shown, &mut materials, &mut left_out, draft)?;
+    if placement.part {
+        left_out.count_views(&placed);
+    } else {
+        Views::new(path, &document).add(&placed, &mut left_out, draft)?;
+        read_scene_extras(path, &document, draft)?;
     }
-    if !placement.part {
-        loader.read_scene_extras(draft)?;
-    }
-    primitives.warn(draft);
-    loader.left_out.warn(path, draft);
+    left_out.warn(path, draft);
     Ok(())
 }
 
-/// Cameras and lights that were not taken.
-#[derive(Default)]
-struct LeftOut {
-    cameras: usize,
-    lights: usize,
+/// The meshes of all nodes.
+fn shown<'a>(
+    accessors: &Accessors<'a>,
+    placed: &[Placed<'a>],
+    left_out: &mut LeftOut,
+) -> Result<Vec<Shown<'a>>, LoadError> {
+    let mut all = Vec::new();
+    for &Placed { index, node, transform } in placed {
+        let Some(mesh) = node.mesh else { continue };
+        let instancing = node.extensions.as_ref().and_then(|extensions| extensions.instancing.as_ref());
+        let instances = match instancing {
+            Some(instancing) => Some((instances::count(accessors, index, instancing)?, instancing)),
+            None => None,
+        };
+        all.push(Shown { mesh, transform, instances });
+        left_out.skinned += usize::from(node.skin.is_some());
+        left_out.morphed += usize::from(is_morphed(accessors.document, node, mesh));
+    }
+    Ok(all)
 }
 
-impl LeftOut {
-    fn warn(&self, path: &Path, draft: &mut Draft) {
-        if self.cameras + self.lights > 0 {
-            let (path, cameras, lights) = (path.display(), self.cameras, self.lights);
-            draft.warnings.push(format!("{path}: {cameras} cameras and {lights} lights of a mesh file were left out"));
-        }
-    }
+/// Whether morph targets change the mesh.
+fn is_morphed(document: &Document, node: &Node, mesh: u32) -> bool {
+    let of_mesh = document.meshes.get(mesh as usize).map_or(&[][..], |mesh| &mesh.weights);
+    let weights = if node.weights.is_empty() { of_mesh } else { &node.weights };
+    weights.iter().any(|&weight| weight != 0.0)
 }
 
-struct Loader<'a> {
-    path: &'a Path,
-    placement: &'a Placement,
-    document: &'a Document,
-    exact: &'a Exact,
-    left_out: LeftOut,
-}
-
-impl<'a> Loader<'a> {
-    /// The nodes of the scene with their transforms to the world, depth first.
-    fn placed_nodes(&self, draft: &mut Draft) -> Result<Vec<(Node<'a>, DMat4)>, LoadError> {
-        let mut stack: Vec<(Node, DMat4)> =
-            self.roots(draft).into_iter().rev().map(|node| (node, self.placement.transform)).collect();
-        let mut placed = Vec::new();
-        let mut seen = vec![false; self.document.nodes().len()];
-        while let Some((node, parent)) = stack.pop() {
-            if std::mem::replace(&mut seen[node.index()], true) {
-                return Err(LoadError::Malformed {
-                    place: Place::file(self.path).into(),
-                    problem: format!("node {} has two parents or is its own ancestor", node.index()),
-                    remedy: "nodes must form a tree; export the file again".to_owned(),
-                });
-            }
-            let transform = parent * self.exact.transform(node.index());
-            let children: Vec<Node> = node.children().collect();
-            stack.extend(children.into_iter().rev().map(|child| (child, transform)));
-            placed.push((node, transform));
-        }
-        Ok(placed)
+/// Ambient term, background and the like, from our own extras.
+fn read_scene_extras(path: &Path, document: &Document, draft: &mut Draft) -> Result<(), LoadError> {
+    let scene = nodes::scene_index(document).and_then(|index| document.scenes.get(index));
+    let extras = scene.and_then(|scene| scene.extras);
+    let Some(own) = extras::read::<SceneExtras>(path, "the scene", extras)? else { return Ok(()) };
+    if let Some(origin) = own.origin {
+        draft.prefer_origin(origin.into());
     }
-
-    /// The root nodes of the default scene, else of the first, else all that are no one's child.
-    fn roots(&self, draft: &mut Draft) -> Vec<Node<'a>> {
-        let count = self.document.scenes().len();
-        if let Some(scene) = self.scene() {
-            if count > 1 {
-                let (path, index) = (self.path.display(), scene.index());
-                draft.warnings.push(format!("{path}: of {count} scenes only number {index} is read"));
-            }
-            return scene.nodes().collect();
-        }
-        let mut is_child = vec![false; self.document.nodes().len()];
-        self.document.nodes().flat_map(|node| node.children()).for_each(|child| is_child[child.index()] = true);
-        self.document.nodes().filter(|node| !is_child[node.index()]).collect()
-    }
-
-    fn scene(&self) -> Option<gltf::Scene<'a>> {
-        self.document.default_scene().or_else(|| self.document.scenes().next())
-    }
+    draft.ambient = own.ambient.map(Vec3::from);
+    draft.background = own.background.map(Vec3::from);
+    let weight = match own.weight.as_deref() {
+        None => None,
+        Some(name) => Some(Weight::from_name(name).ok_or_else(|| {
+            malformed(path, format!("extras.lightmesh of the scene has the unknown weight `{name}`"))
+        })?),
+    };
+    draft.light_mesh = LightMeshDefaults { step: own.step, radius: own.radius, weight };
+    Ok(())
 }

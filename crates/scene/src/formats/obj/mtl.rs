@@ -1,110 +1,190 @@
-//! Material libraries of OBJ files: Ka, Kd, Ks, Ns and Ke to the coefficients of formula (1).
+//! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke and map_Kd to the coefficients of formula (1).
 
-use std::{
-    io::Cursor,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use glam::{DVec3, Vec3};
 
-use super::malformed;
-use crate::{LoadError, Material, open::read_bytes};
+use super::{lines::Lines, malformed, map::Map};
+use crate::{
+    LoadError, Material,
+    draft::Draft,
+    formats::text::{decoded, number, quoted, split_word, with_line_feeds, words},
+    open::read_bytes,
+};
 
-/// What happened while libraries were read.
+/// One material as its library describes it.
 #[derive(Default)]
-pub(super) struct Libraries {
-    pub(super) failure: Option<LoadError>,
-    pub(super) warnings: Vec<String>,
+pub(super) struct Entry {
+    pub(super) name: String,
+    /// The library.
+    path: PathBuf,
+    ambient: Option<Vec3>,
+    diffuse: Option<Vec3>,
+    specular: Option<Vec3>,
+    emissive: Option<Vec3>,
+    shininess: Option<f32>,
+    map: Option<Map>,
+    dissolve: Option<f64>,
+    transparency: Option<f64>,
 }
 
-impl Libraries {
-    /// Reads the libraries that an `mtllib` line names: one file whose name may hold blanks, or several without. One that
-    /// cannot be read is a warning, because the shape is there without it.
-    pub(super) fn load(&mut self, obj: &Path, names: &Path) -> tobj::MTLLoadResult {
-        let names = names.to_string_lossy().replace('\\', "/");
-        let folder = obj.parent().unwrap_or(Path::new(""));
-        let whole = folder.join(&names);
-        let files: Vec<PathBuf> = if whole.is_file() {
-            vec![whole]
-        } else {
-            names.split_whitespace().map(|name| folder.join(name)).collect()
-        };
-        let mut text = String::new();
-        for file in files {
-            match read_bytes(&file) {
-                Ok(bytes) => match checked(&file, &String::from_utf8_lossy(&bytes), &mut self.warnings) {
-                    Ok(checked) => text.push_str(&checked),
-                    Err(failure) => {
-                        self.failure.get_or_insert(failure);
-                    }
-                },
-                Err(error) => self.warnings.push(format!("{error}; light grey is used in its place")),
-            }
+/// What libraries hold beyond the scene's model.
+#[derive(Default)]
+struct LeftOut {
+    maps: usize,
+    spectral: usize,
+}
+
+/// Reads the libraries that `mtllib` lines name, in their order. One that cannot be read is a warning, because the shape is there
+/// without it.
+pub(super) fn read_libraries(obj: &Path, lines: &[String], draft: &mut Draft) -> Result<Vec<Entry>, LoadError> {
+    let mut entries = Vec::new();
+    let mut seen = Vec::new();
+    let names: Vec<String> = lines.iter().flat_map(|line| file_names(obj, line, draft)).collect();
+    for name in names {
+        if seen.contains(&name) {
+            continue;
         }
-        tobj::load_mtl_buf(&mut Cursor::new(text))
+        match draft.path_beside(obj, &name).and_then(|path| Ok((read_bytes(&path)?, path))) {
+            Ok((mut bytes, path)) => read_library(&path, with_line_feeds(&mut bytes), &mut entries, draft)?,
+            Err(error) => draft.warnings.push(format!("{error}; light grey is used in its place")),
+        }
+        seen.push(name);
     }
+    let transparent = entries.iter().filter(|entry| entry.is_transparent()).count();
+    if transparent > 0 {
+        draft
+            .warnings
+            .push(format!("{}: {transparent} materials are transparent (d, Tr); they are shown opaque", obj.display()));
+    }
+    Ok(entries)
 }
 
-/// The lines that matter, each with as many numbers as tobj takes for granted.
-fn checked(path: &Path, text: &str, warnings: &mut Vec<String>) -> Result<String, LoadError> {
-    let mut checked = String::new();
-    let mut textures = 0;
-    for (index, line) in text.lines().enumerate() {
-        let (word, rest) = line.trim().split_once(char::is_whitespace).unwrap_or((line.trim(), ""));
-        let values: Vec<&str> = rest.split_whitespace().collect();
+/// The files of an `mtllib` line: one whose name may hold blanks, or several; whichever are there. Where none is, as their endings
+/// part them.
+fn file_names(obj: &Path, line: &str, draft: &Draft) -> Vec<String> {
+    const ENDING: &str = ".mtl";
+    let mut by_ending = Vec::new();
+    let mut name = String::new();
+    for word in line.split_whitespace() {
+        name = if name.is_empty() { word.to_owned() } else { name + " " + word };
+        if word.to_ascii_lowercase().ends_with(ENDING) {
+            by_ending.push(std::mem::take(&mut name));
+        }
+    }
+    by_ending.extend((!name.is_empty()).then_some(name));
+    let whole = vec![line.to_owned()];
+    let by_blank: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
+    let is_there = |name: &String| draft.path_beside(obj, name).is_ok_and(|path| path.is_file());
+    let found = [whole, by_ending.clone(), by_blank].into_iter().find(|names| names.iter().all(is_there));
+    found.unwrap_or(by_ending)
+}
+
+fn read_library(path: &Path, text: &[u8], entries: &mut Vec<Entry>, draft: &mut Draft) -> Result<(), LoadError> {
+    let mut left_out = LeftOut::default();
+    let mut lines = Lines::new(text);
+    let mut entry = None;
+    while let Some(line) = lines.next() {
+        let (word, rest) = split_word(line);
+        if word == b"newmtl" {
+            entries.extend(entry.take());
+            let name = decoded(rest).into_owned();
+            if name.is_empty() {
+                return Err(malformed(path, lines.number, "`newmtl` has no name".to_owned(), "name the material"));
+            }
+            entry = Some(Entry { name, path: path.to_owned(), ..Entry::default() });
+        } else if let Some(entry) = &mut entry
+            && let Err(problem) = entry.set(word, rest, &mut left_out)
+        {
+            return Err(malformed(path, lines.number, problem, "correct the line or export again"));
+        }
+    }
+    entries.extend(entry);
+    let LeftOut { maps, spectral } = left_out;
+    for (count, what) in [(maps, "textures other than map_Kd"), (spectral, "spectral or CIE-XYZ colours")] {
+        if count > 0 {
+            draft.warnings.push(format!("{}: {count} {what} were left out", path.display()));
+        }
+    }
+    Ok(())
+}
+
+impl Entry {
+    /// Takes one line; the error says what is wrong with it.
+    fn set(&mut self, word: &[u8], rest: &[u8], left_out: &mut LeftOut) -> Result<(), String> {
         match word {
-            "newmtl" if rest.trim().is_empty() => {
-                return Err(malformed(path, index + 1, "`newmtl` has no name".to_owned(), "name the material"));
-            }
-            "newmtl" => checked += &format!("newmtl {}\n", rest.trim()),
-            "Ka" | "Kd" | "Ks" | "Ke" if matches!(values.first(), Some(&"spectral" | &"xyz")) => {
-                warnings.push(format!("{}:{}: `{word} {}` is not read", path.display(), index + 1, values[0]));
-            }
-            "Ka" | "Kd" | "Ks" | "Ke" => {
-                // One number stands for all channels.
-                let [r, g, b] = match values[..] {
-                    [grey] => [grey; 3],
-                    [r, g, b, ..] => [r, g, b],
-                    _ => return Err(not_numbers(path, index + 1, line)),
-                };
-                if ![r, g, b].iter().all(|value| is_number(value)) {
-                    return Err(not_numbers(path, index + 1, line));
+            b"Ka" | b"Kd" | b"Ks" | b"Ke" => {
+                if matches!(words(rest).next(), Some(b"spectral" | b"xyz")) {
+                    left_out.spectral += 1;
+                    return Ok(());
                 }
-                checked += &format!("{word} {r} {g} {b}\n");
+                let color = Some(color(word, rest)?);
+                match word {
+                    b"Ka" => self.ambient = color,
+                    b"Kd" => self.diffuse = color,
+                    b"Ks" => self.specular = color,
+                    _ => self.emissive = color,
+                }
             }
-            "Ns" if values.first().is_some_and(|value| is_number(value)) => checked += &format!("Ns {}\n", values[0]),
-            "Ns" => return Err(not_numbers(path, index + 1, line)),
-            "map_Kd" => textures += 1,
+            b"Ns" => {
+                let exponent = words(rest).next().and_then(number).map(|exponent| exponent as f32);
+                let usable = exponent.filter(|exponent| exponent.is_finite());
+                self.shininess = Some(usable.ok_or_else(|| not_numbers(word, rest))?);
+            }
+            // `d -halo 0.5` has its number at the end.
+            b"d" => self.dissolve = words(rest).last().and_then(number),
+            b"Tr" => self.transparency = words(rest).last().and_then(number),
+            b"map_Kd" => self.map = Map::parse(&decoded(rest)),
+            // Exporters write the ambient texture again.
+            b"map_Ka" | b"map_aat" => {}
+            b"bump" | b"disp" | b"decal" | b"refl" | b"norm" => left_out.maps += 1,
+            word if word.starts_with(b"map_") => left_out.maps += 1,
             _ => {}
         }
+        Ok(())
     }
-    if textures > 0 {
-        warnings.push(format!("{}: {textures} materials have textures, which are not read", path.display()));
+
+    /// Some exporters write `Tr 1` for what is opaque; then `d 1` stands beside it.
+    fn is_transparent(&self) -> bool {
+        match (self.dissolve, self.transparency) {
+            (Some(dissolve), _) => dissolve < 1.0,
+            (None, transparency) => transparency.is_some_and(|transparency| transparency > 0.0),
+        }
     }
-    Ok(checked)
+
+    /// The material for the shading model. Without Ka the ambient coefficient is the diffuse one, without Kd a texture shows as it
+    /// is; negative values count as 0. An exponent under 1 would smear the highlight over everything (exporters write `Ns 0` for
+    /// "none"), so it counts as 1. The texture is read if the material is `used`.
+    pub(super) fn material(&self, used: bool, draft: &mut Draft) -> Material {
+        let default = Material::default();
+        let texture = self.map.as_ref().filter(|_| used).and_then(|map| map.texture_use(&self.path, draft));
+        let plain = if texture.is_some() { Vec3::ONE } else { default.kd };
+        let kd = self.diffuse.unwrap_or(plain);
+        Material {
+            name: self.name.clone(),
+            ka: self.ambient.unwrap_or(kd),
+            kd,
+            ks: self.specular.unwrap_or(default.ks),
+            shininess: self.shininess.map_or(default.shininess, |exponent| exponent.max(1.0)),
+            emission: self.emissive.unwrap_or(default.emission),
+            texture,
+            ..default
+        }
+    }
 }
 
-fn is_number(text: &str) -> bool {
-    text.parse::<f64>().is_ok_and(|number| (number as f32).is_finite())
+/// One number for all channels, or three.
+fn color(word: &[u8], rest: &[u8]) -> Result<Vec3, String> {
+    let values: Vec<f64> = words(rest).map_while(number).take(3).collect();
+    let [r, g, b] = match (values[..].try_into(), &values[..]) {
+        (Ok(channels), _) => channels,
+        (_, &[grey]) if words(rest).nth(1).is_none_or(|next| next.starts_with(b"#")) => [grey; 3],
+        _ => return Err(not_numbers(word, rest)),
+    };
+    let color = DVec3::new(r, g, b).as_vec3().max(Vec3::ZERO);
+    if color.is_finite() { Ok(color) } else { Err(not_numbers(word, rest)) }
 }
 
-fn not_numbers(path: &Path, line: usize, text: &str) -> LoadError {
-    malformed(path, line, format!("`{}` is not one number or three", text.trim()), "correct the line or export again")
-}
-
-/// Without Ka the ambient coefficient is the diffuse one; negative values count as 0. An exponent under 1 would smear the
-/// highlight over everything (exporters write `Ns 0` for "none"), so it counts as 1.
-pub(super) fn material(mtl: &tobj::Material) -> Material {
-    let color = |value: Option<[f64; 3]>| value.map(|rgb| DVec3::from(rgb).as_vec3().max(Vec3::ZERO));
-    let default = Material::default();
-    let kd = color(mtl.diffuse).unwrap_or(default.kd);
-    Material {
-        name: mtl.name.clone(),
-        ka: color(mtl.ambient).unwrap_or(kd),
-        kd,
-        ks: color(mtl.specular).unwrap_or(default.ks),
-        shininess: mtl.shininess.map_or(default.shininess, |exponent| (exponent as f32).max(1.0)),
-        emission: color(mtl.emissive).unwrap_or(default.emission),
-        ..default
-    }
+fn not_numbers(word: &[u8], rest: &[u8]) -> String {
+    format!("`{} {}` is not one number or three", decoded(word), quoted(rest))
 }

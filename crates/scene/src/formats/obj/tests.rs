@@ -57,7 +57,7 @@ fn faces_with_and_without_normals_may_follow_each_other() {
     let uvs = |i: usize| mesh.triangles[i].map(|vertex| mesh.uvs[vertex as usize].to_array());
     let (flat, smooth) = ([Vec3::ZERO; 3], [Vec3::Z; 3]);
     assert_eq!([0, 1, 2, 3, 4].map(normals), [flat, smooth, flat, smooth, smooth]);
-    assert_eq!([0, 1, 4].map(uvs), [[[0.0; 2]; 3], [[0.5, 0.25]; 3], [[0.0; 2]; 3]]);
+    assert_eq!([0, 1, 4].map(uvs), [[[0.0; 2]; 3], [[0.5, 0.75]; 3], [[0.0; 2]; 3]]);
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn odd_but_lawful_lines_are_read() {
     let obj = "\u{feff}# caf\u{e9}\r\nv 0 0 0 1\r\nv 1 0 0 0.5 0.5 0.5\r\nv\t0 1 0\r\nvt 0.5\ng a b\nl 1 2\np 1\nf 1/1 \\\n2/1 3/1\n";
     let scene = open(obj);
     assert_eq!(scene.mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
-    assert_eq!(scene.mesh.uvs[0].to_array(), [0.5, 0.0]);
+    assert_eq!(scene.mesh.uvs[0].to_array(), [0.5, 1.0]);
     assert!(scene.warnings[0].contains("2 points and lines"), "{:?}", scene.warnings);
 }
 
@@ -100,7 +100,7 @@ fn damage_is_named_with_its_line() {
     #[rustfmt::skip]
     const MISTAKES: [(&str, &str); 8] = [
         ("v 0 0\n", "`v 0 0` has fewer than 3 numbers, shape.obj:1; "),
-        ("v 0 0 zero\n", "`v 0 0 zero` cannot be read (position parse error), shape.obj:1; "),
+        ("v 0 0 zero\n", "`zero` in `v 0 0 zero` is no number, shape.obj:1; "),
         ("v 0 0 0\n\nf 1 1 2\n", "the face's corner `2` asks for position 2 of 1, shape.obj:3; "),
         ("v 0 0 0\nf 1 1 0\n", "the face's corner `0` asks for position 0 of 1, shape.obj:2; "),
         ("v 0 0 0\nf -2 1 1\n", "asks for position -2 of 1, shape.obj:2; "),
@@ -114,4 +114,113 @@ fn damage_is_named_with_its_line() {
     }
     let message = try_open("mtllib a b.mtl\nv 0 0 0\n", "newmtl a\nKd 1 x 1\n").unwrap_err();
     assert!(message.contains("`Kd 1 x 1` is not one number or three, a b.mtl:2; "), "{message}");
+}
+
+#[test]
+fn a_concave_polygon_keeps_its_notch() {
+    let arrow = "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\n";
+    for face in ["f 1 2 3 4", "f 4 1 2 3", "f -3 -2 -1 -4", "f 4 3 2 1"] {
+        let mesh = open(&format!("{arrow}{face}\n")).mesh;
+        let areas: f32 = (0..2).map(|i| mesh.corners(i)).map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum();
+        assert_eq!((mesh.triangles.len(), areas), (2, 4.0), "{face}");
+    }
+}
+
+#[test]
+fn vertex_colours_are_srgb() {
+    let scene = open("v 0 0 0 1 0 0.735\nv 1 0 0\nv 0 1 0 2 0.5 0.5 # w\nv 0 0 1 0 0 0 1\nf 1 2 3\nf 1 2 4\n");
+    let colors = |scene: &Scene, triangle: usize| {
+        scene.mesh.triangles[triangle].map(|vertex| scene.mesh.colors[vertex as usize])
+    };
+    // One colour above 1: all count to 255.
+    let [_, white, dark] = colors(&scene, 0);
+    assert_eq!(white, Vec3::ONE);
+    assert!(dark.x < 0.001, "{dark}");
+    let scene = open("v 0 0 0 1 0 0.735\nv 1 0 0\nv 0 1 0 0 0 0 1\nf 1 2 3\n");
+    let [violet, white, black] = colors(&scene, 0);
+    assert!((violet - Vec3::new(1.0, 0.0, 0.5)).abs().max_element() < 0.002, "{violet}");
+    assert_eq!((white, black), (Vec3::ONE, Vec3::ZERO));
+    assert!(open("v 0 0 0 1\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").mesh.colors.is_empty());
+}
+
+#[test]
+fn names_keep_blanks_and_hashes_and_need_not_be_utf_8() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("shape.obj");
+    let faces = b"\nusemtl oak #2\nf 1 2 3\nusemtl gr\xfcn\nf 2 3 4 # not a corner\nusemtl gr\xe4n\nf 1 2 4\n";
+    let write = |mtllib: &str| {
+        fs::write(
+            &path,
+            [b"mtllib ", mtllib.as_bytes(), b"\n# \xff C:\\old\\\n", TETRAHEDRON.as_bytes(), faces].concat(),
+        )
+        .unwrap();
+    };
+    fs::create_dir(folder.path().join("lib")).unwrap();
+    fs::write(folder.path().join("lib/two words.mtl"), "newmtl oak #2\r\nKd 1 0 0\r\n").unwrap();
+    fs::write(folder.path().join("b.mtl"), b"newmtl gr\xfcn\nKd 0 1 0\nnewmtl gr\xe4n\nKd 0 0 1\nnewmtl oak #2\n")
+        .unwrap();
+    for mtllib in [r"lib\two words.mtl b.mtl", r".\lib\two words.mtl b.mtl gone.mtl", "lib/two words.mtl\nmtllib b.mtl"]
+    {
+        write(mtllib);
+        let scene = Scene::open(&path).unwrap();
+        let kd = |triangle: usize| scene.materials[scene.mesh.materials[triangle] as usize].kd;
+        assert_eq!([0, 1, 2].map(kd), [Vec3::X, Vec3::Y, Vec3::Z], "{mtllib}: {:?}", scene.warnings);
+        let missing = scene.warnings.iter().any(|warning| warning.contains("gone.mtl"));
+        assert_eq!((missing, scene.warnings.len()), (mtllib.contains("gone"), usize::from(missing)));
+    }
+    write("../outside.mtl");
+    let warnings = Scene::open(&path).unwrap().warnings;
+    assert!(warnings[0].contains("../outside.mtl` lies outside the scene's folder"), "{warnings:?}");
+}
+
+#[test]
+fn textures_come_from_map_kd_with_its_options() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("maps")).unwrap();
+    image::RgbImage::new(2, 2).save(folder.path().join("maps/red brick.png")).unwrap();
+    let mtl = "newmtl brick\nmap_Kd -s 2 4 1 -o 0.25 0.5 -clamp on .\\maps\\red brick.png\nmap_Bump bump.png\nd 0.5\n\
+               newmtl gone\nKd 0.5\nmap_Kd gone.png\nTr 0.2\nnewmtl unused\nmap_Kd other.png\nd 1\nTr 1\n";
+    fs::write(folder.path().join("a.mtl"), mtl).unwrap();
+    let faces = "vt 0.5 0.25\nusemtl brick\nf 1/1 2/1 3/1\nusemtl gone\nf 2 3 4\n";
+    let path = folder.path().join("shape.obj");
+    fs::write(&path, format!("mtllib a.mtl\n{TETRAHEDRON}{faces}")).unwrap();
+    let scene = Scene::open(&path).unwrap();
+    let texture = scene.materials[0].texture.expect("the picture is there");
+    assert_eq!((scene.materials[0].kd, texture.wrap), (Vec3::ONE, [crate::Wrap::Clamp; 2]));
+    // (2 · 0.5 + 0.25, 4 · 0.25 + 0.5) upwards is (1.25, −0.5) downwards.
+    let uv = scene.mesh.uvs[scene.mesh.triangles[0][0] as usize];
+    assert_eq!(texture.transform.transform_point2(uv).to_array(), [1.25, -0.5]);
+    assert_eq!((scene.materials[1].kd, scene.materials[1].texture), (Vec3::splat(0.5), None));
+    let warned = |part: &str| scene.warnings.iter().filter(|warning| warning.contains(part)).count();
+    assert_eq!(
+        ["gone.png", "other.png", "1 textures other than map_Kd", "2 materials are transparent"].map(warned),
+        [1, 0, 1, 1]
+    );
+}
+
+#[test]
+fn thousands_of_texture_coordinates_at_one_place_are_read_quickly() {
+    let count = 50_000;
+    let uvs: String = (0..count).map(|i| format!("vt {i} 0\n")).collect();
+    let faces: String = (1..=count).map(|i| format!("f 1/{i} 2/{i} 3/{i}\n")).collect();
+    let mesh = open(&(TETRAHEDRON.to_owned() + &uvs + &faces)).mesh;
+    assert_eq!((mesh.triangles.len(), mesh.positions.len()), (count, 3 * count));
+}
+
+#[test]
+fn unused_vertices_and_undefined_numbers_do_no_harm() {
+    let scene = open(&format!("{TETRAHEDRON}v 1e17 0 0\nv nan 0 inf\nf 1 2 3\nf 1 2 6\n"));
+    assert_eq!(scene.mesh.triangles.len(), 1);
+    assert_eq!(scene.mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert!(scene.warnings[0].starts_with("1 triangles"), "{:?}", scene.warnings);
+}
+
+#[test]
+fn a_file_cut_short_anywhere_ends_with_a_message_or_less() {
+    let whole = format!("mtllib a b.mtl\n{TETRAHEDRON}vn 0 0 1\nusemtl x\nf 1//1 2//1 3//1 \\\n4//1\n");
+    for length in 0..whole.len() {
+        if let Err(message) = try_open(&whole[..length], "newmtl x\n") {
+            assert!(message.contains(", shape.obj:"), "{message}");
+        }
+    }
 }

@@ -1,11 +1,11 @@
 //! `[camera]` to [`Camera`].
 
 use glam::{DVec3, Vec3};
-use toml::Spanned;
 
 use super::{
     check::{Source, unit},
     schema::{CameraEntry, ProjectionName},
+    spanned::Spanned,
 };
 use crate::{Camera, Fov, LoadError, Projection};
 

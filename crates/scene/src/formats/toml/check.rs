@@ -3,9 +3,9 @@
 use std::{fmt::Debug, ops::Range, path::Path};
 
 use glam::{DVec3, Vec3};
-use toml::Spanned;
 
 use super::schema::{Color, Number, Text, Vector};
+use super::spanned::Spanned;
 use crate::{LoadError, error::Place};
 
 /// Numbers beyond this are taken for slips: their squares must fit into `f32`.
@@ -40,7 +40,7 @@ impl Source<'_> {
         LoadError::MissingKey { place: self.place(table.span()), key: key.to_owned(), remedy: remedy.to_owned() }
     }
 
-    fn all_finite<T>(&self, key: &str, value: &Spanned<T>, numbers: &[f64]) -> Result<(), LoadError> {
+    pub(super) fn all_finite<T>(&self, key: &str, value: &Spanned<T>, numbers: &[f64]) -> Result<(), LoadError> {
         match numbers.iter().find(|number| !number.is_finite() || number.abs() > LARGEST) {
             Some(number) if number.is_finite() => {
                 Err(self.refuse(key, value, "is too large", &format!("stay below {LARGEST:e}")))

@@ -1,11 +1,11 @@
 //! `[[light]]` to [`Light`]: which keys each kind takes, and what they mean together.
 
 use glam::{DVec3, Vec3};
-use toml::Spanned;
 
 use super::{
     check::{Source, present, required, unit},
     schema::{FalloffName, LightEntry, LightKindName, Number},
+    spanned::Spanned,
 };
 use crate::{Falloff, Light, LightKind, LoadError};
 

@@ -5,9 +5,14 @@
 mod cameras;
 mod check;
 mod lights;
+mod materials;
 mod one_or_many;
 mod parts;
+mod publish;
 pub(crate) mod schema;
+#[cfg(test)]
+mod schema_tests;
+pub(crate) mod spanned;
 #[cfg(test)]
 mod tests;
 
@@ -16,10 +21,9 @@ use std::path::Path;
 pub(crate) use cameras::upright;
 pub(crate) use check::unit;
 use check::{Source, syntax_error};
-use schema::{AmbientEntry, LightMeshEntry, MaterialEntry, SceneFile, WeightName};
-use toml::Spanned;
+use schema::{AmbientEntry, LightMeshEntry, SceneFile, WeightName};
 
-use crate::{LightMeshDefaults, LoadError, Material, Weight, draft::Draft, error::Place, open::read_bytes};
+use crate::{LightMeshDefaults, LoadError, Weight, draft::Draft, error::Place, open::read_bytes};
 
 /// Reads a scene file into `draft`.
 pub(crate) fn read(path: &Path, draft: &mut Draft) -> Result<(), LoadError> {
@@ -38,7 +42,7 @@ fn convert(source: &Source, file: &SceneFile, draft: &mut Draft) -> Result<(), L
     if let Some(origin) = &file.origin {
         draft.prefer_origin(source.vector("origin", origin)?);
     }
-    let names = read_materials(source, &file.material, draft)?;
+    let names = materials::read(source, &file.material, draft)?;
     parts::read(source, file, &names, draft)?;
     for camera in &file.camera {
         let camera = cameras::read(source, camera, &mut draft.warnings)?;
@@ -54,42 +58,6 @@ fn convert(source: &Source, file: &SceneFile, draft: &mut Draft) -> Result<(), L
         draft.light_mesh = read_light_mesh(source, light_mesh)?;
     }
     Ok(())
-}
-
-/// Adds the file's materials and returns their names, in the order of their indices.
-fn read_materials(
-    source: &Source,
-    entries: &[Spanned<MaterialEntry>],
-    draft: &mut Draft,
-) -> Result<Vec<String>, LoadError> {
-    let mut names: Vec<String> = Vec::new();
-    for entry in entries.iter().map(Spanned::get_ref) {
-        if names.contains(entry.name.get_ref()) {
-            let remedy = "give every material a name of its own";
-            return Err(source.refuse("name", &entry.name, "is used by an earlier material", remedy));
-        }
-        names.push(entry.name.get_ref().clone());
-        draft.materials.push(read_material(source, entry)?);
-    }
-    Ok(names)
-}
-
-fn read_material(source: &Source, entry: &MaterialEntry) -> Result<Material, LoadError> {
-    let default = Material::default();
-    let kd = entry.kd.as_ref().map_or(Ok(default.kd), |kd| source.color("kd", kd))?;
-    let shininess = match &entry.shininess {
-        Some(shininess) => source.positive("shininess", shininess)? as f32,
-        None => default.shininess,
-    };
-    Ok(Material {
-        name: entry.name.get_ref().clone(),
-        ka: entry.ka.as_ref().map_or(Ok(kd), |ka| source.color("ka", ka))?,
-        kd,
-        ks: entry.ks.as_ref().map_or(Ok(default.ks), |ks| source.color("ks", ks))?,
-        shininess,
-        emission: entry.emission.as_ref().map_or(Ok(default.emission), |color| source.color("emission", color))?,
-        ..default
-    })
 }
 
 fn read_ambient(source: &Source, entry: &AmbientEntry, draft: &mut Draft) -> Result<(), LoadError> {

@@ -2,11 +2,13 @@
 
 use std::{fmt, marker::PhantomData};
 
+use schemars::JsonSchema;
 use serde::{
     Deserialize, Deserializer,
     de::{MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer},
 };
-use toml::Spanned;
+
+use super::spanned::Spanned;
 
 /// One table or an array of tables, as a list.
 pub(super) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
@@ -21,8 +23,13 @@ pub(super) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
     })
 }
 
-enum OneOrMany<T> {
+/// What is accepted: only a schema and this module see it.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub(super) enum OneOrMany<T> {
+    /// One table.
     One(T),
+    /// An array of tables.
     Many(Vec<Spanned<T>>),
 }
 

@@ -1,11 +1,11 @@
 //! `[[mesh]]` and the solids to triangles.
 
-use glam::{DMat4, DVec3};
-use toml::Spanned;
+use glam::{DMat4, DVec2, DVec3, Vec2};
 
 use super::{
     check::{Source, required},
     schema::{BoxEntry, CylinderEntry, MeshEntry, PlaneEntry, Scale, SceneFile, Text, TriangleEntry, Vector},
+    spanned::Spanned,
 };
 use crate::{
     LoadError,
@@ -26,6 +26,8 @@ pub(super) fn read(source: &Source, file: &SceneFile, names: &[String], draft: &
     };
     let add = |draft: &mut Draft, shape: Shape, transform: &DMat4, name: &Option<Text>| {
         let material = material(draft, name)?;
+        let textured = draft.materials[material as usize].texture.is_some();
+        let shape = if textured { shape.textured() } else { shape };
         draft.add(shape.part(), transform, |_| material)
     };
     for entry in &file.mesh {
@@ -55,10 +57,13 @@ pub(super) fn read(source: &Source, file: &SceneFile, names: &[String], draft: &
 }
 
 fn read_mesh(source: &Source, entry: &MeshEntry, names: &[String], draft: &mut Draft) -> Result<(), LoadError> {
-    let path = draft.path_beside(source.path, entry.file.get_ref())?;
+    let path = draft.path_beside(source.path, entry.file.get_ref()).map_err(|error| match error {
+        LoadError::Outside { name, .. } => LoadError::Outside { place: source.place(entry.file.span()), name },
+        error => error,
+    })?;
     if let Err(cause) = std::fs::metadata(&path) {
         let problem = format!("cannot be read ({cause})");
-        let remedy = "name an OBJ, glTF or GLB file, by its path from the scene file's folder";
+        let remedy = "name an OBJ, glTF, GLB, PLY or STL file, by its path from the scene file's folder";
         return Err(source.refuse("file", &entry.file, &problem, remedy));
     }
     let material = match &entry.material {
@@ -148,16 +153,21 @@ fn cylinder(source: &Source, table: &Spanned<CylinderEntry>) -> Result<Shape, Lo
 
 fn triangle(source: &Source, table: &Spanned<TriangleEntry>) -> Result<Shape, LoadError> {
     let entry = table.get_ref();
+    let mut uvs = [Vec2::Y, Vec2::ONE, Vec2::ZERO];
+    if let Some(value) = &entry.uvs {
+        source.all_finite("uvs", value, value.get_ref().as_flattened())?;
+        uvs = value.get_ref().map(|uv| DVec2::from(uv).as_vec2());
+    }
     match (&entry.a, &entry.b, &entry.c, &entry.vertices) {
         (Some(a), Some(b), Some(c), None) => {
-            Ok(Shape::triangle([source.vector("a", a)?, source.vector("b", b)?, source.vector("c", c)?]))
+            Ok(Shape::triangle([source.vector("a", a)?, source.vector("b", b)?, source.vector("c", c)?], uvs))
         }
         (None, None, None, Some(vertices)) => {
             let mut corners = [DVec3::ZERO; 3];
             for (corner, vertex) in corners.iter_mut().zip(vertices.get_ref()) {
                 *corner = source.vector("vertices", &Spanned::new(vertices.span(), *vertex))?;
             }
-            Ok(Shape::triangle(corners))
+            Ok(Shape::triangle(corners, uvs))
         }
         _ => Err(source.missing(table, "a", "give the corners `a`, `b` and `c`, or three `vertices`, and not both")),
     }

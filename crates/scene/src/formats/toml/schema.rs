@@ -3,23 +3,25 @@
 //! Every value keeps its place in the text ([`Spanned`]), so that a check that fails later can name the line. Lengths are in
 //! scene units, angles in degrees, positions in world coordinates.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use toml::Spanned;
 
-use super::one_or_many;
+use super::{one_or_many, one_or_many::OneOrMany, spanned::Spanned};
 
 pub(super) type Number = Spanned<f64>;
 pub(super) type Vector = Spanned<[f64; 3]>;
 pub(super) type Text = Spanned<String>;
 
-/// A whole scene file.
-#[derive(Debug, Default, Deserialize, Serialize)]
+/// A scene for lightmesh. Lengths are in scene units, angles in degrees, positions in world coordinates.
+#[derive(Debug, Default, Deserialize, JsonSchema, Serialize)]
+#[schemars(title = "Lightmesh scene")]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SceneFile {
     /// Where the frame of the stored `f32` coordinates lies; written by `export`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) origin: Option<Vector>,
     /// One `[camera]`, or several `[[camera]]` with names.
+    #[schemars(with = "OneOrMany<CameraEntry>")]
     #[serde(default, deserialize_with = "one_or_many::deserialize", skip_serializing_if = "Vec::is_empty")]
     pub(crate) camera: Vec<Spanned<CameraEntry>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -45,7 +47,7 @@ pub(crate) struct SceneFile {
 }
 
 /// `[camera]`.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CameraEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -75,7 +77,7 @@ pub(crate) struct CameraEntry {
 }
 
 /// How a camera maps space to the picture.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum ProjectionName {
     Perspective,
@@ -83,7 +85,7 @@ pub(crate) enum ProjectionName {
 }
 
 /// A number for all channels, or red, green and blue.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(untagged, expecting = "expected a number or [red, green, blue]")]
 pub(crate) enum Color {
     Grey(f64),
@@ -91,7 +93,7 @@ pub(crate) enum Color {
 }
 
 /// `[ambient]`.
-#[derive(Debug, Default, Deserialize, Serialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AmbientEntry {
     /// I_a of formula (1).
@@ -102,8 +104,8 @@ pub(crate) struct AmbientEntry {
     pub(crate) background: Option<Spanned<Color>>,
 }
 
-/// `[[light]]`: one table for all kinds; which keys a kind takes is checked in `lights.rs`.
-#[derive(Debug, Deserialize, Serialize)]
+/// `[[light]]`: one table for all kinds; each kind takes some of the keys.
+#[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LightEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -154,7 +156,7 @@ pub(crate) struct LightEntry {
 }
 
 /// Shape of a light.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum LightKindName {
     Point,
@@ -166,7 +168,7 @@ pub(crate) enum LightKindName {
 }
 
 /// What distance does to a light.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum FalloffName {
     None,
@@ -174,7 +176,7 @@ pub(crate) enum FalloffName {
 }
 
 /// `[[material]]`: coefficients of formula (1).
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MaterialEntry {
     pub(crate) name: Text,
@@ -193,10 +195,51 @@ pub(crate) struct MaterialEntry {
     /// Default: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) emission: Option<Spanned<Color>>,
+    /// A picture that `ka` and `kd` are multiplied with: PNG, JPEG, BMP or TGA, relative to the scene file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) texture: Option<Text>,
+    /// What the picture shows beyond its edge; one word, or one for each direction. Default: repeat.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) texture_wrap: Option<Spanned<TextureWrap>>,
+    /// How often the picture fits on a face, or into the unit of the mesh's texture coordinates; one number, or one for each
+    /// direction. Default: 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) texture_scale: Option<Spanned<TextureScale>>,
+    /// Turns texture coordinates from u towards v, degrees. Default: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) texture_rotate: Option<Number>,
+    /// Added to texture coordinates last, in widths and heights of the picture. Default: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) texture_offset: Option<Spanned<[f64; 2]>>,
+}
+
+/// What a picture shows beyond its edge.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum WrapName {
+    Repeat,
+    Mirror,
+    Clamp,
+}
+
+/// One word, or one for each direction.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize)]
+#[serde(untagged, expecting = "expected \"repeat\", \"mirror\" or \"clamp\", or two of them")]
+pub(crate) enum TextureWrap {
+    Both(WrapName),
+    Each([WrapName; 2]),
+}
+
+/// One number, or one for each direction.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize)]
+#[serde(untagged, expecting = "expected a number or [u, v]")]
+pub(crate) enum TextureScale {
+    Both(f64),
+    Each([f64; 2]),
 }
 
 /// `[[mesh]]`: triangles of another file, scaled, then turned, then moved.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MeshEntry {
     /// Relative to the scene file.
@@ -215,7 +258,7 @@ pub(crate) struct MeshEntry {
 }
 
 /// One factor, or one by axis.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(untagged, expecting = "expected a number or [x, y, z]")]
 pub(crate) enum Scale {
     Uniform(f64),
@@ -223,7 +266,7 @@ pub(crate) enum Scale {
 }
 
 /// `[[sphere]]`.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SphereEntry {
     pub(crate) center: Vector,
@@ -234,7 +277,7 @@ pub(crate) struct SphereEntry {
 }
 
 /// `[[box]]`: `min` and `max`, or `center` and `size`.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BoxEntry {
     pub(crate) min: Option<Vector>,
@@ -247,7 +290,7 @@ pub(crate) struct BoxEntry {
 }
 
 /// `[[plane]]`: a rectangle of the plane through `point`.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PlaneEntry {
     pub(crate) point: Vector,
@@ -258,7 +301,7 @@ pub(crate) struct PlaneEntry {
 }
 
 /// `[[cylinder]]`: `base` and `top`, or `center`, `axis` and `height`.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CylinderEntry {
     pub(crate) base: Option<Vector>,
@@ -275,18 +318,20 @@ pub(crate) struct CylinderEntry {
 }
 
 /// `[[triangle]]`: `a`, `b` and `c`, or `vertices`.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TriangleEntry {
     pub(crate) a: Option<Vector>,
     pub(crate) b: Option<Vector>,
     pub(crate) c: Option<Vector>,
     pub(crate) vertices: Option<Spanned<[[f64; 3]; 3]>>,
+    /// Where the corners lie in a picture: (0, 0) is its left upper corner. Default: left below, right below, left above.
+    pub(crate) uvs: Option<Spanned<[[f64; 2]; 3]>>,
     pub(crate) material: Option<Text>,
 }
 
 /// `[lightmesh]`: proposed settings of the method.
-#[derive(Debug, Default, Deserialize, Serialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LightMeshEntry {
     /// Step h, scene units.
@@ -300,7 +345,7 @@ pub(crate) struct LightMeshEntry {
 }
 
 /// Weight of formula (3).
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum WeightName {
     Constant,

@@ -2,10 +2,10 @@
 
 use std::{fs, path::PathBuf};
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use tempfile::TempDir;
 
-use crate::{Falloff, Fov, LightKind, Projection, Scene, Weight};
+use crate::{Falloff, Fov, LightKind, Projection, Scene, Weight, Wrap};
 
 /// A folder with a scene file and a mesh of one triangle in it.
 fn folder(text: &str) -> (TempDir, PathBuf) {
@@ -281,4 +281,114 @@ fn text_that_is_not_utf8_is_refused_with_its_line() {
     let (_folder, path) = folder("");
     fs::write(&path, b"[camera]\nposition = \xff").unwrap();
     assert!(Scene::open(path).unwrap_err().to_string().contains("room.toml:2"));
+}
+
+/// A folder with a picture of one red and one blue texel and a scene file.
+fn textured_folder(text: &str) -> (TempDir, PathBuf) {
+    let (folder, path) = folder(text);
+    let picture = image::RgbImage::from_fn(2, 1, |x, _| image::Rgb(if x == 0 { [255, 0, 0] } else { [0, 0, 255] }));
+    picture.save_with_format(folder.path().join("oak.png"), image::ImageFormat::Png).unwrap();
+    (folder, path)
+}
+
+#[test]
+fn a_material_may_have_a_texture() {
+    let (_folder, path) = textured_folder(
+        r#"
+        [[material]]
+        name = "oak"
+        texture = "oak.png"
+        texture_wrap = ["clamp", "mirror"]
+        texture_scale = [4, 2]
+        texture_rotate = 90
+        texture_offset = [0.5, 0]
+        [[material]]
+        name = "floor"
+        texture = "oak.png"
+        texture_wrap = "mirror"
+        texture_scale = 10
+        [[material]]
+        name = "plain"
+        [[box]]
+        min = [0, 0, 0]
+        max = [1, 1, 1]
+        material = "oak"
+        [[sphere]]
+        center = [4, 0, 0]
+        radius = 1
+        segments = 8
+        material = "plain"
+        [[triangle]]
+        vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+        uvs = [[0, 0], [2, 0], [0, -3]]
+        material = "floor"
+        "#,
+    );
+    let scene = Scene::open(path).unwrap();
+    assert_eq!((scene.textures.len(), scene.textures[0].size), (1, [2, 1]));
+    let [oak, floor, plain] = [0, 1, 2].map(|index: usize| scene.materials[index].texture);
+    let (oak, floor) = (oak.unwrap(), floor.unwrap());
+    assert_eq!((oak.wrap, floor.wrap), ([Wrap::Clamp, Wrap::Mirror], [Wrap::Mirror; 2]));
+    // Scaled to (4, 2), turned to (-2, 4), moved.
+    assert!(oak.transform.transform_point2(Vec2::ONE).distance(Vec2::new(-1.5, 4.0)) < 1e-6);
+    assert_eq!(floor.transform.transform_point2(Vec2::ONE), Vec2::splat(10.0));
+    assert_eq!(plain, None);
+    let uv = |triangle: usize| scene.mesh.triangles[triangle].map(|vertex| scene.mesh.uvs[vertex as usize]);
+    let last = scene.mesh.triangles.len() - 1;
+    assert_eq!(uv(last), [Vec2::ZERO, Vec2::new(2.0, 0.0), Vec2::new(0.0, -3.0)]);
+    assert!((0..12).flat_map(uv).all(|uv| uv.cmpge(Vec2::ZERO).all() && uv.cmple(Vec2::ONE).all()));
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
+fn scenes_without_textures_have_no_texture_coordinates() {
+    let scene = open("[[sphere]]\ncenter = [0, 0, 0]\nradius = 1");
+    assert!(scene.mesh.uvs.is_empty() && scene.textures.is_empty());
+}
+
+#[test]
+fn a_texture_that_cannot_be_had_is_a_warning() {
+    let shape = "[[plane]]\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nsize = [1, 1]\nmaterial = \"oak\"";
+    for name in ["none.png", "../oak.png", "one.obj"] {
+        let scene = open(&format!("[[material]]\nname = \"oak\"\ntexture = \"{name}\"\n{shape}"));
+        assert_eq!(scene.materials[0].texture, None);
+        assert!(scene.warnings[0].starts_with("1 texture cannot be used"), "{:?}", scene.warnings);
+    }
+}
+
+#[test]
+fn a_texture_on_a_mesh_without_texture_coordinates_is_a_warning() {
+    let text = "[[material]]\nname = \"oak\"\ntexture = \"oak.png\"\n[[mesh]]\nfile = \"one.obj\"\nmaterial = \"oak\"";
+    let (_folder, path) = textured_folder(text);
+    let scene = Scene::open(path).unwrap();
+    assert_eq!(scene.materials[scene.mesh.materials[0] as usize].texture, None);
+    assert!(scene.warnings[0].starts_with("1 triangles have a texture but no"), "{:?}", scene.warnings);
+}
+
+#[test]
+fn wrong_texture_keys_name_line_and_key() {
+    let material = |line: &str| format!("[[material]]\nname = \"oak\"\n{line}\ntexture = \"none.png\"");
+    let cases = [
+        ("texture_wrap = \"tile\"", "room.toml:3", "expected \"repeat\", \"mirror\" or \"clamp\""),
+        ("texture_scale = \"big\"", "room.toml:3", "expected a number or [u, v]"),
+        ("texture_scale = nan", "texture_scale = nan is not finite, room.toml:3", "ordinary number"),
+        ("texture_offset = [0, inf]", "texture_offset = [0, inf] is not finite, room.toml:3", "ordinary number"),
+        ("texture_rotate = inf", "texture_rotate = inf is not finite, room.toml:3", "ordinary number"),
+        ("texture_warp = \"clamp\"", "unknown key `texture_warp`, room.toml:3", "did you mean `texture_wrap`?"),
+    ];
+    for (line, place, remedy) in cases {
+        let message = error(&material(line));
+        assert!(message.contains(place) && message.contains(remedy), "{message}");
+    }
+    let message = error("[[material]]\nname = \"oak\"\ntexture_scale = 3");
+    assert_eq!(message, "texture_scale = 3 says nothing without a texture, room.toml:3; add `texture = \"FILE\"`");
+}
+
+#[test]
+fn a_mesh_outside_of_the_folder_names_its_line() {
+    let message = error("[[mesh]]\nfile = \"../one.obj\"");
+    assert_eq!(
+        message,
+        "`../one.obj` lies outside the scene's folder, room.toml:2; move it there, or allow it (--allow-outside)"
+    );
 }

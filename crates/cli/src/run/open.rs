@@ -1,0 +1,24 @@
+//! Opening the scene of a command line.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use lightmesh::scene::LoadOptions;
+use lightmesh::{LoadError, Scene};
+
+use crate::args::{ReadingArgs, SceneArg};
+use crate::progress::Watcher;
+
+/// Reads the scene as asked, and says once what there is to warn of.
+pub(super) fn open(arg: &SceneArg, watcher: &Watcher) -> Result<Scene, LoadError> {
+    let scene = read(&arg.scene, arg.reading)?;
+    let mut said = HashSet::new();
+    scene.warnings.iter().filter(|warning| said.insert(*warning)).for_each(|warning| watcher.warning(warning));
+    Ok(scene)
+}
+
+/// Reads the scene as asked.
+pub(super) fn read(path: &Path, reading: ReadingArgs) -> Result<Scene, LoadError> {
+    let options = LoadOptions { allow_outside: reading.allow_outside, strict: reading.strict };
+    Scene::open_with(path, &options)
+}

@@ -1,0 +1,70 @@
+//! Surfaces with textures and vertex colours: a scene of them, and a picture that is the same in every bit.
+
+use glam::{Affine2, DVec3, Vec2, Vec3};
+use lightmesh_render::backend::{Cpu, Cuda};
+use lightmesh_render::{Acceleration, Frame, Mode, PreparedScene, Settings, Unobserved, render_on};
+use lightmesh_scene::{LightKind, Material, Scene, Texture, TextureUse, Wrap};
+use lightmesh_testkit::pile;
+
+use crate::trials::{Case, Target};
+
+pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
+    vec![Case::new("textured::bits".to_owned(), same_bits)]
+}
+
+/// A pile whose triangles take turns with all kinds of materials, two textures, and colours at some vertices.
+pub(crate) fn textured() -> Scene {
+    let light = LightKind::Point { position: Vec3::new(2.0, 3.0, 3.0), spread: 0.0 };
+    let mut scene = pile(DVec3::ZERO, &[light]);
+    scene.textures = vec![checks("odd", [5, 3]), checks("wide", [64, 2])];
+    let matrix = Affine2::from_scale_angle_translation(Vec2::new(1.7, -0.6), 0.4, Vec2::new(0.3, -9.2));
+    let material = |texture, ks_tinted: f32, emission_tinted: f32| Material {
+        ks: Vec3::new(0.1, 0.0, 0.0),
+        ks_tinted: Vec3::splat(ks_tinted),
+        emission_tinted: Vec3::splat(emission_tinted),
+        texture,
+        ..Material::default()
+    };
+    let uses = |texture, wrap| Some(TextureUse { wrap, transform: matrix, ..TextureUse::new(texture) });
+    scene.materials = vec![
+        material(uses(0, [Wrap::Repeat; 2]), 0.0, 0.0),
+        material(uses(1, [Wrap::Mirror, Wrap::Clamp]), 0.5, 0.0),
+        material(None, 0.25, 0.0),
+        material(uses(0, [Wrap::Clamp, Wrap::Mirror]), 0.0, 0.75),
+        material(Some(TextureUse::new(7)), 0.0, 0.5),
+    ];
+    let mesh = &mut scene.mesh;
+    mesh.materials = (0..mesh.triangles.len() as u32).map(|index| index % 5).collect();
+    mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(1.3 * p.x + 0.7 * p.y, p.z - 0.2 * p.y)).collect();
+    mesh.colors = mesh.positions.iter().map(|p| (0.5 * p.abs()).min(Vec3::ONE)).collect();
+    scene
+}
+
+/// A texture without two texels alike side by side.
+fn checks(name: &str, size: [u32; 2]) -> Texture {
+    let texel = |index: u32| [(37 * index) as u8, (91 * index + 5) as u8, (200 - 13 * index % 200) as u8, 255];
+    Texture { name: name.to_owned(), size, texels: (0..size[0] * size[1]).map(texel).collect() }
+}
+
+/// Without highlights, whose powers a device may round otherwise, nothing differs.
+fn same_bits<R: Target>(cuda: &Cuda<R>) {
+    let colored = textured();
+    let mut plain = colored.clone();
+    plain.mesh.colors.clear();
+    for mut scene in [colored, plain] {
+        for material in &mut scene.materials {
+            (material.ks, material.ks_tinted) = (Vec3::ZERO, Vec3::ZERO);
+        }
+        let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
+        let settings = Settings { mode: Mode::RayTrace, size: [64, 48], ..Settings::default() };
+        let bits = |frame: Frame| frame.image.color().iter().map(|color| color.map(f32::to_bits)).collect::<Vec<_>>();
+        let host = bits(render_on(&Cpu, &scene, &settings, &Unobserved).unwrap());
+        let device = bits(render_on(cuda, &scene, &settings, &Unobserved).unwrap());
+        let mut colors = host.clone();
+        colors.sort_unstable();
+        colors.dedup();
+        assert!(colors.len() > host.len() / 4, "{} colours: textures are to be seen", colors.len());
+        let differ = host.iter().zip(&device).filter(|(a, b)| a != b).count();
+        assert_eq!(differ, 0, "of {} pixels", host.len());
+    }
+}

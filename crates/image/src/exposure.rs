@@ -1,0 +1,87 @@
+//! Exposure: how much brighter or darker a picture is shown than it was computed, in stops. One stop doubles.
+//!
+//! [`Frame::auto_exposure`] brings the logarithmic mean of the luminance to 18 % grey (Reinhard et al., *Photographic Tone
+//! Reproduction for Digital Images*, SIGGRAPH 2002, key 0.18), but not so far that more than a twentieth of the picture is brighter
+//! than white.
+
+use crate::Frame;
+
+/// Luminance that the logarithmic mean is brought to.
+const MIDDLE_GREY: f32 = 0.18;
+/// Share of the lit pixels that are not to be brighter than white.
+const BELOW_WHITE: f64 = 0.95;
+/// Steps in a stop: the result can be typed.
+const STEPS_A_STOP: f32 = 100.0;
+
+impl Frame {
+    /// Multiplies all colours by 2^`stops`.
+    pub fn expose(&mut self, stops: f32) {
+        let factor = stops.exp2();
+        self.color_mut().as_flattened_mut().iter_mut().for_each(|value| *value *= factor);
+    }
+
+    /// Stops that bring the picture into the range of a screen, in hundredths; 0 where nothing in it is lit.
+    pub fn auto_exposure(&self) -> f32 {
+        let mut lit: Vec<f32> =
+            self.color().iter().map(luminance).filter(|&value| value > 0.0 && value.is_finite()).collect();
+        if lit.is_empty() {
+            return 0.0;
+        }
+        let mean = lit.iter().map(|&value| f64::from(value).log2()).sum::<f64>() / lit.len() as f64;
+        let place = ((lit.len() - 1) as f64 * BELOW_WHITE) as usize;
+        let (_, &mut bright, _) = lit.select_nth_unstable_by(place, f32::total_cmp);
+        let stops = (MIDDLE_GREY.log2() - mean as f32).min(-bright.log2());
+        (stops * STEPS_A_STOP).round() / STEPS_A_STOP
+    }
+}
+
+/// Luminance of a colour with Rec. 709 primaries.
+fn luminance([r, g, b]: &[f32; 3]) -> f32 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(values: &[f32]) -> Frame {
+        Frame::new(values.len() as u32, 1, values.iter().map(|&value| [value; 3]).collect()).unwrap()
+    }
+
+    #[test]
+    fn a_stop_doubles() {
+        let mut picture = frame(&[0.25, 1.0]);
+        picture.expose(2.0);
+        assert_eq!(picture.color(), [[1.0; 3], [4.0; 3]]);
+        picture.expose(-3.0);
+        assert_eq!(picture.color(), [[0.125; 3], [0.5; 3]]);
+    }
+
+    #[test]
+    fn any_light_level_comes_to_the_same() {
+        let values: Vec<f32> = (1..=100).map(|value| 0.003 * value as f32).collect();
+        let stops = frame(&values).auto_exposure();
+        for level in [-40.0f32, -3.0, 5.0, 30.0] {
+            let other: Vec<f32> = values.iter().map(|value| value * level.exp2()).collect();
+            assert!((frame(&other).auto_exposure() + level - stops).abs() < 0.011, "{level}");
+        }
+        // The mean of an even grey is that grey.
+        assert_eq!(frame(&[0.18 / 4.0; 7]).auto_exposure(), 2.0);
+    }
+
+    #[test]
+    fn highlights_keep_a_dark_picture_dark() {
+        let mut values = vec![0.001; 80];
+        values.extend([2.0; 20]);
+        assert_eq!(frame(&values).auto_exposure(), -1.0);
+        // Fewer may be lost.
+        values.truncate(83);
+        assert!(frame(&values).auto_exposure() > 4.0);
+    }
+
+    #[test]
+    fn what_is_black_or_no_number_does_not_count() {
+        assert_eq!(frame(&[0.0, f32::NAN, f32::INFINITY, -1.0]).auto_exposure(), 0.0);
+        assert_eq!(frame(&[0.0, f32::NAN, 0.09]).auto_exposure(), 1.0);
+    }
+}

@@ -1,0 +1,138 @@
+//! Textures in a GLB: PNG images in the buffer, samplers, and how each material uses its texture.
+
+use std::io::{self, Cursor};
+
+use glam::{Affine2, Vec2};
+use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
+use serde_json::{Value, json};
+
+use crate::{Scene, Texture, TextureUse, Wrap, formats::gltf::affine};
+
+/// What a GLB holds of a scene's textures.
+#[derive(Default)]
+pub(super) struct Pictures {
+    /// PNG files, in the order of the scene's textures; none where no material can use it.
+    files: Vec<Option<Vec<u8>>>,
+    /// How texels are looked up beyond the edge, without repetition.
+    samplers: Vec<[Wrap; 2]>,
+    /// Image and sampler of each glTF texture.
+    textures: Vec<(usize, usize)>,
+    /// Of each material: its glTF texture.
+    by_material: Vec<Option<(usize, TextureUse)>>,
+    transformed: bool,
+}
+
+impl Pictures {
+    /// Encodes the textures that materials use.
+    pub(super) fn new(scene: &Scene) -> io::Result<Pictures> {
+        let mut pictures = Pictures { files: vec![None; scene.textures.len()], ..Pictures::default() };
+        for material in &scene.materials {
+            let found = material.texture.and_then(|uses| Some((uses, scene.textures.get(uses.texture as usize)?)));
+            let entry = match found.filter(|(_, texture)| is_whole(texture)) {
+                Some((uses, texture)) => Some((pictures.add(uses, texture)?, uses)),
+                None => None,
+            };
+            pictures.by_material.push(entry);
+        }
+        Ok(pictures)
+    }
+
+    /// The number of the glTF texture that shows `texture` as `uses` says.
+    fn add(&mut self, uses: TextureUse, texture: &Texture) -> io::Result<usize> {
+        let file = &mut self.files[uses.texture as usize];
+        if file.is_none() {
+            *file = Some(png(texture)?);
+        }
+        self.transformed |= uses.transform != Affine2::IDENTITY;
+        let sampler = place_in(&mut self.samplers, uses.wrap);
+        Ok(place_in(&mut self.textures, (uses.texture as usize, sampler)))
+    }
+
+    /// The `baseColorTexture` of a material.
+    pub(super) fn of_material(&self, index: usize) -> Option<Value> {
+        let (texture, uses) = self.by_material[index].as_ref()?;
+        let mut info = json!({"index": texture});
+        if uses.transform != Affine2::IDENTITY {
+            let (scale, rotation, offset) = parts(&uses.transform);
+            info["extensions"] = json!({"KHR_texture_transform":
+                {"offset": offset.to_array(), "rotation": rotation, "scale": scale.to_array()}});
+        }
+        Some(info)
+    }
+
+    /// The transform of a material's texture, where glTF's angle and factors do not give it back to the last bit.
+    pub(super) fn exact_transform(&self, index: usize) -> Option<[f32; 6]> {
+        let transform = self.by_material[index].as_ref()?.1.transform;
+        let (scale, rotation, offset) = parts(&transform);
+        (affine(scale, rotation, offset) != transform).then(|| transform.to_cols_array())
+    }
+
+    /// Whether the file needs KHR_texture_transform.
+    pub(super) fn transformed(&self) -> bool {
+        self.transformed
+    }
+
+    /// Writes the images behind `bin` and describes them, samplers and textures in `root`.
+    pub(super) fn write(self, scene: &Scene, bin: &mut Vec<u8>, root: &mut Value) {
+        if self.textures.is_empty() {
+            return;
+        }
+        let mut images = Vec::new();
+        let mut place = vec![0; self.files.len()];
+        for (index, file) in self.files.into_iter().enumerate() {
+            let (Some(file), Some(views)) = (file, root["bufferViews"].as_array_mut()) else { continue };
+            place[index] = images.len();
+            images
+                .push(json!({"name": scene.textures[index].name, "mimeType": "image/png", "bufferView": views.len()}));
+            views.push(json!({"buffer": 0, "byteOffset": bin.len(), "byteLength": file.len()}));
+            bin.extend(file);
+        }
+        root["images"] = Value::Array(images);
+        root["samplers"] =
+            self.samplers.iter().map(|wrap| json!({"wrapS": gl_word(wrap[0]), "wrapT": gl_word(wrap[1])})).collect();
+        let texture = |&(image, sampler): &(usize, usize)| json!({"source": place[image], "sampler": sampler});
+        root["textures"] = self.textures.iter().map(texture).collect();
+    }
+}
+
+/// Where `value` is in `list`; it is put there first where it is not.
+fn place_in<T: PartialEq>(list: &mut Vec<T>, value: T) -> usize {
+    list.iter().position(|known| *known == value).unwrap_or_else(|| {
+        list.push(value);
+        list.len() - 1
+    })
+}
+
+fn is_whole(texture: &Texture) -> bool {
+    let texels = u64::from(texture.size[0]) * u64::from(texture.size[1]);
+    texels > 0 && texels == texture.texels.len() as u64
+}
+
+fn png(texture: &Texture) -> io::Result<Vec<u8>> {
+    let mut bytes = Cursor::new(Vec::new());
+    let [width, height] = texture.size;
+    PngEncoder::new(&mut bytes)
+        .write_image(texture.texels.as_flattened(), width, height, ExtendedColorType::Rgba8)
+        .map_err(io::Error::other)?;
+    Ok(bytes.into_inner())
+}
+
+/// Scale, angle and offset of KHR_texture_transform.
+fn parts(transform: &Affine2) -> (Vec2, f32, Vec2) {
+    let (x, y) = (transform.matrix2.x_axis, transform.matrix2.y_axis);
+    if x.y == 0.0 && y.x == 0.0 {
+        return (Vec2::new(x.x, y.y), 0.0, transform.translation);
+    }
+    let angle = (-x.y).atan2(x.x);
+    let (sin, cos) = angle.sin_cos();
+    (Vec2::new(x.length(), y.dot(Vec2::new(sin, cos))), angle, transform.translation)
+}
+
+/// OpenGL's number.
+fn gl_word(wrap: Wrap) -> u32 {
+    match wrap {
+        Wrap::Repeat => 10497,
+        Wrap::Mirror => 33648,
+        Wrap::Clamp => 33071,
+    }
+}

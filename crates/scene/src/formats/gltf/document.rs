@@ -1,0 +1,399 @@
+//! The JSON of glTF 2.0, as far as it is read. Names are the format's own (glTF 2.0, section 5, and the extensions' schemas).
+//!
+//! Numbers stay in double precision: a node may lie far from the origin. Strings and extras are borrowed from the file's bytes, so
+//! that a data URI is held once. Indices are not checked here, but where they are used. Rarely used parts are boxed: two letters
+//! of a hostile file must not become a kilobyte.
+
+use std::{borrow::Cow, collections::HashMap};
+
+use serde::{Deserialize, de::IgnoredAny};
+use serde_json::value::RawValue;
+
+/// A whole file.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Document<'a> {
+    pub(super) asset: Asset,
+    #[serde(default)]
+    pub(super) extensions_used: Vec<String>,
+    #[serde(default)]
+    pub(super) extensions_required: Vec<String>,
+    pub(super) scene: Option<u32>,
+    #[serde(borrow, default)]
+    pub(super) scenes: Vec<Scene<'a>>,
+    #[serde(default)]
+    pub(super) nodes: Vec<Node>,
+    #[serde(default)]
+    pub(super) meshes: Vec<Mesh>,
+    #[serde(borrow, default)]
+    pub(super) accessors: Vec<Accessor<'a>>,
+    #[serde(default)]
+    pub(super) buffer_views: Vec<BufferView>,
+    #[serde(borrow, default)]
+    pub(super) buffers: Vec<Buffer<'a>>,
+    #[serde(borrow, default)]
+    pub(super) materials: Vec<Material<'a>>,
+    #[serde(default)]
+    pub(super) textures: Vec<Texture>,
+    #[serde(borrow, default)]
+    pub(super) images: Vec<Image<'a>>,
+    #[serde(default)]
+    pub(super) samplers: Vec<Sampler>,
+    #[serde(borrow, default)]
+    pub(super) cameras: Vec<Camera<'a>>,
+    #[serde(borrow, default)]
+    pub(super) extensions: DocumentExtensions<'a>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Asset {
+    #[serde(default)]
+    pub(super) version: String,
+    pub(super) min_version: Option<String>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct DocumentExtensions<'a> {
+    #[serde(borrow, default, rename = "KHR_lights_punctual")]
+    pub(super) lights_punctual: LightsPunctual<'a>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct LightsPunctual<'a> {
+    #[serde(borrow, default)]
+    pub(super) lights: Vec<Light<'a>>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Scene<'a> {
+    #[serde(default)]
+    pub(super) nodes: Box<[u32]>,
+    #[serde(borrow)]
+    pub(super) extras: Option<&'a RawValue>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Node {
+    pub(super) name: Option<Box<str>>,
+    #[serde(default)]
+    pub(super) children: Box<[u32]>,
+    pub(super) matrix: Option<Box<[f64; 16]>>,
+    pub(super) translation: Option<Box<[f64; 3]>>,
+    pub(super) rotation: Option<Box<[f64; 4]>>,
+    pub(super) scale: Option<Box<[f64; 3]>>,
+    pub(super) mesh: Option<u32>,
+    pub(super) camera: Option<u32>,
+    pub(super) skin: Option<u32>,
+    /// Of morph targets, instead of the mesh's.
+    #[serde(default)]
+    pub(super) weights: Box<[f64]>,
+    pub(super) extensions: Option<Box<NodeExtensions>>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct NodeExtensions {
+    #[serde(rename = "KHR_lights_punctual")]
+    pub(super) light: Option<LightReference>,
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub(super) instancing: Option<Instancing>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct LightReference {
+    pub(super) light: u32,
+}
+
+/// Accessors by the names TRANSLATION, ROTATION, SCALE, and whatever else an exporter adds.
+#[derive(Debug, Deserialize)]
+pub(super) struct Instancing {
+    #[serde(default)]
+    pub(super) attributes: HashMap<String, u32>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Mesh {
+    pub(super) primitives: Vec<Primitive>,
+    /// Of morph targets.
+    #[serde(default)]
+    pub(super) weights: Box<[f64]>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Primitive {
+    pub(super) attributes: Box<Attributes>,
+    pub(super) indices: Option<u32>,
+    pub(super) material: Option<u32>,
+    #[serde(default = "Primitive::triangles")]
+    pub(super) mode: u32,
+}
+
+impl Primitive {
+    fn triangles() -> u32 {
+        4
+    }
+}
+
+/// Accessors of the attributes that are shown.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "SCREAMING_SNAKE_CASE")]
+pub(super) struct Attributes {
+    pub(super) position: Option<u32>,
+    pub(super) normal: Option<u32>,
+    #[serde(rename = "TEXCOORD_0")]
+    pub(super) texcoord_0: Option<u32>,
+    #[serde(rename = "TEXCOORD_1")]
+    pub(super) texcoord_1: Option<u32>,
+    #[serde(rename = "COLOR_0")]
+    pub(super) color_0: Option<u32>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Accessor<'a> {
+    pub(super) buffer_view: Option<u32>,
+    #[serde(default)]
+    pub(super) byte_offset: u64,
+    pub(super) component_type: u32,
+    #[serde(default)]
+    pub(super) normalized: bool,
+    pub(super) count: u64,
+    #[serde(borrow, rename = "type")]
+    pub(super) kind: Cow<'a, str>,
+    pub(super) sparse: Option<Box<Sparse>>,
+}
+
+/// Elements that replace some of an accessor's.
+#[derive(Debug, Deserialize)]
+pub(super) struct Sparse {
+    pub(super) count: u64,
+    pub(super) indices: SparseIndices,
+    pub(super) values: SparseValues,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseIndices {
+    pub(super) buffer_view: u32,
+    #[serde(default)]
+    pub(super) byte_offset: u64,
+    pub(super) component_type: u32,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseValues {
+    pub(super) buffer_view: u32,
+    #[serde(default)]
+    pub(super) byte_offset: u64,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct BufferView {
+    pub(super) buffer: u32,
+    #[serde(default)]
+    pub(super) byte_offset: u64,
+    pub(super) byte_length: u64,
+    pub(super) byte_stride: Option<u64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Buffer<'a> {
+    #[serde(borrow)]
+    pub(super) uri: Option<Cow<'a, str>>,
+    pub(super) byte_length: u64,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Material<'a> {
+    pub(super) name: Option<Box<str>>,
+    pub(super) pbr_metallic_roughness: Option<Box<MetallicRoughness>>,
+    pub(super) normal_texture: Option<IgnoredAny>,
+    pub(super) occlusion_texture: Option<IgnoredAny>,
+    pub(super) emissive_texture: Option<IgnoredAny>,
+    #[serde(default)]
+    pub(super) emissive_factor: [f32; 3],
+    #[serde(borrow)]
+    pub(super) alpha_mode: Option<Cow<'a, str>>,
+    pub(super) extensions: Option<Box<MaterialExtensions>>,
+    #[serde(borrow)]
+    pub(super) extras: Option<&'a RawValue>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct MetallicRoughness {
+    pub(super) base_color_factor: [f32; 4],
+    pub(super) base_color_texture: Option<TextureInfo>,
+    pub(super) metallic_factor: f32,
+    pub(super) roughness_factor: f32,
+    pub(super) metallic_roughness_texture: Option<IgnoredAny>,
+}
+
+impl Default for MetallicRoughness {
+    fn default() -> MetallicRoughness {
+        MetallicRoughness {
+            base_color_factor: [1.0; 4],
+            base_color_texture: None,
+            metallic_factor: 1.0,
+            roughness_factor: 1.0,
+            metallic_roughness_texture: None,
+        }
+    }
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct MaterialExtensions {
+    #[serde(rename = "KHR_materials_emissive_strength")]
+    pub(super) emissive_strength: Option<EmissiveStrength>,
+    #[serde(rename = "KHR_materials_unlit")]
+    pub(super) unlit: Option<IgnoredAny>,
+    #[serde(rename = "KHR_materials_ior")]
+    pub(super) ior: Option<Ior>,
+    #[serde(rename = "KHR_materials_specular")]
+    pub(super) specular: Option<Specular>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct EmissiveStrength {
+    #[serde(default = "one")]
+    pub(super) emissive_strength: f32,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Ior {
+    #[serde(default = "Ior::glass")]
+    pub(super) ior: f32,
+}
+
+impl Ior {
+    fn glass() -> f32 {
+        1.5
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Specular {
+    #[serde(default = "one")]
+    pub(super) specular_factor: f32,
+    #[serde(default = "white")]
+    pub(super) specular_color_factor: [f32; 3],
+    pub(super) specular_texture: Option<IgnoredAny>,
+    pub(super) specular_color_texture: Option<IgnoredAny>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct TextureInfo {
+    pub(super) index: u32,
+    #[serde(default)]
+    pub(super) tex_coord: u32,
+    pub(super) extensions: Option<TextureExtensions>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct TextureExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    pub(super) transform: Option<TextureTransform>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct TextureTransform {
+    #[serde(default)]
+    pub(super) offset: [f32; 2],
+    #[serde(default)]
+    pub(super) rotation: f32,
+    #[serde(default = "TextureTransform::whole")]
+    pub(super) scale: [f32; 2],
+    pub(super) tex_coord: Option<u32>,
+}
+
+impl TextureTransform {
+    fn whole() -> [f32; 2] {
+        [1.0; 2]
+    }
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Texture {
+    pub(super) sampler: Option<u32>,
+    pub(super) source: Option<u32>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Image<'a> {
+    pub(super) name: Option<Box<str>>,
+    #[serde(borrow)]
+    pub(super) uri: Option<Cow<'a, str>>,
+    pub(super) buffer_view: Option<u32>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Sampler {
+    pub(super) wrap_s: Option<u32>,
+    pub(super) wrap_t: Option<u32>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Camera<'a> {
+    pub(super) name: Option<Box<str>>,
+    pub(super) perspective: Option<Perspective>,
+    pub(super) orthographic: Option<Orthographic>,
+    #[serde(borrow)]
+    pub(super) extras: Option<&'a RawValue>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Perspective {
+    /// Full vertical angle, radians.
+    pub(super) yfov: f64,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Orthographic {
+    /// Half the height of the picture.
+    pub(super) ymag: f64,
+}
+
+/// A light of `KHR_lights_punctual`.
+#[derive(Debug, Deserialize)]
+pub(super) struct Light<'a> {
+    pub(super) name: Option<Box<str>>,
+    #[serde(borrow, default, rename = "type")]
+    pub(super) kind: Cow<'a, str>,
+    pub(super) color: Option<Box<[f64; 3]>>,
+    pub(super) intensity: Option<f64>,
+    pub(super) spot: Option<Box<Spot>>,
+    #[serde(borrow)]
+    pub(super) extras: Option<&'a RawValue>,
+}
+
+/// A cone by its half-angles, radians.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct Spot {
+    pub(super) inner_cone_angle: f64,
+    pub(super) outer_cone_angle: f64,
+}
+
+impl Default for Spot {
+    fn default() -> Spot {
+        Spot { inner_cone_angle: 0.0, outer_cone_angle: std::f64::consts::FRAC_PI_4 }
+    }
+}
+
+fn one() -> f32 {
+    1.0
+}
+
+fn white() -> [f32; 3] {
+    [1.0; 3]
+}

@@ -1,0 +1,37 @@
+//! Which extensions are understood.
+
+use std::path::Path;
+
+use super::document::Document;
+use crate::{LoadError, draft::Draft};
+
+/// Extensions that are read. A file may require them.
+const KNOWN: [&str; 8] = [
+    "EXT_mesh_gpu_instancing",
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
+
+/// Refuses a file that requires what is not known, and warns of what it uses.
+pub(super) fn check(path: &Path, document: &Document, draft: &mut Draft) -> Result<(), LoadError> {
+    let is_known = |name: &&String| KNOWN.contains(&name.as_str());
+    if let Some(extension) = document.extensions_required.iter().find(|name| !is_known(name)) {
+        return Err(LoadError::UnsupportedExtension {
+            path: path.to_owned(),
+            extension: extension.clone(),
+            known: KNOWN.map(str::to_owned).to_vec(),
+        });
+    }
+    let unknown: Vec<&str> =
+        document.extensions_used.iter().filter(|name| !is_known(name)).map(String::as_str).collect();
+    if !unknown.is_empty() {
+        let (path, unknown) = (path.display(), unknown.join(", "));
+        draft.warnings.push(format!("{path}: what these extensions add is not shown: {unknown}"));
+    }
+    Ok(())
+}

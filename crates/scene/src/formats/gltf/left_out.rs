@@ -1,0 +1,68 @@
+//! What of a file is not shown: counted while it is read, and said in one sentence for each kind.
+
+use std::path::Path;
+
+use super::nodes::Placed;
+use crate::draft::Draft;
+
+/// How often each kind was met.
+#[derive(Default)]
+pub(super) struct LeftOut {
+    /// Cameras and lights of a file that is part of another scene.
+    pub(super) cameras: usize,
+    pub(super) lights: usize,
+    pub(super) unknown_lights: usize,
+    pub(super) points_and_lines: usize,
+    /// Primitives without positions.
+    pub(super) placeless: usize,
+    pub(super) skinned: usize,
+    pub(super) morphed: usize,
+    /// Primitives whose material is not there.
+    pub(super) missing_materials: usize,
+    /// Of materials.
+    pub(super) see_through: usize,
+    pub(super) roughness_textures: usize,
+    pub(super) normal_textures: usize,
+    pub(super) occlusion_textures: usize,
+    pub(super) emissive_textures: usize,
+    pub(super) specular_textures: usize,
+    pub(super) missing_textures: usize,
+}
+
+impl LeftOut {
+    /// Counts the cameras and lights of all nodes.
+    pub(super) fn count_views(&mut self, all: &[Placed]) {
+        self.cameras += all.iter().filter(|placed| placed.node.camera.is_some()).count();
+        self.lights += all.iter().filter(|placed| placed.light().is_some()).count();
+    }
+
+    /// Adds the sentences to the draft's warnings.
+    pub(super) fn warn(&self, path: &Path, draft: &mut Draft) {
+        let sentences = [
+            (self.cameras, "camera", "of a file that is part of the scene: left out"),
+            (self.lights, "light", "of a file that is part of the scene: left out"),
+            (self.unknown_lights, "light", "of an unknown type: left out"),
+            (self.points_and_lines, "primitive", "of points or lines: left out"),
+            (self.placeless, "primitive", "without positions: left out"),
+            (self.skinned, "skinned mesh", "shown as if at rest, without its skeleton"),
+            (self.morphed, "mesh", "shown without the morph targets that the file blends in"),
+            (self.missing_materials, "primitive", "with a material that the file does not hold: shown white"),
+            (self.see_through, "material", "with cut-outs or transparency (alphaMode): shown opaque"),
+            (self.roughness_textures, "metallic-roughness texture", "not shown: the material's factors are used"),
+            (self.normal_textures, "normal texture", "not shown"),
+            (self.occlusion_textures, "occlusion texture", "not shown"),
+            (self.emissive_textures, "emissive texture", "not shown: the surface gives off no light"),
+            (self.specular_textures, "specular texture", "not shown: the material's factors are used"),
+            (self.missing_textures, "material", "with a texture that the file does not hold: shown in plain colour"),
+        ];
+        let path = path.display();
+        for (count, what, outcome) in sentences.into_iter().filter(|(count, ..)| *count > 0) {
+            let plural = match (count, what.ends_with('h')) {
+                (1, _) => "",
+                (_, true) => "es",
+                (_, false) => "s",
+            };
+            draft.warnings.push(format!("{path}: {count} {what}{plural} {outcome}"));
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! The materials of a file in the draft, with their textures, and which of them a primitive gets.
+
+use std::path::Path;
+
+use super::{
+    document::{self, Document, Primitive},
+    left_out::LeftOut,
+    material,
+    picture::Pictures,
+};
+use crate::{
+    LoadError, Material,
+    draft::{Draft, Placement},
+};
+
+/// Materials by their number in the file.
+#[derive(Default)]
+pub(super) struct Materials {
+    /// Replaces all materials of the file.
+    replacement: Option<u32>,
+    /// Index in the draft, and the set of texture coordinates that its texture needs.
+    read: Vec<(u32, Option<u32>)>,
+    /// Index of glTF's own default material, once a primitive has used it.
+    default: Option<u32>,
+}
+
+/// What a primitive is made of.
+pub(super) struct Chosen {
+    /// Index in the draft.
+    pub(super) material: u32,
+    /// Accessor of the texture coordinates.
+    pub(super) uvs: Option<u32>,
+    /// Accessor of the vertex colours.
+    pub(super) colors: Option<u32>,
+}
+
+impl Materials {
+    /// Adds the document's materials to the draft, in its order, unless the placement replaces them.
+    pub(super) fn read(
+        path: &Path,
+        document: &Document,
+        mut pictures: Pictures,
+        placement: &Placement,
+        left_out: &mut LeftOut,
+        draft: &mut Draft,
+    ) -> Result<Materials, LoadError> {
+        let mut materials = Materials { replacement: placement.material, ..Materials::default() };
+        if placement.material.is_some() {
+            return Ok(materials);
+        }
+        let mut colored = vec![false; document.materials.len()];
+        for primitive in document.meshes.iter().flat_map(|mesh| &mesh.primitives) {
+            let colored = primitive.material.and_then(|material| colored.get_mut(material as usize));
+            colored.into_iter().for_each(|colored| *colored |= primitive.attributes.color_0.is_some());
+        }
+        for (index, (entry, colored)) in document.materials.iter().zip(colored).enumerate() {
+            material::count_left_out(entry, left_out);
+            let info = entry.pbr_metallic_roughness.as_deref().and_then(|pbr| pbr.base_color_texture.as_ref());
+            let found = info.and_then(|info| pictures.find(info, draft));
+            let material = material::read(path, index, entry, colored || found.is_some())?;
+            let (mut texture, set) = found.unzip();
+            if let (Some(texture), Some(exact)) = (&mut texture, material::texture_transform(path, index, entry)?) {
+                texture.transform = exact;
+            }
+            materials.read.push((draft.materials.len() as u32, set));
+            draft.materials.push(Material { texture, ..material });
+        }
+        left_out.missing_textures += pictures.missing;
+        Ok(materials)
+    }
+
+    /// The material of a primitive, and which of its attributes the material needs.
+    pub(super) fn choose(&mut self, primitive: &Primitive, left_out: &mut LeftOut, draft: &mut Draft) -> Chosen {
+        let attributes = &primitive.attributes;
+        let (first, colors) = (attributes.texcoord_0, attributes.color_0);
+        if let Some(material) = self.replacement {
+            // Vertex colours are the file's own, as its materials are.
+            return Chosen { material, uvs: first, colors: None };
+        }
+        let named = primitive.material.map(|material| self.read.get(material as usize));
+        left_out.missing_materials += usize::from(named == Some(None));
+        let (material, set) = match named.flatten() {
+            Some(&found) => found,
+            None => (self.default_material(draft), None),
+        };
+        let uvs = match set {
+            None | Some(0) => first,
+            Some(1) => attributes.texcoord_1,
+            Some(_) => None,
+        };
+        Chosen { material, uvs, colors }
+    }
+
+    fn default_material(&mut self, draft: &mut Draft) -> u32 {
+        *self.default.get_or_insert_with(|| {
+            draft.materials.push(material::translated(&document::Material::default(), true));
+            draft.materials.len() as u32 - 1
+        })
+    }
+}

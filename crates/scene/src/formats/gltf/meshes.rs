@@ -1,0 +1,255 @@
+//! Meshes: primitives of all triangle modes, placed once for every node that uses them, or once for every instance.
+//!
+//! First a survey counts what is going to be added, and checks that its bytes are there; so a few small meshes in very many nodes
+//! are refused before they fill the memory.
+
+use std::borrow::Cow;
+
+use glam::{DMat4, Vec3};
+
+use super::{
+    accessor::Accessors,
+    container::malformed,
+    document::{Instancing, Mesh, Primitive},
+    instances::Instances,
+    left_out::LeftOut,
+    materials::{Chosen, Materials},
+};
+use crate::{LoadError, MeshPart, builder::Room, draft::Draft};
+
+/// How a primitive's vertices make triangles, by its number in the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mode {
+    PointsOrLines,
+    Triangles,
+    Strip,
+    Fan,
+}
+
+impl Mode {
+    fn new(number: u32) -> Option<Mode> {
+        Some(match number {
+            0..=3 => Mode::PointsOrLines,
+            4 => Mode::Triangles,
+            5 => Mode::Strip,
+            6 => Mode::Fan,
+            _ => return None,
+        })
+    }
+
+    /// Triangles that this many indices make. Indices left over are none.
+    fn count(self, indices: usize) -> usize {
+        match self {
+            Mode::PointsOrLines => 0,
+            Mode::Triangles => indices / 3,
+            Mode::Strip | Mode::Fan => indices.saturating_sub(2),
+        }
+    }
+}
+
+/// What a mesh adds each time that it is shown.
+#[derive(Default)]
+struct Survey<'a> {
+    primitives: Vec<(&'a Primitive, Mode)>,
+    room: Room,
+    points_and_lines: usize,
+    placeless: usize,
+}
+
+/// A mesh at one place, or at many.
+pub(super) struct Shown<'a> {
+    pub(super) mesh: u32,
+    pub(super) transform: DMat4,
+    /// How many instances there are, and where.
+    pub(super) instances: Option<(usize, &'a Instancing)>,
+}
+
+impl Shown<'_> {
+    fn count(&self) -> usize {
+        self.instances.map_or(1, |(count, _)| count)
+    }
+}
+
+/// The meshes of a document.
+pub(super) struct Meshes<'a> {
+    accessors: Accessors<'a>,
+    meshes: &'a [Mesh],
+    surveys: Vec<Option<Survey<'a>>>,
+}
+
+impl<'a> Meshes<'a> {
+    pub(super) fn new(accessors: Accessors<'a>) -> Meshes<'a> {
+        let meshes = &accessors.document.meshes[..];
+        Meshes { accessors, meshes, surveys: meshes.iter().map(|_| None).collect() }
+    }
+
+    /// Adds all that is shown.
+    pub(super) fn add(
+        &mut self,
+        all: &[Shown],
+        materials: &mut Materials,
+        left_out: &mut LeftOut,
+        draft: &mut Draft,
+    ) -> Result<(), LoadError> {
+        let mut room = Room::default();
+        for shown in all {
+            let survey = self.survey(shown.mesh)?;
+            room = room.and(&survey.room, shown.count());
+            left_out.points_and_lines = left_out.points_and_lines.saturating_add(survey.points_and_lines);
+            left_out.placeless = left_out.placeless.saturating_add(survey.placeless);
+        }
+        draft.reserve(&room)?;
+        for shown in all {
+            let survey = self.surveys[shown.mesh as usize].as_ref().expect("surveyed above");
+            // Read no sooner than this: the attributes of all nodes together might not fit.
+            let instances = match shown.instances {
+                Some((count, instancing)) if !survey.primitives.is_empty() => {
+                    Some(Instances::read(&self.accessors, instancing, count)?)
+                }
+                _ => None,
+            };
+            for &(primitive, mode) in &survey.primitives {
+                let chosen = materials.choose(primitive, left_out, draft);
+                self.add_primitive(primitive, mode, &chosen, &shown.transform, instances.as_ref(), draft)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn survey(&mut self, index: u32) -> Result<&Survey<'a>, LoadError> {
+        let mesh = self
+            .meshes
+            .get(index as usize)
+            .ok_or_else(|| malformed(self.accessors.path, format!("there is no mesh {index}, but it is asked for")))?;
+        let slot = &mut self.surveys[index as usize];
+        if slot.is_none() {
+            *slot = Some(Survey::new(&self.accessors, index, mesh)?);
+        }
+        Ok(slot.as_ref().expect("just filled"))
+    }
+
+    fn add_primitive(
+        &self,
+        primitive: &Primitive,
+        mode: Mode,
+        chosen: &Chosen,
+        transform: &DMat4,
+        instances: Option<&Instances>,
+        draft: &mut Draft,
+    ) -> Result<(), LoadError> {
+        let accessors = &self.accessors;
+        let positions = match primitive.attributes.position {
+            Some(positions) => accessors.vectors::<3>(positions)?,
+            None => return Ok(()),
+        };
+        let vectors =
+            |index: Option<u32>| index.map_or(Ok(Cow::Borrowed(&[][..])), |index| accessors.vectors::<3>(index));
+        let normals = vectors(primitive.attributes.normal)?;
+        let uvs = chosen.uvs.map_or(Ok(Cow::Borrowed(&[][..])), |index| accessors.vectors::<2>(index))?;
+        let colors = chosen.colors.map_or(Ok(Cow::Borrowed(&[][..])), |index| accessors.colors(index))?;
+        for (name, length) in
+            [("normals", normals.len()), ("texture coordinates", uvs.len()), ("colours", colors.len())]
+        {
+            if length != 0 && length != positions.len() {
+                let problem = format!("a primitive has {length} {name} for {} vertices", positions.len());
+                return Err(malformed(accessors.path, problem));
+            }
+        }
+        let indices = self.indices(primitive, positions.len())?;
+        let part = MeshPart {
+            positions: bytemuck::cast_slice::<_, Vec3>(&positions),
+            normals: bytemuck::cast_slice(&normals),
+            uvs: bytemuck::cast_slice(&uvs),
+            colors: bytemuck::cast_slice(&colors),
+            triangles: &triangles(mode, &indices),
+        };
+        let Some(instances) = instances else {
+            return draft.add(part, transform, |_| chosen.material);
+        };
+        let mut transforms = instances.transforms();
+        transforms.try_for_each(|instance| draft.add(part, &(transform * instance), |_| chosen.material))
+    }
+
+    fn indices(&self, primitive: &Primitive, vertices: usize) -> Result<Cow<'a, [u32]>, LoadError> {
+        let Some(accessor) = primitive.indices else { return Ok((0..vertices as u32).collect()) };
+        let indices = self.accessors.indices(accessor)?;
+        let largest = indices.iter().max().map_or(0, |&largest| largest as usize);
+        if largest < vertices || indices.is_empty() {
+            return Ok(indices);
+        }
+        let problem = format!("a primitive asks for vertex {largest} of {vertices} (accessor {accessor})");
+        Err(malformed(self.accessors.path, problem))
+    }
+}
+
+impl<'a> Survey<'a> {
+    fn new(accessors: &Accessors, index: u32, mesh: &'a Mesh) -> Result<Survey<'a>, LoadError> {
+        let mut survey = Survey::default();
+        for primitive in &mesh.primitives {
+            let mode = Mode::new(primitive.mode).ok_or_else(|| {
+                malformed(accessors.path, format!("a primitive of mesh {index} has the mode {}", primitive.mode))
+            })?;
+            if mode == Mode::PointsOrLines {
+                survey.points_and_lines += 1;
+                continue;
+            }
+            let Some(positions) = primitive.attributes.position else {
+                survey.placeless += 1;
+                continue;
+            };
+            let vertices = accessors.count(positions)?;
+            let indices = primitive.indices.map_or(Ok(vertices), |indices| accessors.count(indices))?;
+            let triangles = mode.count(indices);
+            if triangles > 0 {
+                let attributes = &primitive.attributes;
+                let room = Room {
+                    vertices,
+                    triangles,
+                    normals: attributes.normal.is_some(),
+                    uvs: attributes.texcoord_0.or(attributes.texcoord_1).is_some(),
+                    colors: attributes.color_0.is_some(),
+                };
+                survey.room = survey.room.and(&room, 1);
+                survey.primitives.push((primitive, mode));
+            }
+        }
+        Ok(survey)
+    }
+}
+
+/// Cuts strips and fans into triangles that face the same way (glTF 2.0, section 3.7.2.1).
+fn triangles(mode: Mode, indices: &[u32]) -> Cow<'_, [[u32; 3]]> {
+    match mode {
+        Mode::Triangles => indices.as_chunks().0.into(),
+        Mode::Strip => indices
+            .windows(3)
+            .enumerate()
+            .map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] })
+            .collect(),
+        Mode::Fan => indices.get(1..).unwrap_or_default().windows(2).map(|w| [w[0], w[1], indices[0]]).collect(),
+        Mode::PointsOrLines => Cow::default(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strips_and_fans_face_one_way() {
+        assert_eq!(*triangles(Mode::Triangles, &[0, 1, 2, 3, 4, 5, 6]), [[0, 1, 2], [3, 4, 5]]);
+        assert_eq!(*triangles(Mode::Strip, &[0, 1, 2, 3, 4]), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
+        assert_eq!(*triangles(Mode::Fan, &[0, 1, 2, 3]), [[1, 2, 0], [2, 3, 0]]);
+        assert!(triangles(Mode::Fan, &[]).is_empty());
+    }
+
+    #[test]
+    fn triangles_are_as_many_as_counted() {
+        let indices: Vec<u32> = (0..9).collect();
+        for mode in [Mode::Triangles, Mode::Strip, Mode::Fan, Mode::PointsOrLines] {
+            for count in 0..indices.len() {
+                assert_eq!(triangles(mode, &indices[..count]).len(), mode.count(count), "{mode:?} {count}");
+            }
+        }
+    }
+}

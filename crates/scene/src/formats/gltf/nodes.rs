@@ -1,0 +1,110 @@
+//! The hierarchy of nodes, without recursion: a chain may be as long as the file.
+
+use std::path::Path;
+
+use glam::{DMat4, DQuat, DVec3};
+
+use super::{
+    container::malformed,
+    document::{Document, Node},
+};
+use crate::{LoadError, Place, draft::Draft};
+
+/// A node with its way from its own coordinates to the world.
+pub(super) struct Placed<'a> {
+    pub(super) index: usize,
+    pub(super) node: &'a Node,
+    pub(super) transform: DMat4,
+}
+
+impl Placed<'_> {
+    /// Number of the node's light.
+    pub(super) fn light(&self) -> Option<u32> {
+        self.node.extensions.as_ref()?.light.as_ref().map(|reference| reference.light)
+    }
+}
+
+/// The nodes of the document's scene, depth first, the whole placed by `transform`.
+pub(super) fn placed<'a>(
+    path: &Path,
+    document: &'a Document,
+    transform: DMat4,
+    draft: &mut Draft,
+) -> Result<Vec<Placed<'a>>, LoadError> {
+    let mut stack: Vec<(u32, DMat4)> =
+        roots(path, document, draft)?.into_iter().rev().map(|root| (root, transform)).collect();
+    let mut placed = Vec::new();
+    let mut seen = vec![false; document.nodes.len()];
+    while let Some((index, parent)) = stack.pop() {
+        let node = document
+            .nodes
+            .get(index as usize)
+            .ok_or_else(|| malformed(path, format!("there is no node {index}, but it is asked for")))?;
+        if std::mem::replace(&mut seen[index as usize], true) {
+            return Err(no_tree(path, format!("node {index} has two parents or is its own ancestor")));
+        }
+        let transform = parent * local_transform(node);
+        stack.extend(node.children.iter().rev().map(|&child| (child, transform)));
+        placed.push(Placed { index: index as usize, node, transform });
+    }
+    Ok(placed)
+}
+
+/// Number of the scene that is read: the default one, else the first. `None` where the document names none and has none.
+pub(super) fn scene_index(document: &Document) -> Option<usize> {
+    document.scene.map(|scene| scene as usize).or((!document.scenes.is_empty()).then_some(0))
+}
+
+/// The roots of the scene, else all nodes that are no one's child.
+fn roots(path: &Path, document: &Document, draft: &mut Draft) -> Result<Vec<u32>, LoadError> {
+    if let Some(index) = scene_index(document) {
+        let count = document.scenes.len();
+        let scene = document.scenes.get(index);
+        let scene =
+            scene.ok_or_else(|| malformed(path, format!("there is no scene {index} of {count} to begin with")))?;
+        if count > 1 {
+            let path = path.display();
+            draft.warnings.push(format!("{path}: of {count} scenes only number {index} is read"));
+        }
+        return Ok(scene.nodes.to_vec());
+    }
+    let mut is_child = vec![false; document.nodes.len()];
+    for &child in document.nodes.iter().flat_map(|node| &node.children) {
+        if let Some(is_child) = is_child.get_mut(child as usize) {
+            *is_child = true;
+        }
+    }
+    let roots: Vec<u32> = (0..).zip(is_child).filter(|(_, is_child)| !is_child).map(|(index, _)| index).collect();
+    if roots.is_empty() && !document.nodes.is_empty() {
+        return Err(no_tree(path, "every node is the child of another".to_owned()));
+    }
+    Ok(roots)
+}
+
+/// From the node's coordinates to its parent's.
+fn local_transform(node: &Node) -> DMat4 {
+    if let Some(matrix) = &node.matrix {
+        return DMat4::from_cols_array(matrix);
+    }
+    let vector = |value: &Option<Box<[f64; 3]>>, none| value.as_deref().map_or(none, |&value| DVec3::from(value));
+    let rotation = node.rotation.as_deref().map_or(DQuat::IDENTITY, |&xyzw| rotation(DQuat::from_array(xyzw)));
+    DMat4::from_scale_rotation_translation(
+        vector(&node.scale, DVec3::ONE),
+        rotation,
+        vector(&node.translation, DVec3::ZERO),
+    )
+}
+
+/// A rotation of unit length; one without a length turns nothing.
+pub(super) fn rotation(rotation: DQuat) -> DQuat {
+    let unit = rotation.normalize();
+    if unit.is_finite() { unit } else { DQuat::IDENTITY }
+}
+
+fn no_tree(path: &Path, problem: String) -> LoadError {
+    LoadError::Malformed {
+        place: Place::file(path).into(),
+        problem,
+        remedy: "nodes must form a tree; export the file again".to_owned(),
+    }
+}

@@ -1,0 +1,120 @@
+//! Base colour textures: image, sampler and `KHR_texture_transform`.
+
+use std::path::Path;
+
+use glam::{Affine2, Mat2, Vec2};
+
+use super::{
+    buffers::Buffers,
+    document::{Document, TextureInfo},
+    uri::{self, Uri},
+};
+use crate::{TextureUse, Wrap, draft::Draft};
+
+/// The images of a file, each decoded when it is first asked for.
+pub(super) struct Pictures<'a> {
+    path: &'a Path,
+    document: &'a Document<'a>,
+    buffers: &'a Buffers<'a>,
+    /// By image: index of the texture in the draft, or that there is none.
+    decoded: Vec<Option<Option<u32>>>,
+    /// Textures that the file names, but does not hold.
+    pub(super) missing: usize,
+}
+
+impl<'a> Pictures<'a> {
+    pub(super) fn new(path: &'a Path, document: &'a Document<'a>, buffers: &'a Buffers<'a>) -> Pictures<'a> {
+        Pictures { path, document, buffers, decoded: vec![None; document.images.len()], missing: 0 }
+    }
+
+    /// How a material uses its texture, with the set of texture coordinates. `None` where the picture cannot be had.
+    pub(super) fn find(&mut self, info: &TextureInfo, draft: &mut Draft) -> Option<(TextureUse, u32)> {
+        let textures = &self.document.textures;
+        let Some((texture, image)) =
+            textures.get(info.index as usize).and_then(|texture| Some((texture, texture.source? as usize)))
+        else {
+            self.missing += 1;
+            return None;
+        };
+        let index = self.decode(image, draft)?;
+        let sampler = texture.sampler.and_then(|sampler| self.document.samplers.get(sampler as usize));
+        let transform = info.extensions.as_ref().and_then(|extensions| extensions.transform.as_ref());
+        let found = TextureUse {
+            texture: index,
+            wrap: sampler.map_or([Wrap::Repeat; 2], |sampler| [sampler.wrap_s, sampler.wrap_t].map(wrap)),
+            transform: transform.map_or(Affine2::IDENTITY, |it| affine(it.scale.into(), it.rotation, it.offset.into())),
+        };
+        Some((found, transform.and_then(|transform| transform.tex_coord).unwrap_or(info.tex_coord)))
+    }
+
+    fn decode(&mut self, index: usize, draft: &mut Draft) -> Option<u32> {
+        if let Some(Some(known)) = self.decoded.get(index) {
+            return *known;
+        }
+        let read = self.read(index, draft);
+        self.missing += usize::from(read.is_none());
+        let found = read.flatten();
+        if let Some(decoded) = self.decoded.get_mut(index) {
+            *decoded = Some(found);
+        }
+        found
+    }
+
+    /// `None`: the file does not hold it. `Some(None)`: of what it holds or names nothing can be made, as the draft will say.
+    fn read(&self, index: usize, draft: &mut Draft) -> Option<Option<u32>> {
+        let image = self.document.images.get(index)?;
+        let name = image.name.as_deref().map_or_else(|| format!("image {index}"), str::to_owned);
+        if let Some(view) = image.buffer_view {
+            let (bytes, _) = self.buffers.view(view).ok()?;
+            return Some(draft.texture_bytes(self.path, &name, bytes));
+        }
+        Some(match Uri::new(image.uri.as_deref()?) {
+            Uri::Data(data) => draft.texture_bytes(self.path, &name, &uri::decode(data)?),
+            Uri::File(file) => draft.texture_file(self.path, &file),
+        })
+    }
+}
+
+/// By OpenGL's number; what is unknown repeats, as what is not said does.
+fn wrap(number: Option<u32>) -> Wrap {
+    match number {
+        Some(33071) => Wrap::Clamp,
+        Some(33648) => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    }
+}
+
+/// Scale, then rotation, then offset. Positive rotations turn the coordinates counter-clockwise as they are seen, with v downwards:
+/// so the extension's text and its examples have it, while its shader code turns the other way.
+pub(crate) fn affine(scale: Vec2, rotation: f32, offset: Vec2) -> Affine2 {
+    let (sin, cos) = rotation.sin_cos();
+    let rotation = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));
+    Affine2 { matrix2: rotation * Mat2::from_diagonal(scale), translation: offset }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::FRAC_PI_2;
+
+    use super::*;
+
+    /// The example of the extension's text: the lower left quarter of the picture, turned clockwise by a right angle.
+    #[test]
+    fn a_quarter_of_a_picture_is_shown_turned() {
+        let transform = affine(Vec2::splat(0.5), FRAC_PI_2, Vec2::Y);
+        let at = |u, v| transform.transform_point2(Vec2::new(u, v));
+        // What was in the lower left corner of the quarter is in its upper left one, seen on the surface.
+        for (surface, picture) in
+            [((0.0, 0.0), (0.0, 1.0)), ((1.0, 0.0), (0.0, 0.5)), ((1.0, 1.0), (0.5, 0.5)), ((0.0, 1.0), (0.5, 1.0))]
+        {
+            let found = at(surface.0, surface.1);
+            assert!(found.distance(Vec2::new(picture.0, picture.1)) < 1e-6, "{surface:?}: {found}");
+        }
+    }
+
+    #[test]
+    fn scale_comes_before_offset() {
+        let transform = affine(Vec2::new(2.0, -1.0), 0.0, Vec2::Y);
+        assert_eq!(transform.transform_point2(Vec2::new(0.25, 0.25)), Vec2::new(0.5, 0.75));
+    }
+}

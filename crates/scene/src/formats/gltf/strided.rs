@@ -1,0 +1,154 @@
+//! Elements in a buffer at equal distances, and their conversion to the numbers that a mesh holds.
+
+use bytemuck::AnyBitPattern;
+
+/// The type of a component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Component {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl Component {
+    /// By its number in the file.
+    pub(super) fn new(number: u32) -> Option<Component> {
+        Some(match number {
+            5120 => Component::I8,
+            5121 => Component::U8,
+            5122 => Component::I16,
+            5123 => Component::U16,
+            5125 => Component::U32,
+            5126 => Component::F32,
+            _ => return None,
+        })
+    }
+
+    /// Bytes.
+    pub(super) fn size(self) -> usize {
+        match self {
+            Component::I8 | Component::U8 => 1,
+            Component::I16 | Component::U16 => 2,
+            Component::U32 | Component::F32 => 4,
+        }
+    }
+
+    /// Whether it can be an index.
+    pub(super) fn is_unsigned(self) -> bool {
+        matches!(self, Component::U8 | Component::U16 | Component::U32)
+    }
+}
+
+/// `count` elements, the first at the beginning of `bytes`, the others `stride` bytes apart; all lie within `bytes`.
+#[derive(Clone, Copy)]
+pub(super) struct Strided<'a> {
+    pub(super) bytes: &'a [u8],
+    pub(super) count: usize,
+    /// Bytes, at least those of an element.
+    pub(super) stride: usize,
+    pub(super) component: Component,
+    /// Integers stand for numbers in [0, 1] or [-1, 1].
+    pub(super) normalized: bool,
+}
+
+impl<'a> Strided<'a> {
+    /// The elements as they lie there, where that is one after the other, aligned, and in this machine's order.
+    pub(super) fn borrowed<T: AnyBitPattern>(&self) -> Option<&'a [T]> {
+        let packed = self.stride == size_of::<T>() && cfg!(target_endian = "little");
+        if packed { bytemuck::try_cast_slice(&self.bytes[..self.count * self.stride]).ok() } else { None }
+    }
+
+    /// The elements as vectors of numbers.
+    pub(super) fn numbers<const N: usize>(&self) -> Vec<[f32; N]> {
+        match self.component {
+            Component::I8 => self.scaled(|c: i8| f32::from(c), i8::MAX.into()),
+            Component::U8 => self.scaled(|c: u8| f32::from(c), u8::MAX.into()),
+            Component::I16 => self.scaled(|c: i16| f32::from(c), i16::MAX.into()),
+            Component::U16 => self.scaled(|c: u16| f32::from(c), u16::MAX.into()),
+            Component::U32 => self.each(|c: u32| c as f32),
+            Component::F32 => self.each(|c: f32| c),
+        }
+    }
+
+    /// The elements as whole numbers, where they are some.
+    pub(super) fn integers(&self) -> Vec<u32> {
+        let elements: Vec<[u32; 1]> = match self.component {
+            Component::U8 => self.each(|c: u8| c.into()),
+            Component::U16 => self.each(|c: u16| c.into()),
+            _ => self.each(|c: u32| c),
+        };
+        elements.into_iter().flatten().collect()
+    }
+
+    fn scaled<T: Stored, const N: usize>(&self, number: impl Fn(T) -> f32, largest: f32) -> Vec<[f32; N]> {
+        if self.normalized {
+            // A division, and not a product with the inverse: the largest integer must become 1.
+            self.each(|component| (number(component) / largest).max(-1.0))
+        } else {
+            self.each(number)
+        }
+    }
+
+    fn each<T: Stored, U, const N: usize>(&self, convert: impl Fn(T) -> U) -> Vec<[U; N]> {
+        let element = |bytes: &[u8]| std::array::from_fn(|i| convert(T::read(&bytes[i * size_of::<T>()..])));
+        // The last chunk may end with its element.
+        self.bytes.chunks(self.stride).take(self.count).map(element).collect()
+    }
+}
+
+/// A component as it lies in a file: little-endian.
+trait Stored {
+    /// Takes it from the beginning of `bytes`, where it must be.
+    fn read(bytes: &[u8]) -> Self;
+}
+
+macro_rules! stored {
+    ($($component:ty),*) => {$(
+        impl Stored for $component {
+            #[inline(always)]
+            fn read(bytes: &[u8]) -> $component {
+                <$component>::from_le_bytes(*bytes.first_chunk().expect("a whole component"))
+            }
+        }
+    )*};
+}
+
+stored!(i8, u8, i16, u16, u32, f32);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn strided(bytes: &[u8], count: usize, stride: usize, component: Component, normalized: bool) -> Strided<'_> {
+        Strided { bytes, count, stride, component, normalized }
+    }
+
+    #[test]
+    fn normalized_integers_reach_their_ends() {
+        let ends = |bytes: &[u8], component, stride| strided(bytes, 1, stride, component, true).numbers::<2>();
+        assert_eq!(ends(&[0, 255], Component::U8, 2), [[0.0, 1.0]]);
+        // Both -128 and -127 are -1.
+        assert_eq!(ends(&[0x80, 0x7f], Component::I8, 2), [[-1.0, 1.0]]);
+        assert_eq!(ends(&[0x81, 0], Component::I8, 2), [[-1.0, 0.0]]);
+        assert_eq!(ends(&[0, 0, 0xff, 0xff], Component::U16, 4), [[0.0, 1.0]]);
+        assert_eq!(ends(&[0, 0x80, 0xff, 0x7f], Component::I16, 4), [[-1.0, 1.0]]);
+    }
+
+    #[test]
+    fn integers_that_are_not_normalized_stay_what_they_are() {
+        assert_eq!(strided(&[0xfe, 2, 0, 7], 2, 2, Component::I8, false).numbers(), [[-2.0], [0.0]]);
+        assert_eq!(strided(&[1, 0, 0, 1], 1, 4, Component::U32, false).numbers(), [[16_777_217_f32]]);
+        assert_eq!(strided(&[1, 9, 2], 2, 2, Component::U8, false).integers(), [1, 2]);
+        assert_eq!(strided(&[1, 1, 2, 0], 2, 2, Component::U16, false).integers(), [257, 2]);
+    }
+
+    #[test]
+    fn the_last_element_may_end_with_the_bytes() {
+        let bytes: Vec<u8> = [1f32, 2.0, 3.0].iter().flat_map(|x| x.to_le_bytes()).collect();
+        assert_eq!(strided(&bytes, 2, 8, Component::F32, false).numbers(), [[1.0], [3.0]]);
+        assert!(strided(&bytes, 2, 8, Component::F32, false).borrowed::<f32>().is_none());
+    }
+}

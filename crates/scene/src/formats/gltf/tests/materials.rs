@@ -1,0 +1,277 @@
+//! Materials, textures and vertex colours.
+
+use std::io::Cursor;
+
+use glam::{Affine2, Vec2, Vec3};
+use image::{ImageFormat, Rgba, RgbaImage};
+
+use super::*;
+use crate::Wrap;
+
+/// A picture of one texel.
+fn png() -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    RgbaImage::from_pixel(1, 1, Rgba([0, 128, 255, 255])).write_to(&mut bytes, ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
+/// The triangle with a texture in a view, and two sets of texture coordinates.
+fn textured() -> Value {
+    let mut document = triangle();
+    let view = add_view(&mut document, &png());
+    let uvs = [
+        add_floats(&mut document, &[0.0, 0.0, 1.0, 0.0, 0.0, 1.0], "VEC2", 3),
+        add_floats(&mut document, &[0.5; 6], "VEC2", 3),
+    ];
+    document["images"] = json!([{"bufferView": view, "mimeType": "image/png", "name": "sky"}]);
+    document["textures"] = json!([{"source": 0}]);
+    document["materials"] = json!([{"pbrMetallicRoughness":
+        {"baseColorTexture": {"index": 0}, "baseColorFactor": [1, 0.5, 0.25, 1], "metallicFactor": 0.5, "roughnessFactor": 0.5}}]);
+    let primitive = &mut document["meshes"][0]["primitives"][0];
+    primitive["material"] = json!(0);
+    primitive["attributes"]["TEXCOORD_0"] = json!(uvs[0]);
+    primitive["attributes"]["TEXCOORD_1"] = json!(uvs[1]);
+    document
+}
+
+fn info(document: &mut Value) -> &mut Value {
+    &mut document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]
+}
+
+#[test]
+fn a_texture_in_a_view_is_read() {
+    let scene = open(&textured());
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    assert_eq!(scene.textures[0].texels, [[0, 128, 255, 255]]);
+    let found = scene.materials[0].texture.unwrap();
+    assert_eq!((found.texture, found.wrap, found.transform), (0, [Wrap::Repeat; 2], Affine2::IDENTITY));
+    assert_eq!(scene.mesh.uvs, [Vec2::ZERO, Vec2::X, Vec2::Y]);
+}
+
+#[test]
+fn a_textured_material_has_its_metal_part_tinted() {
+    let material = &open(&textured()).materials[0];
+    let base = Vec3::new(1.0, 0.5, 0.25);
+    assert!((material.kd - 0.875 * base).length() < 1e-6);
+    assert!((material.ks - Vec3::splat(0.005)).length() < 1e-7 && (material.ks_tinted - 0.125 * base).length() < 1e-6);
+    let mut document = textured();
+    document["materials"][0]["pbrMetallicRoughness"].as_object_mut().unwrap().remove("baseColorTexture");
+    let material = &open(&document).materials[0];
+    assert_eq!(material.ks_tinted, Vec3::ZERO);
+    assert!((material.ks - (Vec3::splat(0.005) + 0.125 * base)).length() < 1e-6);
+}
+
+#[test]
+fn a_texture_may_be_data_or_a_file() {
+    let mut document = textured();
+    document["images"] = json!([{"uri": format!("data:image/png;base64,{}", STANDARD.encode(png()))}]);
+    assert_eq!(open(&document).textures.len(), 1);
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("blue sky.png"), png()).unwrap();
+    let path = folder.path().join("model.gltf");
+    document["images"] = json!([{"uri": "blue%20sky.png"}]);
+    fs::write(&path, document.to_string()).unwrap();
+    let scene = Scene::open(path).unwrap();
+    assert_eq!((scene.textures.len(), scene.warnings.len()), (1, 0));
+}
+
+#[test]
+fn an_image_of_many_materials_is_read_once() {
+    let mut document = textured();
+    let material = document["materials"][0].clone();
+    document["materials"].as_array_mut().unwrap().push(material);
+    document["textures"].as_array_mut().unwrap().push(json!({"source": 0}));
+    document["materials"][1]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = json!(1);
+    assert_eq!(open(&document).textures.len(), 1);
+}
+
+#[test]
+fn samplers_say_what_lies_beyond_the_edge() {
+    let mut document = textured();
+    document["samplers"] = json!([{"wrapS": 33071, "wrapT": 33648}, {"wrapS": 10497}, {"wrapT": 5}]);
+    for (sampler, wrap) in
+        [(0, [Wrap::Clamp, Wrap::Mirror]), (1, [Wrap::Repeat; 2]), (2, [Wrap::Repeat; 2]), (9, [Wrap::Repeat; 2])]
+    {
+        document["textures"][0]["sampler"] = json!(sampler);
+        assert_eq!(open(&document).materials[0].texture.unwrap().wrap, wrap, "{sampler}");
+    }
+}
+
+#[test]
+fn a_material_picks_its_set_of_coordinates() {
+    let mut document = textured();
+    info(&mut document)["texCoord"] = json!(1);
+    assert_eq!(open(&document).mesh.uvs, [Vec2::splat(0.5); 3]);
+    // The transform's own set goes before.
+    info(&mut document)["extensions"] =
+        json!({"KHR_texture_transform": {"texCoord": 0, "scale": [2, 3], "offset": [1, 0]}});
+    let scene = open(&document);
+    assert_eq!(scene.mesh.uvs[1], Vec2::X);
+    let transform = scene.materials[0].texture.unwrap().transform;
+    assert_eq!(transform.transform_point2(Vec2::ONE), Vec2::new(3.0, 3.0));
+}
+
+#[test]
+fn a_texture_without_coordinates_is_left_out_of_that_primitive() {
+    let mut document = textured();
+    let with = document["meshes"][0]["primitives"][0].clone();
+    let without = json!({"attributes": {"POSITION": 0}, "material": 0});
+    document["meshes"][0]["primitives"] = json!([with, without, without]);
+    let scene = open(&document);
+    assert_eq!(scene.materials.len(), 2);
+    assert_eq!(scene.mesh.materials, [0, 1, 1]);
+    assert!(scene.materials[0].texture.is_some() && scene.materials[1].texture.is_none());
+    assert!(warnings(&document).contains("2 triangles have a texture but no texture coordinates"));
+    let mut document = textured();
+    info(&mut document)["texCoord"] = json!(5);
+    assert!(open(&document).materials[1].texture.is_none());
+}
+
+#[test]
+fn textures_that_the_file_does_not_hold_are_counted() {
+    for change in [
+        json!({"textures": []}),
+        json!({"textures": [{}]}),
+        json!({"textures": [{"source": 4}]}),
+        json!({"images": [{}]}),
+        json!({"images": [{"bufferView": 77}]}),
+        json!({"images": [{"uri": "data:image/png;base64,***"}]}),
+    ] {
+        let mut document = textured();
+        document.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());
+        let scene = open(&document);
+        assert!(scene.materials[0].texture.is_none() && scene.mesh.triangles.len() == 1);
+        assert!(warnings(&document).contains("1 material with a texture that the file does not hold"), "{change}");
+    }
+}
+
+#[test]
+fn textures_that_cannot_be_read_are_a_warning() {
+    for uri in ["missing.png", "../sky.png", "https://example.org/sky.png", "data:image/png;base64,AAAA"] {
+        let mut document = textured();
+        document["images"] = json!([{"uri": uri}]);
+        let scene = open(&document);
+        assert_eq!((scene.mesh.triangles.len(), scene.warnings.len()), (1, 1), "{uri}: {:?}", scene.warnings);
+        assert_eq!(scene.materials[0].texture, None);
+    }
+}
+
+#[test]
+fn vertex_colours_of_all_kinds_are_linear_tints() {
+    let expected = [Vec3::X, Vec3::new(0.0, 1.0, 0.0), Vec3::ONE];
+    let mut kinds = Vec::new();
+    let mut document = triangle();
+    kinds.push(add_floats(&mut document, &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 1.0], "VEC3", 3));
+    kinds.push(add_floats(&mut document, &[1.0, 0.0, 0.0, 0.5, 0.0, 1.0, 0.0, 0.5, 1.0, 1.0, 1.0, 0.5], "VEC4", 3));
+    kinds.push(add_accessor(&mut document, &[255, 0, 0, 9, 0, 255, 0, 9, 255, 255, 255, 9], UNSIGNED_BYTE, "VEC4", 3));
+    let shorts = [u16::MAX, 0, 0, 0, u16::MAX, 0, u16::MAX, u16::MAX, u16::MAX].map(u16::to_le_bytes).concat();
+    kinds.push(add_accessor(&mut document, &shorts, UNSIGNED_SHORT, "VEC3", 3));
+    for accessor in kinds {
+        document["accessors"][accessor]["normalized"] =
+            json!(document["accessors"][accessor]["componentType"] != FLOAT);
+        document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(accessor);
+        assert_eq!(open(&document).mesh.colors, expected, "{accessor}");
+    }
+}
+
+#[test]
+fn colours_of_one_primitive_are_white_on_the_others() {
+    let mut document = triangle();
+    let colors = add_floats(&mut document, &[0.5; 9], "VEC3", 3);
+    document["meshes"][0]["primitives"] = json!([{"attributes": {"POSITION": 0}},
+        {"attributes": {"POSITION": 0, "COLOR_0": colors}}, {"attributes": {"POSITION": 0}}]);
+    let mesh = open(&document).mesh;
+    assert_eq!([mesh.colors[0], mesh.colors[3], mesh.colors[8]], [Vec3::ONE, Vec3::splat(0.5), Vec3::ONE]);
+}
+
+#[test]
+fn unlit_materials_give_off_their_colour() {
+    let mut document = textured();
+    document["materials"][0]["extensions"] = json!({"KHR_materials_unlit": {}});
+    document["materials"][0]["emissiveFactor"] = json!([1, 1, 1]);
+    let base = Vec3::new(1.0, 0.5, 0.25);
+    let material = &open(&document).materials[0];
+    assert_eq!([material.ka, material.kd, material.ks, material.ks_tinted, material.emission], [Vec3::ZERO; 5]);
+    assert_eq!(material.emission_tinted, base);
+    assert!(material.texture.is_some());
+    document["materials"][0]["pbrMetallicRoughness"].as_object_mut().unwrap().remove("baseColorTexture");
+    let material = &open(&document).materials[0];
+    assert_eq!((material.emission, material.emission_tinted), (base, Vec3::ZERO));
+}
+
+#[test]
+fn emission_has_its_strength() {
+    let mut document = textured();
+    document["materials"][0]["emissiveFactor"] = json!([1, 0.5, 0]);
+    assert_eq!(open(&document).materials[0].emission, Vec3::new(1.0, 0.5, 0.0));
+    document["materials"][0]["extensions"] = json!({"KHR_materials_emissive_strength": {"emissiveStrength": 4}});
+    assert_eq!(open(&document).materials[0].emission, Vec3::new(4.0, 2.0, 0.0));
+    // A texture that is black nearly everywhere must not make all of the surface glow.
+    document["materials"][0]["emissiveTexture"] = json!({"index": 0});
+    assert_eq!(open(&document).materials[0].emission, Vec3::ZERO);
+}
+
+#[test]
+fn what_of_materials_is_not_shown_is_one_sentence_a_kind() {
+    let mut document = textured();
+    let material = &mut document["materials"][0];
+    for key in ["normalTexture", "occlusionTexture", "emissiveTexture"] {
+        material[key] = json!({"index": 0});
+    }
+    material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({"index": 0});
+    material["alphaMode"] = json!("MASK");
+    let other = material.clone();
+    document["materials"].as_array_mut().unwrap().push(other);
+    document["materials"][1]["alphaMode"] = json!("BLEND");
+    let warnings = warnings(&document);
+    for sentence in [
+        "2 materials with cut-outs or transparency (alphaMode): shown opaque",
+        "2 metallic-roughness textures not shown",
+        "2 normal textures not shown",
+        "2 occlusion textures not shown",
+        "2 emissive textures not shown",
+    ] {
+        assert!(warnings.contains(sentence), "{warnings}");
+    }
+    assert_eq!(warnings.lines().count(), 5, "{warnings}");
+}
+
+#[test]
+fn a_material_that_is_not_there_is_the_white_one() {
+    let mut document = triangle();
+    document["meshes"][0]["primitives"][0]["material"] = json!(8);
+    let scene = open(&document);
+    assert_eq!((scene.materials.len(), scene.materials[0].kd), (1, Vec3::ONE));
+    assert!(warnings(&document).contains("1 primitive with a material that the file does not hold: shown white"));
+}
+
+#[test]
+fn extras_of_others_are_passed_over() {
+    for extras in [json!(7), json!("text"), json!([1]), json!({"other": {"ka": 1}}), json!(null)] {
+        let mut document = textured();
+        document["materials"][0]["extras"] = extras.clone();
+        document["scenes"][0]["extras"] = extras;
+        assert!(open(&document).warnings.is_empty());
+    }
+    let mut document = textured();
+    document["materials"][0]["extras"] = json!({"lightmesh": {"ka": 1}});
+    assert!(error(&document).contains("extras.lightmesh of material 0 is damaged"), "{}", error(&document));
+}
+
+#[test]
+fn the_material_of_a_scene_around_replaces_colours_too() {
+    let mut document = textured();
+    let colors = add_floats(&mut document, &[0.5; 9], "VEC3", 3);
+    document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colors);
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("model.gltf"), document.to_string()).unwrap();
+    let path = folder.path().join("scene.toml");
+    fs::write(
+        &path,
+        "[[material]]\nname = \"red\"\nkd = [1, 0, 0]\n[[mesh]]\nfile = \"model.gltf\"\nmaterial = \"red\"\n",
+    )
+    .unwrap();
+    let scene = Scene::open(path).unwrap();
+    assert_eq!((scene.materials.len(), scene.textures.len(), scene.mesh.colors.len()), (1, 0, 0));
+    assert_eq!(scene.mesh.uvs.len(), 3);
+}

@@ -1,0 +1,83 @@
+//! URIs of buffers and images: data within the file, or the name of a file beside it.
+
+use std::borrow::Cow;
+
+use base64::{
+    Engine, alphabet,
+    engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig},
+};
+use percent_encoding::percent_decode_str;
+
+/// What a URI leads to.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Uri<'a> {
+    /// What follows `data:`.
+    Data(&'a str),
+    /// A file's name, decoded.
+    File(Cow<'a, str>),
+}
+
+impl<'a> Uri<'a> {
+    pub(super) fn new(uri: &'a str) -> Uri<'a> {
+        match uri.split_at_checked("data:".len()) {
+            Some((scheme, data)) if scheme.eq_ignore_ascii_case("data:") => Uri::Data(data),
+            _ => Uri::File(percent_decode_str(uri).decode_utf8_lossy()),
+        }
+    }
+}
+
+/// The bytes of `mediatype;base64,DATA` or `mediatype,DATA`; `None` where that is not what it is.
+pub(super) fn decode(data: &str) -> Option<Vec<u8>> {
+    let (header, data) = data.split_once(',')?;
+    let base64 = header.rsplit(';').next().is_some_and(|word| word.trim().eq_ignore_ascii_case("base64"));
+    if !base64 {
+        return Some(percent_decode_str(data).collect());
+    }
+    let config = GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true);
+    let engine = GeneralPurpose::new(&alphabet::STANDARD, config);
+    match engine.decode(data) {
+        Ok(bytes) => Some(bytes),
+        // Percent signs and line breaks are rare enough to try without them first.
+        Err(_) => {
+            let plain: Vec<u8> = percent_decode_str(data).filter(|byte| !byte.is_ascii_whitespace()).collect();
+            engine.decode(plain).ok()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_files_are_decoded() {
+        assert_eq!(Uri::new("my%20model.bin"), Uri::File("my model.bin".into()));
+        assert_eq!(Uri::new("b%C3%BCro.bin"), Uri::File("büro.bin".into()));
+        assert_eq!(Uri::new("ü"), Uri::File("ü".into()));
+        assert_eq!(Uri::new("100%.bin"), Uri::File("100%.bin".into()));
+    }
+
+    #[test]
+    fn data_is_decoded_in_all_its_spellings() {
+        let bytes = |uri: &str| match Uri::new(uri) {
+            Uri::Data(data) => decode(data),
+            Uri::File(name) => panic!("{name}"),
+        };
+        for uri in [
+            "data:application/octet-stream;base64,AQL/",
+            "data:;base64,AQL/",
+            "DATA:image/png;name=a;BASE64,AQL/",
+            "data:;base64,AQ\r\nL/",
+            "data:;base64,AQL%2F",
+            "data:,%01%02%FF",
+        ] {
+            assert_eq!(bytes(uri).as_deref(), Some(&[1, 2, 255][..]), "{uri}");
+        }
+        assert_eq!(bytes("data:;base64,AQ").as_deref(), Some(&[1][..]));
+        assert_eq!(bytes("data:;base64,AQ==").as_deref(), Some(&[1][..]));
+        assert_eq!(bytes("data:;base64,").as_deref(), Some(&[][..]));
+        assert_eq!([bytes("data:"), bytes("data:;base64"), bytes("data:;base64,*")], [None, None, None]);
+    }
+}

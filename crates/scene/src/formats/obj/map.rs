@@ -1,0 +1,101 @@
+//! `map_Kd`: a texture with options in front of its file's name, as in `map_Kd -s 2 2 -clamp on brick wall.png`.
+
+use std::path::Path;
+
+use glam::{Affine2, Mat2, Vec2};
+
+use crate::{TextureUse, Wrap, draft::Draft, formats::text::number};
+
+/// A texture of a material.
+#[derive(Debug, PartialEq)]
+pub(super) struct Map {
+    file: String,
+    scale: Vec2,
+    offset: Vec2,
+    clamp: bool,
+}
+
+impl Map {
+    /// Reads what follows `map_Kd`; `None` where no file is named. Options that change no colour coordinate are passed over.
+    pub(super) fn parse(text: &str) -> Option<Map> {
+        let mut map = Map { file: String::new(), scale: Vec2::ONE, offset: Vec2::ZERO, clamp: false };
+        let mut rest = text.trim();
+        while let Some(option) = rest.strip_prefix('-') {
+            let Some((name, after)) = option.split_once(char::is_whitespace) else { break };
+            rest = match name {
+                "s" => vector(after, &mut map.scale),
+                "o" => vector(after, &mut map.offset),
+                "t" => vector(after, &mut Vec2::default()),
+                "clamp" => {
+                    let (value, rest) = after.trim_start().split_once(char::is_whitespace)?;
+                    map.clamp = value == "on";
+                    rest
+                }
+                "mm" => skip_words(after, 2)?,
+                "blendu" | "blendv" | "boost" | "texres" | "bm" | "imfchan" | "type" | "cc" => skip_words(after, 1)?,
+                // The file's name begins with a hyphen.
+                _ => break,
+            }
+            .trim_start();
+        }
+        map.file = rest.to_owned();
+        (!rest.is_empty()).then_some(map)
+    }
+
+    /// The texture, read for `library`, the file that names it. `None` where it cannot be had.
+    pub(super) fn texture_use(&self, library: &Path, draft: &mut Draft) -> Option<TextureUse> {
+        let texture = draft.texture_file(library, &self.file)?;
+        // In the file (u, v) becomes scale (u, v) + offset with v upwards; here v runs downwards on both sides.
+        let Vec2 { x: scale_u, y: scale_v } = self.scale;
+        let offset = Vec2::new(self.offset.x, 1.0 - scale_v - self.offset.y);
+        let transform = Affine2::from_mat2_translation(Mat2::from_diagonal(Vec2::new(scale_u, scale_v)), offset);
+        let wrap = if self.clamp { Wrap::Clamp } else { Wrap::Repeat };
+        Some(TextureUse { wrap: [wrap; 2], transform, ..TextureUse::new(texture) })
+    }
+}
+
+/// Reads one to three numbers, of which the first two matter, and gives the rest.
+fn vector<'a>(text: &'a str, value: &mut Vec2) -> &'a str {
+    let mut rest = text;
+    for axis in 0..3 {
+        let trimmed = rest.trim_start();
+        let Some((word, after)) = trimmed.split_once(char::is_whitespace) else { break };
+        let Some(number) = number(word.as_bytes()).map(|number| number as f32).filter(|number| number.is_finite())
+        else {
+            break;
+        };
+        if axis < 2 {
+            value[axis] = number;
+        }
+        rest = after;
+    }
+    rest
+}
+
+fn skip_words(text: &str, count: usize) -> Option<&str> {
+    (0..count).try_fold(text, |rest, _| rest.trim_start().split_once(char::is_whitespace).map(|(_, rest)| rest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_stand_before_a_name_that_may_hold_blanks() {
+        let map = |file: &str, scale, offset, clamp| {
+            Some(Map { file: file.to_owned(), scale: Vec2::from(scale), offset: Vec2::from(offset), clamp })
+        };
+        let plain = |file| map(file, [1.0; 2], [0.0; 2], false);
+        assert_eq!(Map::parse("brick wall.png"), plain("brick wall.png"));
+        assert_eq!(Map::parse(r".\maps\oak #2.png"), plain(r".\maps\oak #2.png"));
+        let all = "-blendu on -mm 0 1  -s 2 3 1 -o 0.5 -t 9 9 9 -clamp on -bm 1 a b.png";
+        assert_eq!(Map::parse(all), map("a b.png", [2.0, 3.0], [0.5, 0.0], true));
+        assert_eq!(Map::parse("-s 4 7 7.png"), map("7.png", [4.0, 7.0], [0.0; 2], false));
+        assert_eq!(Map::parse("-odd.png"), plain("-odd.png"));
+        assert_eq!(Map::parse("-odd one.png"), plain("-odd one.png"));
+        assert_eq!(
+            [Map::parse(""), Map::parse("-s 1 1 1"), Map::parse("-clamp on")].map(|map| map.map(|m| m.file)),
+            [None, Some("1".into()), None]
+        );
+    }
+}

@@ -1,0 +1,273 @@
+//! Polygons to triangles: a convex one is a fan, any other is cut ear by ear.
+//!
+//! Ears are found as Meisters (1975) describes: a convex corner whose triangle holds no other corner is cut off, until three corners
+//! are left. Polygons are looked at along their normal (Newell's sum), so that they need not be flat. One that crosses itself has no
+//! right answer; like every other it becomes n − 2 triangles, which use its corners alone.
+
+use glam::{DVec2, DVec3};
+
+/// Corners that may be compared per corner of a polygon without counting against [`Cutter::patience`].
+const CHEAP: u64 = 64;
+
+/// Comparisons that all polygons of a file may need beyond the cheap ones: about a second.
+const PATIENCE: u64 = 1 << 28;
+
+/// Cuts polygons; kept for a whole file, because it keeps its memory and counts its work.
+#[derive(Debug)]
+pub(super) struct Cutter {
+    flat: Vec<DVec2>,
+    next: Vec<usize>,
+    previous: Vec<usize>,
+    /// Corners that may lie in another's triangle.
+    reflex: Vec<usize>,
+    patience: u64,
+    given_up: usize,
+}
+
+/// The corner is cut off.
+const CUT: usize = usize::MAX;
+
+impl Default for Cutter {
+    fn default() -> Cutter {
+        Cutter {
+            flat: Vec::new(),
+            next: Vec::new(),
+            previous: Vec::new(),
+            reflex: Vec::new(),
+            patience: PATIENCE,
+            given_up: 0,
+        }
+    }
+}
+
+impl Cutter {
+    /// Calls `emit` with the corners of each triangle, in the polygon's order. Nothing comes of fewer than three corners.
+    pub(super) fn cut(&mut self, corners: &[DVec3], mut emit: impl FnMut([usize; 3])) {
+        if corners.len() > 3 && self.flatten(corners) {
+            self.clip_ears(emit);
+        } else {
+            (2..corners.len()).for_each(|third| emit([0, third - 1, third]));
+        }
+    }
+
+    /// What went wrong, for a warning about the file.
+    pub(super) fn warning(&self) -> Option<String> {
+        let count = self.given_up;
+        (count > 0).then(|| format!("{count} polygons with very many corners were cut without regard to their notches"))
+    }
+
+    /// Lays the polygon down so that it turns counter-clockwise, and lists its reflex corners; false where it has none.
+    fn flatten(&mut self, corners: &[DVec3]) -> bool {
+        let first = corners[0];
+        let normal: DVec3 = corners.windows(2).map(|pair| (pair[0] - first).cross(pair[1] - first)).sum();
+        // Seen along the axis that is nearest to the normal, from the side where it turns counter-clockwise.
+        let size = normal.abs().to_array();
+        let axis = (0..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most });
+        let [right, up] = [(axis + 1) % 3, (axis + 2) % 3];
+        let [right, up] = if normal[axis] < 0.0 { [up, right] } else { [right, up] };
+        self.flat.clear();
+        self.flat.extend(corners.iter().map(|&corner| corner - first).map(|p| DVec2::new(p[right], p[up])));
+        let count = corners.len();
+        self.reflex.clear();
+        let mut notched = false;
+        for corner in 0..count {
+            let area = self.area([(corner + count - 1) % count, corner, (corner + 1) % count]);
+            notched |= area < 0.0;
+            if area <= 0.0 {
+                self.reflex.push(corner);
+            }
+        }
+        notched
+    }
+
+    fn clip_ears(&mut self, mut emit: impl FnMut([usize; 3])) {
+        let count = self.flat.len();
+        self.next.clear();
+        self.next.extend((1..count).chain([0]));
+        self.previous.clear();
+        self.previous.extend([count - 1].into_iter().chain(0..count - 1));
+        let (mut left, mut corner, mut refused) = (count, 0, 0);
+        let mut free = CHEAP * count as u64;
+        let mut hopeless = false;
+        while left > 3 {
+            let ear = [self.previous[corner], corner, self.next[corner]];
+            if !hopeless && !self.spend(&mut free) {
+                hopeless = true;
+                self.given_up += 1;
+            }
+            // After a round without an ear a flat corner will do, after another one any.
+            let accepted = hopeless
+                || match self.area(ear) {
+                    area if area > 0.0 => !self.holds_a_corner(ear),
+                    area => area == 0.0 && refused >= left,
+                };
+            if accepted || refused >= 2 * left {
+                emit(ear);
+                self.next[ear[0]] = ear[2];
+                self.previous[ear[2]] = ear[0];
+                self.next[corner] = CUT;
+                (left, refused) = (left - 1, 0);
+            } else {
+                refused += 1;
+            }
+            // Hopeless ones become a fan, others lose ears all around.
+            corner = if hopeless { ear[0] } else { ear[2] };
+        }
+        emit([self.previous[corner], corner, self.next[corner]]);
+    }
+
+    /// Pays for one look at a corner; false where the file has used up its patience.
+    fn spend(&mut self, free: &mut u64) -> bool {
+        let cost = 1 + self.reflex.len() as u64;
+        let purse = if *free >= cost { free } else { &mut self.patience };
+        let enough = *purse >= cost;
+        *purse -= if enough { cost } else { 0 };
+        enough
+    }
+
+    /// Whether a corner that is left lies in or on the triangle. Corners at the same place do not count: a polygon with a hole is
+    /// drawn with a seam whose both sides coincide.
+    fn holds_a_corner(&self, triangle: [usize; 3]) -> bool {
+        let [a, b, c] = triangle.map(|corner| self.flat[corner]);
+        self.reflex.iter().any(|&corner| {
+            let point = self.flat[corner];
+            self.next[corner] != CUT
+                && point != a
+                && point != b
+                && point != c
+                && (b - a).perp_dot(point - a) >= 0.0
+                && (c - b).perp_dot(point - b) >= 0.0
+                && (a - c).perp_dot(point - c) >= 0.0
+        })
+    }
+
+    /// Twice the area of a triangle; negative where it turns clockwise.
+    fn area(&self, triangle: [usize; 3]) -> f64 {
+        let [a, b, c] = triangle.map(|corner| self.flat[corner]);
+        (b - a).perp_dot(c - b)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+
+    use super::*;
+
+    fn cut(corners: &[DVec3]) -> Vec<[usize; 3]> {
+        let mut triangles = Vec::new();
+        Cutter::default().cut(corners, |triangle| triangles.push(triangle));
+        triangles
+    }
+
+    fn area(corners: &[DVec3], normal: DVec3) -> f64 {
+        let triangles = cut(corners).into_iter();
+        triangles.map(|t| t.map(|i| corners[i])).map(|[a, b, c]| 0.5 * (b - a).cross(c - a).dot(normal)).sum()
+    }
+
+    /// The area that triangles cover if none turns round: each counts by its size.
+    fn covered(corners: &[DVec3]) -> f64 {
+        cut(corners).iter().map(|t| t.map(|i| corners[i])).map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum()
+    }
+
+    fn flat(corners: &[[f64; 2]]) -> Vec<DVec3> {
+        corners.iter().map(|&[x, y]| DVec3::new(x, y, 0.0)).collect()
+    }
+
+    const NOTCHED: [[f64; 2]; 4] = [[0.0, 0.0], [4.0, 0.0], [1.0, 1.0], [0.0, 4.0]];
+
+    #[test]
+    fn a_convex_polygon_is_a_fan() {
+        assert_eq!(
+            cut(&flat(&[[0.0, 0.0], [1.0, 0.0], [2.0, 1.0], [1.0, 2.0], [0.0, 1.0]])),
+            [[0, 1, 2], [0, 2, 3], [0, 3, 4]]
+        );
+        assert_eq!(cut(&flat(&[[0.0, 0.0], [1.0, 0.0]])), [[0; 3]; 0]);
+    }
+
+    #[test]
+    fn a_notch_is_left_open_wherever_the_polygon_begins_and_lies() {
+        for turn in 0..4 {
+            for (x, y) in [(0.0, 0.0), (0.7, 0.0), (1.6, 1.6), (2.5, 0.3), (3.1, 1.0), (0.2, 4.5)] {
+                let placed = DMat3::from_rotation_x(x) * DMat3::from_rotation_y(y);
+                let mut corners: Vec<DVec3> = flat(&NOTCHED).iter().map(|&p| placed * p + DVec3::splat(1e3)).collect();
+                corners.rotate_left(turn);
+                let normal = placed * DVec3::Z;
+                assert!(
+                    (covered(&corners) - 4.0).abs() < 1e-9 && (area(&corners, normal) - 4.0).abs() < 1e-9,
+                    "{turn}, {x}"
+                );
+                corners.reverse();
+                assert!(
+                    (covered(&corners) - 4.0).abs() < 1e-9 && (area(&corners, normal) + 4.0).abs() < 1e-9,
+                    "{turn}, {x}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_comb_a_spiral_and_a_frame_keep_their_area() {
+        let comb: Vec<[f64; 2]> = (0..40)
+            .flat_map(|x| [[f64::from(x), 0.0], [f64::from(x) + 0.5, 9.0]])
+            .chain([[40.0, 10.0], [-1.0, 10.0]])
+            .collect();
+        let teeth = flat(&comb);
+        // The outline's own area, by the sum of Gauss.
+        let gauss = |points: &[DVec3]| {
+            0.5 * (0..points.len()).map(|i| points[i].cross(points[(i + 1) % points.len()]).z).sum::<f64>()
+        };
+        assert_eq!(cut(&teeth).len(), teeth.len() - 2);
+        assert!((covered(&teeth) - gauss(&teeth).abs()).abs() < 1e-9);
+        // A square with a square hole, joined by a seam.
+        let frame = flat(&[
+            [0.0, 0.0],
+            [3.0, 0.0],
+            [3.0, 3.0],
+            [0.0, 3.0],
+            [0.0, 0.0],
+            [1.0, 1.0],
+            [1.0, 2.0],
+            [2.0, 2.0],
+            [2.0, 1.0],
+            [1.0, 1.0],
+        ]);
+        assert_eq!(cut(&frame).len(), 8);
+        assert!((covered(&frame) - 8.0).abs() < 1e-9, "{}", covered(&frame));
+        let arm = |r: f64, i: usize| {
+            [(r + 0.05 * i as f64) * (0.3 * i as f64).cos(), (r + 0.05 * i as f64) * (0.3 * i as f64).sin()]
+        };
+        let spiral = flat(&(0..80).map(|i| arm(1.0, i)).chain((0..80).rev().map(|i| arm(1.3, i))).collect::<Vec<_>>());
+        assert!((covered(&spiral) - gauss(&spiral).abs()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn corners_in_a_row_are_kept() {
+        let row = flat(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.5], [0.0, 2.0], [0.0, 1.0]]);
+        assert_eq!(cut(&row).len(), 5);
+        assert!((covered(&row) - 2.5).abs() < 1e-12, "{}", covered(&row));
+    }
+
+    #[test]
+    fn whatever_comes_becomes_n_minus_2_triangles() {
+        let nan = DVec3::NAN;
+        for corners in
+            [vec![DVec3::ZERO; 9], vec![nan; 9], flat(&[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0], [1.0, 9.0]])]
+        {
+            assert_eq!(cut(&corners).len(), corners.len() - 2);
+        }
+    }
+
+    #[test]
+    fn patience_ends() {
+        // A zigzag that offers an ear only after a long search, again and again.
+        let zigzag: Vec<DVec3> =
+            (0..60_000).map(|i| DVec3::new(f64::from(i).sin(), (1.7 * f64::from(i)).cos(), 0.0)).collect();
+        let mut cutter = Cutter::default();
+        let mut count = 0;
+        cutter.cut(&zigzag, |_| count += 1);
+        assert_eq!(count, zigzag.len() - 2);
+        assert!(cutter.warning().is_some_and(|warning| warning.starts_with("1 polygons")));
+        cutter.cut(&flat(&NOTCHED), |triangle| assert!(triangle.contains(&2), "the notch is cut at its corner"));
+    }
+}

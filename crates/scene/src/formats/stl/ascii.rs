@@ -1,0 +1,120 @@
+//! STL as text: `solid NAME`, facets of three `vertex` lines, `endsolid NAME`, as often as there are parts.
+//!
+//! Blanks, line ends and capitals mean nothing, and `endsolid` may be missing. A facet with more corners than three is cut like any
+//! polygon.
+
+use std::path::Path;
+
+use glam::DVec3;
+use memchr::memchr;
+
+use super::{BEGINNING, Soup, malformed};
+use crate::{
+    LoadError,
+    formats::{
+        polygon::Cutter,
+        text::{line_of, number, quoted},
+    },
+};
+
+/// A facet's first word.
+const FACET: &[u8] = b"facet";
+
+/// Reads all solids.
+pub(super) fn read(path: &Path, text: &[u8]) -> Result<Soup<DVec3>, LoadError> {
+    let mut soup = Soup::default();
+    let mut reader = Reader { path, text, at: 0 };
+    let mut cutter = Cutter::default();
+    let mut corners = Vec::new();
+    let mut left_out = 0;
+    while let Some(word) = reader.word() {
+        if is(word, b"solid") || is(word, b"endsolid") {
+            reader.skip_name();
+        } else if is(word, FACET) {
+            reader.facet(&mut corners)?;
+            left_out += usize::from(corners.len() < 3);
+            if soup.positions.len() + corners.len() > u32::MAX as usize {
+                return Err(LoadError::TooLarge { path: path.to_owned() });
+            }
+            let first = soup.positions.len() as u32;
+            soup.positions.extend(&corners);
+            cutter.cut(&corners, |triangle| soup.triangles.push(triangle.map(|corner| first + corner as u32)));
+        } else {
+            return Err(reader.refuse(format!("`{}` stands where a facet should begin", quoted(word))));
+        }
+    }
+    let short = (left_out > 0).then(|| format!("{left_out} facets with fewer than three corners were left out"));
+    soup.warning = short.or_else(|| cutter.warning());
+    Ok(soup)
+}
+
+fn is(word: &[u8], name: &[u8]) -> bool {
+    word.eq_ignore_ascii_case(name)
+}
+
+struct Reader<'a> {
+    path: &'a Path,
+    text: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn word(&mut self) -> Option<&'a [u8]> {
+        let rest = &self.text[self.at..];
+        let begin = rest.iter().position(|byte| !byte.is_ascii_whitespace())?;
+        let length = rest[begin..].iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len() - begin);
+        self.at += begin + length;
+        Some(&rest[begin..begin + length])
+    }
+
+    /// Skips a solid's name, which may be several words: the rest of the line, unless a facet begins there.
+    fn skip_name(&mut self) {
+        let rest = &self.text[self.at..];
+        let line = &rest[..memchr(b'\n', rest).unwrap_or(rest.len())];
+        let beginning = line[..line.len().min(BEGINNING)].to_ascii_lowercase();
+        let facet = memchr::memmem::find_iter(&beginning, FACET).find(|&at| {
+            let parted = at > 0 && beginning[at - 1].is_ascii_whitespace();
+            parted && beginning[at + FACET.len()..].trim_ascii_start().starts_with(b"normal")
+        });
+        self.at += facet.unwrap_or(line.len());
+    }
+
+    /// The corners of a facet, whose first word has been read.
+    fn facet(&mut self, corners: &mut Vec<DVec3>) -> Result<(), LoadError> {
+        corners.clear();
+        let mut in_normal = false;
+        loop {
+            let Some(word) = self.word() else {
+                return Err(self.refuse("the file ends within a facet".to_owned()));
+            };
+            if is(word, b"endfacet") {
+                return Ok(());
+            } else if is(word, b"vertex") {
+                corners.push(self.vector()?);
+                in_normal = false;
+            } else if is(word, b"normal") {
+                in_normal = true;
+            } else if [&b"outer"[..], b"loop", b"endloop"].iter().any(|name| is(word, name)) {
+                in_normal = false;
+            } else if !in_normal {
+                // The numbers of a normal may be anything: they are not used.
+                return Err(self.refuse(format!("`{}` is no word of a facet", quoted(word))));
+            }
+        }
+    }
+
+    fn vector(&mut self) -> Result<DVec3, LoadError> {
+        let mut vector = DVec3::ZERO;
+        for axis in 0..3 {
+            let word = self.word().unwrap_or_default();
+            vector[axis] = number(word)
+                .ok_or_else(|| self.refuse(format!("`{}` stands where a coordinate should", quoted(word))))?;
+        }
+        Ok(vector)
+    }
+
+    /// The error for the word that was read last.
+    fn refuse(&self, problem: String) -> LoadError {
+        malformed(self.path, Some(line_of(self.text, self.at.saturating_sub(1))), problem)
+    }
+}

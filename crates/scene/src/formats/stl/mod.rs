@@ -1,0 +1,83 @@
+//! STL (3D Systems 1988), as text or binary.
+//!
+//! Read by hand: stl_io takes for text what begins with `solid`, as many binary files do, and refuses text that differs from the
+//! specification in blanks or capitals.
+//!
+//! A file is binary if it is exactly as long as the count in its header says, whatever it begins with. Facets' normals are not used:
+//! they follow from the corners, and the surface is flat. Colours in the attribute bytes, of which there are several conventions,
+//! are not used either. Corners are not joined: each facet has vertices of its own.
+
+mod ascii;
+mod binary;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+use super::text::with_line_feeds;
+use crate::{
+    LoadError, Position,
+    draft::{Draft, Placement},
+    error::Place,
+    loaded_mesh::LoadedMesh,
+    open::read_bytes,
+};
+
+/// Bytes at a text's beginning in which a word of its grammar must be found.
+const BEGINNING: usize = 4096;
+
+/// Reads an STL file into `draft`.
+pub(crate) fn read(path: &Path, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
+    let mut bytes = read_bytes(path)?;
+    if !binary::has_exact_length(&bytes) && is_text(&bytes) {
+        let soup = ascii::read(path, with_line_feeds(&mut bytes))?;
+        hand_over(path, soup, bytes, placement, draft)
+    } else {
+        let soup = binary::read(path, &bytes)?;
+        hand_over(path, soup, bytes, placement, draft)
+    }
+}
+
+/// Triangles with vertices of their own.
+#[derive(Debug, Default)]
+struct Soup<P> {
+    positions: Vec<P>,
+    triangles: Vec<[u32; 3]>,
+    warning: Option<String>,
+}
+
+fn hand_over<P: Position>(
+    path: &Path,
+    soup: Soup<P>,
+    bytes: Vec<u8>,
+    placement: &Placement,
+    draft: &mut Draft,
+) -> Result<(), LoadError> {
+    // From here on its memory is needed for the scene.
+    drop(bytes);
+    draft.warnings.extend(soup.warning.map(|warning| format!("{}: {warning}", path.display())));
+    let material = placement.material.unwrap_or_else(|| draft.default_material());
+    let mesh = LoadedMesh {
+        positions: soup.positions,
+        normals: Vec::new(),
+        uvs: Vec::new(),
+        colors: Vec::new(),
+        materials: vec![material; soup.triangles.len()],
+        triangles: soup.triangles,
+    };
+    draft.take(mesh, &placement.transform)
+}
+
+/// Whether it begins with `solid` and goes on like a text.
+fn is_text(bytes: &[u8]) -> bool {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    let beginning = bytes[..bytes.len().min(BEGINNING)].to_ascii_lowercase();
+    let holds = |word: &[u8]| memchr::memmem::find(&beginning, word).is_some();
+    beginning.starts_with(b"solid") && (holds(b"facet") || holds(b"endsolid") || !beginning.contains(&0))
+}
+
+fn malformed(path: &Path, line: Option<usize>, problem: String) -> LoadError {
+    let place = line.map_or_else(|| Place::file(path), |line| Place::line(path, line));
+    let remedy = "export it again, or copy it again if it was cut short".to_owned();
+    LoadError::Malformed { place: place.into(), problem, remedy }
+}

@@ -1,0 +1,93 @@
+//! Text of scene files: bytes that need not be UTF-8, of any line ending.
+
+use std::borrow::Cow;
+
+use memchr::memchr;
+
+/// Longest piece of a file that a message quotes, in characters.
+const QUOTED: usize = 60;
+
+/// The text without a byte order mark, each line ended by a line feed: a file of an old system, with carriage returns alone, is
+/// changed.
+pub(super) fn with_line_feeds(bytes: &mut Vec<u8>) -> &[u8] {
+    if memchr(b'\n', bytes).is_none() {
+        bytes.iter_mut().filter(|byte| **byte == b'\r').for_each(|byte| *byte = b'\n');
+    }
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
+/// What the bytes say in UTF-8, or else in Latin-1, so that different names stay different.
+pub(super) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
+    match str::from_utf8(bytes) {
+        Ok(text) => text.into(),
+        Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect::<String>().into(),
+    }
+}
+
+/// A piece of a file as a message shows it: printable and not too long.
+pub(super) fn quoted(bytes: &[u8]) -> String {
+    // Four bytes a character at most; what is cut within one is left out anyway.
+    let text = decoded(&bytes[..bytes.len().min(4 * (QUOTED + 1))]).into_owned();
+    let mut shown: String = text.trim().chars().take(QUOTED).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if bytes.trim_ascii().len() > shown.len() {
+        shown.push('…');
+    }
+    shown
+}
+
+/// The first word of a line and what follows it, both trimmed.
+pub(super) fn split_word(line: &[u8]) -> (&[u8], &[u8]) {
+    let line = line.trim_ascii();
+    let end = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());
+    (&line[..end], line[end..].trim_ascii_start())
+}
+
+/// The words of a line.
+pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
+}
+
+/// A number in decimal notation, or what `f64` calls infinite or not a number.
+pub(super) fn number(word: &[u8]) -> Option<f64> {
+    str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// The number of the line that holds byte `at`, counted from 1.
+pub(super) fn line_of(text: &[u8], at: usize) -> usize {
+    1 + text[..at.min(text.len())].iter().filter(|&&byte| byte == b'\n').count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn line_endings_of_all_systems_are_one() {
+        for text in ["a\nb", "\u{feff}a\r\nb", "a\rb"] {
+            let mut bytes = text.as_bytes().to_vec();
+            let words: Vec<&[u8]> =
+                with_line_feeds(&mut bytes).split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii).collect();
+            assert_eq!(words, [b"a", b"b"], "{text:?}");
+        }
+    }
+
+    #[test]
+    fn names_in_latin_1_stay_different() {
+        assert_eq!(decoded(b"gr\xfcn"), "grün");
+        assert_ne!(decoded(b"\xe4"), decoded(b"\xf6"));
+        assert_eq!(decoded("grün".as_bytes()), "grün");
+    }
+
+    #[test]
+    fn messages_quote_a_beginning() {
+        assert_eq!(quoted(b" v 1\t2\r"), "v 1 2");
+        assert_eq!(quoted(&[b'x'; 1000]).chars().count(), QUOTED + 1);
+        assert_eq!(quoted("ü".repeat(1000).as_bytes()).chars().count(), QUOTED + 1);
+    }
+
+    #[test]
+    fn numbers_are_decimal() {
+        assert_eq!([&b"1.5"[..], b"-.5e1", b"+3.", b"7"].map(number), [Some(1.5), Some(-5.0), Some(3.0), Some(7.0)]);
+        assert_eq!([&b""[..], b"0x10", b"1,5", b"1\xff"].map(number), [None; 4]);
+    }
+}

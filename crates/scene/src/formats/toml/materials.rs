@@ -1,0 +1,107 @@
+//! `[[material]]` to materials and their textures.
+
+use glam::{Affine2, DVec2, Vec2};
+
+use super::{
+    check::Source,
+    schema::{MaterialEntry, TextureScale, TextureWrap, WrapName},
+    spanned::Spanned,
+};
+use crate::{LoadError, Material, TextureUse, Wrap, draft::Draft};
+
+/// Adds the file's materials and returns their names, in the order of their indices.
+pub(super) fn read(
+    source: &Source,
+    entries: &[Spanned<MaterialEntry>],
+    draft: &mut Draft,
+) -> Result<Vec<String>, LoadError> {
+    let mut names: Vec<String> = Vec::new();
+    for entry in entries.iter().map(Spanned::get_ref) {
+        if names.contains(entry.name.get_ref()) {
+            let remedy = "give every material a name of its own";
+            return Err(source.refuse("name", &entry.name, "is used by an earlier material", remedy));
+        }
+        names.push(entry.name.get_ref().clone());
+        let material = Material { texture: texture(source, entry, draft)?, ..coefficients(source, entry)? };
+        draft.materials.push(material);
+    }
+    Ok(names)
+}
+
+fn coefficients(source: &Source, entry: &MaterialEntry) -> Result<Material, LoadError> {
+    let default = Material::default();
+    let kd = entry.kd.as_ref().map_or(Ok(default.kd), |kd| source.color("kd", kd))?;
+    let shininess = match &entry.shininess {
+        Some(shininess) => source.positive("shininess", shininess)? as f32,
+        None => default.shininess,
+    };
+    Ok(Material {
+        name: entry.name.get_ref().clone(),
+        ka: entry.ka.as_ref().map_or(Ok(kd), |ka| source.color("ka", ka))?,
+        kd,
+        ks: entry.ks.as_ref().map_or(Ok(default.ks), |ks| source.color("ks", ks))?,
+        shininess,
+        emission: entry.emission.as_ref().map_or(Ok(default.emission), |color| source.color("emission", color))?,
+        ..default
+    })
+}
+
+/// The texture, where there is one that can be had; the other keys are checked all the same.
+fn texture(source: &Source, entry: &MaterialEntry, draft: &mut Draft) -> Result<Option<TextureUse>, LoadError> {
+    let wrap = entry.texture_wrap.as_ref().map_or([Wrap::Repeat; 2], |wrap| match *wrap.get_ref() {
+        TextureWrap::Both(word) => [word.into(); 2],
+        TextureWrap::Each(words) => words.map(Wrap::from),
+    });
+    let transform = transform(source, entry)?;
+    let Some(file) = &entry.texture else {
+        return match without_texture(entry) {
+            Some((key, line)) => {
+                Err(source.refuse(key, &line, "says nothing without a texture", "add `texture = \"FILE\"`"))
+            }
+            None => Ok(None),
+        };
+    };
+    let texture = draft.texture_file(source.path, file.get_ref());
+    Ok(texture.map(|texture| TextureUse { texture, wrap, transform }))
+}
+
+/// A key that has sense with a texture only, where it is given.
+fn without_texture(entry: &MaterialEntry) -> Option<(&'static str, Spanned<()>)> {
+    let keys = [
+        ("texture_wrap", entry.texture_wrap.as_ref().map(Spanned::span)),
+        ("texture_scale", entry.texture_scale.as_ref().map(Spanned::span)),
+        ("texture_rotate", entry.texture_rotate.as_ref().map(Spanned::span)),
+        ("texture_offset", entry.texture_offset.as_ref().map(Spanned::span)),
+    ];
+    keys.into_iter().find_map(|(key, span)| Some((key, Spanned::new(span?, ()))))
+}
+
+/// Scaled, then turned, then moved: the order of KHR_texture_transform.
+fn transform(source: &Source, entry: &MaterialEntry) -> Result<Affine2, LoadError> {
+    let mut scale = Vec2::ONE;
+    if let Some(value) = &entry.texture_scale {
+        let factors = match *value.get_ref() {
+            TextureScale::Both(factor) => [factor; 2],
+            TextureScale::Each(factors) => factors,
+        };
+        source.all_finite("texture_scale", value, &factors)?;
+        scale = DVec2::from(factors).as_vec2();
+    }
+    let turn = entry.texture_rotate.as_ref().map_or(Ok(0.0), |turn| source.number("texture_rotate", turn))?;
+    let mut offset = Vec2::ZERO;
+    if let Some(value) = &entry.texture_offset {
+        source.all_finite("texture_offset", value, value.get_ref())?;
+        offset = DVec2::from(*value.get_ref()).as_vec2();
+    }
+    Ok(Affine2::from_scale_angle_translation(scale, turn.to_radians() as f32, offset))
+}
+
+impl From<WrapName> for Wrap {
+    fn from(name: WrapName) -> Wrap {
+        match name {
+            WrapName::Repeat => Wrap::Repeat,
+            WrapName::Mirror => Wrap::Mirror,
+            WrapName::Clamp => Wrap::Clamp,
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! One vertex for every combination of position and attributes that corners of faces ask for.
+
+use std::collections::HashMap;
+
+/// No index: a corner without this attribute.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// Combinations of one position that are looked for one after the other, before a hash table takes over: a file that has thousands
+/// must not take thousands of steps for each.
+const LONGEST_CHAIN: usize = 12;
+
+/// Indices of a corner: position, and two attributes or [`NONE`].
+pub(super) type Corner = [u32; 3];
+
+/// The vertices so far.
+///
+/// Combinations of one position form a chain, the newest first. Faces ask for what they asked for shortly before, and for positions
+/// near each other, so that the chains' beginnings are in the cache; a hash table over all would be several times slower.
+#[derive(Debug, Default)]
+pub(super) struct Vertices {
+    corners: Vec<Corner>,
+    /// By position: the newest vertex of its chain.
+    newest: Vec<u32>,
+    /// By vertex: the one before it in its chain.
+    before: Vec<u32>,
+    /// Vertices that are in no chain.
+    others: HashMap<Corner, u32>,
+}
+
+impl Vertices {
+    /// The vertex of this corner.
+    pub(super) fn of(&mut self, corner: Corner) -> u32 {
+        let position = corner[0] as usize;
+        if position >= self.newest.len() {
+            self.newest.resize(position + 1, NONE);
+        }
+        let mut vertex = self.newest[position];
+        for _ in 0..LONGEST_CHAIN {
+            if vertex == NONE {
+                let added = self.add(corner, self.newest[position]);
+                self.newest[position] = added;
+                return added;
+            }
+            if self.corners[vertex as usize] == corner {
+                return vertex;
+            }
+            vertex = self.before[vertex as usize];
+        }
+        if let Some(&known) = self.others.get(&corner) {
+            return known;
+        }
+        let added = self.add(corner, NONE);
+        self.others.insert(corner, added);
+        added
+    }
+
+    fn add(&mut self, corner: Corner, before: u32) -> u32 {
+        self.corners.push(corner);
+        self.before.push(before);
+        self.corners.len() as u32 - 1
+    }
+
+    /// The combination of each vertex.
+    pub(super) fn into_corners(self) -> Vec<Corner> {
+        self.corners
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_corners_share_a_vertex_however_many_there_are() {
+        let corners: Vec<Corner> = (0..100).map(|index| [index % 2, index / 2, NONE]).collect();
+        let mut vertices = Vertices::default();
+        for _ in 0..2 {
+            assert!((0..100).all(|index| vertices.of(corners[index]) == index as u32));
+        }
+        assert_eq!(vertices.into_corners(), corners);
+    }
+}

@@ -1,0 +1,87 @@
+//! A mesh on its way from a loader to the scene.
+
+use glam::{Vec2, Vec3};
+
+use crate::{MeshPart, Position};
+
+/// One mesh as a loader has put it together. It is handed over: of a large file nothing is held twice.
+#[derive(Debug)]
+pub(crate) struct LoadedMesh<P> {
+    /// Vertices in the file's coordinates, `Vec3` or `DVec3`.
+    pub(crate) positions: Vec<P>,
+    /// Normals by vertex, or none; need not be unit length.
+    pub(crate) normals: Vec<Vec3>,
+    /// Texture coordinates by vertex, or none.
+    pub(crate) uvs: Vec<Vec2>,
+    /// Linear colours by vertex, or none.
+    pub(crate) colors: Vec<Vec3>,
+    /// Three vertex indices a triangle, all in range.
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// Material by triangle.
+    pub(crate) materials: Vec<u32>,
+}
+
+impl<P: Position> LoadedMesh<P> {
+    /// The mesh without its materials.
+    pub(crate) fn part(&self) -> MeshPart<'_, P> {
+        let LoadedMesh { positions, normals, uvs, colors, triangles, .. } = self;
+        MeshPart { positions, normals, uvs, colors, triangles }
+    }
+
+    /// Makes the vertices those that `chosen` names, in that order. Triangles are left as they are.
+    pub(crate) fn choose_vertices(&mut self, chosen: impl Iterator<Item = u32> + Clone) {
+        fn choose<T: Copy>(values: &mut Vec<T>, chosen: impl Iterator<Item = u32>) {
+            if !values.is_empty() {
+                *values = chosen.map(|vertex| values[vertex as usize]).collect();
+            }
+        }
+        choose(&mut self.positions, chosen.clone());
+        choose(&mut self.normals, chosen.clone());
+        choose(&mut self.uvs, chosen.clone());
+        choose(&mut self.colors, chosen);
+    }
+
+    /// Drops vertices that no triangle uses: one that lies far away would move the local frame.
+    pub(crate) fn drop_unused_vertices(&mut self) {
+        let mut used = vec![false; self.positions.len()];
+        self.triangles.iter().flatten().for_each(|&vertex| used[vertex as usize] = true);
+        if used.iter().all(|&used| used) {
+            return;
+        }
+        let mut place = Vec::with_capacity(used.len());
+        let mut kept = 0;
+        for &used in &used {
+            place.push(kept);
+            kept += u32::from(used);
+        }
+        self.choose_vertices((0..used.len() as u32).filter(|&vertex| used[vertex as usize]));
+        self.triangles.iter_mut().flatten().for_each(|vertex| *vertex = place[*vertex as usize]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    #[test]
+    fn vertices_without_a_triangle_are_dropped() {
+        let mut mesh = LoadedMesh {
+            normals: Vec::new(),
+            uvs: Vec::new(),
+            materials: vec![0; 2],
+            positions: (0..6).map(|x| DVec3::splat(f64::from(x))).collect(),
+            colors: (0..6).map(|x| Vec3::splat(x as f32)).collect(),
+            triangles: vec![[5, 1, 3], [1, 3, 4]],
+        };
+        let corners =
+            |mesh: &LoadedMesh<DVec3>| mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize]).collect();
+        let before: Vec<DVec3> = corners(&mesh);
+        mesh.drop_unused_vertices();
+        assert_eq!(mesh.positions.len(), 4);
+        assert_eq!(corners(&mesh), before);
+        assert!(mesh.colors.iter().zip(&mesh.positions).all(|(color, position)| color.as_dvec3() == *position));
+        assert!(mesh.normals.is_empty());
+    }
+}

@@ -1,0 +1,168 @@
+//! Picture files to [`Texture`]s: PNG, JPEG, BMP and TGA, through the `image` crate.
+//!
+//! Files come from anywhere: sizes are checked before memory is taken for them. Grey, palettes and 16 bits a channel all become
+//! RGBA8. Not promised: colour profiles and EXIF orientation are left aside, as glTF wants it.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, guess_format};
+
+use super::Texture;
+
+/// The longest side, in texels.
+const MAX_SIDE: u32 = 16384;
+/// No format packs more texels into a byte than PNG: deflate repeats 1032-fold, and a byte may hold eight texels.
+const MAX_TEXELS_PER_BYTE: u64 = 8 * 1032;
+/// Bytes of a texel with 16 bits a channel.
+const MAX_BYTES_PER_TEXEL: u64 = 8;
+/// What a decoder may take whatever the picture's size: tables, and metadata that nobody asks for.
+const DECODER_BYTES: u64 = 16 << 20;
+
+const START_OF_SCAN: [u8; 2] = [0xff, 0xda];
+const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
+
+/// The picture in `bytes`. What it is, the first bytes say; a TGA file, which has no signature, by the ending of `name`.
+///
+/// # Errors
+///
+/// Why it cannot be used, for a sentence in brackets.
+pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
+    let format = format(name, bytes)?;
+    // The decoder fills what is missing with grey and calls it a success.
+    if format == ImageFormat::Jpeg && is_cut_off(bytes) {
+        return Err("the JPEG data ends before the picture does".to_owned());
+    }
+    let malformed = |error: ImageError| match error {
+        ImageError::Unsupported(_) | ImageError::Limits(_) => error.to_string(),
+        error => format!("its {} data is damaged or incomplete: {error}", word(format)),
+    };
+    let mut decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder().map_err(malformed)?;
+    let (width, height) = decoder.dimensions();
+    let texels = u64::from(width) * u64::from(height);
+    if texels == 0 || width.max(height) > MAX_SIDE {
+        return Err(format!("it has {width} x {height} texels, 1 to {MAX_SIDE} a side can be read"));
+    }
+    if texels > MAX_TEXELS_PER_BYTE * bytes.len() as u64 {
+        return Err(format!("its header says {width} x {height} texels, too many for {} bytes", bytes.len()));
+    }
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(2 * MAX_BYTES_PER_TEXEL * texels + DECODER_BYTES);
+    decoder.set_limits(limits).map_err(malformed)?;
+    let picture = DynamicImage::from_decoder(decoder).map_err(malformed)?.into_rgba8();
+    Ok(Texture { name: name.to_owned(), size: [width, height], texels: picture.as_chunks().0.to_vec() })
+}
+
+fn format(name: &str, bytes: &[u8]) -> Result<ImageFormat, String> {
+    let by_name = || Path::new(name).extension().filter(|ending| ending.eq_ignore_ascii_case("tga"));
+    match guess_format(bytes) {
+        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Bmp)) => Ok(format),
+        _ if by_name().is_some() => Ok(ImageFormat::Tga),
+        Ok(other) => Err(format!("it is a {} picture; PNG, JPEG, BMP and TGA can be read", word(other))),
+        Err(_) => Err("it is no PNG, JPEG, BMP or TGA picture".to_owned()),
+    }
+}
+
+/// The format's name for people.
+fn word(format: ImageFormat) -> String {
+    format!("{format:?}").to_uppercase()
+}
+
+/// Whether no end marker follows the last scan of a JPEG file. Neither marker can occur within the coded data of a scan.
+fn is_cut_off(bytes: &[u8]) -> bool {
+    let last = |marker: [u8; 2]| bytes.windows(2).rposition(|window| window == marker);
+    last(END_OF_IMAGE) <= last(START_OF_SCAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use image::{GrayImage, ImageBuffer, Luma, Rgb, Rgba};
+
+    use super::*;
+
+    /// Two by two texels that JPEG keeps nearly, each of another grey.
+    fn grey() -> DynamicImage {
+        GrayImage::from_fn(2, 2, |x, y| Luma([(40 + 50 * x + 100 * y) as u8])).into()
+    }
+
+    fn encoded(picture: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+        let mut bytes = Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, format).unwrap();
+        bytes.into_inner()
+    }
+
+    const FORMATS: [(ImageFormat, &str); 4] = [
+        (ImageFormat::Png, "a.png"),
+        (ImageFormat::Jpeg, "a.jpg"),
+        (ImageFormat::Bmp, "a.bmp"),
+        (ImageFormat::Tga, "a.TGA"),
+    ];
+
+    #[test]
+    fn every_format_is_read_with_its_first_row_at_the_top() {
+        for (format, name) in FORMATS {
+            let texture = decode(name, &encoded(&grey(), format)).unwrap();
+            assert_eq!((texture.name.as_str(), texture.size), (name, [2, 2]));
+            for (texel, wanted) in texture.texels.iter().zip([40u8, 90, 140, 190]) {
+                let near = texel[..3].iter().all(|&value| value.abs_diff(wanted) < 4);
+                assert!(near && texel[3] == 255, "{format:?}: {:?}", texture.texels);
+            }
+        }
+    }
+
+    #[test]
+    fn sixteen_bits_and_coverage_become_eight() {
+        let deep: DynamicImage = ImageBuffer::from_pixel(1, 1, Rgb([0u16, 0x8000, 0xffff])).into();
+        assert_eq!(decode("", &encoded(&deep, ImageFormat::Png)).unwrap().texels, [[0, 128, 255, 255]]);
+        let clear: DynamicImage = ImageBuffer::from_pixel(1, 1, Rgba([1u8, 2, 3, 4])).into();
+        assert_eq!(decode("", &encoded(&clear, ImageFormat::Png)).unwrap().texels, [[1, 2, 3, 4]]);
+    }
+
+    #[test]
+    fn palettes_are_resolved() {
+        // A BMP file of one texel with one bit, and two colours: blue-green-red-0 each.
+        let mut bytes = b"BM\x42\0\0\0\0\0\0\0\x3e\0\0\0\x28\0\0\0\x01\0\0\0\x01\0\0\0\x01\0\x01\0".to_vec();
+        bytes.extend([0; 16]);
+        bytes.extend([2, 0, 0, 0, 0, 0, 0, 0]);
+        bytes.extend([9, 9, 9, 0, 30, 20, 10, 0, 0x80, 0, 0, 0]);
+        assert_eq!(decode("", &bytes).unwrap().texels, [[10, 20, 30, 255]]);
+    }
+
+    #[test]
+    fn a_truncated_picture_is_an_error_wherever_it_ends() {
+        for (format, name) in FORMATS {
+            let whole = encoded(&grey(), format);
+            // Beyond the last texel there may be a footer that nobody needs.
+            let needed = match format {
+                ImageFormat::Png => whole.len() - 16,
+                ImageFormat::Tga => 18 + 4,
+                _ => whole.len(),
+            };
+            for length in 0..needed {
+                let answer = decode(name, &whole[..length]);
+                assert!(answer.is_err(), "{format:?}, {length} of {} bytes: {answer:?}", whole.len());
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_picture_or_no_known_one_is_said() {
+        assert_eq!(decode("oak.png", b"<html>").unwrap_err(), "it is no PNG, JPEG, BMP or TGA picture");
+        assert_eq!(
+            decode("oak.png", b"GIF89a").unwrap_err(),
+            "it is a GIF picture; PNG, JPEG, BMP and TGA can be read"
+        );
+    }
+
+    #[test]
+    fn a_header_alone_takes_no_memory() {
+        let mut bytes = encoded(&grey(), ImageFormat::Tga);
+        bytes[12..16].copy_from_slice(&[0, 64, 0, 64]);
+        let reason = decode("a.tga", &bytes).unwrap_err();
+        assert!(reason.starts_with("its header says 16384 x 16384 texels, too many for"), "{reason}");
+        bytes[12..16].copy_from_slice(&[1, 64, 1, 0]);
+        assert!(decode("a.tga", &bytes).unwrap_err().starts_with("it has 16385 x 1 texels"));
+        bytes[12..16].copy_from_slice(&[0, 0, 1, 0]);
+        assert!(decode("a.tga", &bytes).is_err());
+    }
+}

@@ -1,0 +1,141 @@
+//! Textures of a scene that is read: each file once, and one sentence about all that cannot be had.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use super::{Texture, decode};
+use crate::draft::Draft;
+use crate::open::read_bytes;
+
+/// Textures that one warning names with their reasons; the others it counts.
+const NAMED: usize = 3;
+
+/// What is known of the texture files of a scene so far.
+#[derive(Debug, Default)]
+pub(crate) struct TextureFiles {
+    /// Index of the texture by its path; `None` where it cannot be had.
+    read: HashMap<PathBuf, Option<u32>>,
+    /// A clause about each that cannot be had.
+    missing: Vec<String>,
+}
+
+impl TextureFiles {
+    /// One sentence about all that could not be had.
+    pub(crate) fn warning(&self) -> Option<String> {
+        let count = self.missing.len();
+        let mut clauses = self.missing[..count.min(NAMED)].join("; ");
+        if count > NAMED {
+            clauses += &format!("; and {} more", count - NAMED);
+        }
+        let textures = if count == 1 { "1 texture" } else { &format!("{count} textures") };
+        (count > 0).then(|| format!("{textures} cannot be used, the plain colours of the materials are: {clauses}"))
+    }
+}
+
+impl Draft {
+    /// Index of the texture in the file that `source`, one of the scene's files, calls `name`. Each file is read once. Where it
+    /// cannot be had, a warning will say so.
+    pub(crate) fn texture_file(&mut self, source: &Path, name: &str) -> Option<u32> {
+        let path = match self.path_beside(source, name) {
+            Ok(path) => path,
+            Err(error) => {
+                // By its name, which is no path: it is not to be asked for.
+                let refused = PathBuf::from(format!("{}\0{name}", source.display()));
+                if self.texture_files.read.insert(refused, None).is_none() {
+                    self.texture_files.missing.push(error.to_string());
+                }
+                return None;
+            }
+        };
+        if let Some(&known) = self.texture_files.read.get(&path) {
+            return known;
+        }
+        let index = match read_bytes(&path) {
+            Ok(bytes) => self.texture(&path.display().to_string(), decode(name, &bytes)),
+            Err(error) => {
+                self.texture_files.missing.push(error.to_string());
+                None
+            }
+        };
+        self.texture_files.read.insert(path, index);
+        index
+    }
+
+    /// Index of the texture in `bytes`, a picture that `source` holds and calls `name`. Where it cannot be used, a warning will say
+    /// so.
+    pub(crate) fn texture_bytes(&mut self, source: &Path, name: &str, bytes: &[u8]) -> Option<u32> {
+        self.texture(&format!("{}: {name}", source.display()), decode(name, bytes))
+    }
+
+    fn texture(&mut self, place: &str, decoded: Result<Texture, String>) -> Option<u32> {
+        match decoded {
+            Ok(texture) => {
+                self.textures.push(texture);
+                Some(self.textures.len() as u32 - 1)
+            }
+            Err(reason) => {
+                self.texture_files.missing.push(format!("{place} ({reason})"));
+                None
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::LoadOptions;
+
+    /// A folder with a picture of one blue texel, and a draft of a scene in it.
+    fn folder() -> (tempfile::TempDir, PathBuf, Draft) {
+        let folder = tempfile::tempdir().unwrap();
+        let pixel = image::RgbImage::from_pixel(1, 1, image::Rgb([0, 0, 255]));
+        fs::create_dir(folder.path().join("maps")).unwrap();
+        pixel.save_with_format(folder.path().join("maps/blue.png"), image::ImageFormat::Png).unwrap();
+        let scene = folder.path().join("scene.mtl");
+        let draft = Draft::new(&scene, &LoadOptions::default());
+        (folder, scene, draft)
+    }
+
+    #[test]
+    fn a_file_is_read_once() {
+        let (_folder, scene, mut draft) = folder();
+        assert_eq!(draft.texture_file(&scene, r"maps\blue.png"), Some(0));
+        assert_eq!(draft.texture_file(&scene, "maps/blue.png"), Some(0));
+        assert_eq!(draft.textures.len(), 1);
+        assert_eq!(draft.textures[0].texels, [[0, 0, 255, 255]]);
+        assert_eq!(draft.texture_files.warning(), None);
+    }
+
+    #[test]
+    fn a_picture_may_lie_in_the_file_itself() {
+        let (folder, scene, mut draft) = folder();
+        let bytes = fs::read(folder.path().join("maps/blue.png")).unwrap();
+        assert_eq!(draft.texture_bytes(&scene, "image 0", &bytes), Some(0));
+        assert_eq!(draft.texture_bytes(&scene, "image 1", &bytes[..30]), None);
+        let warning = draft.texture_files.warning().unwrap();
+        let start = format!("1 texture cannot be used, the plain colours of the materials are: {}", scene.display());
+        assert!(warning.starts_with(&format!("{start}: image 1 (its PNG data is damaged")), "{warning}");
+    }
+
+    #[test]
+    fn what_cannot_be_had_is_one_warning() {
+        let (folder, scene, mut draft) = folder();
+        fs::write(folder.path().join("page.png"), "<html>").unwrap();
+        for name in ["none.png", "page.png", "../a.png", "maps", "none.png", "../a.png", "file:///etc/passwd"] {
+            assert_eq!(draft.texture_file(&scene, name), None, "{name}");
+        }
+        let scene = draft.finish().unwrap();
+        let warning = &scene.warnings[0];
+        assert!(
+            warning.starts_with("5 textures cannot be used, the plain colours of the materials are: "),
+            "{warning}"
+        );
+        assert!(warning.contains("none.png; check that it exists"), "{warning}");
+        assert!(warning.contains("page.png (it is no PNG, JPEG, BMP or TGA picture)"), "{warning}");
+        assert!(warning.contains("`../a.png` lies outside the scene's folder"), "{warning}");
+        assert!(warning.ends_with("; and 2 more"), "{warning}");
+    }
+}

@@ -1,0 +1,54 @@
+//! Triangles that have a texture but no place in it.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use crate::{Material, Mesh};
+
+/// Gives the triangles in `ranges`, which have no texture coordinates, materials without texture. A sentence where there were any
+/// with one.
+pub(crate) fn untextured(mesh: &mut Mesh, materials: &mut Vec<Material>, ranges: &[Range<usize>]) -> Option<String> {
+    if materials.iter().all(|material| material.texture.is_none()) {
+        return None;
+    }
+    let mut plain: HashMap<u32, u32> = HashMap::new();
+    let mut count = 0;
+    for triangle in ranges.iter().flat_map(|range| range.clone()) {
+        let material = &mut mesh.materials[triangle];
+        let Some(textured) = materials.get(*material as usize).filter(|known| known.texture.is_some()) else {
+            continue;
+        };
+        *material = match plain.get(material) {
+            Some(&known) => known,
+            None => {
+                materials.push(Material { texture: None, ..textured.clone() });
+                plain.insert(*material, materials.len() as u32 - 1);
+                materials.len() as u32 - 1
+            }
+        };
+        count += 1;
+    }
+    (count > 0).then(|| {
+        format!(
+            "{count} triangles have a texture but no texture coordinates, the plain colours of their materials are used"
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::TextureUse;
+
+    #[test]
+    fn triangles_without_a_place_in_the_picture_are_plain() {
+        let textured = Material { name: "oak".to_owned(), texture: Some(TextureUse::new(0)), ..Material::default() };
+        let mut materials = vec![Material::default(), textured];
+        let mut mesh = Mesh { materials: vec![1, 0, 1, 1, 1], ..Mesh::default() };
+        let warning = untextured(&mut mesh, &mut materials, &[0..1, 1..3]).unwrap();
+        assert!(warning.starts_with("2 triangles have a texture"), "{warning}");
+        assert_eq!(mesh.materials, [2, 0, 2, 1, 1]);
+        assert_eq!((materials.len(), materials[2].name.as_str(), materials[2].texture), (3, "oak", None));
+        assert_eq!(untextured(&mut mesh, &mut materials, &[0..2]), None);
+    }
+}

@@ -1,0 +1,144 @@
+//! Which way is up, where a scene does not say it by a camera.
+
+use std::path::Path;
+
+use glam::Vec3;
+use serde::Serialize;
+
+use crate::Scene;
+
+/// Which axis points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Up {
+    /// +Y: glTF, most OBJ.
+    #[default]
+    Y,
+    /// +Z: CAD, most STL.
+    Z,
+}
+
+/// Which way is up, and what tells.
+#[derive(Clone, Debug, Serialize, PartialEq, Eq)]
+pub struct UpInfo {
+    /// y or z.
+    pub axis: &'static str,
+    /// What it is taken from.
+    pub reason: String,
+}
+
+/// How thick a ground may be, as a share of the scene's height.
+const GROUND: f32 = 1e-3;
+/// How much of the box's base a ground covers at least.
+const LEAST_GROUND: f32 = 0.01;
+/// How much larger it is than the flat bottom along the other axis.
+const CLEARLY: f32 = 2.0;
+
+impl Up {
+    /// What scenes of this kind of file have: Z for STL, Y for all others. Only glTF says so; of the others it is what is usual.
+    pub fn of_file(path: &Path) -> Up {
+        match path.extension() {
+            Some(extension) if extension.eq_ignore_ascii_case("stl") => Up::Z,
+            _ => Up::Y,
+        }
+    }
+
+    /// The word for it on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Up::Y => "y",
+            Up::Z => "z",
+        }
+    }
+
+    /// The axis as a unit vector.
+    pub fn axis(self) -> Vec3 {
+        match self {
+            Up::Y => Vec3::Y,
+            Up::Z => Vec3::Z,
+        }
+    }
+}
+
+impl Scene {
+    /// Which way is up by the scene's cameras, or by the ground that it stands on; `None` where neither tells.
+    pub fn suggested_up(&self) -> Option<UpInfo> {
+        let by = |up: Up, reason: &str| Some(UpInfo { axis: up.name(), reason: reason.to_owned() });
+        let upper: Vec3 = self.cameras.iter().map(|camera| camera.up).sum();
+        if !self.cameras.is_empty() && upper.y.abs() != upper.z.abs() {
+            return by(if upper.y > upper.z { Up::Y } else { Up::Z }, "its cameras stand that way");
+        }
+        let [y, z] = [Up::Y, Up::Z].map(|up| self.ground(up));
+        match (y.max(z) >= LEAST_GROUND, y > CLEARLY * z, z > CLEARLY * y) {
+            (true, true, _) => by(Up::Y, "it stands on a flat ground at its lowest y"),
+            (true, _, true) => by(Up::Z, "it stands on a flat ground at its lowest z"),
+            _ => None,
+        }
+    }
+
+    /// Area of the triangles that lie at the very bottom, as a share of the box's base.
+    fn ground(&self, up: Up) -> f32 {
+        let (bounds, axis) = (self.mesh.bounds(), up.axis());
+        let extent = bounds.extent();
+        let height = extent.dot(axis);
+        let base = extent.x * (extent.y + extent.z - height);
+        let top = bounds.min.dot(axis) + GROUND * height;
+        if bounds.is_empty() || height <= 0.0 || base <= 0.0 {
+            return 0.0;
+        }
+        let low = |corners: &[Vec3; 3]| corners.iter().all(|corner| corner.dot(axis) <= top);
+        let area = |[a, b, c]: [Vec3; 3]| 0.5 * (b - a).cross(c - a).length();
+        (0..self.mesh.triangles.len()).map(|index| self.mesh.corners(index)).filter(low).map(area).sum::<f32>() / base
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SceneBuilder;
+
+    /// A square of edge 2 at height 0 and a tip above its middle.
+    fn tent(up: Up, ground: bool) -> Scene {
+        let place = |x: f32, side: f32, height: f32| match up {
+            Up::Y => Vec3::new(x, height, side),
+            Up::Z => Vec3::new(x, side, height),
+        };
+        let mut scene = SceneBuilder::new().finish_scene("tent");
+        scene.mesh.positions = vec![
+            place(-1.0, -1.0, 0.0),
+            place(1.0, -1.0, 0.0),
+            place(1.0, 1.0, 0.0),
+            place(-1.0, 1.0, 0.0),
+            place(0.0, 0.0, 3.0),
+        ];
+        scene.mesh.triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        if ground {
+            scene.mesh.triangles.extend([[0, 1, 2], [0, 2, 3]]);
+        }
+        scene
+    }
+
+    #[test]
+    fn a_scene_stands_on_its_ground() {
+        for up in [Up::Y, Up::Z] {
+            let info = tent(up, true).suggested_up().unwrap();
+            assert_eq!((info.axis, info.reason.contains(up.name())), (up.name(), true));
+            assert_eq!(tent(up, false).suggested_up(), None);
+        }
+        assert_eq!(SceneBuilder::new().finish_scene("empty").suggested_up(), None);
+    }
+
+    #[test]
+    fn cameras_know_better_than_the_ground() {
+        let mut scene = tent(Up::Y, true);
+        scene.cameras.push(scene.default_camera(Up::Z));
+        let info = scene.suggested_up().unwrap();
+        assert_eq!((info.axis, info.reason.as_str()), ("z", "its cameras stand that way"));
+    }
+
+    #[test]
+    fn only_stl_is_usually_made_with_z_up() {
+        let of = |path: &str| Up::of_file(Path::new(path));
+        assert_eq!([of("a.stl"), of("a.STL")], [Up::Z; 2]);
+        assert_eq!([of("a.obj"), of("a.ply"), of("a.glb"), of("a.toml"), of("builtin:garden")], [Up::Y; 5]);
+    }
+}

@@ -1,0 +1,215 @@
+//! Vertices of all parts, each in the precision that its file has, until the local frame is known.
+//!
+//! Most files hold `f32`. Those vertices stay where they will end, in their part's own coordinates, with the part's transform
+//! beside them; they are placed in double precision in one pass at the end. So a large model is held once, not twice.
+
+use glam::{DMat4, DVec3, Vec3};
+
+use crate::builder::reserve;
+
+/// A vertex as a loader has it, in single or double precision.
+pub trait Position: Copy {
+    /// The same place in double precision.
+    fn to_double(self) -> DVec3;
+
+    /// The slice, by its precision.
+    fn slice(positions: &[Self]) -> Positions<'_>;
+
+    /// The vector, by its precision.
+    fn owned(positions: Vec<Self>) -> OwnedPositions;
+}
+
+/// A slice of vertices in either precision.
+#[derive(Clone, Copy, Debug)]
+pub enum Positions<'a> {
+    /// As most binary files hold them.
+    Single(&'a [Vec3]),
+    /// As texts may hold them.
+    Double(&'a [DVec3]),
+}
+
+/// Vertices in either precision that are handed over.
+#[derive(Clone, Debug)]
+pub enum OwnedPositions {
+    /// As most binary files hold them.
+    Single(Vec<Vec3>),
+    /// As texts may hold them.
+    Double(Vec<DVec3>),
+}
+
+impl Position for Vec3 {
+    fn to_double(self) -> DVec3 {
+        self.as_dvec3()
+    }
+
+    fn slice(positions: &[Vec3]) -> Positions<'_> {
+        Positions::Single(positions)
+    }
+
+    fn owned(positions: Vec<Vec3>) -> OwnedPositions {
+        OwnedPositions::Single(positions)
+    }
+}
+
+impl Position for DVec3 {
+    fn to_double(self) -> DVec3 {
+        self
+    }
+
+    fn slice(positions: &[DVec3]) -> Positions<'_> {
+        Positions::Double(positions)
+    }
+
+    fn owned(positions: Vec<DVec3>) -> OwnedPositions {
+        OwnedPositions::Double(positions)
+    }
+}
+
+/// Placed vertices without a local frame.
+#[derive(Debug, Default)]
+pub(crate) struct Vertices {
+    /// One entry a vertex: of a single-precision run in its part's coordinates, of a double-precision run not yet set. Empty where all
+    /// runs are of double precision.
+    single: Vec<Vec3>,
+    /// World positions of the double-precision runs, one after the other.
+    double: Vec<DVec3>,
+    runs: Vec<Run>,
+    count: usize,
+    bounds: Option<(DVec3, DVec3)>,
+}
+
+/// Vertices in a row that are kept alike.
+#[derive(Debug)]
+enum Run {
+    /// This many, yet to be placed.
+    Single(usize, Box<DMat4>),
+    /// This many, placed.
+    Double(usize),
+}
+
+impl Vertices {
+    /// Adds vertices placed by `transform`.
+    pub(crate) fn add(&mut self, positions: Positions, transform: &DMat4) {
+        match positions {
+            Positions::Single(positions) => {
+                self.include(positions, transform);
+                self.single.resize(self.count, Vec3::ZERO);
+                self.single.extend_from_slice(positions);
+                self.runs.push(Run::Single(positions.len(), Box::new(*transform)));
+                self.count += positions.len();
+            }
+            Positions::Double(positions) => {
+                self.include(positions, transform);
+                self.double.extend(positions.iter().map(|&position| transform.transform_point3(position)));
+                self.push_double(positions.len());
+            }
+        }
+    }
+
+    /// [`Vertices::add`] of vertices that are handed over: the first ones are placed where they lie in memory.
+    pub(crate) fn take(&mut self, positions: OwnedPositions, transform: &DMat4) {
+        match positions {
+            OwnedPositions::Single(positions) if self.count == 0 => {
+                self.include(&positions, transform);
+                self.runs.push(Run::Single(positions.len(), Box::new(*transform)));
+                self.count = positions.len();
+                self.single = positions;
+            }
+            OwnedPositions::Double(mut positions) if self.double.is_empty() => {
+                self.include(&positions, transform);
+                positions.iter_mut().for_each(|position| *position = transform.transform_point3(*position));
+                self.push_double(positions.len());
+                self.double = positions;
+            }
+            OwnedPositions::Single(positions) => self.add(Positions::Single(&positions), transform),
+            OwnedPositions::Double(positions) => self.add(Positions::Double(&positions), transform),
+        }
+    }
+
+    fn push_double(&mut self, more: usize) {
+        self.count += more;
+        match self.runs.last_mut() {
+            Some(Run::Double(count)) => *count += more,
+            _ => self.runs.push(Run::Double(more)),
+        }
+    }
+
+    /// Number of vertices.
+    pub(crate) fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Lowest and highest corner of the box around all finite vertices; `None` without any.
+    pub(crate) fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        self.bounds
+    }
+
+    /// Makes room for `more` vertices; `false` where there is not enough memory.
+    pub(crate) fn reserve(&mut self, more: usize) -> bool {
+        let missing = self.count - self.single.len();
+        reserve(&mut self.single, missing + more)
+    }
+
+    /// All vertices relative to `origin`.
+    pub(crate) fn finish(self, origin: DVec3) -> Vec<Vec3> {
+        let Vertices { mut single, double, runs, count, .. } = self;
+        if single.is_empty() {
+            return double.into_iter().map(|world| (world - origin).as_vec3()).collect();
+        }
+        single.resize(count, Vec3::ZERO);
+        let mut rest = &mut single[..];
+        let mut double = double.iter();
+        for run in runs {
+            let (Run::Single(count, _) | Run::Double(count)) = run;
+            let (vertices, after) = rest.split_at_mut(count);
+            rest = after;
+            match run {
+                Run::Single(_, transform) => vertices
+                    .iter_mut()
+                    .for_each(|vertex| *vertex = (transform.transform_point3(vertex.as_dvec3()) - origin).as_vec3()),
+                Run::Double(_) => vertices
+                    .iter_mut()
+                    .zip(double.by_ref())
+                    .for_each(|(vertex, &world)| *vertex = (world - origin).as_vec3()),
+            }
+        }
+        single
+    }
+
+    fn include<P: Position>(&mut self, positions: &[P], transform: &DMat4) {
+        let world = positions.iter().map(|position| transform.transform_point3(position.to_double()));
+        let (min, max) = world
+            .filter(|world| world.is_finite())
+            .fold(self.bounds.unwrap_or((DVec3::INFINITY, DVec3::NEG_INFINITY)), |(min, max), world| {
+                (min.min(world), max.max(world))
+            });
+        self.bounds = min.cmple(max).all().then_some((min, max));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_precisions_are_placed_in_their_order() {
+        let far = DVec3::new(1e7 + 0.5, 0.0, 0.0);
+        let mut vertices = Vertices::default();
+        vertices.add(Positions::Single(&[Vec3::X]), &DMat4::from_translation(far));
+        vertices.add(Positions::Double(&[far]), &DMat4::IDENTITY);
+        vertices.add(Positions::Double(&[DVec3::Y]), &DMat4::from_translation(far));
+        vertices.add(Positions::Single(&[Vec3::ZERO, Vec3::Z]), &DMat4::from_translation(far));
+        assert_eq!(vertices.len(), 5);
+        assert_eq!(vertices.bounds(), Some((far, far + DVec3::ONE)));
+        assert_eq!(vertices.finish(far), [Vec3::X, Vec3::ZERO, Vec3::Y, Vec3::ZERO, Vec3::Z]);
+    }
+
+    #[test]
+    fn what_is_not_finite_has_no_part_in_the_box() {
+        let mut vertices = Vertices::default();
+        vertices.add(Positions::Single(&[Vec3::NAN]), &DMat4::IDENTITY);
+        assert_eq!(vertices.bounds(), None);
+        vertices.add(Positions::Single(&[Vec3::X, Vec3::INFINITY]), &DMat4::IDENTITY);
+        assert_eq!(vertices.bounds(), Some((DVec3::X, DVec3::X)));
+    }
+}
