@@ -28,7 +28,7 @@ pub(super) fn run(
     for (index, task) in tasks.into_iter().enumerate() {
         let left = plan.budget.as_secs_f64() - begin.elapsed().as_secs_f64();
         let decision = schedule.decide(index, left);
-        observer.note(&progress(&task, rows, total, left.min(schedule.remaining(index)), decision));
+        observer.note(&progress(&task, rows, total, left.min(schedule.remaining(index)).max(0.0), decision));
         rows += task.cases.len();
         cuts.add(&task, decision);
         if decision.variants == 0 {
