@@ -14,6 +14,7 @@ mod machine;
 pub mod measure;
 mod plan;
 mod results;
+pub mod schedule;
 mod suites;
 mod table;
 
