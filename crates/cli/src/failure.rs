@@ -3,6 +3,7 @@
 use lightmesh::render::accel::{GridError, GridSaveError};
 use lightmesh::scene::{ExportError, UnknownCamera};
 use lightmesh::{LoadError, RenderError, SaveError, image};
+use lightmesh_bench::BenchError;
 
 use crate::output::OutputError;
 use crate::plan::PlanError;
@@ -41,6 +42,8 @@ pub(crate) enum Failure {
     Picture(#[from] image::LoadError),
     #[error(transparent)]
     Compare(#[from] image::CompareError),
+    #[error(transparent)]
+    Bench(BenchError),
     /// A measure of a comparison is above what is accepted.
     #[error("{0}")]
     Exceeded(String),
@@ -55,6 +58,17 @@ pub(crate) enum Failure {
     /// The system does not let interrupts be caught.
     #[error("cannot listen for Ctrl-C ({0}); start the program from a terminal or a shell")]
     Signals(#[from] ctrlc::Error),
+}
+
+impl From<BenchError> for Failure {
+    fn from(error: BenchError) -> Failure {
+        match error {
+            // With the exit code of the render that could not be made.
+            BenchError::Render(error) => Failure::Render(error),
+            BenchError::Scene(error) => Failure::Load(error),
+            other => Failure::Bench(other),
+        }
+    }
 }
 
 impl Failure {

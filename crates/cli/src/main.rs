@@ -41,7 +41,7 @@ fn main() -> ExitCode {
 fn failed(failure: &Failure) -> u8 {
     match failure {
         Failure::Exceeded(_) => output::complain(&failure.to_string()),
-        _ if failure.exit_code() == INTERRUPTED => output::complain("interrupted: no picture was written"),
+        _ if failure.exit_code() == INTERRUPTED => output::complain("interrupted: nothing was written"),
         _ => output::complain(&format!("error: {failure}")),
     }
     failure.exit_code()

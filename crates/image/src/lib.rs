@@ -40,5 +40,5 @@ pub use compare::{CompareError, Comparison, compare};
 pub use format::Format;
 pub use frame::{Frame, FrameError, Layers};
 pub use load::{DecodeError, LoadError};
-pub use save::{SaveError, check_size, check_writable};
+pub use save::{EncodeError, SaveError, check_size, check_writable};
 pub use transfer::Transfer;

@@ -61,9 +61,14 @@ pub enum SaveError {
 
 /// What the writers report; [`SaveError`] adds which file.
 #[derive(Debug, Error)]
-pub(crate) enum EncodeError {
+pub enum EncodeError {
+    /// The format cannot hold a picture of this size.
     #[error("the format holds {limit}")]
-    TooLarge { limit: &'static str },
+    TooLarge {
+        /// What it can hold.
+        limit: &'static str,
+    },
+    /// The bytes could not be written.
     #[error(transparent)]
     Io(#[from] io::Error),
 }
@@ -98,6 +103,16 @@ impl Frame {
             Format::Exr => exr::write(self, output),
             Format::Jpg => jpg::write(self, transfer, output),
         })
+    }
+
+    /// The bytes of a PNG file of the colours, with the sRGB curve.
+    ///
+    /// # Errors
+    /// [`EncodeError::TooLarge`] where a side is longer than 2147483647 pixels.
+    pub fn to_png(&self) -> Result<Vec<u8>, EncodeError> {
+        let mut bytes = Vec::new();
+        png::write(self, Transfer::Srgb, &mut bytes)?;
+        Ok(bytes)
     }
 
     /// Saves colours and layers as one multilayer exr of 32-bit floats with the channels `R G B` (linear), `Z` (distance

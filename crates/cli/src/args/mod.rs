@@ -3,6 +3,7 @@
 //! Values are parsed where they stand (see [`value`](crate::value)); what they mean together is checked in
 //! [`plan`](crate::plan).
 
+mod bench;
 mod render;
 mod words;
 
@@ -10,6 +11,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+pub(crate) use bench::{BenchArgs, BenchCommand, BenchCompareArgs, SuiteArgs};
 pub(crate) use render::RenderArgs;
 pub(crate) use words::{Accel, Falloff, Lookup, Mode, Progress, ShortTests, Transfer, Up, Weight};
 
@@ -40,6 +42,8 @@ pub(crate) enum Command {
     Grid(GridArgs),
     /// Write a built-in or loaded scene as files
     Export(ExportArgs),
+    /// Run a suite of experiments, or compare two runs
+    Bench(Box<BenchArgs>),
     /// Print the JSON Schema of scene files in TOML, for editors and checkers
     Schema,
     /// Print a script that completes command lines in a shell

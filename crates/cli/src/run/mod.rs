@@ -1,5 +1,7 @@
 //! One file a subcommand.
 
+mod bench;
+mod bench_compare;
 mod compare;
 mod completions;
 mod export;
@@ -23,6 +25,7 @@ pub(crate) fn run(command: Command) -> Result<u8, Failure> {
         Command::Compare(args) => compare::run(&args),
         Command::Grid(args) => grid::run(&args),
         Command::Export(args) => export::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Schema => output::print(&Scene::file_schema()).map_err(Failure::from),
         Command::Completions(args) => completions::run(&args),
         Command::Man(args) => man::run(&args),

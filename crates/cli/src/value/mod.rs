@@ -2,12 +2,14 @@
 //!
 //! All lengths and positions are in world coordinates and scene units, in double precision as scene files are.
 
+mod budget;
 mod camera;
 mod light;
 mod memory;
 mod number;
 mod size;
 
+pub(crate) use budget::Budget;
 pub(crate) use camera::CameraView;
 pub(crate) use light::{Color, LightSpec};
 pub(crate) use memory::ByteSize;

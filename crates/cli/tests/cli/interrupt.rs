@@ -19,6 +19,6 @@ fn an_interrupted_render_leaves_nothing_behind() {
     assert!(sent.success());
     let last = lines.last().unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130));
-    assert_eq!(last, "interrupted: no picture was written");
+    assert_eq!(last, "interrupted: nothing was written");
     assert_eq!(place.files(), ["room.toml"]);
 }

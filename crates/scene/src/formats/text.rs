@@ -9,7 +9,7 @@ const QUOTED: usize = 60;
 
 /// The text without a byte order mark, each line ended by a line feed: a file of an old system, with carriage returns alone, is
 /// changed.
-pub(super) fn with_line_feeds(bytes: &mut Vec<u8>) -> &[u8] {
+pub(super) fn with_line_feeds(bytes: &mut [u8]) -> &[u8] {
     if memchr(b'\n', bytes).is_none() {
         bytes.iter_mut().filter(|byte| **byte == b'\r').for_each(|byte| *byte = b'\n');
     }

@@ -1,0 +1,190 @@
+//! Is a run of a suite slower than an earlier one, beyond the noise of both?
+//!
+//! Rows are matched by id. For each stage that both have, `ratio` is the median of the later samples over that of the earlier ones. It
+//! is held against the *noise band*
+//!
+//! ```text
+//! band = max(5 %, 2 · √(s_old² + s_new²)),   s = (Q3 − Q1) / median
+//! ```
+//!
+//! of the interquartile ranges of both: half of the samples lie within Q1…Q3, and a few that were disturbed do not move it. Fewer than 3
+//! samples have no spread to speak of; s is taken as 15 % there. A stage is slower above 1 + band and faster below 1 / (1 + band).
+//!
+//! A row is judged by its stage `render`, the whole of a picture, or by all stages where either has none. Stages that take less than
+//! 0.1 ms are not judged: clocks and launches vary by as much. Not promised: that two different machines can be told apart from a change
+//! of the program.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::{Results, Row, Samples};
+
+/// The stage that a row is judged by.
+const WHOLE: &str = "render";
+/// The least noise that is believed, relative.
+const LEAST_BAND: f64 = 0.05;
+/// How many spreads of the difference are noise.
+const SPREADS: f64 = 2.0;
+/// Samples that a spread can be taken from.
+const ENOUGH_SAMPLES: usize = 3;
+/// The relative spread of fewer samples.
+const UNKNOWN_SPREAD: f64 = 0.15;
+/// Seconds that clocks cannot be trusted with.
+const LEAST_SECONDS: f64 = 1e-4;
+
+/// Two runs of a suite, held against each other.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunComparison {
+    /// Every stage of every row that both have.
+    pub stages: Vec<StageComparison>,
+    /// Ids of rows that the earlier run alone has.
+    pub only_old: Vec<String>,
+    /// Ids of rows that the later run alone has.
+    pub only_new: Vec<String>,
+    /// Whether both ran on machines of the same description.
+    pub same_machine: bool,
+    /// How many judged stages are slower.
+    pub regressions: usize,
+}
+
+/// A stage of a row.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StageComparison {
+    /// The row's id.
+    pub id: String,
+    /// The stage, named as in `--stats`.
+    pub stage: String,
+    /// Median seconds of the earlier run.
+    pub old: f64,
+    /// Median seconds of the later run.
+    pub new: f64,
+    /// new / old.
+    pub ratio: f64,
+    /// Relative noise of both.
+    pub band: f64,
+    /// What the ratio says.
+    pub verdict: Verdict,
+    /// Whether the row is judged by this stage.
+    pub judged: bool,
+}
+
+/// What a ratio says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Within the noise.
+    Same,
+    /// Less time, beyond the noise.
+    Faster,
+    /// More time, beyond the noise.
+    Slower,
+}
+
+impl RunComparison {
+    /// Holds `new` against `old`.
+    pub fn new(old: &Results, new: &Results) -> RunComparison {
+        let find = |rows: &'_ [Row], id: &str| rows.iter().position(|row| row.id == id);
+        let pairs = old.rows.iter().filter_map(|row| Some((row, &new.rows[find(&new.rows, &row.id)?])));
+        let stages: Vec<StageComparison> = pairs.flat_map(|(old, new)| compare_rows(old, new)).collect();
+        let only = |rows: &[Row], others: &[Row]| {
+            rows.iter().filter(|row| find(others, &row.id).is_none()).map(|row| row.id.clone()).collect()
+        };
+        RunComparison {
+            regressions: stages.iter().filter(|stage| stage.is_regression()).count(),
+            stages,
+            only_old: only(&old.rows, &new.rows),
+            only_new: only(&new.rows, &old.rows),
+            same_machine: old.machine == new.machine,
+        }
+    }
+}
+
+impl StageComparison {
+    /// Whether the row is slower by it.
+    pub fn is_regression(&self) -> bool {
+        self.judged && self.verdict == Verdict::Slower
+    }
+}
+
+/// All stages that both rows have.
+fn compare_rows(old: &Row, new: &Row) -> Vec<StageComparison> {
+    let whole = old.seconds.contains_key(WHOLE) && new.seconds.contains_key(WHOLE);
+    let both = old.seconds.iter().filter_map(|(stage, samples)| Some((stage, samples, new.seconds.get(stage)?)));
+    let compared = both.filter_map(|(stage, old_samples, new_samples)| {
+        let (before, after) = (old_samples.median()?, new_samples.median()?);
+        let (ratio, band) = (after / before, band(old_samples, new_samples));
+        let measurable = before.max(after) >= LEAST_SECONDS;
+        (ratio.is_finite() && before > 0.0).then(|| StageComparison {
+            id: old.id.clone(),
+            stage: stage.clone(),
+            old: before,
+            new: after,
+            ratio,
+            band,
+            verdict: Verdict::of(ratio, band),
+            judged: measurable && (!whole || stage == WHOLE),
+        })
+    });
+    compared.collect()
+}
+
+impl Verdict {
+    fn of(ratio: f64, band: f64) -> Verdict {
+        match ratio {
+            ratio if ratio > 1.0 + band => Verdict::Slower,
+            ratio if ratio < 1.0 / (1.0 + band) => Verdict::Faster,
+            _ => Verdict::Same,
+        }
+    }
+
+    /// The word in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::Same => "same",
+            Verdict::Faster => "faster",
+            Verdict::Slower => "slower",
+        }
+    }
+}
+
+/// The relative noise of the ratio of two medians.
+fn band(old: &Samples, new: &Samples) -> f64 {
+    LEAST_BAND.max(SPREADS * spread(old).hypot(spread(new)))
+}
+
+/// The interquartile range over the median.
+fn spread(samples: &Samples) -> f64 {
+    let quartiles = (samples.quantile(0.25), samples.median(), samples.quantile(0.75));
+    match quartiles {
+        (Some(low), Some(median), Some(high)) if samples.0.len() >= ENOUGH_SAMPLES && median > 0.0 => {
+            (high - low) / median
+        }
+        _ => UNKNOWN_SPREAD,
+    }
+}
+
+impl fmt::Display for RunComparison {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(f, "{:>10} {:>10} {:>7} {:>6}  {:7} row", "old s", "new s", "ratio", "band", "verdict")?;
+        // Judged stages all; others where they tell something.
+        for stage in self.stages.iter().filter(|stage| stage.judged || stage.verdict != Verdict::Same) {
+            let StageComparison { id, stage: name, old, new, ratio, band, verdict, judged } = stage;
+            let (band, verdict) = (format!("{:.0}%", 100.0 * band), verdict.name());
+            let remark = if *judged { "" } else { " (not judged)" };
+            writeln!(f, "{old:10.4} {new:10.4} {ratio:7.3} {band:>6}  {verdict:7} {id} [{name}]{remark}")?;
+        }
+        for (which, ids) in [("old", &self.only_old), ("new", &self.only_new)] {
+            if !ids.is_empty() {
+                writeln!(f, "{} rows are in the {which} results alone", ids.len())?;
+            }
+        }
+        if !self.same_machine {
+            writeln!(f, "the machines differ: ratios say as much about them as about the program")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,76 @@
+//! `lightmesh bench`.
+
+use lightmesh_bench::{Plan, Results, Suite};
+
+use crate::args::{BenchArgs, BenchCommand, SuiteArgs};
+use crate::failure::Failure;
+use crate::progress::Watcher;
+use crate::report::json;
+use crate::{interrupt, output};
+
+pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
+    match (&args.command, args.run.suite) {
+        (Some(BenchCommand::Compare(args)), _) => super::bench_compare::run(args),
+        (None, Some(suite)) => measure(suite, &args.run),
+        (None, None) => Ok(output::print(&list())?),
+    }
+}
+
+fn list() -> String {
+    Suite::ALL.iter().map(|suite| format!("{:9}{}\n", suite.name(), suite.summary())).collect()
+}
+
+fn measure(suite: Suite, args: &SuiteArgs) -> Result<(), Failure> {
+    if let Some(path) = &args.json {
+        output::check_writable(path)?;
+    }
+    let watcher = Watcher::new(args.progress, args.quiet);
+    interrupt::watch();
+    let results = lightmesh_bench::run(suite, &plan(args), &watcher)?;
+    if let Some(path) = &args.json {
+        output::write(path, json(&results).as_bytes())?;
+    }
+    output::print(&results.to_string())?;
+    watcher.summary(&summary(&results, args));
+    Ok(())
+}
+
+fn plan(args: &SuiteArgs) -> Plan {
+    let plan = Plan::new(args.quick);
+    Plan {
+        budget: args.budget.map_or(plan.budget, |budget| budget.0),
+        device: args.device,
+        threads: args.threads.map(|threads| threads as usize),
+        scenes: args.scenes.clone(),
+        command: command_line(std::env::args().skip(1)),
+        ..plan
+    }
+}
+
+/// The command as it would be typed again; the program's own path is nobody's business.
+fn command_line(words: impl Iterator<Item = String>) -> String {
+    let quoted = words.map(|word| if word.contains([' ', '?', '*', '"']) { format!("'{word}'") } else { word });
+    std::iter::once("lightmesh".to_owned()).chain(quoted).collect::<Vec<_>>().join(" ")
+}
+
+fn summary(results: &Results, args: &SuiteArgs) -> String {
+    let file = args.json.as_ref().map_or_else(String::new, |path| format!(", {}", path.display()));
+    format!(
+        "{}: {} rows, {} pictures in {:.0} s{file}",
+        results.suite,
+        results.rows.len(),
+        results.pictures.len(),
+        results.seconds
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_can_be_typed_again() {
+        let words = ["bench", "rays", "--scene", "builtin:garden?lights=3"].map(str::to_owned);
+        assert_eq!(command_line(words.into_iter()), "lightmesh bench rays --scene 'builtin:garden?lights=3'");
+    }
+}

@@ -1,0 +1,21 @@
+//! `lightmesh bench compare`.
+
+use lightmesh_bench::{BenchError, Results, RunComparison};
+
+use crate::args::BenchCompareArgs;
+use crate::failure::Failure;
+use crate::output;
+use crate::report::json;
+
+pub(super) fn run(args: &BenchCompareArgs) -> Result<(), Failure> {
+    let comparison = RunComparison::new(&Results::load(&args.old)?, &Results::load(&args.new)?);
+    if comparison.stages.is_empty() {
+        return Err(BenchError::NothingInCommon { old: args.old.clone(), new: args.new.clone() }.into());
+    }
+    output::print(&if args.json { json(&comparison) } else { comparison.to_string() })?;
+    match comparison.regressions {
+        0 => Ok(()),
+        1 => Err(Failure::Exceeded("1 row is slower beyond the noise".to_owned())),
+        count => Err(Failure::Exceeded(format!("{count} rows are slower beyond the noise"))),
+    }
+}
