@@ -93,7 +93,7 @@ mod unix {
     /// A file that nobody may read.
     fn lock(path: &Path) {
         fs::write(path, "v 0 0 0\n").unwrap();
-        fs::set_permissions(path, Permissions::from_mode(0)).unwrap();
+        fs::set_permissions(path, Permissions::from_mode(0o000)).unwrap();
     }
 
     /// Whether a file can be closed to this user; root may read them all.
