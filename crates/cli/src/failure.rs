@@ -43,7 +43,7 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Compare(#[from] image::CompareError),
     #[error(transparent)]
-    Bench(BenchError),
+    Bench(Box<BenchError>),
     /// A measure of a comparison is above what is accepted.
     #[error("{0}")]
     Exceeded(String),
@@ -66,7 +66,7 @@ impl From<BenchError> for Failure {
             // With the exit code of the render that could not be made.
             BenchError::Render(error) => Failure::Render(error),
             BenchError::Scene(error) => Failure::Load(error),
-            other => Failure::Bench(other),
+            other => Failure::Bench(Box::new(other)),
         }
     }
 }

@@ -14,6 +14,7 @@
 //! them (`derived`, `break_even`).
 
 mod break_even;
+mod cuts;
 mod derived;
 mod published;
 mod runner;
@@ -45,7 +46,7 @@ pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings)
     findings.devices = engines.iter().map(|engine| engine.device.clone()).collect();
     let tasks = tasks::tasks(plan, &engines);
     observer.note("small trials, to plan the time");
-    let estimates = trial::estimates(&tasks, &engines, observer)?;
+    let estimates = trial::estimates(&tasks, &engines, begin, plan.budget, observer)?;
     runner::run(plan, begin, &engines, tasks, estimates, observer, findings)?;
     derived::table_1(findings);
     derived::table_2(findings);

@@ -1,7 +1,7 @@
 //! The whole suite, on pictures of a few pixels.
 
 use std::collections::BTreeSet;
-use std::sync::Mutex;
+use std::sync::{Mutex, OnceLock};
 use std::time::Duration;
 
 use lightmesh::{Device, Observer};
@@ -37,6 +37,12 @@ fn run(plan: &Plan) -> (Results, Vec<String>) {
     (results, listener.notes.into_inner().unwrap())
 }
 
+/// The whole suite, run once for all tests.
+fn whole() -> &'static (Results, Vec<String>) {
+    static WHOLE: OnceLock<(Results, Vec<String>)> = OnceLock::new();
+    WHOLE.get_or_init(|| run(&tiny(false)))
+}
+
 fn of<'r>(results: &'r Results, experiment: &'r str) -> Vec<&'r Row> {
     results.rows.iter().filter(|row| row.experiment == experiment).collect()
 }
@@ -54,11 +60,11 @@ fn keys(row: &Row) -> String {
 
 #[test]
 fn every_experiment_is_there_once() {
-    let (results, notes) = run(&tiny(false));
+    let (results, notes) = whole();
     let ids: BTreeSet<&str> = results.rows.iter().map(|row| row.id.as_str()).collect();
     assert_eq!(ids.len(), results.rows.len());
     let counts = ["timings", "table 1", "table 2", "figure 1", "figure 11", "figure 11, break-even", "figures 12-15"]
-        .map(|experiment| of(&results, experiment).len());
+        .map(|experiment| of(results, experiment).len());
     // Timings: 24 cells and 8 of Garden with more lights by the method, and 8 with hard shadows, on two numbers of threads.
     assert_eq!(counts, [2 * 40, 4, 16, 3, 14, 1, 5]);
     assert_eq!(counts.iter().sum::<usize>(), results.rows.len());
@@ -69,8 +75,8 @@ fn every_experiment_is_there_once() {
 
 #[test]
 fn the_cells_of_the_thesis_are_complete() {
-    let (results, _) = run(&tiny(false));
-    let timings = of(&results, "timings");
+    let (results, _) = whole();
+    let timings = of(results, "timings");
     let one_thread: Vec<&&Row> = timings.iter().filter(|row| row.keys["threads"] == 1.0.into()).collect();
     let method = one_thread.iter().filter(|row| word(row, "mode") == "light-mesh");
     let cells: Vec<&&&Row> =
@@ -108,7 +114,7 @@ fn pictures_refer_to_the_reference() {
 fn without_time_rows_are_left_out_and_named() {
     let (results, _) = run(&Plan { budget: Duration::from_nanos(1), ..tiny(true) });
     assert!(results.rows.is_empty() && results.pictures.is_empty());
-    let note = results.notes.iter().find(|note| note.starts_with("For want of time left out: ")).unwrap();
+    let note = results.notes.iter().find(|note| note.starts_with("For want of time left out, ")).unwrap();
     assert!(note.contains("timings: ") && note.contains("figure 11: "), "{note}");
 }
 

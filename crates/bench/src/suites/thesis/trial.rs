@@ -4,7 +4,7 @@
 //! much. On one thread it would take long to ask: it is taken to be slower than many threads by their number.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use lightmesh::{Observer, Scene, Settings};
 
@@ -24,20 +24,25 @@ const SHORTEST: u32 = 8;
 /// Seconds of one pixel, by scene, device and settings.
 type Costs = BTreeMap<(String, usize, String), f64>;
 
-/// An estimate for each task.
+/// An estimate for each task. What has had no trial `budget` after `begin` is taken to last for ever: there is no time for it anyway.
 pub(super) fn estimates(
     tasks: &[Task],
     engines: &[Engine],
+    begin: Instant,
+    budget: Duration,
     observer: &dyn Observer,
 ) -> Result<Vec<Estimate>, BenchError> {
     let mut costs = Costs::new();
     let mut estimates = Vec::with_capacity(tasks.len());
     for task in tasks {
         let (engine, factor) = asked(task.engine, engines);
-        measure(task, engine, engines, &mut costs, observer)?;
+        if begin.elapsed() < budget {
+            measure(task, engine, engines, &mut costs, observer)?;
+        }
         let seconds = task.cases.iter().map(|case| {
             let [width, height] = case.settings.size.map(f64::from);
-            factor * width * height * costs[&key(task, engine, &small(&case.settings))]
+            let cost = costs.get(&key(task, engine, &small(&case.settings)));
+            factor * width * height * cost.copied().unwrap_or(f64::INFINITY)
         });
         let class = format!("{} {}", task.engine, task.side());
         estimates.push(Estimate { class, seconds: seconds.collect(), repetitions: task.repetitions });
