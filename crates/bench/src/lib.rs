@@ -16,6 +16,7 @@ mod plan;
 pub mod readme;
 pub mod report;
 mod results;
+pub mod schedule;
 mod suites;
 mod table;
 

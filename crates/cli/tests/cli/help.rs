@@ -64,9 +64,15 @@ fn the_manual_has_a_page_for_each_subcommand() {
     assert!(page.contains(".TH lightmesh 1") && page.contains("lightmesh\\-render(1)"), "{page}");
     std::fs::create_dir(place.path("man")).unwrap();
     place.good(&["man", "-o", "man"]);
-    for name in
-        ["lightmesh", "lightmesh-render", "lightmesh-info", "lightmesh-compare", "lightmesh-grid", "lightmesh-export"]
-    {
+    for name in [
+        "lightmesh",
+        "lightmesh-render",
+        "lightmesh-info",
+        "lightmesh-compare",
+        "lightmesh-grid",
+        "lightmesh-export",
+        "lightmesh-bench",
+    ] {
         assert!(place.read(&format!("man/{name}.1")).len() > 200, "{name}");
     }
     assert!(place.refused(&["man", "paint"]).contains("there is no subcommand `paint`; known are render, info"));

@@ -1,5 +1,6 @@
 //! The command line as a user meets it: every subcommand and flag, exit codes, and the text of messages.
 
+mod bench;
 mod compare;
 mod devices;
 mod help;

@@ -1,0 +1,148 @@
+//! From how many lights on is the method faster than hard shadows? By the cost model, formulas (4) and (5), and by the clock.
+//!
+//! ```text
+//! wh · nL · c_long = wh · S_sphere · c_short + nL · S_total · c_long                                 (4) = (5)
+//! nL = wh · S_sphere · c_short / ((wh − S_total) · c_long)
+//! ```
+//!
+//! wh are the pixels that hit something. c_short is what the short tests took over wh · S_sphere; c_long what the shadow rays of hard
+//! shadows took over their number: both with the fewest lights that were measured. The model leaves out primary rays, which both have,
+//! and all of the method but its tests. The clock's answer lies on the straight line between the last number of lights where the method
+//! takes longer and the first where it does not.
+
+use std::collections::BTreeMap;
+
+use super::LIGHTS;
+use super::derived::keys;
+use super::published::{FIGURE_SCENE, LIGHTS_RADIUS};
+use crate::{Findings, Key, Row, Samples};
+
+/// The method and hard shadows at one number of lights.
+struct Pair<'r> {
+    lights: f64,
+    method: &'r Row,
+    hard: &'r Row,
+}
+
+/// Adds a row for each device that figure 11 was measured on.
+pub(super) fn add(findings: &mut Findings) {
+    let mut devices: BTreeMap<String, Vec<&Row>> = BTreeMap::new();
+    for row in findings.rows.iter().filter(|row| row.experiment == LIGHTS) {
+        devices.entry(format!("{:?}", keys(row, &["device", "threads"]))).or_default().push(row);
+    }
+    let (mut rows, mut notes) = (Vec::new(), Vec::new());
+    for pairs in devices.values().map(|rows| pairs(rows)) {
+        let Some(first) = pairs.first() else { continue };
+        let mut row = Row::new("figure 11, break-even", keys(first.method, &["scene", "size", "device", "threads"]));
+        predict(first, &mut row);
+        match measured(&pairs) {
+            Some(lights) => drop(row.values.insert("measured_lights".to_owned(), lights)),
+            None => notes.push(format!("{}: the method was slower with every number of lights measured.", row.id)),
+        }
+        if !row.values.contains_key("predicted_lights") {
+            notes.push(format!(
+                "{}: by the cost model the method is never faster, S_total is not below the pixels.",
+                row.id
+            ));
+        }
+        rows.push(row);
+    }
+    findings.rows.extend(rows);
+    findings.notes.extend(notes);
+}
+
+/// Both modes at each number of lights, the fewest first.
+fn pairs<'r>(rows: &[&'r Row]) -> Vec<Pair<'r>> {
+    let of_mode =
+        |mode: &str| rows.iter().copied().filter(move |row| row.keys.get("mode") == Some(&mode.into())).collect();
+    let (methods, hards): (Vec<&Row>, Vec<&Row>) = (of_mode("light-mesh"), of_mode("ray-trace"));
+    let pair = |method: &'r Row| {
+        let hard = hards.iter().find(|hard| hard.keys.get("lights") == method.keys.get("lights"))?;
+        let Some(Key::Number(lights)) = method.keys.get("lights") else { return None };
+        Some(Pair { lights: *lights, method, hard })
+    };
+    let mut pairs: Vec<Pair> = methods.into_iter().filter_map(pair).collect();
+    pairs.sort_by(|a, b| a.lights.total_cmp(&b.lights));
+    pairs
+}
+
+/// What the cost model says, and its two constants.
+fn predict(pair: &Pair, row: &mut Row) {
+    let value = |row: &Row, name: &str| row.values.get(name).copied().unwrap_or(0.0);
+    let (hits, half_ball) = (value(pair.method, "hits"), value(pair.method, "half_ball_mean"));
+    let (points, rays) = (value(pair.method, "light_points"), value(pair.hard, "shadow_rays"));
+    let (Some(short), Some(long)) = (median(pair.method, "short_tests"), median(pair.hard, "long_tests")) else {
+        return;
+    };
+    let (c_short, c_long) = (short / (hits * half_ball), long / rays);
+    let lights = hits * half_ball * c_short / ((hits - points) * c_long);
+    let figures = [
+        ("step", FIGURE_SCENE.step),
+        ("radius", LIGHTS_RADIUS),
+        ("short_test_seconds", c_short),
+        ("long_test_seconds", c_long),
+        ("predicted_lights", lights),
+    ];
+    // A negative or infinite number of lights means never; without hits or rays nothing follows.
+    let told = figures.into_iter().filter(|(_, figure)| figure.is_finite() && *figure > 0.0);
+    row.values.extend(told.map(|(name, figure)| (name.to_owned(), figure)));
+}
+
+/// What the clock says; `None` where the method is never as fast. The fewest lights where it always is.
+fn measured(pairs: &[Pair]) -> Option<f64> {
+    let lead = |pair: &Pair| Some((pair.lights, median(pair.method, "render")? - median(pair.hard, "render")?));
+    let leads: Vec<(f64, f64)> = pairs.iter().filter_map(lead).collect();
+    let first = leads.iter().position(|(_, lead)| *lead <= 0.0)?;
+    let (lights, after) = leads[first];
+    let Some(&(fewer, before)) = first.checked_sub(1).map(|index| &leads[index]) else { return Some(lights) };
+    Some(fewer + (lights - fewer) * before / (before - after))
+}
+
+fn median(row: &Row, stage: &str) -> Option<f64> {
+    row.seconds.get(stage).and_then(Samples::median)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(mode: &str, lights: f64, seconds: &[(&str, f64)], values: &[(&str, f64)]) -> Row {
+        let mut row = Row::new(LIGHTS, [("lights", lights.into()), ("mode", mode.into()), ("device", "cpu".into())]);
+        row.seconds = seconds.iter().map(|(stage, seconds)| ((*stage).to_owned(), Samples(vec![*seconds]))).collect();
+        row.values = values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+        row
+    }
+
+    /// The method takes 10 + lights / 10 seconds, hard shadows take 2 + lights.
+    fn findings(light_points: f64) -> Findings {
+        let rows = [1.0, 8.0, 16.0].into_iter().flat_map(|lights| {
+            let counts = [("hits", 1000.0), ("half_ball_mean", 20.0), ("light_points", light_points)];
+            let method = [("render", 10.0 + 0.1 * lights), ("short_tests", 8.0)];
+            let hard = [("render", 2.0 + lights), ("long_tests", lights)];
+            let rays = [("shadow_rays", 1000.0 * lights)];
+            [row("light-mesh", lights, &method, &counts), row("ray-trace", lights, &hard, &rays)]
+        });
+        Findings { rows: rows.collect(), ..Findings::default() }
+    }
+
+    #[test]
+    fn model_and_clock_name_a_number_of_lights() {
+        let mut findings = findings(100.0);
+        add(&mut findings);
+        let values = &findings.rows.last().unwrap().values;
+        assert!((values["predicted_lights"] - 8.0 / 0.9).abs() < 1e-9, "{values:?}");
+        assert!((values["measured_lights"] - 8.0 / 0.9).abs() < 1e-9, "{values:?}");
+        assert_eq!((values["short_test_seconds"], values["long_test_seconds"]), (4e-4, 1e-3));
+        assert!(findings.notes.is_empty());
+    }
+
+    #[test]
+    fn never_is_said_in_notes() {
+        let mut findings = findings(2000.0);
+        findings.rows.retain(|row| row.keys["lights"] != 16.0.into());
+        add(&mut findings);
+        let values = &findings.rows.last().unwrap().values;
+        assert!(!values.contains_key("predicted_lights") && !values.contains_key("measured_lights"), "{values:?}");
+        assert_eq!(findings.notes.len(), 2);
+    }
+}

@@ -1,0 +1,90 @@
+//! Every table and figure of the thesis.
+//!
+//! | experiment | rows | values beside the counts |
+//! |---|---|---|
+//! | `timings` | scene, lights, size, mode, step, radius, device, threads | `thesis_cpu_seconds`, `thesis_gpu_seconds`; `faster_than_thesis_cpu` and `…_gpu`: theirs over our median |
+//! | `table 1` | size, device, threads | `collect_seconds`, `total_seconds`, `share` of the list and mesh steps; the thesis' own by `thesis_…` |
+//! | `table 2` | scene, step, size, radius | `light_points`, `thesis_light_points` |
+//! | `figure 1` | samples | `rmse`, `mean_flip` against 225 samples |
+//! | `figure 11` | lights, mode, device, threads | |
+//! | `figure 11, break-even` | size, device, threads | `predicted_lights`, `measured_lights`, `short_test_seconds`, `long_test_seconds` |
+//! | `figures 12-15` | radius | `rmse`, `mean_flip` against area shadows with 225 samples |
+//!
+//! Steps are run in this order: tasks (`tasks`), small trials (`trial`), a schedule, the measurements (`runner`), and what follows from
+//! them (`derived`, `break_even`).
+
+mod break_even;
+mod derived;
+mod published;
+mod runner;
+mod task;
+mod tasks;
+#[cfg(test)]
+mod tests;
+mod trial;
+
+use std::time::Instant;
+
+use lightmesh::Observer;
+
+use crate::engine::{self, Engine};
+use crate::{BenchError, Findings, Plan};
+
+/// The method by scene, size, step and radius, and hard shadows beside it.
+const TIMINGS: &str = "timings";
+/// Area shadows with few and many samples.
+const AREA_SHADOWS: &str = "figure 1";
+/// Time by the number of lights.
+const LIGHTS: &str = "figure 11";
+/// The picture as R grows.
+const PICTURES: &str = "figures 12-15";
+
+pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings) -> Result<(), BenchError> {
+    let begin = Instant::now();
+    let engines = thesis_engines(plan)?;
+    findings.devices = engines.iter().map(|engine| engine.device.clone()).collect();
+    let tasks = tasks::tasks(plan, &engines);
+    observer.note("small trials, to plan the time");
+    let estimates = trial::estimates(&tasks, &engines, begin, plan.budget, observer)?;
+    runner::run(plan, begin, &engines, tasks, estimates, observer, findings)?;
+    derived::table_1(findings);
+    derived::table_2(findings);
+    break_even::add(findings);
+    findings.notes.extend(notes(plan, &engines));
+    Ok(())
+}
+
+/// The devices of the plan; and one thread of the processor, but in the short form.
+fn thesis_engines(plan: &Plan) -> Result<Vec<Engine>, BenchError> {
+    let mut engines = engine::engines(plan)?;
+    let many_threads = engines.iter().any(|engine| engine.thread_count.is_some_and(|threads| threads > 1));
+    if many_threads && !plan.quick {
+        engines.push(Engine::cpu(Some(1))?);
+    }
+    Ok(engines)
+}
+
+/// What a reader of the results should know.
+fn notes(plan: &Plan, engines: &[Engine]) -> Vec<String> {
+    let mut notes = vec![
+        "Scenes are built in the spirit of the thesis': their counts and sizes, not their shapes. Weight 1 and lookup half-ball, as \
+         there; rays go through the BVH, there through a grid."
+            .to_owned(),
+        "Host memory is the peak of the whole process, scene included; where the system cannot begin it anew for each picture, it \
+         is the peak so far."
+            .to_owned(),
+    ];
+    if plan.quick {
+        notes.push(
+            "Short form: 2048x2048 and one thread are left out of the timings; figure 11 has 512x512 pixels and fewer numbers of \
+             lights; pictures are smaller."
+                .to_owned(),
+        );
+    } else if engines.iter().all(|engine| engine.kind == "cpu") && engines.len() == 1 {
+        notes.push("The processor ran one thread; there is no second column.".to_owned());
+    }
+    if engines.iter().all(|engine| engine.kind == "cpu") {
+        notes.push("No GPU was used.".to_owned());
+    }
+    notes
+}

@@ -1,0 +1,126 @@
+//! The whole suite, on pictures of a few pixels.
+
+use std::collections::BTreeSet;
+use std::sync::{Mutex, OnceLock};
+use std::time::Duration;
+
+use lightmesh::{Device, Observer};
+
+use crate::{BenchError, Key, Plan, Results, Row, Suite};
+
+/// 1024 pixels become 16.
+const SHRINK: u32 = 64;
+
+#[derive(Default)]
+struct Listener {
+    notes: Mutex<Vec<String>>,
+    cancelled: bool,
+}
+
+impl Observer for Listener {
+    fn note(&self, text: &str) {
+        self.notes.lock().unwrap().push(text.to_owned());
+    }
+
+    fn cancelled(&self) -> bool {
+        self.cancelled
+    }
+}
+
+fn tiny(quick: bool) -> Plan {
+    Plan { device: Device::Cpu, threads: Some(2), repetitions: 1, shrink: SHRINK, ..Plan::new(quick) }
+}
+
+fn run(plan: &Plan) -> (Results, Vec<String>) {
+    let listener = Listener::default();
+    let results = crate::run(Suite::Thesis, plan, &listener).unwrap();
+    (results, listener.notes.into_inner().unwrap())
+}
+
+/// The whole suite, run once for all tests.
+fn whole() -> &'static (Results, Vec<String>) {
+    static WHOLE: OnceLock<(Results, Vec<String>)> = OnceLock::new();
+    WHOLE.get_or_init(|| run(&tiny(false)))
+}
+
+fn of<'r>(results: &'r Results, experiment: &'r str) -> Vec<&'r Row> {
+    results.rows.iter().filter(|row| row.experiment == experiment).collect()
+}
+
+fn word<'r>(row: &'r Row, key: &str) -> &'r str {
+    match row.keys.get(key) {
+        Some(Key::Word(word)) => word,
+        _ => "",
+    }
+}
+
+fn keys(row: &Row) -> String {
+    row.keys.keys().map(String::as_str).collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn every_experiment_is_there_once() {
+    let (results, notes) = whole();
+    let ids: BTreeSet<&str> = results.rows.iter().map(|row| row.id.as_str()).collect();
+    assert_eq!(ids.len(), results.rows.len());
+    let counts = ["timings", "table 1", "table 2", "figure 1", "figure 11", "figure 11, break-even", "figures 12-15"]
+        .map(|experiment| of(results, experiment).len());
+    // Timings: 24 cells and 8 of Garden with more lights by the method, and 8 with hard shadows, on two numbers of threads.
+    assert_eq!(counts, [2 * 40, 4, 16, 3, 14, 1, 5]);
+    assert_eq!(counts.iter().sum::<usize>(), results.rows.len());
+    assert!(notes.iter().any(|note| note.starts_with("rows 1 to 1 of 102, at least ")), "{notes:?}");
+    assert!(results.notes.iter().all(|note| !note.contains("want of time")), "{:?}", results.notes);
+    assert_eq!((results.suite.as_str(), results.version), ("thesis", Results::VERSION));
+}
+
+#[test]
+fn the_cells_of_the_thesis_are_complete() {
+    let (results, _) = whole();
+    let timings = of(results, "timings");
+    let one_thread: Vec<&&Row> = timings.iter().filter(|row| row.keys["threads"] == 1.0.into()).collect();
+    let method = one_thread.iter().filter(|row| word(row, "mode") == "light-mesh");
+    let cells: Vec<&&&Row> =
+        method.filter(|row| word(row, "scene") != "garden" || row.keys["lights"] == 1.0.into()).collect();
+    assert_eq!(cells.len(), 24);
+    for row in cells {
+        assert_eq!(keys(row), "device lights mode radius scene size step threads", "{}", row.id);
+        for value in ["light_points", "half_ball_mean", "used_mean", "hits", "pixels"] {
+            assert!(row.values[value] > 0.0, "{value} of {}", row.id);
+        }
+        for stage in ["primary_rays", "short_tests", "collect", "long_tests", "shade", "render"] {
+            assert!(row.seconds[stage].min().unwrap() > 0.0, "{stage} of {}", row.id);
+        }
+    }
+    let hard = one_thread.iter().filter(|row| word(row, "mode") == "ray-trace");
+    assert!(hard.clone().all(|row| keys(row) == "device lights mode scene size threads"));
+    assert_eq!(hard.count(), 8);
+}
+
+#[test]
+fn pictures_refer_to_the_reference() {
+    let (results, _) = run(&tiny(true));
+    let reference = "figure 1: area shadows, 225 per light";
+    let others = results.pictures.iter().filter(|picture| picture.reference.as_deref() == Some(reference));
+    assert_eq!((results.pictures.len(), others.count()), (8, 7));
+    assert_eq!((results.pictures[0].id.as_str(), &results.pictures[0].reference), (reference, &None));
+    // The first bytes of every PNG file, in Base64.
+    assert!(results.pictures.iter().all(|picture| picture.png.starts_with("iVBORw0KGgo")));
+    let radii = of(&results, "figures 12-15");
+    assert!(radii.iter().all(|row| row.values["mean_flip"] > 0.0 && row.values["rmse"] > 0.0));
+    assert!(results.quick && results.notes.iter().any(|note| note.starts_with("Short form: ")));
+}
+
+#[test]
+fn without_time_rows_are_left_out_and_named() {
+    let (results, _) = run(&Plan { budget: Duration::from_nanos(1), ..tiny(true) });
+    assert!(results.rows.is_empty() && results.pictures.is_empty());
+    let note = results.notes.iter().find(|note| note.starts_with("For want of time left out: ")).unwrap();
+    assert!(note.contains("timings: ") && note.contains("figure 11: "), "{note}");
+}
+
+#[test]
+fn a_suite_can_be_stopped() {
+    let listener = Listener { cancelled: true, ..Listener::default() };
+    let stopped = crate::run(Suite::Thesis, &tiny(true), &listener);
+    assert!(matches!(stopped, Err(BenchError::Render(lightmesh::RenderError::Cancelled))), "{stopped:?}");
+}

@@ -1,0 +1,84 @@
+//! `lightmesh bench`.
+
+use serde_json::{Value, json};
+
+use crate::run::Place;
+
+/// Results of one row whose render took about `seconds`.
+fn results(id: &str, seconds: f64) -> Value {
+    let samples: Vec<f64> = [1.0, 1.01, 1.02, 1.01, 1.0].iter().map(|factor| factor * seconds).collect();
+    json!({
+        "version": 1, "suite": "thesis", "quick": false, "started": "2026-01-31T12:00:00Z", "seconds": 1.0,
+        "program": { "name": "lightmesh", "version": "0.1.0", "commit": null, "command": "lightmesh bench thesis" },
+        "machine": { "cpu": "one", "threads": 2, "memory_bytes": 1, "os": "linux", "gpus": [] },
+        "rows": [{ "id": id, "experiment": "timings", "keys": { "scene": "garden" }, "seconds": { "render": samples } }],
+    })
+}
+
+fn place() -> Place {
+    let place = Place::new();
+    for (name, id, seconds) in [("old", "a", 1.0), ("same", "a", 1.0), ("slow", "a", 1.2), ("other", "b", 1.0)] {
+        place.write(&format!("{name}.json"), &results(id, seconds).to_string());
+    }
+    place
+}
+
+#[test]
+fn suites_are_listed() {
+    let place = Place::new();
+    let list = place.good(&["bench", "--list"]).stdout;
+    let names: Vec<&str> = list.lines().filter_map(|line| line.split(' ').next()).collect();
+    assert_eq!(names, ["thesis", "quality", "rays"]);
+    assert!(place.refused(&["bench", "speed"]).contains("there is no suite `speed`: choose thesis, quality or rays"));
+    assert!(place.refused(&["bench", "thesis", "--budget", "soon"]).contains("for instance 15m"));
+    assert!(place.refused(&["bench", "thesis", "--json", "no/a.json"]).contains("the directory no does not exist"));
+    place.refused(&["bench"]);
+    place.refused(&["bench", "--list", "thesis"]);
+}
+
+#[test]
+fn equal_results_pass() {
+    let place = place();
+    let done = place.good(&["bench", "compare", "old.json", "same.json"]);
+    assert!(done.stdout.contains("same    a [render]") && done.stderr.is_empty(), "{done:?}");
+    // Faster is no regression.
+    place.good(&["bench", "compare", "slow.json", "old.json"]);
+}
+
+#[test]
+fn a_doctored_result_is_exit_code_1() {
+    let place = place();
+    let done = place.run(&["bench", "compare", "old.json", "slow.json", "--json"]);
+    assert_eq!((done.code, done.stderr.as_str()), (Some(1), "1 row is slower beyond the noise\n"));
+    let json: Value = serde_json::from_str(&done.stdout).unwrap();
+    assert_eq!((&json["regressions"], &json["stages"][0]["verdict"]), (&json!(1), &json!("slower")));
+    assert!((json["stages"][0]["ratio"].as_f64().unwrap() - 1.2).abs() < 1e-9, "{json}");
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let place = place();
+    place.write("broken.json", "{\"version\": 1,");
+    let mut later = results("a", 1.0);
+    later["version"] = json!(9);
+    place.write("later.json", &later.to_string());
+    let refused = |new: &str| place.refused(&["bench", "compare", "old.json", new]);
+    assert!(refused("none.json").contains("cannot read none.json"));
+    assert!(refused("broken.json").contains("broken.json does not hold results of a suite"));
+    assert!(refused("room.toml").contains("room.toml does not hold results of a suite"));
+    assert!(refused("later.json").contains("later.json has version 9"));
+    assert!(refused("other.json").contains("no row in common"));
+}
+
+#[test]
+fn without_time_a_suite_says_what_it_left_out() {
+    let place = Place::new();
+    let flags = ["--quick", "--budget", "0.001s", "--device", "cpu", "--json", "out.json"];
+    let done = place.good(&[&["bench", "thesis"], &flags[..]].concat());
+    assert!(done.stdout.contains("note: For want of time left out: "), "{done:?}");
+    assert!(done.stderr.contains("rows 1 to 1 of "), "{done:?}");
+    let json = place.json("out.json");
+    assert_eq!((&json["suite"], &json["quick"], &json["rows"]), (&json!("thesis"), &json!(true), &json!([])));
+    let command = json["program"]["command"].as_str().unwrap();
+    assert_eq!(command, "lightmesh bench thesis --quick --budget 0.001s --device cpu --json out.json");
+}
