@@ -4,6 +4,7 @@ use lightmesh::render::accel::{GridError, GridSaveError};
 use lightmesh::scene::{ExportError, UnknownCamera};
 use lightmesh::{LoadError, RenderError, SaveError, image};
 use lightmesh_bench::BenchError;
+use lightmesh_bench::report::ReportError;
 
 use crate::output::OutputError;
 use crate::plan::PlanError;
@@ -44,6 +45,8 @@ pub(crate) enum Failure {
     Compare(#[from] image::CompareError),
     #[error(transparent)]
     Bench(Box<BenchError>),
+    #[error(transparent)]
+    Report(#[from] ReportError),
     /// A measure of a comparison is above what is accepted.
     #[error("{0}")]
     Exceeded(String),

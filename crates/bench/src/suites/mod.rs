@@ -2,7 +2,9 @@
 
 mod quality;
 mod rays;
+mod subjects;
 mod thesis;
+mod turns;
 
 use std::time::Instant;
 

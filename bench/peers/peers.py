@@ -1,0 +1,159 @@
+"""Runs lightmesh and its peers on the same scenes, in turn, and keeps what it finds as `lightmesh bench --json` does.
+
+    python bench/peers/peers.py builtin:childpark bunny.ply -o peers.json
+
+See README.md beside this file.
+"""
+
+import argparse
+import datetime
+import json
+import os
+import platform
+import shlex
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import flip_evaluator
+import numpy as np
+
+import rays
+import renderers
+from scene import Scene
+
+REFERENCE_SEED = 1000
+"""Apart from the seeds of the measured pictures, which are their rounds."""
+
+
+def main():
+    start, started, plan = time.perf_counter(), now(), arguments()
+    rows, notes = [], []
+    for source in plan.scenes:
+        with tempfile.TemporaryDirectory() as folder:
+            scene = Scene.open(plan.lightmesh, source, Path(folder))
+            print(f"{scene.name}: {len(scene.triangles)} triangles, {len(scene.lights)} lights", file=sys.stderr)
+            rows += ray_rows(plan, scene, Path(folder), notes)
+            rows += shadow_rows(plan, scene, Path(folder), notes)
+    version = subprocess.run([plan.lightmesh, "--version"], check=True, stdout=subprocess.PIPE, text=True).stdout.split()[1]
+    results = {
+        "version": 1,
+        "suite": "peers",
+        "quick": False,
+        "program": {"name": "lightmesh and peers", "version": version, "commit": None, "command": shlex.join(["python", *sys.argv])},
+        "machine": machine(),
+        "started": started,
+        "seconds": time.perf_counter() - start,
+        "rows": rows,
+        "pictures": [],
+        "notes": list(dict.fromkeys(notes)),
+    }
+    plan.output.write_text(json.dumps(results, indent=2) + "\n")
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description="Runs lightmesh and its peers side by side.")
+    parser.add_argument("scenes", nargs="+", metavar="SCENE", help="what lightmesh can open")
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE", help="where the results go, as JSON")
+    parser.add_argument("--lightmesh", default="target/release/lightmesh", metavar="PROGRAM", help="default: %(default)s")
+    parser.add_argument("--size", type=int, default=256, help="pixels of a side, default %(default)s")
+    parser.add_argument("--samples", type=int, nargs="+", default=[1, 4, 16, 64], help="default: 1 4 16 64")
+    parser.add_argument("--reference", type=int, default=1024, metavar="N", help="samples of the references, default %(default)s")
+    parser.add_argument("--repetitions", type=int, default=5, metavar="N", help="rounds that count, default %(default)s")
+    parser.add_argument("--threads", type=int, default=os.cpu_count(), help="for pictures; rays take one; default: all")
+    parser.add_argument("--without", nargs="+", default=[], choices=["embree", "mitsuba", "cycles"], help="peers to leave out")
+    return parser.parse_args()
+
+
+def peer(plan, notes, name, make):
+    """The peer as a list, which is empty where it is unwanted or its wheel is missing."""
+    if name in plan.without:
+        notes.append(f"{name} is left out: --without names it.")
+        return []
+    try:
+        made = make()
+    except ImportError as error:
+        notes.append(f"{name} is left out: {error}.")
+        return []
+    notes.append(f"{made.name} is version {made.version}.")
+    return [made]
+
+
+def ray_rows(plan, scene, folder, notes):
+    """Million rays a second of each program and kind of rays."""
+    casters = [rays.Lightmesh(plan.lightmesh, scene, plan.size, folder)]
+    casters += peer(plan, notes, "embree", lambda: rays.Embree(scene, plan.size))
+    tasks = {(caster.name, kind): (lambda caster=caster, kind=kind: caster.cast(kind)) for kind in rays.KINDS for caster in casters}
+    rows = []
+    for (program, kind), runs in in_turn(plan, lambda _, task: task(), tasks).items():
+        keys = {"scene": scene.name, "program": program, "rays": kind, "size": plan.size, "threads": 1}
+        seconds = [seconds for _, seconds in runs]
+        values = {"rays": runs[0][0], "million_per_second": runs[0][0] / statistics.median(seconds) / 1e6}
+        rows.append(row("rays", keys, {"render": seconds}, values))
+    return rows
+
+
+def shadow_rows(plan, scene, folder, notes):
+    """Seconds and errors of each program and number of samples."""
+    area, mesh = (renderers.Lightmesh(plan.lightmesh, scene, mode, plan.size, plan.threads, folder) for mode in ("area", "light-mesh"))
+    others = peer(plan, notes, "mitsuba", lambda: renderers.Mitsuba(scene, plan.size, plan.threads))
+    others += peer(plan, notes, "cycles", lambda: renderers.Cycles(scene, plan.size, plan.threads, folder))
+    references = {renderer.name: renderer.render(plan.reference, REFERENCE_SEED)[1] for renderer in [area, *others]}
+    # The light mesh is held against what it stands for.
+    references[mesh.name] = references[area.name]
+    # What remains between two references is how far they are from having converged.
+    left = {renderer.name: errors(references[renderer.name], renderer.render(plan.reference, REFERENCE_SEED + 1)[1])[0] for renderer in [area, *others]}
+    tasks = {(renderer.name, n): (lambda seed, r=renderer, n=n: r.render(n, seed)) for n in plan.samples for renderer in [area, mesh, *others]}
+    rows = []
+    for (program, samples), runs in in_turn(plan, lambda seed, task: task(seed), tasks).items():
+        keys = {"scene": scene.name, "program": program, "samples": samples, "size": plan.size, "threads": "all"}
+        found = np.mean([errors(references[program], picture) for _, picture in runs], axis=0)
+        values = {"rmse": found[0], "mean_flip": found[1], "reference_rmse": left.get(program, left[area.name])}
+        rows.append(row("soft shadows", keys, {"render": [seconds for seconds, _ in runs]}, values))
+    return rows
+
+
+def in_turn(plan, run, tasks):
+    """Results of each task in each round. Round 0 warms up and does not count."""
+    results = {key: [] for key in tasks}
+    for round_ in range(plan.repetitions + 1):
+        for key, task in tasks.items():
+            result = run(round_, task)
+            if round_ > 0:
+                results[key].append(result)
+    return results
+
+
+def errors(reference, picture):
+    """RMSE of linear values and mean FLIP, both of what a screen can show."""
+    shown = [np.clip(image, 0, 1).astype(np.float32) for image in (reference, picture)]
+    curved = [np.where(image <= 0.0031308, 12.92 * image, 1.055 * image ** (1 / 2.4) - 0.055) for image in shown]
+    flip = flip_evaluator.evaluate(*curved, "LDR", applyMagma=False)[1]
+    return float(np.sqrt(np.mean((shown[0] - shown[1]) ** 2))), float(flip)
+
+
+def row(experiment, keys, seconds, values):
+    words = " ".join(f"{name}={key}" for name, key in sorted(keys.items()))
+    values = {name: float(value) for name, value in values.items()}
+    return {"id": f"{experiment}: {words}", "experiment": experiment, "keys": keys, "seconds": seconds, "values": values}
+
+
+def machine():
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        cpu = next(line.split(": ", 1)[1] for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        cpu = platform.processor()
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") if hasattr(os, "sysconf") else 0
+    return {"cpu": cpu, "threads": os.cpu_count(), "memory_bytes": memory, "os": platform.system().lower(), "gpus": []}
+
+
+def now():
+    return datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,198 @@
+"""The programs that make pictures, each as `render(samples, seed)`, which gives seconds and linear colours, row 0 at the top.
+
+All look through the middle of each pixel: what differs is the shadows alone, not how edges are smoothed.
+"""
+
+import json
+import math
+import subprocess
+import time
+
+import flip_evaluator
+import numpy as np
+
+from scene import KD
+
+
+class Lightmesh:
+    """Area mode: `samples` stratified shadow rays for each light and pixel. Light-mesh mode: as many for each light point."""
+
+    def __init__(self, program, scene, mode, size, threads, folder):
+        self.name, self.folder = f"lightmesh {mode}", folder
+        self.version = subprocess.run([program, "--version"], check=True, stdout=subprocess.PIPE, text=True).stdout.split()[1]
+        self.command = [program, "render", scene.file, "-q", "--device", "cpu", "--mode", mode, "--threads", str(threads)]
+        self.command += ["--size", f"{size}x{size}", "-o", folder / "picture.exr", "--stats", folder / "stats.json"]
+
+    def render(self, samples, seed):
+        subprocess.run([*self.command, "--samples", str(samples), "--seed", str(seed)], check=True)
+        stats = json.loads((self.folder / "stats.json").read_text())
+        return stats["seconds"]["render"], flip_evaluator.load(str(self.folder / "picture.exr"))
+
+
+class Mitsuba:
+    """The `direct` integrator, compiled by LLVM, with the sampler `multijitter`: the default one, `independent`, has far more noise."""
+
+    def __init__(self, scene, size, threads):
+        import drjit
+        import mitsuba
+
+        self.name, self.drjit, self.mitsuba = "Mitsuba", drjit, mitsuba
+        compiled = drjit.has_backend(drjit.JitBackend.LLVM)
+        mitsuba.set_variant("llvm_ad_rgb" if compiled else "scalar_rgb")
+        self.version = f"{mitsuba.__version__}, {mitsuba.variant()}"
+        # Scalar code asks for each number on its own, which Python is too slow for: there samples cover the pixel.
+        sampler = centred(mitsuba) if compiled else "multijitter"
+        if compiled:
+            drjit.set_thread_count(threads)
+        self.scene = mitsuba.load_dict(self.describe(scene, size, sampler))
+
+    def describe(self, scene, size, sampler):
+        transform, camera = self.mitsuba.ScalarTransform4f, scene.camera
+        grey = {"type": "diffuse", "reflectance": {"type": "rgb", "value": KD}}
+        film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
+        view = transform().look_at(*(v.tolist() for v in (camera.position, camera.position + camera.direction, camera.up)))
+        parts = {
+            "type": "scene",
+            # Emitters alone are sampled, as in area mode: with the material, half of the rays would miss small lights.
+            "integrator": {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0, "hide_emitters": True},
+            "sensor": {"type": "perspective", "fov": camera.vfov, "to_world": view, "film": film, "sampler": {"type": sampler}},
+            "mesh": {
+                "type": "ply",
+                "filename": str(scene.file.with_suffix(".ply")),
+                "face_normals": True,
+                "bsdf": {"type": "twosided", "bsdf": grey},
+            },
+        }
+        for number, light in enumerate(scene.lights):
+            columns = np.eye(4)
+            columns[:3] = np.stack([light.u / 2, light.v / 2, np.cross(light.u, light.v) / light.area, light.position], 1)
+            if columns[:3, 2] @ light.direction < 0:
+                columns[:3, [0, 2]] *= -1
+            radiance = {"type": "rgb", "value": float(light.intensity / light.area)}
+            emitter = {"type": "area", "radiance": radiance}
+            parts[f"light{number}"] = {"type": "rectangle", "to_world": transform(columns), "emitter": emitter}
+        return parts
+
+    def render(self, samples, seed):
+        start = time.perf_counter()
+        picture = self.mitsuba.render(self.scene, spp=samples, seed=seed)
+        if self.drjit.is_jit_v(picture):
+            self.drjit.eval(picture)
+            self.drjit.sync_thread()
+        return time.perf_counter() - start, np.array(picture)[..., :3]
+
+
+def centred(mitsuba):
+    """Registers a sampler like `multijitter`, whose first point for each ray, the place in the pixel, is the middle."""
+
+    class Centred(mitsuba.Sampler):
+        def __init__(self, props):
+            super().__init__(props)
+            self.inner, self.fresh = mitsuba.load_dict({"type": "multijitter"}), True
+            for name in ("set_sample_count", "sample_count", "set_samples_per_wavefront", "wavefront_size", "schedule_state"):
+                setattr(self, name, getattr(self.inner, name))
+
+        def fork(self):
+            return self
+
+        clone = fork
+
+        def seed(self, seed, wavefront_size=2**32 - 1):
+            self.fresh = True
+            self.inner.seed(seed, wavefront_size)
+
+        def advance(self):
+            self.fresh = True
+            self.inner.advance()
+
+        def next_1d(self, active=True):
+            return self.inner.next_1d(active)
+
+        def next_2d(self, active=True):
+            if self.fresh:
+                self.fresh = False
+                return mitsuba.Point2f(0.5)
+            return self.inner.next_2d(active)
+
+    mitsuba.register_sampler("centred", Centred)
+    return "centred"
+
+
+class Cycles:
+    """Blender's path tracer, without bounces, denoising or adaptive sampling. Its seconds hold what it does before each picture."""
+
+    def __init__(self, scene, size, threads, folder):
+        import bpy
+
+        self.name, self.bpy, self.version = "Cycles", bpy, bpy.app.version_string
+        self.path = str(folder / "cycles.exr")
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        self.context = bpy.context.scene
+        self.set_up(size, threads)
+        self.add_mesh(scene)
+        self.add_camera(scene.camera)
+        for light in scene.lights:
+            self.add_light(light)
+
+    def set_up(self, size, threads):
+        render, cycles = self.context.render, self.context.cycles
+        render.engine = "CYCLES"
+        cycles.device, cycles.max_bounces = "CPU", 0
+        cycles.use_adaptive_sampling = cycles.use_denoising = False
+        # The narrowest filter there is: a hundredth of a pixel.
+        cycles.pixel_filter_type, cycles.filter_width = "GAUSSIAN", 0.01
+        render.resolution_x = render.resolution_y = size
+        render.threads_mode, render.threads = "FIXED", threads
+        # Keeps the acceleration structure from picture to picture.
+        render.use_persistent_data = True
+        render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
+
+    def add(self, name, data, vectors, place):
+        """Puts an object that has these axes, as columns, at a place."""
+        import mathutils
+
+        thing = self.bpy.data.objects.new(name, data)
+        matrix = np.eye(4)
+        matrix[:3] = np.stack([*vectors, place], 1)
+        thing.matrix_world = mathutils.Matrix(matrix.tolist())
+        self.context.collection.objects.link(thing)
+        return thing
+
+    def add_mesh(self, scene):
+        mesh = self.bpy.data.meshes.new("mesh")
+        mesh.from_pydata(scene.positions, [], scene.triangles)
+        material = self.bpy.data.materials.new("grey")
+        material.use_nodes = True
+        nodes = material.node_tree.nodes
+        nodes.clear()
+        diffuse, output = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeOutputMaterial")
+        diffuse.inputs["Color"].default_value = (KD, KD, KD, 1)
+        material.node_tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
+        mesh.materials.append(material)
+        self.add("mesh", mesh, np.eye(3), np.zeros(3))
+
+    def add_camera(self, camera):
+        data = self.bpy.data.cameras.new("camera")
+        data.angle, data.clip_start, data.clip_end = math.radians(camera.vfov), 1e-4, 1e6
+        right = np.cross(camera.direction, camera.up)
+        axes = [right, np.cross(right, camera.direction), -camera.direction]
+        self.context.camera = self.add("camera", data, axes, camera.position)
+
+    def add_light(self, light):
+        data = self.bpy.data.lights.new("light", "AREA")
+        data.shape, data.size, data.size_y = "RECTANGLE", np.linalg.norm(light.u), np.linalg.norm(light.v)
+        # Watts of an emitter that follows Lambert's law.
+        data.energy = math.pi * light.intensity
+        across = light.u / data.size
+        thing = self.add("light", data, [across, np.cross(-light.direction, across), -light.direction], light.position)
+        thing.visible_camera = False
+
+    def render(self, samples, seed):
+        self.context.cycles.samples, self.context.cycles.seed = samples, seed
+        # Without this the last picture comes again: nothing tells Blender that these settings changed.
+        self.context.update_tag()
+        start = time.perf_counter()
+        self.bpy.ops.render.render()
+        seconds = time.perf_counter() - start
+        self.bpy.data.images["Render Result"].save_render(self.path)
+        return seconds, flip_evaluator.load(self.path)

@@ -1,0 +1,184 @@
+//! Errors against converged area shadows, and what equal errors cost.
+//!
+//! | experiment | rows | values beside the counts |
+//! |---|---|---|
+//! | `reference` | scene | `samples`; `visibility_rmse`, `mean_flip`: how far it is from having converged |
+//! | `errors` | scene, mode, step, radius, weight, emitter, samples | `visibility_rmse`, `rmse`, `mean_flip` |
+//! | `equal error` | a light mesh, and by which measure | `error`, `seconds`, `rays`, `short_tests`; `area_…`: what shadow rays cost |
+//! | `equal time` | scene | `samples` that take as long as the light mesh, and the errors of both |
+//!
+//! The rival is area mode: n stratified shadow rays a pixel and light, on the same tracer. Its cost at an error is interpolated between
+//! the n that were measured, linear in the logarithms ([`curve`]). Lights are balls, as large as area mode strews point lights; the
+//! emitter `point` is the thesis' light mesh, which takes their middles. Each scene has an equal share of the time.
+
+mod cases;
+mod curve;
+mod errors;
+mod rival;
+#[cfg(test)]
+mod tests;
+
+use std::time::{Duration, Instant};
+
+use lightmesh::render::PreparedScene;
+use lightmesh::{Mode, Observer, Settings, Step};
+
+use self::cases::{Case, Emitter};
+use self::errors::{Errors, Reference};
+use super::subjects::{Subject, paths};
+use super::turns::{Clock, Turns};
+use crate::engine::{self, Engine};
+use crate::measure::{Measured, Silent, Variant};
+use crate::{BenchError, Findings, Key, Plan, Row};
+
+/// Pixels of a side, and in the short form.
+const SIDES: [u32; 2] = [512, 256];
+
+/// A scene, ready to be rendered in every way.
+struct Study<'a> {
+    plan: &'a Plan,
+    subject: &'a Subject,
+    /// With lights that have a size.
+    balls: PreparedScene<'a>,
+    /// With point lights.
+    points: PreparedScene<'a>,
+    side: u32,
+    reference: Reference,
+    observer: &'a dyn Observer,
+}
+
+/// A case with what was found.
+struct Outcome {
+    case: Case,
+    errors: Errors,
+    measured: Measured,
+}
+
+pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings) -> Result<(), BenchError> {
+    let clock = Clock::new(plan.budget);
+    let engines = engine::engines(plan)?;
+    findings.devices = engines.iter().map(|engine| engine.device.clone()).collect();
+    let paths = paths(plan);
+    for index in 0..paths.len() {
+        let subject = Subject::open(&paths, index)?;
+        observer.note(&format!("scene {} of {}: {}", index + 1, paths.len(), subject.name));
+        study(plan, &subject, &engines, clock.share(paths.len() - index), observer, findings)?;
+    }
+    Ok(())
+}
+
+/// All about one scene within a share of the time. The first device, which is the fastest, makes the reference and the pictures.
+fn study(
+    plan: &Plan,
+    subject: &Subject,
+    engines: &[Engine],
+    share: Duration,
+    observer: &dyn Observer,
+    findings: &mut Findings,
+) -> Result<(), BenchError> {
+    let (begin, side) = (Instant::now(), plan.side(SIDES[usize::from(plan.quick)]));
+    let (scene, settings, silent) = (subject.with_balls(), Settings::default(), Silent(observer));
+    let balls = engines[0].renderer.prepare(&scene, &settings, &silent)?;
+    let points = engines[0].renderer.prepare(&subject.scene, &settings, &silent)?;
+    let reference = Reference::converge(plan, &engines[0], &balls, side, share, observer)?;
+    findings.notes.extend(reference.note(&subject.name));
+    let study = Study { plan, subject, balls, points, side, reference, observer };
+    findings.rows.push(study.reference_row());
+    let step = study.step(&engines[0])?;
+    for (index, engine) in engines.iter().enumerate() {
+        let left = share.saturating_sub(begin.elapsed()) / (engines.len() - index) as u32;
+        let outcomes = study.measure(engine, step, left, findings)?;
+        findings.rows.extend(outcomes.iter().map(|outcome| {
+            study.row("errors", engine, outcome.case.keys.clone(), |row| {
+                outcome.errors.fill(row);
+                outcome.measured.fill(row);
+            })
+        }));
+        rival::compare(&study, engine, &outcomes, index == 0, findings)?;
+    }
+    Ok(())
+}
+
+impl Study<'_> {
+    /// The step h to vary: the scene's own, or the automatic one for pictures of this size.
+    fn step(&self, engine: &Engine) -> Result<f32, BenchError> {
+        if let Some(step) = self.subject.step {
+            return Ok(step);
+        }
+        let settings = Settings { size: [self.side; 2], step: Some(Step::Auto), ..Settings::default() };
+        let frame = engine.renderer.render_prepared(&self.points, &settings, &Silent(self.observer))?;
+        Ok(frame.stats.settings.step.unwrap_or(1.0))
+    }
+
+    /// Errors first, for as many cases as half of the time suffices; then those are timed.
+    fn measure(
+        &self,
+        engine: &Engine,
+        step: f32,
+        share: Duration,
+        findings: &mut Findings,
+    ) -> Result<Vec<Outcome>, BenchError> {
+        let begin = Instant::now();
+        let cases = cases::cases(step, self.side, self.subject.step.is_some());
+        let wanted = cases.len();
+        let mut found = Vec::with_capacity(wanted);
+        for case in cases {
+            // The cost of shadow rays is what everything else is held against.
+            if case.settings.mode == Mode::LightMesh && begin.elapsed() >= share / 2 {
+                break;
+            }
+            found.push((self.errors(engine, &case)?, case));
+        }
+        let variants: Vec<Variant> = found.iter().map(|(_, case)| self.variant(engine, case, &case.settings)).collect();
+        let left = share.saturating_sub(begin.elapsed());
+        let mut turns = Turns::take(&variants, self.plan.repetitions, left, self.observer)?;
+        turns.left_out += wanted - found.len();
+        let what = format!("{} on {}", self.subject.name, engine.kind);
+        findings.notes.extend(turns.notes(&what, self.plan.repetitions));
+        let outcomes = found.into_iter().zip(turns.measured);
+        Ok(outcomes.map(|((errors, case), measured)| Outcome { case, errors, measured }).collect())
+    }
+
+    /// Renders a case with layers, which are no part of what is timed.
+    fn errors(&self, engine: &Engine, case: &Case) -> Result<Errors, BenchError> {
+        let layered = Settings { layers: true, ..case.settings.clone() };
+        let frame = engine.renderer.render_prepared(self.scene(case.emitter), &layered, &Silent(self.observer))?;
+        Ok(Errors::between(&self.reference.frame, &frame.image)?)
+    }
+
+    fn scene(&self, emitter: Emitter) -> &PreparedScene<'_> {
+        match emitter {
+            Emitter::Ball => &self.balls,
+            Emitter::Point => &self.points,
+        }
+    }
+
+    fn variant<'v>(&'v self, engine: &'v Engine, case: &Case, settings: &Settings) -> Variant<'v> {
+        Variant { renderer: &engine.renderer, scene: self.scene(case.emitter), settings: settings.clone() }
+    }
+
+    /// A row of this scene on a device, filled by `fill`.
+    fn row(
+        &self,
+        experiment: &str,
+        engine: &Engine,
+        keys: Vec<(&'static str, Key)>,
+        fill: impl FnOnce(&mut Row),
+    ) -> Row {
+        let keys = self.keys().into_iter().chain(keys).chain(engine.keys());
+        let mut row = Row::new(experiment, keys);
+        fill(&mut row);
+        row
+    }
+
+    fn reference_row(&self) -> Row {
+        let mut row = Row::new("reference", self.keys());
+        self.reference.residue.fill(&mut row);
+        row.values.insert("samples".to_owned(), f64::from(self.reference.samples));
+        row
+    }
+
+    fn keys(&self) -> Vec<(&'static str, Key)> {
+        vec![("scene", self.subject.name.as_str().into()), ("size", f64::from(self.side).into())]
+    }
+}
