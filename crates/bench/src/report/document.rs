@@ -171,7 +171,10 @@ impl Table {
 
     /// Columns next to each other below one heading, with how many they are.
     pub(crate) fn groups(&self) -> Vec<(&str, usize)> {
-        self.columns.chunk_by(|a, b| a.group == b.group).map(|columns| (columns[0].group.as_str(), columns.len())).collect()
+        self.columns
+            .chunk_by(|a, b| a.group == b.group)
+            .map(|columns| (columns[0].group.as_str(), columns.len()))
+            .collect()
     }
 }
 

@@ -3,8 +3,8 @@
 use std::io;
 use std::path::PathBuf;
 
-use lightmesh_files::TargetError;
 use lightmesh::image::{CompareError, DecodeError, EncodeError};
+use lightmesh_files::TargetError;
 
 use crate::BenchError;
 

@@ -27,10 +27,10 @@ pub(crate) fn section(runs: &Runs) -> Option<Section> {
     findings.sort_by_key(|finding| finding.verdict);
     let intro = "Each sentence is computed from the rows below: medians of whole pictures, the same scene, size and lights, at the same \
                  place.";
-    Some(Section::new("Where the method wins, and where it loses", vec![
-        Block::Text(intro.to_owned()),
-        Block::Findings(findings),
-    ]))
+    Some(Section::new(
+        "Where the method wins, and where it loses",
+        vec![Block::Text(intro.to_owned()), Block::Findings(findings)],
+    ))
 }
 
 /// The method's time against that of another mode, for each scene, number of lights, place and number of samples.
@@ -75,9 +75,10 @@ fn named(scene: &str) -> String {
 /// From how many lights on the method is ahead, by the clock and by the model.
 fn break_even(contest: &Contest) -> Finding {
     let place = &contest.title;
-    let predicted = contest
-        .predicted
-        .map_or_else(|| "by the cost model never".to_owned(), |lights| format!("the cost model says {}", lights_text(lights)));
+    let predicted = contest.predicted.map_or_else(
+        || "by the cost model never".to_owned(),
+        |lights| format!("the cost model says {}", lights_text(lights)),
+    );
     let most = contest.most().map(numbers::setting).unwrap_or_default();
     match contest.break_even() {
         Some(lights) => Finding::new(
@@ -89,7 +90,9 @@ fn break_even(contest: &Contest) -> Finding {
         ),
         None => Finding::new(
             Verdict::Loses,
-            format!("{place}: with up to {most} lights the light mesh takes more time than hard shadows ({predicted})."),
+            format!(
+                "{place}: with up to {most} lights the light mesh takes more time than hard shadows ({predicted})."
+            ),
         ),
     }
 }

@@ -38,7 +38,8 @@ fn subject(row: &Measured) -> String {
 }
 
 fn plot(experiment: &str, (error, title): (&str, &str), subject: &str, rows: &[Measured]) -> Option<Plot> {
-    let rows: Vec<Measured> = rows.iter().filter(|row| row.value(error).is_some_and(|error| error > 0.0)).copied().collect();
+    let rows: Vec<Measured> =
+        rows.iter().filter(|row| row.value(error).is_some_and(|error| error > 0.0)).copied().collect();
     let curves = curves(&rows, |row| Some((1e3 * whole(row)?, row.value(error)?)));
     (!curves.is_empty()).then(|| Plot {
         name: slug(&format!("{experiment} {subject} {error}")),
@@ -93,9 +94,8 @@ pub(crate) fn findings(runs: &Runs) -> Vec<Finding> {
 fn equal_error(subject: &str, (error, title): (&str, &str), rows: &[Measured]) -> Option<Finding> {
     let points = |mode: &str| {
         let rows = rows.iter().filter(|row| row.is("mode", mode));
-        let mut points: Vec<(f64, f64)> = rows
-            .filter_map(|row| Some((row.value(error).filter(|error| *error > 0.0)?, whole(row)?)))
-            .collect();
+        let mut points: Vec<(f64, f64)> =
+            rows.filter_map(|row| Some((row.value(error).filter(|error| *error > 0.0)?, whole(row)?))).collect();
         points.sort_by(|a, b| b.0.total_cmp(&a.0));
         points
     };
