@@ -35,7 +35,9 @@ pub struct ReadmeError {
 #[derive(Debug, thiserror::Error)]
 pub enum ReadmeFault {
     /// It is not of the form that is understood.
-    #[error("`{0}` is not of the form `<!-- from FILE.json: TABLE; where COLUMN=VALUE; columns NAME as TITLE -->`; correct it")]
+    #[error(
+        "`{0}` is not of the form `<!-- from FILE.json: TABLE; where COLUMN=VALUE; columns NAME as TITLE -->`; correct it"
+    )]
     Form(String),
     /// There are no such results.
     #[error(transparent)]

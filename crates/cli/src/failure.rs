@@ -44,9 +44,9 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Compare(#[from] image::CompareError),
     #[error(transparent)]
-    Bench(BenchError),
+    Bench(Box<BenchError>),
     #[error(transparent)]
-    Report(#[from] ReportError),
+    Report(Box<ReportError>),
     /// A measure of a comparison is above what is accepted.
     #[error("{0}")]
     Exceeded(String),
@@ -69,8 +69,14 @@ impl From<BenchError> for Failure {
             // With the exit code of the render that could not be made.
             BenchError::Render(error) => Failure::Render(error),
             BenchError::Scene(error) => Failure::Load(error),
-            other => Failure::Bench(other),
+            other => Failure::Bench(Box::new(other)),
         }
+    }
+}
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Failure {
+        Failure::Report(Box::new(error))
     }
 }
 

@@ -62,7 +62,8 @@ impl Assets {
 /// A name for a file from any text: small letters, digits and hyphens.
 pub(crate) fn slug(text: &str) -> String {
     let words = text.to_lowercase();
-    let words: Vec<&str> = words.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    let words: Vec<&str> =
+        words.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect();
     if words.is_empty() { "picture".to_owned() } else { words.join("-") }
 }
 
@@ -75,6 +76,9 @@ mod tests {
         let mut assets = Assets::default();
         let mut add = |title| assets.add_picture(title, [1, 1], vec![]);
         let names = ["../R = 2.1", "r-2-1", "…", ""].map(&mut add);
-        assert_eq!(names, ["pictures/r-2-1.png", "pictures/r-2-1-2.png", "pictures/picture.png", "pictures/picture-2.png"]);
+        assert_eq!(
+            names,
+            ["pictures/r-2-1.png", "pictures/r-2-1-2.png", "pictures/picture.png", "pictures/picture-2.png"]
+        );
     }
 }

@@ -64,7 +64,11 @@ pub(crate) fn table(table: &Table) -> String {
 }
 
 fn title(column: &Column) -> String {
-    if column.group.is_empty() { escaped(&column.title) } else { escaped(&format!("{}: {}", column.group, column.title)) }
+    if column.group.is_empty() {
+        escaped(&column.title)
+    } else {
+        escaped(&format!("{}: {}", column.group, column.title))
+    }
 }
 
 /// Pictures side by side, as a table with one row of them.
@@ -80,11 +84,8 @@ fn row(shots: &[&Shot]) -> String {
 }
 
 fn pair(pair: &Pair) -> String {
-    let figures = format!(
-        "Mean FLIP {}, RMSE {}.",
-        numbers::significant(pair.mean_flip, 3),
-        numbers::significant(pair.rmse, 3)
-    );
+    let figures =
+        format!("Mean FLIP {}, RMSE {}.", numbers::significant(pair.mean_flip, 3), numbers::significant(pair.rmse, 3));
     format!("{}\n{figures}\n", row(&[&pair.picture, &pair.reference, &pair.difference]))
 }
 

@@ -42,7 +42,8 @@ impl Gallery {
                 let (frame, png) = unpack(picture).map_err(|reason| (index, picture.id.clone(), reason))?;
                 let several = runs.len() > 1;
                 let title = if several { format!("{}: {}", run.label, picture.title) } else { picture.title.clone() };
-                let name = format!("{} {} {}", if several { &run.label } else { "" }, picture.experiment, picture.title);
+                let name =
+                    format!("{} {} {}", if several { &run.label } else { "" }, picture.experiment, picture.title);
                 let shot = shot(&name, title, &frame, png, assets);
                 gallery.shots.insert((index, picture.id.clone()), Unpacked { shot, frame });
             }
@@ -85,7 +86,8 @@ impl Gallery {
     pub(crate) fn between_runs(&self, runs: &[Run], assets: &mut Assets) -> Result<(Vec<Block>, usize), Fault> {
         let (mut blocks, mut same) = (Vec::new(), 0);
         for id in distinct(self.shots.keys().map(|(_, id)| id)) {
-            let having: Vec<usize> = (0..runs.len()).filter(|&run| self.shots.contains_key(&(run, id.clone()))).collect();
+            let having: Vec<usize> =
+                (0..runs.len()).filter(|&run| self.shots.contains_key(&(run, id.clone()))).collect();
             let Some((&first, others)) = having.split_first() else { continue };
             for &other in others {
                 let frame = |run| self.shots.get(&(run, id.clone())).map(|unpacked| &unpacked.frame);

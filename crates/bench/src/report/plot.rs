@@ -205,7 +205,14 @@ mod tests {
         let axis = |title: &str| Axis { title: title.to_owned(), log };
         let curve = Curve { name: "a < b".to_owned(), points, scattered: false };
         let marks = vec![(2.0, "break-even".to_owned())];
-        Plot { name: "p".into(), caption: "A \"plot\"".into(), x: axis("lights"), y: axis("ms"), curves: vec![curve], marks }
+        Plot {
+            name: "p".into(),
+            caption: "A \"plot\"".into(),
+            x: axis("lights"),
+            y: axis("ms"),
+            curves: vec![curve],
+            marks,
+        }
     }
 
     #[test]

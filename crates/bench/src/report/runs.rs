@@ -98,9 +98,11 @@ impl<'a> Measured<'a> {
 
     /// What was done, wherever: all keys but those of the place and those named.
     pub(crate) fn case(&self, without: &[&str]) -> Case {
-        let keys = self.row.keys.iter().filter(|(name, _)| {
-            !PLACES.contains(&name.as_str()) && !without.contains(&name.as_str())
-        });
+        let keys = self
+            .row
+            .keys
+            .iter()
+            .filter(|(name, _)| !PLACES.contains(&name.as_str()) && !without.contains(&name.as_str()));
         Case(keys.map(|(name, key)| (name.clone(), key.clone())).collect())
     }
 }
@@ -130,7 +132,8 @@ impl Runs {
     /// Names of experiments that have rows or pictures, in the order in which they appear.
     pub(crate) fn experiments(&self) -> Vec<&str> {
         let rows = self.0.iter().flat_map(|run| run.results.rows.iter().map(|row| row.experiment.as_str()));
-        let pictures = self.0.iter().flat_map(|run| run.results.pictures.iter().map(|picture| picture.experiment.as_str()));
+        let pictures =
+            self.0.iter().flat_map(|run| run.results.pictures.iter().map(|picture| picture.experiment.as_str()));
         distinct(rows.chain(pictures))
     }
 }

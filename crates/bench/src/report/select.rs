@@ -82,10 +82,13 @@ fn columns(table: &Table, selection: &Selection) -> Result<Vec<(usize, Column)>,
     let column = |(name, title): &(String, Option<String>)| {
         let place = place(table, name)?;
         let column = table.columns[place].clone();
-        Ok((place, match title {
-            Some(title) => Column { title: title.clone(), group: String::new(), ..column },
-            None => column,
-        }))
+        Ok((
+            place,
+            match title {
+                Some(title) => Column { title: title.clone(), group: String::new(), ..column },
+                None => column,
+            },
+        ))
     };
     selection.columns.iter().map(column).collect()
 }

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use super::assets::Assets;
 use super::document::{Block, Cell, Column, Section, Table};
 use super::layouts::{self, key_columns};
+use super::numbers;
 use super::pictures::{Fault, Gallery};
 use super::runs::{Measured, Runs, distinct};
-use super::numbers;
 
 /// A table for each experiment, then pictures that came out different; nothing without a row or a picture in common.
 pub(crate) fn section(runs: &Runs, gallery: &Gallery, assets: &mut Assets) -> Result<Option<Section>, Fault> {
@@ -36,15 +36,21 @@ fn table(runs: &Runs, experiment: &str) -> Option<Table> {
         }
     }
     let order = distinct(runs.rows(experiment).into_iter().map(|measured| measured.row.id.as_str()));
-    let common: Vec<&Vec<Option<Measured>>> =
-        order.iter().filter_map(|id| by_id.get(id)).filter(|cells| cells.iter().filter(|cell| timed(cell)).count() > 1).collect();
+    let common: Vec<&Vec<Option<Measured>>> = order
+        .iter()
+        .filter_map(|id| by_id.get(id))
+        .filter(|cells| cells.iter().filter(|cell| timed(cell)).count() > 1)
+        .collect();
     let rows: Vec<Measured> = common.iter().filter_map(|cells| cells.iter().flatten().next().copied()).collect();
     let keys = key_columns(&rows);
     let mut columns: Vec<Column> = keys.iter().map(|key| layouts::key_column(key, &rows)).collect();
-    columns.extend(runs.0.iter().map(|run| Column::numbers(format!("{} ms", run.label), &run.label).below("median, ms")));
+    columns
+        .extend(runs.0.iter().map(|run| Column::numbers(format!("{} ms", run.label), &run.label).below("median, ms")));
     let first = &runs.0.first()?.label;
     columns.extend(
-        runs.0[1..].iter().map(|run| Column::numbers(format!("{} ratio", run.label), &run.label).below(format!("times {first}"))),
+        runs.0[1..]
+            .iter()
+            .map(|run| Column::numbers(format!("{} ratio", run.label), &run.label).below(format!("times {first}"))),
     );
     let mut ratios: Vec<Vec<f64>> = vec![Vec::new(); runs.0.len()];
     let mut table = Table::new(format!("{experiment}, runs"), "", columns);

@@ -6,7 +6,7 @@ use crate::report::numbers;
 use crate::report::runs::{Measured, distinct};
 
 /// Significant digits of a value that nothing is known of.
-const DIGITS: usize = 4;
+const DIGITS: usize = 3;
 pub(super) fn blocks(experiment: &str, rows: &[Measured]) -> Vec<Block> {
     let of = |name: &str| (name.to_owned(), spaced(name));
     let stages = distinct(rows.iter().flat_map(|measured| measured.row.seconds.keys().map(|name| of(name))));
@@ -43,7 +43,8 @@ fn table(
         columns.push(Column::words("run", "run"));
     }
     columns.extend(keys.iter().map(|key| key_column(key, rows)));
-    columns.extend(stages.iter().map(|(stage, title)| Column::numbers(format!("{stage} ms"), title).below("median, ms")));
+    columns
+        .extend(stages.iter().map(|(stage, title)| Column::numbers(format!("{stage} ms"), title).below("median, ms")));
     columns.extend(values.iter().map(|(value, title)| Column::numbers(value, title)));
     let mut table = Table::new(name, [caption, &common].join(" ").trim(), columns);
     for measured in rows {
@@ -64,7 +65,8 @@ pub(super) fn split_keys(rows: &[Measured]) -> (Vec<String>, String) {
     let same = |key: &str| rows.windows(2).all(|pair| pair[0].key(key) == pair[1].key(key));
     let (common, keys): (Vec<String>, Vec<String>) =
         key_columns(rows).into_iter().partition(|key| rows.len() > 1 && same(key));
-    let common: Vec<String> = common.iter().map(|key| format!("{} {}", key.replace('_', " "), rows[0].text(key))).collect();
+    let common: Vec<String> =
+        common.iter().map(|key| format!("{} {}", key.replace('_', " "), rows[0].text(key))).collect();
     (keys, if common.is_empty() { String::new() } else { format!("Throughout: {}.", common.join(", ")) })
 }
 

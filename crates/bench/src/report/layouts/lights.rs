@@ -111,7 +111,8 @@ fn table(contests: &[Contest]) -> Table {
             columns.push(Column::numbers(format!("{name} {key}"), title).below(place));
         }
     }
-    let mut lights = distinct(contests.iter().flat_map(|contest| contest.mesh.iter().chain(&contest.hard)).map(|point| point.0));
+    let mut lights =
+        distinct(contests.iter().flat_map(|contest| contest.mesh.iter().chain(&contest.hard)).map(|point| point.0));
     lights.sort_by(f64::total_cmp);
     let caption = "Medians; a ratio below 1 says that the method takes less time.";
     let mut table = Table::new("figure 11", caption, columns);

@@ -26,14 +26,17 @@ pub(super) fn table_2(rows: &[Measured]) -> Vec<Block> {
     columns.push(Column::numbers("per_pixel", "a pixel"));
     columns.push(Column::numbers("thesis_light_points", "S_total in the thesis"));
     columns.push(Column::numbers("ratio", "ratio"));
-    let caption = "Light points that a picture uses: S_total. The scenes are in the spirit of the thesis' scenes, not the same.";
+    let caption =
+        "Light points that a picture uses: S_total. The scenes are in the spirit of the thesis' scenes, not the same.";
     let mut table = Table::new("table 2", [caption, &common].join(" ").trim(), columns);
     for row in rows {
         let (ours, thesis) = (row.value("light_points"), row.value("thesis_light_points"));
         let mut cells: Vec<Cell> = keys.iter().map(|key| row.text(key).into()).collect();
         cells.push(Cell::number(ours, numbers::count));
         let pixels = row.number("size").map(|side| side * side);
-        cells.push(Cell::number(ours.zip(pixels).map(|(ours, pixels)| ours / pixels), |share| numbers::significant(share, 2)));
+        cells.push(Cell::number(ours.zip(pixels).map(|(ours, pixels)| ours / pixels), |share| {
+            numbers::significant(share, 2)
+        }));
         cells.push(Cell::number(thesis, numbers::count));
         cells.push(Cell::number(ours.zip(thesis).map(|(ours, thesis)| ours / thesis), numbers::ratio));
         table.rows.push(cells);
@@ -50,7 +53,13 @@ pub(super) fn pictures(experiment: &str, rows: &[Measured]) -> Vec<Block> {
         ("half_ball_mean", "half-ball mean"),
         ("shadow_rays", "shadow rays"),
     ];
-    vec![chosen(experiment, "Errors are against area shadows with the most samples.", rows, &[(WHOLE, "whole")], &values)]
+    vec![chosen(
+        experiment,
+        "Errors are against area shadows with the most samples.",
+        rows,
+        &[(WHOLE, "whole")],
+        &values,
+    )]
 }
 
 pub(super) fn break_even(rows: &[Measured]) -> Vec<Block> {
@@ -61,7 +70,10 @@ pub(super) fn break_even(rows: &[Measured]) -> Vec<Block> {
     let costs = rows.iter().filter_map(|row| {
         let nanoseconds = |name| Some(numbers::significant(1e9 * row.value(name)?, 3));
         let (short, long) = (nanoseconds("short_test_seconds")?, nanoseconds("long_test_seconds")?);
-        Some(Block::Text(format!("{}: a short test takes {short} ns, a long one {long} ns, over all threads.", row.place())))
+        Some(Block::Text(format!(
+            "{}: a short test takes {short} ns, a long one {long} ns, over all threads.",
+            row.place()
+        )))
     });
     table.extend(costs);
     table

@@ -38,7 +38,7 @@ const STAGES: [(&str, &str); 7] = [
 ];
 
 pub(super) fn frames(rows: &[Measured]) -> Vec<Block> {
-    vec![Block::Table(times(rows)), Block::Table(stages(rows)), Block::Table(counts(rows))]
+    vec![Block::Table(times(rows)), Block::Table(stages(rows).folded()), Block::Table(counts(rows).folded())]
 }
 
 /// Whether two rows show the same scene, lights and pixels, measured at the same place, whatever the mode.
@@ -110,7 +110,8 @@ fn stages(rows: &[Measured]) -> Table {
     columns.extend(keys.iter().map(|key| key_column(key, rows)));
     columns.extend(STAGES.iter().map(|(stage, title)| Column::numbers(*stage, *title)));
     columns.push(Column::numbers(WHOLE, "whole"));
-    let mut table = Table::new("timings, stages", "Milliseconds of each stage, medians; stages that took none are empty.", columns);
+    let mut table =
+        Table::new("timings, stages", "Milliseconds of each stage, medians; stages that took none are empty.", columns);
     for row in rows {
         let mut cells: Vec<Cell> = vec![row.place().into(), row.text("mode").into()];
         cells.extend(keys.iter().map(|key| Cell::from(row.text(key))));
@@ -128,7 +129,8 @@ fn counts(rows: &[Measured]) -> Table {
     let mut columns = vec![Column::words("place", "on")];
     columns.extend(keys.iter().map(|key| key_column(key, &mesh)));
     columns.extend(COUNTS.iter().map(|(count, title)| Column::numbers(*count, *title)));
-    let mut table = Table::new("timings, counts", "Counts of the method, and the most memory that a picture took.", columns);
+    let mut table =
+        Table::new("timings, counts", "Counts of the method, and the most memory that a picture took.", columns);
     for row in &mesh {
         let mut cells: Vec<Cell> = vec![row.place().into()];
         cells.extend(keys.iter().map(|key| Cell::from(row.text(key))));

@@ -14,6 +14,7 @@
 //! them (`derived`, `break_even`).
 
 mod break_even;
+mod cuts;
 mod derived;
 mod published;
 mod runner;

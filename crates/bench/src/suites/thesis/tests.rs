@@ -114,7 +114,7 @@ fn pictures_refer_to_the_reference() {
 fn without_time_rows_are_left_out_and_named() {
     let (results, _) = run(&Plan { budget: Duration::from_nanos(1), ..tiny(true) });
     assert!(results.rows.is_empty() && results.pictures.is_empty());
-    let note = results.notes.iter().find(|note| note.starts_with("For want of time left out: ")).unwrap();
+    let note = results.notes.iter().find(|note| note.starts_with("For want of time left out, ")).unwrap();
     assert!(note.contains("timings: ") && note.contains("figure 11: "), "{note}");
 }
 
