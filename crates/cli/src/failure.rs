@@ -46,7 +46,7 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Bench(Box<BenchError>),
     #[error(transparent)]
-    Report(#[from] ReportError),
+    Report(Box<ReportError>),
     /// A measure of a comparison is above what is accepted.
     #[error("{0}")]
     Exceeded(String),
@@ -71,6 +71,12 @@ impl From<BenchError> for Failure {
             BenchError::Scene(error) => Failure::Load(error),
             other => Failure::Bench(Box::new(other)),
         }
+    }
+}
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Failure {
+        Failure::Report(Box::new(error))
     }
 }
 

@@ -67,6 +67,8 @@ pub(crate) struct Table {
     pub(crate) caption: String,
     pub(crate) columns: Vec<Column>,
     pub(crate) rows: Vec<Vec<Cell>>,
+    /// Long, and for those who want to know more: a page may open it on request.
+    pub(crate) folded: bool,
 }
 
 /// A column of a table.
@@ -153,7 +155,12 @@ impl<T: Into<String>> From<T> for Cell {
 impl Table {
     /// A table without rows.
     pub(crate) fn new(name: impl Into<String>, caption: impl Into<String>, columns: Vec<Column>) -> Table {
-        Table { name: name.into(), caption: caption.into(), columns, rows: Vec::new() }
+        Table { name: name.into(), caption: caption.into(), columns, rows: Vec::new(), folded: false }
+    }
+
+    /// The same, to be opened on request.
+    pub(crate) fn folded(self) -> Table {
+        Table { folded: true, ..self }
     }
 
     /// The same without columns that are empty in every row.

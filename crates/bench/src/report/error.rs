@@ -13,7 +13,7 @@ use crate::BenchError;
 pub enum ReportError {
     /// A file does not hold results.
     #[error(transparent)]
-    Results(#[from] BenchError),
+    Results(Box<BenchError>),
     /// Two rows of a file, or two pictures, have one name.
     #[error("{} has two {what} with the id `{id}`; make it anew with `lightmesh bench SUITE --json FILE`", path.display())]
     Twice {
@@ -53,6 +53,12 @@ pub enum ReportError {
         /// What the system said.
         reason: io::Error,
     },
+}
+
+impl From<BenchError> for ReportError {
+    fn from(error: BenchError) -> ReportError {
+        ReportError::Results(Box::new(error))
+    }
 }
 
 /// What is wrong with a picture among results.

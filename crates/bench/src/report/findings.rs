@@ -38,25 +38,42 @@ fn against(rows: &[Measured], mode: &str) -> Vec<Finding> {
     // Figure 11 has sentences of its own.
     let others = || rows.iter().filter(|row| row.row.experiment != LIGHTS);
     let rivals: Vec<&Measured> = others().filter(|row| row.is("mode", mode)).collect();
-    let subject = |row: &Measured| (row.text("scene"), row.text("lights"), row.place(), row.text("samples"));
+    let subject = |row: &Measured| (row.text("scene"), row.text("lights"), row.text("samples"));
     let mut findings = Vec::new();
     for wanted in distinct(rivals.iter().map(|row| subject(row))) {
-        let rivals = rivals.iter().filter(|row| subject(row) == wanted);
-        let ratios = rivals.flat_map(|rival| {
-            let mesh = others().filter(|row| row.is("mode", "light-mesh") && same_picture(row, rival));
-            mesh.filter_map(|row| Some(whole(row)? / whole(rival)?))
+        let rivals: Vec<&Measured> = rivals.iter().filter(|row| subject(row) == wanted).copied().collect();
+        let ranges = distinct(rivals.iter().map(|row| row.place())).into_iter().filter_map(|place| {
+            let here = rivals.iter().filter(|rival| rival.place() == place);
+            let ratios = here.flat_map(|rival| {
+                let mesh = others().filter(|row| row.is("mode", "light-mesh") && same_picture(row, rival));
+                mesh.filter_map(|row| Some(whole(row)? / whole(rival)?))
+            });
+            Some((Spread::of(ratios)?, place))
         });
-        let Some(range) = Spread::of(ratios) else { continue };
-        let (scene, lights, place, samples) = wanted;
-        let rival = match samples.as_str() {
-            "" => "hard shadows, one shadow ray for each pixel and light".to_owned(),
-            samples => format!("area shadows with {samples} shadow rays for each pixel and light"),
-        };
-        let (scene, lights, range_text) = (named(&scene), lights_of(&lights), range.text(numbers::ratio));
-        let text = format!("{scene}{lights}, {place}: the light mesh takes {range_text} the time of {rival}.");
-        findings.push(Finding::new(range.verdict(), text));
+        let ranges: Vec<(Spread, String)> = ranges.collect();
+        // Places that agree share a sentence.
+        for verdict in [Verdict::Wins, Verdict::Loses, Verdict::Open] {
+            let times: Vec<String> = ranges
+                .iter()
+                .filter(|(range, _)| range.verdict() == verdict)
+                .map(|(range, place)| format!("{} ({place})", range.text(numbers::ratio)))
+                .collect();
+            if !times.is_empty() {
+                findings.push(Finding::new(verdict, sentence(&wanted, &times.join(", "))));
+            }
+        }
     }
     findings
+}
+
+/// What the method takes of the time of a rival.
+fn sentence((scene, lights, samples): &(String, String, String), times: &str) -> String {
+    let rival = match samples.as_str() {
+        "" => "hard shadows, one shadow ray for each pixel and light".to_owned(),
+        "1" => "area shadows with 1 shadow ray for each pixel and light".to_owned(),
+        samples => format!("area shadows with {samples} shadow rays for each pixel and light"),
+    };
+    format!("{}{}: the light mesh takes {times} the time of {rival}.", named(scene), lights_of(lights))
 }
 
 fn lights_of(lights: &str) -> String {

@@ -10,7 +10,8 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::assets::Assets;
 use super::document::{Block, Cell, Column, Document, Finding, Pair, Section, Shot, Table};
-use super::{numbers, plot::Plot};
+use super::plot::Plot;
+use super::{numbers, summary};
 
 const STYLE: &str = include_str!("report.css");
 const SCRIPT: &str = include_str!("report.js");
@@ -117,11 +118,16 @@ fn table(table: &Table) -> String {
             format!("<tr>{cells}</tr>\n")
         })
         .collect();
-    format!(
-        "<figure class=\"table\">\n<figcaption>{}</figcaption>\n<div class=\"scroll\" tabindex=\"0\">\n<table>\n\
-         <thead>\n{groups}<tr>{titles}</tr>\n</thead>\n<tbody>\n{rows}</tbody>\n</table>\n</div>\n</figure>\n",
-        escaped(&table.caption)
-    )
+    let caption = escaped(&table.caption);
+    let scroll = format!(
+        "<div class=\"scroll\" tabindex=\"0\">\n<table>\n<thead>\n{groups}<tr>{titles}</tr>\n</thead>\n\
+         <tbody>\n{rows}</tbody>\n</table>\n</div>\n"
+    );
+    let kind = if table.name == summary::TABLE { "table facts" } else { "table" };
+    if table.folded {
+        return format!("<details class=\"{kind}\">\n<summary>{caption}</summary>\n{scroll}</details>\n");
+    }
+    format!("<figure class=\"{kind}\">\n<figcaption>{caption}</figcaption>\n{scroll}</figure>\n")
 }
 
 fn heading(group: &str, span: usize) -> String {

@@ -23,6 +23,9 @@ mod side_by_side;
 mod summary;
 mod write;
 
+#[cfg(test)]
+mod tests;
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

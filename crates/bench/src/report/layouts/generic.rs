@@ -6,7 +6,7 @@ use crate::report::numbers;
 use crate::report::runs::{Measured, distinct};
 
 /// Significant digits of a value that nothing is known of.
-const DIGITS: usize = 4;
+const DIGITS: usize = 3;
 pub(super) fn blocks(experiment: &str, rows: &[Measured]) -> Vec<Block> {
     let of = |name: &str| (name.to_owned(), spaced(name));
     let stages = distinct(rows.iter().flat_map(|measured| measured.row.seconds.keys().map(|name| of(name))));

@@ -6,7 +6,7 @@ use crate::report::numbers;
 use crate::report::runs::Measured;
 
 /// The figure that bars stand for: a million rays a second.
-const RATE: &str = "mrays_per_second";
+const RATE: &str = "million_per_second";
 
 /// Bars are to the fastest of all.
 pub(super) fn rates(rows: &[Measured]) -> Vec<Block> {

@@ -38,7 +38,7 @@ const STAGES: [(&str, &str); 7] = [
 ];
 
 pub(super) fn frames(rows: &[Measured]) -> Vec<Block> {
-    vec![Block::Table(times(rows)), Block::Table(stages(rows)), Block::Table(counts(rows))]
+    vec![Block::Table(times(rows)), Block::Table(stages(rows).folded()), Block::Table(counts(rows).folded())]
 }
 
 /// Whether two rows show the same scene, lights and pixels, measured at the same place, whatever the mode.
