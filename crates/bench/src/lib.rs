@@ -13,6 +13,8 @@ mod load;
 mod machine;
 pub mod measure;
 mod plan;
+pub mod readme;
+pub mod report;
 mod results;
 pub mod schedule;
 mod suites;

@@ -4,6 +4,7 @@ use lightmesh::render::accel::{GridError, GridSaveError};
 use lightmesh::scene::{ExportError, UnknownCamera};
 use lightmesh::{LoadError, RenderError, SaveError, image};
 use lightmesh_bench::BenchError;
+use lightmesh_bench::report::ReportError;
 
 use crate::output::OutputError;
 use crate::plan::PlanError;
@@ -43,7 +44,9 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Compare(#[from] image::CompareError),
     #[error(transparent)]
-    Bench(BenchError),
+    Bench(Box<BenchError>),
+    #[error(transparent)]
+    Report(Box<ReportError>),
     /// A measure of a comparison is above what is accepted.
     #[error("{0}")]
     Exceeded(String),
@@ -66,8 +69,14 @@ impl From<BenchError> for Failure {
             // With the exit code of the render that could not be made.
             BenchError::Render(error) => Failure::Render(error),
             BenchError::Scene(error) => Failure::Load(error),
-            other => Failure::Bench(other),
+            other => Failure::Bench(Box::new(other)),
         }
+    }
+}
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Failure {
+        Failure::Report(Box::new(error))
     }
 }
 

@@ -44,6 +44,8 @@ pub(crate) enum Command {
     Export(ExportArgs),
     /// Run a suite of experiments, or compare two runs
     Bench(Box<BenchArgs>),
+    /// Show results of suites as Markdown and as one HTML page
+    Report(ReportArgs),
     /// Print the JSON Schema of scene files in TOML, for editors and checkers
     Schema,
     /// Print a script that completes command lines in a shell
@@ -161,6 +163,25 @@ pub(crate) struct ExportArgs {
     /// NAME.glb: everything in one file; NAME.toml: cameras and lights as text, with the triangles beside it in
     /// NAME.mesh.glb
     #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// Show results of suites as Markdown and as one HTML page
+///
+/// Both have tables, plots, pictures held against their references, and the machine, driver, commit and command of each run. Several
+/// files are shown side by side: rows with the same id get ratios to the first file.
+#[derive(Debug, Args)]
+pub(crate) struct ReportArgs {
+    /// Results of `lightmesh bench SUITE --json FILE`; each is called by the name of its file
+    #[arg(value_name = "BENCH.json", required = true)]
+    pub(crate) results: Vec<PathBuf>,
+
+    /// The folder for report.md with its plots and pictures, and for report.html, which needs nothing else; made where it is missing
+    #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
 
     /// Print nothing but errors

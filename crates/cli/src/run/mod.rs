@@ -10,6 +10,7 @@ mod info;
 mod man;
 mod open;
 mod render;
+mod report;
 
 use lightmesh::Scene;
 
@@ -26,6 +27,7 @@ pub(crate) fn run(command: Command) -> Result<u8, Failure> {
         Command::Grid(args) => grid::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Report(args) => report::run(&args),
         Command::Schema => output::print(&Scene::file_schema()).map_err(Failure::from),
         Command::Completions(args) => completions::run(&args),
         Command::Man(args) => man::run(&args),

@@ -75,7 +75,7 @@ fn without_time_a_suite_says_what_it_left_out() {
     let place = Place::new();
     let flags = ["--quick", "--budget", "0.001s", "--device", "cpu", "--json", "out.json"];
     let done = place.good(&[&["bench", "thesis"], &flags[..]].concat());
-    assert!(done.stdout.contains("note: For want of time left out: "), "{done:?}");
+    assert!(done.stdout.contains("note: For want of time left out, "), "{done:?}");
     assert!(done.stderr.contains("rows 1 to 1 of "), "{done:?}");
     let json = place.json("out.json");
     assert_eq!((&json["suite"], &json["quick"], &json["rows"]), (&json!("thesis"), &json!(true), &json!([])));

@@ -5,6 +5,7 @@ use std::time::Instant;
 use lightmesh::image::{self, compare};
 use lightmesh::{Observer, Scene};
 
+use super::cuts::Cuts;
 use super::published;
 use super::task::{Case, Task};
 use crate::engine::Engine;
@@ -108,41 +109,4 @@ fn add_published(row: &mut Row, median: f64) {
         ("faster_than_thesis_gpu", seconds.gpu / median),
     ];
     row.values.extend(figures.map(|(name, figure)| (name.to_owned(), figure)));
-}
-
-/// What was cut for want of time.
-#[derive(Default)]
-struct Cuts {
-    /// Ids of rows, with the repetitions that they got.
-    fewer: Vec<(String, usize)>,
-    /// Ids of rows that were left out.
-    out: Vec<String>,
-}
-
-impl Cuts {
-    fn add(&mut self, task: &Task, decision: Decision) {
-        let id = |case: &Case| case.row.id.clone();
-        let (kept, out) = task.cases.split_at(decision.variants);
-        self.out.extend(out.iter().map(id));
-        if decision.rounds.repetitions < task.repetitions {
-            self.fewer.extend(kept.iter().map(|case| (id(case), decision.rounds.repetitions)));
-        }
-    }
-
-    /// A sentence for each number of repetitions, and one for all that was left out.
-    fn notes(&self) -> Vec<String> {
-        let mut notes = Vec::new();
-        let mut counts: Vec<usize> = self.fewer.iter().map(|(_, repetitions)| *repetitions).collect();
-        counts.sort_unstable();
-        counts.dedup();
-        for count in counts {
-            let ids: Vec<&str> = self.fewer.iter().filter(|row| row.1 == count).map(|row| row.0.as_str()).collect();
-            let how = if count == 1 { "once, without warm-up" } else { "fewer times than wanted" };
-            notes.push(format!("For want of time measured {how} ({count}): {} rows: {}.", ids.len(), ids.join("; ")));
-        }
-        if !self.out.is_empty() {
-            notes.push(format!("For want of time left out: {} rows: {}.", self.out.len(), self.out.join("; ")));
-        }
-        notes
-    }
 }

@@ -14,7 +14,8 @@ const SHRINK: u32 = 64;
 #[derive(Default)]
 struct Listener {
     notes: Mutex<Vec<String>>,
-    cancelled: bool,
+    /// After how many notes the suite is to stop.
+    patience: Option<usize>,
 }
 
 impl Observer for Listener {
@@ -23,7 +24,7 @@ impl Observer for Listener {
     }
 
     fn cancelled(&self) -> bool {
-        self.cancelled
+        self.patience.is_some_and(|patience| self.notes.lock().unwrap().len() > patience)
     }
 }
 
@@ -114,13 +115,20 @@ fn pictures_refer_to_the_reference() {
 fn without_time_rows_are_left_out_and_named() {
     let (results, _) = run(&Plan { budget: Duration::from_nanos(1), ..tiny(true) });
     assert!(results.rows.is_empty() && results.pictures.is_empty());
-    let note = results.notes.iter().find(|note| note.starts_with("For want of time left out: ")).unwrap();
+    let note = results.notes.iter().find(|note| note.starts_with("For want of time left out, ")).unwrap();
     assert!(note.contains("timings: ") && note.contains("figure 11: "), "{note}");
 }
 
 #[test]
 fn a_suite_can_be_stopped() {
-    let listener = Listener { cancelled: true, ..Listener::default() };
-    let stopped = crate::run(Suite::Thesis, &tiny(true), &listener);
-    assert!(matches!(stopped, Err(BenchError::Render(lightmesh::RenderError::Cancelled))), "{stopped:?}");
+    let stopped_after = |patience| {
+        let listener = Listener { patience: Some(patience), ..Listener::default() };
+        crate::run(Suite::Thesis, &tiny(true), &listener)
+    };
+    let at_once = stopped_after(0);
+    assert!(matches!(at_once, Err(BenchError::Render(lightmesh::RenderError::Cancelled))), "{at_once:?}");
+    // Notes are of the trials and of two tasks: the third task is not begun.
+    let later = stopped_after(3).unwrap();
+    assert_eq!((of(&later, "figure 1").len(), of(&later, "figures 12-15").len()), (3, 0));
+    assert!(later.notes.iter().any(|note| note.starts_with("Stopped before its end")), "{:?}", later.notes);
 }

@@ -1,0 +1,40 @@
+//! The tables of the README that are made from results: written anew, or with `--check` only looked at. See
+//! [`lightmesh_bench::readme`].
+//!
+//! `cargo run -p lightmesh-bench --example readme -- README.md [--check]`, or `cargo xtask readme [--check]`.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
+
+use std::error::Error;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use lightmesh_bench::readme;
+use lightmesh_files::Replacement;
+
+fn main() -> Result<ExitCode, Box<dyn Error>> {
+    let (flags, documents): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|word| word == "--check");
+    let mut code = ExitCode::SUCCESS;
+    for document in documents.iter().map(PathBuf::from) {
+        let root = document.parent().unwrap_or(Path::new(""));
+        let text = std::fs::read_to_string(&document)?;
+        let name = document.display();
+        let tables = readme::tables(&text, root).map_err(|error| format!("{name}: {error}"))?;
+        match &tables.differing[..] {
+            [] => println!("{name}: {} tables from results, all as they should be", tables.count),
+            lines if flags.is_empty() => {
+                let mut file = Replacement::of(&document)?;
+                file.write_all(tables.text.as_bytes())?;
+                file.commit()?;
+                println!("{name}: {} of {} tables written anew", lines.len(), tables.count);
+            }
+            lines => {
+                for line in lines {
+                    eprintln!("error: {name}:{line}: the table is not what its results say; run `cargo xtask readme`");
+                }
+                code = ExitCode::FAILURE;
+            }
+        }
+    }
+    Ok(code)
+}

@@ -1,0 +1,190 @@
+//! A report as one page of HTML that asks for nothing from elsewhere: style, script, plots and pictures are in it.
+//!
+//! Each picture is in the page once, in a list that is not shown; wherever it appears it is referred to. Without scripts a picture
+//! stands beside its reference; with them both lie upon each other, below a slider.
+
+use std::fmt::Write;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+
+use super::assets::Assets;
+use super::document::{Block, Cell, Column, Document, Finding, Pair, Section, Shot, Table};
+use super::plot::Plot;
+use super::{numbers, summary};
+
+const STYLE: &str = include_str!("report.css");
+const SCRIPT: &str = include_str!("report.js");
+
+/// Text for the page: nothing in it is taken as a tag or ends an attribute.
+pub(crate) fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            _ => out.push(letter),
+        }
+    }
+    out
+}
+
+/// The whole page.
+pub(crate) fn page(document: &Document, assets: &Assets) -> String {
+    let title = escaped(&document.title);
+    let contents: String = document
+        .sections
+        .iter()
+        .enumerate()
+        .map(|(index, section)| format!("<li><a href=\"#s{index}\">{}</a></li>\n", escaped(&section.title)))
+        .collect();
+    let sections: String =
+        document.sections.iter().enumerate().map(|(index, section)| self::section(index, section, assets)).collect();
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{}\
+         <header>\n<h1>{title}</h1>\n<nav><ol>\n{contents}</ol></nav>\n</header>\n<main>\n{sections}</main>\n\
+         <script>\n{SCRIPT}</script>\n</body>\n</html>\n",
+        pictures(assets)
+    )
+}
+
+/// All pictures, to be referred to.
+fn pictures(assets: &Assets) -> String {
+    let images = assets.pictures().fold(String::new(), |mut out, (file, [width, height], png)| {
+        let data = STANDARD.encode(png);
+        let _ = writeln!(
+            out,
+            "<image id=\"{}\" width=\"{width}\" height=\"{height}\" href=\"data:image/png;base64,{data}\"/>",
+            anchor(file)
+        );
+        out
+    });
+    format!("<svg class=\"store\" width=\"0\" height=\"0\" aria-hidden=\"true\"><defs>\n{images}</defs></svg>\n")
+}
+
+/// What a picture is referred to by.
+fn anchor(file: &str) -> String {
+    file.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' }).collect()
+}
+
+fn section(index: usize, section: &Section, assets: &Assets) -> String {
+    let blocks: String = section.blocks.iter().map(|block| self::block(block, assets)).collect();
+    format!("<section id=\"s{index}\">\n<h2>{}</h2>\n{blocks}</section>\n", escaped(&section.title))
+}
+
+fn block(block: &Block, assets: &Assets) -> String {
+    match block {
+        Block::Text(text) => format!("<p>{}</p>\n", escaped(text)),
+        Block::Findings(findings) => findings_list(findings),
+        Block::Table(table) => self::table(table),
+        Block::Plot(plot) => self::plot(plot, assets),
+        Block::Strip(shots) => {
+            format!("<div class=\"strip\">\n{}</div>\n", shots.iter().map(|shot| figure(shot, "")).collect::<String>())
+        }
+        Block::Pair(pair) => self::pair(pair),
+    }
+}
+
+fn findings_list(findings: &[Finding]) -> String {
+    let items: String = findings
+        .iter()
+        .map(|Finding { verdict, text }| {
+            let word = verdict.word();
+            format!("<li class=\"{word}\"><b>{word}</b><span>{}</span></li>\n", escaped(text))
+        })
+        .collect();
+    format!("<ul class=\"findings\">\n{items}</ul>\n")
+}
+
+fn table(table: &Table) -> String {
+    let grouped = table.columns.iter().any(|column| !column.group.is_empty());
+    let groups: String = table.groups().iter().map(|(group, span)| heading(group, *span)).collect();
+    let groups = if grouped { format!("<tr class=\"groups\">{groups}</tr>\n") } else { String::new() };
+    let titles: String = table
+        .columns
+        .iter()
+        .map(|column| format!("<th scope=\"col\"{}>{}</th>", class(column), escaped(&column.title)))
+        .collect();
+    let rows: String = table
+        .rows
+        .iter()
+        .map(|row| {
+            let cells: String = row.iter().zip(&table.columns).map(|(cell, column)| self::cell(cell, column)).collect();
+            format!("<tr>{cells}</tr>\n")
+        })
+        .collect();
+    let caption = escaped(&table.caption);
+    let scroll = format!(
+        "<div class=\"scroll\" tabindex=\"0\">\n<table>\n<thead>\n{groups}<tr>{titles}</tr>\n</thead>\n\
+         <tbody>\n{rows}</tbody>\n</table>\n</div>\n"
+    );
+    let kind = if table.name == summary::TABLE { "table facts" } else { "table" };
+    if table.folded {
+        return format!("<details class=\"{kind}\">\n<summary>{caption}</summary>\n{scroll}</details>\n");
+    }
+    format!("<figure class=\"{kind}\">\n<figcaption>{caption}</figcaption>\n{scroll}</figure>\n")
+}
+
+fn heading(group: &str, span: usize) -> String {
+    if group.is_empty() {
+        return format!("<td colspan=\"{span}\"></td>");
+    }
+    format!("<th scope=\"colgroup\" colspan=\"{span}\">{}</th>", escaped(group))
+}
+
+fn class(column: &Column) -> &'static str {
+    if column.number { " class=\"number\"" } else { "" }
+}
+
+fn cell(cell: &Cell, column: &Column) -> String {
+    let text = escaped(&cell.text);
+    match cell.bar {
+        Some(share) => {
+            let width = 100.0 * share.clamp(0.0, 1.0);
+            format!("<td class=\"number bar\"><i style=\"width:{width:.1}%\"></i><span>{text}</span></td>")
+        }
+        None => format!("<td{}>{text}</td>", class(column)),
+    }
+}
+
+fn plot(plot: &Plot, assets: &Assets) -> String {
+    let svg = assets.plot(&plot.name).unwrap_or_default();
+    format!("<figure class=\"plot\">\n{svg}\n<figcaption>{}</figcaption>\n</figure>\n", escaped(&plot.caption))
+}
+
+fn figure(shot: &Shot, class: &str) -> String {
+    let class = if class.is_empty() { String::new() } else { format!(" class=\"{class}\"") };
+    let title = escaped(&shot.title);
+    format!("<figure{class}>\n{}\n<figcaption>{title}</figcaption>\n</figure>\n", picture(shot))
+}
+
+fn picture(shot: &Shot) -> String {
+    let [width, height] = shot.size;
+    format!(
+        "<svg class=\"picture\" viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}\"><use href=\"#{}\"/></svg>",
+        escaped(&shot.title),
+        anchor(&shot.file)
+    )
+}
+
+fn pair(pair: &Pair) -> String {
+    let caption = format!(
+        "{} against {}: mean FLIP {}, RMSE {}",
+        pair.picture.title,
+        pair.reference.title,
+        numbers::significant(pair.mean_flip, 3),
+        numbers::significant(pair.rmse, 3)
+    );
+    format!(
+        "<figure class=\"pair\">\n<div class=\"panes\">\n{}{}{}</div>\n<figcaption>{}</figcaption>\n</figure>\n",
+        figure(&pair.picture, "test"),
+        figure(&pair.reference, "reference"),
+        figure(&pair.difference, "difference"),
+        escaped(&caption)
+    )
+}

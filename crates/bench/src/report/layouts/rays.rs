@@ -1,0 +1,31 @@
+//! Rays per second of each structure and kind, with bars.
+
+use super::{generic, key_column, key_columns};
+use crate::report::document::{Block, Cell, Column, Table};
+use crate::report::numbers;
+use crate::report::runs::Measured;
+
+/// The figure that bars stand for: a million rays a second.
+const RATE: &str = "million_per_second";
+
+/// Bars are to the fastest of all.
+pub(super) fn rates(rows: &[Measured]) -> Vec<Block> {
+    let rate = |row: &Measured| row.value(RATE);
+    let Some(most) = rows.iter().filter_map(rate).max_by(f64::total_cmp) else {
+        return generic::blocks("rays", rows);
+    };
+    let keys: Vec<String> =
+        key_columns(rows).into_iter().filter(|key| !matches!(key.as_str(), "device" | "threads")).collect();
+    let mut columns = vec![Column::words("place", "on")];
+    columns.extend(keys.iter().map(|key| key_column(key, rows)));
+    columns.push(Column::numbers("rate", "million rays a second"));
+    let mut table = Table::new("rays", "Bars are to the highest rate of all.", columns);
+    for row in rows {
+        let mut cells: Vec<Cell> = vec![row.place().into()];
+        cells.extend(keys.iter().map(|key| Cell::from(row.text(key))));
+        let bar = rate(row).map(|rate| rate / most);
+        cells.push(Cell { bar, ..Cell::number(rate(row), |rate| numbers::significant(rate, 3)) });
+        table.rows.push(cells);
+    }
+    vec![Block::Table(table)]
+}

@@ -1,0 +1,80 @@
+//! The smaller tables of the thesis.
+
+use super::generic::{chosen, split_keys};
+use super::{WHOLE, key_column};
+use crate::report::document::{Block, Cell, Column, Table};
+use crate::report::numbers;
+use crate::report::runs::Measured;
+
+pub(super) fn table_1(rows: &[Measured]) -> Vec<Block> {
+    let values = [
+        ("collect_seconds", "collect, ms"),
+        ("total_seconds", "whole, ms"),
+        ("share", "share"),
+        ("thesis_share", "share in the thesis"),
+    ];
+    let caption = "How much of a picture it takes to list the light points that are used. The thesis did this on its CPU, even in \
+                   pictures by its GPU.";
+    vec![chosen("table 1", caption, rows, &[], &values)]
+}
+
+/// S_total against the thesis' and against the pixels.
+pub(super) fn table_2(rows: &[Measured]) -> Vec<Block> {
+    let (keys, common) = split_keys(rows);
+    let mut columns: Vec<Column> = keys.iter().map(|key| key_column(key, rows)).collect();
+    columns.push(Column::numbers("light_points", "S_total"));
+    columns.push(Column::numbers("per_pixel", "a pixel"));
+    columns.push(Column::numbers("thesis_light_points", "S_total in the thesis"));
+    columns.push(Column::numbers("ratio", "ratio"));
+    let caption =
+        "Light points that a picture uses: S_total. The scenes are in the spirit of the thesis' scenes, not the same.";
+    let mut table = Table::new("table 2", [caption, &common].join(" ").trim(), columns);
+    for row in rows {
+        let (ours, thesis) = (row.value("light_points"), row.value("thesis_light_points"));
+        let mut cells: Vec<Cell> = keys.iter().map(|key| row.text(key).into()).collect();
+        cells.push(Cell::number(ours, numbers::count));
+        let pixels = row.number("size").map(|side| side * side);
+        cells.push(Cell::number(ours.zip(pixels).map(|(ours, pixels)| ours / pixels), |share| {
+            numbers::significant(share, 2)
+        }));
+        cells.push(Cell::number(thesis, numbers::count));
+        cells.push(Cell::number(ours.zip(thesis).map(|(ours, thesis)| ours / thesis), numbers::ratio));
+        table.rows.push(cells);
+    }
+    vec![Block::Table(table)]
+}
+
+/// What goes with the pictures of figures 1 and 12 to 15.
+pub(super) fn pictures(experiment: &str, rows: &[Measured]) -> Vec<Block> {
+    let values = [
+        ("rmse", "RMSE"),
+        ("mean_flip", "mean FLIP"),
+        ("light_points", "S_total"),
+        ("half_ball_mean", "half-ball mean"),
+        ("shadow_rays", "shadow rays"),
+    ];
+    vec![chosen(
+        experiment,
+        "Errors are against area shadows with the most samples.",
+        rows,
+        &[(WHOLE, "whole")],
+        &values,
+    )]
+}
+
+pub(super) fn break_even(rows: &[Measured]) -> Vec<Block> {
+    let values = [("predicted_lights", "predicted, lights"), ("measured_lights", "measured, lights")];
+    let caption = "From how many lights on the method takes less time than hard shadows: by formulas (4) and (5) with the costs of tests \
+                   that were measured, and by the clock. An empty cell: never, or not with the lights that were measured.";
+    let mut table = vec![chosen(super::BREAK_EVEN, caption, rows, &[], &values)];
+    let costs = rows.iter().filter_map(|row| {
+        let nanoseconds = |name| Some(numbers::significant(1e9 * row.value(name)?, 3));
+        let (short, long) = (nanoseconds("short_test_seconds")?, nanoseconds("long_test_seconds")?);
+        Some(Block::Text(format!(
+            "{}: a short test takes {short} ns, a long one {long} ns, over all threads.",
+            row.place()
+        )))
+    });
+    table.extend(costs);
+    table
+}

@@ -1,0 +1,131 @@
+//! Reports: results as Markdown and as one page of HTML.
+//!
+//! 1. Files of results are read and checked ([`Report::open`]); several are shown side by side, rows matched by their ids.
+//! 2. From them a document is made: what was run, what follows from it, a section for each experiment ([`layouts`]). Sentences about
+//!    where the method wins and loses are computed from the rows ([`findings`]). Experiments that no layout is made for get a table of
+//!    all their keys and values.
+//! 3. The document is shown twice, [`markdown`] and [`html`], and written with its plots and pictures ([`Report::write`]).
+
+mod assets;
+mod document;
+mod error;
+mod findings;
+mod html;
+mod layouts;
+mod markdown;
+mod numbers;
+mod pictures;
+mod plot;
+mod runs;
+mod scale;
+mod select;
+mod side_by_side;
+mod summary;
+mod write;
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use assets::Assets;
+use document::{Block, Document, Section, Table};
+pub use error::{PictureError, ReportError};
+use pictures::Gallery;
+use runs::{Run, Runs};
+pub use select::{Selection, TableError};
+
+use crate::Results;
+
+/// A report, ready to be written.
+#[derive(Clone, Debug)]
+pub struct Report {
+    document: Document,
+    assets: Assets,
+}
+
+impl Report {
+    /// Reads files of results and makes a report of them. Each is called by the name of its file.
+    ///
+    /// # Errors
+    /// [`ReportError`], which names the file.
+    pub fn open(paths: &[PathBuf]) -> Result<Report, ReportError> {
+        let results: Result<Vec<_>, ReportError> =
+            paths.iter().map(|path| Ok((path.clone(), Results::load(path)?))).collect();
+        Report::new(results?)
+    }
+
+    /// Makes a report of results, each with the path that it is known by.
+    ///
+    /// # Errors
+    /// [`ReportError`] where ids are not unique or a picture cannot be shown.
+    pub fn new(results: Vec<(PathBuf, Results)>) -> Result<Report, ReportError> {
+        for (path, results) in &results {
+            check_ids(path, "rows", results.rows.iter().map(|row| &row.id))?;
+            check_ids(path, "pictures", results.pictures.iter().map(|picture| &picture.id))?;
+        }
+        let paths: Vec<PathBuf> = results.iter().map(|(path, _)| path.clone()).collect();
+        let faulty = |(run, id, reason): pictures::Fault| ReportError::Picture { path: paths[run].clone(), id, reason };
+        let runs = named(results);
+        let mut assets = Assets::default();
+        let gallery = Gallery::new(&runs.0, &mut assets).map_err(faulty)?;
+        let mut document = document(&runs, &gallery, &mut assets).map_err(faulty)?;
+        assets.draw_plots(&mut document);
+        Ok(Report { document, assets })
+    }
+
+    /// The report as Markdown; plots and pictures are files in `plots` and `pictures`.
+    pub fn markdown(&self) -> String {
+        markdown::text(&self.document)
+    }
+
+    /// The report as one page that needs nothing else.
+    pub fn html(&self) -> String {
+        html::page(&self.document, &self.assets)
+    }
+
+    /// The tables by name.
+    pub(crate) fn tables(&self) -> impl Iterator<Item = &Table> {
+        self.document.sections.iter().flat_map(|section| &section.blocks).filter_map(|block| match block {
+            Block::Table(table) => Some(table),
+            _ => None,
+        })
+    }
+}
+
+/// The whole report. Blocks for experiments come in the order in which suites name them.
+fn document(runs: &Runs, gallery: &Gallery, assets: &mut Assets) -> Result<Document, pictures::Fault> {
+    let mut sections = vec![summary::section(runs)];
+    sections.extend(findings::section(runs));
+    sections.extend(side_by_side::section(runs, gallery, assets)?);
+    for experiment in runs.experiments() {
+        let (title, mut blocks) = layouts::of(experiment, runs);
+        blocks.extend(gallery.blocks(&runs.0, experiment, assets)?);
+        sections.push(Section::new(title, blocks));
+    }
+    let suites = runs::distinct(runs.0.iter().map(|run| run.results.suite.as_str()));
+    Ok(Document { title: format!("Lightmesh: {}", suites.join(", ")), sections })
+}
+
+/// Runs with distinct names: those of their files, with numbers where they are the same.
+fn named(results: Vec<(PathBuf, Results)>) -> Runs {
+    let mut runs: Vec<Run> = Vec::with_capacity(results.len());
+    for (path, results) in results {
+        let stem = path.file_stem().map_or_else(|| "results".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let mut names = std::iter::once(stem.clone()).chain((2..).map(|number| format!("{stem} {number}")));
+        let label = names.find(|name| runs.iter().all(|run| run.label != *name)).unwrap_or(stem);
+        runs.push(Run { label, results });
+    }
+    Runs(runs)
+}
+
+fn check_ids<'a>(path: &Path, what: &'static str, ids: impl Iterator<Item = &'a String>) -> Result<(), ReportError> {
+    let mut seen = BTreeSet::new();
+    for id in ids {
+        if !seen.insert(id) {
+            return Err(ReportError::Twice { path: path.to_owned(), what, id: id.clone() });
+        }
+    }
+    Ok(())
+}

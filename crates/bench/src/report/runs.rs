@@ -1,0 +1,150 @@
+//! Results side by side: several files, each a run of a suite.
+
+use std::collections::BTreeMap;
+
+use crate::{Key, Results, Row};
+
+/// Keys that say where a row was measured, not what.
+const PLACES: [&str; 2] = ["device", "threads"];
+
+/// A file of results.
+#[derive(Clone, Debug)]
+pub(crate) struct Run {
+    /// What it is called in the report.
+    pub(crate) label: String,
+    pub(crate) results: Results,
+}
+
+/// All files of a report.
+#[derive(Clone, Debug)]
+pub(crate) struct Runs(pub(crate) Vec<Run>);
+
+/// A row and where it comes from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Measured<'a> {
+    pub(crate) run: &'a Run,
+    pub(crate) row: &'a Row,
+    /// Whether the run's name is needed to tell it from others.
+    several: bool,
+}
+
+/// What a row tells by the names of [`Row::keys`], [`Row::seconds`] and [`Row::values`].
+impl<'a> Measured<'a> {
+    pub(crate) fn key(&self, name: &str) -> Option<&'a Key> {
+        self.row.keys.get(name)
+    }
+
+    /// A key as text; empty without it.
+    pub(crate) fn text(&self, name: &str) -> String {
+        self.key(name).map(super::layouts::key_text).unwrap_or_default()
+    }
+
+    pub(crate) fn number(&self, name: &str) -> Option<f64> {
+        match self.key(name)? {
+            Key::Number(number) => Some(*number),
+            Key::Word(_) => None,
+        }
+    }
+
+    pub(crate) fn is(&self, name: &str, word: &str) -> bool {
+        matches!(self.key(name), Some(Key::Word(key)) if key == word)
+    }
+
+    pub(crate) fn value(&self, name: &str) -> Option<f64> {
+        self.row.values.get(name).copied()
+    }
+
+    /// Median seconds of a stage; `render` is the whole.
+    pub(crate) fn median(&self, stage: &str) -> Option<f64> {
+        self.row.seconds.get(stage)?.median()
+    }
+
+    /// The least seconds of a stage.
+    pub(crate) fn min(&self, stage: &str) -> Option<f64> {
+        self.row.seconds.get(stage)?.min()
+    }
+
+    /// Where it was measured, for people: the processor with its threads, or the GPU.
+    pub(crate) fn place(&self) -> String {
+        let machine = &self.run.results.machine;
+        let threads = match self.key("threads") {
+            Some(Key::Number(1.0)) => ", 1 thread".to_owned(),
+            Some(Key::Number(number)) => format!(", {number} threads"),
+            Some(Key::Word(word)) if word == "all" => format!(", {} threads", machine.threads),
+            _ => String::new(),
+        };
+        let device = match self.key("device") {
+            Some(Key::Word(word)) if word == "cpu" => "CPU".to_owned(),
+            Some(Key::Word(word)) if word == "cuda" => {
+                machine.gpus.first().map_or_else(|| "GPU".to_owned(), |gpu| gpu.name.clone())
+            }
+            Some(key) => key.to_string(),
+            None => String::new(),
+        };
+        let place = device + &threads;
+        match (self.several, place.is_empty()) {
+            (false, _) => place,
+            (true, true) => self.run.label.clone(),
+            (true, false) => format!("{}: {place}", self.run.label),
+        }
+    }
+
+    /// Where it was measured, in words that are the same on every machine: `cpu all`, `cpu 1`, `cuda`.
+    pub(crate) fn place_name(&self) -> String {
+        let words = PLACES.iter().filter_map(|key| self.key(key)).map(ToString::to_string);
+        let label = self.several.then(|| self.run.label.clone());
+        label.into_iter().chain(words).collect::<Vec<_>>().join(" ")
+    }
+
+    /// What was done, wherever: all keys but those of the place and those named.
+    pub(crate) fn case(&self, without: &[&str]) -> Case {
+        let keys = self
+            .row
+            .keys
+            .iter()
+            .filter(|(name, _)| !PLACES.contains(&name.as_str()) && !without.contains(&name.as_str()));
+        Case(keys.map(|(name, key)| (name.clone(), key.clone())).collect())
+    }
+}
+
+/// Keys that several rows have in common.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Case(pub(crate) BTreeMap<String, Key>);
+
+impl Case {
+    pub(crate) fn text(&self, name: &str) -> String {
+        self.0.get(name).map(super::layouts::key_text).unwrap_or_default()
+    }
+}
+
+impl Runs {
+    /// Rows of an experiment, run by run.
+    pub(crate) fn rows(&self, experiment: &str) -> Vec<Measured<'_>> {
+        self.all().filter(|measured| measured.row.experiment == experiment).collect()
+    }
+
+    /// All rows, run by run.
+    pub(crate) fn all(&self) -> impl Iterator<Item = Measured<'_>> {
+        let several = self.0.len() > 1;
+        self.0.iter().flat_map(move |run| run.results.rows.iter().map(move |row| Measured { run, row, several }))
+    }
+
+    /// Names of experiments that have rows or pictures, in the order in which they appear.
+    pub(crate) fn experiments(&self) -> Vec<&str> {
+        let rows = self.0.iter().flat_map(|run| run.results.rows.iter().map(|row| row.experiment.as_str()));
+        let pictures =
+            self.0.iter().flat_map(|run| run.results.pictures.iter().map(|picture| picture.experiment.as_str()));
+        distinct(rows.chain(pictures))
+    }
+}
+
+/// Each value once, in the order in which they appear.
+pub(crate) fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut seen = Vec::new();
+    for value in values {
+        if !seen.contains(&value) {
+            seen.push(value);
+        }
+    }
+    seen
+}

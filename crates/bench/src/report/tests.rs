@@ -1,0 +1,218 @@
+//! Reports on results that were made by hand.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use lightmesh::image::Frame;
+
+use super::*;
+use crate::{Gpu, Machine, Picture, Program, Row, Samples};
+
+/// Results with rows that `fill` adds.
+pub(crate) fn results(suite: &str, fill: impl FnOnce(&mut Vec<Row>)) -> Results {
+    let gpu = Gpu { name: "Some GPU".into(), memory_bytes: 1 << 34, driver: "CUDA 13.0".into() };
+    let mut rows = Vec::new();
+    fill(&mut rows);
+    Results {
+        version: Results::VERSION,
+        suite: suite.into(),
+        quick: true,
+        program: Program {
+            name: "lightmesh".into(),
+            version: "0.1.0".into(),
+            commit: Some("c0ffee".into()),
+            command: "lightmesh bench thesis --quick".into(),
+        },
+        machine: Machine {
+            cpu: "Some CPU".into(),
+            threads: 8,
+            memory_bytes: 1 << 35,
+            os: "Linux".into(),
+            gpus: vec![gpu],
+        },
+        started: "2026-01-31T12:00:00Z".into(),
+        seconds: 100.0,
+        rows,
+        pictures: vec![],
+        notes: vec!["A <b>note</b> & more".into()],
+    }
+}
+
+fn timed(experiment: &str, keys: &[(&'static str, Key)], seconds: f64) -> Row {
+    let mut row = Row::new(experiment, keys.iter().cloned());
+    row.seconds.insert("render".into(), Samples(vec![seconds, 1.1 * seconds, 1.2 * seconds]));
+    row.values.extend([("pixels".to_owned(), 1e6), ("light_points".to_owned(), 7e5)]);
+    row
+}
+
+use crate::Key;
+
+/// The method takes `mesh` seconds, hard shadows one; figure 11 crosses at 8 lights; a row that no layout knows.
+fn thesis(mesh: f64) -> Results {
+    let mut results = results("thesis", |rows| {
+        let common = |mode: &str| {
+            vec![("scene", "garden".into()), ("lights", 1.0.into()), ("mode", mode.into()), ("device", "cuda".into())]
+        };
+        let step = |keys: Vec<(&'static str, Key)>| [keys, vec![("step", 0.1.into()), ("radius", 2.1.into())]].concat();
+        rows.push(timed("timings", &common("ray-trace"), 1.0));
+        rows.push(timed("timings", &step(common("light-mesh")), mesh));
+        rows[1].values.insert("thesis_gpu_seconds".into(), 0.63);
+        for (lights, hard) in [(1.0, 1.0), (8.0, 5.0), (64.0, 33.0)] {
+            let keys = |mode: &str| {
+                [
+                    ("scene", "childpark".into()),
+                    ("lights", lights.into()),
+                    ("mode", mode.into()),
+                    ("device", "cuda".into()),
+                ]
+            };
+            rows.push(timed("figure 11", &keys("light-mesh"), 5.0));
+            rows.push(timed("figure 11", &keys("ray-trace"), hard));
+        }
+        rows.push(timed("something | new", &[("kind", "<odd>".into())], 0.5));
+    });
+    results.pictures = vec![picture("p: reference", None, 0.2), picture("p: test \"1\"", Some("p: reference"), 0.6)];
+    results
+}
+
+fn picture(id: &str, reference: Option<&str>, value: f32) -> Picture {
+    let png = Frame::new(16, 8, vec![[value; 3]; 128]).unwrap().to_png().unwrap();
+    Picture {
+        id: id.into(),
+        experiment: "p".into(),
+        title: id.into(),
+        reference: reference.map(str::to_owned),
+        png: STANDARD.encode(png),
+    }
+}
+
+fn report(results: Results) -> Result<Report, ReportError> {
+    Report::new(vec![("runs/a.json".into(), results)])
+}
+
+/// Checks that every tag that begins ends, in order; gives the names of all.
+fn tags(html: &str) -> BTreeSet<String> {
+    // What lies in scripts and styles is no markup.
+    let mut rest = html.to_owned();
+    for raw in ["script", "style"] {
+        let (open, close) = (format!("<{raw}>"), format!("</{raw}>"));
+        while let Some(begin) = rest.find(&open) {
+            let end = rest[begin..].find(&close).unwrap_or_else(|| panic!("no {close}")) + begin;
+            rest.replace_range(begin..end + close.len(), "");
+        }
+    }
+    let (mut names, mut open) = (BTreeSet::new(), Vec::new());
+    for piece in rest.split('<').skip(1) {
+        let (tag, text) = piece.split_once('>').unwrap_or_else(|| panic!("a tag without an end: {piece}"));
+        assert!(!text.contains('>'), "a stray > in {text}");
+        let name: String =
+            tag.trim_start_matches('/').chars().take_while(|letter| letter.is_ascii_alphanumeric()).collect();
+        if tag.starts_with('/') {
+            assert_eq!(open.pop().as_deref(), Some(name.as_str()), "</{name}>");
+        } else if !tag.starts_with('!') && !tag.ends_with('/') {
+            open.push(name.clone());
+        }
+        names.insert(name);
+    }
+    assert_eq!(open, Vec::<String>::new());
+    names
+}
+
+#[test]
+fn the_page_is_whole_and_asks_for_nothing() {
+    let html = report(thesis(2.0)).unwrap().html();
+    let names = tags(&html);
+    for name in ["table", "svg", "image", "use", "figure", "polyline"] {
+        assert!(names.contains(name), "{name} in {names:?}");
+    }
+    for address in ["http:", "https:", "src=", "url(", "@import"] {
+        let known = html.replace("http://www.w3.org/", "");
+        assert!(!known.contains(address), "{address}");
+    }
+    // Every link leads somewhere in the page.
+    for target in html.split("href=\"#").skip(1).filter_map(|rest| rest.split('"').next()) {
+        assert!(html.contains(&format!("id=\"{target}\"")), "{target}");
+    }
+    assert!(html.contains("A &lt;b&gt;note&lt;/b&gt; &amp; more") && !html.contains("<odd>"));
+    for fact in ["Some CPU, 8 threads", "Some GPU, 16.0\u{a0}GiB, CUDA 13.0", "c0ffee", "bench thesis --quick"] {
+        assert!(html.contains(fact), "{fact}");
+    }
+}
+
+#[test]
+#[should_panic(expected = "</div>")]
+fn tags_that_cross_are_found() {
+    tags("<div><p></div></p>");
+}
+
+#[test]
+fn markdown_shows_files_that_are_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = report(thesis(2.0)).unwrap();
+    report.write(&folder.path().join("new/report")).unwrap();
+    let place = folder.path().join("new/report");
+    let text = std::fs::read_to_string(place.join("report.md")).unwrap();
+    let files = text.split("src=\"").chain(text.split("](")).filter_map(|rest| rest.split(['"', ')']).next());
+    let files: BTreeSet<&str> =
+        files.filter(|file| Path::new(file).extension().is_some_and(|end| end == "png" || end == "svg")).collect();
+    assert_eq!(files.len(), 4, "{files:?}");
+    for file in files {
+        assert!(place.join(file).is_file(), "{file}");
+    }
+    assert_eq!(std::fs::read_to_string(place.join("report.html")).unwrap(), report.html());
+    assert!(text.contains("Something \\| new") && text.contains("0.63"), "{text}");
+}
+
+#[test]
+fn sentences_follow_from_the_rows() {
+    let sentences = |mesh| report(thesis(mesh)).unwrap().markdown();
+    let lost = sentences(2.0);
+    assert!(
+        lost.contains("- **loses**: Garden, 1 light: the light mesh takes 2.0× (Some GPU) the time of hard shadows"),
+        "{lost}"
+    );
+    assert!(lost.contains("from 8.0 lights on the light mesh takes less time"), "{lost}");
+    assert!(lost.contains("- **loses**: Garden, h = 0.1: 0.70 light points a pixel"), "{lost}");
+    let won = sentences(0.5);
+    assert!(won.contains("- **wins**: Garden, 1 light: the light mesh takes 0.50× (Some GPU) the time"), "{won}");
+}
+
+#[test]
+fn two_runs_have_ratios() {
+    let (mut old, mut new) = (thesis(2.0), thesis(3.0));
+    old.rows.truncate(2);
+    new.pictures[1] = picture("p: test \"1\"", Some("p: reference"), 0.5);
+    let report = Report::new(vec![("old/a.json".into(), old), ("new/a.json".into(), new)]).unwrap();
+    let text = report.markdown();
+    assert!(text.contains("In the geometric mean a 2 takes 1.2× of a."), "{text}");
+    assert!(text.contains("| median, ms: a | median, ms: a 2 | times a: a 2 |"), "{text}");
+    assert!(text.contains("| 2200 | 3300 | 1.5× |"), "{text}");
+    assert!(text.contains("in common, 1 are the same in every pixel and 1 differ"), "{text}");
+    tags(&report.html());
+}
+
+#[test]
+fn doctored_results_are_refused() {
+    let refused = |change: fn(&mut Results)| {
+        let mut results = thesis(2.0);
+        change(&mut results);
+        report(results).unwrap_err().to_string()
+    };
+    assert!(
+        refused(|results| results.rows.push(results.rows[0].clone()))
+            .contains("a.json has two rows with the id `timings: ")
+    );
+    assert!(refused(|results| results.pictures[1].id = results.pictures[0].id.clone()).contains("two pictures"));
+    assert!(refused(|results| results.pictures[0].png.truncate(21)).contains("not in Base64"));
+    assert!(refused(|results| results.pictures[0].png = STANDARD.encode("GIF89a")).contains("it is no PNG file"));
+    assert!(refused(|results| results.pictures[0].png.truncate(64)).contains("png data is damaged"));
+    assert!(
+        refused(|results| drop(results.pictures.remove(0))).contains("no picture `p: reference` to hold it against")
+    );
+    assert!(
+        refused(|results| results.pictures[0].png = picture("", None, 0.1).png.replace('A', "B"))
+            .contains("a.json cannot be shown")
+    );
+}
