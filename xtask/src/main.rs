@@ -1,5 +1,5 @@
 //! Checks of the repository itself, and what is made from its sources and committed: `cargo xtask licences`, `cargo xtask
-//! check-docs` and `cargo xtask kernels`.
+//! check-docs`, `cargo xtask kernels` and `cargo xtask readme`.
 //!
 //! A check gives back what it found; only this file prints and exits.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
@@ -7,6 +7,7 @@
 mod docs;
 mod kernels;
 mod licences;
+mod readme;
 
 use std::error::Error;
 use std::path::Path;
@@ -16,6 +17,8 @@ const USAGE: &str = "\
 usage: cargo xtask licences      every dependency, for any target, is under a licence that the project may use
        cargo xtask check-docs    every file that the documents point to exists
        cargo xtask kernels       makes the layout header, the kernels' PTX and docs/kernels.md; with --check, says whether they are
+                                 as they should be
+       cargo xtask readme        writes the README's tables from the results that they name; with --check, says whether they are
                                  as they should be";
 
 /// What a check has to say; an error where it could not be made.
@@ -47,6 +50,8 @@ fn main() -> ExitCode {
         ["check-docs"] => docs::check(root),
         ["kernels"] => kernels::run(root, false),
         ["kernels", "--check"] => kernels::run(root, true),
+        ["readme"] => readme::run(root, false),
+        ["readme", "--check"] => readme::run(root, true),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);
