@@ -12,7 +12,7 @@ impl Machine {
     pub fn here(used: &[String]) -> Machine {
         let reports = devices();
         let cpu = reports.iter().find(|report| report.device == "cpu").map(|report| report.name.clone());
-        let gpus = reports.iter().filter(|report| used.contains(&report.device)).map(gpu);
+        let gpus = reports.iter().filter(|report| report.device != "cpu" && used.contains(&report.device)).map(gpu);
         Machine {
             cpu: cpu.unwrap_or_default(),
             threads: std::thread::available_parallelism().map_or(1, usize::from),
@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn this_machine_has_a_processor() {
-        let machine = Machine::here(&[]);
+        let machine = Machine::here(&["cpu".to_owned()]);
         assert!(machine.threads > 0 && !machine.cpu.is_empty() && !machine.os.is_empty() && machine.gpus.is_empty());
     }
 }

@@ -3,7 +3,7 @@
 //! Tasks come in the order of their worth, each with an estimate of what one round of it takes. For each in turn, just before it runs:
 //!
 //! 1. the tasks after it are set aside time for one round each, with a margin;
-//! 2. it gets as many rounds of what is left as it wants, one of them to warm up, but at least one;
+//! 2. it gets as many rounds of what is left as it wants, one of them to warm up, but at least one, which then counts;
 //! 3. where not even one fits, it keeps those of its variants, from the first, that do.
 //!
 //! So repetitions go first, then rows, the least worthy ones first. Estimates come from small trials and are wrong in a like way for
@@ -63,7 +63,7 @@ impl Schedule {
         let affordable = if round > 0.0 { free / round } else { f64::INFINITY };
         // Beside the warm-up.
         let repetitions = task.wanted(round).min((affordable - 1.0).max(0.0) as usize);
-        if repetitions >= 2 || repetitions == task.repetitions {
+        if repetitions >= 2 {
             return Decision { variants: all, rounds: Rounds { warm_up: true, repetitions } };
         }
         let once = Rounds { warm_up: false, repetitions: 1 };
@@ -153,10 +153,9 @@ mod tests {
     }
 
     #[test]
-    fn a_single_repetition_that_was_asked_for_is_warmed_up() {
+    fn what_is_wanted_once_is_not_warmed_up() {
         let once = Estimate { repetitions: 1, ..task("a", &[10.0]) };
         let schedule = Schedule::new(vec![once]);
-        assert_eq!(schedule.decide(0, 100.0), decision(1, true, 1));
-        assert_eq!(schedule.decide(0, 15.0), decision(1, false, 1));
+        assert_eq!(schedule.decide(0, 100.0), decision(1, false, 1));
     }
 }

@@ -8,23 +8,30 @@ mod turns;
 
 use std::time::Instant;
 
-use lightmesh::Observer;
+use lightmesh::{Observer, RenderError};
 
 use crate::{BenchError, Findings, Machine, Plan, Program, Results, Suite, machine};
 
-/// Runs a suite. The observer's [`note`](Observer::note) gets a line for each row; what it is told is for people.
+/// Runs a suite. The observer's [`note`](Observer::note) says where it is; the sentences are for people. Where the observer asks to
+/// stop, the rows so far are the results, and a note in them says so.
 ///
 /// # Errors
-/// [`BenchError`], most often because a device cannot be used; [`RenderError::Cancelled`](lightmesh::RenderError::Cancelled) in it
-/// where the observer asked to stop.
+/// [`BenchError`], most often because a device cannot be used; [`RenderError::Cancelled`] in it where the suite was stopped before it
+/// had a row.
 pub fn run(suite: Suite, plan: &Plan, observer: &dyn Observer) -> Result<Results, BenchError> {
     let (started, begin) = (machine::utc_now(), Instant::now());
     let mut findings = Findings::default();
-    match suite {
+    let outcome = match suite {
         Suite::Thesis => thesis::run(plan, observer, &mut findings),
         Suite::Quality => quality::run(plan, observer, &mut findings),
         Suite::Rays => rays::run(plan, observer, &mut findings),
-    }?;
+    };
+    match outcome {
+        Err(BenchError::Render(RenderError::Cancelled)) if !findings.rows.is_empty() => {
+            findings.notes.push("Stopped before its end; later rows are missing.".to_owned());
+        }
+        outcome => outcome?,
+    }
     Ok(Results {
         version: Results::VERSION,
         suite: suite.name().to_owned(),

@@ -47,12 +47,13 @@ pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings)
     let tasks = tasks::tasks(plan, &engines);
     observer.note("small trials, to plan the time");
     let estimates = trial::estimates(&tasks, &engines, begin, plan.budget, observer)?;
-    runner::run(plan, begin, &engines, tasks, estimates, observer, findings)?;
+    let outcome = runner::run(plan, begin, &engines, tasks, estimates, observer, findings);
+    // From whatever there is, also where the suite was stopped.
     derived::table_1(findings);
     derived::table_2(findings);
     break_even::add(findings);
     findings.notes.extend(notes(plan, &engines));
-    Ok(())
+    outcome
 }
 
 /// The devices of the plan; and one thread of the processor, but in the short form.

@@ -14,7 +14,8 @@ const SHRINK: u32 = 64;
 #[derive(Default)]
 struct Listener {
     notes: Mutex<Vec<String>>,
-    cancelled: bool,
+    /// After how many notes the suite is to stop.
+    patience: Option<usize>,
 }
 
 impl Observer for Listener {
@@ -23,7 +24,7 @@ impl Observer for Listener {
     }
 
     fn cancelled(&self) -> bool {
-        self.cancelled
+        self.patience.is_some_and(|patience| self.notes.lock().unwrap().len() > patience)
     }
 }
 
@@ -120,7 +121,14 @@ fn without_time_rows_are_left_out_and_named() {
 
 #[test]
 fn a_suite_can_be_stopped() {
-    let listener = Listener { cancelled: true, ..Listener::default() };
-    let stopped = crate::run(Suite::Thesis, &tiny(true), &listener);
-    assert!(matches!(stopped, Err(BenchError::Render(lightmesh::RenderError::Cancelled))), "{stopped:?}");
+    let stopped_after = |patience| {
+        let listener = Listener { patience: Some(patience), ..Listener::default() };
+        crate::run(Suite::Thesis, &tiny(true), &listener)
+    };
+    let at_once = stopped_after(0);
+    assert!(matches!(at_once, Err(BenchError::Render(lightmesh::RenderError::Cancelled))), "{at_once:?}");
+    // Notes are of the trials and of two tasks: the third task is not begun.
+    let later = stopped_after(3).unwrap();
+    assert_eq!((of(&later, "figure 1").len(), of(&later, "figures 12-15").len()), (3, 0));
+    assert!(later.notes.iter().any(|note| note.starts_with("Stopped before its end")), "{:?}", later.notes);
 }
