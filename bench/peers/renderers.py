@@ -89,16 +89,23 @@ def centred(mitsuba):
         def __init__(self, props):
             super().__init__(props)
             self.inner, self.fresh = mitsuba.load_dict({"type": "multijitter"}), True
-            for name in ("set_sample_count", "sample_count", "set_samples_per_wavefront", "wavefront_size", "schedule_state"):
-                setattr(self, name, getattr(self.inner, name))
 
         def fork(self):
             return self
 
         clone = fork
 
+        def set_sample_count(self, count):
+            super().set_sample_count(count)
+            self.inner.set_sample_count(count)
+
+        def schedule_state(self):
+            self.inner.schedule_state()
+
         def seed(self, seed, wavefront_size=2**32 - 1):
             self.fresh = True
+            # All samples of a picture are one wavefront. Python is not told so, and without this they are not stratified.
+            self.inner.set_samples_per_wavefront(self.inner.sample_count())
             self.inner.seed(seed, wavefront_size)
 
         def advance(self):

@@ -82,3 +82,14 @@ fn without_time_a_suite_says_what_it_left_out() {
     let command = json["program"]["command"].as_str().unwrap();
     assert_eq!(command, "lightmesh bench thesis --quick --budget 0.001s --device cpu --json out.json");
 }
+
+#[test]
+fn rays_are_counted_on_any_scene() {
+    let place = Place::new();
+    let flags = ["--quick", "--budget", "0.001s", "--device", "cpu", "--threads", "1", "--json", "out.json"];
+    place.good(&[&["bench", "rays", "--scene", "room.toml"], &flags[..]].concat());
+    let json = place.json("out.json");
+    let rows = json["rows"].as_array().unwrap();
+    assert!(rows.iter().any(|row| row["keys"]["scene"] == "room" && row["keys"]["rays"] == "primary"), "{json}");
+    assert!(place.refused(&["bench", "rays", "--scene", "none.ply"]).contains("none.ply"));
+}

@@ -57,7 +57,9 @@ pub(super) fn samples_in(points: &[Point], seconds: f64) -> u32 {
             let place = share(a.seconds, b.seconds, seconds);
             log(a.samples).mul_add(1.0 - place, log(b.samples) * place).exp()
         }
-        None => costs.last().map_or(1.0, |cost| cost.samples * (seconds / cost.seconds).max(1.0)),
+        None => {
+            points.last().map(|point| point.cost).map_or(1.0, |cost| cost.samples * (seconds / cost.seconds).max(1.0))
+        }
     };
     (samples as u32).clamp(1, u32::from(u16::MAX))
 }

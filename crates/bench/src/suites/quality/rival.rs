@@ -9,8 +9,11 @@ use crate::engine::Engine;
 use crate::measure::Silent;
 use crate::{BenchError, Findings, Picture, Row};
 
+/// An error as one number.
+type Measure = fn(&Errors) -> f64;
+
 /// The measures by which errors are equal.
-const MEASURES: [(&str, fn(&Errors) -> f64); 2] =
+const MEASURES: [(&str, Measure); 2] =
     [("visibility_rmse", |errors| errors.visibility_rmse), ("mean_flip", |errors| errors.mean_flip)];
 
 /// Adds rows, and on request pictures, for what was measured on a device.
@@ -45,7 +48,7 @@ pub(super) fn compare(
 }
 
 impl Outcome {
-    fn point(&self, error: fn(&Errors) -> f64) -> Point {
+    fn point(&self, error: Measure) -> Point {
         let samples = f64::from(self.case.settings.samples());
         let rays = self.measured.frame.stats.counts.shadow_rays as f64;
         Point { error: error(&self.errors), cost: Cost { samples, rays, seconds: self.measured.median() } }
