@@ -1,4 +1,4 @@
-//! Every dependency must be under a licence that the project may pass on.
+//! Every dependency, also of the fuzz targets, must be under a licence that the project may pass on.
 //!
 //! `cargo metadata` names the packages that are built for *any* target, test and build dependencies included, each with an
 //! SPDX expression. An expression passes where [`ALLOWED`] satisfies it: one side of an `OR`, both sides of an `AND`, and for
@@ -15,7 +15,7 @@ use spdx::{Expression, Licensee, ParseMode};
 use crate::{Outcome, Verdict};
 
 /// Permissive licences. What is missing here and needed may be added after a look at its text.
-const ALLOWED: [&str; 12] = [
+const ALLOWED: [&str; 13] = [
     "0BSD",
     "Apache-2.0",
     "Apache-2.0 WITH LLVM-exception",
@@ -26,6 +26,7 @@ const ALLOWED: [&str; 12] = [
     "ISC",
     "MIT",
     "MIT-0",
+    "NCSA",
     "Unicode-3.0",
     "Zlib",
 ];
@@ -86,9 +87,12 @@ impl Fault {
     }
 }
 
-/// Checks the workspace in `root`.
+/// Checks the workspace in `root`, and that of the fuzz targets.
 pub(crate) fn check(root: &Path) -> Outcome {
-    let packages = packages(&metadata(root)?)?;
+    let mut packages = packages(&metadata(root)?)?;
+    packages.extend(self::packages(&metadata(&root.join("fuzz"))?)?);
+    packages.sort_by(|a, b| a.key().cmp(&b.key()));
+    packages.dedup_by(|a, b| a.key() == b.key());
     let problems: Vec<Problem> = packages.iter().filter_map(Package::problem).collect();
     Ok(Verdict::new(problems, || format!("{} packages, all under licences that may be used", packages.len())))
 }
@@ -130,6 +134,11 @@ impl Package {
             license_file: text("license_file"),
             manifest_path: text("manifest_path")?,
         })
+    }
+
+    /// What tells packages apart.
+    fn key(&self) -> (&str, &str) {
+        (&self.name, &self.version)
     }
 
     fn problem(&self) -> Option<Problem> {

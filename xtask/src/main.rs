@@ -1,9 +1,10 @@
-//! Checks of the repository itself, and what is made from its sources and committed: `cargo xtask licences`, `cargo xtask
-//! check-docs`, `cargo xtask kernels` and `cargo xtask readme`.
+//! Checks of the repository itself, what is made from its sources and committed, and inputs for fuzzing: `cargo xtask licences`,
+//! `cargo xtask check-docs`, `cargo xtask kernels`, `cargo xtask readme` and `cargo xtask fuzz-corpus`.
 //!
 //! A check gives back what it found; only this file prints and exits.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
 
+mod corpus;
 mod docs;
 mod kernels;
 mod licences;
@@ -19,7 +20,9 @@ usage: cargo xtask licences      every dependency, for any target, is under a li
        cargo xtask kernels       makes the layout header, the kernels' PTX and docs/kernels.md; with --check, says whether they are
                                  as they should be
        cargo xtask readme        writes the README's tables from the results that they name; with --check, says whether they are
-                                 as they should be";
+                                 as they should be
+       cargo xtask fuzz-corpus   fills fuzz/corpus with the seeds and the scenes here, and with the models in the folder
+                                 whose name follows";
 
 /// What a check has to say; an error where it could not be made.
 type Outcome = Result<Verdict, Box<dyn Error>>;
@@ -52,6 +55,8 @@ fn main() -> ExitCode {
         ["kernels", "--check"] => kernels::run(root, true),
         ["readme"] => readme::run(root, false),
         ["readme", "--check"] => readme::run(root, true),
+        ["fuzz-corpus"] => corpus::fill(root, None),
+        ["fuzz-corpus", scenes] => corpus::fill(root, Some(Path::new(scenes))),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

@@ -1,5 +1,6 @@
 //! Where results go: standard output, standard error, and files that are there whole or not at all.
 
+use std::borrow::Cow;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -33,7 +34,16 @@ pub(crate) fn print(text: &str) -> Result<(), OutputError> {
 
 /// Prints a line to standard error. Where that cannot be done, nobody is left to tell.
 pub(crate) fn complain(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let _ = writeln!(io::stderr().lock(), "{}", visible(text));
+}
+
+/// The text with its control characters written out: names in a file must not command the terminal or begin new lines.
+fn visible(text: &str) -> Cow<'_, str> {
+    if !text.contains(char::is_control) {
+        return text.into();
+    }
+    let written = |c: char| if c.is_control() { c.escape_debug().to_string() } else { c.into() };
+    text.chars().map(written).collect::<String>().into()
 }
 
 /// Says whether a file could be written to `path`, without touching what is there.
@@ -66,6 +76,12 @@ pub(crate) fn check_distinct(files: &[(&'static str, Option<&Path>)]) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_do_not_command_the_terminal() {
+        assert_eq!(visible("a \u{1b}[31mred\n\0 büro"), "a \\u{1b}[31mred\\n\\0 büro");
+        assert!(matches!(visible("büro"), Cow::Borrowed("büro")));
+    }
 
     #[test]
     fn one_file_has_many_names() {

@@ -12,6 +12,7 @@ use crate::{
     builder::Room,
     loaded_mesh::LoadedMesh,
     texture::{TextureFiles, untextured},
+    usable::{is_place, keep_finite, keep_placed},
 };
 
 /// Where a model goes in the scene, and what of it.
@@ -224,6 +225,9 @@ impl Draft {
                 self.unusable_triangles
             ));
         }
+        self.warnings.extend(keep_placed(&mut self.cameras, "cameras"));
+        self.warnings.extend(keep_placed(&mut self.lights, "lights"));
+        self.warnings.extend(keep_finite(&mut self.materials));
         self.warnings.extend(self.texture_files.warning());
         if self.builder.triangle_count() == 0 {
             self.warnings.push("the scene has no triangles".to_owned());
@@ -250,7 +254,7 @@ impl Draft {
 
 /// Whether a vertex has a place once it is placed.
 fn usable_in<P: Position>(transform: &DMat4) -> impl Fn(&P) -> bool + use<'_, P> {
-    |position| transform.transform_point3(position.to_double()).abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all()
+    |position| is_place(transform.transform_point3(position.to_double()))
 }
 
 /// The path without `.` and `..`, by its text alone.

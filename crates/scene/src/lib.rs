@@ -28,6 +28,7 @@ mod scene;
 mod shapes;
 mod texture;
 mod up;
+mod usable;
 mod vertices;
 
 pub use builder::{MeshPart, SceneBuilder};

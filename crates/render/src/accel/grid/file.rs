@@ -18,7 +18,7 @@
 //! says, the right hash, and each offset is the one that building would have written. So no file can make a walk fail.
 
 use std::fs::File;
-use std::io::{BufReader, BufWriter, Read, Write};
+use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 use glam::UVec3;
@@ -46,7 +46,7 @@ pub enum GridSaveError {
         /// The target.
         path: PathBuf,
         /// What the system said.
-        reason: std::io::Error,
+        reason: io::Error,
     },
 }
 
@@ -66,7 +66,7 @@ pub struct GridFileError {
 pub enum GridFault {
     /// It cannot be read.
     #[error("cannot be read: {0}")]
-    Read(std::io::Error),
+    Read(io::Error),
     /// It is something else.
     #[error("is not a grid file")]
     NotAGrid,
@@ -130,7 +130,7 @@ impl Grid {
         self.write(file).map_err(|reason| GridSaveError::Write { path: path.into(), reason })
     }
 
-    fn write(&self, mut file: Replacement) -> std::io::Result<()> {
+    fn write(&self, mut file: Replacement) -> io::Result<()> {
         let mut output = Hashed { inner: BufWriter::new(&mut file), hash: Xxh3::new() };
         output.write(&MAGIC)?;
         output.write(&VERSION.to_le_bytes())?;
@@ -170,7 +170,7 @@ struct Hashed<W> {
 }
 
 impl<W: Write> Hashed<W> {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.hash.update(bytes);
         self.inner.write_all(bytes)
     }
@@ -178,8 +178,13 @@ impl<W: Write> Hashed<W> {
 
 fn read(path: &Path, triangles: &[Triangle]) -> Result<Grid, GridFault> {
     // 1. The header, before anything is allocated.
+    let status = std::fs::metadata(path).map_err(GridFault::Read)?;
+    if !status.is_file() {
+        // Opening a pipe would wait for someone to write to it.
+        return Err(GridFault::Read(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file")));
+    }
     let file = File::open(path).map_err(GridFault::Read)?;
-    let length = file.metadata().map_err(GridFault::Read)?.len();
+    let length = status.len();
     let mut input = BufReader::new(file);
     let mut head = Vec::with_capacity(HEADER);
     input.by_ref().take(HEADER as u64).read_to_end(&mut head).map_err(GridFault::Read)?;

@@ -39,7 +39,7 @@ pub(super) fn placed(
             let (inner, outer) = cone(axes, index, light.spot.as_deref().unwrap_or(&Spot::default()))?;
             LightKind::Spot { position, direction: axes.forward(placed)?.as_vec3(), inner, outer }
         }
-        ("point", None) => LightKind::Point { position, spread: own.spread.unwrap_or(0.0).max(0.0) },
+        ("point", None) => LightKind::Point { position, spread: spread(own) },
         _ => return Ok(None),
     };
     Ok(Some(Light {
@@ -48,6 +48,11 @@ pub(super) fn placed(
         intensity,
         falloff: if own.no_falloff { Falloff::None } else { Falloff::InverseSquare },
     }))
+}
+
+/// Radius of the ball that stands for a point light; one that is no length counts as 0.
+fn spread(own: &LightExtras) -> f32 {
+    own.spread.filter(|spread| spread.is_finite()).unwrap_or(0.0).max(0.0)
 }
 
 /// Inner and outer half-angle.

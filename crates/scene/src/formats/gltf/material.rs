@@ -39,7 +39,7 @@ pub(super) fn read(path: &Path, index: usize, of: &document::Material, tinted: b
     let name = of.name.as_deref().unwrap_or_default().to_owned();
     let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
     if let Some(own) = own {
-        if own.shininess.is_nan() || own.shininess <= 0.0 {
+        if !(own.shininess > 0.0 && own.shininess.is_finite()) {
             let problem = format!("extras.lightmesh of material {index} has shininess = {}", own.shininess);
             return Err(malformed(path, problem));
         }

@@ -38,7 +38,7 @@ mod views;
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 pub(crate) use picture::affine;
 
 use self::{
@@ -58,6 +58,7 @@ use crate::{
     LightMeshDefaults, LoadError, Weight,
     draft::{Draft, Placement},
     open::read_bytes,
+    usable::is_place,
 };
 
 /// Reads a glTF or GLB file into `draft`.
@@ -118,16 +119,28 @@ fn read_scene_extras(path: &Path, document: &Document, draft: &mut Draft) -> Res
     let scene = nodes::scene_index(document).and_then(|index| document.scenes.get(index));
     let extras = scene.and_then(|scene| scene.extras);
     let Some(own) = extras::read::<SceneExtras>(path, "the scene", extras)? else { return Ok(()) };
-    if let Some(origin) = own.origin {
-        draft.prefer_origin(origin.into());
+    let damaged = |problem: String| malformed(path, format!("extras.lightmesh of the scene {problem}"));
+    if let Some(origin) = own.origin.map(DVec3::from) {
+        if !is_place(origin) {
+            return Err(damaged(format!("has the origin {origin}")));
+        }
+        draft.prefer_origin(origin);
+    }
+    for (key, value) in [("step", own.step), ("radius", own.radius)] {
+        if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
+            return Err(damaged(format!("has {key} = {value}")));
+        }
+    }
+    for (key, color) in [("ambient", own.ambient), ("background", own.background)] {
+        if let Some(color) = color.map(Vec3::from).filter(|color| !(color.is_finite() && color.min_element() >= 0.0)) {
+            return Err(damaged(format!("has {key} = {color}")));
+        }
     }
     draft.ambient = own.ambient.map(Vec3::from);
     draft.background = own.background.map(Vec3::from);
     let weight = match own.weight.as_deref() {
         None => None,
-        Some(name) => Some(Weight::from_name(name).ok_or_else(|| {
-            malformed(path, format!("extras.lightmesh of the scene has the unknown weight `{name}`"))
-        })?),
+        Some(name) => Some(Weight::from_name(name).ok_or_else(|| damaged(format!("has the unknown weight `{name}`")))?),
     };
     draft.light_mesh = LightMeshDefaults { step: own.step, radius: own.radius, weight };
     Ok(())

@@ -5,6 +5,7 @@ mod damage;
 mod extensions;
 mod geometry;
 mod materials;
+mod numbers;
 mod views;
 
 use std::{f64::consts::FRAC_PI_2, fs};

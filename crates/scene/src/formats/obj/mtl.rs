@@ -181,8 +181,9 @@ fn color(word: &[u8], rest: &[u8]) -> Result<Vec3, String> {
         (_, &[grey]) if words(rest).nth(1).is_none_or(|next| next.starts_with(b"#")) => [grey; 3],
         _ => return Err(not_numbers(word, rest)),
     };
-    let color = DVec3::new(r, g, b).as_vec3().max(Vec3::ZERO);
-    if color.is_finite() { Ok(color) } else { Err(not_numbers(word, rest)) }
+    let color = DVec3::new(r, g, b).as_vec3();
+    // First of all: the maximum of 0 and no number is 0.
+    if color.is_finite() { Ok(color.max(Vec3::ZERO)) } else { Err(not_numbers(word, rest)) }
 }
 
 fn not_numbers(word: &[u8], rest: &[u8]) -> String {

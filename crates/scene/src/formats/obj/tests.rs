@@ -114,6 +114,10 @@ fn damage_is_named_with_its_line() {
     }
     let message = try_open("mtllib a b.mtl\nv 0 0 0\n", "newmtl a\nKd 1 x 1\n").unwrap_err();
     assert!(message.contains("`Kd 1 x 1` is not one number or three, a b.mtl:2; "), "{message}");
+    for color in ["nan 0 0", "0 inf 0", "0 0 1e39"] {
+        let message = try_open("mtllib a b.mtl\nv 0 0 0\n", &format!("newmtl a\nKd {color}\n")).unwrap_err();
+        assert!(message.contains("is not one number or three, a b.mtl:2; "), "{message}");
+    }
 }
 
 #[test]

@@ -90,7 +90,7 @@ impl Source<'_> {
 
     /// A whole number of segments.
     pub(super) fn segments(&self, value: &Option<Spanned<i64>>) -> Result<u32, LoadError> {
-        const RANGE: std::ops::RangeInclusive<i64> = 3..=8192;
+        const RANGE: std::ops::RangeInclusive<i64> = 3..=2048;
         match value {
             None => Ok(crate::shapes::DEFAULT_SEGMENTS),
             Some(value) if RANGE.contains(value.get_ref()) => Ok(*value.get_ref() as u32),

@@ -89,7 +89,7 @@ fn every_changed_byte_is_noticed() {
 
 #[test]
 fn each_fault_has_its_name() {
-    let (_folder, path, bytes) = saved();
+    let (folder, path, bytes) = saved();
     assert!(matches!(load(&path, b"P6 640 480 255"), Err(GridFault::NotAGrid)));
     let mut newer = bytes.clone();
     newer[8] = 2;
@@ -103,6 +103,7 @@ fn each_fault_has_its_name() {
     assert!(message.contains("scene.grid") && message.contains("lightmesh grid"), "{message}");
     assert!(matches!(Grid::load(&path, &moved[..9]).unwrap_err().fault, GridFault::OtherGeometry { .. }));
     assert!(matches!(Grid::load(path.with_extension("no"), &moved).unwrap_err().fault, GridFault::Read(_)));
+    assert!(Grid::load(folder.path(), &moved).unwrap_err().to_string().contains("not a regular file"));
     assert!(matches!(grid().save(path.join("below")).unwrap_err(), GridSaveError::Target(_)));
 }
 

@@ -1,0 +1,16 @@
+//! OBJ files with a material library: an input is the one, a line `%mtl`, and the other, which goes by the name `a.mtl`.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use lightmesh_fuzz::{Folder, read};
+
+const MARK: &[u8] = b"%mtl\n";
+
+fuzz_target!(|bytes: &[u8]| {
+    let at = bytes.windows(MARK.len()).position(|window| window == MARK);
+    let folder = Folder::new();
+    if let Some(at) = at {
+        folder.write("a.mtl", &bytes[at + MARK.len()..]);
+    }
+    read(&folder.write("input.obj", &bytes[..at.unwrap_or(bytes.len())]));
+});

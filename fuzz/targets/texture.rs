@@ -1,0 +1,22 @@
+//! Pictures as textures. What begins like a PNG, JPEG or BMP file is read as such whatever its name; the name makes all else TGA.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use lightmesh_fuzz::{Folder, read};
+
+const SCENE: &str = r#"
+[[material]]
+name = "a"
+texture = "input.tga"
+[[sphere]]
+center = [0, 0, 0]
+radius = 1
+segments = 4
+material = "a"
+"#;
+
+fuzz_target!(|bytes: &[u8]| {
+    let folder = Folder::new();
+    folder.write("input.tga", bytes);
+    read(&folder.write("scene.toml", SCENE.as_bytes()));
+});
