@@ -167,8 +167,13 @@ fn spread(samples: &Samples) -> f64 {
 impl fmt::Display for RunComparison {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(f, "{:>10} {:>10} {:>7} {:>6}  {:7} row", "old s", "new s", "ratio", "band", "verdict")?;
-        // Judged stages all; others where they tell something.
-        for stage in self.stages.iter().filter(|stage| stage.judged || stage.verdict != Verdict::Same) {
+        // Judged stages all; the others of a row where they say what made it slower.
+        let slower: Vec<&str> =
+            self.stages.iter().filter(|stage| stage.is_regression()).map(|stage| stage.id.as_str()).collect();
+        let shown = |stage: &&StageComparison| {
+            stage.judged || (stage.verdict == Verdict::Slower && slower.contains(&stage.id.as_str()))
+        };
+        for stage in self.stages.iter().filter(shown) {
             let StageComparison { id, stage: name, old, new, ratio, band, verdict, judged } = stage;
             let (band, verdict) = (format!("{:.0}%", 100.0 * band), verdict.name());
             let remark = if *judged { "" } else { " (not judged)" };
