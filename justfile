@@ -30,6 +30,10 @@ licences:
 kernels:
     cargo xtask kernels
 
+# Tables of the README from the results that they name
+readme:
+    cargo xtask readme
+
 # Everything a change must pass
 ci:
     .ci/run

@@ -1,5 +1,5 @@
 //! Checks of the repository itself, what is made from its sources and committed, and inputs for fuzzing: `cargo xtask licences`,
-//! `cargo xtask check-docs`, `cargo xtask kernels` and `cargo xtask fuzz-corpus`.
+//! `cargo xtask check-docs`, `cargo xtask kernels`, `cargo xtask readme` and `cargo xtask fuzz-corpus`.
 //!
 //! A check gives back what it found; only this file prints and exits.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
@@ -8,6 +8,7 @@ mod corpus;
 mod docs;
 mod kernels;
 mod licences;
+mod readme;
 
 use std::error::Error;
 use std::path::Path;
@@ -17,6 +18,8 @@ const USAGE: &str = "\
 usage: cargo xtask licences      every dependency, for any target, is under a licence that the project may use
        cargo xtask check-docs    every file that the documents point to exists
        cargo xtask kernels       makes the layout header, the kernels' PTX and docs/kernels.md; with --check, says whether they are
+                                 as they should be
+       cargo xtask readme        writes the README's tables from the results that they name; with --check, says whether they are
                                  as they should be
        cargo xtask fuzz-corpus   fills fuzz/corpus with the seeds and the scenes here, and with the models in the folder
                                  whose name follows";
@@ -50,6 +53,8 @@ fn main() -> ExitCode {
         ["check-docs"] => docs::check(root),
         ["kernels"] => kernels::run(root, false),
         ["kernels", "--check"] => kernels::run(root, true),
+        ["readme"] => readme::run(root, false),
+        ["readme", "--check"] => readme::run(root, true),
         ["fuzz-corpus"] => corpus::fill(root, None),
         ["fuzz-corpus", scenes] => corpus::fill(root, Some(Path::new(scenes))),
         _ => {

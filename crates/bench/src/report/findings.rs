@@ -26,7 +26,8 @@ pub(crate) fn section(runs: &Runs) -> Option<Section> {
     }
     findings.sort_by_key(|finding| finding.verdict);
     let intro = "Each sentence is computed from the rows below: medians of whole pictures, the same scene, size and lights, at the same \
-                 place.";
+                 place. Ratios of times say nothing of errors: light meshes blur, few shadow rays are noisy. Sentences on equal \
+                 errors, where there are any, take both into account.";
     Some(Section::new(
         "Where the method wins, and where it loses",
         vec![Block::Text(intro.to_owned()), Block::Findings(findings)],

@@ -1,10 +1,10 @@
 //! Reports: results as Markdown and as one page of HTML.
 //!
 //! 1. Files of results are read and checked ([`Report::open`]); several are shown side by side, rows matched by their ids.
-//! 2. From them a document is made: what was run, what follows from it, a section for each experiment ([`layouts`]). Sentences about
-//!    where the method wins and loses are computed from the rows ([`findings`]). Experiments that no layout is made for get a table of
+//! 2. From them a document is made: what was run, what follows from it, a section for each experiment (`layouts`). Sentences about
+//!    where the method wins and loses are computed from the rows (`findings`). Experiments that no layout is made for get a table of
 //!    all their keys and values.
-//! 3. The document is shown twice, [`markdown`] and [`html`], and written with its plots and pictures ([`Report::write`]).
+//! 3. The document is shown twice, by `markdown` and `html`, and written with its plots and pictures ([`Report::write`]).
 
 mod assets;
 mod document;

@@ -101,6 +101,7 @@ impl Plot {
         let area = backend.into_drawing_area();
         let mut chart = ChartBuilder::on(&area)
             .margin_top(12)
+            .margin_left(10)
             .margin_right(NAMES)
             .x_label_area_size(46)
             .y_label_area_size(68)
@@ -129,9 +130,11 @@ impl Plot {
                 draw_mark(&area, index, place(point))?;
             }
         }
-        for (mark, name) in &self.marks {
+        for (index, (mark, name)) in self.marks.iter().enumerate() {
             let (left, top) = place(&(*mark, y.high()));
-            area.draw(&Text::new(name.clone(), (left + 5, top + 3), ("sans-serif", TEXT)))?;
+            // One below the other: marks may stand close.
+            let top = top + 3 + LINE * index as i32;
+            area.draw(&Text::new(name.clone(), (left + 5, top), ("sans-serif", TEXT)))?;
         }
         let ends: Vec<_> = curves.iter().map(|curve| curve.points.last().map(place)).collect();
         draw_names(&area, curves, &ends)?;

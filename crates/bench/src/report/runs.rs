@@ -81,7 +81,7 @@ impl<'a> Measured<'a> {
             Some(key) => key.to_string(),
             None => String::new(),
         };
-        let place = device + &threads;
+        let place = (device + &threads).trim_start_matches(", ").to_owned();
         match (self.several, place.is_empty()) {
             (false, _) => place,
             (true, true) => self.run.label.clone(),

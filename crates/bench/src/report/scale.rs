@@ -84,6 +84,21 @@ impl Ranged for Scale {
 
 impl ValueFormatter<f64> for Scale {
     fn format_ext(&self, value: &f64) -> String {
-        numbers::significant(*value, 3).trim_end_matches("0").trim_end_matches('.').to_owned()
+        let text = numbers::significant(*value, 3);
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_within_the_axis() {
+        let texts = |scale: Scale| scale.ticks().iter().map(|tick| scale.format_ext(tick)).collect::<Vec<_>>();
+        assert_eq!(texts(Scale::over([3.0, 97.0].into_iter(), false).unwrap()), ["0", "20", "40", "60", "80", "100"]);
+        assert_eq!(texts(Scale::over([0.3, 40.0].into_iter(), true).unwrap()), ["0.5", "1", "2", "5", "10", "20"]);
+        assert_eq!(texts(Scale::over([0.3, 4000.0].into_iter(), true).unwrap()), ["1", "10", "100", "1000"]);
+        assert_eq!(texts(Scale::over([0.0].into_iter(), false).unwrap()).len(), 6);
     }
 }

@@ -10,13 +10,15 @@ const MINUTE: f64 = 60.0;
 /// The name of the table of facts.
 pub(crate) const TABLE: &str = "runs";
 
+/// What is told of a run.
+type Fact = fn(&Run) -> String;
+
 /// A column a run, a line a fact; then what the runs have to note.
 pub(crate) fn section(runs: &Runs) -> Section {
     let columns = runs.0.iter().map(|run| Column::words(run.label.as_str(), run.label.as_str()));
     let columns = std::iter::once(Column::words("fact", "")).chain(columns).collect();
     let mut table = Table::new(TABLE, "One column for each file of results.", columns);
-    type Fact = (&'static str, fn(&Run) -> String);
-    let facts: [Fact; 9] = [
+    let facts: [(&str, Fact); 9] = [
         ("Suite", |run| format!("{}{}", run.results.suite, if run.results.quick { ", the short form" } else { "" })),
         ("Processor", |run| format!("{}, {} threads", run.results.machine.cpu, run.results.machine.threads)),
         ("Memory", |run| numbers::bytes(run.results.machine.memory_bytes as f64)),

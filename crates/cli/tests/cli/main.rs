@@ -6,6 +6,7 @@ mod devices;
 mod help;
 mod messages;
 mod render;
+mod report;
 mod run;
 mod scenes;
 

@@ -20,8 +20,10 @@ pub(crate) const LIGHTS: &str = "figure 11";
 pub(crate) const BREAK_EVEN: &str = "figure 11, break-even";
 
 /// Keys in the order in which people look for them; others follow by name.
-const ORDER: [&str; 12] =
-    ["scene", "lights", "size", "step", "radius", "weight", "lookup", "mode", "method", "samples", "device", "threads"];
+const ORDER: [&str; 15] = [
+    "scene", "lights", "size", "step", "radius", "weight", "lookup", "mode", "method", "samples", "program", "rays",
+    "accel", "device", "threads",
+];
 
 /// Heading and blocks of an experiment, without its pictures.
 pub(crate) fn of(experiment: &str, runs: &Runs) -> (String, Vec<Block>) {
@@ -58,6 +60,7 @@ pub(crate) fn title(experiment: &str) -> String {
         "equal error" => "What equal errors cost",
         "equal time" => "What equal times give",
         "rays" => "Rays per second",
+        "soft shadows" => "Soft shadows by other renderers",
         "peers" => "Other renderers",
         _ => "",
     };

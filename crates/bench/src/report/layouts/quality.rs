@@ -11,9 +11,10 @@ use crate::report::plot::{Axis, Curve, Plot};
 use crate::report::runs::{Measured, Runs, distinct};
 
 /// Errors that are plotted, with their names.
-const ERRORS: [(&str, &str); 2] = [("visibility_rmse", "RMSE of visibility"), ("mean_flip", "mean FLIP")];
+const ERRORS: [(&str, &str); 3] =
+    [("visibility_rmse", "RMSE of visibility"), ("mean_flip", "mean FLIP"), ("rmse", "RMSE of the picture")];
 /// What a method is called by, the first that is there.
-const METHOD: [&str; 3] = ["method", "renderer", "mode"];
+const METHOD: [&str; 2] = ["program", "mode"];
 /// What the suite found of the cost of equal errors.
 const EQUAL_ERROR: &str = "equal error";
 /// Keys that tell plots apart.
