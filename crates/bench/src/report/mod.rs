@@ -104,6 +104,7 @@ fn document(runs: &Runs, gallery: &Gallery, assets: &mut Assets) -> Result<Docum
         blocks.extend(gallery.blocks(&runs.0, experiment, assets)?);
         sections.push(Section::new(title, blocks));
     }
+    sections.extend(summary::notes(runs));
     let suites = runs::distinct(runs.0.iter().map(|run| run.results.suite.as_str()));
     Ok(Document { title: format!("Lightmesh: {}", suites.join(", ")), sections })
 }

@@ -13,7 +13,10 @@ pub(crate) const TABLE: &str = "runs";
 /// What is told of a run.
 type Fact = fn(&Run) -> String;
 
-/// A column a run, a line a fact; then what the runs have to note.
+/// Characters after which a note that lists things breaks off.
+const LONG_NOTE: usize = 240;
+
+/// A column a run, a line a fact.
 pub(crate) fn section(runs: &Runs) -> Section {
     let columns = runs.0.iter().map(|run| Column::words(run.label.as_str(), run.label.as_str()));
     let columns = std::iter::once(Column::words("fact", "")).chain(columns).collect();
@@ -32,20 +35,44 @@ pub(crate) fn section(runs: &Runs) -> Section {
     for (name, fact) in facts {
         table.rows.push(std::iter::once(Cell::from(name)).chain(runs.0.iter().map(|run| fact(run).into())).collect());
     }
-    let mut blocks = vec![Block::Table(table)];
+    Section::new("What was run", vec![Block::Table(table)])
+}
+
+/// What the runs have to note; `None` where that is nothing.
+pub(crate) fn notes(runs: &Runs) -> Option<Section> {
     let notes: Vec<Finding> = runs
         .0
         .iter()
-        .flat_map(|run| run.results.notes.iter().map(move |note| (run, note)))
+        .flat_map(|run| run.results.notes.iter().map(move |note| (run, shortened(note))))
         .map(|(run, note)| {
-            let text = if runs.0.len() > 1 { format!("{}: {note}", run.label) } else { note.clone() };
+            let text = if runs.0.len() > 1 { format!("{}: {note}", run.label) } else { note };
             Finding::new(Verdict::Open, text)
         })
         .collect();
-    if !notes.is_empty() {
-        blocks.push(Block::Findings(notes));
+    (!notes.is_empty()).then(|| Section::new("Notes", vec![Block::Findings(notes)]))
+}
+
+/// The note; of a long list the beginning, and how much more there is.
+fn shortened(note: &str) -> String {
+    const SEPARATOR: &str = "; ";
+    let mut parts = note.split(SEPARATOR);
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    let rest: Vec<&str> = parts.collect();
+    let fit = rest
+        .iter()
+        .scan(text.len(), |length, part| {
+            *length += SEPARATOR.len() + part.len();
+            Some(*length)
+        })
+        .take_while(|length| *length <= LONG_NOTE)
+        .count();
+    for part in &rest[..fit] {
+        text = text + SEPARATOR + part;
     }
-    Section::new("What was run", blocks)
+    match rest.len() - fit {
+        0 => text,
+        left => format!("{text}{SEPARATOR}and {left} more, which the file of results names."),
+    }
 }
 
 fn gpus(run: &Run) -> String {
@@ -60,5 +87,20 @@ fn duration(seconds: f64) -> String {
         format!("{} s", numbers::significant(seconds, 2))
     } else {
         format!("{:.0} min {:02.0} s", (seconds / MINUTE).floor(), (seconds % MINUTE).floor())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shortened;
+
+    #[test]
+    fn long_lists_break_off_and_count_the_rest() {
+        assert_eq!(shortened("a; b; c."), "a; b; c.");
+        let parts: Vec<String> = (0..100).map(|part| format!("part {part}")).collect();
+        let short = shortened(&parts.join("; "));
+        assert!(short.starts_with("part 0; part 1; ") && short.len() < 300, "{short}");
+        let kept = short.matches("part ").count();
+        assert!(short.ends_with(&format!("; and {} more, which the file of results names.", 100 - kept)), "{short}");
     }
 }
