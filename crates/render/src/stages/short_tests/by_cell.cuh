@@ -40,7 +40,7 @@ DEVICE bool test_occluders(const ShortTests &args, const CellItem &item, const I
 template <bool SHARED_MASKS>
 DEVICE void short_tests_by_cell_of_item(const ShortTests &args) {
     DYNAMIC_SHARED(unsigned, shared);
-    // Last come first: a picture's upper items are the far ones, each of which has much to look at, or empty sky. Where a slow item
+    // The last come first: slow items are more often in the lower part of a picture (in Childpark this saves a tenth), and where one
     // begins late, the device waits for it alone.
     const unsigned long long index = args.first_item + (args.item_count - 1 - blockIdx.x);
     const CellMemory memory = cell_memory<SHARED_MASKS>(args, shared, index);

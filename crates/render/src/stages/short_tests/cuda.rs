@@ -148,7 +148,7 @@ impl<R: Runtime> DeviceMasks<R> {
 }
 
 /// Shared memory of a warp that tests by cell, in 32-bit words, its masks apart: candidates and targets of one round, triangles
-/// found (later `marks`), and the stack of the search through a BVH of `depth` levels. See `cell_memory` in `by_cell.cuh`.
+/// found (later `marks`), and the stack of the search through a BVH of `depth` levels. See `cell_memory` in `memory.cuh`.
 fn shared_words(depth: u32, marks: u32) -> u32 {
     const CANDIDATES: u32 = 32 * 24;
     const TARGETS: u32 = 65 * 4;
