@@ -4,6 +4,8 @@
 use std::ops::Range;
 
 use fearless_simd::{Level, prelude::*};
+use glam::Vec3;
+use lightmesh_scene::Weight;
 use rayon::prelude::*;
 
 use crate::accel::Hit;
@@ -11,13 +13,12 @@ use crate::job::{Job, Tally};
 use crate::light_mesh::{LightMesh, UsedPoints, point_of};
 use crate::prepared::PreparedScene;
 use crate::simd::dispatch;
-use crate::stages::light_points::{Place, Windows};
+use crate::stages::light_points::{Span, Windows};
 use crate::stages::long_tests::{Lit, LitBy};
 use crate::stages::primary_rays::{RayList, object_point};
 use crate::stages::shadow_rays::cpu::{fallback, ray_key};
 use crate::stages::shadow_rays::{Visibility, above_horizon};
-use crate::stages::short_tests::{CellPoints, Masks, population};
-use crate::surface::SurfacePoint;
+use crate::stages::short_tests::{CellPoints, Masks, population, sum_in_both, sum_of_products};
 
 /// Object points that one task takes.
 const RUN: usize = 4096;
@@ -40,38 +41,42 @@ impl Interpolation<'_> {
         let level = Level::new();
         let windows = Windows::new(&self.mesh.template);
         let runs = self.masks.groups.runs(RUN);
-        let parts: Vec<(Vec<f32>, u64)> = runs
-            .par_iter()
-            .map(|run| {
-                if self.job.observer.cancelled() {
-                    return (Vec::new(), 0);
-                }
-                dispatch!(level, simd => self.shares(simd, &windows, run.clone()))
-            })
-            .collect();
+        let members = self.masks.groups.members();
+        let mut shares = vec![0.0; members.len() * lights];
+        let parts = parts_of(&mut shares, runs.iter().map(|run| self.masks.groups.slots_of(run).len() * lights));
+        let work = runs.par_iter().zip(parts);
+        let fallbacks = work.map(|(run, shares)| {
+            if self.job.observer.cancelled() {
+                return 0;
+            }
+            dispatch!(level, simd => self.fill(simd, &windows, run.clone(), shares))
+        });
+        Tally::add(&self.job.tally.fallbacks, fallbacks.sum());
 
         // From the order of cells back to the order of rays.
-        let mut share = vec![0.0; self.hits.len() * lights];
-        let mut used = vec![0; self.hits.len()];
-        let members = self.masks.groups.members();
-        let found = parts.iter().flat_map(|(shares, _)| shares.chunks_exact(lights.max(1)));
-        for (&ray, shares) in members.iter().zip(found) {
-            share[ray as usize * lights..][..lights].copy_from_slice(shares);
-        }
+        let mut slots = vec![None; self.hits.len()];
         for (slot, &ray) in members.iter().enumerate() {
-            used[ray as usize] = population(self.masks.mask(slot)) as u32;
+            slots[ray as usize] = Some(slot as u32);
         }
-        Tally::add(&self.job.tally.fallbacks, parts.iter().map(|(_, fallbacks)| fallbacks).sum());
-        Visibility { lights, share, used, direct: Vec::new() }
+        let mut share = vec![0.0; self.hits.len() * lights];
+        if lights > 0 {
+            share.par_chunks_mut(lights).zip(&slots).for_each(|(share, slot)| {
+                if let Some(slot) = slot {
+                    share.copy_from_slice(&shares[*slot as usize * lights..][..lights]);
+                }
+            });
+        }
+        let used = |slot: &Option<u32>| slot.map_or(0, |slot| population(self.masks.mask(slot as usize)) as u32);
+        Visibility { lights, share, used: slots.par_iter().map(used).collect(), direct: Vec::new() }
     }
 
-    /// The shares of the object points of some cells, `lights` for each, and how many found no light point.
+    /// Finds the shares of the object points of some cells, one for each light, and how many object points found no light point.
     #[inline(always)]
-    fn shares<S: Simd>(&self, simd: S, windows: &Windows, run: Range<usize>) -> (Vec<f32>, u64) {
+    fn fill<S: Simd>(&self, simd: S, windows: &Windows, run: Range<usize>, shares: &mut [f32]) -> u64 {
         let lights = &self.scene.scene.lights;
         let mut points = CellPoints::new(self.mesh);
         let mut values = CellValues::new(self, windows);
-        let mut shares = Vec::new();
+        let mut shares = shares.iter_mut();
         let mut fallbacks = 0;
         for group in run {
             let cell = point_of(self.masks.groups.cell(group));
@@ -80,24 +85,36 @@ impl Interpolation<'_> {
             for slot in self.masks.groups.slots(group) {
                 let ray = self.masks.groups.members()[slot] as usize;
                 let point = object_point(self.scene, self.list, self.hits, ray);
+                let reach = self.scene.reach(point.origin);
                 let mask = self.masks.mask(slot);
-                let mut fell_back = false;
-                for (index, light) in lights.iter().enumerate() {
-                    let most = above_horizon(&point, light, self.scene.reach(point.origin));
-                    shares.push(if most == 0.0 {
+                let mut means = Means::new(&mut values, &points, self.mesh, mask, point.position);
+                let mut fell_back = lights.is_empty() && means.used == 0;
+                for ((index, light), share) in lights.iter().enumerate().zip(&mut shares) {
+                    let most = above_horizon(&point, light, reach);
+                    *share = if most == 0.0 {
                         0.0
-                    } else if let Some(share) = values.mean(simd, &points, &point, self.mesh, mask, index) {
-                        share.min(most)
+                    } else if let Some(mean) = means.mean(simd, index) {
+                        mean.min(most)
                     } else {
                         fell_back = true;
                         fallback(self.job, self.scene, ray_key(self.list, ray), &point, index)
-                    });
+                    };
                 }
-                fallbacks += u64::from(fell_back || (lights.is_empty() && population(mask) == 0));
+                fallbacks += u64::from(fell_back);
             }
         }
-        (shares, fallbacks)
+        fallbacks
     }
+}
+
+/// Cuts a slice into parts of these lengths.
+fn parts_of(mut rest: &mut [f32], lengths: impl Iterator<Item = usize>) -> Vec<&mut [f32]> {
+    let part = |length| {
+        let (part, behind) = std::mem::take(&mut rest).split_at_mut(length);
+        rest = behind;
+        part
+    };
+    lengths.map(part).collect()
 }
 
 /// What the template points of one cell see, in the template's order.
@@ -107,32 +124,40 @@ struct CellValues<'a> {
     windows: &'a Windows,
     bricks: Vec<Option<usize>>,
     lights: Vec<LightValues>,
+    /// Weights of an object point's light points.
+    weights: Vec<f32>,
 }
 
-/// The template points' values for one light.
+/// The template points' values for one light, as masks. Points that nobody uses come out as dark; no object point has them.
 struct LightValues {
     /// Points that see all of the light.
     full: Vec<u32>,
     /// Points that see some of it.
     some: Vec<u32>,
-    /// The share that each point sees, padded to whole words.
+    /// The share that each point sees, padded to whole words; empty for a light without a size, which is seen or not.
     share: Vec<f32>,
 }
 
 impl<'a> CellValues<'a> {
     fn new(work: &Interpolation<'a>, windows: &'a Windows) -> CellValues<'a> {
         let words = work.mesh.template.words();
-        let values = || LightValues { full: vec![0; words], some: vec![0; words], share: vec![0.0; 32 * words] };
+        let values = |lit: &LitBy| match lit {
+            LitBy::Bits(_) => LightValues { full: Vec::new(), some: vec![0; words], share: Vec::new() },
+            LitBy::Share { .. } => {
+                LightValues { full: vec![0; words], some: vec![0; words], share: vec![0.0; 32 * words] }
+            }
+        };
         CellValues {
             points: work.points,
             lit: work.lit,
             windows,
             bricks: vec![None; windows.len()],
-            lights: work.lit.lights.iter().map(|_| values()).collect(),
+            lights: work.lit.lights.iter().map(values).collect(),
+            weights: vec![0.0; 32 * words],
         }
     }
 
-    /// Fetches the values around `cell`. Points that nobody uses come out as dark; no mask has them.
+    /// Fetches the values around `cell`.
     fn fetch(&mut self, cell: glam::IVec3) {
         let window = self.windows.around(cell);
         for (slot, brick) in self.bricks.iter_mut().enumerate() {
@@ -140,65 +165,28 @@ impl<'a> CellValues<'a> {
         }
         for (values, lit) in self.lights.iter_mut().zip(&self.lit.lights) {
             match lit {
-                LitBy::Bits(words) => values.fetch_bits(window.places, &self.bricks, words),
+                LitBy::Bits(words) => values.fetch_bits(window.spans, &self.bricks, words),
                 LitBy::Share { seen, samples } => {
-                    values.fetch_shares(window.places, &self.bricks, self.points, seen, *samples);
+                    values.fetch_shares(window.spans, &self.bricks, self.points, seen, *samples);
                 }
             }
         }
     }
-
-    /// Formula (3) without χ for one light; `None` where no light point counts.
-    #[inline(always)]
-    fn mean<S: Simd>(
-        &self,
-        simd: S,
-        points: &CellPoints,
-        point: &SurfacePoint,
-        mesh: &LightMesh,
-        mask: &[u32],
-        light: usize,
-    ) -> Option<f32> {
-        let values = &self.lights[light];
-        let (mut dark, mut not_full, mut any) = (true, false, false);
-        for (word, (full, some)) in mask.iter().zip(values.full.iter().zip(&values.some)) {
-            any |= *word != 0;
-            dark &= word & some == 0;
-            not_full |= word & !full != 0;
-        }
-        if !any {
-            return None;
-        }
-        // All alike: the mean is known without weights.
-        if dark {
-            return Some(0.0);
-        }
-        if !not_full {
-            return Some(1.0);
-        }
-        let (weights, products) = points.weighted(simd, point.position, mesh, mask, &values.share);
-        // Weights that vanish at the rim may vanish altogether.
-        (weights > 0.0).then(|| (products / weights).min(1.0))
-    }
 }
 
 impl LightValues {
-    fn fetch_bits(&mut self, places: &[Place], bricks: &[Option<usize>], words: &[u64]) {
-        for ((places, some), shares) in places.chunks(32).zip(&mut self.some).zip(self.share.chunks_mut(32)) {
-            *some = 0;
-            for (bit, (place, share)) in places.iter().zip(shares).enumerate() {
-                let word = bricks[usize::from(place.slot)].map_or(0, |brick| words[brick]);
-                let seen = (word >> place.bit & 1) as u32;
-                *some |= seen << bit;
-                *share = seen as f32;
+    fn fetch_bits(&mut self, spans: &[Span], bricks: &[Option<usize>], words: &[u64]) {
+        self.some.fill(0);
+        for span in spans {
+            if let Some(brick) = bricks[usize::from(span.slot)] {
+                self.some[usize::from(span.word)] |= span.to_mask(words[brick]);
             }
         }
-        self.full.copy_from_slice(&self.some);
     }
 
     fn fetch_shares(
         &mut self,
-        places: &[Place],
+        spans: &[Span],
         bricks: &[Option<usize>],
         points: &UsedPoints,
         seen: &[u16],
@@ -206,13 +194,104 @@ impl LightValues {
     ) {
         self.full.fill(0);
         self.some.fill(0);
-        for (index, place) in places.iter().enumerate() {
-            let brick = bricks[usize::from(place.slot)];
-            let brick = brick.filter(|&brick| points.used()[brick] >> place.bit & 1 != 0);
-            let count = brick.map_or(0, |brick| u32::from(seen[points.rank(brick, u32::from(place.bit))]));
-            self.share[index] = count as f32 / samples as f32;
-            self.full[index / 32] |= u32::from(count == samples) << (index % 32);
-            self.some[index / 32] |= u32::from(count > 0) << (index % 32);
+        for span in spans {
+            let (word, brick) = (usize::from(span.word), bricks[usize::from(span.slot)]);
+            for point in 0..span.count {
+                let bit = span.bit + point;
+                let brick = brick.filter(|&brick| points.used()[brick] >> bit & 1 != 0);
+                let count = brick.map_or(0, |brick| u32::from(seen[points.rank(brick, u32::from(bit))]));
+                let shift = span.shift + point;
+                self.share[32 * word + usize::from(shift)] = count as f32 / samples as f32;
+                self.full[word] |= u32::from(count == samples) << shift;
+                self.some[word] |= u32::from(count > 0) << shift;
+            }
         }
+    }
+}
+
+/// Formula (3) without χ for one object point.
+struct Means<'a> {
+    lights: &'a [LightValues],
+    points: &'a CellPoints,
+    mesh: &'a LightMesh,
+    mask: &'a [u32],
+    position: Vec3,
+    /// Light points of the mask.
+    used: u64,
+    /// Their weights, and the sum once a light has asked for it: weights are the same for all lights.
+    weights: &'a mut [f32],
+    sum: Option<f32>,
+}
+
+impl<'a> Means<'a> {
+    #[inline(always)]
+    fn new(
+        values: &'a mut CellValues,
+        points: &'a CellPoints,
+        mesh: &'a LightMesh,
+        mask: &'a [u32],
+        position: Vec3,
+    ) -> Means<'a> {
+        let (lights, weights) = (&values.lights, &mut values.weights);
+        Means { lights, points, mesh, mask, position, used: population(mask), weights, sum: None }
+    }
+
+    /// The mean for a light; `None` where no light point counts.
+    #[inline(always)]
+    fn mean<S: Simd>(&mut self, simd: S, light: usize) -> Option<f32> {
+        if self.used == 0 {
+            return None;
+        }
+        let values = &self.lights[light];
+        if values.share.is_empty() { self.mean_of_bits(simd, values) } else { self.mean_of_shares(simd, values) }
+    }
+
+    /// Where all light points see the same, and where all weights are 1, numbers give the mean.
+    #[inline(always)]
+    fn mean_of_bits<S: Simd>(&mut self, simd: S, values: &LightValues) -> Option<f32> {
+        let mut lit = 0;
+        for (word, seen) in self.mask.iter().zip(&values.some) {
+            lit += (word & seen).count_ones();
+        }
+        let lit = u64::from(lit);
+        if lit == 0 {
+            Some(0.0)
+        } else if lit == self.used {
+            Some(1.0)
+        } else if self.mesh.weight == Weight::Constant {
+            Some(lit as f32 / self.used as f32)
+        } else {
+            let sum = self.weigh(simd)?;
+            Some((sum_in_both(simd, self.weights, self.mask, &values.some) / sum).min(1.0))
+        }
+    }
+
+    /// Where light points see all or nothing, the mean is known without weights.
+    #[inline(always)]
+    fn mean_of_shares<S: Simd>(&mut self, simd: S, values: &LightValues) -> Option<f32> {
+        let (mut dark, mut full) = (true, true);
+        for (word, (all, some)) in self.mask.iter().zip(values.full.iter().zip(&values.some)) {
+            dark &= word & some == 0;
+            full &= word & !all == 0;
+        }
+        if dark {
+            Some(0.0)
+        } else if full {
+            Some(1.0)
+        } else {
+            let sum = self.weigh(simd)?;
+            Some((sum_of_products(simd, self.weights, self.mask, &values.share) / sum).min(1.0))
+        }
+    }
+
+    /// Finds the weights at the first call. `None` where all of them vanish, as at the rim they may.
+    #[inline(always)]
+    fn weigh<S: Simd>(&mut self, simd: S) -> Option<f32> {
+        let sum = match self.sum {
+            Some(sum) => sum,
+            None => self.points.weights(simd, self.position, self.mesh, self.mask, self.weights),
+        };
+        self.sum = Some(sum);
+        (sum > 0.0).then_some(sum)
     }
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::Windows;
 use crate::job::{Job, Tally};
-use crate::light_mesh::{BrickKey, BrickMap, LightMesh, UsedPoints, bits, point_of};
+use crate::light_mesh::{BrickKey, BrickMap, LightMesh, UsedPoints, point_of};
 use crate::stages::short_tests::Masks;
 
 /// Object points that one task takes.
@@ -72,11 +72,8 @@ impl<'a> Marker<'a> {
                     *union |= word;
                 }
             }
-            for (word, &union) in self.union.iter().enumerate() {
-                for bit in bits(u64::from(union)) {
-                    let place = window.places[word * 32 + bit as usize];
-                    self.marks[usize::from(place.slot)] |= 1 << place.bit;
-                }
+            for span in window.spans {
+                self.marks[usize::from(span.slot)] |= span.to_brick(self.union[usize::from(span.word)]);
             }
             for slot in 0..self.marks.len() {
                 let points = std::mem::take(&mut self.marks[slot]);

@@ -21,14 +21,22 @@ use crate::light_mesh::{BrickKey, Template, brick_of, point_bit};
 pub(crate) struct Windows {
     reach: i32,
     side: i32,
-    places: Vec<Vec<Place>>,
+    spans: Vec<Vec<Span>>,
 }
 
-/// Where a template point lies: which brick of the window, which bit of it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+/// Template points that follow each other along x, in a mask as in a brick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Span {
+    /// Which brick of the window.
     pub(crate) slot: u16,
+    /// Which bit of it the first point is.
     pub(crate) bit: u8,
+    /// How many there are: 1 to 4.
+    pub(crate) count: u8,
+    /// Which word of a mask.
+    pub(crate) word: u16,
+    /// Which bit of it the first point is.
+    pub(crate) shift: u8,
 }
 
 /// The bricks around one cell.
@@ -36,8 +44,8 @@ pub(crate) struct Place {
 pub(crate) struct Window<'a> {
     low: IVec3,
     side: i32,
-    /// Place of each template point.
-    pub(crate) places: &'a [Place],
+    /// Where the template points lie, in their order.
+    pub(crate) spans: &'a [Span],
 }
 
 /// Bricks of a window along each axis. Offsets run from 1 − reach to reach; a run of n points meets at most (n + 2) / 4 + 1 bricks.
@@ -49,19 +57,27 @@ impl Windows {
     pub(crate) fn new(template: &Template) -> Windows {
         let reach = template.reach();
         let side = window_side(reach);
-        let places = |bit: i32| {
+        let spans = |bit: i32| {
             let cell = IVec3::new(bit & 3, bit >> 2 & 3, bit >> 4);
             let low = (cell + 1 - reach) >> 2;
-            let place = |&offset: &IVec3| {
+            let mut spans: Vec<Span> = Vec::new();
+            for (index, &offset) in template.offsets().iter().enumerate() {
                 let brick: IVec3 = ((cell + offset) >> 2) - low;
-                Place {
+                let point = Span {
                     slot: ((brick.z * side + brick.y) * side + brick.x) as u16,
                     bit: point_bit(cell + offset) as u8,
+                    count: 1,
+                    word: (index / 32) as u16,
+                    shift: (index % 32) as u8,
+                };
+                match spans.last_mut() {
+                    Some(span) if span.goes_on_with(&point) => span.count += 1,
+                    _ => spans.push(point),
                 }
-            };
-            template.offsets().iter().map(place).collect()
+            }
+            spans
         };
-        Windows { reach, side, places: (0..64).map(places).collect() }
+        Windows { reach, side, spans: (0..64).map(spans).collect() }
     }
 
     /// Number of bricks of a window.
@@ -71,7 +87,31 @@ impl Windows {
 
     /// The window around `cell`.
     pub(crate) fn around(&self, cell: IVec3) -> Window<'_> {
-        Window { low: (cell + 1 - self.reach) >> 2, side: self.side, places: &self.places[point_bit(cell) as usize] }
+        Window { low: (cell + 1 - self.reach) >> 2, side: self.side, spans: &self.spans[point_bit(cell) as usize] }
+    }
+}
+
+impl Span {
+    /// Whether `point` is the next one, in the same row of the same brick and in the same word.
+    fn goes_on_with(&self, point: &Span) -> bool {
+        let (slot, bit, word) = (self.slot, self.bit + self.count, self.word);
+        bit % 4 != 0 && (slot, bit, word) == (point.slot, point.bit, point.word)
+    }
+
+    fn ones(&self) -> u32 {
+        (1 << self.count) - 1
+    }
+
+    /// These points' bits of a brick, as bits of the mask's word.
+    #[inline(always)]
+    pub(crate) fn to_mask(self, brick: u64) -> u32 {
+        ((brick >> self.bit) as u32 & self.ones()) << self.shift
+    }
+
+    /// These points' bits of the mask's word, as bits of a brick.
+    #[inline(always)]
+    pub(crate) fn to_brick(self, word: u32) -> u64 {
+        u64::from(word >> self.shift & self.ones()) << self.bit
     }
 }
 

@@ -6,7 +6,7 @@ use glam::{DVec3, IVec3, Vec3};
 use lightmesh_scene::{LightKind, Weight};
 use lightmesh_testkit::pile;
 
-use super::Windows;
+use super::{Span, Windows};
 use crate::Unobserved;
 use crate::backend::{Backend, Cpu};
 use crate::job::{Job, Sampling, Tally};
@@ -60,17 +60,26 @@ fn a_window_finds_every_template_point_of_every_cell() {
         for place in 0..64 {
             let cell = IVec3::new(40, 44, 48) + IVec3::new(place & 3, place >> 2 & 3, place >> 4);
             let window = windows.around(cell);
-            for (place, &offset) in window.places.iter().zip(template.offsets()) {
-                assert!(usize::from(place.slot) < windows.len());
-                assert_eq!(
-                    window.key(usize::from(place.slot)),
-                    brick_of(cell + offset),
-                    "R = {radius}, {cell}, {offset}"
-                );
-                assert_eq!(u32::from(place.bit), point_bit(cell + offset));
+            let mut offsets = template.offsets().iter().enumerate();
+            for span in window.spans {
+                assert!(usize::from(span.slot) < windows.len());
+                for (point, (index, &offset)) in (0..span.count).zip(&mut offsets) {
+                    let brick = window.key(usize::from(span.slot));
+                    assert_eq!(brick, brick_of(cell + offset), "R = {radius}, {cell}, {offset}");
+                    assert_eq!(u32::from(span.bit + point), point_bit(cell + offset));
+                    assert_eq!(usize::from(span.word) * 32 + usize::from(span.shift + point), index);
+                }
             }
+            assert_eq!(offsets.next(), None, "R = {radius}, {cell}");
         }
     }
+}
+
+#[test]
+fn a_span_takes_its_bits_and_no_others() {
+    let span = Span { slot: 3, bit: 60, count: 3, word: 1, shift: 29 };
+    assert_eq!((span.to_mask(u64::MAX), span.to_brick(u32::MAX)), (0b111 << 29, 0b111 << 60));
+    assert_eq!((span.to_mask(1 << 61 | 1 << 63), span.to_brick(1 << 30 | 1 << 28)), (1 << 30, 1 << 61));
 }
 
 #[test]

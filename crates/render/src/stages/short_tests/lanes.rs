@@ -42,39 +42,71 @@ impl CellPoints {
         Vec3::new(self.x[index], self.y[index], self.z[index])
     }
 
-    /// Σw and Σw·value of formula (3) over the points of `mask`; `values` has a value for every lane.
+    /// w of formula (3) for the points of `mask`, and 0 for all others, into `weights`, which has a place for every lane. Returns
+    /// their sum.
     #[inline(always)]
-    pub(crate) fn weighted<S: Simd>(
+    pub(crate) fn weights<S: Simd>(
         &self,
         simd: S,
         position: Vec3,
         mesh: &LightMesh,
         mask: &[u32],
-        values: &[f32],
-    ) -> (f32, f32) {
+        weights: &mut [f32],
+    ) -> f32 {
         let zero = f32x8::splat(simd, 0.0);
         let scale = f32x8::splat(simd, 1.0 / (mesh.radius * mesh.radius));
-        let (mut weights, mut products) = (zero, zero);
-        for (index, &word) in mask.iter().enumerate() {
-            for part in 0..32 / LANES {
-                let bits = word >> (part * LANES) & 0xff;
-                if bits == 0 {
-                    continue;
-                }
-                let first = index * 32 + part * LANES;
-                let d = [
-                    load(simd, &self.x, first) - position.x,
-                    load(simd, &self.y, first) - position.y,
-                    load(simd, &self.z, first) - position.z,
-                ];
-                let weight = weight(simd, mesh.weight, dot(d, d) * scale);
-                let chosen = mask32x8::from_bitmask(simd, u64::from(bits)).select(weight, zero);
-                weights += chosen;
-                products += chosen * load(simd, values, first);
+        let mut total = zero;
+        for (part, weights) in weights.chunks_exact_mut(LANES).enumerate() {
+            let bits = eight_bits(mask, part);
+            if bits == 0 {
+                weights.fill(0.0);
+                continue;
             }
+            let first = part * LANES;
+            let d = [
+                load(simd, &self.x, first) - position.x,
+                load(simd, &self.y, first) - position.y,
+                load(simd, &self.z, first) - position.z,
+            ];
+            let weight = weight(simd, mesh.weight, dot(d, d) * scale);
+            let chosen = mask32x8::from_bitmask(simd, bits).select(weight, zero);
+            chosen.store_slice(weights);
+            total += chosen;
         }
-        (sum(weights), sum(products))
+        sum(total)
     }
+}
+
+/// The bits of eight lanes of a mask.
+#[inline(always)]
+fn eight_bits(mask: &[u32], part: usize) -> u64 {
+    u64::from(mask[part / 4] >> (part % 4 * LANES) & 0xff)
+}
+
+/// The sum of `weights` over the lanes in both masks.
+#[inline(always)]
+pub(crate) fn sum_in_both<S: Simd>(simd: S, weights: &[f32], mask: &[u32], lit: &[u32]) -> f32 {
+    let zero = f32x8::splat(simd, 0.0);
+    let mut total = zero;
+    for part in 0..weights.len() / LANES {
+        let bits = eight_bits(mask, part) & eight_bits(lit, part);
+        if bits != 0 {
+            total += mask32x8::from_bitmask(simd, bits).select(load(simd, weights, part * LANES), zero);
+        }
+    }
+    sum(total)
+}
+
+/// The sum of products of `weights` with `values`, lane by lane; weights outside of the mask are 0, and not asked for.
+#[inline(always)]
+pub(crate) fn sum_of_products<S: Simd>(simd: S, weights: &[f32], mask: &[u32], values: &[f32]) -> f32 {
+    let mut total = f32x8::splat(simd, 0.0);
+    for part in 0..weights.len() / LANES {
+        if eight_bits(mask, part) != 0 {
+            total += load(simd, weights, part * LANES) * load(simd, values, part * LANES);
+        }
+    }
+    sum(total)
 }
 
 /// w of formula (3) as a function of q² = (distance / radius)². Zero at the rim for all but the constant weight, so that a light

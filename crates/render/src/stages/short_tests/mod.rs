@@ -21,7 +21,7 @@ pub(crate) mod plain;
 mod tests;
 
 pub use group::CellGroups;
-pub(crate) use lanes::CellPoints;
+pub(crate) use lanes::{CellPoints, sum_in_both, sum_of_products};
 
 #[cfg(doc)]
 use crate::light_mesh::LightMesh;
