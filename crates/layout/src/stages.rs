@@ -39,6 +39,11 @@ records! {
         tally: Tally,
         /// The first block of this launch among all blocks.
         first_block: u64,
+        /// The first shadow ray of each thread in this launch, counted light by light as if all had `sampling.samples`, or one where
+        /// shadows are hard. A later launch adds to what earlier ones found.
+        first_sample: u64,
+        /// Shadow rays of each thread in this launch.
+        sample_count: u64,
     }
 
     /// `shade`: one thread a ray.
@@ -183,6 +188,10 @@ records! {
         point_count: u32,
         /// The first light point of this launch.
         first_point: u64,
+        /// The first ray from each light point in this launch. A later launch adds to what earlier ones found.
+        first_sample: u32,
+        /// Rays from each light point in this launch.
+        sample_count: u32,
     }
 
     /// `interpolate`: one warp an item; `fallback`: one thread a ray.

@@ -17,6 +17,9 @@ const HITS: [u32; 2] = [64, 64];
 const SIZE: [u32; 2] = [45, 37];
 /// Pixels of those with large templates.
 const SMALL: [u32; 2] = [18, 13];
+/// Pixels and samples of those where threads have more rays than one launch casts.
+const TINY: [u32; 2] = [7, 5];
+const MANY_SAMPLES: u32 = 300;
 /// Shares may differ by what the order of a sum and roots of weights change.
 pub(crate) const SHARE_TOLERANCE: f32 = 1e-5;
 
@@ -40,6 +43,11 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
             }
             if subject.small && name == "bvh" {
                 // Templates of one brick and of many, masks in shared memory and out of it, kernels unrolled and not.
+                add("many_samples", |cuda, subject, index| {
+                    let twins = Twins { samples: MANY_SAMPLES, ..Twins::new(cuda, subject, index, TINY) };
+                    twins.shadow_rays();
+                    twins.light_mesh(0.5, Weight::Constant);
+                });
                 add("light_mesh_other", |cuda, subject, index| {
                     let twins = Twins::new(cuda, subject, index, SMALL);
                     for radius in [0.5, 1.5, 4.1, 5.1, 9.0, 16.0] {
@@ -61,10 +69,12 @@ struct Twins<'a, R: Target> {
     hits: Vec<Hit>,
     device_rays: DeviceRays<R>,
     device_hits: DeviceHits<R>,
+    /// Rays to each light with a size.
+    samples: u32,
 }
 
-fn job() -> Job<'static> {
-    Job::new(&Unobserved, Sampling { samples: 4, seed: 5, spread: true })
+fn job(samples: u32) -> Job<'static> {
+    Job::new(&Unobserved, Sampling { samples, seed: 5, spread: true })
 }
 
 impl<'a, R: Target> Twins<'a, R> {
@@ -73,25 +83,30 @@ impl<'a, R: Target> Twins<'a, R> {
         let scene = subject.prepared(acceleration);
         let view = subject.view(size);
         let rays = Cpu.camera_rays(&view, 0..size[1]).unwrap();
-        let hits = Cpu.primary_rays(&job(), scene, &rays).unwrap();
+        let job = job(4);
+        let hits = Cpu.primary_rays(&job, scene, &rays).unwrap();
         let device_rays = cuda.camera_rays(&view, 0..size[1]).unwrap();
-        let device_hits = cuda.primary_rays(&job(), scene, &device_rays).unwrap();
+        let device_hits = cuda.primary_rays(&job, scene, &device_rays).unwrap();
         let found = device_hits.read().unwrap();
         assert_eq!(found.len(), hits.len());
         for (hit, &pixel) in hits.iter().zip(&rays.pixels) {
             let twin = &found[pixel as usize];
             assert_eq!(bits(hit), bits(twin), "pixel {pixel}: {hit:?} on the CPU, {twin:?} on the device");
         }
-        Twins { cuda, subject, scene, rays, hits, device_rays, device_hits }
+        Twins { cuda, subject, scene, rays, hits, device_rays, device_hits, samples: job.sampling.samples }
+    }
+
+    fn job(&self) -> Job<'static> {
+        job(self.samples)
     }
 
     /// Shadow rays, one and many a light.
     fn shadow_rays(&self) {
-        let host = Cpu.shadow_rays(&job(), self.scene, &self.rays, &self.hits).unwrap();
-        let device = self.cuda.shadow_rays(&job(), self.scene, &self.device_rays, &self.device_hits).unwrap();
+        let host = Cpu.shadow_rays(&self.job(), self.scene, &self.rays, &self.hits).unwrap();
+        let device = self.cuda.shadow_rays(&self.job(), self.scene, &self.device_rays, &self.device_hits).unwrap();
         self.same_shares("hard shadows", &host, &device.read().unwrap(), 0.0, 0);
-        let host = Cpu.area_shadows(&job(), self.scene, &self.rays, &self.hits).unwrap();
-        let device = self.cuda.area_shadows(&job(), self.scene, &self.device_rays, &self.device_hits).unwrap();
+        let host = Cpu.area_shadows(&self.job(), self.scene, &self.rays, &self.hits).unwrap();
+        let device = self.cuda.area_shadows(&self.job(), self.scene, &self.device_rays, &self.device_hits).unwrap();
         let allowed = R::allowed(host.share.len(), 1000);
         self.same_shares("area shadows", &host, &device.read().unwrap(), 0.0, allowed);
     }
@@ -106,13 +121,13 @@ impl<'a, R: Target> Twins<'a, R> {
             weight,
         };
         let (rays, hits) = (&self.rays, &self.hits);
-        let masks = Cpu.short_tests(&job(), self.scene, rays, hits, &mesh).unwrap();
+        let masks = Cpu.short_tests(&self.job(), self.scene, rays, hits, &mesh).unwrap();
         let mut expected: Vec<(u32, Vec<u32>)> = (masks.groups.members().iter().enumerate())
             .map(|(slot, &ray)| (rays.pixels[ray as usize], masks.mask(slot).to_vec()))
             .collect();
         expected.sort_unstable();
         let on_device = |how| {
-            let job = job().with_short_tests(how);
+            let job = self.job().with_short_tests(how);
             self.cuda.short_tests(&job, self.scene, &self.device_rays, &self.device_hits, &mesh).unwrap()
         };
         for how in [ShortTests::Plain, ShortTests::Cells] {
@@ -124,18 +139,18 @@ impl<'a, R: Target> Twins<'a, R> {
         }
 
         let device_masks = on_device(ShortTests::Cells);
-        let points = Cpu.light_points(&job(), &masks, &mesh).unwrap();
-        let device_points = self.cuda.light_points(&job(), &device_masks, &mesh).unwrap();
+        let points = Cpu.light_points(&self.job(), &masks, &mesh).unwrap();
+        let device_points = self.cuda.light_points(&self.job(), &device_masks, &mesh).unwrap();
         same_points(&points, &device_points);
 
-        let lit = Cpu.long_tests(&job(), self.scene, &points, &mesh).unwrap();
-        let device_lit = self.cuda.long_tests(&job(), self.scene, &device_points, &mesh).unwrap();
+        let lit = Cpu.long_tests(&self.job(), self.scene, &points, &mesh).unwrap();
+        let device_lit = self.cuda.long_tests(&self.job(), self.scene, &device_points, &mesh).unwrap();
         same_light(&points, &lit, &device_points, &device_lit);
 
-        let host = Cpu.interpolate(&job(), self.scene, rays, hits, &masks, &points, &lit, &mesh).unwrap();
+        let host = Cpu.interpolate(&self.job(), self.scene, rays, hits, &masks, &points, &lit, &mesh).unwrap();
         let (rays, hits) = (&self.device_rays, &self.device_hits);
         let (masks, points, lit) = (&device_masks, &device_points, &device_lit);
-        let device = self.cuda.interpolate(&job(), self.scene, rays, hits, masks, points, lit, &mesh).unwrap();
+        let device = self.cuda.interpolate(&self.job(), self.scene, rays, hits, masks, points, lit, &mesh).unwrap();
         let allowed = R::allowed(host.share.len(), 100);
         self.same_shares("interpolated", &host, &device.read().unwrap(), SHARE_TOLERANCE, allowed);
     }

@@ -452,8 +452,10 @@ struct alignas(8) ShadowRays {
     Sampling sampling;
     Tally tally;
     unsigned long long first_block;
+    unsigned long long first_sample;
+    unsigned long long sample_count;
 };
-static_assert(sizeof(ShadowRays) == 440, "size of ShadowRays");
+static_assert(sizeof(ShadowRays) == 456, "size of ShadowRays");
 static_assert(PLACE_OF(ShadowRays, scene) == 0, "place of ShadowRays::scene");
 static_assert(PLACE_OF(ShadowRays, rays) == 304, "place of ShadowRays::rays");
 static_assert(PLACE_OF(ShadowRays, hits) == 384, "place of ShadowRays::hits");
@@ -462,6 +464,8 @@ static_assert(PLACE_OF(ShadowRays, direct) == 400, "place of ShadowRays::direct"
 static_assert(PLACE_OF(ShadowRays, sampling) == 408, "place of ShadowRays::sampling");
 static_assert(PLACE_OF(ShadowRays, tally) == 424, "place of ShadowRays::tally");
 static_assert(PLACE_OF(ShadowRays, first_block) == 432, "place of ShadowRays::first_block");
+static_assert(PLACE_OF(ShadowRays, first_sample) == 440, "place of ShadowRays::first_sample");
+static_assert(PLACE_OF(ShadowRays, sample_count) == 448, "place of ShadowRays::sample_count");
 
 struct alignas(8) Shade {
     Scene scene;
@@ -595,8 +599,10 @@ struct alignas(8) LongTests {
     unsigned light;
     unsigned point_count;
     unsigned long long first_point;
+    unsigned first_sample;
+    unsigned sample_count;
 };
-static_assert(sizeof(LongTests) == 472, "size of LongTests");
+static_assert(sizeof(LongTests) == 480, "size of LongTests");
 static_assert(PLACE_OF(LongTests, scene) == 0, "place of LongTests::scene");
 static_assert(PLACE_OF(LongTests, mesh) == 304, "place of LongTests::mesh");
 static_assert(PLACE_OF(LongTests, points) == 384, "place of LongTests::points");
@@ -606,6 +612,8 @@ static_assert(PLACE_OF(LongTests, tally) == 448, "place of LongTests::tally");
 static_assert(PLACE_OF(LongTests, light) == 456, "place of LongTests::light");
 static_assert(PLACE_OF(LongTests, point_count) == 460, "place of LongTests::point_count");
 static_assert(PLACE_OF(LongTests, first_point) == 464, "place of LongTests::first_point");
+static_assert(PLACE_OF(LongTests, first_sample) == 472, "place of LongTests::first_sample");
+static_assert(PLACE_OF(LongTests, sample_count) == 476, "place of LongTests::sample_count");
 
 struct alignas(8) Interpolate {
     Scene scene;

@@ -26,6 +26,7 @@ pub use film::DeviceFilm;
 use mesh::DeviceTemplate;
 pub(crate) use mesh::sampling;
 use pieces::Rates;
+pub(crate) use pieces::Work;
 pub(crate) use scene::{DeviceScene, kernel_of};
 
 /// Threads of the blocks that take one ray a thread.

@@ -15,6 +15,19 @@ const LAUNCH_SECONDS: f64 = 0.05;
 /// A piece is at most this many times larger than the largest that was measured.
 const GROWTH: f64 = 8.0;
 
+/// Work of a kernel that can be cut into launches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Work {
+    /// What is cut: blocks, or items.
+    pub(crate) units: u64,
+    /// What a unit costs, in whatever makes launches of this kernel comparable: rays or lights of each thread.
+    pub(crate) cost: u64,
+    /// Units of the kernel's first launch ever, whose speed is not known.
+    pub(crate) first: u64,
+    /// How much the observer is told about in all.
+    pub(crate) progress: u64,
+}
+
 /// How fast each kernel was when it ran last.
 pub(crate) struct Rates<R: Runtime> {
     measured: Mutex<HashMap<Kernel, Measured>>,
@@ -24,13 +37,13 @@ pub(crate) struct Rates<R: Runtime> {
 
 #[derive(Clone, Copy, Debug)]
 struct Measured {
-    units: u64,
+    cost: u64,
     seconds: f64,
 }
 
 struct Timing<R: Runtime> {
     kernel: Kernel,
-    units: u64,
+    cost: u64,
     from: R::Mark,
     to: R::Mark,
 }
@@ -42,12 +55,13 @@ impl<R: Runtime> Default for Rates<R> {
 }
 
 impl<R: Runtime> Rates<R> {
-    /// Units of work that `kernel` may be given at once; `first` where nothing is known.
-    fn piece(&self, kernel: Kernel, first: u64) -> u64 {
-        locked(&self.measured).get(&kernel).map_or(first, |measured| {
+    /// Units of work that `kernel` may be given at once.
+    fn piece(&self, kernel: Kernel, work: &Work) -> u64 {
+        let units = locked(&self.measured).get(&kernel).map_or(work.first, |measured| {
             let factor = (LAUNCH_SECONDS / measured.seconds.max(1e-9)).min(GROWTH);
-            ((measured.units as f64 * factor) as u64).max(1)
-        })
+            (measured.cost as f64 * factor) as u64 / work.cost.max(1)
+        });
+        units.max(1)
     }
 
     fn remember(&self, timing: Timing<R>) {
@@ -62,11 +76,11 @@ impl<R: Runtime> Rates<R> {
     pub(super) fn settle(&self, pool: &Pool<R>) -> Result<(), RenderError> {
         let pending: Vec<Timing<R>> = locked(&self.pending).drain(..).collect();
         let mut slowest: HashMap<Kernel, Measured> = HashMap::new();
-        for Timing { kernel, units, from, to } in pending {
+        for Timing { kernel, cost, from, to } in pending {
             let seconds = pool.runtime().seconds(&from, &to).map_err(|fault| pool.fault(fault))?;
-            let new = Measured { units, seconds };
+            let new = Measured { cost, seconds };
             let slow = slowest.entry(kernel).or_insert(new);
-            if new.units > 8 * slow.units || new.seconds * slow.units as f64 > slow.seconds * new.units as f64 {
+            if new.cost > 8 * slow.cost || new.seconds * slow.cost as f64 > slow.seconds * new.cost as f64 {
                 *slow = new;
             }
         }
@@ -76,31 +90,31 @@ impl<R: Runtime> Rates<R> {
 }
 
 impl<R: Runtime> Cuda<R> {
-    /// Calls `launch` with consecutive ranges of `units` units of work, each to be queued as one launch of `kernel`. The first one
-    /// ever has `first` units; later ones as many as the kernel's speed allows. Tells the observer about `pieces` pieces of work
-    /// in all, and fails where it asks to stop.
+    /// Calls `launch` with consecutive ranges of the units of work, each to be queued as one launch of `kernel` and as large as the
+    /// kernel's speed allows. Tells the observer, and fails where it asks to stop.
+    ///
+    /// A unit must not take long: pieces of fewer units than run side by side are no faster, however small they are.
     pub(crate) fn in_pieces(
         &self,
         job: &Job,
         kernel: Kernel,
-        units: u64,
-        first: u64,
-        pieces: u64,
+        work: Work,
         mut launch: impl FnMut(Range<u64>) -> Result<(), RenderError>,
     ) -> Result<(), RenderError> {
+        let Work { units, cost, progress, .. } = work;
         let mut done = 0;
         while done < units {
             job.check()?;
-            let piece = self.rates.piece(kernel, first).min(units - done);
+            let piece = self.rates.piece(kernel, &work).min(units - done);
             let from = self.mark()?;
             launch(done..done + piece)?;
-            let timing = Timing { kernel, units: piece, from, to: self.mark()? };
+            let timing = Timing { kernel, cost: piece * cost, from, to: self.mark()? };
             self.rates.remember(timing);
             done += piece;
             if done < units {
                 self.rates.settle(&self.pool)?;
             }
-            job.observer.advance(pieces * done / units - pieces * (done - piece) / units);
+            job.observer.advance(progress * done / units - progress * (done - piece) / units);
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use lightmesh_layout::stages::Interpolate;
 
 use crate::RenderError;
 use crate::backend::cuda::{
-    BLOCK, Cuda, DeviceHits, DeviceRays, DeviceVisibility, blocks_for, kernel_of, sampling, warps_for,
+    BLOCK, Cuda, DeviceHits, DeviceRays, DeviceVisibility, Work, blocks_for, kernel_of, sampling, warps_for,
 };
 use crate::cuda::{Kernel, Runtime};
 use crate::job::Job;
@@ -65,7 +65,9 @@ impl<R: Runtime> Interpolation<'_, R> {
             count: 0,
         };
         // 1. The weighted means.
-        cuda.in_pieces(job, INTERPOLATE, masks.count as u64, FIRST_ITEMS, rays.len() as u64, |piece| {
+        let cost = lights.max(1) as u64;
+        let work = Work { units: masks.count as u64, cost, first: FIRST_ITEMS, progress: rays.len() as u64 };
+        cuda.in_pieces(job, INTERPOLATE, work, |piece| {
             let count = piece.end - piece.start;
             let words = window_bricks(mesh.template.reach()) + LIGHTS * mesh.template.words() as u32;
             cuda.launch(
@@ -77,7 +79,8 @@ impl<R: Runtime> Interpolation<'_, R> {
         // 2. Object points without light points take their own long tests.
         let names = ["fallback_bvh", "fallback_grid", "fallback_brute_force"];
         let kernel = kernel_of("interpolate", names, scene.structure);
-        cuda.in_pieces(job, kernel, (rays.len() as u64).div_ceil(u64::from(BLOCK)), FIRST_BLOCKS, 0, |piece| {
+        let blocks = (rays.len() as u64).div_ceil(u64::from(BLOCK));
+        cuda.in_pieces(job, kernel, Work { units: blocks, cost, first: FIRST_BLOCKS, progress: 0 }, |piece| {
             let count = piece.end - piece.start;
             cuda.launch(kernel, blocks_for(&piece, BLOCK), &Interpolate { first: piece.start, count, ..record })
         })?;

@@ -9,7 +9,7 @@ use lightmesh_layout::stages::LightPoints;
 
 use super::window_side;
 use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, blocks_for};
+use crate::backend::cuda::{BLOCK, Cuda, Work, blocks_for};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::job::{Job, Tally};
 use crate::light_mesh::{BrickKey, LightMesh};
@@ -86,7 +86,8 @@ pub(crate) fn light_points<R: Runtime>(
 
 /// Launches a kernel that takes a brick of an item's window a thread, over all items.
 fn each_item<R: Runtime>(cuda: &Cuda<R>, job: &Job, kernel: Kernel, record: &LightPoints) -> Result<(), RenderError> {
-    cuda.in_pieces(job, kernel, record.item_count, FIRST, 0, |piece| {
+    let work = Work { units: record.item_count, cost: 1, first: FIRST, progress: 0 };
+    cuda.in_pieces(job, kernel, work, |piece| {
         let item_count = piece.end - piece.start;
         let bricks = item_count * u64::from(window_bricks(record.mesh.reach));
         let launch = blocks_for(&(0..bricks.div_ceil(u64::from(BLOCK))), BLOCK);

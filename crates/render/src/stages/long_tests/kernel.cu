@@ -7,16 +7,15 @@
 #include "sampling.cuh"
 #include "surface.cuh"
 
-// Shadow rays from a light point that reach the light: one, or as many as lights with a size are sampled with.
+// Shadow rays from a light point that reach the light: one, or those of this launch.
 template <class Structure>
 DEVICE unsigned rays_that_arrive(const LongTests &args, const Structure &structure, const Light &light, IVec3 index) {
     const Vec3 from = lattice_point(args.mesh, index);
     const float reach = scene_reach(args.scene, from);
     const bool sized = has_size(light);
-    const unsigned samples = sized ? args.sampling.samples : 1;
     const Pattern pattern = pattern_of(args.sampling.seed, lattice_packed(args.mesh, index), args.light);
     unsigned seen = 0;
-    for (unsigned sample = 0; sample < samples; ++sample) {
+    for (unsigned sample = args.first_sample; sample < args.first_sample + args.sample_count; ++sample) {
         const Vec3 target = sized ? light_point(light, from, reach, pattern_point(pattern, sample))
                                   : light_center(light, from, reach);
         seen += !occluded(structure, args.tally, long_segment(from, target));
@@ -37,7 +36,7 @@ DEVICE void long_tests(const LongTests &args, const Structure &structure) {
     const unsigned seen = rays_that_arrive(args, structure, light, point_of((args.points.table.keys[slot] - 1) << 6 | bit));
     const LitBy lit = args.lit[args.light];
     if (has_size(light))
-        lit.seen[rank] = (unsigned short)seen;
+        lit.seen[rank] = (unsigned short)((args.first_sample == 0 ? 0 : lit.seen[rank]) + seen);
     else if (seen > 0)
         atomicOr(&lit.bits[slot], 1ull << bit);
 }

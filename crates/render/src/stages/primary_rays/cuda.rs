@@ -3,7 +3,7 @@
 use lightmesh_layout::stages::PrimaryRays;
 
 use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays, blocks_for, kernel_of};
+use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays, Work, blocks_for, kernel_of};
 use crate::cuda::Runtime;
 use crate::job::{Job, Tally};
 use crate::prepared::PreparedScene;
@@ -21,8 +21,8 @@ pub(crate) fn primary_rays<R: Runtime>(
     let names = ["primary_rays_bvh", "primary_rays_grid", "primary_rays_brute_force"];
     let kernel = kernel_of("primary_rays", names, scene.structure);
     let hits = cuda.pool().room("hits", rays.len())?;
-    let blocks = rays.blocks(16);
-    cuda.in_pieces(job, kernel, blocks, FIRST, rays.len() as u64, |piece| {
+    let work = Work { units: rays.blocks(16), cost: 1, first: FIRST, progress: rays.len() as u64 };
+    cuda.in_pieces(job, kernel, work, |piece| {
         let arguments = PrimaryRays {
             scene: scene.record,
             rays: rays.record,

@@ -5,7 +5,7 @@ use lightmesh_layout::In;
 use lightmesh_layout::stages::Shade;
 
 use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, DeviceFilm, DeviceHits, DeviceRays, DeviceVisibility, blocks_for};
+use crate::backend::cuda::{BLOCK, Cuda, DeviceFilm, DeviceHits, DeviceRays, DeviceVisibility, Work, blocks_for};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::job::Job;
 use crate::prepared::PreparedScene;
@@ -23,8 +23,10 @@ pub(crate) fn shade<R: Runtime>(
     visibility: &DeviceVisibility<R>,
     film: &DeviceFilm<R>,
 ) -> Result<(), RenderError> {
+    let cost = scene.scene.lights.len().max(1) as u64;
     let scene = cuda.scene(scene)?;
-    cuda.in_pieces(job, KERNEL, rays.blocks(16), FIRST, rays.len() as u64, |piece| {
+    let work = Work { units: rays.blocks(16), cost, first: FIRST, progress: rays.len() as u64 };
+    cuda.in_pieces(job, KERNEL, work, |piece| {
         let mut arguments = Shade {
             scene: scene.record,
             rays: rays.record,

@@ -5,13 +5,17 @@ use lightmesh_layout::geometry::Vec3;
 use lightmesh_layout::stages::ShadowRays;
 
 use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays, DeviceVisibility, blocks_for, kernel_of, sampling};
+use crate::backend::cuda::{
+    BLOCK, Cuda, DeviceHits, DeviceRays, DeviceVisibility, Work, blocks_for, kernel_of, sampling,
+};
 use crate::cuda::{Buffer, Runtime};
 use crate::job::Job;
 use crate::prepared::PreparedScene;
 
-/// Shadow rays of a block in the first launch ever, over all blocks.
+/// Shadow rays of the first launch ever.
 const FIRST_RAYS: u64 = 1 << 18;
+/// Most shadow rays of a thread in one launch: a launch is never shorter than what one thread does.
+const SLICE: u64 = 256;
 
 /// One ray from each object point to the middle of each light.
 pub(crate) fn shadow_rays<R: Runtime>(
@@ -50,23 +54,36 @@ fn trace<R: Runtime>(
     direct: Option<Buffer<R, Vec3>>,
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let lights = scene.scene.lights.len();
+    let (all, progress) = (lights as u64 * u64::from(samples), rays.len() as u64);
+    let slices = all.div_ceil(SLICE).max(1);
     let scene = cuda.scene(scene)?;
     let kernel = kernel_of("shadow_rays", names, scene.structure);
     let share = cuda.pool().room("shares of lights", rays.len() * lights)?;
-    let first = FIRST_RAYS / (u64::from(BLOCK) * u64::from(samples) * lights.max(1) as u64);
-    cuda.in_pieces(job, kernel, rays.blocks(16), first.max(4), rays.len() as u64, |piece| {
-        let arguments = ShadowRays {
-            scene: scene.record,
-            rays: rays.record,
-            hits: hits.hits.input(),
-            share: share.output(),
-            direct: direct.as_ref().map_or(Out::NULL, Buffer::output),
-            sampling: sampling(job),
-            tally: cuda.tally()?,
-            first_block: piece.start,
+    for slice in 0..slices {
+        let first_sample = slice * SLICE;
+        let sample_count = (all - first_sample).min(SLICE);
+        let cost = sample_count.max(1);
+        let work = Work {
+            units: rays.blocks(16),
+            cost,
+            first: FIRST_RAYS / (u64::from(BLOCK) * cost),
+            progress: progress * (slice + 1) / slices - progress * slice / slices,
         };
-        let launch = blocks_for(&piece, BLOCK);
-        cuda.launch(kernel, launch, &arguments)
-    })?;
+        cuda.in_pieces(job, kernel, work, |piece| {
+            let arguments = ShadowRays {
+                scene: scene.record,
+                rays: rays.record,
+                hits: hits.hits.input(),
+                share: share.output(),
+                direct: direct.as_ref().map_or(Out::NULL, Buffer::output),
+                sampling: sampling(job),
+                tally: cuda.tally()?,
+                first_block: piece.start,
+                first_sample,
+                sample_count,
+            };
+            cuda.launch(kernel, blocks_for(&piece, BLOCK), &arguments)
+        })?;
+    }
     Ok(DeviceVisibility { share, used: None, direct })
 }

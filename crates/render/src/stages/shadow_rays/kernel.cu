@@ -1,6 +1,7 @@
 // Shadow rays on a CUDA device: twin of cpu.rs, one thread an object point.
 //
-// `shadow_rays_*`: one ray to the middle of each light; `area_shadows_*`: many to points spread over it.
+// `shadow_rays_*`: one ray to the middle of each light; `area_shadows_*`: many to points spread over it. Where an object point has
+// very many rays, a launch takes only some of them, and later ones go on.
 #include "cuda/prelude.cuh"
 
 #include "stages/shade/shade.cuh"
@@ -17,12 +18,13 @@ DEVICE void no_shares(const ShadowRays &args, unsigned ray) {
         share_of(args, light, ray) = 0.0f;
 }
 
-// One ray from an object point to the middle of each light. Returns how many were cast.
+// One ray from an object point to the middle of each light of this launch. Returns how many were cast.
 template <class Structure>
 DEVICE unsigned trace_hard(const ShadowRays &args, const Structure &structure, unsigned ray) {
     const SurfacePoint point = object_point(args.scene, args.rays, args.hits, ray);
     unsigned cast = 0;
-    for (unsigned light = 0; light < args.scene.light_count; ++light) {
+    const unsigned first = (unsigned)args.first_sample;
+    for (unsigned light = first; light < first + args.sample_count; ++light) {
         const Vec3 target = light_center(args.scene.lights[light], point.origin, scene_reach(args.scene, point.origin));
         bool lit = false;
         if (dot(point.normal, target - point.origin) > 0.0f) {
@@ -38,10 +40,12 @@ template <class Structure>
 DEVICE void shadow_rays(const ShadowRays &args, const Structure &structure) {
     unsigned ray, cast = 0;
     if (ray_of_thread(args.rays, args.first_block + blockIdx.x, threadIdx.x, ray)) {
-        if (load_hit(args.hits, ray).triangle == HIT_NONE)
-            no_shares(args, ray);
-        else
+        if (load_hit(args.hits, ray).triangle == HIT_NONE) {
+            if (args.first_sample == 0)
+                no_shares(args, ray);
+        } else {
             cast = trace_hard(args, structure, ray);
+        }
     }
     count(tally_shard(args.tally).shadow_rays, cast);
 }
@@ -52,17 +56,20 @@ DEVICE unsigned sample_count(const Sampling &sampling, const Light &light) {
     return has_size(light) || spread ? sampling.samples : 1;
 }
 
-// Adds a light to an object point, sample by sample. Returns its visible share.
+// Adds a light to an object point, the samples from `first` to `end`. Its share is a number of rays until the last sample is added.
 template <class Structure>
-DEVICE float gather_light(const ShadowRays &args, const Structure &structure, unsigned ray, unsigned index, const Surface &surface,
-                          Vec3 &direct, unsigned &cast) {
+DEVICE void gather_light(const ShadowRays &args, const Structure &structure, unsigned ray, unsigned index, unsigned first,
+                         unsigned end, const Surface &surface, Vec3 &direct, unsigned &cast) {
     const Light &light = args.scene.lights[index];
     const unsigned samples = sample_count(args.sampling, light);
+    if (first >= samples)
+        return;
+    end = end < samples ? end : samples;
     const float weight = 1.0f / (float)samples, reach = scene_reach(args.scene, surface.point.origin);
     const bool single = samples == 1 && !has_size(light);
     const Pattern pattern = pattern_of(args.sampling.seed, ray_key(args.rays, ray), index);
-    float share = 0.0f;
-    for (unsigned sample = 0; sample < samples; ++sample) {
+    float share = first == 0 ? 0.0f : share_of(args, index, ray);
+    for (unsigned sample = first; sample < end; ++sample) {
         const Vec3 target = single ? light_center(light, surface.point.origin, reach)
                                    : light_point(light, surface.point.origin, reach, pattern_point(pattern, sample));
         // A sample behind the surface is dark without a ray.
@@ -74,20 +81,29 @@ DEVICE float gather_light(const ShadowRays &args, const Structure &structure, un
             direct = direct + weight * reflected(surface, light, target);
         }
     }
-    share *= weight;
-    // The product of N and 1/N may miss 1 by a rounding.
-    return share > 1.0f - 0.5f * weight ? 1.0f : share;
+    if (end == samples) {
+        share *= weight;
+        // The product of N and 1/N may miss 1 by a rounding.
+        share = share > 1.0f - 0.5f * weight ? 1.0f : share;
+    }
+    share_of(args, index, ray) = share;
 }
 
-// Many rays from an object point to each light. Returns how many were cast.
+// Many rays from an object point to the lights: those of this launch. Returns how many were cast.
 template <class Structure>
 DEVICE unsigned trace_area(const ShadowRays &args, const Structure &structure, unsigned ray) {
     Material own;
     const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
-    Vec3 direct = splat(0.0f);
+    Vec3 direct = args.first_sample == 0 ? splat(0.0f) : args.direct[ray];
     unsigned cast = 0;
-    for (unsigned light = 0; light < args.scene.light_count; ++light)
-        share_of(args, light, ray) = gather_light(args, structure, ray, light, surface, direct, cast);
+    const unsigned all = args.sampling.samples;
+    unsigned light = (unsigned)(args.first_sample / all), first = (unsigned)(args.first_sample % all);
+    for (unsigned left = (unsigned)args.sample_count; left > 0; ++light) {
+        const unsigned count = left < all - first ? left : all - first;
+        gather_light(args, structure, ray, light, first, first + count, surface, direct, cast);
+        left -= count;
+        first = 0;
+    }
     args.direct[ray] = direct;
     return cast;
 }
@@ -97,8 +113,10 @@ DEVICE void area_shadows(const ShadowRays &args, const Structure &structure) {
     unsigned ray, cast = 0;
     if (ray_of_thread(args.rays, args.first_block + blockIdx.x, threadIdx.x, ray)) {
         if (load_hit(args.hits, ray).triangle == HIT_NONE) {
-            no_shares(args, ray);
-            args.direct[ray] = splat(0.0f);
+            if (args.first_sample == 0) {
+                no_shares(args, ray);
+                args.direct[ray] = splat(0.0f);
+            }
         } else {
             cast = trace_area(args, structure, ray);
         }

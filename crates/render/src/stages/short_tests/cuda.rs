@@ -5,7 +5,7 @@ use lightmesh_layout::mesh::Item;
 use lightmesh_layout::stages::{GroupCells, ShortTests};
 
 use crate::RenderError;
-use crate::backend::cuda::{Cuda, DeviceHits, DeviceRays, DeviceScene, blocks_for, kernel_of, warps_for};
+use crate::backend::cuda::{Cuda, DeviceHits, DeviceRays, DeviceScene, Work, blocks_for, kernel_of, warps_for};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::job::Job;
 use crate::light_mesh::LightMesh;
@@ -77,8 +77,9 @@ pub(crate) fn short_tests<R: Runtime>(
         first_item: 0,
         item_count: 0,
     };
-    let each_item = |kernel, words, pieces| {
-        cuda.in_pieces(job, kernel, masks.count as u64, FIRST_ITEMS, pieces, |piece| {
+    let each_item = |kernel, words, progress| {
+        let work = Work { units: masks.count as u64, cost: 1, first: FIRST_ITEMS, progress };
+        cuda.in_pieces(job, kernel, work, |piece| {
             let item_count = piece.end - piece.start;
             let arguments = ShortTests { first_item: piece.start, item_count, ..record };
             cuda.launch(kernel, warps_for(&piece, WARPS, words), &arguments)
@@ -115,7 +116,7 @@ fn group<R: Runtime>(
         ..GroupCells::zeroed()
     };
     // a. Each tile sorts its object points by cell and cuts them into items.
-    cuda.in_pieces(job, GROUP, tiles, FIRST_TILES, 0, |piece| {
+    cuda.in_pieces(job, GROUP, Work { units: tiles, cost: 1, first: FIRST_TILES, progress: 0 }, |piece| {
         cuda.launch(GROUP, blocks_for(&piece, TILE as u32), &GroupCells { first_block: piece.start, ..record })
     })?;
     // b. The items of all tiles in one list.
