@@ -19,8 +19,8 @@ usage: cargo xtask licences      every dependency, for any target, is under a li
        cargo xtask check-docs    every file that the documents point to exists
        cargo xtask kernels       makes the layout header, the kernels' PTX and docs/kernels.md; with --check, says whether they are
                                  as they should be
-       cargo xtask readme        writes the README's tables from the results that they name; with --check, says whether they are
-                                 as they should be
+       cargo xtask readme        writes the tables of README and METHOD from the results that they name; with --check, says
+                                 whether they are as they should be
        cargo xtask fuzz-corpus   fills fuzz/corpus with the seeds and the scenes here, and with the models in the folder
                                  whose name follows";
 

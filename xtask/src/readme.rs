@@ -1,4 +1,4 @@
-//! `cargo xtask readme`: tables of the README that are made from results.
+//! `cargo xtask readme`: tables of documents that are made from results.
 //!
 //! The work is done by an example of `lightmesh-bench`, which knows results and reports; it is built only when it is asked for.
 
@@ -8,12 +8,15 @@ use std::process::Command;
 
 use crate::{Outcome, Verdict};
 
+/// Documents with such tables.
+const DOCUMENTS: [&str; 2] = ["README.md", "METHOD.md"];
+
 /// Writes the tables anew, or says which differ where they are only to be looked at (`check`).
 pub(crate) fn run(root: &Path, check: bool) -> Outcome {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
     command.current_dir(root);
-    command.args(["run", "--quiet", "--package", "lightmesh-bench", "--example", "readme", "--", "README.md"]);
+    command.args(["run", "--quiet", "--package", "lightmesh-bench", "--example", "readme", "--"]).args(DOCUMENTS);
     if check {
         command.arg("--check");
     }

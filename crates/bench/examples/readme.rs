@@ -1,7 +1,7 @@
-//! The tables of the README that are made from results: written anew, or with `--check` only looked at. See
+//! The tables of documents that are made from results: written anew, or with `--check` only looked at. See
 //! [`lightmesh_bench::readme`].
 //!
-//! `cargo run -p lightmesh-bench --example readme -- README.md [--check]`, or `cargo xtask readme [--check]`.
+//! `cargo run -p lightmesh-bench --example readme -- README.md METHOD.md [--check]`, or `cargo xtask readme [--check]`.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
 
 use std::error::Error;

@@ -6,6 +6,8 @@ use std::path::PathBuf;
 use lightmesh::image::{CompareError, EncodeError};
 use lightmesh::{LoadError, RenderError};
 
+use crate::Suite;
+
 /// Why there are no results.
 #[derive(Debug, thiserror::Error)]
 pub enum BenchError {
@@ -24,6 +26,9 @@ pub enum BenchError {
     /// There is no suite of this name.
     #[error("there is no suite `{0}`: choose thesis, quality or rays")]
     UnknownSuite(String),
+    /// The suite measures scenes of its own.
+    #[error("suite {0} measures scenes of its own; leave out --scene, or take the suite quality or rays")]
+    OwnScenes(Suite),
     /// A file of results could not be read.
     #[error("cannot read {}: {reason}; check the path and its permissions", path.display())]
     Read {

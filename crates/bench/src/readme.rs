@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Several files have commas between them. Without `where` all rows are taken, without `columns` all columns. Names of columns are those
-//! of the report; a misspelt one is refused with a list of them. Paths are relative to the repository. `cargo xtask readme` writes the
+//! of the report; a misspelt one is refused with a list of them. Paths are relative to the document. `cargo xtask readme` writes the
 //! tables, `cargo xtask readme --check` says which are not as they should be.
 
 use std::path::{Path, PathBuf};

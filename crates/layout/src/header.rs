@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::{Record, geometry, mesh, scene, stages};
+use crate::{Record, constants, geometry, mesh, scene, stages};
 
 /// How the two compilers of kernels say `offsetof`: NVRTC has no `<stddef.h>`, and no builtin of that name.
 const PLACE_OF: &str = "
@@ -13,11 +13,15 @@ const PLACE_OF: &str = "
 #endif
 ";
 
-/// All records as C++, with assertions about their layout.
+/// All constants and records as C++, with assertions about the records' layout.
 pub fn header() -> String {
     let mut text = String::from(
-        "// Made from crates/layout by `cargo xtask kernels`; do not edit.\n//\n// The records that host and device share.\n#pragma once\n",
+        "// Made from crates/layout by `cargo xtask kernels`; do not edit.\n//\n// What host and device share: constants and records.\n#pragma once\n\n",
     );
+    for (name, value) in constants::ALL {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "#define {name} {value}u");
+    }
     text.push_str(PLACE_OF);
     geometry::print(&mut text);
     scene::print(&mut text);

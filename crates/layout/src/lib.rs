@@ -7,9 +7,11 @@
 //! * [`scene`]: lights, materials, and the whole scene as a device holds it.
 //! * [`mesh`]: the light mesh and what is computed about it.
 //! * [`stages`]: the arguments of every kernel.
+//! * [`constants`]: numbers that both sides must agree on.
 //!
 //! A crate of its own, because the tool that makes the header and the kernels needs nothing else of the renderer.
 
+pub mod constants;
 pub mod geometry;
 mod header;
 pub mod mesh;

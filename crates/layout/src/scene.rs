@@ -109,7 +109,7 @@ records! {
         materials: In<Material>,
         /// Lights.
         lights: In<Light>,
-        /// [`Scene::LIGHT_TARGETS`] points on each light, from which its unshadowed light is computed.
+        /// [`LIGHT_TARGETS`](crate::constants::LIGHT_TARGETS) points on each light, from which its unshadowed light is computed.
         light_targets: In<Vec3>,
         /// The regular grid.
         grid: Grid,
@@ -169,9 +169,4 @@ impl Texture {
 impl Material {
     /// The material has no texture.
     pub const NO_TEXTURE: u32 = u32::MAX;
-}
-
-impl Scene {
-    /// Points on each light that unshadowed light is averaged over.
-    pub const LIGHT_TARGETS: usize = 16;
 }

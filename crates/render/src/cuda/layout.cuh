@@ -1,7 +1,25 @@
 // Made from crates/layout by `cargo xtask kernels`; do not edit.
 //
-// The records that host and device share.
+// What host and device share: constants and records.
 #pragma once
+
+#define BLOCK 256u
+#define VALUES_OF_THREAD 4u
+#define BVH_STACK 64u
+#define AXIS_BITS 19u
+#define HORIZON_SAMPLES 64u
+#define LIGHT_TARGETS 16u
+#define TILE 1024u
+#define TANGENT_PLANES 4u
+#define CANDIDATE_WORDS 24u
+#define CANDIDATES 32u
+#define LISTED_TARGETS 64u
+#define TARGET_WORDS 4u
+#define FOUND_TRIANGLES 128u
+#define STACK_OF_ROUNDS 64u
+#define STACK_PER_LEVEL 7u
+#define ITEM_WARPS 4u
+#define MOST_LIGHTS 3u
 
 #if defined(__CUDACC_RTC__)
 #define PLACE_OF(record, field) __INTADDR__(&(((record *)0)->field))

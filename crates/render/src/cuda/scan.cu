@@ -4,13 +4,10 @@
 
 #include "cuda/warp.cuh"
 
-#define SCAN_THREADS 256
-#define VALUES_OF_THREAD 4
-
-KERNEL(scan_blocks, Scan, SCAN_THREADS, 4) {
-    SHARED(unsigned, warps, [SCAN_THREADS / 32]);
+KERNEL(scan_blocks, Scan, BLOCK, 4) {
+    SHARED(unsigned, warps, [BLOCK / 32]);
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / 32;
-    const unsigned long long first = ((unsigned long long)blockIdx.x * SCAN_THREADS + threadIdx.x) * VALUES_OF_THREAD;
+    const unsigned long long first = ((unsigned long long)blockIdx.x * BLOCK + threadIdx.x) * VALUES_OF_THREAD;
 
     // 1. The values of this thread and their sum.
     unsigned values[VALUES_OF_THREAD], sum = 0;
@@ -30,7 +27,7 @@ KERNEL(scan_blocks, Scan, SCAN_THREADS, 4) {
     unsigned before = until - sum;
     for (unsigned other = 0; other < warp; other++)
         before += warps[other];
-    if (threadIdx.x == SCAN_THREADS - 1)
+    if (threadIdx.x == BLOCK - 1)
         args.sums[blockIdx.x] = before + sum;
     // 3. The sums before each value.
     for (unsigned i = 0; i < VALUES_OF_THREAD; i++) {
@@ -40,8 +37,8 @@ KERNEL(scan_blocks, Scan, SCAN_THREADS, 4) {
     }
 }
 
-KERNEL(add_offsets, Scan, SCAN_THREADS, 4) {
-    const unsigned long long first = ((unsigned long long)blockIdx.x * SCAN_THREADS + threadIdx.x) * VALUES_OF_THREAD;
+KERNEL(add_offsets, Scan, BLOCK, 4) {
+    const unsigned long long first = ((unsigned long long)blockIdx.x * BLOCK + threadIdx.x) * VALUES_OF_THREAD;
     const unsigned before = args.sums[blockIdx.x];
     for (unsigned i = 0; i < VALUES_OF_THREAD; i++)
         if (first + i < args.count)

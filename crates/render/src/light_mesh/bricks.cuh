@@ -3,9 +3,6 @@
 
 #include "light_mesh/lattice.cuh"
 
-// Bits of a brick's coordinate on each axis.
-#define AXIS_BITS 19
-
 // The brick that holds a lattice point (no component negative).
 DEVICE unsigned long long brick_of(IVec3 index) {
     return (unsigned long long)(index.z >> 2) << (2 * AXIS_BITS) | (unsigned long long)(index.y >> 2) << AXIS_BITS |

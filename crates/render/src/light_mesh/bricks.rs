@@ -6,14 +6,13 @@
 //! of their keys, so that nothing depends on the order in which threads met them.
 
 use glam::IVec3;
+use lightmesh_layout::constants::AXIS_BITS;
 
 /// A brick's coordinates packed into 57 bits: x in the lowest 19.
 pub type BrickKey = u64;
 
 /// A lattice point (or the cell above it): its brick's key, then its bit within the brick, in 63 bits.
 pub type PointKey = u64;
-
-const AXIS_BITS: u32 = 19;
 
 /// The brick that holds the lattice point `index` (no component negative).
 #[inline(always)]

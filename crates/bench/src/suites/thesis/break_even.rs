@@ -9,6 +9,10 @@
 //! shadows took over their number: both with the fewest lights that were measured. The model leaves out primary rays, which both have,
 //! and all of the method but its tests. The clock's answer lies on the straight line between the last number of lights where the method
 //! takes longer and the first where it does not.
+//!
+//! Where the two differ, straight lines through all numbers of lights say why: seconds that do not depend on the lights, and seconds
+//! for each light. By the model a light costs the method S_total long tests. By the clock it also costs a mean, formula (3), and both
+//! modes a term of formula (1), at every pixel.
 
 use std::collections::BTreeMap;
 
@@ -35,6 +39,7 @@ pub(super) fn add(findings: &mut Findings) {
         let Some(first) = pairs.first() else { continue };
         let mut row = Row::new("figure 11, break-even", keys(first.method, &["scene", "size", "device", "threads"]));
         predict(first, &mut row);
+        fit(&pairs, &mut row);
         match measured(&pairs) {
             Some(lights) => drop(row.values.insert("measured_lights".to_owned(), lights)),
             None => notes.push(format!("{}: the method was slower with every number of lights measured.", row.id)),
@@ -88,6 +93,28 @@ fn predict(pair: &Pair, row: &mut Row) {
     row.values.extend(told.map(|(name, figure)| (name.to_owned(), figure)));
 }
 
+/// Straight lines through the seconds of both modes, by least squares.
+fn fit(pairs: &[Pair], row: &mut Row) {
+    let mut add = |name: &str, of: for<'p, 'r> fn(&'p Pair<'r>) -> &'r Row| {
+        let seconds = pairs.iter().filter_map(|pair| Some((pair.lights, median(of(pair), "render")?)));
+        if let Some((fixed, per_light)) = line(&seconds.collect::<Vec<_>>()) {
+            row.values.insert(format!("{name}_seconds"), fixed);
+            row.values.insert(format!("{name}_seconds_per_light"), per_light);
+        }
+    };
+    add("method", |pair| pair.method);
+    add("hard", |pair| pair.hard);
+}
+
+/// Height at 0 and slope of the straight line through points; `None` where they do not lie at two places at least.
+fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
+    let (x, y) = (mean(|point| point.0), mean(|point| point.1));
+    let spread: f64 = points.iter().map(|point| (point.0 - x).powi(2)).sum();
+    let together: f64 = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum();
+    (spread > 0.0).then(|| (y - together / spread * x, together / spread))
+}
+
 /// What the clock says; `None` where the method is never as fast. The fewest lights where it always is.
 fn measured(pairs: &[Pair]) -> Option<f64> {
     let lead = |pair: &Pair| Some((pair.lights, median(pair.method, "render")? - median(pair.hard, "render")?));
@@ -133,6 +160,10 @@ mod tests {
         assert!((values["predicted_lights"] - 8.0 / 0.9).abs() < 1e-9, "{values:?}");
         assert!((values["measured_lights"] - 8.0 / 0.9).abs() < 1e-9, "{values:?}");
         assert_eq!((values["short_test_seconds"], values["long_test_seconds"]), (4e-4, 1e-3));
+        let lines = ["method_seconds", "method_seconds_per_light", "hard_seconds", "hard_seconds_per_light"];
+        for (name, expected) in lines.into_iter().zip([10.0, 0.1, 2.0, 1.0]) {
+            assert!((values[name] - expected).abs() < 1e-9, "{name}: {values:?}");
+        }
         assert!(findings.notes.is_empty());
     }
 

@@ -7,7 +7,7 @@
 //! | `table 2` | scene, step, size, radius | `light_points`, `thesis_light_points` |
 //! | `figure 1` | samples | `rmse`, `mean_flip` against 225 samples |
 //! | `figure 11` | lights, mode, device, threads | |
-//! | `figure 11, break-even` | size, device, threads | `predicted_lights`, `measured_lights`, `short_test_seconds`, `long_test_seconds` |
+//! | `figure 11, break-even` | size, device, threads | `predicted_lights`, `measured_lights`, the model's `short_test_seconds` and `long_test_seconds`; `method_seconds` and `hard_seconds`, without lights, and what each light adds by `…_per_light` |
 //! | `figures 12-15` | radius | `rmse`, `mean_flip` against area shadows with 225 samples |
 //!
 //! Steps are run in this order: tasks (`tasks`), small trials (`trial`), a schedule, the measurements (`runner`), and what follows from
@@ -29,7 +29,7 @@ use std::time::Instant;
 use lightmesh::Observer;
 
 use crate::engine::{self, Engine};
-use crate::{BenchError, Findings, Plan};
+use crate::{BenchError, Findings, Plan, Suite};
 
 /// The method by scene, size, step and radius, and hard shadows beside it.
 const TIMINGS: &str = "timings";
@@ -41,6 +41,9 @@ const LIGHTS: &str = "figure 11";
 const PICTURES: &str = "figures 12-15";
 
 pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings) -> Result<(), BenchError> {
+    if !plan.scenes.is_empty() {
+        return Err(BenchError::OwnScenes(Suite::Thesis));
+    }
     let begin = Instant::now();
     let engines = thesis_engines(plan)?;
     findings.devices = engines.iter().map(|engine| engine.device.clone()).collect();

@@ -120,6 +120,13 @@ fn without_time_rows_are_left_out_and_named() {
 }
 
 #[test]
+fn scenes_that_would_not_be_measured_are_refused() {
+    let plan = Plan { scenes: vec!["builtin:gazebo".into()], ..tiny(true) };
+    let refused = crate::run(Suite::Thesis, &plan, &Listener::default());
+    assert!(matches!(refused, Err(BenchError::OwnScenes(Suite::Thesis))), "{refused:?}");
+}
+
+#[test]
 fn a_suite_can_be_stopped() {
     let stopped_after = |patience| {
         let listener = Listener { patience: Some(patience), ..Listener::default() };

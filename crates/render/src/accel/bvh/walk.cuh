@@ -10,8 +10,6 @@
 #define BVH_MARGIN (1.0f / (1u << 19))
 // Direction components below this share of the largest are raised to it: 2^-30.
 #define BVH_LEAST_COMPONENT (1.0f / (1u << 30))
-// Levels of the deepest tree; the host takes no deeper one to a device.
-#define BVH_STACK 64
 
 // A ray prepared for the slab tests.
 struct Slabs {

@@ -16,6 +16,7 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use bytemuck::Pod;
+pub(crate) use lightmesh_layout::constants::BLOCK;
 use lightmesh_layout::geometry::{Counters, Hit, ListedRay, Rays, Tally, Vec3};
 
 use crate::cuda::{Buffer, Kernel, Launch, Pool, Runtime};
@@ -29,8 +30,6 @@ use pieces::Rates;
 pub(crate) use pieces::Work;
 pub(crate) use scene::{DeviceScene, kernel_of};
 
-/// Threads of the blocks that take one ray a thread.
-pub(crate) const BLOCK: u32 = 256;
 /// Threads of a warp.
 pub(crate) const WARP: u32 = 32;
 

@@ -1,5 +1,6 @@
 //! Exclusive prefix sums on the device.
 
+use lightmesh_layout::constants::VALUES_OF_THREAD;
 use lightmesh_layout::stages::Scan;
 
 use super::{BLOCK, Cuda, blocks_for};
@@ -7,7 +8,7 @@ use crate::RenderError;
 use crate::cuda::{Buffer, Kernel, Runtime};
 
 /// Values that one block sums.
-const VALUES: usize = 1024;
+const VALUES: usize = (BLOCK * VALUES_OF_THREAD) as usize;
 
 impl<R: Runtime> Cuda<R> {
     /// Replaces each value by the sum of all before it.

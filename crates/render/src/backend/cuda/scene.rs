@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use lightmesh_layout::constants::BVH_STACK;
 use lightmesh_layout::geometry::{Approach, BruteForce, Bvh, BvhNode, DVec3, Grid, Triangle, Vec3};
 use lightmesh_layout::scene::{Indices, Light, Scene};
 use lightmesh_layout::{DeviceType, In};
@@ -145,11 +146,11 @@ impl<R: Runtime> Upload<'_, R> {
     }
 
     fn bvh(&mut self, bvh: &accel::Bvh) -> Result<Bvh, RenderError> {
-        if bvh.depth() > MAX_DEPTH {
+        if bvh.depth() > BVH_STACK as usize {
             return Err(RenderError::Device {
                 device: self.cuda.pool.runtime().name(),
                 reason: format!(
-                    "the scene's BVH has {} levels, its kernels take {MAX_DEPTH}: choose --accel grid, or --device cpu",
+                    "the scene's BVH has {} levels, its kernels take {BVH_STACK}: choose --accel grid, or --device cpu",
                     bvh.depth()
                 ),
             });
@@ -188,9 +189,6 @@ impl<R: Runtime> Upload<'_, R> {
         })
     }
 }
-
-/// Levels that the walk's stack has room for.
-const MAX_DEPTH: usize = 64;
 
 pub(super) fn vec3(v: glam::Vec3) -> Vec3 {
     Vec3::from(v.to_array())

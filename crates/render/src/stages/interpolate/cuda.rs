@@ -1,5 +1,6 @@
 //! Formula (3) on a CUDA device: a warp for each item, then long tests where no light point counts.
 
+use lightmesh_layout::constants::{ITEM_WARPS, MOST_LIGHTS};
 use lightmesh_layout::stages::Interpolate;
 
 use crate::RenderError;
@@ -28,9 +29,6 @@ pub(crate) struct Interpolation<'a, R: Runtime> {
 }
 
 const INTERPOLATE: Kernel = Kernel { module: "interpolate", name: "interpolate" };
-/// Warps of a block, and lights without a size that one takes at once, at most: see `kernel.cu`.
-const WARPS: u32 = 4;
-const LIGHTS: u32 = 3;
 /// Items, and blocks of rays, of the first launches ever.
 const FIRST_ITEMS: u64 = 4096;
 const FIRST_BLOCKS: u64 = 256;
@@ -69,10 +67,10 @@ impl<R: Runtime> Interpolation<'_, R> {
         let work = Work { units: masks.count as u64, cost, first: FIRST_ITEMS, progress: rays.len() as u64 };
         cuda.in_pieces(job, INTERPOLATE, work, |piece| {
             let count = piece.end - piece.start;
-            let words = window_bricks(mesh.template.reach()) + LIGHTS * mesh.template.words() as u32;
+            let words = window_bricks(mesh.template.reach()) + MOST_LIGHTS * mesh.template.words() as u32;
             cuda.launch(
                 INTERPOLATE,
-                warps_for(&piece, WARPS, words),
+                warps_for(&piece, ITEM_WARPS, words),
                 &Interpolate { first: piece.start, count, ..record },
             )
         })?;

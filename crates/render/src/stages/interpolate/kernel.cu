@@ -13,10 +13,6 @@
 #include "stages/short_tests/item.cuh"
 #include "surface.cuh"
 
-// Warps of a block.
-#define ITEM_WARPS 4
-// Lights without a size that are taken at once, at most.
-#define MOST_LIGHTS 3
 // What tells the fallback to find a share.
 #define UNKNOWN -1.0f
 

@@ -7,8 +7,6 @@
 #include "cuda/warp.cuh"
 #include "stages/shade/shade.cuh"
 
-#define MIRROR_THREADS 256
-
 // The share of what a mirror at the object point of `ray` shows that reaches the pixel; zero where there is none.
 DEVICE Vec3 mirror_weight(const MirrorRays &args, unsigned ray) {
     if (ray >= args.rays.count)
@@ -22,7 +20,7 @@ DEVICE Vec3 mirror_weight(const MirrorRays &args, unsigned ray) {
 
 // How many threads of the block before this one have a flag, and how many have one in all.
 DEVICE unsigned flags_before(bool flag, unsigned &all) {
-    SHARED(unsigned, warps, [MIRROR_THREADS / 32]);
+    SHARED(unsigned, warps, [BLOCK / 32]);
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / 32;
     const unsigned flags = __ballot_sync(ALL_LANES, flag);
     if (lane == 0)
@@ -30,23 +28,23 @@ DEVICE unsigned flags_before(bool flag, unsigned &all) {
     __syncthreads();
     unsigned before = __popc(flags & lanes_below(lane));
     all = 0;
-    for (unsigned other = 0; other < MIRROR_THREADS / 32; ++other) {
+    for (unsigned other = 0; other < BLOCK / 32; ++other) {
         before += other < warp ? warps[other] : 0;
         all += warps[other];
     }
     return before;
 }
 
-KERNEL(mirror_rays_count, MirrorRays, MIRROR_THREADS, 4) {
-    const Vec3 weight = mirror_weight(args, blockIdx.x * MIRROR_THREADS + threadIdx.x);
+KERNEL(mirror_rays_count, MirrorRays, BLOCK, 4) {
+    const Vec3 weight = mirror_weight(args, blockIdx.x * BLOCK + threadIdx.x);
     unsigned all;
     flags_before(weight != splat(0.0f), all);
     if (threadIdx.x == 0)
         args.counts[blockIdx.x] = all;
 }
 
-KERNEL(mirror_rays_emit, MirrorRays, MIRROR_THREADS, 4) {
-    const unsigned ray = blockIdx.x * MIRROR_THREADS + threadIdx.x;
+KERNEL(mirror_rays_emit, MirrorRays, BLOCK, 4) {
+    const unsigned ray = blockIdx.x * BLOCK + threadIdx.x;
     const Vec3 weight = mirror_weight(args, ray);
     const bool mirrors = weight != splat(0.0f);
     unsigned all;

@@ -16,6 +16,7 @@ pub(crate) mod tint;
 use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
+use lightmesh_layout::constants::LIGHT_TARGETS;
 use lightmesh_scene::{Falloff, Light, LightKind};
 
 use crate::accel::Hit;
@@ -120,9 +121,6 @@ pub(crate) struct LightTargets {
 }
 
 impl LightTargets {
-    /// Points on a light with a size.
-    const COUNT: u32 = 16;
-
     pub(crate) fn new(lights: &[Light]) -> LightTargets {
         let pattern = Pattern::new(0, 0, 0);
         // In pairs on either side of the middle: what falls off linearly over the light is averaged exactly.
@@ -130,16 +128,16 @@ impl LightTargets {
             let point = light_point(light, Vec3::ZERO, 0.0, pattern.point(index));
             [point, 2.0 * light_center(light, Vec3::ZERO, 0.0) - point]
         };
-        let spread = |light: &Light| (0..Self::COUNT / 2).flat_map(|index| pair(light, index)).collect();
+        let spread = |light: &Light| (0..LIGHT_TARGETS / 2).flat_map(|index| pair(light, index)).collect();
         LightTargets {
             points: lights.iter().map(|light| if light.has_size() { spread(light) } else { Vec::new() }).collect(),
         }
     }
 
-    /// The points of all lights one after the other, [`LightTargets::COUNT`] each; zeros for a light without a size.
+    /// The points of all lights one after the other, [`LIGHT_TARGETS`] each; zeros for a light without a size.
     pub(crate) fn flat(&self) -> Vec<Vec3> {
         let padded = |points: &Vec<Vec3>| {
-            (0..Self::COUNT as usize).map(|i| points.get(i).copied().unwrap_or_default()).collect()
+            (0..LIGHT_TARGETS as usize).map(|i| points.get(i).copied().unwrap_or_default()).collect()
         };
         self.points.iter().flat_map(|points| -> Vec<Vec3> { padded(points) }).collect()
     }

@@ -6,9 +6,6 @@
 #include "surface.cuh"
 
 #define FRAC_1_PI 0.318309886183790671538f
-// Points on a light from which its unshadowed light is computed.
-#define LIGHT_TARGETS 16
-
 // An object point with what formula (1) needs.
 struct Surface {
     SurfacePoint point;

@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::Vec3;
 use lightmesh_scene::{Falloff, Light, LightKind};
 
-use super::{LightTargets, cone, strength};
+use super::{LIGHT_TARGETS, LightTargets, cone, strength};
 
 fn spot(inner: f32, outer: f32) -> Light {
     let kind = LightKind::Spot { position: Vec3::ZERO, direction: Vec3::NEG_Y, inner, outer };
@@ -52,8 +52,8 @@ fn only_lights_with_a_size_are_spread() {
     let sphere = Light { kind: LightKind::Sphere { position: Vec3::Y, radius: 0.5 }, ..spot(0.1, 0.2) };
     let targets = LightTargets::new(&[spot(0.1, 0.2), sphere]);
     assert!(targets.points[0].is_empty());
-    assert_eq!(targets.points[1].len(), LightTargets::COUNT as usize);
+    assert_eq!(targets.points[1].len(), LIGHT_TARGETS as usize);
     assert!(targets.points[1].iter().all(|point| point.distance(Vec3::Y) <= 0.5));
-    let mean = targets.points[1].iter().sum::<Vec3>() / LightTargets::COUNT as f32;
+    let mean = targets.points[1].iter().sum::<Vec3>() / LIGHT_TARGETS as f32;
     assert!(mean.distance(Vec3::Y) < 0.1, "{mean}");
 }

@@ -9,6 +9,7 @@ pub(crate) mod cuda;
 mod tests;
 
 use glam::Vec3;
+use lightmesh_layout::constants::HORIZON_SAMPLES;
 use lightmesh_scene::{Light, LightKind};
 
 use crate::sampling::{Pattern, light_center, light_point};
@@ -45,9 +46,6 @@ pub(crate) fn above_horizon(point: &SurfacePoint, light: &Light, reach: f32) -> 
         .count();
     above as f32 / HORIZON_SAMPLES as f32
 }
-
-/// Points of a light that decide how much of it stands above the horizon.
-const HORIZON_SAMPLES: u32 = 64;
 
 /// The farthest that any point of `light` lies from its middle; 0 for all that have no size.
 #[inline(always)]

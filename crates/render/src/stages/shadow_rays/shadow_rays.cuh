@@ -6,9 +6,6 @@
 #include "sampling.cuh"
 #include "surface.cuh"
 
-// Points of a light that decide how much of it stands above the horizon.
-#define HORIZON_SAMPLES 64
-
 // χ of formula (3) for a light that stands across the horizon: the share of it above.
 COLD float share_above_horizon(SurfacePoint point, const Light *light, float reach) {
     const Pattern pattern = pattern_of(0, 0, 0);

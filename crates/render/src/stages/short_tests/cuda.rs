@@ -1,6 +1,10 @@
 //! Step 2 on a CUDA device: object points by cell, then masks, a warp for up to 32 object points of one cell.
 
 use bytemuck::Zeroable;
+use lightmesh_layout::constants::{
+    CANDIDATE_WORDS, CANDIDATES, FOUND_TRIANGLES, LISTED_TARGETS, STACK_OF_ROUNDS, STACK_PER_LEVEL, TANGENT_PLANES,
+    TARGET_WORDS, TILE,
+};
 use lightmesh_layout::mesh::Item;
 use lightmesh_layout::stages::{GroupCells, ShortTests};
 
@@ -29,8 +33,6 @@ pub struct DeviceMasks<R: Runtime> {
 const GROUP: Kernel = Kernel { module: "short_tests", name: "group_points" };
 const GATHER: Kernel = Kernel { module: "short_tests", name: "gather_items" };
 const HALF_BALLS: Kernel = Kernel { module: "short_tests", name: "half_balls_of_items" };
-/// Rays of a tile: one block groups them.
-const TILE: usize = 1024;
 /// Warps of a block that tests.
 const WARPS: u32 = 1;
 /// Shared memory that every device gives a block, bytes.
@@ -102,8 +104,8 @@ fn group<R: Runtime>(
 ) -> Result<DeviceMasks<R>, RenderError> {
     let pool = cuda.pool();
     let tiles = rays.blocks(32);
-    let members = pool.room("object points by cell", tiles as usize * TILE)?;
-    let tile_items = pool.room("items of tiles", tiles as usize * TILE)?;
+    let members = pool.room("object points by cell", tiles as usize * TILE as usize)?;
+    let tile_items = pool.room("items of tiles", tiles as usize * TILE as usize)?;
     let counts = pool.room("number of items", tiles as usize + 1)?;
     let record = GroupCells {
         scene: scene.record,
@@ -117,12 +119,12 @@ fn group<R: Runtime>(
     };
     // a. Each tile sorts its object points by cell and cuts them into items.
     cuda.in_pieces(job, GROUP, Work { units: tiles, cost: 1, first: FIRST_TILES, progress: 0 }, |piece| {
-        cuda.launch(GROUP, blocks_for(&piece, TILE as u32), &GroupCells { first_block: piece.start, ..record })
+        cuda.launch(GROUP, blocks_for(&piece, TILE), &GroupCells { first_block: piece.start, ..record })
     })?;
     // b. The items of all tiles in one list.
     let count = cuda.scan_total(&counts)?;
     let items = pool.room("items", count)?;
-    cuda.launch(GATHER, blocks_for(&(0..tiles), TILE as u32), &GroupCells { items: items.output(), ..record })?;
+    cuda.launch(GATHER, blocks_for(&(0..tiles), TILE), &GroupCells { items: items.output(), ..record })?;
     drop(tile_items);
     let words = mesh.template.words();
     let masks = pool.room("masks", count * 32 * words)?;
@@ -151,11 +153,7 @@ impl<R: Runtime> DeviceMasks<R> {
 /// Shared memory of a warp that tests by cell, in 32-bit words, its masks apart: candidates and targets of one round, triangles
 /// found (later `marks`), and the stack of the search through a BVH of `depth` levels. See `cell_memory` in `memory.cuh`.
 fn shared_words(depth: u32, marks: u32) -> u32 {
-    const CANDIDATES: u32 = 32 * 24;
-    const TARGETS: u32 = 65 * 4;
-    const PLANES: u32 = 4 * 4;
-    const FOUND: u32 = 128;
-    const STACK_OF_ROUNDS: u32 = 64;
-    const STACK_PER_LEVEL: u32 = 7;
-    CANDIDATES + TARGETS + PLANES + marks.max(FOUND) + (STACK_OF_ROUNDS + STACK_PER_LEVEL * depth).next_multiple_of(4)
+    let found = marks.max(FOUND_TRIANGLES);
+    let stack = (STACK_OF_ROUNDS + STACK_PER_LEVEL * depth).next_multiple_of(4);
+    CANDIDATE_WORDS * CANDIDATES + TARGET_WORDS * (LISTED_TARGETS + 1) + 4 * TANGENT_PLANES + found + stack
 }

@@ -7,8 +7,6 @@
 #include "light_mesh/lattice.cuh"
 #include "surface.cuh"
 
-#define TILE 1024
-
 // What sorts an object point: 16 bits of its cell's hash, 6 bits of its triangle's, 10 bits of its thread. Points of one triangle
 // come together, so that items have few normals and small boxes. Cells whose hashes are equal may come out mixed; then they are cut
 // into more items, and nothing else changes.

@@ -4,9 +4,6 @@
 #include "cuda/warp.cuh"
 #include "surface.cuh"
 
-// Tangent planes that are told apart.
-#define TANGENT_PLANES 4
-
 // The object point of a lane.
 struct ItemLane {
     SurfacePoint point;

@@ -5,14 +5,6 @@
 #include "light_mesh/window.cuh"
 #include "stages/short_tests/item.cuh"
 
-// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of the search adds.
-#define FOUND_TRIANGLES 128u
-// Entries of the search's stack up to which rounds take four nodes, and those kept for each level of the tree: see `next_nodes`.
-#define STACK_OF_ROUNDS 64
-#define STACK_PER_LEVEL 7
-
-// Points that are tested in one go.
-#define LISTED_TARGETS 64u
 // What comes after the last of them.
 #define NO_TARGET 0xffffffffu
 
@@ -29,6 +21,9 @@ struct Candidate {
 // A light point that a candidate may hide: its position, and packed its template point and its candidate.
 typedef float4 Target;
 
+static_assert(sizeof(Candidate) == 4 * CANDIDATE_WORDS, "words of a candidate");
+static_assert(sizeof(Target) == 4 * TARGET_WORDS, "words of a target");
+
 // The shared memory of one warp.
 struct CellMemory {
     // For each template point the lanes that see it. In global memory where the template is too large.
@@ -41,14 +36,14 @@ struct CellMemory {
     unsigned *stack;
 };
 
-// Cuts a block's shared memory up. A block is one warp: items differ in cost, and a block keeps its place until its last warp is
+// Cuts a block's shared memory up, as `shared_words` in cuda.rs counts it. A block is one warp: items differ in cost, and a block keeps its place until its last warp is
 // done. Whether masks are kept there is known to the compiler, which then knows what kind of memory they are in.
 template <bool SHARED_MASKS>
 DEVICE CellMemory cell_memory(const ShortTests &args, unsigned *shared, unsigned long long item) {
     // Later the marks are there.
     const unsigned side = window_side(args.mesh), found = max(FOUND_TRIANGLES, 2 * side * side * side);
     const unsigned stack = 4 * ((STACK_OF_ROUNDS + STACK_PER_LEVEL * args.scene.bvh.depth + 3) / 4);
-    const unsigned candidates = sizeof(Candidate) / 4 * 32, targets = (unsigned)sizeof(Target) / 4 * (LISTED_TARGETS + 1);
+    const unsigned candidates = CANDIDATE_WORDS * CANDIDATES, targets = TARGET_WORDS * (LISTED_TARGETS + 1);
     const unsigned planes = 4 * TANGENT_PLANES;
     CellMemory memory;
     memory.candidates = (Candidate *)shared;
