@@ -44,7 +44,7 @@ def main():
         "suite": "peers",
         "quick": False,
         "program": {"name": "lightmesh and peers", "version": version, "commit": None, "command": shlex.join(["python", *sys.argv])},
-        "machine": machine(),
+        "machine": machine(plan),
         "started": started,
         "seconds": time.perf_counter() - start,
         "rows": rows,
@@ -64,7 +64,8 @@ def arguments():
     parser.add_argument("--reference", type=int, default=1024, metavar="N", help="samples of the references, default %(default)s")
     parser.add_argument("--repetitions", type=int, default=5, metavar="N", help="rounds that count, default %(default)s")
     parser.add_argument("--threads", type=int, default=os.cpu_count(), help="for pictures; rays take one; default: all")
-    parser.add_argument("--without", nargs="+", default=[], choices=["embree", "mitsuba", "cycles"], help="peers to leave out")
+    parser.add_argument("--device", choices=["cpu", "cuda"], default="cpu", help="cuda: lightmesh and Mitsuba on a GPU, OptiX for rays")
+    parser.add_argument("--without", nargs="+", default=[], choices=["embree", "optix", "mitsuba", "cycles"], help="peers to leave out")
     return parser.parse_args()
 
 
@@ -84,12 +85,15 @@ def peer(plan, notes, name, make):
 
 def ray_rows(plan, scene, folder, notes):
     """Million rays a second of each program and kind of rays."""
-    casters = [rays.Lightmesh(plan.lightmesh, scene, plan.size, folder)]
-    casters += peer(plan, notes, "embree", lambda: rays.Embree(scene, plan.size))
+    casters = [rays.Lightmesh(plan.lightmesh, scene, plan, folder)]
+    if plan.device == "cuda":
+        casters += peer(plan, notes, "optix", lambda: rays.Optix(scene, plan))
+    else:
+        casters += peer(plan, notes, "embree", lambda: rays.Embree(scene, plan))
     tasks = {(caster.name, kind): (lambda caster=caster, kind=kind: caster.cast(kind)) for kind in rays.KINDS for caster in casters}
     rows = []
     for (program, kind), runs in in_turn(plan, lambda _, task: task(), tasks).items():
-        keys = {"scene": scene.name, "program": program, "rays": kind, "size": plan.size, "threads": 1}
+        keys = {"scene": scene.name, "program": program, "rays": kind, "size": plan.size, **place(plan, 1)}
         seconds = [seconds for _, seconds in runs]
         values = {"rays": runs[0][0], "million_per_second": runs[0][0] / statistics.median(seconds) / 1e6}
         rows.append(row("rays", keys, {"render": seconds}, values))
@@ -98,9 +102,10 @@ def ray_rows(plan, scene, folder, notes):
 
 def shadow_rows(plan, scene, folder, notes):
     """Seconds and errors of each program and number of samples."""
-    area, mesh = (renderers.Lightmesh(plan.lightmesh, scene, mode, plan.size, plan.threads, folder) for mode in ("area", "light-mesh"))
-    others = peer(plan, notes, "mitsuba", lambda: renderers.Mitsuba(scene, plan.size, plan.threads))
-    others += peer(plan, notes, "cycles", lambda: renderers.Cycles(scene, plan.size, plan.threads, folder))
+    area, mesh = (renderers.Lightmesh(plan.lightmesh, scene, mode, plan, folder) for mode in ("area", "light-mesh"))
+    others = peer(plan, notes, "mitsuba", lambda: renderers.Mitsuba(scene, plan))
+    if plan.device == "cpu":
+        others += peer(plan, notes, "cycles", lambda: renderers.Cycles(scene, plan, folder))
     references = {renderer.name: renderer.render(plan.reference, REFERENCE_SEED)[1] for renderer in [area, *others]}
     # The light mesh is held against what it stands for.
     references[mesh.name] = references[area.name]
@@ -109,11 +114,16 @@ def shadow_rows(plan, scene, folder, notes):
     tasks = {(renderer.name, n): (lambda seed, r=renderer, n=n: r.render(n, seed)) for n in plan.samples for renderer in [area, mesh, *others]}
     rows = []
     for (program, samples), runs in in_turn(plan, lambda seed, task: task(seed), tasks).items():
-        keys = {"scene": scene.name, "program": program, "samples": samples, "size": plan.size, "threads": "all"}
+        keys = {"scene": scene.name, "program": program, "samples": samples, "size": plan.size, **place(plan, "all")}
         found = np.mean([errors(references[program], picture) for _, picture in runs], axis=0)
         values = {"rmse": found[0], "mean_flip": found[1], "reference_rmse": left.get(program, left[area.name])}
         rows.append(row("soft shadows", keys, {"render": [seconds for seconds, _ in runs]}, values))
     return rows
+
+
+def place(plan, threads):
+    """Where it runs, as keys of a row."""
+    return {"device": "cuda"} if plan.device == "cuda" else {"device": "cpu", "threads": threads}
 
 
 def in_turn(plan, run, tasks):
@@ -141,14 +151,23 @@ def row(experiment, keys, seconds, values):
     return {"id": f"{experiment}: {words}", "experiment": experiment, "keys": keys, "seconds": seconds, "values": values}
 
 
-def machine():
+def machine(plan):
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
         cpu = next(line.split(": ", 1)[1] for line in lines if line.startswith("model name"))
     except (OSError, StopIteration):
         cpu = platform.processor()
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") if hasattr(os, "sysconf") else 0
-    return {"cpu": cpu, "threads": os.cpu_count(), "memory_bytes": memory, "os": platform.system().lower(), "gpus": []}
+    return {"cpu": cpu, "threads": os.cpu_count(), "memory_bytes": memory, "os": platform.system().lower(), "gpus": gpus(plan)}
+
+
+def gpus(plan):
+    """The first GPU and its driver, as lightmesh names them, where one is used."""
+    if plan.device == "cpu":
+        return []
+    info = subprocess.run([plan.lightmesh, "info", "--devices", "--json"], check=True, stdout=subprocess.PIPE).stdout
+    gpu = next(device for device in json.loads(info)["devices"] if device["device"] == "cuda:0")
+    return [{"name": gpu["name"], "memory_bytes": gpu["memory_bytes"], "driver": f"CUDA {gpu['driver_cuda_version']}"}]
 
 
 def now():

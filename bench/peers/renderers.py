@@ -17,34 +17,38 @@ from scene import KD
 class Lightmesh:
     """Area mode: `samples` stratified shadow rays for each light and pixel. Light-mesh mode: as many for each light point."""
 
-    def __init__(self, program, scene, mode, size, threads, folder):
+    def __init__(self, program, scene, mode, plan, folder):
+        size, threads = plan.size, plan.threads
         self.name, self.folder = f"lightmesh {mode}", folder
         self.version = subprocess.run([program, "--version"], check=True, stdout=subprocess.PIPE, text=True).stdout.split()[1]
-        self.command = [program, "render", scene.file, "-q", "--device", "cpu", "--mode", mode, "--threads", str(threads)]
+        self.command = [program, "render", scene.file, "-q", "--device", plan.device, "--mode", mode, "--threads", str(threads)]
         self.command += ["--size", f"{size}x{size}", "-o", folder / "picture.exr", "--stats", folder / "stats.json"]
 
     def render(self, samples, seed):
         subprocess.run([*self.command, "--samples", str(samples), "--seed", str(seed)], check=True)
-        stats = json.loads((self.folder / "stats.json").read_text())
-        return stats["seconds"]["render"], flip_evaluator.load(str(self.folder / "picture.exr"))
+        seconds = json.loads((self.folder / "stats.json").read_text())["seconds"]
+        # The scene's way to a GPU is no part of the others' seconds either.
+        return seconds["render"] - seconds["upload"], flip_evaluator.load(str(self.folder / "picture.exr"))
 
 
 class Mitsuba:
-    """The `direct` integrator, compiled by LLVM, with the sampler `multijitter`: the default one, `independent`, has far more noise."""
+    """The `direct` integrator, compiled by LLVM or for OptiX, with the sampler `multijitter`: the default one, `independent`, has far
+    more noise."""
 
-    def __init__(self, scene, size, threads):
+    def __init__(self, scene, plan):
         import drjit
         import mitsuba
 
         self.name, self.drjit, self.mitsuba = "Mitsuba", drjit, mitsuba
-        compiled = drjit.has_backend(drjit.JitBackend.LLVM)
-        mitsuba.set_variant("llvm_ad_rgb" if compiled else "scalar_rgb")
+        on_gpu = plan.device == "cuda"
+        compiled = on_gpu or drjit.has_backend(drjit.JitBackend.LLVM)
+        mitsuba.set_variant("cuda_ad_rgb" if on_gpu else "llvm_ad_rgb" if compiled else "scalar_rgb")
         self.version = f"{mitsuba.__version__}, {mitsuba.variant()}"
         # Scalar code asks for each number on its own, which Python is too slow for: there samples cover the pixel.
         sampler = centred(mitsuba) if compiled else "multijitter"
-        if compiled:
-            drjit.set_thread_count(threads)
-        self.scene = mitsuba.load_dict(self.describe(scene, size, sampler))
+        if compiled and not on_gpu:
+            drjit.set_thread_count(plan.threads)
+        self.scene = mitsuba.load_dict(self.describe(scene, plan.size, sampler))
 
     def describe(self, scene, size, sampler):
         transform, camera = self.mitsuba.ScalarTransform4f, scene.camera
@@ -128,14 +132,14 @@ def centred(mitsuba):
 class Cycles:
     """Blender's path tracer, without bounces, denoising or adaptive sampling. Its seconds hold what it does before each picture."""
 
-    def __init__(self, scene, size, threads, folder):
+    def __init__(self, scene, plan, folder):
         import bpy
 
         self.name, self.bpy, self.version = "Cycles", bpy, bpy.app.version_string
         self.path = str(folder / "cycles.exr")
         bpy.ops.wm.read_factory_settings(use_empty=True)
         self.context = bpy.context.scene
-        self.set_up(size, threads)
+        self.set_up(plan.size, plan.threads)
         self.add_mesh(scene)
         self.add_camera(scene.camera)
         for light in scene.lights:
