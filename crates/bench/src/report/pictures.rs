@@ -120,12 +120,14 @@ impl Gallery {
             let own = all.iter().filter(|likeness| likeness.is_none()).count();
             let parts = [
                 (same, "the same in every pixel"),
-                (all.len() - same - own, "the same but for traces"),
-                (own, "of its own, shown after them"),
+                (all.len() - same - own, "so but for traces"),
+                (own, "shown after them"),
             ];
-            let parts: Vec<String> =
-                parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
-            text += &format!(" Of {} there are {}: {}.", run.label, all.len(), parts.join(", "));
+            let said = |(count, what): &(usize, &str)| {
+                (*count > 0).then(|| format!("{count} {} {what}", if *count == 1 { "is" } else { "are" }))
+            };
+            let parts: Vec<String> = parts.iter().filter_map(said).collect();
+            text += &format!(" Of those of {} {}.", run.label, parts.join(", "));
         }
         Some(text)
     }

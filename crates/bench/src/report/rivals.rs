@@ -79,7 +79,6 @@ fn ratios(duels: &[Duel]) -> Option<Spread> {
 /// One sentence for places at which all pictures come out alike.
 fn agreed(subject: &Subject, places: &[&[Duel]]) -> Finding {
     let all: Vec<Duel> = places.concat();
-    let pictures = |duels: &[Duel]| pictures(duels, duels);
     let groups = places.chunk_by(|a, b| pictures(a) == pictures(b)).map(|group| {
         let times: Vec<String> =
             group.iter().map(|duels| format!("{} the time on {}", times(duels), duels[0].mesh.place())).collect();
@@ -101,9 +100,19 @@ fn agreed(subject: &Subject, places: &[&[Duel]]) -> Finding {
 /// A sentence for a place at which the method takes less time for some pictures and not for others.
 fn divided(subject: &Subject, duels: &[Duel]) -> Finding {
     let parts = [(Verdict::Wins, "less time for"), (Verdict::Open, "as much for"), (Verdict::Loses, "more for")];
-    let parts = parts.into_iter().filter_map(|(wanted, words)| {
-        let part: Vec<Duel> = duels.iter().filter(|duel| verdict(duel.ratio) == wanted).copied().collect();
-        (!part.is_empty()).then(|| format!("{words} {} ({})", pictures(&part, duels), times(&part)))
+    let parts = parts.map(|(wanted, words)| {
+        let of: Vec<Duel> = duels.iter().filter(|duel| verdict(duel.ratio) == wanted).copied().collect();
+        (words, of)
+    });
+    let mut parts: Vec<(&str, Vec<Duel>)> = parts.into_iter().filter(|(_, part)| !part.is_empty()).collect();
+    // The most come last: of them it is enough that they are the others.
+    parts.sort_by_key(|(_, part)| part.len());
+    let last = parts.len() - 1;
+    let parts = parts.iter().enumerate().map(|(index, (words, part))| match index == last {
+        true => format!("{words} the other {} ({})", part.len(), times(part)),
+        false => {
+            format!("{words} {} ({}; {})", count(part), times(part), settings::text(&meshes(part), &meshes(duels)))
+        }
     });
     let parts: Vec<String> = parts.collect();
     let text = format!(
@@ -111,7 +120,7 @@ fn divided(subject: &Subject, duels: &[Duel]) -> Finding {
         named(subject),
         rival(subject),
         duels[0].mesh.place(),
-        parts.join(", "),
+        settings::enumerated(&parts),
         errors(duels)
     );
     Finding::new(Verdict::Depends, text)
@@ -122,12 +131,15 @@ fn times(duels: &[Duel]) -> String {
     ratios(duels).map_or_else(String::new, |ratios| ratios.text(numbers::ratio))
 }
 
-/// How many pictures, and their settings: of `part` among `all`.
-fn pictures(part: &[Duel], all: &[Duel]) -> String {
-    let rows = |duels: &[Duel]| -> Vec<String> { vec![settings::text(&meshes(duels), &meshes(all))] };
-    let settings = rows(part).concat();
-    let count = if part.len() == 1 { "1 picture".to_owned() } else { format!("{} pictures", part.len()) };
-    if settings.is_empty() { count } else { format!("{count}, {settings}") }
+/// How many pictures, and their settings.
+fn pictures(duels: &[Duel]) -> String {
+    let rows = meshes(duels);
+    let settings = settings::text(&rows, &rows);
+    if settings.is_empty() { count(duels) } else { format!("{}, {settings}", count(duels)) }
+}
+
+fn count(duels: &[Duel]) -> String {
+    if duels.len() == 1 { "1 picture".to_owned() } else { format!("{} pictures", duels.len()) }
 }
 
 fn meshes<'a>(duels: &[Duel<'a>]) -> Vec<Measured<'a>> {
@@ -160,7 +172,7 @@ fn named((scene, lights, _): &Subject) -> String {
 
 fn rival((_, _, samples): &Subject) -> String {
     match samples.as_str() {
-        "" => "hard shadows, one shadow ray for each pixel and light,".to_owned(),
+        "" => "hard shadows".to_owned(),
         "1" => "area shadows with 1 shadow ray for each pixel and light".to_owned(),
         samples => format!("area shadows with {samples} shadow rays for each pixel and light"),
     }
@@ -208,8 +220,8 @@ mod tests {
         let findings = sentences(&[(1.1, 0.5, None), (2.1, 1.0, None), (3.1, 2.0, None), (4.1, 3.0, None)]);
         assert_eq!(findings.len(), 1);
         assert_eq!(findings[0].verdict, Verdict::Depends);
-        let wanted = "takes less time for 1 picture, R = 1.1 (0.50×), as much for 1 picture, R = 2.1 (1.0×), more for 2 pictures, \
-                      R = 3.1 and 4.1 (2.0× to 3.0×).";
+        let wanted = "takes less time for 1 picture (0.50×; R = 1.1), as much for 1 picture (1.0×; R = 2.1) and more for the other 2 \
+                      (2.0× to 3.0×).";
         assert!(findings[0].text.ends_with(wanted), "{}", findings[0].text);
     }
 }

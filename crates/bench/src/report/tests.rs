@@ -148,6 +148,17 @@ fn the_page_is_whole_and_asks_for_nothing() {
 }
 
 #[test]
+fn print_is_light_and_has_no_sliders() {
+    let style = include_str!("report.css");
+    // What is dark or slides is for screens alone.
+    for (rule, _) in style.match_indices(".sliding .stack").chain(style.match_indices("prefers-color-scheme: dark")) {
+        let media = style[..rule + 1].rfind("@media").map(|begin| &style[begin..]);
+        assert!(media.is_some_and(|media| media.starts_with("@media screen")), "{}", &style[rule..rule + 30]);
+    }
+    assert!(style.contains(".stack { display: none; }") && style.contains("@media print"));
+}
+
+#[test]
 #[should_panic(expected = "</div>")]
 fn tags_that_cross_are_found() {
     tags("<div><p></div></p>");
@@ -175,7 +186,7 @@ fn markdown_shows_files_that_are_there() {
 fn sentences_follow_from_the_rows() {
     let sentences = |mesh| report(thesis(mesh)).unwrap().markdown();
     let lost = sentences(2.0);
-    let hard = "Garden, 1 light: against hard shadows, one shadow ray for each pixel and light, the light mesh takes";
+    let hard = "Garden, 1 light: against hard shadows the light mesh takes";
     assert!(
         lost.contains(&format!("- **loses**: {hard} 2.0× the time on Some GPU (1 picture, h = 0.1, R = 2.1).")),
         "{lost}"
@@ -233,7 +244,7 @@ fn pictures_that_are_alike_are_shown_once() {
     // Test, reference and difference.
     assert_eq!((text.matches("<img").count(), once.html().matches("<image ").count()), (3, 3), "{text}");
     assert!(text.contains("in common, 2 are the same in every pixel."), "{text}");
-    assert!(text.contains("Pictures of a. Of b there are 2: 2 the same in every pixel."), "{text}");
+    assert!(text.contains("Pictures of a. Of those of b 2 are the same in every pixel."), "{text}");
 
     // One step of 8 bits in one pixel.
     let nearly = two(|first, second| {
@@ -248,7 +259,7 @@ fn pictures_that_are_alike_are_shown_once() {
         text.contains("1 differs by a mean FLIP below 0.0001 (b: p: test \"1\", 1 of 1024 pixels, mean FLIP "),
         "{text}"
     );
-    assert!(text.contains("Of b there are 2: 1 the same in every pixel, 1 the same but for traces."), "{text}");
+    assert!(text.contains("Of those of b 1 is the same in every pixel, 1 is so but for traces."), "{text}");
 }
 
 #[test]

@@ -113,7 +113,7 @@ fn equal_error(subject: &str, measure: &str, rows: &[&Measured]) -> Option<Findi
             bounds.iter().filter_map(|row| ratio(row)).filter(|ratio| verdict(*ratio) != Verdict::Loses).count();
         text += &match faster {
             0 => ".".to_owned(),
-            _ => format!("; that {faster} of these take no more time than it is no gain at equal error."),
+            _ => format!("; to take no more time than that, as in {faster} of these, is no gain at equal error."),
         };
     }
     if never > 0 {
@@ -213,7 +213,10 @@ mod tests {
         let findings = findings(&runs);
         assert_eq!(findings[0].verdict, Verdict::Depends);
         let text = &findings[0].text;
-        assert!(text.contains("that 1 of these take no more time than it is no gain at equal error."), "{text}");
+        assert!(
+            text.contains("to take no more time than that, as in 1 of these, is no gain at equal error."),
+            "{text}"
+        );
         assert!(text.ends_with("It wins in 0 and loses in 1."), "{text}");
     }
 }
