@@ -33,6 +33,9 @@ struct Unpacked {
     frame: Frame,
 }
 
+/// A picture that stands for itself: its run's index, what it is, its pixels and its file.
+type Candidate<'a> = (usize, &'a Picture, Frame, Vec<u8>);
+
 /// A picture that cannot be shown: the run's index, the picture's id, and why.
 pub(crate) type Fault = (usize, String, PictureError);
 
@@ -50,10 +53,10 @@ pub(crate) struct Common {
 }
 
 impl Gallery {
-    /// Unpacks every picture.
+    /// Unpacks every picture; keeps those that stand for themselves.
     pub(crate) fn new(runs: &[Run], assets: &mut Assets) -> Result<Gallery, Fault> {
         let mut gallery = Gallery::default();
-        let mut frames: BTreeMap<&str, Vec<(usize, &Picture, Frame, Vec<u8>)>> = BTreeMap::new();
+        let mut frames: BTreeMap<&str, Vec<Candidate>> = BTreeMap::new();
         for (index, run) in runs.iter().enumerate() {
             for picture in &run.results.pictures {
                 let fault = |reason| (index, picture.id.clone(), reason);
@@ -194,10 +197,7 @@ impl Gallery {
 }
 
 /// Of the pictures that are shown, the first that may stand for `frame`, by its run.
-fn first_alike(
-    frame: &Frame,
-    shown: &[(usize, &Picture, Frame, Vec<u8>)],
-) -> Result<Option<(usize, Likeness)>, PictureError> {
+fn first_alike(frame: &Frame, shown: &[Candidate]) -> Result<Option<(usize, Likeness)>, PictureError> {
     for (run, picture, other, _) in shown {
         let likeness = Likeness::of(frame, other)
             .map_err(|reason| PictureError::Compare { reference: picture.id.clone(), reason })?;

@@ -77,7 +77,7 @@ fn times(rows: &[Measured]) -> Table {
     );
     columns.extend(
         [("stages", "method"), ("hard stages", "hard"), ("stages ratio", "ratio")]
-            .map(|(name, title)| Column::numbers(name, title).below("its stages on the GPU, ms")),
+            .map(|(name, title)| Column::numbers(name, title).below("stages on the GPU, ms")),
     );
     columns.extend(
         [("thesis cpu", "CPU"), ("thesis gpu", "GPU")]
