@@ -3,7 +3,7 @@
 //! A comment names the files, a table of the [report](crate::report) on them, and what of it is wanted:
 //!
 //! ```text
-//! <!-- from docs/results/h200.json: thesis; where scene=garden, size=2048; columns step, radius as R, cuda median as ms -->
+//! <!-- from docs/results/h200.json: timings; where scene=garden, size=2048; columns step, radius as R, median as ms -->
 //! | h | R | ms |
 //! |--:|--:|--:|
 //! | 0.1 | 2.1 | 5.63 |

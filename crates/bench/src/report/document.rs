@@ -45,6 +45,8 @@ pub(crate) struct Finding {
 pub(crate) enum Verdict {
     Wins,
     Loses,
+    /// It is in some pictures and not in others, or in time and not in error; the sentence says where.
+    Depends,
     Open,
 }
 
@@ -54,6 +56,7 @@ impl Verdict {
         match self {
             Verdict::Wins => "wins",
             Verdict::Loses => "loses",
+            Verdict::Depends => "depends",
             Verdict::Open => "note",
         }
     }

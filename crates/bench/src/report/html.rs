@@ -110,14 +110,8 @@ fn table(table: &Table) -> String {
         .iter()
         .map(|column| format!("<th scope=\"col\"{}>{}</th>", class(column), escaped(&column.title)))
         .collect();
-    let rows: String = table
-        .rows
-        .iter()
-        .map(|row| {
-            let cells: String = row.iter().zip(&table.columns).map(|(cell, column)| self::cell(cell, column)).collect();
-            format!("<tr>{cells}</tr>\n")
-        })
-        .collect();
+    let above = std::iter::once(None).chain(table.rows.iter().map(Some));
+    let rows: String = table.rows.iter().zip(above).map(|(row, above)| line(row, above, &table.columns)).collect();
     let caption = escaped(&table.caption);
     let scroll = format!(
         "<div class=\"scroll\" tabindex=\"0\">\n<table>\n<thead>\n{groups}<tr>{titles}</tr>\n</thead>\n\
@@ -128,6 +122,14 @@ fn table(table: &Table) -> String {
         return format!("<details class=\"{kind}\">\n<summary>{caption}</summary>\n{scroll}</details>\n");
     }
     format!("<figure class=\"{kind}\">\n<figcaption>{caption}</figcaption>\n{scroll}</figure>\n")
+}
+
+/// A row. Cells at its left that say what those above say step back, so that groups are seen.
+fn line(row: &[Cell], above: Option<&Vec<Cell>>, columns: &[Column]) -> String {
+    let repeated = above.map_or(0, |above| row.iter().zip(above).take_while(|(cell, above)| cell == above).count());
+    let cells = row.iter().zip(columns).enumerate();
+    let cells: String = cells.map(|(place, (cell, column))| self::cell(cell, column, place < repeated)).collect();
+    format!("<tr>{cells}</tr>\n")
 }
 
 fn heading(group: &str, span: usize) -> String {
@@ -141,20 +143,27 @@ fn class(column: &Column) -> &'static str {
     if column.number { " class=\"number\"" } else { "" }
 }
 
-fn cell(cell: &Cell, column: &Column) -> String {
+fn cell(cell: &Cell, column: &Column, repeated: bool) -> String {
     let text = escaped(&cell.text);
     match cell.bar {
         Some(share) => {
             let width = 100.0 * share.clamp(0.0, 1.0);
             format!("<td class=\"number bar\"><i style=\"width:{width:.1}%\"></i><span>{text}</span></td>")
         }
-        None => format!("<td{}>{text}</td>", class(column)),
+        None => match (column.number, repeated) {
+            (true, true) => format!("<td class=\"number repeated\">{text}</td>"),
+            (false, true) => format!("<td class=\"repeated\">{text}</td>"),
+            (_, false) => format!("<td{}>{text}</td>", class(column)),
+        },
     }
 }
 
 fn plot(plot: &Plot, assets: &Assets) -> String {
     let svg = assets.plot(&plot.name).unwrap_or_default();
-    format!("<figure class=\"plot\">\n{svg}\n<figcaption>{}</figcaption>\n</figure>\n", escaped(&plot.caption))
+    format!(
+        "<figure class=\"plot\">\n<div class=\"scroll\" tabindex=\"0\">\n{svg}\n</div>\n<figcaption>{}</figcaption>\n</figure>\n",
+        escaped(&plot.caption)
+    )
 }
 
 fn figure(shot: &Shot, class: &str) -> String {
@@ -177,8 +186,8 @@ fn pair(pair: &Pair) -> String {
         "{} against {}: mean FLIP {}, RMSE {}",
         pair.picture.title,
         pair.reference.title,
-        numbers::significant(pair.mean_flip, 3),
-        numbers::significant(pair.rmse, 3)
+        numbers::small(pair.mean_flip),
+        numbers::small(pair.rmse)
     );
     format!(
         "<figure class=\"pair\">\n<div class=\"panes\">\n{}{}{}</div>\n<figcaption>{}</figcaption>\n</figure>\n",
@@ -187,4 +196,18 @@ fn pair(pair: &Pair) -> String {
         figure(&pair.difference, "difference"),
         escaped(&caption)
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_repeated_at_the_left_steps_back() {
+        let mut table = Table::new("t", "", ["a", "b", "c"].map(|name| Column::words(name, name)).to_vec());
+        table.rows = [["x", "y", "z"], ["x", "w", "z"]].map(|row| row.map(Cell::from).to_vec()).to_vec();
+        let html = super::table(&table);
+        assert!(html.contains("<tr><td>x</td><td>y</td><td>z</td></tr>"), "{html}");
+        assert!(html.contains("<tr><td class=\"repeated\">x</td><td>w</td><td>z</td></tr>"), "{html}");
+    }
 }

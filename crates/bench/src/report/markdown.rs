@@ -84,8 +84,7 @@ fn row(shots: &[&Shot]) -> String {
 }
 
 fn pair(pair: &Pair) -> String {
-    let figures =
-        format!("Mean FLIP {}, RMSE {}.", numbers::significant(pair.mean_flip, 3), numbers::significant(pair.rmse, 3));
+    let figures = format!("Mean FLIP {}, RMSE {}.", numbers::small(pair.mean_flip), numbers::small(pair.rmse));
     format!("{}\n{figures}\n", row(&[&pair.picture, &pair.reference, &pair.difference]))
 }
 

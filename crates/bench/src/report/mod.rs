@@ -2,7 +2,7 @@
 //!
 //! 1. Files of results are read and checked ([`Report::open`]); several are shown side by side, rows matched by their ids.
 //! 2. From them a document is made: what was run, what follows from it, a section for each experiment (`layouts`). Sentences about
-//!    where the method wins and loses are computed from the rows (`findings`). Experiments that no layout is made for get a table of
+//!    where the method wins and loses are computed from the rows (`findings`, `rivals`). Experiments that no layout is made for get a table of
 //!    all their keys and values.
 //! 3. The document is shown twice, by `markdown` and `html`, and written with its plots and pictures ([`Report::write`]).
 
@@ -12,14 +12,18 @@ mod error;
 mod findings;
 mod html;
 mod layouts;
+mod likeness;
 mod markdown;
 mod numbers;
 mod pictures;
 mod plot;
+mod rivals;
 mod runs;
 mod scale;
 mod select;
+mod settings;
 mod side_by_side;
+mod spread;
 mod summary;
 mod write;
 

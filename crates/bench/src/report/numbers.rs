@@ -15,6 +15,12 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
     grouped(&format!("{rounded:.after$}"))
 }
 
+/// An error with three significant digits; one below a ten-thousandth with two and an exponent: 0.0341, 5.9e-7.
+pub(crate) fn small(error: f64) -> String {
+    const LEAST: f64 = 1e-4;
+    if error != 0.0 && error.abs() < LEAST { format!("{error:.1e}") } else { significant(error, 3) }
+}
+
 /// Seconds as milliseconds with three significant digits.
 pub(crate) fn milliseconds(seconds: f64) -> String {
     significant(1e3 * seconds, 3)
@@ -72,6 +78,7 @@ mod tests {
         assert_eq!([0.02824, 2.824, 551.2, 1528.4].map(three), ["0.0282", "2.82", "551", "1530"]);
         assert_eq!([9.996, 0.0, -12.34, 1e6].map(three), ["10.0", "0", "-12.3", "1\u{202f}000\u{202f}000"]);
         assert_eq!(three(f64::NAN), "—");
+        assert_eq!([5.94e-7, 1e-4, 0.03412, 0.0].map(small), ["5.9e-7", "0.000100", "0.0341", "0"]);
     }
 
     #[test]

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use super::assets::Assets;
 use super::document::{Block, Cell, Column, Section, Table};
 use super::layouts::{self, key_columns};
+use super::likeness::ALIKE;
 use super::numbers;
-use super::pictures::{Fault, Gallery};
+use super::pictures::{Common, Fault, Gallery};
 use super::runs::{Measured, Runs, distinct};
 
 /// A table for each experiment, then pictures that came out different; nothing without a row or a picture in common.
@@ -15,15 +16,39 @@ pub(crate) fn section(runs: &Runs, gallery: &Gallery, assets: &mut Assets) -> Re
     for experiment in runs.experiments() {
         blocks.extend(table(runs, experiment).map(Block::Table));
     }
-    let (pairs, same) = gallery.between_runs(&runs.0, assets)?;
-    if same + pairs.len() > 0 {
-        let differ = pairs.len();
-        blocks.push(Block::Text(format!(
-            "Of the pictures that the runs have in common, {same} are the same in every pixel and {differ} differ."
-        )));
-        blocks.extend(pairs);
-    }
+    let common = gallery.between_runs(&runs.0, assets)?;
+    blocks.extend(sentence(&common).map(Block::Text));
+    blocks.extend(common.different);
     Ok((!blocks.is_empty()).then(|| Section::new("The runs against each other", blocks)))
+}
+
+/// How pictures compare that several runs have; `None` without any.
+fn sentence(common: &Common) -> Option<String> {
+    let verb = |count: usize, one: &str, many: &str| format!("{count} {}", if count == 1 { one } else { many });
+    let mut parts = Vec::new();
+    if common.same > 0 {
+        parts.push(verb(common.same, "is the same in every pixel", "are the same in every pixel"));
+    }
+    if let Some((title, trace)) = common.alike.iter().max_by(|a, b| a.1.mean_flip.total_cmp(&b.1.mean_flip)) {
+        let count = common.alike.len();
+        parts.push(format!(
+            "{} by a mean FLIP below {} ({}{title}, {} of {} pixels, mean FLIP {})",
+            verb(count, "differs", "differ"),
+            numbers::setting(ALIKE),
+            if count == 1 { "" } else { "the most: " },
+            numbers::count(trace.differing as f64),
+            numbers::count(trace.pixels as f64),
+            numbers::small(trace.mean_flip)
+        ));
+    }
+    match common.different.len() {
+        0 => {}
+        count => parts.push(verb(count, "differs and is shown below", "differ and are shown below")),
+    }
+    if common.other_sizes > 0 {
+        parts.push(verb(common.other_sizes, "has another size", "have other sizes") + " and cannot be compared");
+    }
+    (!parts.is_empty()).then(|| format!("Of the pictures that runs have in common, {}.", parts.join("; ")))
 }
 
 /// Milliseconds of the rows of an experiment in every run, and how many times those of the first they are.

@@ -3,6 +3,7 @@
 use super::document::{Block, Cell, Column, Finding, Section, Table, Verdict};
 use super::numbers;
 use super::runs::{Run, Runs};
+use crate::Gpu;
 
 /// Seconds of a minute.
 const MINUTE: f64 = 60.0;
@@ -76,10 +77,12 @@ fn shortened(note: &str) -> String {
 }
 
 fn gpus(run: &Run) -> String {
-    let gpus = run.results.machine.gpus.iter();
-    let gpus: Vec<String> =
-        gpus.map(|gpu| format!("{}, {}, {}", gpu.name, numbers::bytes(gpu.memory_bytes as f64), gpu.driver)).collect();
-    if gpus.is_empty() { "none used".to_owned() } else { gpus.join("; ") }
+    let memory = |gpu: &Gpu| (gpu.memory_bytes > 0).then(|| numbers::bytes(gpu.memory_bytes as f64));
+    let driver = |gpu: &Gpu| (!gpu.driver.is_empty()).then(|| gpu.driver.clone());
+    let facts =
+        |gpu: &Gpu| [Some(gpu.name.clone()), memory(gpu), driver(gpu)].into_iter().flatten().collect::<Vec<_>>();
+    let gpus: Vec<String> = run.gpus().map(|gpu| facts(gpu).join(", ")).collect();
+    if gpus.is_empty() { "none".to_owned() } else { gpus.join("; ") }
 }
 
 fn duration(seconds: f64) -> String {

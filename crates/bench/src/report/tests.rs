@@ -76,14 +76,22 @@ fn thesis(mesh: f64) -> Results {
 }
 
 fn picture(id: &str, reference: Option<&str>, value: f32) -> Picture {
-    let png = Frame::new(16, 8, vec![[value; 3]; 128]).unwrap().to_png().unwrap();
     Picture {
         id: id.into(),
         experiment: "p".into(),
         title: id.into(),
         reference: reference.map(str::to_owned),
-        png: STANDARD.encode(png),
+        png: png(16, &[], value),
     }
+}
+
+/// A picture of one grey but for single pixels, by their places; 8 pixels high.
+fn png(width: u32, others: &[(usize, f32)], value: f32) -> String {
+    let mut color = vec![[value; 3]; 8 * width as usize];
+    for &(place, other) in others {
+        color[place] = [other; 3];
+    }
+    STANDARD.encode(Frame::new(width, 8, color).unwrap().to_png().unwrap())
 }
 
 fn report(results: Results) -> Result<Report, ReportError> {
@@ -140,6 +148,17 @@ fn the_page_is_whole_and_asks_for_nothing() {
 }
 
 #[test]
+fn print_is_light_and_has_no_sliders() {
+    let style = include_str!("report.css");
+    // What is dark or slides is for screens alone.
+    for (rule, _) in style.match_indices(".sliding .stack").chain(style.match_indices("prefers-color-scheme: dark")) {
+        let media = style[..rule + 1].rfind("@media").map(|begin| &style[begin..]);
+        assert!(media.is_some_and(|media| media.starts_with("@media screen")), "{}", &style[rule..rule + 30]);
+    }
+    assert!(style.contains(".stack { display: none; }") && style.contains("@media print"));
+}
+
+#[test]
 #[should_panic(expected = "</div>")]
 fn tags_that_cross_are_found() {
     tags("<div><p></div></p>");
@@ -167,14 +186,34 @@ fn markdown_shows_files_that_are_there() {
 fn sentences_follow_from_the_rows() {
     let sentences = |mesh| report(thesis(mesh)).unwrap().markdown();
     let lost = sentences(2.0);
+    let hard = "Garden, 1 light: against hard shadows the light mesh takes";
     assert!(
-        lost.contains("- **loses**: Garden, 1 light: the light mesh takes 2.0× (Some GPU) the time of hard shadows"),
+        lost.contains(&format!("- **loses**: {hard} 2.0× the time on Some GPU (1 picture, h = 0.1, R = 2.1).")),
         "{lost}"
     );
-    assert!(lost.contains("from 8.0 lights on the light mesh takes less time"), "{lost}");
-    assert!(lost.contains("- **loses**: Garden, h = 0.1: 0.70 light points a pixel"), "{lost}");
+    assert!(
+        lost.contains("- **depends**: Childpark, on Some GPU: from 8.0 lights on the light mesh takes less time"),
+        "{lost}"
+    );
     let won = sentences(0.5);
-    assert!(won.contains("- **wins**: Garden, 1 light: the light mesh takes 0.50× (Some GPU) the time"), "{won}");
+    assert!(won.contains(&format!("- **wins**: {hard} 0.50× the time on Some GPU")), "{won}");
+}
+
+#[test]
+fn light_points_are_told_of_pictures_that_have_many() {
+    let results = results("thesis", |rows| {
+        for (size, points) in [(512.0, 4e5), (512.0, 7e5), (1024.0, 6e5)] {
+            let keys = [("size", size.into()), ("step", 1.0.into()), ("radius", (points / 1e5).into())];
+            let mut row =
+                Row::new("t", keys.into_iter().chain([("scene", "garden".into()), ("mode", "light-mesh".into())]));
+            row.values.extend([("pixels".to_owned(), 1e6), ("light_points".to_owned(), points)]);
+            rows.push(row);
+        }
+    });
+    let text = report(results).unwrap().markdown();
+    let wanted =
+        "- **loses**: Garden: 0.70 (size 512, h = 1, R = 7) and 0.60 (size 1024, h = 1, R = 6) light points a pixel";
+    assert!(text.contains(wanted), "{text}");
 }
 
 #[test]
@@ -187,8 +226,61 @@ fn two_runs_have_ratios() {
     assert!(text.contains("In the geometric mean a 2 takes 1.2× of a."), "{text}");
     assert!(text.contains("| median, ms: a | median, ms: a 2 | times a: a 2 |"), "{text}");
     assert!(text.contains("| 2200 | 3300 | 1.5× |"), "{text}");
-    assert!(text.contains("in common, 1 are the same in every pixel and 1 differ"), "{text}");
+    assert!(text.contains("in common, 1 is the same in every pixel; 1 differs and is shown below."), "{text}");
     tags(&report.html());
+}
+
+/// Two runs, the pictures of which were `change`d.
+fn two(change: impl FnOnce(&mut [Picture], &mut [Picture])) -> Report {
+    let (mut first, mut second) = (thesis(2.0), thesis(2.0));
+    change(&mut first.pictures, &mut second.pictures);
+    Report::new(vec![("a.json".into(), first), ("b.json".into(), second)]).unwrap()
+}
+
+#[test]
+fn pictures_that_are_alike_are_shown_once() {
+    let once = two(|_, _| ());
+    let text = once.markdown();
+    // Test, reference and difference.
+    assert_eq!((text.matches("<img").count(), once.html().matches("<image ").count()), (3, 3), "{text}");
+    assert!(text.contains("in common, 2 are the same in every pixel."), "{text}");
+    assert!(text.contains("Pictures of a. Of those of b 2 are the same in every pixel."), "{text}");
+
+    // One step of 8 bits in one pixel.
+    let nearly = two(|first, second| {
+        for pictures in [&mut *first, &mut *second] {
+            pictures.iter_mut().for_each(|picture| picture.png = png(128, &[], 0.6));
+        }
+        second[1].png = png(128, &[(0, 0.604)], 0.6);
+    });
+    let text = nearly.markdown();
+    assert_eq!(text.matches("<img").count(), 3, "{text}");
+    assert!(
+        text.contains("1 differs by a mean FLIP below 0.0001 (b: p: test \"1\", 1 of 1024 pixels, mean FLIP "),
+        "{text}"
+    );
+    assert!(text.contains("Of those of b 1 is the same in every pixel, 1 is so but for traces."), "{text}");
+}
+
+#[test]
+fn pictures_of_other_sizes_are_shown_but_not_compared() {
+    let report = two(|_, pictures| pictures.iter_mut().for_each(|picture| picture.png = png(8, &[], 0.6)));
+    let text = report.markdown();
+    assert!(text.contains("in common, 2 have other sizes and cannot be compared."), "{text}");
+    assert_eq!(text.matches("<img").count(), 6, "{text}");
+}
+
+#[test]
+fn a_processor_is_no_gpu() {
+    let gpus = |gpus: Vec<Gpu>| {
+        let mut results = thesis(2.0);
+        results.machine.gpus = gpus;
+        report(results).unwrap().markdown()
+    };
+    let gpu = |memory_bytes, driver: &str| Gpu { name: "A name".into(), memory_bytes, driver: driver.into() };
+    assert!(gpus(vec![gpu(0, "")]).contains("| GPU, driver | none |"));
+    assert!(gpus(vec![]).contains("| GPU, driver | none |"));
+    assert!(gpus(vec![gpu(0, ""), gpu(1 << 30, "")]).contains("| GPU, driver | A name, 1.00\u{a0}GiB |"));
 }
 
 #[test]

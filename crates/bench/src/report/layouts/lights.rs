@@ -1,6 +1,6 @@
 //! Figure 11: time against the number of lights, and from how many on the method is faster than hard shadows.
 
-use super::whole;
+use super::{key_text, title, whole};
 use crate::report::document::{Block, Cell, Column, Table};
 use crate::report::numbers;
 use crate::report::plot::{Axis, Curve, Plot};
@@ -9,8 +9,12 @@ use crate::report::runs::{Measured, distinct};
 /// Times of both modes at one place.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Contest {
-    /// Scene, and where it was measured, for people.
+    /// Scene where there are several, and where it was measured, for people.
     pub(crate) title: String,
+    /// The scene and its settings, for people.
+    pub(crate) subject: String,
+    /// Where it was measured, for people.
+    pub(crate) place: String,
     /// The same for columns.
     name: String,
     /// Lights and seconds of the method, in order of lights.
@@ -39,9 +43,24 @@ pub(crate) fn contests(rows: &[Measured], predictions: &[Measured]) -> Vec<Conte
         let prediction = predictions.iter().find(|measured| name(measured) == wanted);
         let predicted = prediction.and_then(|measured| measured.value("predicted_lights"));
         let title = rows.first().map(|first| scene(first, ", ") + &first.place()).unwrap_or_default();
-        Contest { title, mesh: of("light-mesh"), hard: of("ray-trace"), predicted, name: wanted }
+        let method = rows.iter().find(|measured| measured.is("mode", "light-mesh")).or(rows.first());
+        let subject = method.map(|measured| subject(measured)).unwrap_or_default();
+        let place = rows.first().map(|first| first.place()).unwrap_or_default();
+        Contest { title, subject, place, mesh: of("light-mesh"), hard: of("ray-trace"), predicted, name: wanted }
     });
     contests.filter(|contest| !contest.mesh.is_empty() && !contest.hard.is_empty()).collect()
+}
+
+/// The scene and its settings, as in "Childpark, 2048 × 2048 pixels, h = 1, R = 2".
+fn subject(row: &Measured) -> String {
+    let setting = |key: &str, text: fn(&str) -> String| row.key(key).map(|key| text(&key_text(key)));
+    let parts = [
+        setting("scene", title),
+        setting("size", |side| format!("{side} × {side} pixels")),
+        setting("step", |step| format!("h = {step}")),
+        setting("radius", |radius| format!("R = {radius}")),
+    ];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 impl Contest {
@@ -73,7 +92,36 @@ impl Contest {
 pub(super) fn figure(rows: &[Measured], predictions: &[Measured]) -> Vec<Block> {
     let contests = contests(rows, predictions);
     let plots = contests.iter().enumerate().map(|(index, contest)| Block::Plot(plot(index, contest)));
-    plots.chain([Block::Table(table(&contests))]).collect()
+    plots.chain([Block::Table(table(&contests))]).chain(lines(predictions).map(Block::Table)).collect()
+}
+
+/// The straight lines through the times of each mode, where a suite fitted them: values, with their headings.
+const LINES: [(&str, &str, &str); 4] = [
+    ("method_seconds", "without lights", "light mesh, ms"),
+    ("method_seconds_per_light", "each light", "light mesh, ms"),
+    ("hard_seconds", "without lights", "hard shadows, ms"),
+    ("hard_seconds_per_light", "each light", "hard shadows, ms"),
+];
+
+/// What a picture takes without lights and what each light adds; `None` where no suite fitted lines.
+fn lines(predictions: &[Measured]) -> Option<Table> {
+    let mut columns = vec![Column::words("place", "on")];
+    columns.extend(LINES.map(|(name, title, group)| Column::numbers(name, title).below(group)));
+    columns.push(Column::numbers("crossing", "the lines cross at, lights"));
+    let caption = "The same times as straight lines: the part that does not depend on lights, and the part for each light. The cost model, \
+                   formulas (4) and (5), counts tests alone; but each light also costs the method its weighted mean at each pixel and \
+                   both modes their shading, so that the break-even by the clock tends to lie higher than the model's.";
+    let mut table = Table::new("figure 11, lines", caption, columns);
+    for row in predictions {
+        let values = LINES.map(|(name, ..)| row.value(name));
+        let [Some(method), Some(method_light), Some(hard), Some(hard_light)] = values else { continue };
+        let crossing = (method - hard) / (hard_light - method_light);
+        let mut cells: Vec<Cell> = vec![row.place().into()];
+        cells.extend(values.map(|value| Cell::number(value, numbers::milliseconds)));
+        cells.push(Cell::number((crossing > 0.0 && hard_light > method_light).then_some(crossing), lights_text));
+        table.rows.push(cells);
+    }
+    (!table.rows.is_empty()).then(|| table.without_empty_columns())
 }
 
 fn plot(index: usize, contest: &Contest) -> Plot {
@@ -136,7 +184,16 @@ mod tests {
 
     fn contest(mesh: [f64; 3], hard: [f64; 3]) -> Contest {
         let points = |seconds: [f64; 3]| [1.0, 8.0, 64.0].into_iter().zip(seconds).collect();
-        Contest { title: String::new(), name: String::new(), mesh: points(mesh), hard: points(hard), predicted: None }
+        let empty = String::new;
+        Contest {
+            title: empty(),
+            subject: empty(),
+            place: empty(),
+            name: empty(),
+            mesh: points(mesh),
+            hard: points(hard),
+            predicted: None,
+        }
     }
 
     #[test]
@@ -146,5 +203,26 @@ mod tests {
         assert_eq!(contest([1.0, 1.0, 1.0], [2.0, 2.0, 2.0]).break_even(), Some(1.0));
         // Faster for a while is not enough.
         assert_eq!(contest([3.0, 1.0, 9.0], [1.0, 2.0, 3.0]).break_even(), None);
+    }
+
+    #[test]
+    fn lines_are_shown_where_they_were_fitted() {
+        let values = [0.010, 0.001, 0.004, 0.003];
+        let results = |known: usize| {
+            crate::report::tests::results("thesis", |rows| {
+                let mut row = crate::Row::new(crate::report::layouts::BREAK_EVEN, [("device", "cuda".into())]);
+                row.values.extend(
+                    LINES.iter().zip(values).take(known).map(|((name, ..), value)| ((*name).to_owned(), value)),
+                );
+                rows.push(row);
+            })
+        };
+        let table = |known| {
+            let runs = crate::report::named(vec![("a.json".into(), results(known))]);
+            lines(&runs.rows(crate::report::layouts::BREAK_EVEN))
+        };
+        let text = crate::report::markdown::table(&table(4).unwrap());
+        assert!(text.contains("| Some GPU | 10.0 | 1.00 | 4.00 | 3.00 | 3.0 |"), "{text}");
+        assert!(table(3).is_none() && table(0).is_none());
     }
 }

@@ -2,13 +2,13 @@
 //! was worked out by the suite.
 
 use super::generic;
-use super::{key_text, whole};
+use super::{key_text, title, whole};
 use crate::report::assets::slug;
 use crate::report::document::{Block, Finding, Verdict};
-use crate::report::findings::Spread;
 use crate::report::numbers;
 use crate::report::plot::{Axis, Curve, Plot};
 use crate::report::runs::{Measured, Runs, distinct};
+use crate::report::spread::{Spread, verdict};
 
 /// Errors that are plotted, with their names.
 const ERRORS: [(&str, &str); 3] =
@@ -37,7 +37,8 @@ pub(super) fn errors(experiment: &str, rows: &[Measured]) -> Vec<Block> {
 
 /// Scene and place.
 fn subject(row: &Measured) -> String {
-    let keys = SUBJECT.iter().filter_map(|name| row.key(name)).map(key_text);
+    let text = |(name, key)| if name == "size" { format!("{0} × {0}", key_text(key)) } else { key_text(key) };
+    let keys = SUBJECT.iter().filter_map(|&name| Some((name, row.key(name)?))).map(text);
     keys.chain([row.place()]).filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
@@ -95,23 +96,49 @@ pub(crate) fn findings(runs: &Runs) -> Vec<Finding> {
 }
 
 fn equal_error(subject: &str, measure: &str, rows: &[&Measured]) -> Option<Finding> {
-    let range = Spread::of(rows.iter().filter_map(|row| Some(row.value("seconds")? / row.value("area_seconds")?)))?;
+    let range = Spread::of(rows.iter().filter_map(|row| ratio(row)))?;
     let errors = Spread::of(rows.iter().filter_map(|row| row.value("error")))?;
-    let title = ERRORS.iter().find(|(name, _)| *name == measure).map_or(measure, |(_, title)| title);
-    let with = |name| rows.iter().filter(|row| row.value(name).is_some()).count();
-    let (bounds, never, all) = (with("upper_bound"), with("not_reached"), rows.len());
+    let name = ERRORS.iter().find(|(name, _)| *name == measure).map_or(measure, |(_, title)| title);
+    let with = |name: &str| -> Vec<&&Measured> { rows.iter().filter(|row| row.value(name).is_some()).collect() };
+    let (bounds, never, all) = (with("upper_bound"), with("not_reached").len(), rows.len());
     let mut text = format!(
-        "{subject}: at equal error ({title}, {}) the light mesh takes {} the time of shadow rays for each pixel.",
+        "{}: at equal error ({name}, {}) the light mesh takes {} the time of shadow rays for each pixel, over {all} settings.",
+        title(subject),
         errors.text(|error| numbers::significant(error, 2)),
         range.text(numbers::ratio)
     );
-    if bounds > 0 {
-        text += &format!(" In {bounds} of {all} settings a single shadow ray has a smaller error already.");
+    if !bounds.is_empty() {
+        text += &format!(" In {} of them a single shadow ray has a smaller error already", bounds.len());
+        let faster =
+            bounds.iter().filter_map(|row| ratio(row)).filter(|ratio| verdict(*ratio) != Verdict::Loses).count();
+        text += &match faster {
+            0 => ".".to_owned(),
+            _ => format!("; to take no more time than that, as in {faster} of these, is no gain at equal error."),
+        };
     }
     if never > 0 {
-        text += &format!(" In {never} of {all} no number of shadow rays that was measured has so small an error.");
+        text += &format!(" In {never} of them no number of shadow rays that was measured has so small an error.");
     }
-    Some(Finding::new(if never > 0 { range.verdict().max(Verdict::Open) } else { range.verdict() }, text))
+    let verdicts = distinct(rows.iter().map(|row| outcome(row)));
+    if verdicts.len() > 1 {
+        let count = |wanted| rows.iter().filter(|row| outcome(row) == wanted).count();
+        text += &format!(" It wins in {} and loses in {}.", count(Verdict::Wins), count(Verdict::Loses));
+    }
+    Some(Finding::new(if let [one] = verdicts[..] { one } else { Verdict::Depends }, text))
+}
+
+/// The method's time over that of shadow rays with its error.
+fn ratio(row: &Measured) -> Option<f64> {
+    Some(row.value("seconds")? / row.value("area_seconds")?)
+}
+
+/// Who is ahead in one setting. Shadow rays that are better and no faster leave it open, as do those that never get there.
+fn outcome(row: &Measured) -> Verdict {
+    match ratio(row).map(verdict) {
+        Some(Verdict::Wins) if row.value("upper_bound").is_some() => Verdict::Open,
+        Some(verdict) => verdict,
+        None => Verdict::Open,
+    }
 }
 
 /// The suite's table of equal errors, the best ratio first in each scene.
@@ -166,8 +193,30 @@ mod tests {
         assert_eq!(findings[0].verdict, Verdict::Loses);
         assert_eq!(
             findings[0].text,
-            "garden: at equal error (mean FLIP, 0.10) the light mesh takes 2.0× to 3.0× the time of shadow rays for each pixel. In 1 of 2 \
-             settings a single shadow ray has a smaller error already."
+            "Garden: at equal error (mean FLIP, 0.10) the light mesh takes 2.0× to 3.0× the time of shadow rays for each pixel, over 2 \
+             settings. In 1 of them a single shadow ray has a smaller error already."
         );
+    }
+
+    #[test]
+    fn faster_than_a_better_picture_is_not_won() {
+        let results = crate::report::tests::results("quality", |rows| {
+            for (radius, seconds, bound) in [(2.1, 0.2, true), (3.1, 0.8, false)] {
+                let mut row = crate::Row::new(EQUAL_ERROR, [("scene", "garden".into()), ("radius", radius.into())]);
+                let values = [("error", 0.1), ("seconds", seconds), ("area_seconds", 0.4)];
+                row.values.extend(values.map(|(name, value)| (name.to_owned(), value)));
+                row.values.extend(bound.then(|| ("upper_bound".to_owned(), 1.0)));
+                rows.push(row);
+            }
+        });
+        let runs = crate::report::named(vec![("a.json".into(), results)]);
+        let findings = findings(&runs);
+        assert_eq!(findings[0].verdict, Verdict::Depends);
+        let text = &findings[0].text;
+        assert!(
+            text.contains("to take no more time than that, as in 1 of these, is no gain at equal error."),
+            "{text}"
+        );
+        assert!(text.ends_with("It wins in 0 and loses in 1."), "{text}");
     }
 }

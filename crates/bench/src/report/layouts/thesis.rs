@@ -11,9 +11,16 @@ const OF_A_MODE: [&str; 7] = ["mode", "step", "radius", "weight", "lookup", "sam
 /// Seconds of the thesis on its CPU and its GPU.
 const THESIS: [&str; 2] = ["thesis_cpu_seconds", "thesis_gpu_seconds"];
 
-const TIMES: &str = "Milliseconds of whole pictures by the method: minimum and median. Hard: the median with hard shadows, one shadow \
-                     ray for each pixel and light; the ratio is the method's median to that. × thesis: how many times less than the \
-                     thesis' seconds on a CPU (Core i7-950) or a GPU (Tesla C2070).";
+const TIMES: &str = "Milliseconds of whole pictures by the method. Hard: the median with hard shadows, one shadow ray for each pixel and \
+                     light; the ratio is the method's median to that. × thesis: how many times less than the thesis' seconds on a CPU \
+                     (Core i7-950) or a GPU (Tesla C2070), whichever it ran on here.";
+
+/// Said where rows of a GPU are among those of [`TIMES`].
+const GPU_TIMES: &str = "A whole picture is timed by the clock of the processor, with transfers from and to the GPU; stages are timed by the \
+                         GPU itself: the sum of their medians, transfers left out.";
+
+/// Stages that move data to a GPU and back.
+const TRANSFERS: [&str; 2] = ["upload", "download"];
 
 /// Counts by name, with their headings.
 const COUNTS: [(&str, &str); 7] = [
@@ -52,55 +59,82 @@ fn companion<'a>(row: &Measured, mode: &str, rows: &'a [Measured<'a>]) -> Option
     rows.iter().find(|other| other.is("mode", mode) && same_picture(row, other))
 }
 
-/// A line for each picture by the method: minimum and median at every place, hard shadows beside them, and the thesis' seconds.
+/// A line for each picture by the method and place: what it took, hard shadows beside it, and the thesis' seconds. A single place is
+/// told in the caption.
 fn times(rows: &[Measured]) -> Table {
     let mesh: Vec<Measured> = rows.iter().filter(|row| row.is("mode", "light-mesh")).copied().collect();
     let cases = distinct(mesh.iter().map(|row| row.case(&["mode"])));
-    let places = distinct(mesh.iter().map(|row| (row.place_name(), row.place())));
+    let places = distinct(mesh.iter().map(Measured::place));
     let keys = case_columns(&mesh);
 
     let mut columns: Vec<Column> = keys.iter().map(|key| key_column(key, &mesh)).collect();
-    for (name, title) in &places {
-        let figures =
-            [("min", "min"), ("median", "median"), ("hard", "hard"), ("ratio", "ratio"), ("faster", "× thesis")];
-        columns.extend(
-            figures.iter().map(|(figure, heading)| Column::numbers(format!("{name} {figure}"), *heading).below(title)),
-        );
+    if places.len() > 1 {
+        columns.push(Column::words("place", "on"));
     }
     columns.extend(
-        [("cpu", "CPU"), ("gpu", "GPU")]
-            .map(|(kind, title)| Column::numbers(format!("thesis {kind}"), title).below("thesis, s")),
+        [("min", "min"), ("median", "median"), ("hard", "hard"), ("ratio", "ratio")]
+            .map(|(name, title)| Column::numbers(name, title).below("whole picture, ms")),
     );
-    let mut table = Table::new("timings", TIMES, columns);
+    columns.extend(
+        [("stages", "method"), ("hard stages", "hard"), ("stages ratio", "ratio")]
+            .map(|(name, title)| Column::numbers(name, title).below("stages on the GPU, ms")),
+    );
+    columns.extend(
+        [("thesis cpu", "CPU"), ("thesis gpu", "GPU")]
+            .map(|(name, title)| Column::numbers(name, title).below("thesis, s")),
+    );
+    columns.push(Column::numbers("faster", "× thesis"));
+
+    let mut caption = TIMES.to_owned();
+    if mesh.iter().any(|row| on_gpu(row).is_some()) {
+        caption = format!("{caption} {GPU_TIMES}");
+    }
+    if let [place] = &places[..] {
+        caption = format!("{caption} Throughout: {place}.");
+    }
+    let mut table = Table::new("timings", caption, columns);
     for case in &cases {
-        let of_case = |row: &&Measured| row.case(&["mode"]) == *case;
-        let mut cells: Vec<Cell> = keys.iter().map(|key| case.text(key).into()).collect();
-        for (place, _) in &places {
-            let row = mesh.iter().filter(of_case).find(|row| row.place_name() == *place);
-            cells.extend(place_cells(row, rows));
+        for row in mesh.iter().filter(|row| row.case(&["mode"]) == *case) {
+            let mut cells: Vec<Cell> = keys.iter().map(|key| case.text(key).into()).collect();
+            if places.len() > 1 {
+                cells.push(row.place().into());
+            }
+            cells.extend(time_cells(row, rows));
+            table.rows.push(cells);
         }
-        for name in THESIS {
-            let seconds = mesh.iter().filter(of_case).find_map(|row| row.value(name));
-            cells.push(Cell::number(seconds, |seconds| numbers::significant(seconds, 3)));
-        }
-        table.rows.push(cells);
     }
     table.without_empty_columns()
 }
 
-/// Minimum, median, hard shadows, ratio, and how many times faster than the thesis on the same kind of device.
-fn place_cells(row: Option<&Measured>, rows: &[Measured]) -> [Cell; 5] {
-    let Some(row) = row else { return Default::default() };
-    let median = row.median(WHOLE);
-    let hard = companion(row, "ray-trace", rows).and_then(|row| row.median(WHOLE));
-    let thesis = row.value(THESIS[usize::from(row.is("device", "cuda"))]);
+/// Whole pictures, stages, and the thesis' seconds with how many times less it takes here on the same kind of device.
+fn time_cells(row: &Measured, rows: &[Measured]) -> [Cell; 10] {
+    let companion = companion(row, "ray-trace", rows);
+    let ratio = |ours: Option<f64>, other: Option<f64>| ours.zip(other).map(|(ours, other)| ours / other);
+    let (median, hard) = (row.median(WHOLE), companion.and_then(|row| row.median(WHOLE)));
+    let (stages, hard_stages) = (on_gpu(row), companion.and_then(on_gpu));
+    let thesis = THESIS.map(|name| row.value(name));
+    let same_kind = thesis[usize::from(row.is("device", "cuda"))];
+    let seconds = |seconds| numbers::significant(seconds, 3);
     [
         Cell::number(row.min(WHOLE), numbers::milliseconds),
         Cell::number(median, numbers::milliseconds),
         Cell::number(hard, numbers::milliseconds),
-        Cell::number(median.zip(hard).map(|(mesh, hard)| mesh / hard), numbers::ratio),
-        Cell::number(thesis.zip(median).map(|(thesis, ours)| thesis / ours), numbers::ratio),
+        Cell::number(ratio(median, hard), numbers::ratio),
+        Cell::number(stages, numbers::milliseconds),
+        Cell::number(hard_stages, numbers::milliseconds),
+        Cell::number(ratio(stages, hard_stages), numbers::ratio),
+        Cell::number(thesis[0], seconds),
+        Cell::number(thesis[1], seconds),
+        Cell::number(ratio(same_kind, median), numbers::ratio),
     ]
+}
+
+/// Seconds of a picture's stages on a GPU, transfers left out: the sum of their medians. `None` on a CPU, where stages are what the
+/// whole is made of.
+fn on_gpu(row: &Measured) -> Option<f64> {
+    let stages = row.row.seconds.iter().filter(|(name, _)| *name != WHOLE && !TRANSFERS.contains(&name.as_str()));
+    let medians: Vec<f64> = stages.filter_map(|(_, samples)| samples.median()).collect();
+    (row.is("device", "cuda") && !medians.is_empty()).then(|| medians.iter().sum())
 }
 
 /// Median milliseconds of each stage, in both modes.
@@ -146,4 +180,58 @@ fn counts(rows: &[Measured]) -> Table {
 fn case_columns(rows: &[Measured]) -> Vec<String> {
     let cases: Vec<Case> = rows.iter().map(|row| row.case(&["mode"])).collect();
     key_columns(rows).into_iter().filter(|key| cases.iter().any(|case| case.0.contains_key(key))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::tests::results;
+    use crate::{Results, Row, Samples};
+
+    /// A picture in both modes, whole and by stages.
+    fn run(device: &'static str, faster: f64) -> Results {
+        results("thesis", |rows| {
+            for (mode, seconds) in [("light-mesh", 0.004), ("ray-trace", 0.002)] {
+                let keys = [("scene", "garden".into()), ("device", device.into()), ("mode", mode.into())];
+                let mut row = Row::new("timings", keys);
+                let stages =
+                    [(WHOLE, 1.0), ("upload", 0.3), ("primary_rays", 0.25), ("short_tests", 0.25), ("download", 0.1)];
+                let samples = |share: f64| Samples(vec![share * seconds / faster]);
+                row.seconds.extend(stages.map(|(name, share)| (name.to_owned(), samples(share))));
+                row.values.extend(THESIS.map(|name| (name.to_owned(), 0.4)));
+                rows.push(row);
+            }
+        })
+    }
+
+    fn lines(runs: Vec<Results>) -> String {
+        let runs = runs.into_iter().enumerate().map(|(index, run)| (format!("{index}.json").into(), run)).collect();
+        let runs = crate::report::named(runs);
+        crate::report::markdown::table(&times(&runs.rows("timings")))
+    }
+
+    #[test]
+    fn stages_on_a_gpu_leave_transfers_out() {
+        let text = lines(vec![run("cuda", 1.0)]);
+        assert!(
+            text.contains("| garden | 4.00 | 4.00 | 2.00 | 2.0× | 2.00 | 1.00 | 2.0× | 0.400 | 0.400 | 100× |"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn stages_of_a_processor_are_no_column() {
+        let text = lines(vec![run("cpu", 1.0)]);
+        assert!(!text.contains("stages") && text.contains("| garden | 4.00 | 4.00 | 2.00 | 2.0× | 0.400 |"), "{text}");
+    }
+
+    #[test]
+    fn each_run_has_a_line_below_the_other() {
+        let text = lines(vec![run("cuda", 1.0), run("cuda", 2.0)]);
+        assert_eq!(text.lines().count(), 4, "{text}");
+        assert!(
+            text.contains("| garden | 0: Some GPU | 4.00 |") && text.contains("| garden | 1: Some GPU | 2.00 |"),
+            "{text}"
+        );
+    }
 }
