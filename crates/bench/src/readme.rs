@@ -9,7 +9,7 @@
 //! | 0.1 | 2.1 | 5.63 |
 //! ```
 //!
-//! Several files have commas between them. Without `where` all rows are taken, without `columns` all columns. Names of columns are those
+//! Several files have commas between them. A value may hold commas too, as in `place=CPU, 2 threads`. Without `where` all rows are taken, without `columns` all columns. Names of columns are those
 //! of the report; a misspelt one is refused with a list of them. Paths are relative to the document. `cargo xtask readme` writes the
 //! tables, `cargo xtask readme --check` says which are not as they should be.
 
@@ -115,9 +115,15 @@ fn parse(comment: &str) -> Option<Request> {
         let list = list.split(',').map(str::trim);
         match word {
             "where" => {
-                for condition in list {
-                    let (column, value) = condition.split_once('=')?;
-                    selection.conditions.push((column.trim().to_owned(), value.trim().to_owned()));
+                for part in list {
+                    match (part.split_once('='), selection.conditions.last_mut()) {
+                        (Some((column, value)), _) => {
+                            selection.conditions.push((column.trim().to_owned(), value.trim().to_owned()));
+                        }
+                        // What follows a comma and is no condition belongs to the value before it.
+                        (None, Some((_, value))) => *value += &format!(", {part}"),
+                        (None, None) => return None,
+                    }
                 }
             }
             "columns" => selection.columns.extend(list.map(|column| match column.split_once(" as ") {

@@ -3,7 +3,8 @@
 //! Tasks come in the order of their worth, each with an estimate of what one round of it takes. For each in turn, just before it runs:
 //!
 //! 1. the tasks after it are set aside time for one round each, with a margin;
-//! 2. it gets as many rounds of what is left as it wants, one of them to warm up, but at least one, which then counts;
+//! 2. it gets as many rounds of what is left as it wants, one of them to warm up, but at least one, which then counts; rounds that take
+//!    next to nothing, as those of a GPU beside those of a processor, it gets at any rate;
 //! 3. where not even one fits, it keeps those of its variants, from the first, that do.
 //!
 //! So repetitions go first, then rows, the least worthy ones first. Estimates come from small trials and are wrong in a like way for
@@ -15,6 +16,8 @@ use crate::measure::Rounds;
 
 /// What is set aside for later tasks is so much more than their estimate.
 const MARGIN: f64 = 1.1;
+/// A task is not grudged so small a share of what is left, whatever comes after it.
+const SMALL_SHARE: f64 = 0.02;
 /// Cheap tasks are repeated for this many seconds,
 const SPAN: f64 = 1.0;
 /// but at most this many times as often as asked for.
@@ -58,7 +61,7 @@ impl Schedule {
     pub fn decide(&self, index: usize, left: f64) -> Decision {
         let task = &self.estimates[index];
         let later: f64 = (index + 1..self.estimates.len()).map(|later| self.round(later)).sum();
-        let (round, free) = (self.round(index), left - MARGIN * later);
+        let (round, free) = (self.round(index), (left - MARGIN * later).max(SMALL_SHARE * left));
         let all = task.seconds.len();
         let affordable = if round > 0.0 { free / round } else { f64::INFINITY };
         // Beside the warm-up.
@@ -141,6 +144,15 @@ mod tests {
         assert_eq!(schedule.decide(0, 5.0), decision(2, false, 1));
         assert_eq!(schedule.decide(0, 3.0), decision(1, false, 1));
         assert_eq!(schedule.decide(1, 4.0), decision(0, false, 1));
+    }
+
+    #[test]
+    fn cheap_tasks_are_repeated_though_dear_ones_follow() {
+        let schedule = Schedule::new(vec![task("a", &[0.1]), task("a", &[0.3]), task("b", &[500.0])]);
+        assert_eq!(schedule.decide(0, 100.0), decision(1, true, 10));
+        // Two seconds are a small share, and make six rounds.
+        assert_eq!(schedule.decide(1, 100.0), decision(1, true, 5));
+        assert_eq!(schedule.decide(1, 50.0), decision(1, true, 2));
     }
 
     #[test]

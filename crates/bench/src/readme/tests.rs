@@ -7,7 +7,7 @@ const COMMENT: &str = "<!-- from runs/a.json: any; where scene=garden; columns s
 fn root() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let mut rows = Vec::new();
-    for (scene, step, seconds) in [("garden", 0.1, 0.0056), ("garden", 0.05, 0.0078), ("gazebo", 2.0, 0.002)] {
+    for (scene, step, seconds) in [("garden", 0.1, 0.0056), ("garden", 0.05, 0.0078), ("gazebo, small", 2.0, 0.002)] {
         let mut row = Row::new("any", [("scene", scene.into()), ("step", step.into())]);
         row.seconds.insert("render".to_owned(), Samples(vec![seconds]));
         rows.push(row);
@@ -55,6 +55,14 @@ fn a_doctored_table_is_found_and_corrected() {
 }
 
 #[test]
+fn values_may_hold_commas() {
+    let root = root();
+    let text = format!("{}\n", COMMENT.replace("scene=garden", "scene=gazebo, small, step=2"));
+    let expected = format!("{text}| step | ms |\n|--:|--:|\n| 2 | 2.00 |\n");
+    assert_eq!(tables(&text, root.path()).unwrap().text, expected);
+}
+
+#[test]
 fn other_tables_and_examples_are_left_alone() {
     let root = root();
     let text = format!("| a |\n|---|\n| 1 |\n\n```text\n{COMMENT}\n```\nno end of line");
@@ -68,6 +76,7 @@ fn what_cannot_be_followed_is_refused_with_its_line() {
         let text = format!("\n{}\n", COMMENT.replace(from, to));
         tables(&text, root.path()).unwrap_err().to_string()
     };
+    assert!(refused("scene=", "scene ").contains("is not of the form"));
     assert!(refused("where ", "for ").starts_with("line 2: `<!-- from runs/a.json"));
     assert!(refused("a.json", "b.json").contains("b.json"));
     let unknown = refused("any;", "none;");

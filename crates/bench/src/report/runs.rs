@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::{Gpu, Key, Results, Row};
+use crate::{Key, Results, Row};
 
 /// Keys that say where a row was measured, not what.
 const PLACES: [&str; 2] = ["device", "threads"];
@@ -18,13 +18,6 @@ pub(crate) struct Run {
 /// All files of a report.
 #[derive(Clone, Debug)]
 pub(crate) struct Runs(pub(crate) Vec<Run>);
-
-impl Run {
-    /// GPUs that were used. Files of earlier versions list a processor among them, of which neither memory nor driver is known.
-    pub(crate) fn gpus(&self) -> impl Iterator<Item = &Gpu> {
-        self.results.machine.gpus.iter().filter(|gpu| gpu.memory_bytes > 0 || !gpu.driver.is_empty())
-    }
-}
 
 /// A row and where it comes from.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +76,7 @@ impl<'a> Measured<'a> {
         let device = match self.key("device") {
             Some(Key::Word(word)) if word == "cpu" => "CPU".to_owned(),
             Some(Key::Word(word)) if word == "cuda" => {
-                self.run.gpus().next().map_or_else(|| "GPU".to_owned(), |gpu| gpu.name.clone())
+                self.run.results.machine.gpus.first().map_or_else(|| "GPU".to_owned(), |gpu| gpu.name.clone())
             }
             Some(key) => key.to_string(),
             None => String::new(),

@@ -27,7 +27,7 @@ pub(crate) fn section(runs: &Runs) -> Section {
         ("Processor", |run| format!("{}, {} threads", run.results.machine.cpu, run.results.machine.threads)),
         ("Memory", |run| numbers::bytes(run.results.machine.memory_bytes as f64)),
         ("System", |run| run.results.machine.os.clone()),
-        ("GPU, driver", gpus),
+        ("GPU, driver", |run| gpus(&run.results.machine.gpus)),
         ("Program", |run| format!("{} {}", run.results.program.name, run.results.program.version)),
         ("Commit", |run| run.results.program.commit.clone().unwrap_or_else(|| "unknown".to_owned())),
         ("Command", |run| run.results.program.command.clone()),
@@ -76,13 +76,11 @@ fn shortened(note: &str) -> String {
     }
 }
 
-fn gpus(run: &Run) -> String {
-    let memory = |gpu: &Gpu| (gpu.memory_bytes > 0).then(|| numbers::bytes(gpu.memory_bytes as f64));
-    let driver = |gpu: &Gpu| (!gpu.driver.is_empty()).then(|| gpu.driver.clone());
-    let facts =
-        |gpu: &Gpu| [Some(gpu.name.clone()), memory(gpu), driver(gpu)].into_iter().flatten().collect::<Vec<_>>();
-    let gpus: Vec<String> = run.gpus().map(|gpu| facts(gpu).join(", ")).collect();
-    if gpus.is_empty() { "none".to_owned() } else { gpus.join("; ") }
+fn gpus(gpus: &[Gpu]) -> String {
+    let memory = |gpu: &Gpu| numbers::bytes(gpu.memory_bytes as f64);
+    let facts: Vec<String> =
+        gpus.iter().map(|gpu| [gpu.name.clone(), memory(gpu), gpu.driver.clone()].join(", ")).collect();
+    if facts.is_empty() { "none".to_owned() } else { facts.join("; ") }
 }
 
 fn duration(seconds: f64) -> String {

@@ -271,16 +271,15 @@ fn pictures_of_other_sizes_are_shown_but_not_compared() {
 }
 
 #[test]
-fn a_processor_is_no_gpu() {
+fn gpus_are_named_with_memory_and_driver() {
     let gpus = |gpus: Vec<Gpu>| {
         let mut results = thesis(2.0);
         results.machine.gpus = gpus;
         report(results).unwrap().markdown()
     };
-    let gpu = |memory_bytes, driver: &str| Gpu { name: "A name".into(), memory_bytes, driver: driver.into() };
-    assert!(gpus(vec![gpu(0, "")]).contains("| GPU, driver | none |"));
+    let gpu = Gpu { name: "A name".into(), memory_bytes: 1 << 30, driver: "CUDA 13.0".into() };
+    assert!(gpus(vec![gpu]).contains("| GPU, driver | A name, 1.00\u{a0}GiB, CUDA 13.0 |"));
     assert!(gpus(vec![]).contains("| GPU, driver | none |"));
-    assert!(gpus(vec![gpu(0, ""), gpu(1 << 30, "")]).contains("| GPU, driver | A name, 1.00\u{a0}GiB |"));
 }
 
 #[test]

@@ -16,8 +16,10 @@ use crate::view::View;
 const PIXELS_PER_STEP: f32 = 4.0;
 /// Most light points per pixel.
 const POINTS_PER_PIXEL: f64 = 0.25;
+/// How much a step grows that leaves too many.
+const GROWTH: f32 = 1.05;
 /// Pixels that are looked at, along the longer side of a picture.
-const PROBES: u32 = 256;
+const PROBES: u32 = 128;
 
 /// A pixel that was looked at.
 struct Probe {
@@ -39,11 +41,21 @@ pub(crate) fn auto_step(scene: &PreparedScene, view: &View, radius: f32) -> f32 
     }
     let middle = probes.len() / 2;
     let (_, median, _) = probes.select_nth_unstable_by(middle, |a, b| a.spacing.total_cmp(&b.spacing));
-    let mut step = (PIXELS_PER_STEP * median.spacing).max(least);
-    while points_per_pixel(&probes, f64::from(step), f64::from(radius)) >= POINTS_PER_PIXEL {
-        step *= 1.05;
+    let least = (PIXELS_PER_STEP * median.spacing).max(least);
+    rounded(raised(least, |step| points_per_pixel(&probes, f64::from(step), f64::from(radius)) >= POINTS_PER_PIXEL))
+}
+
+/// The first of `step`, 1.05·`step`, 1.05²·`step`, … that is not too fine. All before it are, so it is found by halving.
+fn raised(step: f32, is_too_fine: impl Fn(f32) -> bool) -> f32 {
+    let mut steps = vec![step];
+    while is_too_fine(steps[steps.len() - 1]) {
+        let more = steps.len();
+        for _ in 0..more {
+            steps.push(steps[steps.len() - 1] * GROWTH);
+        }
     }
-    rounded(step)
+    // The last one is not too fine.
+    steps[steps.partition_point(|&step| is_too_fine(step))]
 }
 
 /// Light points to expect per pixel that sees something.
@@ -106,6 +118,17 @@ mod tests {
         for (step, expected) in [(0.1234, 0.13), (1.0, 1.0), (9.91, 10.0), (432.0, 440.0), (1.5e-6, 1.5e-6)] {
             let result = rounded(step);
             assert!((result / expected - 1.0).abs() < 1e-6 && result >= step * 0.999_999, "{step} became {result}");
+        }
+    }
+
+    #[test]
+    fn a_step_is_raised_until_it_is_not_too_fine() {
+        for enough in [0.5, 1.0, 1.04, 1.2, 7.0, 1e6] {
+            let mut expected = 1.0_f32;
+            while expected < enough {
+                expected *= GROWTH;
+            }
+            assert_eq!(raised(1.0, |step| step < enough).to_bits(), expected.to_bits(), "{enough}");
         }
     }
 

@@ -2,7 +2,7 @@
 //! was worked out by the suite.
 
 use super::generic;
-use super::{key_text, title, whole};
+use super::{WHOLE, key_text, title, whole};
 use crate::report::assets::slug;
 use crate::report::document::{Block, Finding, Verdict};
 use crate::report::numbers;
@@ -13,6 +13,17 @@ use crate::report::spread::{Spread, verdict};
 /// Errors that are plotted, with their names.
 const ERRORS: [(&str, &str); 3] =
     [("visibility_rmse", "RMSE of visibility"), ("mean_flip", "mean FLIP"), ("rmse", "RMSE of the picture")];
+/// What is told of a row beside its time, where it has it.
+const COLUMNS: [(&str, &str); 8] = [
+    ("visibility_rmse", "RMSE of visibility"),
+    ("mean_flip", "mean FLIP"),
+    ("rmse", "RMSE of the picture"),
+    ("reference_rmse", "RMSE of the reference"),
+    ("shadow_rays", "shadow rays"),
+    ("long_tests", "long tests"),
+    ("short_tests", "short tests"),
+    ("light_points_per_pixel", "S_total a pixel"),
+];
 /// What a method is called by, the first that is there.
 const METHOD: [&str; 2] = ["program", "mode"];
 /// What the suite found of the cost of equal errors.
@@ -25,14 +36,14 @@ pub(super) fn fits(rows: &[Measured]) -> bool {
     rows.iter().any(|row| whole(row).is_some() && ERRORS.iter().any(|(error, _)| row.value(error).is_some()))
 }
 
-/// Plots of each error, then all rows.
+/// Plots of each error, then all rows with what matters of them.
 pub(super) fn errors(experiment: &str, rows: &[Measured]) -> Vec<Block> {
     let subjects = distinct(rows.iter().map(subject));
     let plots = subjects.iter().flat_map(|wanted| {
         let rows: Vec<Measured> = rows.iter().filter(|row| subject(row) == *wanted).copied().collect();
         ERRORS.iter().filter_map(move |error| plot(experiment, *error, wanted, &rows).map(Block::Plot))
     });
-    plots.chain(generic::blocks(experiment, rows)).collect()
+    plots.chain([generic::chosen(experiment, "", rows, &[(WHOLE, "whole")], &COLUMNS)]).collect()
 }
 
 /// Scene and place.
