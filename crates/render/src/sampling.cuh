@@ -31,49 +31,51 @@ DEVICE Pattern pattern_of(unsigned long long seed, unsigned long long key, unsig
     return Pattern{{(unsigned)mix(base), (unsigned)mix(base + 1), (unsigned)mix(base + 2), (unsigned)mix(base + 3)}};
 }
 
-// Owen scrambling of a number whose most significant bit is the first binary digit.
-DEVICE unsigned scramble(unsigned value, unsigned seed) {
-    unsigned x = __brev(value);
-    x += seed;
+// Here the first binary digit after the point is the least significant bit.
+
+// Owen scrambling of binary digits.
+DEVICE unsigned scramble(unsigned digits, unsigned seed) {
+    unsigned x = digits + seed;
     x ^= x * 0x6c50b47cu;
     x ^= x * 0xb82f1e52u;
     x ^= x * 0xc7afe638u;
     x ^= x * 0x8d22f6e6u;
-    return __brev(x);
+    return x;
 }
 
-// Second dimension of Sobol's sequence. The loops of both run over all bits, so that their numbers are known to the compiler.
+// Second dimension of Sobol's sequence: the polynomial of the index at 1 + x.
 DEVICE unsigned sobol_1(unsigned index) {
-    unsigned direction = 1u << 31, result = 0;
-    UNROLL
-    for (int bit = 0; bit < 32; ++bit) {
-        result ^= index >> bit & 1 ? direction : 0;
-        direction ^= direction >> 1;
-    }
-    return result;
+    unsigned digits = index;
+    digits ^= digits >> 16;
+    digits ^= (digits & 0xff00ff00u) >> 8;
+    digits ^= (digits & 0xf0f0f0f0u) >> 4;
+    digits ^= (digits & 0xccccccccu) >> 2;
+    digits ^= (digits & 0xaaaaaaaau) >> 1;
+    return digits;
 }
 
-// Third dimension of Sobol's sequence.
+// Third dimension of Sobol's sequence. The loop runs over all bits, so that its numbers are known to the compiler; lanes would have
+// to wait for a table.
 DEVICE unsigned sobol_2(unsigned index) {
-    unsigned direction = 1u << 31, next = 3u << 30, result = 0;
+    unsigned direction = 1, next = 3, result = 0;
     UNROLL
     for (int bit = 0; bit < 32; ++bit) {
         result ^= index >> bit & 1 ? direction : 0;
-        const unsigned after = next ^ direction ^ (direction >> 2);
+        const unsigned after = next ^ direction ^ (direction << 2);
         direction = next;
         next = after;
     }
     return result;
 }
 
-DEVICE float unit_interval(unsigned bits, unsigned seed) {
-    return (float)(scramble(bits, seed) >> 8) * (1.0f / 16777216.0f);
+DEVICE float unit_interval(unsigned digits, unsigned seed) {
+    return (float)(__brev(scramble(digits, seed)) >> 8) * (1.0f / 16777216.0f);
 }
 
 // Point `index` of the sequence, each component in [0, 1).
 DEVICE Vec3 pattern_point(const Pattern &pattern, unsigned index) {
-    index = scramble(index, pattern.seeds[0]);
-    return Vec3{unit_interval(__brev(index), pattern.seeds[1]), unit_interval(sobol_1(index), pattern.seeds[2]),
+    index = __brev(scramble(__brev(index), pattern.seeds[0]));
+    return Vec3{unit_interval(index, pattern.seeds[1]), unit_interval(sobol_1(index), pattern.seeds[2]),
                 unit_interval(sobol_2(index), pattern.seeds[3])};
 }
 

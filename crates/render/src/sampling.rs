@@ -25,13 +25,9 @@ impl Pattern {
     /// Point `index` of the sequence, each component in [0, 1).
     #[inline(always)]
     pub fn point(&self, index: u32) -> Vec3 {
-        let index = scramble(index, self.seeds[0]);
-        let axis = |bits: u32, seed: u32| (scramble(bits, seed) >> 8) as f32 * (1.0 / 16_777_216.0);
-        Vec3::new(
-            axis(index.reverse_bits(), self.seeds[1]),
-            axis(sobol_1(index), self.seeds[2]),
-            axis(sobol_2(index), self.seeds[3]),
-        )
+        let index = scramble(index.reverse_bits(), self.seeds[0]).reverse_bits();
+        let axis = |digits: u32, seed: u32| (scramble(digits, seed).reverse_bits() >> 8) as f32 * (1.0 / 16_777_216.0);
+        Vec3::new(axis(index, self.seeds[1]), axis(sobol_1(index), self.seeds[2]), axis(sobol_2(index), self.seeds[3]))
     }
 }
 
@@ -44,48 +40,61 @@ fn mix(value: u64) -> u64 {
     value ^ (value >> 31)
 }
 
-/// Owen scrambling of a number whose most significant bit is the first binary digit (Laine and Karras 2011, constants of
-/// Burley's paper).
+// Here the first binary digit after the point is the least significant bit. So the first dimension of Sobol's sequence, van der
+// Corput's, is the index itself.
+
+/// Owen scrambling of binary digits (Laine and Karras 2011, constants of Burley's paper).
 #[inline(always)]
-fn scramble(value: u32, seed: u32) -> u32 {
-    let mut x = value.reverse_bits();
-    x = x.wrapping_add(seed);
+fn scramble(digits: u32, seed: u32) -> u32 {
+    let mut x = digits.wrapping_add(seed);
     x ^= x.wrapping_mul(0x6c50_b47c);
     x ^= x.wrapping_mul(0xb82f_1e52);
     x ^= x.wrapping_mul(0xc7af_e638);
     x ^= x.wrapping_mul(0x8d22_f6e6);
-    x.reverse_bits()
+    x
 }
 
-/// Second dimension of Sobol's sequence.
+/// Second dimension of Sobol's sequence: a bit j of the index adds the polynomial (1 + x)^j over GF(2), whose coefficients are the
+/// digits. That is the polynomial of the index at 1 + x, and (1 + x)^k = 1 + x^k where k is a power of two.
 #[inline(always)]
-fn sobol_1(mut index: u32) -> u32 {
-    let mut direction = 1u32 << 31;
-    let mut result = 0;
-    while index != 0 {
-        if index & 1 != 0 {
-            result ^= direction;
-        }
-        direction ^= direction >> 1;
-        index >>= 1;
-    }
-    result
+fn sobol_1(index: u32) -> u32 {
+    let mut digits = index;
+    digits ^= digits >> 16;
+    digits ^= (digits & 0xff00_ff00) >> 8;
+    digits ^= (digits & 0xf0f0_f0f0) >> 4;
+    digits ^= (digits & 0xcccc_cccc) >> 2;
+    digits ^= (digits & 0xaaaa_aaaa) >> 1;
+    digits
 }
 
-/// Third dimension of Sobol's sequence: primitive polynomial x² + x + 1 with initial numbers 1, 3.
+/// Third dimension of Sobol's sequence: the digits that each byte of the index adds.
 #[inline(always)]
-fn sobol_2(mut index: u32) -> u32 {
-    let (mut direction, mut next) = (1u32 << 31, 3u32 << 30);
-    let mut result = 0;
-    while index != 0 {
-        if index & 1 != 0 {
-            result ^= direction;
+fn sobol_2(index: u32) -> u32 {
+    let [a, b, c, d] = index.to_le_bytes().map(usize::from);
+    SOBOL_2[0][a] ^ SOBOL_2[1][b] ^ SOBOL_2[2][c] ^ SOBOL_2[3][d]
+}
+
+static SOBOL_2: [[u32; 256]; 4] = sobol_2_by_bytes();
+
+/// From the primitive polynomial x² + x + 1 with initial numbers 1, 3.
+const fn sobol_2_by_bytes() -> [[u32; 256]; 4] {
+    let mut table = [[0; 256]; 4];
+    let (mut direction, mut next) = (1u32, 3u32);
+    let mut bit = 0;
+    while bit < 32 {
+        let (byte, place) = (bit / 8, 1 << (bit % 8));
+        let mut value = 0;
+        while value < 256 {
+            if value & place != 0 {
+                table[byte][value] ^= direction;
+            }
+            value += 1;
         }
-        // v_i = v_(i−1) ⊕ v_(i−2) ⊕ (v_(i−2) >> 2)
-        (direction, next) = (next, next ^ direction ^ (direction >> 2));
-        index >>= 1;
+        // v_i = v_(i−1) ⊕ v_(i−2) ⊕ (v_(i−2) two digits further)
+        (direction, next) = (next, next ^ direction ^ (direction << 2));
+        bit += 1;
     }
-    result
+    table
 }
 
 /// The point of `light` that the numbers `u` in [0, 1)³ stand for; a directional light lies `reach` away from `from`.
@@ -156,6 +165,23 @@ mod tests {
                 .map(|u| ((u.x * nx as f32) as u32, (u.y * ny as f32) as u32))
                 .collect();
             assert_eq!(cells.len(), 16, "{nx} by {ny}");
+        }
+    }
+
+    #[test]
+    fn dimensions_are_sobols() {
+        // Direction numbers as Sobol defines them, the first digit most significant.
+        let (mut first, mut second, mut next) = (1u32 << 31, 1u32 << 31, 3u32 << 30);
+        for bit in 0..32 {
+            assert_eq!(sobol_1(1 << bit).reverse_bits(), first, "bit {bit}");
+            assert_eq!(sobol_2(1 << bit).reverse_bits(), second, "bit {bit}");
+            first ^= first >> 1;
+            (second, next) = (next, next ^ second ^ (second >> 2));
+        }
+        for index in [0, 5, 0xdead_beef, u32::MAX] {
+            let bits = || (0..32).map(|bit| index & 1 << bit);
+            assert_eq!(sobol_1(index), bits().fold(0, |sum, bit| sum ^ sobol_1(bit)), "{index}");
+            assert_eq!(sobol_2(index), bits().fold(0, |sum, bit| sum ^ sobol_2(bit)), "{index}");
         }
     }
 

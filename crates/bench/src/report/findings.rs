@@ -41,18 +41,20 @@ fn break_even(contest: &Contest) -> Finding {
         |lights| format!("the cost model says {}", lights_text(lights)),
     );
     let most = contest.most().map(numbers::setting).unwrap_or_default();
+    let at_most = contest.ratio_at_most().map(numbers::ratio).unwrap_or_default();
     match contest.break_even() {
         Some(lights) => Finding::new(
             Verdict::Depends,
             format!(
-                "{place}: from {} lights on the light mesh takes less time than hard shadows ({predicted}); with fewer it loses.",
+                "{place}: from {} lights on the light mesh takes less time than hard shadows ({predicted}), {at_most} with {most}; \
+                 with fewer it loses.",
                 lights_text(lights)
             ),
         ),
         None => Finding::new(
             Verdict::Loses,
             format!(
-                "{place}: with up to {most} lights the light mesh takes more time than hard shadows ({predicted})."
+                "{place}: with up to {most} lights the light mesh takes more time than hard shadows ({predicted}), {at_most} with {most}."
             ),
         ),
     }

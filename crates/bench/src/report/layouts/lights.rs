@@ -86,6 +86,11 @@ impl Contest {
     pub(crate) fn most(&self) -> Option<f64> {
         self.both().last().map(|point| point.0)
     }
+
+    /// The method's time over that of hard shadows with so many lights.
+    pub(crate) fn ratio_at_most(&self) -> Option<f64> {
+        self.both().last().map(|(_, mesh, hard)| mesh / hard)
+    }
 }
 
 /// A plot for each place, and a table of all.

@@ -15,8 +15,8 @@ use crate::surface::{SurfacePoint, long_segment};
 
 /// Object points that one task takes.
 const BATCH: usize = 1024;
-/// Most segments that are handed over at once.
-const SEGMENTS: usize = 16 * 1024;
+/// Most segments that are handed over at once: they stay in a core's cache.
+const SEGMENTS: usize = 4 * 1024;
 
 /// One ray from each object point to the middle of each light.
 pub(crate) fn shadow_rays(job: &Job, scene: &PreparedScene, list: &RayList, hits: &[Hit]) -> Visibility {
@@ -65,8 +65,12 @@ pub(crate) fn area_shadows(job: &Job, scene: &PreparedScene, list: &RayList, hit
         if job.observer.cancelled() {
             return;
         }
+        let (mut segments, mut owners) = (Vec::with_capacity(SEGMENTS), Vec::with_capacity(SEGMENTS));
         for light in 0..lights {
-            AreaLight::new(job, scene, list, hits, light).gather(index * batch, direct, share);
+            segments.clear();
+            owners.clear();
+            let light = AreaLight::new(job, scene, list, hits, light);
+            light.gather(index * batch, direct, share, &mut segments, &mut owners);
         }
         job.observer.advance(direct.len() as u64);
     });
@@ -97,12 +101,18 @@ impl<'a> AreaLight<'a> {
         AreaLight { job, scene, list, hits, index, light, samples: sample_count(job, light) }
     }
 
-    /// Adds this light to the object points from `first` on. `share` is interleaved by light.
-    fn gather(&self, first: usize, direct: &mut [Vec3], share: &mut [f32]) {
+    /// Adds this light to the object points from `first` on. `share` is interleaved by light. `segments` and `owners` are empty, and
+    /// room for the rays, and for the object point and the target of each.
+    fn gather(
+        &self,
+        first: usize,
+        direct: &mut [Vec3],
+        share: &mut [f32],
+        segments: &mut Vec<Ray>,
+        owners: &mut Vec<(usize, Vec3)>,
+    ) {
         let lights = self.scene.scene.lights.len();
         let weight = 1.0 / self.samples as f32;
-        let mut segments = Vec::new();
-        let mut owners = Vec::new();
         for ray in (0..direct.len()).filter(|ray| self.hits[first + ray].is_some()) {
             let point = object_point(self.scene, self.list, self.hits, first + ray);
             for target in self.targets(first + ray, &point) {
@@ -113,7 +123,7 @@ impl<'a> AreaLight<'a> {
                 }
             }
         }
-        let occluded = trace(self.job, self.scene, &segments);
+        let occluded = trace(self.job, self.scene, segments);
         let mut surface: Option<(usize, Surface)> = None;
         for (&(ray, target), _) in owners.iter().zip(occluded).filter(|(_, occluded)| !occluded) {
             share[ray * lights + self.index] += 1.0;
