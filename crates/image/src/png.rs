@@ -1,5 +1,6 @@
 //! PNG: 8 bits a channel, marked with the transfer function that was used.
 
+use std::collections::HashMap;
 use std::io::{self, Cursor, Write};
 
 use png::{BitDepth, ColorType, Decoder, Encoder, EncodingError, ScaledFloat, SrgbRenderingIntent, Transformations};
@@ -30,6 +31,35 @@ pub(crate) fn write(frame: &Frame, transfer: Transfer, output: impl Write) -> Re
     rows.finish().map_err(io_error)?;
     writer.finish().map_err(io_error)?;
     Ok(())
+}
+
+/// Writes `frame` with the sRGB curve and a palette; `false`, and nothing is written, where it has more than 256 colours.
+pub(crate) fn write_indexed(frame: &Frame, output: impl Write) -> Result<bool, EncodeError> {
+    check_fits(Format::Png, frame)?;
+    let mut places = HashMap::new();
+    let (mut palette, mut indices, mut bytes) = (Vec::new(), Vec::with_capacity(frame.color().len()), Vec::new());
+    for row in frame.rows() {
+        bytes.clear();
+        Transfer::Srgb.encode_into(row, &mut bytes);
+        for color in bytes.chunks_exact(3) {
+            let next = places.len();
+            let place = *places.entry([color[0], color[1], color[2]]).or_insert(next);
+            let Ok(index) = u8::try_from(place) else { return Ok(false) };
+            if place == next {
+                palette.extend_from_slice(color);
+            }
+            indices.push(index);
+        }
+    }
+    let mut encoder = Encoder::new(output, frame.width(), frame.height());
+    encoder.set_color(ColorType::Indexed);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_palette(palette);
+    encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+    let mut writer = encoder.write_header().map_err(io_error)?;
+    writer.write_image_data(&indices).map_err(io_error)?;
+    writer.finish().map_err(io_error)?;
+    Ok(true)
 }
 
 fn io_error(error: EncodingError) -> io::Error {
@@ -102,6 +132,20 @@ mod tests {
             assert!(bytes.windows(chunk.len()).any(|window| window == chunk), "{transfer:?}");
             let expected = transfer.decode(transfer.encode(0.2));
             assert_eq!(read(&bytes).unwrap().color(), [[expected; 3]], "{transfer:?}");
+        }
+    }
+
+    #[test]
+    fn a_palette_holds_256_colours_and_no_more() {
+        for (colors, is_indexed) in [(256, true), (257, false)] {
+            // Each colour twice.
+            let code = |index: usize| (index % colors % 256) as u8;
+            let color = |index| [code(index), 7, (index % colors / 256) as u8].map(|code| Transfer::Srgb.decode(code));
+            let frame = Frame::new(2, colors as u32, (0..2 * colors).map(color).collect()).unwrap();
+            let mut bytes = Vec::new();
+            assert_eq!(write_indexed(&frame, &mut bytes).unwrap(), is_indexed);
+            assert_eq!(bytes.is_empty(), !is_indexed);
+            assert_eq!(read(&frame.to_small_png().unwrap()).unwrap().color(), frame.color(), "{colors}");
         }
     }
 

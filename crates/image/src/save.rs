@@ -115,6 +115,15 @@ impl Frame {
         Ok(bytes)
     }
 
+    /// The same in as few bytes as there can be: with a palette where 256 colours are enough, as in difference pictures.
+    ///
+    /// # Errors
+    /// As [`Frame::to_png`].
+    pub fn to_small_png(&self) -> Result<Vec<u8>, EncodeError> {
+        let mut bytes = Vec::new();
+        if png::write_indexed(self, &mut bytes)? { Ok(bytes) } else { self.to_png() }
+    }
+
     /// Saves colours and layers as one multilayer exr of 32-bit floats with the channels `R G B` (linear), `Z` (distance
     /// along the ray), `N.X N.Y N.Z`, `P.X P.Y P.Z`, `V.0 V.1 …` (one a light) and `M` (light points used).
     ///

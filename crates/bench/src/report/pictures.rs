@@ -183,7 +183,7 @@ impl Gallery {
         let (test, other) = (get(test)?, get(reference)?);
         let comparison = compare(&other.frame, &test.frame)
             .map_err(|reason| PictureError::Compare { reference: reference.1.to_owned(), reason })?;
-        let png = comparison.difference.to_png()?;
+        let png = comparison.difference.to_small_png()?;
         let name = format!("{} difference", test.shot.file.trim_start_matches("pictures/").trim_end_matches(".png"));
         let title = "Difference (FLIP): black is equal, yellow as different as can be".to_owned();
         Ok(Block::Pair(Box::new(Pair {
