@@ -8,22 +8,23 @@ use crate::report::runs::Measured;
 /// The figure that bars stand for: a million rays a second.
 const RATE: &str = "million_per_second";
 
-/// Bars are to the fastest of all.
+/// Bars are to the fastest at the same place.
 pub(super) fn rates(rows: &[Measured]) -> Vec<Block> {
     let rate = |row: &Measured| row.value(RATE);
-    let Some(most) = rows.iter().filter_map(rate).max_by(f64::total_cmp) else {
+    if !rows.iter().any(|row| rate(row).is_some()) {
         return generic::blocks("rays", rows);
-    };
+    }
+    let most = |place: &str| rows.iter().filter(|row| row.place() == place).filter_map(rate).max_by(f64::total_cmp);
     let keys: Vec<String> =
         key_columns(rows).into_iter().filter(|key| !matches!(key.as_str(), "device" | "threads")).collect();
     let mut columns = vec![Column::words("place", "on")];
     columns.extend(keys.iter().map(|key| key_column(key, rows)));
     columns.push(Column::numbers("rate", "million rays a second"));
-    let mut table = Table::new("rays", "Bars are to the highest rate of all.", columns);
+    let mut table = Table::new("rays", "Bars are to the highest rate at the same place.", columns);
     for row in rows {
         let mut cells: Vec<Cell> = vec![row.place().into()];
         cells.extend(keys.iter().map(|key| Cell::from(row.text(key))));
-        let bar = rate(row).map(|rate| rate / most);
+        let bar = rate(row).zip(most(&row.place())).map(|(rate, most)| rate / most);
         cells.push(Cell { bar, ..Cell::number(rate(row), |rate| numbers::significant(rate, 3)) });
         table.rows.push(cells);
     }
