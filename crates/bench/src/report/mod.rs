@@ -39,6 +39,7 @@ pub use error::{PictureError, ReportError};
 use pictures::Gallery;
 use runs::{Run, Runs};
 pub use select::{Selection, TableError};
+pub use write::prepare_folder;
 
 use crate::Results;
 

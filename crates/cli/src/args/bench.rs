@@ -39,12 +39,16 @@ pub(crate) struct SuiteArgs {
     pub(crate) suite: Option<Suite>,
 
     /// List the suites
-    #[arg(long, conflicts_with_all = ["suite", "json", "short", "budget", "device", "threads", "scenes"])]
+    #[arg(long, conflicts_with_all = ["suite", "json", "report", "short", "budget", "device", "threads", "scenes"])]
     pub(crate) list: bool,
 
     /// Keep rows, pictures and notes as JSON [default: off]
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
+
+    /// A report on the results: report.md with its plots and pictures, and report.html, which needs nothing else [default: off]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
 
     /// The short form: fewer rows and smaller pictures
     #[arg(long = "quick", id = "short")]

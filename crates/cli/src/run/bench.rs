@@ -1,5 +1,8 @@
 //! `lightmesh bench`.
 
+use std::path::PathBuf;
+
+use lightmesh_bench::report::{Report, prepare_folder};
 use lightmesh_bench::{Plan, Results, Suite};
 
 use crate::args::{BenchArgs, BenchCommand, SuiteArgs};
@@ -24,6 +27,9 @@ fn measure(suite: Suite, args: &SuiteArgs) -> Result<(), Failure> {
     if let Some(path) = &args.json {
         output::check_writable(path)?;
     }
+    if let Some(folder) = &args.report {
+        prepare_folder(folder)?;
+    }
     let watcher = Watcher::new(args.progress, args.quiet);
     interrupt::watch();
     let results = lightmesh_bench::run(suite, &plan(args), &watcher)?;
@@ -31,7 +37,13 @@ fn measure(suite: Suite, args: &SuiteArgs) -> Result<(), Failure> {
         output::write(path, json(&results).as_bytes())?;
     }
     output::print(&results.to_string())?;
-    watcher.summary(&summary(&results, args));
+    let summary = summary(&results, args);
+    if let Some(folder) = &args.report {
+        // Called as the report of the file would be.
+        let name = args.json.clone().unwrap_or_else(|| PathBuf::from(suite.name()));
+        Report::new(vec![(name, results)])?.write(folder)?;
+    }
+    watcher.summary(&summary);
     Ok(())
 }
 
@@ -54,9 +66,10 @@ fn command_line(words: impl Iterator<Item = String>) -> String {
 }
 
 fn summary(results: &Results, args: &SuiteArgs) -> String {
-    let file = args.json.as_ref().map_or_else(String::new, |path| format!(", {}", path.display()));
+    let page = args.report.as_ref().map(|folder| folder.join("report.html"));
+    let files: String = args.json.iter().chain(&page).map(|path| format!(", {}", path.display())).collect();
     format!(
-        "{}: {} rows, {} pictures in {:.0} s{file}",
+        "{}: {} rows, {} pictures in {:.0} s{files}",
         results.suite,
         results.rows.len(),
         results.pictures.len(),

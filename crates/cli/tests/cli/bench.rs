@@ -32,6 +32,7 @@ fn suites_are_listed() {
     assert!(place.refused(&["bench", "speed"]).contains("there is no suite `speed`: choose thesis, quality or rays"));
     assert!(place.refused(&["bench", "thesis", "--budget", "soon"]).contains("for instance 15m"));
     assert!(place.refused(&["bench", "thesis", "--json", "no/a.json"]).contains("the directory no does not exist"));
+    assert!(place.refused(&["bench", "thesis", "--report", "room.toml"]).contains("cannot make the folder room.toml"));
     place.refused(&["bench"]);
     place.refused(&["bench", "--list", "thesis"]);
 }
@@ -87,7 +88,10 @@ fn without_time_a_suite_says_what_it_left_out() {
 fn rays_are_counted_on_any_scene() {
     let place = Place::new();
     let flags = ["--quick", "--budget", "0.001s", "--device", "cpu", "--threads", "1", "--json", "out.json"];
-    place.good(&[&["bench", "rays", "--scene", "room.toml"], &flags[..]].concat());
+    let done = place.good(&[&["bench", "rays", "--scene", "room.toml", "--report", "out"], &flags[..]].concat());
+    assert!(done.stderr.contains("out.json, out/report.html"), "{done:?}");
+    let report = String::from_utf8(place.read("out/report.md")).unwrap();
+    assert!(report.contains("| Suite | rays, the short form |") && report.contains("| room |"), "{report}");
     let json = place.json("out.json");
     let rows = json["rows"].as_array().unwrap();
     assert!(rows.iter().any(|row| row["keys"]["scene"] == "room" && row["keys"]["rays"] == "primary"), "{json}");
