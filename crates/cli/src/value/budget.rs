@@ -4,6 +4,7 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use super::ValueError;
+use super::number::number_and_unit;
 
 /// A time above 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,10 +18,8 @@ impl FromStr for Budget {
     type Err = ValueError;
 
     fn from_str(text: &str) -> Result<Budget, ValueError> {
-        let text = text.trim();
-        let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
-        let (number, unit) = text.split_at(digits);
-        let unit = match unit.trim() {
+        let (number, unit) = number_and_unit(text);
+        let unit = match unit {
             "" | "s" => 1.0,
             "m" => 60.0,
             "h" => 3600.0,

@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use super::ValueError;
+use super::number::number_and_unit;
 
 /// A number of bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,10 +18,8 @@ impl FromStr for ByteSize {
     type Err = ValueError;
 
     fn from_str(text: &str) -> Result<ByteSize, ValueError> {
-        let text = text.trim();
-        let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
-        let (number, unit) = text.split_at(digits);
-        let unit = unit_bytes(unit.trim()).ok_or(FORM)?;
+        let (number, unit) = number_and_unit(text);
+        let unit = unit_bytes(unit).ok_or(FORM)?;
         let number: f64 = number.parse().map_err(|_| FORM)?;
         let bytes = number * unit as f64;
         if bytes >= 1.0 && bytes < u64::MAX as f64 { Ok(ByteSize(bytes as u64)) } else { Err(FORM) }

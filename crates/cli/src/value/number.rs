@@ -23,6 +23,14 @@ pub(super) fn not_negative(what: &'static str, text: &str) -> Result<f64, ValueE
     Err(ValueError::OutOfRange { what, text: text.trim().to_owned(), range: "0 or more" })
 }
 
+/// The digits and points that a text begins with, and the unit behind them.
+pub(super) fn number_and_unit(text: &str) -> (&str, &str) {
+    let text = text.trim();
+    let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let (number, unit) = text.split_at(digits);
+    (number, unit.trim())
+}
+
 /// Three numbers; `None` where there are more or fewer.
 pub(super) fn triple(text: &str) -> Result<Option<DVec3>, ValueError> {
     let parts: Vec<&str> = text.split(',').collect();

@@ -42,12 +42,12 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
                 });
             }
             if subject.small && name == "bvh" {
-                // Templates of one brick and of many, masks in shared memory and out of it, kernels unrolled and not.
                 add("many_samples", |cuda, subject, index| {
                     let twins = Twins { samples: MANY_SAMPLES, ..Twins::new(cuda, subject, index, TINY) };
                     twins.shadow_rays();
                     twins.light_mesh(0.5, Weight::Constant);
                 });
+                // Templates of one brick and of many, masks in shared memory and out of it, kernels unrolled and not.
                 add("light_mesh_other", |cuda, subject, index| {
                     let twins = Twins::new(cuda, subject, index, SMALL);
                     for radius in [0.5, 1.5, 4.1, 5.1, 9.0, 16.0] {

@@ -27,7 +27,7 @@ pub use film::DeviceFilm;
 use mesh::DeviceTemplate;
 pub(crate) use mesh::sampling;
 use pieces::Rates;
-pub(crate) use pieces::Work;
+pub(crate) use pieces::{Work, slices_of_rays};
 pub(crate) use scene::{DeviceScene, kernel_of};
 
 /// Threads of a warp.

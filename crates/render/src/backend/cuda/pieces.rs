@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Mutex;
 
-use super::{Cuda, locked};
+use super::{BLOCK, Cuda, locked};
 use crate::RenderError;
 use crate::cuda::{Kernel, Pool, Runtime};
 use crate::job::Job;
@@ -26,6 +26,25 @@ pub(crate) struct Work {
     pub(crate) first: u64,
     /// How much the observer is told about in all.
     pub(crate) progress: u64,
+}
+
+/// Rays of the first launch ever of a kernel that casts many for each thread.
+const FIRST_RAYS: u64 = 1 << 18;
+/// Most rays of a thread in one launch: a launch is never shorter than what one thread does.
+const RAYS_OF_THREAD: u64 = 256;
+
+/// Cuts the rays of a thread, which are all that there are for it, into what it casts in each launch. Without any there is one launch.
+pub(crate) fn slices_of_rays(rays: u64) -> Vec<Range<u64>> {
+    let slices = rays.div_ceil(RAYS_OF_THREAD).max(1);
+    (0..slices).map(|slice| slice * RAYS_OF_THREAD..rays.min((slice + 1) * RAYS_OF_THREAD)).collect()
+}
+
+impl Work {
+    /// Blocks of which each thread casts the rays of `slice`.
+    pub(crate) fn of_rays(blocks: u64, slice: &Range<u64>, progress: u64) -> Work {
+        let cost = (slice.end - slice.start).max(1);
+        Work { units: blocks, cost, first: FIRST_RAYS / (u64::from(BLOCK) * cost), progress }
+    }
 }
 
 /// How fast each kernel was when it ran last.

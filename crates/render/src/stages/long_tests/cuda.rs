@@ -5,7 +5,7 @@ use lightmesh_layout::mesh::LitBy;
 use lightmesh_layout::stages::LongTests;
 
 use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, Work, blocks_for, kernel_of, sampling};
+use crate::backend::cuda::{BLOCK, Cuda, Work, blocks_for, kernel_of, sampling, slices_of_rays};
 use crate::cuda::{Buffer, Runtime};
 use crate::job::{Job, Tally};
 use crate::light_mesh::LightMesh;
@@ -19,11 +19,6 @@ pub struct DeviceLit<R: Runtime> {
     bits: Buffer<R, u64>,
     seen: Buffer<R, u16>,
 }
-
-/// Long tests of the first launch ever.
-const FIRST: u64 = 1 << 18;
-/// Most long tests of a thread in one launch: a launch is never shorter than what one thread does.
-const SLICE: usize = 256;
 
 pub(crate) fn long_tests<R: Runtime>(
     cuda: &Cuda<R>,
@@ -39,12 +34,9 @@ pub(crate) fn long_tests<R: Runtime>(
     let kernel = kernel_of("long_tests", names, device_scene.structure);
     for (index, light) in lights.iter().enumerate() {
         let samples = if light.has_size() { job.sampling.samples } else { 1 };
-        let units = points.count.div_ceil(BLOCK as usize) as u64;
-        for first_sample in (0..samples).step_by(SLICE) {
-            let sample_count = (samples - first_sample).min(SLICE as u32);
-            let cost = u64::from(sample_count);
-            let work = Work { units, cost, first: FIRST / (u64::from(BLOCK) * cost), progress: 0 };
-            cuda.in_pieces(job, kernel, work, |piece| {
+        let blocks = points.count.div_ceil(BLOCK as usize) as u64;
+        for slice in slices_of_rays(u64::from(samples)) {
+            cuda.in_pieces(job, kernel, Work::of_rays(blocks, &slice, 0), |piece| {
                 let first_point = piece.start * u64::from(BLOCK);
                 let rest = points.count as u64 - first_point;
                 let arguments = LongTests {
@@ -57,8 +49,8 @@ pub(crate) fn long_tests<R: Runtime>(
                     light: index as u32,
                     point_count: rest.min((piece.end - piece.start) * u64::from(BLOCK)) as u32,
                     first_point,
-                    first_sample,
-                    sample_count,
+                    first_sample: slice.start as u32,
+                    sample_count: (slice.end - slice.start) as u32,
                 };
                 cuda.launch(kernel, blocks_for(&piece, BLOCK), &arguments)
             })?;

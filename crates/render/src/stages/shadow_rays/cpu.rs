@@ -67,8 +67,6 @@ pub(crate) fn area_shadows(job: &Job, scene: &PreparedScene, list: &RayList, hit
         }
         let (mut segments, mut owners) = (Vec::with_capacity(SEGMENTS), Vec::with_capacity(SEGMENTS));
         for light in 0..lights {
-            segments.clear();
-            owners.clear();
             let light = AreaLight::new(job, scene, list, hits, light);
             light.gather(index * batch, direct, share, &mut segments, &mut owners);
         }
@@ -101,8 +99,8 @@ impl<'a> AreaLight<'a> {
         AreaLight { job, scene, list, hits, index, light, samples: sample_count(job, light) }
     }
 
-    /// Adds this light to the object points from `first` on. `share` is interleaved by light. `segments` and `owners` are empty, and
-    /// room for the rays, and for the object point and the target of each.
+    /// Adds this light to the object points from `first` on. `share` is interleaved by light. `segments` and `owners` are room for the
+    /// rays, and for the object point and the target of each.
     fn gather(
         &self,
         first: usize,
@@ -113,6 +111,8 @@ impl<'a> AreaLight<'a> {
     ) {
         let lights = self.scene.scene.lights.len();
         let weight = 1.0 / self.samples as f32;
+        segments.clear();
+        owners.clear();
         for ray in (0..direct.len()).filter(|ray| self.hits[first + ray].is_some()) {
             let point = object_point(self.scene, self.list, self.hits, first + ray);
             for target in self.targets(first + ray, &point) {

@@ -6,16 +6,11 @@ use lightmesh_layout::stages::ShadowRays;
 
 use crate::RenderError;
 use crate::backend::cuda::{
-    BLOCK, Cuda, DeviceHits, DeviceRays, DeviceVisibility, Work, blocks_for, kernel_of, sampling,
+    BLOCK, Cuda, DeviceHits, DeviceRays, DeviceVisibility, Work, blocks_for, kernel_of, sampling, slices_of_rays,
 };
 use crate::cuda::{Buffer, Runtime};
 use crate::job::Job;
 use crate::prepared::PreparedScene;
-
-/// Shadow rays of the first launch ever.
-const FIRST_RAYS: u64 = 1 << 18;
-/// Most shadow rays of a thread in one launch: a launch is never shorter than what one thread does.
-const SLICE: u64 = 256;
 
 /// One ray from each object point to the middle of each light.
 pub(crate) fn shadow_rays<R: Runtime>(
@@ -54,21 +49,13 @@ fn trace<R: Runtime>(
     direct: Option<Buffer<R, Vec3>>,
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let lights = scene.scene.lights.len();
-    let (all, progress) = (lights as u64 * u64::from(samples), rays.len() as u64);
-    let slices = all.div_ceil(SLICE).max(1);
+    let slices = slices_of_rays(lights as u64 * u64::from(samples));
+    let progress = |slices_done: usize| (rays.len() * slices_done / slices.len()) as u64;
     let scene = cuda.scene(scene)?;
     let kernel = kernel_of("shadow_rays", names, scene.structure);
     let share = cuda.pool().room("shares of lights", rays.len() * lights)?;
-    for slice in 0..slices {
-        let first_sample = slice * SLICE;
-        let sample_count = (all - first_sample).min(SLICE);
-        let cost = sample_count.max(1);
-        let work = Work {
-            units: rays.blocks(16),
-            cost,
-            first: FIRST_RAYS / (u64::from(BLOCK) * cost),
-            progress: progress * (slice + 1) / slices - progress * slice / slices,
-        };
+    for (index, slice) in slices.iter().enumerate() {
+        let work = Work::of_rays(rays.blocks(16), slice, progress(index + 1) - progress(index));
         cuda.in_pieces(job, kernel, work, |piece| {
             let arguments = ShadowRays {
                 scene: scene.record,
@@ -79,8 +66,8 @@ fn trace<R: Runtime>(
                 sampling: sampling(job),
                 tally: cuda.tally()?,
                 first_block: piece.start,
-                first_sample,
-                sample_count,
+                first_sample: slice.start,
+                sample_count: slice.end - slice.start,
             };
             cuda.launch(kernel, blocks_for(&piece, BLOCK), &arguments)
         })?;
