@@ -18,10 +18,8 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::{Results, Row, Samples};
+use crate::{Results, Row, Samples, WHOLE};
 
-/// The stage that a row is judged by.
-const WHOLE: &str = "render";
 /// The least noise that is believed, relative.
 const LEAST_BAND: f64 = 0.05;
 /// How many spreads of the difference are noise.

@@ -24,5 +24,6 @@ pub use compare::{RunComparison, StageComparison, Verdict};
 pub use error::BenchError;
 pub use findings::Findings;
 pub use plan::{Plan, Suite};
+pub(crate) use results::WHOLE;
 pub use results::{Gpu, Key, Machine, Picture, Program, Results, Row, Samples};
 pub use suites::run;

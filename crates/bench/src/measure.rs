@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use lightmesh::render::{PreparedScene, Seconds, Stats};
 use lightmesh::{Frame, Observer, RenderError, Renderer, Settings, Stage};
 
-use crate::{Row, Samples};
+use crate::{Row, Samples, WHOLE};
 
 /// One way to make a picture.
 pub struct Variant<'a> {
@@ -72,7 +72,7 @@ pub fn measure(variants: &[Variant], rounds: Rounds, observer: &dyn Observer) ->
 impl Measured {
     /// Median seconds of the whole render.
     pub fn median(&self) -> f64 {
-        self.seconds.get("render").and_then(Samples::median).unwrap_or(0.0)
+        self.seconds.get(WHOLE).and_then(Samples::median).unwrap_or(0.0)
     }
 
     /// Moves seconds and the counts of the last picture into a row.
@@ -115,7 +115,7 @@ fn add_samples(samples: &mut BTreeMap<String, Samples>, seconds: &Seconds) {
         (Stage::LongTests.name(), seconds.long_tests),
         (Stage::Shade.name(), seconds.shade),
         (Stage::Download.name(), seconds.download),
-        ("render", seconds.render),
+        (WHOLE, seconds.render),
     ];
     for (stage, seconds) in stages.into_iter().filter(|(_, seconds)| *seconds > 0.0) {
         samples.entry(stage.to_owned()).or_default().0.push(seconds);

@@ -9,9 +9,10 @@
 //! | 0.1 | 2.1 | 5.63 |
 //! ```
 //!
-//! Several files have commas between them. A value may hold commas too, as in `place=CPU, 2 threads`. Without `where` all rows are taken, without `columns` all columns. Names of columns are those
-//! of the report; a misspelt one is refused with a list of them. Paths are relative to the document. `cargo xtask readme` writes the
-//! tables, `cargo xtask readme --check` says which are not as they should be.
+//! Several files have commas between them. A value may hold commas too, as in `place=CPU, 2 threads`. Without `where` all rows are
+//! taken, without `columns` all columns. Names of columns are those of the report; a misspelt one is refused with a list of them.
+//! Paths are relative to the document. `cargo xtask readme` writes the tables, `cargo xtask readme --check` says which are not as
+//! they should be.
 
 use std::path::{Path, PathBuf};
 

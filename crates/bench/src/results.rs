@@ -87,6 +87,9 @@ pub struct Row {
     pub values: BTreeMap<String, f64>,
 }
 
+/// The stage that is the whole of a picture.
+pub(crate) const WHOLE: &str = "render";
+
 /// A setting: a number or a word.
 #[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[serde(untagged)]
@@ -130,6 +133,11 @@ impl Row {
         let words: Vec<String> = keys.iter().map(|(name, key)| format!("{name}={key}")).collect();
         let id = format!("{experiment}: {}", words.join(" "));
         Row { id, experiment: experiment.to_owned(), keys, seconds: BTreeMap::new(), values: BTreeMap::new() }
+    }
+
+    /// Median seconds of a stage; `None` where it was not measured.
+    pub fn median(&self, stage: &str) -> Option<f64> {
+        self.seconds.get(stage)?.median()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::{Results, Row, Samples};
+use crate::{Results, Row, Samples, WHOLE};
 
 /// Values that are shown where a row took no time.
 const SHOWN_VALUES: usize = 4;
@@ -25,8 +25,7 @@ impl fmt::Display for Results {
 fn line(row: &Row) -> String {
     let keys: Vec<String> = row.keys.iter().map(|(name, key)| format!("{name}={key}")).collect();
     let keys = keys.join(" ");
-    let figures = match row.seconds.get("render").and_then(|samples| Some((samples, samples.min()?, samples.median()?)))
-    {
+    let figures = match row.seconds.get(WHOLE).and_then(|samples| Some((samples, samples.min()?, samples.median()?))) {
         Some((Samples(samples), min, median)) => format!("{min:.4} s min, {median:.4} s median of {}", samples.len()),
         None => {
             let values = row.values.iter().take(SHOWN_VALUES);

@@ -25,8 +25,8 @@ pub(crate) fn section(runs: &Runs) -> Option<Section> {
     findings.sort_by_key(|finding| finding.verdict);
     let intro = "Each sentence is computed from the rows below: medians of whole pictures, the same scene, size and lights, at the same \
                  place; a range goes over the pictures that are named. Wins and loses speak of time, and of errors where the sentence \
-                 gives them. Without errors they say nothing of quality: light meshes make soft shadows and blur; hard shadows, one shadow ray for each \
-                 pixel and light, have no soft edges; few shadow rays are noisy.";
+                 gives them. Without errors they say nothing of quality: light meshes make soft shadows and blur; hard shadows, one \
+                 shadow ray for each pixel and light, have no soft edges; few shadow rays are noisy.";
     Some(Section::new(
         "Where the method wins, and where it loses",
         vec![Block::Text(intro.to_owned()), Block::Findings(findings)],

@@ -56,7 +56,7 @@ impl<'a> Measured<'a> {
 
     /// Median seconds of a stage; `render` is the whole.
     pub(crate) fn median(&self, stage: &str) -> Option<f64> {
-        self.row.seconds.get(stage)?.median()
+        self.row.median(stage)
     }
 
     /// The least seconds of a stage.

@@ -11,9 +11,7 @@ use super::document::{Block, Column};
 use super::numbers;
 use super::runs::{Measured, Runs, distinct};
 use crate::Key;
-
-/// The stage that is the whole of a picture.
-pub(crate) const WHOLE: &str = "render";
+pub(crate) use crate::WHOLE;
 
 /// Time by the number of lights, and what follows from it.
 pub(crate) const LIGHTS: &str = "figure 11";

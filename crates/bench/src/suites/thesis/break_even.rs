@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use super::LIGHTS;
 use super::derived::keys;
 use super::published::{FIGURE_SCENE, LIGHTS_RADIUS};
-use crate::{Findings, Key, Row, Samples};
+use crate::{Findings, Key, Row, WHOLE};
 
 /// The method and hard shadows at one number of lights.
 struct Pair<'r> {
@@ -76,7 +76,7 @@ fn predict(pair: &Pair, row: &mut Row) {
     let value = |row: &Row, name: &str| row.values.get(name).copied().unwrap_or(0.0);
     let (hits, half_ball) = (value(pair.method, "hits"), value(pair.method, "half_ball_mean"));
     let (points, rays) = (value(pair.method, "light_points"), value(pair.hard, "shadow_rays"));
-    let (Some(short), Some(long)) = (median(pair.method, "short_tests"), median(pair.hard, "long_tests")) else {
+    let (Some(short), Some(long)) = (pair.method.median("short_tests"), pair.hard.median("long_tests")) else {
         return;
     };
     let (c_short, c_long) = (short / (hits * half_ball), long / rays);
@@ -96,7 +96,7 @@ fn predict(pair: &Pair, row: &mut Row) {
 /// Straight lines through the seconds of both modes, by least squares.
 fn fit(pairs: &[Pair], row: &mut Row) {
     let mut add = |name: &str, of: for<'p, 'r> fn(&'p Pair<'r>) -> &'r Row| {
-        let seconds = pairs.iter().filter_map(|pair| Some((pair.lights, median(of(pair), "render")?)));
+        let seconds = pairs.iter().filter_map(|pair| Some((pair.lights, of(pair).median(WHOLE)?)));
         if let Some((fixed, per_light)) = line(&seconds.collect::<Vec<_>>()) {
             row.values.insert(format!("{name}_seconds"), fixed);
             row.values.insert(format!("{name}_seconds_per_light"), per_light);
@@ -117,7 +117,7 @@ fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
 
 /// What the clock says; `None` where the method is never as fast. The fewest lights where it always is.
 fn measured(pairs: &[Pair]) -> Option<f64> {
-    let lead = |pair: &Pair| Some((pair.lights, median(pair.method, "render")? - median(pair.hard, "render")?));
+    let lead = |pair: &Pair| Some((pair.lights, pair.method.median(WHOLE)? - pair.hard.median(WHOLE)?));
     let leads: Vec<(f64, f64)> = pairs.iter().filter_map(lead).collect();
     let first = leads.iter().position(|(_, lead)| *lead <= 0.0)?;
     let (lights, after) = leads[first];
@@ -125,13 +125,10 @@ fn measured(pairs: &[Pair]) -> Option<f64> {
     Some(fewer + (lights - fewer) * before / (before - after))
 }
 
-fn median(row: &Row, stage: &str) -> Option<f64> {
-    row.seconds.get(stage).and_then(Samples::median)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Samples;
 
     fn row(mode: &str, lights: f64, seconds: &[(&str, f64)], values: &[(&str, f64)]) -> Row {
         let mut row = Row::new(LIGHTS, [("lights", lights.into()), ("mode", mode.into()), ("device", "cpu".into())]);

@@ -2,7 +2,7 @@
 
 use super::TIMINGS;
 use super::published::{SCENES, TABLE_1, TABLE_2};
-use crate::{Findings, Key, Row, Samples};
+use crate::{Findings, Key, Row, WHOLE};
 
 /// Table 1: the share of the steps that list used light points and make the mesh, which are one step here. Garden with h and R = 3.1.
 pub(super) fn table_1(findings: &mut Findings) {
@@ -20,8 +20,7 @@ pub(super) fn table_1(findings: &mut Findings) {
 }
 
 fn share(timing: &Row) -> Option<Row> {
-    let seconds = |stage: &str| timing.seconds.get(stage).and_then(Samples::median);
-    let (collect, total) = (seconds("collect")?, seconds("render")?);
+    let (collect, total) = (timing.median("collect")?, timing.median(WHOLE)?);
     let mut row = Row::new("table 1", keys(timing, &["scene", "size", "device", "threads"]));
     row.values = values([("collect_seconds", collect), ("total_seconds", total), ("share", collect / total)]).collect();
     if let Some(&(_, collect, total)) = TABLE_1.iter().find(|cell| is_number(timing, "size", f64::from(cell.0))) {
