@@ -12,6 +12,10 @@ render scene="builtin:childpark" *flags="-o childpark.png":
 test:
     cargo test --workspace
 
+# Most tests, in half a minute once they are built: needs cargo-nextest
+fast *filter:
+    cargo nextest run --workspace --profile fast {{filter}}
+
 # Format and lints
 lint:
     cargo fmt --all --check
@@ -22,17 +26,22 @@ doc:
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
     cargo xtask check-docs
 
-# Licences of all dependencies
-licences:
-    cargo xtask licences
+# Licences, sources and versions of all dependencies: needs cargo-deny
+deny:
+    cargo deny --locked check --hide-inclusion-graph licenses bans sources
+    cargo deny --locked --manifest-path fuzz/Cargo.toml --config deny.toml check --hide-inclusion-graph licenses bans sources
 
 # The layout header, the kernels' PTX and the report about them
 kernels:
     cargo xtask kernels
 
-# Tables of the README from the results that they name
+# Tables of README and METHOD from the results they name
 readme:
     cargo xtask readme
+
+# Drawings of METHOD
+drawings:
+    cargo xtask drawings
 
 # Everything a change must pass
 ci:

@@ -26,7 +26,7 @@ import renderers
 from scene import Scene
 
 REFERENCE_SEED = 1000
-"""Apart from the seeds of the measured pictures, which are their rounds."""
+"""Different from the seeds of the measured images, which are their rounds."""
 
 
 def main():
@@ -55,36 +55,36 @@ def main():
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description="Runs lightmesh and its peers side by side.")
-    parser.add_argument("scenes", nargs="+", metavar="SCENE", help="what lightmesh can open")
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE", help="where the results go, as JSON")
+    parser = argparse.ArgumentParser(description="Compares lightmesh with other renderers.")
+    parser.add_argument("scenes", nargs="+", metavar="SCENE", help="a scene that lightmesh can open")
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE", help="output file for the results, as JSON")
     parser.add_argument("--lightmesh", default="target/release/lightmesh", metavar="PROGRAM", help="default: %(default)s")
-    parser.add_argument("--size", type=int, default=256, help="pixels of a side, default %(default)s")
+    parser.add_argument("--size", type=int, default=256, help="pixels per side, default %(default)s")
     parser.add_argument("--samples", type=int, nargs="+", default=[1, 4, 16, 64], help="default: 1 4 16 64")
     parser.add_argument("--reference", type=int, default=1024, metavar="N", help="samples of the references, default %(default)s")
-    parser.add_argument("--repetitions", type=int, default=5, metavar="N", help="rounds that count, default %(default)s")
-    parser.add_argument("--threads", type=int, default=os.cpu_count(), help="for pictures; rays take one; default: all")
+    parser.add_argument("--repetitions", type=int, default=5, metavar="N", help="counted rounds, default %(default)s")
+    parser.add_argument("--threads", type=int, default=os.cpu_count(), help="for images; rays use one; default: all")
     parser.add_argument("--device", choices=["cpu", "cuda"], default="cpu", help="cuda: lightmesh and Mitsuba on a GPU, OptiX for rays")
-    parser.add_argument("--without", nargs="+", default=[], choices=["embree", "optix", "mitsuba", "cycles"], help="peers to leave out")
+    parser.add_argument("--without", nargs="+", default=[], choices=["embree", "optix", "mitsuba", "cycles"], help="peers to skip")
     return parser.parse_args()
 
 
 def peer(plan, notes, name, make):
-    """The peer as a list, which is empty where it is unwanted or its wheel is missing."""
+    """The peer as a list, which is empty if it is excluded or its wheel is missing."""
     if name in plan.without:
-        notes.append(f"{name} is left out: --without names it.")
+        notes.append(f"{name} is skipped: excluded by --without.")
         return []
     try:
         made = make()
     except ImportError as error:
-        notes.append(f"{name} is left out: {error}.")
+        notes.append(f"{name} is skipped: {error}.")
         return []
     notes.append(f"{made.name} is version {made.version}.")
     return [made]
 
 
 def ray_rows(plan, scene, folder, notes):
-    """Million rays a second of each program and kind of rays."""
+    """Million rays per second of each program and kind of rays."""
     casters = [rays.Lightmesh(plan.lightmesh, scene, plan, folder)]
     if plan.device == "cuda":
         casters += peer(plan, notes, "optix", lambda: rays.Optix(scene, plan))
@@ -107,9 +107,9 @@ def shadow_rows(plan, scene, folder, notes):
     if plan.device == "cpu":
         others += peer(plan, notes, "cycles", lambda: renderers.Cycles(scene, plan, folder))
     references = {renderer.name: renderer.render(plan.reference, REFERENCE_SEED)[1] for renderer in [area, *others]}
-    # The light mesh is held against what it stands for.
+    # The light mesh is compared with what it approximates.
     references[mesh.name] = references[area.name]
-    # What remains between two references is how far they are from having converged.
+    # The difference between two references indicates their remaining error.
     left = {renderer.name: errors(references[renderer.name], renderer.render(plan.reference, REFERENCE_SEED + 1)[1])[0] for renderer in [area, *others]}
     tasks = {(renderer.name, n): (lambda seed, r=renderer, n=n: r.render(n, seed)) for n in plan.samples for renderer in [area, mesh, *others]}
     rows = []
@@ -122,12 +122,12 @@ def shadow_rows(plan, scene, folder, notes):
 
 
 def place(plan, threads):
-    """Where it runs, as keys of a row."""
+    """The device, as keys of a row."""
     return {"device": "cuda"} if plan.device == "cuda" else {"device": "cpu", "threads": threads}
 
 
 def in_turn(plan, run, tasks):
-    """Results of each task in each round. Round 0 warms up and does not count."""
+    """Results of each task in each round. Round 0 is an uncounted warm-up."""
     results = {key: [] for key in tasks}
     for round_ in range(plan.repetitions + 1):
         for key, task in tasks.items():
@@ -138,7 +138,7 @@ def in_turn(plan, run, tasks):
 
 
 def errors(reference, picture):
-    """RMSE of linear values and mean FLIP, both of what a screen can show."""
+    """RMSE of linear values and mean FLIP, both clamped to the range of a screen."""
     shown = [np.clip(image, 0, 1).astype(np.float32) for image in (reference, picture)]
     curved = [np.where(image <= 0.0031308, 12.92 * image, 1.055 * image ** (1 / 2.4) - 0.055) for image in shown]
     flip = flip_evaluator.evaluate(*curved, "LDR", applyMagma=False)[1]
@@ -162,7 +162,7 @@ def machine(plan):
 
 
 def gpus(plan):
-    """The first GPU and its driver, as lightmesh names them, where one is used."""
+    """The first GPU and its driver, as named by lightmesh, if one is used."""
     if plan.device == "cpu":
         return []
     info = subprocess.run([plan.lightmesh, "info", "--devices", "--json"], check=True, stdout=subprocess.PIPE).stdout

@@ -13,9 +13,9 @@ import numpy as np
 KINDS = {"primary": "ray-trace", "hard shadow": "ray-trace", "soft shadow": "area"}
 """Kinds of rays, and the mode of lightmesh that casts them."""
 SOFT_SAMPLES = 16
-"""Rays to each light and pixel for soft shadows."""
+"""Rays per light and pixel for soft shadows."""
 OFFSET = 1e-4
-"""How far from the surface Embree's shadow rays begin, as a share of their length."""
+"""Offset of Embree's shadow rays from the surface, as a fraction of their length."""
 
 
 class Embree:
@@ -48,7 +48,7 @@ class Embree:
 
 
 class Optix:
-    """OptiX by way of Mitsuba: one launch for all rays, by the device's own clock."""
+    """OptiX through Mitsuba: one launch for all rays, timed by the device."""
 
     def __init__(self, scene, plan):
         import drjit
@@ -96,7 +96,7 @@ class Lightmesh:
         self.suite = [program, "bench", "rays", "--device", plan.device, "--scene", scene.file, "--json", self.stats, "-q"]
 
     def cast(self, kind):
-        # The first picture of a process starts with small launches, so that few rays would be judged by those.
+        # The first image of a process starts with small launches, which would distort the rate of few rays.
         if self.on_gpu and kind != "soft shadow":
             return self.warm(kind)
         subprocess.run([*self.command, "--mode", KINDS[kind]], check=True)
@@ -113,7 +113,7 @@ class Lightmesh:
 
 
 def rays_to_lights(scene, primary, triangle, distance):
-    """Hard and soft shadow rays from what the primary rays hit: numbers of triangles, -1 for none, and distances."""
+    """Hard and soft shadow rays from the hits of primary rays: triangle indices, -1 for none, and distances."""
     origins, directions = primary
     hit = triangle >= 0
     corners = scene.positions[scene.triangles[triangle[hit]]]
@@ -134,7 +134,7 @@ def rays_to_lights(scene, primary, triangle, distance):
 
 
 def shadow_rays(points, normals, lights, target):
-    """Segments from points to lights that are not behind the surface, as origins and whole directions, light by light."""
+    """Segments from points to lights that are not behind the surface, as origins and unnormalised directions, light by light."""
     origins, directions = [], []
     for light in lights:
         ways = target(light) - points

@@ -15,7 +15,7 @@ from scene import KD
 
 
 class Lightmesh:
-    """Area mode: `samples` stratified shadow rays for each light and pixel. Light-mesh mode: as many for each light point."""
+    """Area mode: `samples` stratified shadow rays per light and pixel. Light-mesh mode: as many per light point."""
 
     def __init__(self, program, scene, mode, plan, folder):
         size, threads = plan.size, plan.threads
@@ -27,7 +27,7 @@ class Lightmesh:
     def render(self, samples, seed):
         subprocess.run([*self.command, "--samples", str(samples), "--seed", str(seed)], check=True)
         seconds = json.loads((self.folder / "stats.json").read_text())["seconds"]
-        # The scene's way to a GPU is no part of the others' seconds either.
+        # The other renderers' times do not include uploading the scene to a GPU either.
         return seconds["render"] - seconds["upload"], flip_evaluator.load(str(self.folder / "picture.exr"))
 
 
@@ -44,7 +44,7 @@ class Mitsuba:
         compiled = on_gpu or drjit.has_backend(drjit.JitBackend.LLVM)
         mitsuba.set_variant("cuda_ad_rgb" if on_gpu else "llvm_ad_rgb" if compiled else "scalar_rgb")
         self.version = f"{mitsuba.__version__}, {mitsuba.variant()}"
-        # Scalar code asks for each number on its own, which Python is too slow for: there samples cover the pixel.
+        # Scalar code requests each number separately, for which Python is too slow: there, samples cover the pixel.
         sampler = centred(mitsuba) if compiled else "multijitter"
         if compiled and not on_gpu:
             drjit.set_thread_count(plan.threads)
@@ -57,7 +57,7 @@ class Mitsuba:
         view = transform().look_at(*(v.tolist() for v in (camera.position, camera.position + camera.direction, camera.up)))
         parts = {
             "type": "scene",
-            # Emitters alone are sampled, as in area mode: with the material, half of the rays would miss small lights.
+            # Only emitters are sampled, as in area mode: with material sampling, half of the rays would miss small lights.
             "integrator": {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0, "hide_emitters": True},
             "sensor": {"type": "perspective", "fov": camera.vfov, "to_world": view, "film": film, "sampler": {"type": sampler}},
             "mesh": {
@@ -87,7 +87,7 @@ class Mitsuba:
 
 
 def centred(mitsuba):
-    """Registers a sampler like `multijitter`, whose first point for each ray, the place in the pixel, is the middle."""
+    """Registers a sampler like `multijitter`, whose first point for each ray, the position in the pixel, is the centre."""
 
     class Centred(mitsuba.Sampler):
         def __init__(self, props):
@@ -108,7 +108,7 @@ def centred(mitsuba):
 
         def seed(self, seed, wavefront_size=2**32 - 1):
             self.fresh = True
-            # All samples of a picture are one wavefront. Python is not told so, and without this they are not stratified.
+            # All samples of an image are one wavefront. Python is not informed, and without this they are not stratified.
             self.inner.set_samples_per_wavefront(self.inner.sample_count())
             self.inner.seed(seed, wavefront_size)
 
@@ -130,7 +130,7 @@ def centred(mitsuba):
 
 
 class Cycles:
-    """Blender's path tracer, without bounces, denoising or adaptive sampling. Its seconds hold what it does before each picture."""
+    """Blender's path tracer, without bounces, denoising or adaptive sampling. Its times include the set-up of each image."""
 
     def __init__(self, scene, plan, folder):
         import bpy
@@ -150,16 +150,16 @@ class Cycles:
         render.engine = "CYCLES"
         cycles.device, cycles.max_bounces = "CPU", 0
         cycles.use_adaptive_sampling = cycles.use_denoising = False
-        # The narrowest filter there is: a hundredth of a pixel.
+        # The narrowest filter available: a hundredth of a pixel.
         cycles.pixel_filter_type, cycles.filter_width = "GAUSSIAN", 0.01
         render.resolution_x = render.resolution_y = size
         render.threads_mode, render.threads = "FIXED", threads
-        # Keeps the acceleration structure from picture to picture.
+        # Keeps the acceleration structure between images.
         render.use_persistent_data = True
         render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
 
     def add(self, name, data, vectors, place):
-        """Puts an object that has these axes, as columns, at a place."""
+        """Places an object with these axes, as columns, at a position."""
         import mathutils
 
         thing = self.bpy.data.objects.new(name, data)
@@ -192,7 +192,7 @@ class Cycles:
     def add_light(self, light):
         data = self.bpy.data.lights.new("light", "AREA")
         data.shape, data.size, data.size_y = "RECTANGLE", np.linalg.norm(light.u), np.linalg.norm(light.v)
-        # Watts of an emitter that follows Lambert's law.
+        # Watts of a Lambertian emitter.
         data.energy = math.pi * light.intensity
         across = light.u / data.size
         thing = self.add("light", data, [across, np.cross(-light.direction, across), -light.direction], light.position)
@@ -200,7 +200,7 @@ class Cycles:
 
     def render(self, samples, seed):
         self.context.cycles.samples, self.context.cycles.seed = samples, seed
-        # Without this the last picture comes again: nothing tells Blender that these settings changed.
+        # Without this the previous image is returned: Blender does not notice that these settings changed.
         self.context.update_tag()
         start = time.perf_counter()
         self.bpy.ops.render.render()

@@ -16,9 +16,9 @@ import numpy as np
 KD = 0.7
 """Diffuse reflectance of all surfaces."""
 LIGHT_SHARE = 0.1
-"""Edge of a light as a share of its distance from the middle of the scene."""
+"""Edge of a light as a fraction of its distance from the centre of the scene."""
 FOCUS = 0.8
-"""What a surface in the middle of the scene shows that faces all lights fully: below 1, so that few pixels are clipped."""
+"""Radiance of a surface at the centre of the scene that faces all lights: below 1, so that few pixels are clipped."""
 
 
 @dataclass
@@ -29,7 +29,7 @@ class Camera:
     vfov: float
 
     def rays(self, size):
-        """Origins and unit directions of the rays through the pixels' centres, row by row from the top."""
+        """Origins and unit directions of rays through pixel centres, row by row from the top."""
         right = unit(np.cross(self.direction, self.up))
         upper = np.cross(right, self.direction)
         steps = ((np.arange(size) + 0.5) / size * 2 - 1) * math.tan(math.radians(self.vfov) / 2)
@@ -41,7 +41,7 @@ class Camera:
 
 @dataclass
 class Light:
-    """A square that shines along `direction`; its edges are `u` and `v`."""
+    """A square that emits along `direction`; its edges are `u` and `v`."""
 
     position: np.ndarray
     direction: np.ndarray
@@ -63,11 +63,11 @@ class Scene:
     camera: Camera
     lights: list
     file: Path
-    """The scene for lightmesh; its triangles lie beside it, as PLY."""
+    """The scene for lightmesh; its triangles are in a PLY file next to it."""
 
     @classmethod
     def open(cls, program, source, folder):
-        """Asks `program`, lightmesh, for the scene `source`; files go into `folder`."""
+        """Exports the scene `source` with `program`, lightmesh; files go to `folder`."""
         quiet = {"check": True, "stdout": subprocess.PIPE}
         glb, stats = folder / "scene.glb", folder / "camera.json"
         subprocess.run([program, "export", source, "-o", glb, "-q"], **quiet)
@@ -105,7 +105,7 @@ def unit(vectors):
 
 
 def square_lights(infos, camera, middle):
-    """A square for every light of the scene that has a place; one beside and above the camera where there is none."""
+    """A square for every light with a position; one beside and above the camera if there is none."""
     lamps = [(np.array(info["position"]), max(info["intensity"])) for info in infos if info["position"]]
     if not lamps:
         right, reach = np.cross(camera.direction, camera.up), np.linalg.norm(camera.position - middle)
@@ -116,14 +116,14 @@ def square_lights(infos, camera, middle):
         distance, direction = np.linalg.norm(middle - position), unit(middle - position)
         across = unit(np.cross(direction, [1, 0, 0] if abs(direction[0]) < 0.5 else [0, 1, 0]))
         edge = LIGHT_SHARE * distance
-        # A white surface shows I / (π d²).
+        # The radiance of a white surface is I / (π d²).
         intensity = FOCUS / KD * strength / total * math.pi * distance**2
         lights.append(Light(position, direction, edge * across, edge * np.cross(direction, across), intensity))
     return lights
 
 
 def read_glb(path):
-    """Positions in world coordinates and triangles of a file by `lightmesh export`, whose nodes are moved but not turned."""
+    """Positions in world coordinates and triangles of a file by `lightmesh export`, whose nodes are translated but not rotated."""
     data = path.read_bytes()
     length = struct.unpack_from("<I", data, 12)[0]
     gltf, binary = json.loads(data[20 : 20 + length]), data[28 + length :]

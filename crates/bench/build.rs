@@ -1,4 +1,4 @@
-//! Tells the program which commit it is built from: `LIGHTMESH_COMMIT` where that is set, else what Git says, else nothing.
+//! Records the commit from which the program is built: `LIGHTMESH_COMMIT` if set, else from Git, else nothing.
 
 use std::process::Command;
 
@@ -14,7 +14,7 @@ fn main() {
     }
 }
 
-/// The first line that Git prints; `None` where there is no Git or no repository.
+/// The first line printed by Git; `None` without Git or a repository.
 fn git(arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").args(arguments).output().ok().filter(|output| output.status.success())?;
     String::from_utf8(output.stdout).ok()?.lines().next().map(str::to_owned)

@@ -1,6 +1,6 @@
-//! What the fuzz targets share: files in memory, and what must hold of everything that is read from them.
+//! Shared code of the fuzz targets: files in memory, and properties of everything read from them.
 //!
-//! Targets go through files, as users do, so that the library needs no second way in for them.
+//! Targets use files, like users, so that the library needs no separate entry points for them.
 
 use std::path::{Path, PathBuf};
 
@@ -8,15 +8,15 @@ use lightmesh::Scene;
 use lightmesh::scene::{Mesh, Up};
 use tempfile::TempDir;
 
-/// Where Linux keeps files in memory.
+/// Folder of files in memory on Linux.
 const MEMORY: &str = "/dev/shm";
 
-/// A folder of its own for one input.
+/// A separate folder for one input.
 pub struct Folder(TempDir);
 
 impl Folder {
-    /// An empty one, in memory where the system has such a place.
-    #[expect(clippy::new_without_default, reason = "it makes a folder on the disk")]
+    /// An empty folder, in memory if the system supports it.
+    #[expect(clippy::new_without_default, reason = "it creates a folder")]
     pub fn new() -> Folder {
         let mut builder = tempfile::Builder::new();
         builder.prefix("lightmesh-fuzz-");
@@ -24,21 +24,21 @@ impl Folder {
         Folder(folder.expect("a temporary folder"))
     }
 
-    /// Writes a file and gives its path.
+    /// Writes a file and returns its path.
     pub fn write(&self, name: &str, bytes: &[u8]) -> PathBuf {
         let path = self.0.path().join(name);
-        std::fs::write(&path, bytes).expect("room for a small file");
+        std::fs::write(&path, bytes).expect("space for a small file");
         path
     }
 }
 
-/// Reads a scene of one file.
+/// Reads a scene from a single file.
 pub fn read_alone(name: &str, bytes: &[u8]) {
     let folder = Folder::new();
     read(&folder.write(name, bytes));
 }
 
-/// Reads a scene and asks of it what the program asks. Panics where an answer cannot be right.
+/// Reads a scene and queries it like the program. Panics if a result is invalid.
 pub fn read(path: &Path) {
     match Scene::open(path) {
         Ok(scene) => check(&scene),
@@ -50,15 +50,15 @@ pub fn read(path: &Path) {
 }
 
 fn check(scene: &Scene) {
-    check_mesh(&scene.mesh, scene.materials.len());
-    for texture in &scene.textures {
+    check_mesh(&scene.geometry.mesh, scene.geometry.materials.len());
+    for texture in &scene.geometry.textures {
         let [width, height] = texture.size.map(u64::from);
         assert!(width > 0 && height > 0 && texture.texels.len() as u64 == width * height);
     }
-    for texture in scene.materials.iter().filter_map(|material| material.texture) {
-        assert!((texture.texture as usize) < scene.textures.len());
+    for texture in scene.geometry.materials.iter().filter_map(|material| material.texture) {
+        assert!((texture.texture as usize) < scene.geometry.textures.len());
     }
-    for material in &scene.materials {
+    for material in &scene.geometry.materials {
         let lobes = [material.ks, material.ks_tinted, material.emission, material.emission_tinted];
         assert!(lobes.iter().chain([&material.ka, &material.kd]).all(|color| color.is_finite()), "{material:?}");
     }
@@ -66,7 +66,7 @@ fn check(scene: &Scene) {
     assert!(scene.lights.iter().all(|light| light.intensity.is_finite()));
     assert!(scene.lights.iter().filter_map(|light| light.position()).all(|position| position.is_finite()));
     let info = scene.info();
-    assert_eq!(info.triangles, scene.mesh.triangles.len());
+    assert_eq!(info.triangles, scene.geometry.mesh.triangles.len());
     assert!(!info.to_string().is_empty());
     let camera = scene.default_camera(Up::Y);
     scene.default_lights(&camera);

@@ -1,4 +1,4 @@
-//! Saved grids, as they are and forged: a forger makes counts and hashes right, so that the numbers behind them are looked at.
+//! Saved grids, both raw and forged: forging corrects counts and hashes, so that the numbers behind them are read.
 #![no_main]
 
 use std::path::Path;
@@ -11,7 +11,7 @@ use lightmesh::render::accel::{Accelerator, Grid, GridOptions, Hit, Ray, Triangl
 use lightmesh_fuzz::Folder;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// Bytes before the numbers; the last three eights are the hash of the triangles and two counts of numbers.
+/// Bytes before the numbers; the last three groups of eight are the hash of the triangles and two counts.
 const HEADER: usize = 40;
 /// Bytes of the hash at the end.
 const TRAILER: usize = 8;
@@ -20,16 +20,16 @@ const CELLS: usize = 24;
 const REFERENCES: usize = 32;
 
 static TRIANGLES: LazyLock<Vec<Triangle>> = LazyLock::new(|| {
-    let mesh = Scene::open("builtin:gazebo").expect("a built-in scene").mesh;
+    let mesh = Scene::open("builtin:gazebo").expect("a built-in scene").geometry.mesh.clone();
     (0..mesh.triangles.len()).map(|index| Triangle::new(mesh.corners(index), index as u32)).collect()
 });
 
-/// The header that a right file has.
+/// The header of a valid file.
 static TRUE_HEADER: LazyLock<Vec<u8>> = LazyLock::new(|| {
     let folder = Folder::new();
     let path = folder.write("true.grid", &[]);
     let grid = Grid::new(&TRIANGLES, &GridOptions::default()).expect("a grid");
-    grid.save(&path).expect("room for a small file");
+    grid.save(&path).expect("space for a small file");
     std::fs::read(&path).expect("what was saved")[..HEADER].to_vec()
 });
 
@@ -41,7 +41,7 @@ fuzz_target!(|bytes: &[u8]| {
     }
 });
 
-/// The input with the triangles, the length and the hash that make it believable.
+/// The input with valid triangles, length and hash.
 fn forged(bytes: &[u8]) -> Option<Vec<u8>> {
     let (header, numbers) = bytes.split_at_checked(HEADER)?;
     let all = numbers.len().checked_sub(TRAILER)? / 4;
@@ -55,7 +55,7 @@ fn forged(bytes: &[u8]) -> Option<Vec<u8>> {
     Some(forged)
 }
 
-/// Reads a grid and sends rays through it.
+/// Reads a grid and traces rays through it.
 fn try_out(path: &Path) {
     let grid = match Grid::load(path, &TRIANGLES) {
         Ok(grid) => grid,

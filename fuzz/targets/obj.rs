@@ -1,4 +1,4 @@
-//! OBJ files with a material library: an input is the one, a line `%mtl`, and the other, which goes by the name `a.mtl`.
+//! OBJ files with a material library: an input is the OBJ file, a line `%mtl`, and the library, which is named `a.mtl`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Pictures as textures. What begins like a PNG, JPEG or BMP file is read as such whatever its name; the name makes all else TGA.
+//! Images as textures. Data that begins like a PNG, JPEG or BMP file is read as such; because of its name anything else is TGA.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Scene files, with the model `one.obj` beside them.
+//! Scene files, with the model `one.obj` next to them.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

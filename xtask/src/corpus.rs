@@ -1,4 +1,4 @@
-//! Inputs to begin fuzzing with: the committed seeds, and small files and beginnings of larger ones out of a folder of scenes.
+//! Initial fuzzing inputs: the committed seeds, and small files and the beginnings of larger ones from a folder of scenes.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 
 use crate::{Outcome, Verdict};
 
-/// Longest input, in bytes. A fuzzer changes small ones faster.
+/// Maximum input size in bytes. A fuzzer mutates small inputs faster.
 const LONGEST: u64 = 16 << 10;
 
-/// Fuzz targets, and the endings of the files that they take.
+/// Fuzz targets, and the extensions of the files that they accept.
 const TARGETS: [(&str, &[&str]); 8] = [
     ("obj", &["obj"]),
     ("ply", &["ply"]),
@@ -22,7 +22,7 @@ const TARGETS: [(&str, &[&str]); 8] = [
     ("grid", &["grid"]),
 ];
 
-/// Fills `fuzz/corpus` in the repository at `root`, with what is below `scenes` as well.
+/// Fills `fuzz/corpus` in the repository at `root`, also with files below `scenes`.
 pub(crate) fn fill(root: &Path, scenes: Option<&Path>) -> Outcome {
     let mut found = files(&root.join("scenes"))?;
     if let Some(scenes) = scenes {
@@ -41,7 +41,7 @@ pub(crate) fn fill(root: &Path, scenes: Option<&Path>) -> Outcome {
     Ok(Verdict::Passed(format!("{count} inputs in fuzz/corpus")))
 }
 
-/// All files in a folder and the folders in it.
+/// All files in a folder, recursively.
 fn files(folder: &Path) -> Result<Vec<PathBuf>, Box<dyn std::error::Error>> {
     let mut files = Vec::new();
     let entries = fs::read_dir(folder).map_err(|error| format!("cannot list {}: {error}", folder.display()))?;
@@ -61,7 +61,7 @@ fn has_ending(path: &Path, endings: &[&str]) -> bool {
     endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
-/// A name that two files of the same name in different folders do not share.
+/// A name that distinguishes files of the same name in different folders.
 fn name(path: &Path) -> String {
     let folder = path.parent().and_then(Path::file_name).unwrap_or_default();
     [folder, path.file_name().unwrap_or_default()].map(OsStr::to_string_lossy).join("-")

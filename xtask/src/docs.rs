@@ -1,8 +1,8 @@
-//! Documents must not point to files that are gone.
+//! Documents must not refer to missing files.
 //!
-//! Two kinds of pointer are checked: the target of a Markdown or HTML link, relative to the document, and a path in backticks,
-//! relative to the repository's root. What counts as such a path is decided by [`is_path`]. Fenced blocks are left alone:
-//! they hold commands and examples.
+//! Two kinds of reference are checked: targets of Markdown or HTML links, relative to the document, and paths in backticks,
+//! relative to the repository's root, as recognised by [`is_path`]. Fenced blocks are skipped: they contain commands and
+//! examples.
 
 use std::path::Path;
 use std::{fmt, fs};
@@ -12,10 +12,10 @@ use crate::{Outcome, Verdict};
 /// The documents that describe the repository.
 const DOCUMENTS: [&str; 4] = ["README.md", "ARCHITECTURE.md", "METHOD.md", "CONTRIBUTING.md"];
 
-/// Endings of the files that the repository holds.
-const EXTENSIONS: [&str; 9] = ["rs", "md", "toml", "png", "json", "cu", "cuh", "h", "yml"];
+/// Extensions of the repository's files.
+const EXTENSIONS: [&str; 10] = ["rs", "md", "toml", "png", "svg", "json", "cu", "cuh", "h", "yml"];
 
-/// A pointer to something that does not exist.
+/// A reference to a missing file.
 #[derive(Debug, PartialEq, Eq)]
 struct Problem {
     document: String,
@@ -26,11 +26,11 @@ struct Problem {
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Problem { document, line, target } = self;
-        write!(f, "{document}:{line}: there is no `{target}`; correct the document or bring the file back")
+        write!(f, "{document}:{line}: there is no `{target}`; correct the document or restore the file")
     }
 }
 
-/// Something that a document points to.
+/// A reference in a document.
 #[derive(Debug, PartialEq, Eq)]
 enum Pointer {
     /// Relative to the document's folder.
@@ -49,16 +49,16 @@ pub(crate) fn check(root: &Path) -> Outcome {
         for (line, pointer) in pointers(root, &text) {
             count += 1;
             let (Pointer::Link(target) | Pointer::Path(target)) = &pointer;
-            // All documents lie in the root, so that both kinds of pointer start there.
+            // All documents are in the root, so both kinds of reference are relative to it.
             if !exists(root, target) {
                 problems.push(Problem { document: document.to_owned(), line, target: target.clone() });
             }
         }
     }
-    Ok(Verdict::new(problems, || format!("{count} links and paths in {} documents, all there", DOCUMENTS.len())))
+    Ok(Verdict::new(problems, || format!("{count} links and paths in {} documents, all present", DOCUMENTS.len())))
 }
 
-/// All pointers of a document with their lines.
+/// All references of a document with their lines.
 fn pointers(root: &Path, text: &str) -> Vec<(usize, Pointer)> {
     let mut found = Vec::new();
     let mut fenced = false;
@@ -89,8 +89,8 @@ fn links(line: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Whether a piece of code claims to be a path in the repository: it has a slash, and either ends as our files do or begins
-/// with a folder of ours. What the build leaves in `target` and what lies outside is none of it.
+/// Whether a code span is a path in the repository: it has a slash, and either an extension of our files or one of our folders as
+/// its first part. Build products in `target` and paths outside the repository are not.
 fn is_path(root: &Path, code: &str) -> bool {
     let letter = |c: char| c.is_ascii_alphanumeric() || "_-./<>*".contains(c);
     let Some((first, rest)) = code.split_once('/') else { return false };
@@ -106,8 +106,8 @@ fn has_ending(path: &str, ending: &str) -> bool {
     Path::new(path).extension().is_some_and(|extension| extension == ending)
 }
 
-/// Whether a file or folder is there. A part with `<name>` or `*` stands for any name with the same beginning and end; one
-/// match is enough.
+/// Whether a file or folder exists. A part with `<name>` or `*` matches any name with the same beginning and end; one match is
+/// enough.
 fn exists(folder: &Path, path: &str) -> bool {
     let (part, rest) = path.split_once('/').unwrap_or((path, ""));
     if part.is_empty() {
@@ -126,7 +126,7 @@ fn exists(folder: &Path, path: &str) -> bool {
     })
 }
 
-/// What stands before and after a wildcard.
+/// The text before and after a wildcard.
 fn wildcard(part: &str) -> Option<(&str, &str)> {
     part.split_once('*').or_else(|| {
         let (before, rest) = part.split_once('<')?;
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn what_is_there_is_found_and_nothing_else() {
-        for path in ["src/main.rs", "src", "src/", "src/*.rs", "<folder>/licences.rs", "Cargo.toml"] {
+        for path in ["src/main.rs", "src", "src/", "src/*.rs", "<folder>/docs.rs", "Cargo.toml"] {
             assert!(exists(root(), path), "{path}");
         }
         for path in ["src/gone.rs", "gone/", "src/*.md", "<folder>/gone.rs", "src/main.rs/", "Cargo.toml/x"] {
@@ -180,9 +180,6 @@ mod tests {
     #[test]
     fn a_report_names_document_line_and_target() {
         let problem = Problem { document: "README.md".to_owned(), line: 7, target: "gone/".to_owned() };
-        assert_eq!(
-            problem.to_string(),
-            "README.md:7: there is no `gone/`; correct the document or bring the file back"
-        );
+        assert_eq!(problem.to_string(), "README.md:7: there is no `gone/`; correct the document or restore the file");
     }
 }

@@ -1,37 +1,36 @@
-//! Checks of the repository itself, what is made from its sources and committed, and inputs for fuzzing: `cargo xtask licences`,
-//! `cargo xtask check-docs`, `cargo xtask kernels`, `cargo xtask readme` and `cargo xtask fuzz-corpus`.
+//! Checks of the repository itself, files generated from its sources and committed, and inputs for fuzzing: see `USAGE`.
 //!
-//! A check gives back what it found; only this file prints and exits.
+//! A check returns what it found; only this file prints and exits.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
 
+mod circles;
 mod corpus;
 mod docs;
+mod examples;
 mod kernels;
-mod licences;
-mod readme;
 
 use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
 
 const USAGE: &str = "\
-usage: cargo xtask licences      every dependency, for any target, is under a licence that the project may use
-       cargo xtask check-docs    every file that the documents point to exists
-       cargo xtask kernels       makes the layout header, the kernels' PTX and docs/kernels.md; with --check, says whether they are
-                                 as they should be
-       cargo xtask readme        writes the tables of README and METHOD from the results that they name; with --check, says
-                                 whether they are as they should be
-       cargo xtask fuzz-corpus   fills fuzz/corpus with the seeds and the scenes here, and with the models in the folder
-                                 whose name follows";
+usage: cargo xtask check-docs          checks that every file that the documents name exists
+       cargo xtask circles             checks that no modules of the renderer import each other in a circle
+       cargo xtask kernels [--check]   writes the layout header, the kernels' PTX and docs/kernels.md
+       cargo xtask readme [--check]    writes the tables of README and METHOD from the results they name
+       cargo xtask drawings [--check]  writes the drawings of METHOD to docs/drawings
+       cargo xtask fuzz-corpus [DIR]   fills fuzz/corpus with the seeds, the scenes here and the models in DIR
 
-/// What a check has to say; an error where it could not be made.
+With --check nothing is written: the command fails if a file is out of date.";
+
+/// The result of a check; an error if it could not run.
 type Outcome = Result<Verdict, Box<dyn Error>>;
 
 /// What was found.
 enum Verdict {
-    /// All is well: how much was looked at.
+    /// All is well; how much was checked.
     Passed(String),
-    /// What is wrong, a line each.
+    /// The problems, a line each.
     Failed(Vec<String>),
 }
 
@@ -49,12 +48,14 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
     let verdict = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["licences"] => licences::check(root),
         ["check-docs"] => docs::check(root),
+        ["circles"] => circles::check(root),
         ["kernels"] => kernels::run(root, false),
         ["kernels", "--check"] => kernels::run(root, true),
-        ["readme"] => readme::run(root, false),
-        ["readme", "--check"] => readme::run(root, true),
+        ["readme"] => examples::readme(root, false),
+        ["readme", "--check"] => examples::readme(root, true),
+        ["drawings"] => examples::drawings(root, false),
+        ["drawings", "--check"] => examples::drawings(root, true),
         ["fuzz-corpus"] => corpus::fill(root, None),
         ["fuzz-corpus", scenes] => corpus::fill(root, Some(Path::new(scenes))),
         _ => {

@@ -1,5 +1,4 @@
-//! The tables of documents that are made from results: written anew, or with `--check` only looked at. See
-//! [`lightmesh_bench::readme`].
+//! Regenerates the tables in documents from results, or with `--check` only compares them. See [`lightmesh_bench::readme`].
 //!
 //! `cargo run -p lightmesh-bench --example readme -- README.md METHOD.md [--check]`, or `cargo xtask readme [--check]`.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
@@ -21,16 +20,16 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
         let name = document.display();
         let tables = readme::tables(&text, root).map_err(|error| format!("{name}: {error}"))?;
         match &tables.differing[..] {
-            [] => println!("{name}: {} tables from results, all as they should be", tables.count),
+            [] => println!("{name}: {} tables from results, all up to date", tables.count),
             lines if flags.is_empty() => {
                 let mut file = Replacement::of(&document)?;
                 file.write_all(tables.text.as_bytes())?;
                 file.commit()?;
-                println!("{name}: {} of {} tables written anew", lines.len(), tables.count);
+                println!("{name}: {} of {} tables updated", lines.len(), tables.count);
             }
             lines => {
                 for line in lines {
-                    eprintln!("error: {name}:{line}: the table is not what its results say; run `cargo xtask readme`");
+                    eprintln!("error: {name}:{line}: the table does not match its results; run `cargo xtask readme`");
                 }
                 code = ExitCode::FAILURE;
             }

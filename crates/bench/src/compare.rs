@@ -1,48 +1,48 @@
-//! Is a run of a suite slower than an earlier one, beyond the noise of both?
+//! Is a run of a suite significantly slower than an earlier one?
 //!
-//! Rows are matched by id. For each stage that both have, `ratio` is the median of the later samples over that of the earlier ones. It
-//! is held against the *noise band*
+//! Rows are matched by id. For each stage present in both, `ratio` is the median of the later samples over that of the earlier
+//! ones. It is compared with the *noise band*
 //!
 //! ```text
 //! band = max(5 %, 2 · √(s_old² + s_new²)),   s = (Q3 − Q1) / median
 //! ```
 //!
-//! of the interquartile ranges of both: half of the samples lie within Q1…Q3, and a few that were disturbed do not move it. Fewer than 3
-//! samples have no spread to speak of; s is taken as 15 % there. A stage is slower above 1 + band and faster below 1 / (1 + band).
+//! from the interquartile ranges of both: half of the samples lie within Q1…Q3, and a few outliers do not move it. Fewer than 3
+//! samples give no meaningful spread; s is then taken as 15 %. A stage is slower above 1 + band and faster below 1 / (1 + band).
 //!
-//! A row is judged by its stage `render`, the whole of a picture, or by all stages where either has none. Stages that take less than
-//! 0.1 ms are not judged: clocks and launches vary by as much. Not promised: that two different machines can be told apart from a change
-//! of the program.
+//! A row is judged by its stage `render`, the whole frame, or by all stages if one of the runs has none or if the suite is
+//! `stages`. Stages shorter than 0.1 ms are not judged: clocks and launches vary as much. Differences between two machines cannot
+//! be distinguished from changes of the program.
 
 use std::fmt;
 
 use serde::Serialize;
 
-use crate::{Results, Row, Samples, WHOLE};
+use crate::{Results, Row, STAGES, Samples, WHOLE};
 
-/// The least noise that is believed, relative.
+/// Minimum relative noise.
 const LEAST_BAND: f64 = 0.05;
-/// How many spreads of the difference are noise.
+/// Half-width of the noise band in spreads of the difference.
 const SPREADS: f64 = 2.0;
-/// Samples that a spread can be taken from.
+/// Minimum number of samples for a spread.
 const ENOUGH_SAMPLES: usize = 3;
-/// The relative spread of fewer samples.
+/// Relative spread assumed for fewer samples.
 const UNKNOWN_SPREAD: f64 = 0.15;
-/// Seconds that clocks cannot be trusted with.
+/// Stages shorter than this, in seconds, are not judged.
 const LEAST_SECONDS: f64 = 1e-4;
 
-/// Two runs of a suite, held against each other.
+/// A comparison of two runs of a suite.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunComparison {
-    /// Every stage of every row that both have.
+    /// Every stage of every row present in both.
     pub stages: Vec<StageComparison>,
-    /// Ids of rows that the earlier run alone has.
+    /// Ids of rows only in the earlier run.
     pub only_old: Vec<String>,
-    /// Ids of rows that the later run alone has.
+    /// Ids of rows only in the later run.
     pub only_new: Vec<String>,
-    /// Whether both ran on machines of the same description.
+    /// Whether both machines have the same description.
     pub same_machine: bool,
-    /// How many judged stages are slower.
+    /// Number of judged stages that are slower.
     pub regressions: usize,
 }
 
@@ -61,26 +61,26 @@ pub struct StageComparison {
     pub ratio: f64,
     /// Relative noise of both.
     pub band: f64,
-    /// What the ratio says.
+    /// The verdict on the ratio.
     pub verdict: Verdict,
     /// Whether the row is judged by this stage.
     pub judged: bool,
 }
 
-/// What a ratio says.
+/// The verdict on a ratio.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// Within the noise.
     Same,
-    /// Less time, beyond the noise.
+    /// Less time than the noise explains.
     Faster,
-    /// More time, beyond the noise.
+    /// More time than the noise explains.
     Slower,
 }
 
 impl RunComparison {
-    /// Holds `new` against `old`.
+    /// Compares `new` with `old`.
     pub fn new(old: &Results, new: &Results) -> RunComparison {
         let find = |rows: &'_ [Row], id: &str| rows.iter().position(|row| row.id == id);
         let pairs = old.rows.iter().filter_map(|row| Some((row, &new.rows[find(&new.rows, &row.id)?])));
@@ -99,15 +99,15 @@ impl RunComparison {
 }
 
 impl StageComparison {
-    /// Whether the row is slower by it.
+    /// Whether it makes the row slower.
     pub fn is_regression(&self) -> bool {
         self.judged && self.verdict == Verdict::Slower
     }
 }
 
-/// All stages that both rows have.
+/// All stages present in both rows.
 fn compare_rows(old: &Row, new: &Row) -> Vec<StageComparison> {
-    let whole = old.seconds.contains_key(WHOLE) && new.seconds.contains_key(WHOLE);
+    let whole = old.experiment != STAGES && old.seconds.contains_key(WHOLE) && new.seconds.contains_key(WHOLE);
     let both = old.seconds.iter().filter_map(|(stage, samples)| Some((stage, samples, new.seconds.get(stage)?)));
     let compared = both.filter_map(|(stage, old_samples, new_samples)| {
         let (before, after) = (old_samples.median()?, new_samples.median()?);
@@ -165,7 +165,7 @@ fn spread(samples: &Samples) -> f64 {
 impl fmt::Display for RunComparison {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(f, "{:>10} {:>10} {:>7} {:>6}  {:7} row", "old s", "new s", "ratio", "band", "verdict")?;
-        // Judged stages all; the others of a row where they say what made it slower.
+        // All judged stages; other stages of a row if they explain why it is slower.
         let slower: Vec<&str> =
             self.stages.iter().filter(|stage| stage.is_regression()).map(|stage| stage.id.as_str()).collect();
         let shown = |stage: &&StageComparison| {
@@ -179,11 +179,11 @@ impl fmt::Display for RunComparison {
         }
         for (which, ids) in [("old", &self.only_old), ("new", &self.only_new)] {
             if !ids.is_empty() {
-                writeln!(f, "{} rows are in the {which} results alone", ids.len())?;
+                writeln!(f, "{} rows are only in the {which} results", ids.len())?;
             }
         }
         if !self.same_machine {
-            writeln!(f, "the machines differ: ratios say as much about them as about the program")?;
+            writeln!(f, "the machines differ: ratios reflect the machines as much as the program")?;
         }
         Ok(())
     }

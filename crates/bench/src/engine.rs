@@ -5,23 +5,23 @@ use lightmesh::{Device, RenderError, Renderer};
 
 use crate::{Key, Plan};
 
-/// A device with its renderer, and the keys that stand for it in rows. They are the same on every machine, so that rows can be
-/// matched: `all` threads, not 16.
+/// A device with its renderer, and its keys in rows. They are the same on every machine, so that rows can be matched: `all`
+/// threads, not 16.
 pub struct Engine {
     /// Renders on it.
     pub renderer: Renderer,
     /// `cpu` or `cuda`: the key `device`.
     pub kind: &'static str,
-    /// The device's name with its number, as in `cuda:0`.
+    /// Name and number of the device, as in `cuda:0`.
     pub device: String,
-    /// 1, the number that was asked for, or `all`: the key `threads`; `None` on a GPU.
+    /// 1, the requested number, or `all`: the key `threads`; `None` on a GPU.
     pub threads: Option<Key>,
-    /// How many threads that is; `None` on a GPU.
+    /// The number of threads; `None` on a GPU.
     pub thread_count: Option<usize>,
 }
 
 impl Engine {
-    /// The processor with `threads` threads; `None`: one for each that it runs at once.
+    /// The CPU with `threads` threads; `None`: all hardware threads.
     pub fn cpu(threads: Option<usize>) -> Result<Engine, RenderError> {
         let all = std::thread::available_parallelism().map_or(1, usize::from);
         let choice = Choice::of(Device::Cpu)?;
@@ -46,11 +46,11 @@ impl Engine {
     }
 }
 
-/// The devices of a plan, the fastest first: the GPU where one is asked for or, with [`Device::Auto`], works; then the processor with
-/// all threads, unless a GPU is asked for.
+/// The devices of a plan, fastest first: the GPU, if requested or, with [`Device::Auto`], if one works; then the CPU with all
+/// threads, unless a GPU is requested.
 ///
 /// # Errors
-/// [`RenderError::Device`] where a GPU is asked for and cannot be used, [`RenderError::Setting`] for a number of threads without sense.
+/// [`RenderError::Device`] if a GPU is requested and cannot be used, [`RenderError::Setting`] for an invalid number of threads.
 pub fn engines(plan: &Plan) -> Result<Vec<Engine>, RenderError> {
     let choice = Choice::of(plan.device)?;
     let mut engines = Vec::new();

@@ -10,43 +10,44 @@ use crate::Suite;
 
 /// Why there are no results.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum BenchError {
     /// A scene could not be opened.
     #[error(transparent)]
     Scene(#[from] LoadError),
-    /// A picture could not be rendered, or the suite was stopped.
+    /// An image could not be rendered, or the suite was stopped.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// A picture could not be packed.
-    #[error("a picture of the suite has no PNG form: {0}")]
+    /// An image could not be encoded.
+    #[error("an image of the suite cannot be stored as PNG: {0}")]
     Picture(#[from] EncodeError),
-    /// Two pictures could not be held against each other.
+    /// Two images could not be compared.
     #[error(transparent)]
     Compare(#[from] CompareError),
     /// There is no suite of this name.
-    #[error("there is no suite `{0}`: choose thesis, quality or rays")]
+    #[error("there is no suite `{0}`: choose thesis, quality, rays or stages")]
     UnknownSuite(String),
-    /// The suite measures scenes of its own.
-    #[error("suite {0} measures scenes of its own; leave out --scene, or take the suite quality or rays")]
+    /// The suite does not accept scenes and sizes.
+    #[error("suite {0} has its own scenes and sizes; omit them, or use the suite quality, rays or stages")]
     OwnScenes(Suite),
     /// A file of results could not be read.
     #[error("cannot read {}: {reason}; check the path and its permissions", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         reason: io::Error,
     },
-    /// A file holds something else than results.
-    #[error("{} does not hold results of a suite ({reason}); make it anew with `lightmesh bench SUITE --json FILE`", path.display())]
+    /// A file does not contain results.
+    #[error("{} does not contain results of a suite ({reason}); generate it again", path.display())]
     Malformed {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it, and where.
+        /// The problem, and where it is.
         reason: serde_json::Error,
     },
-    /// A file holds results in another version of the format.
-    #[error("{} has version {found} of the format, this program reads {known}; make it anew", path.display())]
+    /// A file contains results in another version of the format.
+    #[error("{} has format version {found}, this program reads version {known}; generate it again", path.display())]
     Version {
         /// The file.
         path: PathBuf,
@@ -55,8 +56,8 @@ pub enum BenchError {
         /// The version that is read.
         known: u32,
     },
-    /// Two results have nothing that could be compared.
-    #[error("{} and {} have no row in common that took time: compare results of one suite, both --quick or both not", old.display(), new.display())]
+    /// Two results have nothing in common.
+    #[error("{} and {} have no timed row in common: compare results of the same suite, both quick or both not", old.display(), new.display())]
     NothingInCommon {
         /// The earlier results.
         old: PathBuf,

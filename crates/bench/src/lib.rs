@@ -1,21 +1,24 @@
-//! Experiments: timed suites, what they find, and what is made of that.
+//! Experiments: timed suites, their results, comparisons and reports.
 //!
-//! Data flows one way: [`run`] takes a [`Suite`] and a [`Plan`] and gives [`Results`], which are kept as JSON; comparison and reports
-//! read them. A suite makes renderers ([`engine`]), times pictures in turn ([`measure`]) and gathers rows, pictures and notes
-//! ([`Findings`]).
+//! Data flows in one direction: [`run`] takes a [`Suite`] and a [`Plan`] and returns [`Results`], which are stored as JSON;
+//! comparisons and reports read them. A suite creates renderers ([`engine`]), times alternating renders ([`measure`]) and
+//! collects rows, images and notes ([`Findings`]).
 #![forbid(unsafe_code)]
 
 mod compare;
 pub mod engine;
 mod error;
 mod findings;
+mod json;
 mod load;
 mod machine;
 pub mod measure;
+mod output;
 mod plan;
 pub mod readme;
 pub mod report;
 mod results;
+mod save;
 pub mod schedule;
 mod suites;
 mod table;
@@ -23,7 +26,8 @@ mod table;
 pub use compare::{RunComparison, StageComparison, Verdict};
 pub use error::BenchError;
 pub use findings::Findings;
+pub use output::{OutputError, prepare_folder};
 pub use plan::{Plan, Suite};
-pub(crate) use results::WHOLE;
 pub use results::{Gpu, Key, Machine, Picture, Program, Results, Row, Samples};
+pub(crate) use results::{STAGES, WHOLE};
 pub use suites::run;

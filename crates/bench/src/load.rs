@@ -6,11 +6,11 @@ use std::path::Path;
 use crate::{BenchError, Results};
 
 impl Results {
-    /// Reads a file that `lightmesh bench --json` wrote.
+    /// Reads a file written by `lightmesh bench --json`.
     ///
     /// # Errors
-    /// [`BenchError::Read`] where the file cannot be read, [`BenchError::Malformed`] where it holds something else,
-    /// [`BenchError::Version`] where it is of another version of the format.
+    /// [`BenchError::Read`] if the file cannot be read, [`BenchError::Malformed`] if it contains something else,
+    /// [`BenchError::Version`] if it has another version of the format.
     pub fn load(path: impl AsRef<Path>) -> Result<Results, BenchError> {
         let path = path.as_ref();
         let text = fs::read_to_string(path).map_err(|reason| BenchError::Read { path: path.to_owned(), reason })?;

@@ -1,4 +1,4 @@
-//! Where and when a suite runs. What the system does not tell is left empty or 0.
+//! Where and when a suite runs. Unknown facts are empty or 0.
 
 use std::fs;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -8,7 +8,7 @@ use lightmesh::render::{DeviceReport, devices};
 use crate::{Gpu, Machine, Program};
 
 impl Machine {
-    /// This machine, with those GPUs whose device names (`cuda:0`) are in `used`.
+    /// This machine, with the GPUs whose device names (`cuda:0`) are in `used`.
     pub fn here(used: &[String]) -> Machine {
         let reports = devices();
         let cpu = reports.iter().find(|report| report.device == "cpu").map(|report| report.name.clone());
@@ -63,8 +63,8 @@ pub(crate) fn utc_now() -> String {
     utc(SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()))
 }
 
-/// A time in UTC from seconds since 1970. Days are turned into a date of the Gregorian calendar by eras of 400 years that begin
-/// in March, so that the leap day comes last (Hinnant: *chrono-Compatible Low-Level Date Algorithms*).
+/// UTC time from seconds since 1970. Days are converted to a Gregorian date by eras of 400 years that begin in March, so that the
+/// leap day comes last (Hinnant: *chrono-Compatible Low-Level Date Algorithms*).
 fn utc(seconds: u64) -> String {
     const DAY: u64 = 86_400;
     const DAYS_OF_ERA: u64 = 146_097;

@@ -1,7 +1,7 @@
-//! Timing: the same pictures again and again, in turn.
+//! Timing: repeated renders that alternate between variants.
 //!
-//! Variants alternate, so that a machine whose speed drifts slows all of them alike. A first round that does not count warms caches,
-//! threads and a GPU's copy of the scene. All samples are kept.
+//! Because variants alternate, drifts in the machine's speed affect all of them equally. A first, uncounted round warms up
+//! caches, threads and a GPU's copy of the scene. All samples are kept.
 
 use std::collections::BTreeMap;
 
@@ -10,35 +10,35 @@ use lightmesh::{Frame, Observer, RenderError, Renderer, Settings, Stage};
 
 use crate::{Row, Samples, WHOLE};
 
-/// One way to make a picture.
+/// One way to render an image.
 pub struct Variant<'a> {
-    /// Where.
+    /// The device.
     pub renderer: &'a Renderer,
-    /// Of what.
-    pub scene: &'a PreparedScene<'a>,
-    /// How.
+    /// The scene.
+    pub scene: &'a PreparedScene,
+    /// The settings.
     pub settings: Settings,
 }
 
 /// How often each variant is rendered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rounds {
-    /// Whether a first round does not count.
+    /// Whether there is a first, uncounted round.
     pub warm_up: bool,
-    /// Rounds that count, at least 1.
+    /// Counted rounds, at least 1.
     pub repetitions: usize,
 }
 
-/// What was measured of a variant.
+/// The measurements of a variant.
 pub struct Measured {
-    /// Seconds of each stage that took any, and of `render`, the whole: one sample a repetition.
+    /// Seconds of each stage that took any time, and of `render`, the whole frame: one sample per repetition.
     pub seconds: BTreeMap<String, Samples>,
-    /// The last picture.
+    /// The last frame.
     pub frame: Frame,
 }
 
-/// Renders all variants in turn, as often as `rounds` says. The observer is asked whether to stop, and told nothing: stages come too
-/// fast to be of interest.
+/// Renders all variants alternately, `rounds` times. The observer is polled for a request to stop, but gets no events: stages are
+/// too short to be of interest.
 ///
 /// # Errors
 /// As [`Renderer::render_prepared`].
@@ -75,61 +75,51 @@ impl Measured {
         self.seconds.get(WHOLE).and_then(Samples::median).unwrap_or(0.0)
     }
 
-    /// Moves seconds and the counts of the last picture into a row.
+    /// Moves seconds and the counts of the last frame into a row.
     pub fn fill(&self, row: &mut Row) {
         row.seconds = self.seconds.clone();
         row.values.extend(counts(&self.frame.stats));
     }
 }
 
-/// Counts and memory by their names in `--stats`, those that are not 0; and light points per pixel.
+/// Counts and memory by their names in `--stats`, except those that are 0; and light points per pixel.
 pub fn counts(stats: &Stats) -> BTreeMap<String, f64> {
     let (counts, memory) = (&stats.counts, &stats.memory);
-    let pixels = counts.pixels as f64;
-    let figures = [
-        ("pixels", pixels),
-        ("hits", counts.hits as f64),
-        ("template", counts.template as f64),
-        ("half_ball_mean", counts.half_ball_mean),
-        ("used_mean", counts.used_mean),
-        ("fallback_share", counts.fallback_share),
-        ("light_points", counts.light_points as f64),
-        ("light_points_per_pixel", counts.light_points as f64 / pixels),
-        ("short_tests", counts.short_tests as f64),
-        ("short_tests_culled", counts.short_tests_culled as f64),
-        ("long_tests", counts.long_tests as f64),
-        ("shadow_rays", counts.shadow_rays as f64),
+    let more = [
+        ("light_points_per_pixel", counts.light_points as f64 / counts.pixels as f64),
         ("host_peak_bytes", memory.host_peak_bytes as f64),
         ("device_peak_bytes", memory.device_peak_bytes as f64),
     ];
-    figures.into_iter().filter(|(_, figure)| *figure != 0.0).map(|(name, figure)| (name.to_owned(), figure)).collect()
+    let figures = counts.values().into_iter().chain(more);
+    figures.filter(|(_, figure)| *figure != 0.0).map(|(name, figure)| (name.to_owned(), figure)).collect()
 }
 
-/// The stages of a picture that took time, by their names in `--stats`. Building is done once for many pictures, and no part of them.
+/// The stages of a frame in order. Building happens once for many frames and is not included.
+fn stages() -> impl Iterator<Item = Stage> {
+    Stage::ALL.into_iter().filter(|stage| *stage != Stage::Build)
+}
+
+/// The names of the stages of a frame in order, and of the whole frame.
+pub(crate) fn stage_names() -> impl Iterator<Item = &'static str> {
+    stages().map(Stage::name).chain([WHOLE])
+}
+
+/// Adds the stages of a frame that took time, by their names in `--stats`.
 fn add_samples(samples: &mut BTreeMap<String, Samples>, seconds: &Seconds) {
-    let stages = [
-        (Stage::Upload.name(), seconds.upload),
-        (Stage::PrimaryRays.name(), seconds.primary_rays),
-        (Stage::ShortTests.name(), seconds.short_tests),
-        (Stage::Collect.name(), seconds.collect),
-        (Stage::LongTests.name(), seconds.long_tests),
-        (Stage::Shade.name(), seconds.shade),
-        (Stage::Download.name(), seconds.download),
-        (WHOLE, seconds.render),
-    ];
-    for (stage, seconds) in stages.into_iter().filter(|(_, seconds)| *seconds > 0.0) {
-        samples.entry(stage.to_owned()).or_default().0.push(seconds);
+    let times = stages().map(|stage| seconds.of(stage)).chain([seconds.render]);
+    for (stage, seconds) in stage_names().zip(times).filter(|(_, seconds)| *seconds > 0.0) {
+        samples.entry(stage.to_owned()).or_default().push(seconds);
     }
 }
 
-/// Lets the peak of this process' memory begin anew, where the system can: Linux does at a 5 in this file. Elsewhere the peak is that
-/// of the whole run so far.
+/// Resets this process' peak memory, if the system supports it: Linux does when 5 is written to this file. Elsewhere the peak is
+/// that of the whole run so far.
 fn reset_peak_memory() {
-    // Without permission the figure is an upper bound.
+    // Without permission the value is an upper bound.
     let _ = std::fs::write("/proc/self/clear_refs", "5");
 }
 
-/// Passes on the wish to stop, nothing else.
+/// Forwards requests to stop, nothing else.
 pub(crate) struct Silent<'a>(pub(crate) &'a dyn Observer);
 
 impl Observer for Silent<'_> {

@@ -1,4 +1,4 @@
-//! What is asked of a suite.
+//! The parameters of a run.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -12,33 +12,39 @@ use crate::BenchError;
 /// A suite of experiments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Suite {
-    /// Every table and figure of the thesis.
+    /// All tables and figures of the thesis.
     Thesis,
-    /// Errors against a converged reference, and what they cost.
+    /// Errors relative to a converged reference, and their cost.
     Quality,
     /// Rays per second of each acceleration structure.
     Rays,
+    /// Seconds of each stage, by acceleration structure and kind of short tests.
+    Stages,
 }
 
 impl Suite {
     /// All of them.
-    pub const ALL: [Suite; 3] = [Suite::Thesis, Suite::Quality, Suite::Rays];
+    pub const ALL: [Suite; 4] = [Suite::Thesis, Suite::Quality, Suite::Rays, Suite::Stages];
 
-    /// The word on the command line and in results.
+    /// The name on the command line and in results.
     pub fn name(self) -> &'static str {
         match self {
             Suite::Thesis => "thesis",
             Suite::Quality => "quality",
             Suite::Rays => "rays",
+            Suite::Stages => "stages",
         }
     }
 
-    /// What it measures, in a line.
+    /// What it measures, in one line.
     pub fn summary(self) -> &'static str {
         match self {
-            Suite::Thesis => "every table and figure of the thesis: seconds, light points, break-even, pictures",
-            Suite::Quality => "errors against converged area shadows, and what equal errors cost by shadow rays",
+            Suite::Thesis => "all tables and figures of the thesis: timings, light points, break-even, images",
+            Suite::Quality => "errors relative to converged area shadows, and the cost of shadow rays with equal error",
             Suite::Rays => "primary, shadow and short rays per second with BVH and grid, on any scene",
+            Suite::Stages => {
+                "seconds of each stage by acceleration structure, kind of short tests and radius, on any scene"
+            }
         }
     }
 }
@@ -61,35 +67,37 @@ impl FromStr for Suite {
 /// How a suite is run.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The short form: fewer and smaller pictures.
+    /// The short version: fewer and smaller images.
     pub quick: bool,
-    /// Time for all of it. Repetitions are cut to fit, then rows are left out.
+    /// Time budget. To fit, repetitions are reduced, then rows are dropped.
     pub budget: Duration,
-    /// Where to compute; [`Device::Auto`] is the processor and, where one works, a GPU.
+    /// The device; [`Device::Auto`] is the CPU and, if one works, a GPU.
     pub device: Device,
-    /// Threads on the processor; `None`: one for each that it runs at once.
+    /// CPU threads; `None`: all hardware threads.
     pub threads: Option<usize>,
-    /// Repetitions that count, at the least, where the budget allows.
+    /// Minimum number of counted repetitions, if the budget allows.
     pub repetitions: usize,
-    /// What sides of pictures are divided by; 1 but in tests of the suites themselves.
+    /// Pixels along a side instead of the suite's own, if it accepts any.
+    pub size: Option<u32>,
+    /// Divisor of image sizes; 1 except in tests of the suites themselves.
     pub shrink: u32,
-    /// Scenes to measure in place of the suite's own, where it can.
+    /// Scenes to measure instead of the suite's own, if it accepts any.
     pub scenes: Vec<PathBuf>,
-    /// The command line, for the results.
+    /// The command line, to be recorded in the results.
     pub command: String,
 }
 
 impl Plan {
-    /// Repetitions that a median needs to be worth its name.
+    /// Repetitions for a meaningful median.
     pub const REPETITIONS: usize = 5;
-    /// Time for a suite.
+    /// Time budget of a suite.
     pub const BUDGET: Duration = Duration::from_secs(15 * 60);
-    /// Time for the short form of a suite.
+    /// Time budget of the short version of a suite.
     pub const QUICK_BUDGET: Duration = Duration::from_secs(150);
-    /// The smallest side that a picture is shrunk to, in pixels.
+    /// Minimum side of a reduced image, in pixels.
     const SMALLEST_SIDE: u32 = 8;
 
-    /// The usual run of a suite, or its short form, on all that there is.
+    /// The usual run of a suite, or its short version, on all devices.
     pub fn new(quick: bool) -> Plan {
         Plan {
             quick,
@@ -97,13 +105,19 @@ impl Plan {
             device: Device::Auto,
             threads: None,
             repetitions: Plan::REPETITIONS,
+            size: None,
             shrink: 1,
             scenes: Vec::new(),
             command: String::new(),
         }
     }
 
-    /// Pixels of a side that the suite wants to have `side` pixels.
+    /// Pixels along a side: as requested, or else those of the suite, in its long and its short version.
+    pub(crate) fn side_or(&self, sides: [u32; 2]) -> u32 {
+        self.side(self.size.unwrap_or(sides[usize::from(self.quick)]))
+    }
+
+    /// Pixels along a side for which the suite specifies `side` pixels.
     pub fn side(&self, side: u32) -> u32 {
         (side / self.shrink.max(1)).max(Plan::SMALLEST_SIDE)
     }

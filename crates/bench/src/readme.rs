@@ -1,6 +1,6 @@
-//! Tables of documents that are made from results, so that no figure stands where nothing was measured.
+//! Generates tables in documents from results, so that every figure in them has been measured.
 //!
-//! A comment names the files, a table of the [report](crate::report) on them, and what of it is wanted:
+//! A comment names the files, a table of the [report](crate::report) on them, and a selection:
 //!
 //! ```text
 //! <!-- from docs/results/h200.json: timings; where scene=garden, size=2048; columns step, radius as R, median as ms -->
@@ -9,41 +9,41 @@
 //! | 0.1 | 2.1 | 5.63 |
 //! ```
 //!
-//! Several files have commas between them. A value may hold commas too, as in `place=CPU, 2 threads`. Without `where` all rows are
-//! taken, without `columns` all columns. Names of columns are those of the report; a misspelt one is refused with a list of them.
-//! Paths are relative to the document. `cargo xtask readme` writes the tables, `cargo xtask readme --check` says which are not as
-//! they should be.
+//! Files are separated by commas. A value may contain commas, too, as in `place=CPU, 2 threads`. Without `where` all rows are
+//! selected, without `columns` all columns. Column names are those of the report; an unknown one is an error that lists them.
+//! Paths are relative to the document. `cargo xtask readme` writes the tables, `cargo xtask readme --check` lists those that are
+//! out of date.
 
 use std::path::{Path, PathBuf};
 
 use crate::report::{Report, ReportError, Selection, TableError};
 
-/// How a comment above a table begins.
+/// The beginning of a comment above a table.
 const BEGIN: &str = "<!-- from ";
 const END: &str = " -->";
 
-/// Why tables cannot be made.
+/// Why tables cannot be generated.
 #[derive(Debug, thiserror::Error)]
 #[error("line {line}: {reason}")]
 pub struct ReadmeError {
     /// The comment's line, from 1.
     pub line: usize,
-    /// What is wrong there.
+    /// The problem.
     pub reason: ReadmeFault,
 }
 
 /// What is wrong with a comment above a table.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadmeFault {
-    /// It is not of the form that is understood.
+    /// It has the wrong form.
     #[error(
         "`{0}` is not of the form `<!-- from FILE.json: TABLE; where COLUMN=VALUE; columns NAME as TITLE -->`; correct it"
     )]
     Form(String),
-    /// There are no such results.
+    /// The results cannot be read.
     #[error(transparent)]
     Report(#[from] ReportError),
-    /// They have no such table.
+    /// They do not have the requested table.
     #[error(transparent)]
     Table(#[from] TableError),
 }
@@ -51,25 +51,25 @@ pub enum ReadmeFault {
 /// A document with tables from results.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Tables {
-    /// The document with every table as it should be.
+    /// The document with all tables up to date.
     pub text: String,
-    /// Lines, from 1, of the comments whose tables were otherwise.
+    /// Lines, from 1, of the comments whose tables were out of date.
     pub differing: Vec<usize>,
-    /// How many tables there are.
+    /// The number of tables.
     pub count: usize,
 }
 
-/// What a comment asks for.
+/// The selection of a comment.
 #[derive(Debug, PartialEq, Eq)]
 struct Request {
     files: Vec<PathBuf>,
     selection: Selection,
 }
 
-/// Makes the tables of a document anew. Comments in fenced blocks are examples, and left alone.
+/// Regenerates the tables of a document. Comments in fenced blocks are examples and ignored.
 ///
 /// # Errors
-/// [`ReadmeError`] for the first comment that cannot be followed.
+/// [`ReadmeError`] for the first comment with a problem.
 pub fn tables(text: &str, root: &Path) -> Result<Tables, ReadmeError> {
     let mut tables = Tables { text: String::with_capacity(text.len()), differing: Vec::new(), count: 0 };
     let mut lines = text.lines().enumerate().peekable();
@@ -99,7 +99,7 @@ pub fn tables(text: &str, root: &Path) -> Result<Tables, ReadmeError> {
     Ok(tables)
 }
 
-/// The table that a comment asks for.
+/// The table selected by a comment.
 fn wanted(comment: &str, root: &Path) -> Result<String, ReadmeFault> {
     let request = parse(comment).ok_or_else(|| ReadmeFault::Form(comment.to_owned()))?;
     let files: Vec<PathBuf> = request.files.iter().map(|file| root.join(file)).collect();
@@ -121,7 +121,7 @@ fn parse(comment: &str) -> Option<Request> {
                         (Some((column, value)), _) => {
                             selection.conditions.push((column.trim().to_owned(), value.trim().to_owned()));
                         }
-                        // What follows a comma and is no condition belongs to the value before it.
+                        // After a comma, text that is not a condition belongs to the value before it.
                         (None, Some((_, value))) => *value += &format!(", {part}"),
                         (None, None) => return None,
                     }

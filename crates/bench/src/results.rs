@@ -1,32 +1,32 @@
-//! What a suite found: the JSON that `lightmesh bench --json` writes.
+//! Results of a suite: the JSON written by `lightmesh bench --json`. Images are separate files.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// Everything that one run of a suite found, and where.
+/// All results of a run of a suite, and where it ran.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
-    /// Of this format: [`Results::VERSION`].
+    /// Format version: [`Results::VERSION`].
     pub version: u32,
     /// The suite's name.
     pub suite: String,
-    /// Whether it was the short form of the suite.
+    /// Whether it was the short version of the suite.
     pub quick: bool,
-    /// What ran.
+    /// The program.
     pub program: Program,
-    /// Where it ran.
+    /// The machine.
     pub machine: Machine,
-    /// When it began: UTC, as in 2026-01-31T12:00:00Z.
+    /// Start time: UTC, as in 2026-01-31T12:00:00Z.
     pub started: String,
-    /// How long all of it took, in seconds.
+    /// Total time in seconds.
     pub seconds: f64,
-    /// One row for each thing that was measured.
+    /// One row per measurement.
     pub rows: Vec<Row>,
-    /// Pictures that go with the rows.
+    /// Images that belong to the rows, if they were saved.
     #[serde(default)]
     pub pictures: Vec<Picture>,
-    /// What was left out and why; a sentence each.
+    /// What was omitted and why; a sentence each.
     #[serde(default)]
     pub notes: Vec<String>,
 }
@@ -38,18 +38,18 @@ pub struct Program {
     pub name: String,
     /// Its version.
     pub version: String,
-    /// The commit that it was built from, where that is known.
+    /// The commit from which it was built, if known.
     pub commit: Option<String>,
-    /// The command that ran the suite.
+    /// The command line.
     pub command: String,
 }
 
 /// The machine that a suite ran on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
-    /// The processor's name.
+    /// Name of the CPU.
     pub cpu: String,
-    /// Threads that it runs at once.
+    /// Hardware threads.
     pub threads: usize,
     /// Main memory, in bytes.
     pub memory_bytes: u64,
@@ -66,29 +66,35 @@ pub struct Gpu {
     pub name: String,
     /// Its memory, in bytes.
     pub memory_bytes: u64,
-    /// What its driver is for, as in "CUDA 13.0".
+    /// CUDA version of its driver, as in "CUDA 13.0".
     pub driver: String,
 }
 
-/// One thing that was measured.
+/// A measurement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// What tells it from all other rows of the suite, the same in every run: its experiment and keys.
+    /// Unique id within the suite, the same in every run: experiment and keys.
     pub id: String,
-    /// The table or figure that it belongs to.
+    /// The table or figure to which it belongs.
     pub experiment: String,
-    /// What was done: scene, size, step, radius, mode, device and so on.
+    /// The parameters: scene, size, step, radius, mode, device and so on.
     pub keys: BTreeMap<String, Key>,
-    /// Seconds of each stage (named as in `--stats`), of every repetition that counts.
+    /// Seconds of each stage (named as in `--stats`) for every counted repetition.
     #[serde(default)]
     pub seconds: BTreeMap<String, Samples>,
-    /// Counts, errors and other figures by name.
+    /// Counts, errors and other values by name.
     #[serde(default)]
     pub values: BTreeMap<String, f64>,
 }
 
-/// The stage that is the whole of a picture.
+/// Digits of a sample: runs differ in the second or third, and a file with thousands of samples stays small.
+const SAMPLE_DIGITS: usize = 5;
+
+/// The stage that stands for the whole frame.
 pub(crate) const WHOLE: &str = "render";
+
+/// The experiment that measures stages.
+pub(crate) const STAGES: &str = "stages";
 
 /// A setting: a number or a word.
 #[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
@@ -100,34 +106,37 @@ pub enum Key {
     Word(String),
 }
 
-/// The same thing, measured several times.
+/// Repeated measurements of the same quantity.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Samples(pub Vec<f64>);
 
-/// A picture.
+/// An image.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
-    /// What tells it from all other pictures of the suite.
+    /// Unique id within the suite.
     pub id: String,
-    /// The table or figure that it belongs to.
+    /// The table or figure to which it belongs.
     pub experiment: String,
     /// What it shows.
     pub title: String,
-    /// The id of the picture to hold it against.
+    /// The id of its reference image.
     #[serde(default)]
     pub reference: Option<String>,
-    /// A PNG file in Base64.
-    pub png: String,
+    /// Its PNG file, relative to the result file; empty if it has none yet.
+    pub file: String,
+    /// The content of that file.
+    #[serde(skip)]
+    pub png: Vec<u8>,
 }
 
 impl Results {
-    /// Version of the format that is written.
+    /// The current format version.
     pub const VERSION: u32 = 1;
 }
 
 impl Row {
-    /// A row without results: its id is made from its experiment and keys.
+    /// A row without results; its id is derived from its experiment and keys.
     pub fn new(experiment: &str, keys: impl IntoIterator<Item = (&'static str, Key)>) -> Row {
         let keys: BTreeMap<String, Key> = keys.into_iter().map(|(name, key)| (name.to_owned(), key)).collect();
         let words: Vec<String> = keys.iter().map(|(name, key)| format!("{name}={key}")).collect();
@@ -135,7 +144,7 @@ impl Row {
         Row { id, experiment: experiment.to_owned(), keys, seconds: BTreeMap::new(), values: BTreeMap::new() }
     }
 
-    /// Median seconds of a stage; `None` where it was not measured.
+    /// Median seconds of a stage; `None` if it was not measured.
     pub fn median(&self, stage: &str) -> Option<f64> {
         self.seconds.get(stage)?.median()
     }
@@ -144,6 +153,13 @@ impl Row {
 impl From<f64> for Key {
     fn from(number: f64) -> Key {
         Key::Number(number)
+    }
+}
+
+impl From<f32> for Key {
+    /// With the fewest digits that identify the `f32`: 2.1, not 2.0999999.
+    fn from(number: f32) -> Key {
+        Key::Number(number.to_string().parse().unwrap_or(f64::from(number)))
     }
 }
 
@@ -163,17 +179,23 @@ impl std::fmt::Display for Key {
 }
 
 impl Samples {
-    /// The least; `None` without any.
+    /// Adds a sample in seconds, rounded to the precision of clocks.
+    pub fn push(&mut self, seconds: f64) {
+        let digits = SAMPLE_DIGITS - 1;
+        self.0.push(format!("{seconds:.digits$e}").parse().unwrap_or(seconds));
+    }
+
+    /// The minimum; `None` if there are no samples.
     pub fn min(&self) -> Option<f64> {
         self.0.iter().copied().min_by(f64::total_cmp)
     }
 
-    /// The middle one, or the mean of both; `None` without any.
+    /// The median; `None` if there are no samples.
     pub fn median(&self) -> Option<f64> {
         self.quantile(0.5)
     }
 
-    /// The value that a share `q` of the samples does not exceed, linear between samples; `None` without any.
+    /// The quantile `q`, interpolated linearly between samples; `None` if there are no samples.
     pub fn quantile(&self, q: f64) -> Option<f64> {
         let mut sorted = self.0.clone();
         sorted.sort_by(f64::total_cmp);
@@ -193,6 +215,13 @@ mod tests {
         assert_eq!((samples.min(), samples.median()), (Some(1.0), Some(2.5)));
         assert_eq!((samples.quantile(0.0), samples.quantile(1.0)), (Some(1.0), Some(4.0)));
         assert_eq!((Samples::default().min(), Samples::default().median()), (None, None));
+    }
+
+    #[test]
+    fn samples_have_the_digits_that_mean_something() {
+        let mut samples = Samples::default();
+        [0.000_133_983_999_490_737_93, 12.345_678, 0.0].into_iter().for_each(|seconds| samples.push(seconds));
+        assert_eq!(samples, Samples(vec![0.000_133_98, 12.346, 0.0]));
     }
 
     #[test]

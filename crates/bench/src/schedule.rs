@@ -1,70 +1,70 @@
-//! What fits into the time there is.
+//! Fits tasks into a time budget.
 //!
-//! Tasks come in the order of their worth, each with an estimate of what one round of it takes. For each in turn, just before it runs:
+//! Tasks are ordered by importance, each with an estimated time per round. For each task, just before it runs:
 //!
-//! 1. the tasks after it are set aside time for one round each, with a margin;
-//! 2. it gets as many rounds of what is left as it wants, one of them to warm up, but at least one, which then counts; rounds that take
-//!    next to nothing, as those of a GPU beside those of a processor, it gets at any rate;
-//! 3. where not even one fits, it keeps those of its variants, from the first, that do.
+//! 1. time for one round of each later task is reserved, with a margin;
+//! 2. from the remaining time it gets as many rounds as it requests, including one to warm up, but at least one, which then
+//!    counts; rounds that take almost no time, like those of a GPU compared with a CPU, are always granted;
+//! 3. if not even one round fits, the task is reduced to the first variants that do.
 //!
-//! So repetitions go first, then rows, the least worthy ones first. Estimates come from small trials and are wrong in a like way for
-//! like tasks: what a task really took corrects those of its class.
+//! So repetitions are reduced first, then rows are dropped, least important first. Estimates come from small trials and have
+//! similar errors for similar tasks: the measured time of a task corrects the estimates of its class.
 
 use std::collections::BTreeMap;
 
 use crate::measure::Rounds;
 
-/// What is set aside for later tasks is so much more than their estimate.
+/// Factor by which the time reserved for later tasks exceeds their estimate.
 const MARGIN: f64 = 1.1;
-/// A task is not grudged so small a share of what is left, whatever comes after it.
+/// A task that needs less than this share of the remaining time always gets it.
 const SMALL_SHARE: f64 = 0.02;
 /// Cheap tasks are repeated for this many seconds,
 const SPAN: f64 = 1.0;
-/// but at most this many times as often as asked for.
+/// but at most this many times as often as requested.
 const MOST: usize = 4;
 
-/// A task as far as time is concerned.
+/// The timing of a task.
 #[derive(Clone, Debug)]
 pub struct Estimate {
-    /// Tasks of a class are misjudged alike: device and size, for instance.
+    /// Estimates of tasks of the same class have similar errors: device and size, for instance.
     pub class: String,
     /// Seconds of one render of each variant.
     pub seconds: Vec<f64>,
-    /// Repetitions that are wanted.
+    /// Requested repetitions.
     pub repetitions: usize,
 }
 
-/// The plan for all tasks.
+/// The schedule of all tasks.
 #[derive(Debug)]
 pub struct Schedule {
     estimates: Vec<Estimate>,
-    /// By class: the seconds that were estimated, and those that passed.
+    /// By class: estimated and measured seconds.
     passed: BTreeMap<String, [f64; 2]>,
 }
 
-/// What becomes of a task.
+/// The decision about a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decision {
-    /// How many of its variants, from the first, are measured; 0: the task is left out.
+    /// Number of its variants, from the first, that are measured; 0: the task is dropped.
     pub variants: usize,
-    /// How often.
+    /// The rounds.
     pub rounds: Rounds,
 }
 
 impl Schedule {
-    /// A plan for tasks in this order.
+    /// A schedule for tasks in this order.
     pub fn new(estimates: Vec<Estimate>) -> Schedule {
         Schedule { estimates, passed: BTreeMap::new() }
     }
 
-    /// What becomes of task `index`, with `left` seconds for it and all that follow.
+    /// Decides about task `index`, with `left` seconds for it and all later tasks.
     pub fn decide(&self, index: usize, left: f64) -> Decision {
         let task = &self.estimates[index];
         let later: f64 = (index + 1..self.estimates.len()).map(|later| self.round(later)).sum();
         let (round, free) = (self.round(index), (left - MARGIN * later).max(SMALL_SHARE * left));
         let all = task.seconds.len();
         let affordable = if round > 0.0 { free / round } else { f64::INFINITY };
-        // Beside the warm-up.
+        // In addition to the warm-up.
         let repetitions = task.wanted(round).min((affordable - 1.0).max(0.0) as usize);
         if repetitions >= 2 {
             return Decision { variants: all, rounds: Rounds { warm_up: true, repetitions } };
@@ -79,7 +79,7 @@ impl Schedule {
         Decision { variants: fitting.count(), rounds: once }
     }
 
-    /// Task `index` took `seconds` for this decision.
+    /// Records that task `index` took `seconds` with this decision.
     pub fn done(&mut self, index: usize, decision: Decision, seconds: f64) {
         let task = &self.estimates[index];
         let rounds = (decision.rounds.repetitions + usize::from(decision.rounds.warm_up)) as f64;
@@ -89,7 +89,7 @@ impl Schedule {
         *passed += seconds;
     }
 
-    /// Seconds that the tasks from `index` on take, for one round each.
+    /// Seconds for one round of each task from `index` on.
     pub fn remaining(&self, index: usize) -> f64 {
         (index..self.estimates.len()).map(|task| self.round(task)).sum()
     }
@@ -100,7 +100,7 @@ impl Schedule {
         self.correction(&task.class) * task.seconds.iter().sum::<f64>()
     }
 
-    /// How far estimates of a class were wrong; of all classes where it has not had its turn.
+    /// Error factor of the estimates of a class; of all classes if none of its tasks has run.
     fn correction(&self, class: &str) -> f64 {
         let all = || self.passed.values().fold([0.0, 0.0], |[a, b], [c, d]| [a + c, b + d]);
         let [estimated, passed] = self.passed.get(class).copied().unwrap_or_else(all);
@@ -109,7 +109,7 @@ impl Schedule {
 }
 
 impl Estimate {
-    /// Repetitions that are worth their time.
+    /// Worthwhile repetitions.
     fn wanted(&self, round: f64) -> usize {
         let fill = if round > 0.0 { (SPAN / round) as usize } else { 0 };
         fill.clamp(self.repetitions, MOST * self.repetitions)
@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn repetitions_go_before_rows_and_the_last_rows_go_first() {
         let schedule = Schedule::new(vec![task("a", &[2.0, 2.0]), task("a", &[5.0, 5.0])]);
-        // 11 are set aside for the second.
+        // 11 are reserved for the second.
         assert_eq!(schedule.decide(0, 11.0 + 16.5), decision(2, true, 3));
         assert_eq!(schedule.decide(0, 11.0 + 4.5), decision(2, false, 1));
         assert_eq!(schedule.decide(0, 5.0), decision(2, false, 1));
@@ -150,7 +150,7 @@ mod tests {
     fn cheap_tasks_are_repeated_though_dear_ones_follow() {
         let schedule = Schedule::new(vec![task("a", &[0.1]), task("a", &[0.3]), task("b", &[500.0])]);
         assert_eq!(schedule.decide(0, 100.0), decision(1, true, 10));
-        // Two seconds are a small share, and make six rounds.
+        // Two seconds are a small share, and suffice for six rounds.
         assert_eq!(schedule.decide(1, 100.0), decision(1, true, 5));
         assert_eq!(schedule.decide(1, 50.0), decision(1, true, 2));
     }

@@ -2,9 +2,10 @@
 
 use std::fmt;
 
-use crate::{Results, Row, Samples, WHOLE};
+use crate::measure::stage_names;
+use crate::{Results, Row, STAGES, Samples, WHOLE};
 
-/// Values that are shown where a row took no time.
+/// Number of values shown for rows without timings.
 const SHOWN_VALUES: usize = 4;
 
 impl fmt::Display for Results {
@@ -21,21 +22,31 @@ impl fmt::Display for Results {
     }
 }
 
-/// The row's keys; then minimum, median and number of renders, or else its first values.
+/// The row's keys and values.
 fn line(row: &Row) -> String {
     let keys: Vec<String> = row.keys.iter().map(|(name, key)| format!("{name}={key}")).collect();
-    let keys = keys.join(" ");
-    let figures = match row.seconds.get(WHOLE).and_then(|samples| Some((samples, samples.min()?, samples.median()?))) {
+    let figures = if row.experiment == STAGES { stages(row) } else { whole(row) };
+    format!("{}: {figures}", keys.join(" "))
+}
+
+/// Median milliseconds of each stage.
+fn stages(row: &Row) -> String {
+    let medians = stage_names().filter_map(|stage| Some((stage, 1e3 * row.median(stage)?)));
+    medians.map(|(stage, median)| format!("{stage} {median:.2}")).collect::<Vec<_>>().join(", ") + " ms"
+}
+
+/// Minimum, median and number of renders, or the row's first values.
+fn whole(row: &Row) -> String {
+    match row.seconds.get(WHOLE).and_then(|samples| Some((samples, samples.min()?, samples.median()?))) {
         Some((Samples(samples), min, median)) => format!("{min:.4} s min, {median:.4} s median of {}", samples.len()),
         None => {
             let values = row.values.iter().take(SHOWN_VALUES);
             values.map(|(name, value)| format!("{name} {}", figure(*value))).collect::<Vec<_>>().join(", ")
         }
-    };
-    format!("{keys}: {figures}")
+    }
 }
 
-/// Four digits that tell something.
+/// Four significant digits.
 fn figure(value: f64) -> String {
     match value.abs() {
         size if size > 0.0 && size < 1e-2 => format!("{value:.3e}"),
@@ -55,5 +66,8 @@ mod tests {
         assert_eq!(line(&row), "scene=garden: a 1.500e-7, b 510000, c 0.2500");
         row.seconds.insert("render".to_owned(), Samples(vec![2.0, 1.0, 4.0]));
         assert_eq!(line(&row), "scene=garden: 1.0000 s min, 2.0000 s median of 3");
+        row.experiment = STAGES.to_owned();
+        row.seconds.insert("shade".to_owned(), Samples(vec![0.001_234]));
+        assert_eq!(line(&row), "scene=garden: shade 1.23, render 2000.00 ms");
     }
 }

@@ -1,4 +1,4 @@
-//! Every table of the documents that names its results says what they say.
+//! Every table in the documents that names its results matches them.
 
 use std::path::Path;
 

@@ -9,11 +9,11 @@ use lightmesh_bench::report::ReportError;
 use crate::output::OutputError;
 use crate::plan::PlanError;
 
-/// A comparison exceeded its bound.
+/// A comparison exceeded its threshold.
 pub(crate) const EXCEEDED: u8 = 1;
 /// Bad input or usage.
 pub(crate) const BAD_INPUT: u8 = 2;
-/// Device or memory cannot do it.
+/// Device unusable or memory insufficient.
 pub(crate) const UNABLE: u8 = 3;
 /// Interrupted by the user.
 pub(crate) const INTERRUPTED: u8 = 130;
@@ -47,18 +47,21 @@ pub(crate) enum Failure {
     Bench(Box<BenchError>),
     #[error(transparent)]
     Report(Box<ReportError>),
-    /// A measure of a comparison is above what is accepted.
+    /// Results or a report could not be written.
+    #[error(transparent)]
+    Kept(#[from] lightmesh_bench::OutputError),
+    /// A measure of a comparison exceeds its threshold.
     #[error("{0}")]
     Exceeded(String),
-    /// No page of the manual has this name.
-    #[error("there is no subcommand `{name}`; known are {}", known.join(", "))]
+    /// There is no manual page of this name.
+    #[error("there is no subcommand `{name}`; the subcommands are {}", known.join(", "))]
     UnknownPage {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// All names.
         known: Vec<String>,
     },
-    /// The system does not let interrupts be caught.
+    /// Interrupts cannot be caught.
     #[error("cannot listen for Ctrl-C ({0}); start the program from a terminal or a shell")]
     Signals(#[from] ctrlc::Error),
 }
@@ -66,7 +69,7 @@ pub(crate) enum Failure {
 impl From<BenchError> for Failure {
     fn from(error: BenchError) -> Failure {
         match error {
-            // With the exit code of the render that could not be made.
+            // The exit code of the render that failed.
             BenchError::Render(error) => Failure::Render(error),
             BenchError::Scene(error) => Failure::Load(error),
             other => Failure::Bench(Box::new(other)),
@@ -81,7 +84,7 @@ impl From<ReportError> for Failure {
 }
 
 impl Failure {
-    /// The exit code that stands for it.
+    /// The exit code.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Failure::Exceeded(_) => EXCEEDED,
@@ -93,11 +96,7 @@ impl Failure {
                 | RenderError::Device { .. }
                 | RenderError::DeviceMemory { .. }
                 | RenderError::DeviceFault { .. } => UNABLE,
-                RenderError::Lattice(_)
-                | RenderError::Template(_)
-                | RenderError::Grid(_)
-                | RenderError::GridFile(_)
-                | RenderError::Setting { .. } => BAD_INPUT,
+                _ => BAD_INPUT,
             },
             _ => BAD_INPUT,
         }
@@ -106,6 +105,8 @@ impl Failure {
 
 #[cfg(test)]
 mod tests {
+    use lightmesh::render::Setting;
+
     use super::*;
 
     #[test]
@@ -114,7 +115,7 @@ mod tests {
         let device = RenderError::Device { device: "cuda".into(), reason: "none".into() };
         let full = RenderError::DeviceMemory { device: "Fake".into(), buffer: "masks", needed: 2, free: Some(1) };
         let fault = RenderError::DeviceFault { device: "Fake".into(), reason: "none".into() };
-        let setting = RenderError::Setting { what: "size", value: "0x0".into(), remedy: "choose another" };
+        let setting = RenderError::Setting { setting: Setting::Size, value: "0x0".into(), remedy: "choose another" };
         let errors = [memory, device, full, fault, setting, RenderError::Cancelled];
         let codes = errors.map(|error| Failure::from(error).exit_code());
         assert_eq!(codes, [UNABLE, UNABLE, UNABLE, UNABLE, BAD_INPUT, INTERRUPTED]);

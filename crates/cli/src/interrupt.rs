@@ -1,8 +1,8 @@
 //! Ctrl-C.
 //!
-//! While nothing is being watched the process ends at once: nothing has been written yet. While something is, the wish is
-//! noted and the work ends at its next opportunity; a second Ctrl-C does not wait for that. Output files are renamed into
-//! place, so that none of them is ever half-written.
+//! Before a render is observed, the process exits immediately: nothing has been written yet. Afterwards the request is recorded
+//! and work stops at the next opportunity; a second Ctrl-C does not wait for that. Output files are renamed into place, so none
+//! is ever partially written.
 
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,7 +25,7 @@ pub(crate) fn install() -> Result<(), Failure> {
     Ok(())
 }
 
-/// From here to the end of the run somebody asks [`requested`].
+/// From now on to the end of the run, [`requested`] is polled.
 pub(crate) fn watch() {
     WATCHED.store(true, Ordering::SeqCst);
 }

@@ -1,11 +1,11 @@
 //! `lightmesh`: the light mesh method on the command line.
 //!
-//! [`args`] (what was typed) ▶ [`plan`] (what it means, checked) ▶ [`run`] (the work) ▶ exit code, in one direction. What
-//! goes wrong on the way is a [`Failure`], which knows its exit code. Standard output holds what was asked for; sentences,
-//! progress and errors go to standard error.
+//! [`args`] (as typed) ▶ [`plan`] (validated) ▶ [`run`] (the work) ▶ exit code, in one direction. Anything that goes wrong is a
+//! [`Failure`], which knows its exit code. Results go to standard output; notes, progress and errors go to standard error.
 
 mod args;
 mod failure;
+mod flags;
 mod interrupt;
 mod output;
 mod plan;
@@ -28,7 +28,7 @@ fn main() -> ExitCode {
     let result = panic::catch_unwind(|| match Cli::try_parse() {
         Ok(cli) => interrupt::install().and_then(|()| run::run(cli.command)).unwrap_or_else(|failure| failed(&failure)),
         Err(message) => {
-            // Nobody is left to tell where even this cannot be printed.
+            // If even this cannot be printed, there is nowhere left to report it.
             let _ = message.print();
             message.exit_code() as u8
         }
@@ -37,23 +37,26 @@ fn main() -> ExitCode {
     ExitCode::from(if interrupt::requested() { INTERRUPTED } else { code })
 }
 
-/// Says what went wrong; gives the exit code.
+/// Reports an error; returns the exit code.
 fn failed(failure: &Failure) -> u8 {
     match failure {
         Failure::Exceeded(_) => output::complain(&failure.to_string()),
         _ if failure.exit_code() == INTERRUPTED => output::complain("interrupted: nothing was written"),
-        _ => output::complain(&format!("error: {failure}")),
+        _ => match flags::that_mend(failure) {
+            flags if flags.is_empty() => output::complain(&format!("error: {failure}")),
+            flags => output::complain(&format!("error: {failure} ({})", flags.join(", "))),
+        },
     }
     failure.exit_code()
 }
 
-/// A fault of the program itself, once, however many threads meet it.
+/// Reports a bug in the program itself, once, however many threads run into it.
 fn report_fault(fault: &PanicHookInfo) {
     static ONCE: Once = Once::new();
     let payload = fault.payload();
     let text = payload.downcast_ref::<&str>().copied().or(payload.downcast_ref::<String>().map(String::as_str));
     let message = text.unwrap_or("no message");
     let place = fault.location().map_or_else(String::new, |place| format!(", {}:{}", place.file(), place.line()));
-    let text = format!("error: a fault in lightmesh itself ({message}){place}; please report it with the command line");
+    let text = format!("error: internal error in lightmesh ({message}){place}; please report it with the command line");
     ONCE.call_once(|| output::complain(&text));
 }

@@ -1,4 +1,4 @@
-//! Where results go: standard output, standard error, and files that are there whole or not at all.
+//! Output to standard output, standard error, and files that are written completely or not at all.
 
 use std::borrow::Cow;
 use std::io::{self, ErrorKind, Write};
@@ -6,24 +6,24 @@ use std::path::{Path, PathBuf};
 
 use lightmesh_files::{Replacement, TargetError, resolved};
 
-/// Why something was not, or will not be, written.
+/// Why output cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum OutputError {
-    /// There could be no such file.
+    /// The file cannot be created.
     #[error(transparent)]
     Target(#[from] TargetError),
-    /// Filling the file failed.
-    #[error("cannot write {}: {reason}; nothing was written, check the space left on the disk", path.display())]
+    /// Writing the file failed.
+    #[error("cannot write {}: {reason}; nothing was written; check the free disk space", path.display())]
     Write { path: PathBuf, reason: io::Error },
-    /// Two files would overwrite each other.
+    /// Two outputs are the same file.
     #[error("{first} and {second} are the same file, {}; give them different names", path.display())]
     SameFile { first: &'static str, second: &'static str, path: PathBuf },
-    /// Standard output is full or broken.
-    #[error("cannot write to standard output: {0}; check where it leads")]
+    /// Standard output cannot be written.
+    #[error("cannot write to standard output: {0}; check its destination")]
     Stdout(io::Error),
 }
 
-/// Prints to standard output. A reader that has seen enough is no error.
+/// Prints to standard output. A closed pipe is not an error.
 pub(crate) fn print(text: &str) -> Result<(), OutputError> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
@@ -32,12 +32,12 @@ pub(crate) fn print(text: &str) -> Result<(), OutputError> {
     }
 }
 
-/// Prints a line to standard error. Where that cannot be done, nobody is left to tell.
+/// Prints a line to standard error. If that fails, there is nowhere left to report it.
 pub(crate) fn complain(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", visible(text));
 }
 
-/// The text with its control characters written out: names in a file must not command the terminal or begin new lines.
+/// Escapes control characters: names in a file must not control the terminal or begin new lines.
 fn visible(text: &str) -> Cow<'_, str> {
     if !text.contains(char::is_control) {
         return text.into();
@@ -46,12 +46,12 @@ fn visible(text: &str) -> Cow<'_, str> {
     text.chars().map(written).collect::<String>().into()
 }
 
-/// Says whether a file could be written to `path`, without touching what is there.
+/// Checks that a file could be written to `path`, without touching an existing one.
 pub(crate) fn check_writable(path: &Path) -> Result<(), OutputError> {
     Ok(lightmesh_files::check_writable(path)?)
 }
 
-/// Writes a file, whole or not at all.
+/// Writes a file completely or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     let failed = |reason| OutputError::Write { path: path.to_owned(), reason };
     let mut file = Replacement::of(path)?;
@@ -59,7 +59,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     file.commit().map_err(failed)
 }
 
-/// Refuses files that are one and the same. Each comes with the name that the user knows it by.
+/// Rejects paths to the same file. Each comes with the name by which the user knows it.
 pub(crate) fn check_distinct(files: &[(&'static str, Option<&Path>)]) -> Result<(), OutputError> {
     let mut seen: Vec<(&str, PathBuf)> = Vec::new();
     for &(second, path) in files {

@@ -1,11 +1,11 @@
-//! The JSON of `--stats`: what the renderer counted, and what only the command line knows.
+//! The JSON of `--stats`: the renderer's statistics, and settings known only to the command line.
 
 use lightmesh::Stats;
 use lightmesh::render::{Counts, DeviceStats, MemoryStats, SceneStats, Seconds, SettingsStats};
 use lightmesh::scene::LightInfo;
 use serde::Serialize;
 
-/// [`Stats`] with settings of the command line among the others.
+/// [`Stats`] with the command line's settings added.
 #[derive(Serialize)]
 pub(crate) struct Report<'a> {
     version: u32,
@@ -42,8 +42,8 @@ impl<'a> Report<'a> {
     }
 }
 
-/// Indented JSON with a newline at its end.
+/// Indented JSON with a trailing newline.
 pub(crate) fn json(value: &impl Serialize) -> String {
     let text = serde_json::to_string_pretty(value);
-    text.expect("all keys are strings and serializing does no input or output") + "\n"
+    text.expect("all keys are strings and serialization does no I/O") + "\n"
 }

@@ -1,14 +1,17 @@
 //! What becomes of a picture when a device's memory does not suffice, and what a second picture costs.
 #![cfg(unix)]
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use glam::{DVec3, Vec3};
 use lightmesh_emulator::{Emulator, Traffic};
 use lightmesh_render::backend::Cuda;
-use lightmesh_render::{Acceleration, Frame, Mode, PreparedScene, RenderError, Settings, Step, Unobserved, render_on};
-use lightmesh_scene::{LightKind, Scene};
-use lightmesh_testkit::pile;
+use lightmesh_render::{
+    Acceleration, Frame, Kept, Mode, Observer, PreparedScene, RenderError, Settings, Stage, Step, Unobserved,
+    render_on, render_on_with,
+};
+use lightmesh_scene::{Geometry, LightKind, Scene, Up};
+use lightmesh_testkit::{Watch, pile};
 
 const ROWS: u32 = 40;
 
@@ -18,13 +21,7 @@ fn scene() -> Scene {
 }
 
 fn settings() -> Settings {
-    Settings {
-        mode: Mode::LightMesh,
-        size: [50, ROWS],
-        step: Some(Step::Fixed(0.2)),
-        layers: true,
-        ..Settings::default()
-    }
+    Settings::default().with_mode(Mode::LightMesh).with_size([50, ROWS]).with_step(Step::Fixed(0.2)).with_layers(true)
 }
 
 /// A picture on a device of the caller's own, with what went through its queue; the device's memory is free again afterwards.
@@ -54,7 +51,7 @@ fn a_picture_in_bands_is_the_same_picture() {
     let mut bands = Vec::new();
     for percent in [90, 70, 50, 40, 30] {
         let bytes = peak * percent / 100;
-        let limited = Settings { memory_limit: Some(bytes), ..settings() };
+        let limited = settings().with_memory_limit(bytes);
         for (device, settings) in [(Emulator::with_memory(bytes), settings()), (Emulator::new(), limited)] {
             let (frame, _, used) = render(&scene, device, &settings);
             let Ok(frame) = frame else { continue };
@@ -110,7 +107,7 @@ fn a_second_picture_of_a_scene_uploads_next_to_nothing() {
     let prepared = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
     let emulator = Arc::new(Emulator::new());
     let cuda = Cuda::new(Arc::clone(&emulator));
-    let settings = Settings { step: Some(Step::Fixed(2.0)), ..settings() };
+    let settings = settings().with_step(Step::Fixed(2.0));
     let written = || {
         render_on(&cuda, &prepared, &settings, &Unobserved).unwrap();
         emulator.take_traffic().written
@@ -118,4 +115,130 @@ fn a_second_picture_of_a_scene_uploads_next_to_nothing() {
     let (first, second) = (written(), written());
     assert!(first > 40_000, "{first} bytes: the scene");
     assert!(second < 1000, "{second} bytes: the camera goes with the launches");
+}
+
+#[test]
+fn geometry_is_uploaded_once_and_freed_when_it_is_gone() {
+    let emulator = Arc::new(Emulator::new());
+    let cuda = Cuda::new(Arc::clone(&emulator));
+    let prepared = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
+    let settings = Settings::default().with_mode(Mode::RayTrace).with_size([9, 9]);
+    let picture = |prepared: &PreparedScene| {
+        let frame = render_on(&cuda, prepared, &settings, &Unobserved).unwrap();
+        (frame.stats.seconds.upload, emulator.taken())
+    };
+    let (first, taken) = picture(&prepared);
+    assert!(first > 0.0);
+    let mut lights = prepared.scene.lights.clone();
+    lights.list[0].intensity *= 2.0;
+    assert_eq!(picture(&prepared.with_lights(lights)), (0.0, taken), "nothing is uploaded again, nothing more is held");
+    drop(prepared);
+    let empty = PreparedScene::new(&Scene::new("empty", Geometry::default()), &Acceleration::Bvh, &Unobserved).unwrap();
+    let (_, rest) = picture(&empty);
+    assert!(rest < taken, "{rest} of {taken} bytes are held by nobody");
+}
+
+/// Two pictures with a cache, the second of another camera and with an accident before it. Returns the second, what it took in
+/// allocations, and whether the cache was forgotten meanwhile.
+fn render_twice(scene: &PreparedScene, settings: &Settings, accident: impl Fn(&Emulator)) -> (Frame, Traffic, bool) {
+    let emulator = Arc::new(Emulator::new());
+    let cuda = Cuda::new(Arc::clone(&emulator));
+    let mut kept = Kept::default();
+    let mut first = settings.clone().with_camera(scene.scene.default_camera(Up::Y));
+    first.memory_limit = None;
+    render_on_with(&cuda, &mut kept, scene, &first, &Unobserved).unwrap();
+    assert!(kept.len() > 0 && kept.memory() > 0);
+    emulator.take_traffic();
+    accident(&emulator);
+    let notes = Notes::default();
+    let frame = render_on_with(&cuda, &mut kept, scene, settings, &notes).unwrap();
+    let traffic = emulator.take_traffic();
+    let forgotten = notes.heard("forgotten");
+    drop((cuda, kept));
+    assert_eq!(emulator.taken(), 0, "all memory is given back");
+    (frame, traffic, forgotten)
+}
+
+#[derive(Default)]
+struct Notes(Mutex<String>);
+
+impl Notes {
+    fn heard(&self, word: &str) -> bool {
+        self.0.lock().unwrap().contains(word)
+    }
+}
+
+impl Observer for Notes {
+    fn note(&self, text: &str) {
+        *self.0.lock().unwrap() += text;
+    }
+}
+
+#[test]
+fn a_cache_gives_way_where_an_allocation_fails() {
+    let settings = settings();
+    let scene = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
+    let whole = render_on(&Cuda::new(Arc::new(Emulator::new())), &scene, &settings, &Unobserved).unwrap();
+    let (frame, traffic, forgotten) = render_twice(&scene, &settings, |_| ());
+    assert!(bits(&frame) == bits(&whole) && !forgotten && frame.stats.counts.long_tests_saved > 0);
+    for number in (1..=traffic.allocations).step_by(4) {
+        let (frame, _, forgotten) = render_twice(&scene, &settings, |device| device.fail_allocation(number));
+        assert!(bits(&frame) == bits(&whole), "allocation {number}: another picture");
+        assert!(forgotten, "allocation {number}");
+        assert_eq!(frame.stats.settings.rows_per_band, ROWS, "allocation {number}: the picture keeps its bands");
+    }
+}
+
+#[test]
+fn a_cache_gives_way_to_a_limit() {
+    let scene = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
+    let whole = render_on(&Cuda::new(Arc::new(Emulator::new())), &scene, &settings(), &Unobserved).unwrap();
+    let peak = whole.stats.memory.device_peak_bytes;
+    for percent in [100, 80, 60] {
+        let limited = settings().with_memory_limit(peak * percent / 100);
+        let (frame, _, _) = render_twice(&scene, &limited, |_| ());
+        assert!(bits(&frame) == bits(&whole), "{percent} %: another picture");
+    }
+}
+
+#[test]
+fn a_cache_grows_and_forgets_nothing() {
+    let scene = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
+    let cuda = Cuda::new(Arc::new(Emulator::new()));
+    let mut kept = Kept::default();
+    let mut picture = |size| {
+        let settings = settings().with_size(size).with_step(Step::Fixed(0.04));
+        let frame = render_on_with(&cuda, &mut kept, &scene, &settings, &Unobserved).unwrap();
+        let fresh = render_on(&cuda, &scene, &settings, &Unobserved).unwrap();
+        assert!(bits(&frame) == bits(&fresh), "{size:?}");
+        (frame.stats.counts.long_tests, kept.memory(), kept.len())
+    };
+    let small = picture([9, 9]);
+    let large = picture([50, 40]);
+    assert!(large.1 >= 2 * small.1 && large.2 > small.2, "{small:?} {large:?}");
+    let again = picture([9, 9]);
+    assert_eq!((again.0, again.1, again.2), (0, large.1, large.2));
+}
+
+#[test]
+fn every_stage_ends_at_its_total_in_bands_too() {
+    let scene = scene();
+    let prepared = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
+    let (_, _, peak) = render(&scene, Emulator::new(), &settings());
+    for (mode, memory) in [(Mode::LightMesh, u64::MAX), (Mode::LightMesh, peak / 2), (Mode::Area, u64::MAX)] {
+        let cuda = Cuda::new(Arc::new(Emulator::with_memory(memory)));
+        let watch = Watch::default();
+        let settings = settings().with_mode(mode).with_bounces(1).with_samples(3);
+        render_on(&cuda, &prepared, &settings, &watch).unwrap();
+        let watched: Vec<_> = watch.finished().iter().map(|watched| watched.stage).collect();
+        let of_the_mesh = [Stage::Cells, Stage::ShortTests, Stage::Collect, Stage::Interpolate];
+        for stage in of_the_mesh {
+            assert_eq!(watched.contains(&stage), mode == Mode::LightMesh, "{mode:?}: {stage:?} in {watched:?}");
+        }
+        for stage in
+            [Stage::CameraRays, Stage::PrimaryRays, Stage::LongTests, Stage::Shade, Stage::Film, Stage::Download]
+        {
+            assert!(watched.contains(&stage), "{mode:?}: no {stage:?} in {watched:?}");
+        }
+    }
 }

@@ -1,7 +1,7 @@
-//! Output files that are there whole or not at all.
+//! Output files that are written completely or not at all.
 //!
-//! A [`Replacement`] is a file beside its target. It is filled, then renamed over the target: a program that is interrupted,
-//! or a disk that is full, leaves the earlier file as it was and nothing beside it.
+//! A [`Replacement`] is a temporary file next to its target. It is filled, then renamed over the target: an interrupted program
+//! or a full disk leaves the previous file intact and no temporary file behind.
 //!
 //! ```
 //! use std::io::Write;
@@ -21,39 +21,40 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{Builder, NamedTempFile};
 
-/// Why a file cannot be written where it should go.
+/// Why a target cannot be written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum TargetError {
     /// The target is a directory.
-    #[error("cannot write {}: it is a directory, name a file in it", path.display())]
+    #[error("cannot write {}: it is a directory; name a file in it", path.display())]
     IsDirectory {
         /// The target.
         path: PathBuf,
     },
     /// The directory of the target does not exist.
-    #[error("cannot write {}: the directory {} does not exist, create it first", path.display(), directory.display())]
+    #[error("cannot write {}: the directory {} does not exist; create it first", path.display(), directory.display())]
     NoDirectory {
         /// The target.
         path: PathBuf,
-        /// Where it would lie.
+        /// Its directory.
         directory: PathBuf,
     },
-    /// No file can be made in the directory of the target.
+    /// No file can be created in the directory of the target.
     #[error(
-        "cannot write {}: no file can be made in {} ({reason}), choose another directory or change its permissions",
+        "cannot write {}: no file can be created in {} ({reason}); choose another directory or change its permissions",
         path.display(), directory.display()
     )]
     Unwritable {
         /// The target.
         path: PathBuf,
-        /// Where it would lie.
+        /// Its directory.
         directory: PathBuf,
-        /// What the system said.
+        /// The system's message.
         reason: io::Error,
     },
 }
 
-/// A file that takes the place of its target when it is complete. Dropped before, it is removed.
+/// A file that replaces its target when it is committed. If dropped before, it is removed.
 #[derive(Debug)]
 pub struct Replacement {
     file: NamedTempFile,
@@ -61,10 +62,10 @@ pub struct Replacement {
 }
 
 impl Replacement {
-    /// Makes an empty file beside `path`, with the permissions of an ordinary new file.
+    /// Creates an empty file next to `path`, with the permissions of an ordinary new file.
     ///
     /// # Errors
-    /// [`TargetError`] where there could be no such file.
+    /// [`TargetError`] if the file cannot be created.
     pub fn of(path: impl AsRef<Path>) -> Result<Replacement, TargetError> {
         let path = path.as_ref();
         let target = resolved(path);
@@ -77,7 +78,7 @@ impl Replacement {
         }
         let mut builder = Builder::new();
         builder.prefix(".lightmesh-").suffix(".tmp");
-        // Temporary files are closed to others; this one will not stay temporary. The umask still applies.
+        // Temporary files are private, but this one will be permanent. The umask still applies.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = builder.tempfile_in(directory).map_err(|reason| TargetError::Unwritable {
@@ -91,7 +92,7 @@ impl Replacement {
     /// Renames the file over its target.
     ///
     /// # Errors
-    /// What the system says; the target then is what it was before.
+    /// The system's error; the target is then unchanged.
     pub fn commit(self) -> io::Result<()> {
         self.file.persist(self.target).map(drop).map_err(|error| error.error)
     }
@@ -113,15 +114,15 @@ impl Seek for Replacement {
     }
 }
 
-/// Says whether a file could be written to `path`, without touching what is there.
+/// Checks that a file could be written to `path`, without touching an existing one.
 ///
 /// # Errors
-/// The [`TargetError`] that [`Replacement::of`] would end with.
+/// The [`TargetError`] that [`Replacement::of`] would return.
 pub fn check_writable(path: impl AsRef<Path>) -> Result<(), TargetError> {
     Replacement::of(path).map(drop)
 }
 
-/// Where `path` leads, whether or not it exists yet: links are followed, so that the file behind one is meant.
+/// The target of `path`, whether or not it exists yet: links are followed, so that the linked file is replaced.
 pub fn resolved(path: &Path) -> PathBuf {
     let in_directory = || Some(fs::canonicalize(directory(path)).ok()?.join(path.file_name()?));
     fs::canonicalize(path).ok().or_else(in_directory).unwrap_or_else(|| path.to_owned())

@@ -1,7 +1,7 @@
-//! BMP: 24 bits a pixel, uncompressed, the format of the method's first implementation.
+//! BMP: 24 bits per pixel, uncompressed, the format of the method's first implementation.
 //!
-//! Layout (little-endian): `BITMAPFILEHEADER` of 14 bytes, `BITMAPINFOHEADER` of 40 bytes, then the rows from the bottom
-//! one up, each of blue, green, red triples and padded to a multiple of 4 bytes.
+//! Layout (little-endian): `BITMAPFILEHEADER` of 14 bytes, `BITMAPINFOHEADER` of 40 bytes, then the rows from bottom to
+//! top, each of blue, green, red triples and padded to a multiple of 4 bytes.
 
 use std::io::{Cursor, Write};
 
@@ -15,13 +15,13 @@ const FILE_HEADER: u32 = 14;
 const INFO_HEADER: u32 = 40;
 const HEADERS: u32 = FILE_HEADER + INFO_HEADER;
 
-/// What the headers can state.
+/// Largest values of the header fields.
 pub(crate) const LIMIT: &str = "4 GiB a file";
 
 /// 72 dots per inch, in dots per metre.
 const RESOLUTION: i32 = 2835;
 
-/// The sizes that the headers state, all within their 32 bits.
+/// The sizes stored in the headers, all within 32 bits.
 struct Layout {
     width: i32,
     height: i32,
@@ -53,7 +53,7 @@ impl Layout {
         put(18, &self.width.to_le_bytes());
         put(22, &self.height.to_le_bytes()); // positive: bottom row first
         put(26, &1_u16.to_le_bytes()); // planes
-        put(28, &24_u16.to_le_bytes()); // bits a pixel
+        put(28, &24_u16.to_le_bytes()); // bits per pixel
         put(34, &self.image.to_le_bytes()); // after four zero bytes: no compression
         put(38, &RESOLUTION.to_le_bytes());
         put(42, &RESOLUTION.to_le_bytes());
@@ -61,12 +61,12 @@ impl Layout {
     }
 }
 
-/// Whether the headers can state the sizes of such a picture.
+/// Whether the sizes of such an image fit into the headers.
 pub(crate) fn can_hold(width: u32, height: u32) -> bool {
     Layout::new(width, height).is_some()
 }
 
-/// Writes `frame` with `transfer`; the format cannot say which one was used.
+/// Writes `frame` with `transfer`, which the format cannot record.
 pub(crate) fn write(frame: &Frame, transfer: Transfer, mut output: impl Write) -> Result<(), EncodeError> {
     let layout = Layout::new(frame.width(), frame.height());
     let layout = layout.ok_or(EncodeError::TooLarge { limit: LIMIT })?;
@@ -81,7 +81,7 @@ pub(crate) fn write(frame: &Frame, transfer: Transfer, mut output: impl Write) -
     Ok(())
 }
 
-/// Reads any BMP of 1 to 32 bits a pixel, taken as sRGB.
+/// Reads any BMP of 1 to 32 bits per pixel, as sRGB.
 pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
     read_with(Format::Bmp, BmpDecoder::new(Cursor::new(bytes)))
 }

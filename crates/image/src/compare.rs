@@ -1,10 +1,10 @@
-//! How far two pictures are apart, as numbers and as a picture.
+//! The difference between two images, as numbers and as an image.
 //!
-//! RMSE, PSNR and the largest difference are taken over *display values*: linear values clamped to [0, 1] and put through
-//! the sRGB curve, without rounding. So an error counts about as much as it shows, and what is brighter than the screen
-//! does not count. FLIP (Andersson et al., *FLIP: A Difference Evaluator for Alternating Images*, HPG 2020) predicts what
-//! a viewer sees who flips between both, at 67 pixels per degree: a 0.7 m wide 4K screen from 0.7 m away. It gets the
-//! display values in 8 bits.
+//! RMSE, PSNR and the maximum difference are computed on *display values*: linear values clamped to [0, 1] and converted by the
+//! sRGB curve, without rounding. Errors are thus weighted approximately by visibility, and values brighter than the screen do not
+//! count. FLIP (Andersson et al., *FLIP: A Difference Evaluator for Alternating Images*, HPG 2020) predicts the difference that a
+//! viewer perceives when flipping between the images, at 67 pixels per degree: a 0.7 m wide 4K screen at 0.7 m. It gets display
+//! values rounded to 8 bits.
 
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, flip, magma_lut};
 use serde::{Serialize, Serializer};
@@ -13,32 +13,34 @@ use thiserror::Error;
 use crate::transfer::linear_to_srgb;
 use crate::{Frame, Transfer};
 
-/// The most pixels that the FLIP library can index.
+/// Maximum number of pixels that the FLIP library can index.
 const MAX_PIXELS: usize = i32::MAX as usize / 3;
 
-/// How far two frames are apart; 0 throughout (and an infinite PSNR) where they look the same.
+/// The difference between two frames; all 0 (and an infinite PSNR) if they look the same.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Comparison {
     /// Root of the mean squared difference over all pixels and channels, in [0, 1].
     pub rmse: f64,
-    /// Peak signal-to-noise ratio in dB, `-20 log10(rmse)`: infinite where nothing differs, which is `null` in JSON.
+    /// Peak signal-to-noise ratio in dB, `-20 log10(rmse)`: infinite without any difference, which is `null` in JSON.
     #[serde(serialize_with = "null_where_infinite")]
     pub psnr: f64,
-    /// The largest difference of any channel of any pixel, in [0, 1].
+    /// Maximum difference over all channels and pixels, in [0, 1].
     pub max_difference: f64,
     /// Mean of the FLIP error over all pixels, in [0, 1].
     pub mean_flip: f64,
-    /// The FLIP error of each pixel through the magma colour map: black is equal, yellow is as different as can be.
+    /// The FLIP error of each pixel in the magma colour map, from black (equal) to yellow (maximum).
     #[serde(skip)]
     pub difference: Frame,
 }
 
 /// Why two frames cannot be compared.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum CompareError {
     /// The frames have different sizes.
     #[error(
-        "cannot compare a picture of {}x{} pixels with one of {}x{}: render or scale both to one size",
+        "cannot compare an image of {}x{} pixels with one of {}x{}: render or scale both to the same size",
         first.0, first.1, second.0, second.1
     )]
     Size {
@@ -47,8 +49,8 @@ pub enum CompareError {
         /// Width and height of the second frame.
         second: (u32, u32),
     },
-    /// A frame has a value that is not a number, to which no difference exists.
-    #[error("cannot compare: the {which} picture has NaN at column {x}, row {y}; render it anew")]
+    /// A frame contains NaN, for which there is no difference.
+    #[error("cannot compare: the {which} image has NaN at column {x}, row {y}; render it again")]
     NotANumber {
         /// `first` or `second`.
         which: &'static str,
@@ -57,22 +59,22 @@ pub enum CompareError {
         /// Row of the pixel, 0 at the top.
         y: usize,
     },
-    /// The frames have more pixels than FLIP can work on.
+    /// The frames have more pixels than FLIP supports.
     #[error(
-        "cannot compare pictures of {width}x{height} pixels: at most {MAX_PIXELS} pixels can be, compare parts of them"
+        "cannot compare images of {width}x{height} pixels: the maximum is {MAX_PIXELS} pixels; compare parts of them"
     )]
     TooLarge {
-        /// Pixels a row.
+        /// Width in pixels.
         width: u32,
-        /// Rows.
+        /// Height in pixels.
         height: u32,
     },
 }
 
-/// Compares `test` with `reference`. FLIP is very nearly symmetric in both; the other measures are exactly so.
+/// Compares `test` with `reference`. FLIP is very nearly symmetric; the other measures are exactly symmetric.
 ///
 /// # Errors
-/// [`CompareError`] where the sizes differ, a value is NaN, or there are too many pixels.
+/// [`CompareError`] if the sizes differ, a value is NaN, or there are too many pixels.
 pub fn compare(reference: &Frame, test: &Frame) -> Result<Comparison, CompareError> {
     let (width, height) = (reference.width(), reference.height());
     if (width, height) != (test.width(), test.height()) {
@@ -97,7 +99,7 @@ fn check_numbers(which: &'static str, frame: &Frame) -> Result<(), CompareError>
     Err(CompareError::NotANumber { which, x: index % width, y: index / width })
 }
 
-/// RMSE and the largest difference, over display values.
+/// RMSE and maximum difference of display values.
 fn display_difference(reference: &Frame, test: &Frame) -> (f64, f64) {
     let (reference, test) = (reference.color().as_flattened(), test.color().as_flattened());
     let (mut sum, mut largest) = (0.0, 0.0_f64);
@@ -111,12 +113,12 @@ fn display_difference(reference: &Frame, test: &Frame) -> (f64, f64) {
     ((sum / reference.len() as f64).sqrt(), largest)
 }
 
-/// In single precision, as the colours are: the curve's decimal constants then give exactly 1 for white.
+/// In single precision, like the colours: the curve's decimal constants then give exactly 1 for white.
 fn display(linear: f32) -> f64 {
     f64::from(linear_to_srgb(f64::from(linear.clamp(0.0, 1.0))) as f32)
 }
 
-/// Mean FLIP, and the map of it.
+/// Mean FLIP, and the error map.
 fn flip_difference(reference: &Frame, test: &Frame) -> (f64, Frame) {
     let error = flip(flip_image(reference), flip_image(test), DEFAULT_PIXELS_PER_DEGREE);
     let values = error.to_vec();
@@ -134,7 +136,7 @@ fn flip_image(frame: &Frame) -> FlipImageRgb8 {
     FlipImageRgb8::with_data(frame.width(), frame.height(), &bytes)
 }
 
-/// JSON has no infinity; other formats get the same so that they agree.
+/// JSON has no infinity; other formats get the same value for consistency.
 fn null_where_infinite<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     value.is_finite().then_some(value).serialize(serializer)
 }

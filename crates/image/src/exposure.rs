@@ -1,16 +1,16 @@
-//! Exposure: how much brighter or darker a picture is shown than it was computed, in stops. One stop doubles.
+//! Exposure: how much brighter or darker an image is displayed than computed, in stops. One stop doubles the brightness.
 //!
 //! [`Frame::auto_exposure`] brings the logarithmic mean of the luminance to 18 % grey (Reinhard et al., *Photographic Tone
-//! Reproduction for Digital Images*, SIGGRAPH 2002, key 0.18), but not so far that more than a twentieth of the picture is brighter
-//! than white.
+//! Reproduction for Digital Images*, SIGGRAPH 2002, key 0.18), limited so that at most a twentieth of the image is brighter than
+//! white.
 
 use crate::Frame;
 
-/// Luminance that the logarithmic mean is brought to.
+/// Target luminance of the logarithmic mean.
 const MIDDLE_GREY: f32 = 0.18;
-/// Share of the lit pixels that are not to be brighter than white.
+/// Share of the lit pixels that must not be brighter than white.
 const BELOW_WHITE: f64 = 0.95;
-/// Steps in a stop: the result can be typed.
+/// Steps per stop, so that the result can be typed.
 const STEPS_A_STOP: f32 = 100.0;
 
 impl Frame {
@@ -20,7 +20,7 @@ impl Frame {
         self.color_mut().as_flattened_mut().iter_mut().for_each(|value| *value *= factor);
     }
 
-    /// Stops that bring the picture into the range of a screen, in hundredths; 0 where nothing in it is lit.
+    /// Exposure that brings the image into the range of a screen, in steps of a hundredth of a stop; 0 if nothing is lit.
     pub fn auto_exposure(&self) -> f32 {
         let mut lit: Vec<f32> =
             self.color().iter().map(luminance).filter(|&value| value > 0.0 && value.is_finite()).collect();
@@ -65,7 +65,7 @@ mod tests {
             let other: Vec<f32> = values.iter().map(|value| value * level.exp2()).collect();
             assert!((frame(&other).auto_exposure() + level - stops).abs() < 0.011, "{level}");
         }
-        // The mean of an even grey is that grey.
+        // The mean of a uniform grey is that grey.
         assert_eq!(frame(&[0.18 / 4.0; 7]).auto_exposure(), 2.0);
     }
 
@@ -74,7 +74,7 @@ mod tests {
         let mut values = vec![0.001; 80];
         values.extend([2.0; 20]);
         assert_eq!(frame(&values).auto_exposure(), -1.0);
-        // Fewer may be lost.
+        // Fewer may be clipped.
         values.truncate(83);
         assert!(frame(&values).auto_exposure() > 4.0);
     }

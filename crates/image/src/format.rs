@@ -1,28 +1,29 @@
-//! The picture formats: their extensions for writing, their first bytes for reading.
+//! Image formats: extensions for writing, signatures for reading.
 
 use std::fmt;
 use std::path::Path;
 
 use crate::{bmp, jpg};
 
-/// A picture format.
+/// An image format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Format {
-    /// Windows bitmap, 24 bits a pixel, uncompressed.
+    /// Windows bitmap, 24 bits per pixel, uncompressed.
     Bmp,
-    /// Portable Network Graphics, 8 bits a channel.
+    /// Portable Network Graphics, 8 bits per channel.
     Png,
     /// OpenEXR, linear 32-bit floats.
     Exr,
-    /// JPEG, 8 bits a channel, lossy.
+    /// JPEG, 8 bits per channel, lossy.
     Jpg,
 }
 
 impl Format {
-    /// The formats in the order in which messages list them.
+    /// The formats in the order used by messages.
     pub const ALL: [Self; 4] = [Self::Bmp, Self::Png, Self::Exr, Self::Jpg];
 
-    /// The extensions that stand for the format, the preferred one first.
+    /// The extensions of the format, the preferred one first.
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Bmp => &["bmp"],
@@ -32,7 +33,7 @@ impl Format {
         }
     }
 
-    /// The format that the extension of `path` names, in upper or lower case.
+    /// The format of the extension of `path`, in upper or lower case.
     pub fn from_path(path: &Path) -> Option<Self> {
         let extension = path.extension()?;
         Self::ALL
@@ -40,18 +41,18 @@ impl Format {
             .find(|format| format.extensions().iter().any(|known| extension.eq_ignore_ascii_case(known)))
     }
 
-    /// What the format can hold, in words, where a picture of this size is too large for it.
+    /// The format's limit as text, if an image of this size exceeds it.
     pub(crate) fn exceeded_limit(self, width: u32, height: u32) -> Option<&'static str> {
         let longest = width.max(height);
         let (exceeded, limit) = match self {
             Self::Bmp => (!bmp::can_hold(width, height), bmp::LIMIT),
-            Self::Jpg => (longest > jpg::MAX_SIDE, "65535 pixels a side"),
-            Self::Png | Self::Exr => (longest > i32::MAX as u32, "2147483647 pixels a side"),
+            Self::Jpg => (longest > jpg::MAX_SIDE, "65535 pixels per side"),
+            Self::Png | Self::Exr => (longest > i32::MAX as u32, "2147483647 pixels per side"),
         };
         exceeded.then_some(limit)
     }
 
-    /// The format whose signature `bytes` starts with.
+    /// The format whose signature starts `bytes`.
     pub(crate) fn from_signature(bytes: &[u8]) -> Option<Self> {
         Self::ALL.into_iter().find(|format| bytes.starts_with(format.signature()))
     }
@@ -65,7 +66,7 @@ impl Format {
         }
     }
 
-    /// All known extensions as messages list them.
+    /// All known extensions, for messages.
     pub(crate) fn known() -> String {
         let extensions: Vec<_> = Self::ALL.iter().flat_map(|format| format.extensions()).copied().collect();
         extensions.join(", ")

@@ -1,11 +1,11 @@
-//! [`Frame`], what a render produces, and [`Layers`], what each pixel saw on the way.
+//! [`Frame`], the result of a render, and [`Layers`], its per-pixel data.
 //!
-//! Pixels are row-major and row 0 is the top one, so pixel (x, y) lies at `y * width + x` in every plane. Every length is
-//! checked when a frame is made; the writers rely on it.
+//! Pixels are row-major and row 0 is at the top, so pixel (x, y) is at `y * width + x` in every plane. All lengths are checked
+//! when a frame is created; the writers rely on that.
 
 use thiserror::Error;
 
-/// A picture of linear radiance with Rec. 709 primaries, and optionally the [`Layers`] behind it.
+/// An image of linear radiance with Rec. 709 primaries, and optionally its [`Layers`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     width: u32,
@@ -14,43 +14,56 @@ pub struct Frame {
     layers: Option<Layers>,
 }
 
-/// What the render knew about each pixel: one plane a quantity, each of `width * height` entries in the frame's order.
+/// Per-pixel data of a render: one plane per quantity, each of `width * height` entries in the frame's order.
 ///
-/// Lengths and vectors are in scene units and world coordinates. Where a pixel's ray missed the scene, `depth` is
+/// Lengths and vectors are in scene units and world coordinates. If a pixel's ray missed the scene, `depth` is
 /// +infinity and everything else is 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layers {
     /// Distance from the camera along the pixel's ray.
     pub depth: Vec<f32>,
-    /// Geometric normal, of unit length, turned to the viewer.
+    /// Geometric normal, unit length, facing the viewer.
     pub normal: Vec<[f32; 3]>,
-    /// Object point.
+    /// Surface point.
     pub position: Vec<[f32; 3]>,
-    /// One plane a light: visibility in [0, 1], which is 0 where the light is behind the surface.
+    /// One plane per light: visibility in [0, 1], which is 0 if the light is behind the surface.
     pub visibility: Vec<Vec<f32>>,
-    /// Number of light points that the pixel's visibility was interpolated from.
+    /// Number of light points from which the pixel's visibility was interpolated.
     pub used: Vec<u32>,
+}
+
+/// What a [`Frame`] is made of, see [`Frame::into_parts`].
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct FrameParts {
+    /// Pixels a row, and rows.
+    pub size: [u32; 2],
+    /// Linear colours, row-major, row 0 at the top.
+    pub color: Vec<[f32; 3]>,
+    /// The layers, where the frame was made with them.
+    pub layers: Option<Layers>,
 }
 
 /// Planes that do not fit the size of their frame.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FrameError {
     /// Width or height is 0, or the number of pixels is not addressable.
-    #[error("a frame of {width}x{height} pixels cannot exist: both sides must be at least 1 and fit in memory")]
+    #[error("a frame of {width}x{height} pixels is not possible: both sides must be at least 1 and fit in memory")]
     Size {
-        /// Pixels a row.
+        /// Width in pixels.
         width: u32,
-        /// Rows.
+        /// Height in pixels.
         height: u32,
     },
-    /// A plane has another number of entries than the frame has pixels.
+    /// The number of entries of a plane is not the number of pixels.
     #[error("plane '{plane}' has {found} entries, but a frame of {width}x{height} pixels needs {expected}")]
     Length {
         /// Name of the plane: `color`, or a field of [`Layers`] (`visibility[i]` for light i).
         plane: String,
-        /// Pixels a row.
+        /// Width in pixels.
         width: u32,
-        /// Rows.
+        /// Height in pixels.
         height: u32,
         /// `width * height`.
         expected: usize,
@@ -63,17 +76,17 @@ impl Frame {
     /// A frame of `width * height` linear colours, row 0 at the top.
     ///
     /// # Errors
-    /// [`FrameError`] where a side is 0 or `color` has another length.
+    /// [`FrameError`] if a side is 0 or `color` has the wrong length.
     pub fn new(width: u32, height: u32, color: Vec<[f32; 3]>) -> Result<Self, FrameError> {
         let pixels = pixel_count(width, height).ok_or(FrameError::Size { width, height })?;
         check_length("color", color.len(), width, height, pixels)?;
         Ok(Self { width, height, color, layers: None })
     }
 
-    /// The same frame with `layers` attached, in place of those it had.
+    /// The same frame with `layers`, replacing any previous ones.
     ///
     /// # Errors
-    /// [`FrameError::Length`] where a plane has another number of entries than the frame has pixels.
+    /// [`FrameError::Length`] if the number of entries of a plane is not the number of pixels.
     pub fn with_layers(mut self, layers: Layers) -> Result<Self, FrameError> {
         let check = |plane: &str, found| check_length(plane, found, self.width, self.height, self.color.len());
         check("depth", layers.depth.len())?;
@@ -87,12 +100,12 @@ impl Frame {
         Ok(self)
     }
 
-    /// Pixels a row.
+    /// Width in pixels.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows.
+    /// Height in pixels.
     pub fn height(&self) -> u32 {
         self.height
     }
@@ -102,9 +115,21 @@ impl Frame {
         &self.color
     }
 
-    /// Linear colours, to be changed in place.
+    /// Mutable linear colours.
     pub fn color_mut(&mut self) -> &mut [[f32; 3]] {
         &mut self.color
+    }
+
+    /// Takes the frame apart; nothing is copied. [`Frame::new`] and [`Frame::with_layers`] put it together again.
+    ///
+    /// ```
+    /// let frame = lightmesh_image::Frame::new(2, 1, vec![[0.0; 3], [0.5; 3]])?;
+    /// let floats: Vec<f32> = frame.into_parts().color.into_flattened();
+    /// assert_eq!(floats, [0.0, 0.0, 0.0, 0.5, 0.5, 0.5]);
+    /// # Ok::<(), lightmesh_image::FrameError>(())
+    /// ```
+    pub fn into_parts(self) -> FrameParts {
+        FrameParts { size: [self.width, self.height], color: self.color, layers: self.layers }
     }
 
     /// The colour of pixel (x, y), or `None` outside of the frame.
@@ -117,18 +142,18 @@ impl Frame {
         self.color.chunks_exact(self.width as usize)
     }
 
-    /// A frame of the same size, without layers, coloured by the index of each pixel.
+    /// A frame of the same size, without layers, with colours computed from pixel indices.
     pub(crate) fn recolored(&self, color: impl FnMut(usize) -> [f32; 3]) -> Self {
         Self { color: (0..self.color.len()).map(color).collect(), layers: None, ..*self }
     }
 
-    /// The layers, where the frame was made with them.
+    /// The layers, if the frame has any.
     pub fn layers(&self) -> Option<&Layers> {
         self.layers.as_ref()
     }
 }
 
-/// `width * height`, or `None` where there is no pixel or the colours would not be addressable.
+/// `width * height`, or `None` if there is no pixel or the colours would not be addressable.
 pub(crate) fn pixel_count(width: u32, height: u32) -> Option<usize> {
     let pixels = usize::try_from(u64::from(width) * u64::from(height)).ok()?;
     let bytes = pixels.checked_mul(size_of::<[f32; 3]>())?;
@@ -163,6 +188,16 @@ mod tests {
         assert_eq!(frame.pixel(0, 1), Some([2.0; 3]));
         assert_eq!((frame.pixel(2, 0), frame.pixel(0, 2)), (None, None));
         assert_eq!(frame.rows().last(), Some(&[[2.0; 3], [3.0; 3]][..]));
+    }
+
+    #[test]
+    fn parts_are_those_that_were_given() {
+        let color = vec![[0.5; 3]; 6];
+        let (colors, planes) = (color.as_ptr(), layers(6));
+        let depth = planes.depth.as_ptr();
+        let parts = Frame::new(3, 2, color).unwrap().with_layers(planes).unwrap().into_parts();
+        assert_eq!((parts.size, parts.color.as_ptr()), ([3, 2], colors));
+        assert_eq!(parts.layers.unwrap().depth.as_ptr(), depth);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! JPEG at quality 92: for looking at, not for measuring.
+//! JPEG at quality 92: for viewing, not for measurements.
 
 use std::io::{self, Cursor, Write};
 
@@ -10,13 +10,13 @@ use crate::save::{EncodeError, check_fits};
 use crate::{Format, Frame, Transfer};
 
 const QUALITY: u8 = 92;
-/// The format counts the pixels of a side in 16 bits.
+/// The format stores sizes in 16 bits.
 pub(crate) const MAX_SIDE: u32 = 65_535;
 
 const START_OF_SCAN: [u8; 2] = [0xff, 0xda];
 const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
 
-/// Writes `frame` with `transfer`; the format cannot say which one was used.
+/// Writes `frame` with `transfer`, which the format cannot record.
 pub(crate) fn write(frame: &Frame, transfer: Transfer, output: impl Write) -> Result<(), EncodeError> {
     let (width, height) = (frame.width(), frame.height());
     check_fits(Format::Jpg, frame)?;
@@ -34,11 +34,11 @@ fn io_error(error: ImageError) -> io::Error {
     }
 }
 
-/// Reads baseline and progressive JPEG, taken as sRGB.
+/// Reads baseline and progressive JPEG, as sRGB.
 pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
-    // The decoder fills what is missing with grey and calls it a success.
+    // The decoder fills missing data with grey and reports success.
     if is_cut_off(bytes) {
-        return Err(DecodeError::malformed(Format::Jpg, "the file ends before the picture does"));
+        return Err(DecodeError::malformed(Format::Jpg, "the file is truncated"));
     }
     read_with(Format::Jpg, JpegDecoder::new(Cursor::new(bytes)))
 }

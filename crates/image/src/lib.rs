@@ -1,25 +1,25 @@
-//! Linear pictures with layers: transfer functions, file formats and comparison.
+//! Linear images with layers: transfer functions, file formats and comparison.
 //!
-//! A renderer fills a [`Frame`]: linear colour, and optionally the [`Layers`] that say what each pixel saw. From there,
+//! A renderer fills a [`Frame`]: linear colour, and optionally [`Layers`] with per-pixel data. From there,
 //!
-//! - [`Frame::save`] writes bmp, png, exr or jpg by the path's extension, and [`Frame::save_layers`] a multilayer exr;
+//! - [`Frame::save`] writes bmp, png, exr or jpg, according to the path's extension, and [`Frame::save_layers`] a multilayer exr;
 //! - [`Frame::load`] reads the same formats back into linear values;
-//! - [`compare`] measures how far two frames differ, as numbers and as a picture (FLIP).
+//! - [`compare`] measures the difference between two frames, as numbers and as an image (FLIP).
 //!
-//! Only here is a transfer function ([`Transfer`]) applied; everything else in the workspace computes with linear values.
+//! Transfer functions ([`Transfer`]) are only applied here; everything else in the workspace uses linear values.
 //!
 //! ```
 //! use lightmesh_image::{Frame, check_writable, compare};
 //!
 //! let folder = tempfile::tempdir()?;
 //! let path = folder.path().join("grey.png");
-//! check_writable(&path)?; // before rendering, so that no time is lost on a typing error
+//! check_writable(&path)?; // before rendering, so that a typo costs no time
 //!
 //! let frame = Frame::new(64, 48, vec![[0.18; 3]; 64 * 48])?;
 //! frame.save(&path)?;
 //!
 //! let comparison = compare(&frame, &Frame::load(&path)?)?;
-//! assert!(comparison.max_difference < 0.5 / 255.0); // 8 bits are all that was lost
+//! assert!(comparison.max_difference < 0.5 / 255.0); // only rounding to 8 bits
 //! assert_eq!(comparison.mean_flip, 0.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -38,7 +38,7 @@ mod transfer;
 
 pub use compare::{CompareError, Comparison, compare};
 pub use format::Format;
-pub use frame::{Frame, FrameError, Layers};
+pub use frame::{Frame, FrameError, FrameParts, Layers};
 pub use load::{DecodeError, LoadError};
 pub use save::{EncodeError, SaveError, check_size, check_writable};
-pub use transfer::Transfer;
+pub use transfer::{Transfer, UnknownTransfer};

@@ -1,7 +1,7 @@
-//! Loading pictures into linear [`Frame`]s. What a file is, its first bytes say, not its name.
+//! Loading images into linear [`Frame`]s. The format is determined by the first bytes of a file, not its name.
 //!
-//! Files come from anywhere: sizes are checked before memory is taken for them, and a file that is cut off or damaged ends
-//! in an error that says so. Not promised: colour profiles, EXIF orientation and alpha are left aside.
+//! Files are untrusted: sizes are checked before memory is allocated, and a truncated or damaged file is an error. Colour
+//! profiles, EXIF orientation and alpha are ignored.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -13,63 +13,65 @@ use thiserror::Error;
 use crate::frame::pixel_count;
 use crate::{Format, Frame, Transfer, bmp, exr, jpg, png};
 
-/// The most pixels that a file may hold: 16384 x 16384, 3 GiB of colours.
+/// Maximum number of pixels in a file: 16384 x 16384, 3 GiB of colours.
 const MAX_PIXELS: usize = 1 << 28;
 
-/// Enough first bytes to know every format.
+/// Number of bytes that identify every format.
 const SIGNATURE: usize = 8;
 
-/// Why a picture could not be loaded.
+/// Why an image could not be loaded.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum LoadError {
     /// The file cannot be opened or read.
     #[error("cannot read {}: {reason}; check the path and its permissions", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         reason: io::Error,
     },
-    /// The file was read, but what it holds is of no use.
+    /// The content of the file is invalid.
     #[error("cannot load {}: {reason}", path.display())]
     Decode {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The problem.
         reason: DecodeError,
     },
 }
 
 /// Why bytes could not be turned into a [`Frame`].
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum DecodeError {
-    /// The first bytes are of no known format.
-    #[error("not a picture of a known format, convert it to one of these: {}", Format::known())]
+    /// The first bytes do not match a known format.
+    #[error("not an image in a known format; convert it to one of these: {}", Format::known())]
     UnknownFormat,
-    /// The header asks for more pixels than are reasonable, or for none.
+    /// The header specifies too many pixels, or none.
     #[error(
-        "the {format} header says {width}x{height} pixels, but 1 to {MAX_PIXELS} pixels can be read: scale it down"
+        "the {format} header specifies {width}x{height} pixels, but only 1 to {MAX_PIXELS} pixels are supported: scale it down"
     )]
     TooLarge {
-        /// What the bytes are.
+        /// The format.
         format: Format,
-        /// Pixels a row.
+        /// Width in pixels.
         width: u32,
-        /// Rows.
+        /// Height in pixels.
         height: u32,
     },
     /// An OpenEXR file without the channels `R`, `G`, `B` or `Y` in its first part.
-    #[error("the exr file has no channels R, G, B or Y but these: {found}; export it with one of these sets")]
+    #[error("the exr file has no channels R, G, B or Y, only {found}; export it with one of these sets")]
     Channels {
         /// Names of its channels.
         found: String,
     },
-    /// The bytes break the rules of their format, or end too early.
-    #[error("the {format} data is damaged, incomplete or of an unsupported kind ({message}): get or export it anew")]
+    /// The data violates its format, or is truncated.
+    #[error("the {format} data is damaged, incomplete or unsupported ({message}): export it again")]
     Malformed {
-        /// What the bytes claim to be.
+        /// The format according to the signature.
         format: Format,
-        /// What the decoder said.
+        /// The decoder's message.
         message: String,
     },
 }
@@ -81,8 +83,8 @@ impl DecodeError {
 }
 
 impl Frame {
-    /// Loads a bmp, png, exr or jpg file. 8-bit values are decoded from sRGB, or taken as linear where a png says so; the
-    /// layers of an exr written by [`Frame::save_layers`] come back with it.
+    /// Loads a bmp, png, exr or jpg file. 8-bit values are decoded from sRGB, or as linear if a png is marked so; the layers of
+    /// an exr written by [`Frame::save_layers`] are loaded with it.
     ///
     /// # Errors
     /// [`LoadError`], which names the file.
@@ -92,10 +94,10 @@ impl Frame {
         Self::decode(&bytes).map_err(|reason| LoadError::Decode { path: path.to_owned(), reason })
     }
 
-    /// As [`Frame::load`], from the contents of a file.
+    /// As [`Frame::load`], from the content of a file.
     ///
     /// # Errors
-    /// [`DecodeError`], whatever the bytes are.
+    /// [`DecodeError`] for any invalid bytes.
     pub fn decode(bytes: &[u8]) -> Result<Self, DecodeError> {
         match Format::from_signature(bytes).ok_or(DecodeError::UnknownFormat)? {
             Format::Bmp => bmp::read(bytes),
@@ -106,7 +108,7 @@ impl Frame {
     }
 }
 
-/// The contents of a file, or only its start where that shows no picture (it may be a device without an end).
+/// The content of a file, or only its beginning if that is not an image (it may be an endless device).
 fn read_picture(path: &Path) -> io::Result<Vec<u8>> {
     let mut file = File::open(path)?;
     let mut bytes = Vec::new();
@@ -117,13 +119,13 @@ fn read_picture(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The number of pixels, where it is one that can be read.
+/// The number of pixels, if supported.
 pub(crate) fn checked_pixels(format: Format, width: u32, height: u32) -> Result<usize, DecodeError> {
     let pixels = pixel_count(width, height).filter(|&pixels| pixels <= MAX_PIXELS);
     pixels.ok_or(DecodeError::TooLarge { format, width, height })
 }
 
-/// Reads an 8-bit picture through a decoder of the `image` crate, once its size is known to be reasonable.
+/// Reads an 8-bit image with a decoder of the `image` crate, after checking its size.
 pub(crate) fn read_with(format: Format, decoder: ImageResult<impl ImageDecoder>) -> Result<Frame, DecodeError> {
     let decoder = decoder.map_err(|error| DecodeError::malformed(format, error))?;
     let (width, height) = decoder.dimensions();

@@ -1,4 +1,4 @@
-//! PNG: 8 bits a channel, marked with the transfer function that was used.
+//! PNG: 8 bits per channel, marked with its transfer function.
 
 use std::collections::HashMap;
 use std::io::{self, Cursor, Write};
@@ -10,7 +10,7 @@ use crate::load::{DecodeError, checked_pixels};
 use crate::save::{EncodeError, check_fits};
 use crate::{Format, Transfer};
 
-/// Writes `frame` as 8-bit RGB: an sRGB chunk says how to read it, or a gAMA chunk of 1.0 where it is linear.
+/// Writes `frame` as 8-bit RGB with an sRGB chunk, or a gAMA chunk of 1.0 if it is linear.
 pub(crate) fn write(frame: &Frame, transfer: Transfer, output: impl Write) -> Result<(), EncodeError> {
     check_fits(Format::Png, frame)?;
     let mut encoder = Encoder::new(output, frame.width(), frame.height());
@@ -33,7 +33,7 @@ pub(crate) fn write(frame: &Frame, transfer: Transfer, output: impl Write) -> Re
     Ok(())
 }
 
-/// Writes `frame` with the sRGB curve and a palette; `false`, and nothing is written, where it has more than 256 colours.
+/// Writes `frame` with the sRGB curve and a palette; returns `false` without writing if it has more than 256 colours.
 pub(crate) fn write_indexed(frame: &Frame, output: impl Write) -> Result<bool, EncodeError> {
     check_fits(Format::Png, frame)?;
     let mut places = HashMap::new();
@@ -69,7 +69,7 @@ fn io_error(error: EncodingError) -> io::Error {
     }
 }
 
-/// Reads any PNG into linear colours: grey is spread over the channels, alpha is dropped.
+/// Reads any PNG into linear colours: grey is copied to all channels, alpha is dropped.
 pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
     let malformed = |error: png::DecodingError| DecodeError::malformed(Format::Png, error);
     let mut decoder = Decoder::new(Cursor::new(bytes));
@@ -93,7 +93,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
     Frame::new(width, height, color).map_err(|error| DecodeError::malformed(Format::Png, error))
 }
 
-/// Linear only where the file says so; most files say nothing and mean sRGB.
+/// Linear only if the file is marked so; most files are not marked and mean sRGB.
 fn source_transfer(info: &png::Info<'_>) -> Transfer {
     let linear = info.srgb.is_none() && info.gama_chunk.is_some_and(|gamma| gamma.into_value() == 1.0);
     if linear { Transfer::Linear } else { Transfer::Srgb }

@@ -1,7 +1,7 @@
-//! Saving a [`Frame`]: the extension chooses the format, and a file is there whole or not at all.
+//! Saving a [`Frame`]: the extension determines the format, and a file is written completely or not at all.
 //!
-//! Pictures are written to a temporary file beside the target and renamed over it, so an interrupted program leaves the
-//! earlier file as it was. [`check_writable`] finds what can be found before any time is spent on rendering.
+//! Images are written to a temporary file next to the target and renamed over it, so an interrupted program leaves the previous
+//! file intact. [`check_writable`] detects problems before any time is spent on rendering.
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -11,61 +11,63 @@ use thiserror::Error;
 
 use crate::{Format, Frame, Transfer, bmp, exr, jpg, png};
 
-/// Why a picture was not, or will not be, saved.
+/// Why an image cannot be saved.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum SaveError {
-    /// The extension names no format that can be written.
-    #[error("cannot save {}: unknown picture format, use one of these extensions: {}", path.display(), Format::known())]
+    /// The extension is not that of a known format.
+    #[error("cannot save {}: unknown image format; use one of these extensions: {}", path.display(), Format::known())]
     UnknownExtension {
         /// The target.
         path: PathBuf,
     },
-    /// Layers fit into no format but exr.
-    #[error("cannot save layers to {}: only an OpenEXR file can hold them, use the extension exr", path.display())]
+    /// Only exr files can store layers.
+    #[error("cannot save layers to {}: only OpenEXR files can store them; use the extension exr", path.display())]
     LayersNeedExr {
         /// The target.
         path: PathBuf,
     },
     /// The frame was rendered without layers.
-    #[error("cannot save layers to {}: the frame has none, render it with layers", path.display())]
+    #[error("cannot save layers to {}: the frame has none; render it with layers", path.display())]
     NoLayers {
         /// The target.
         path: PathBuf,
     },
-    /// There could be no such file.
+    /// The file cannot be created.
     #[error(transparent)]
     Target(#[from] TargetError),
-    /// The format cannot hold a picture of this size.
-    #[error("cannot save {}: {width}x{height} pixels are too many for {format} ({limit}), use exr or png", path.display())]
+    /// The format does not support images of this size.
+    #[error("cannot save {}: {width}x{height} pixels are too many for {format} ({limit}); use exr or png", path.display())]
     TooLarge {
         /// The target.
         path: PathBuf,
         /// The target's format.
         format: Format,
-        /// Pixels a row.
+        /// Width in pixels.
         width: u32,
-        /// Rows.
+        /// Height in pixels.
         height: u32,
-        /// What the format can hold.
+        /// The limit of the format.
         limit: &'static str,
     },
-    /// Writing failed, most often for want of space; nothing is left behind.
-    #[error("cannot save {}: {reason}; nothing was written, check the space left on the disk", path.display())]
+    /// Writing failed, most often because the disk is full; nothing is left behind.
+    #[error("cannot save {}: {reason}; nothing was written; check the free disk space", path.display())]
     Write {
         /// The target.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         reason: io::Error,
     },
 }
 
-/// What the writers report; [`SaveError`] adds which file.
+/// An error of a writer; [`SaveError`] adds the file.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum EncodeError {
-    /// The format cannot hold a picture of this size.
-    #[error("the format holds {limit}")]
+    /// The format does not support images of this size.
+    #[error("the format is limited to {limit}")]
     TooLarge {
-        /// What it can hold.
+        /// The limit.
         limit: &'static str,
     },
     /// The bytes could not be written.
@@ -73,7 +75,7 @@ pub enum EncodeError {
     Io(#[from] io::Error),
 }
 
-/// Fails where `format` cannot hold a picture of the size of `frame`.
+/// Fails if `format` does not support the size of `frame`.
 pub(crate) fn check_fits(format: Format, frame: &Frame) -> Result<(), EncodeError> {
     match format.exceeded_limit(frame.width(), frame.height()) {
         Some(limit) => Err(EncodeError::TooLarge { limit }),
@@ -82,18 +84,18 @@ pub(crate) fn check_fits(format: Format, frame: &Frame) -> Result<(), EncodeErro
 }
 
 impl Frame {
-    /// Saves the colours as bmp, png, exr or jpg, by the extension of `path`; 8-bit formats get the sRGB curve.
+    /// Saves the colours as bmp, png, exr or jpg, according to the extension of `path`; 8-bit formats use the sRGB curve.
     ///
     /// # Errors
-    /// [`SaveError`]; the target then is what it was before.
+    /// [`SaveError`]; the target is then unchanged.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
         self.save_with(path, Transfer::Srgb)
     }
 
-    /// As [`Frame::save`], with another transfer function for 8-bit formats. An exr is linear whatever `transfer` says.
+    /// As [`Frame::save`], with a given transfer function for 8-bit formats. An exr is always linear.
     ///
     /// # Errors
-    /// [`SaveError`]; the target then is what it was before.
+    /// [`SaveError`]; the target is then unchanged.
     pub fn save_with(&self, path: impl AsRef<Path>, transfer: Transfer) -> Result<(), SaveError> {
         let path = path.as_ref();
         let format = known_format(path)?;
@@ -105,17 +107,17 @@ impl Frame {
         })
     }
 
-    /// The bytes of a PNG file of the colours, with the sRGB curve.
+    /// A PNG file of the colours, with the sRGB curve.
     ///
     /// # Errors
-    /// [`EncodeError::TooLarge`] where a side is longer than 2147483647 pixels.
+    /// [`EncodeError::TooLarge`] if a side is longer than 2147483647 pixels.
     pub fn to_png(&self) -> Result<Vec<u8>, EncodeError> {
         let mut bytes = Vec::new();
         png::write(self, Transfer::Srgb, &mut bytes)?;
         Ok(bytes)
     }
 
-    /// The same in as few bytes as there can be: with a palette where 256 colours are enough, as in difference pictures.
+    /// The same, but smaller: with a palette if 256 colours suffice, as in difference images.
     ///
     /// # Errors
     /// As [`Frame::to_png`].
@@ -125,7 +127,7 @@ impl Frame {
     }
 
     /// Saves colours and layers as one multilayer exr of 32-bit floats with the channels `R G B` (linear), `Z` (distance
-    /// along the ray), `N.X N.Y N.Z`, `P.X P.Y P.Z`, `V.0 V.1 …` (one a light) and `M` (light points used).
+    /// along the ray), `N.X N.Y N.Z`, `P.X P.Y P.Z`, `V.0 V.1 …` (one per light) and `M` (light points used).
     ///
     /// # Errors
     /// [`SaveError::NoLayers`], [`SaveError::LayersNeedExr`], or as [`Frame::save`].
@@ -139,7 +141,7 @@ impl Frame {
         self.replace(path, format, |output| exr::write_layers(self, layers, output))
     }
 
-    /// Lets `write` fill a file that then replaces the one at `path`.
+    /// Calls `write` to fill a file, which then replaces the one at `path`.
     fn replace(
         &self,
         path: &Path,
@@ -162,21 +164,21 @@ impl Frame {
     }
 }
 
-/// Says whether a picture could be saved to `path`, without touching what is there: the extension is known, the target is
-/// not a directory, and a file can be made beside it (one is made and removed again).
+/// Checks that an image could be saved to `path`, without touching an existing one: the extension is known, the target is not a
+/// directory, and a file can be created next to it (one is created and removed again).
 ///
 /// # Errors
-/// The [`SaveError`] that [`Frame::save`] would end with.
+/// The [`SaveError`] that [`Frame::save`] would return.
 pub fn check_writable(path: impl AsRef<Path>) -> Result<(), SaveError> {
     let path = path.as_ref();
     known_format(path)?;
     Ok(lightmesh_files::check_writable(path)?)
 }
 
-/// Says whether the format that `path` names can hold a picture of this size.
+/// Checks that the format of `path` supports images of this size.
 ///
 /// # Errors
-/// [`SaveError::TooLarge`] or [`SaveError::UnknownExtension`], as [`Frame::save`] would end with.
+/// [`SaveError::TooLarge`] or [`SaveError::UnknownExtension`], as [`Frame::save`] would return.
 pub fn check_size(path: impl AsRef<Path>, width: u32, height: u32) -> Result<(), SaveError> {
     let path = path.as_ref();
     let format = known_format(path)?;

@@ -1,41 +1,68 @@
-//! Transfer functions between linear values and the 8-bit codes of picture files.
+//! Transfer functions between linear values and the 8-bit codes of image files.
 //!
-//! [`Transfer::Srgb`] is the piecewise curve of IEC 61966-2-1, not the power 2.2 that resembles it. Decoding and the
-//! thresholds of encoding are worked out in double precision, so a value gets the code nearest to its encoded value and
-//! all 256 codes survive a round trip.
+//! [`Transfer::Srgb`] is the piecewise curve of IEC 61966-2-1, not its approximation by a power of 2.2. Decoding and the
+//! thresholds for encoding are computed in double precision, so a value gets the code nearest to its encoded value and all 256
+//! codes survive a round trip.
 
+use std::fmt;
+use std::str::FromStr;
 use std::sync::LazyLock;
 
-/// How an 8-bit file stands for linear values.
+/// How an 8-bit file encodes linear values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Transfer {
-    /// The curve of IEC 61966-2-1, what screens and picture viewers expect.
+    /// The curve of IEC 61966-2-1, which screens and image viewers expect.
     #[default]
     Srgb,
-    /// Codes proportional to the linear value, for measuring.
+    /// Codes proportional to the linear value, for measurements.
     Linear,
 }
 
-/// The sRGB codes' linear values.
+/// The linear values of the sRGB codes.
 static SRGB_DECODED: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|code| srgb_to_linear(code as f64 / 255.0) as f32));
 
-/// Linear value from which on code `i + 1` is nearer than code `i`: the curve half-way between both.
+/// The linear value above which code `i + 1` is nearer than code `i`: the curve half-way between the two.
 static SRGB_THRESHOLDS: LazyLock<[f32; 255]> =
     LazyLock::new(|| std::array::from_fn(|code| srgb_to_linear((code as f64 + 0.5) / 255.0) as f32));
 
+/// A word that names no transfer function.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no transfer function `{0}`; known are srgb, linear")]
+pub struct UnknownTransfer(pub String);
+
 impl Transfer {
+    /// All of them.
+    pub const ALL: &'static [Transfer] = &[Transfer::Srgb, Transfer::Linear];
+
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Srgb => "srgb",
+            Self::Linear => "linear",
+        }
+    }
+
+    /// What it is for, in a few words.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Srgb => "For screens",
+            Self::Linear => "For measuring",
+        }
+    }
+
     /// The code nearest to `linear` on this curve. Values outside of [0, 1] are clamped; NaN becomes 0.
     pub fn encode(self, linear: f32) -> u8 {
         match self {
-            // Counting the thresholds passed needs no power function per pixel, clamps at both ends, and NaN passes none.
+            // Counting exceeded thresholds needs no power function per pixel, clamps at both ends, and NaN exceeds none.
             Self::Srgb => SRGB_THRESHOLDS.partition_point(|&threshold| linear >= threshold) as u8,
             // In f64 the product is exact; the cast saturates and turns NaN into 0.
             Self::Linear => (f64::from(linear) * 255.0 + 0.5) as u8,
         }
     }
 
-    /// The linear value in [0, 1] that `code` stands for.
+    /// The linear value in [0, 1] of `code`.
     pub fn decode(self, code: u8) -> f32 {
         match self {
             Self::Srgb => SRGB_DECODED[usize::from(code)],
@@ -43,7 +70,7 @@ impl Transfer {
         }
     }
 
-    /// The linear value of a `code` in 0..=65535, as 16-bit files have it.
+    /// The linear value of a 16-bit `code` in 0..=65535.
     pub(crate) fn decode16(self, code: u16) -> f32 {
         let value = f64::from(code) / 65535.0;
         match self {
@@ -55,6 +82,21 @@ impl Transfer {
     /// Appends the codes of `colors` to `bytes`, red first.
     pub(crate) fn encode_into(self, colors: &[[f32; 3]], bytes: &mut Vec<u8>) {
         bytes.extend(colors.as_flattened().iter().map(|&value| self.encode(value)));
+    }
+}
+
+impl fmt::Display for Transfer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Transfer {
+    type Err = UnknownTransfer;
+
+    fn from_str(name: &str) -> Result<Transfer, UnknownTransfer> {
+        let found = Transfer::ALL.iter().find(|transfer| transfer.name() == name);
+        found.copied().ok_or_else(|| UnknownTransfer(name.to_owned()))
     }
 }
 
@@ -80,6 +122,13 @@ mod tests {
         assert!((Transfer::Srgb.decode(10) - 10.0 / 255.0 / 12.92).abs() < 1e-9);
         assert_eq!((Transfer::Srgb.decode(0), Transfer::Srgb.decode(255)), (0.0, 1.0));
         assert_eq!((Transfer::Srgb.encode(0.18), Transfer::Srgb.encode(0.5)), (118, 188));
+    }
+
+    #[test]
+    fn names_are_read_and_written() {
+        Transfer::ALL.iter().for_each(|transfer| assert_eq!(transfer.to_string().parse(), Ok(*transfer)));
+        let message = "gamma".parse::<Transfer>().unwrap_err().to_string();
+        assert!(Transfer::ALL.iter().all(|transfer| message.contains(transfer.name())), "{message}");
     }
 
     #[test]

@@ -1,47 +1,221 @@
-//! Numbers that host and device must agree on: a `#define` for each in the header.
+//! Numbers that host and device must agree on, each declared once: a constant here, a `#define` in the header. Those that belong to
+//! a record are its associated constants on both sides: `Hit::NONE` is written alike in Rust and in C++.
+//!
+//! What only one side knows is not here, but where it is used.
+
+use crate::geometry::{Hit, Tally};
+use crate::literal::Constant;
+use crate::mesh::LightMesh;
+use crate::scene::{Light, Material, Texture};
 
 macro_rules! constants {
-    ($($(#[doc = $doc:literal])* $name:ident = $value:expr;)*) => {
-        $($(#[doc = $doc])* pub const $name: u32 = $value;)*
+    ($($(#[doc = $doc:literal])* $name:ident: $type:ty = $value:expr;)*) => {
+        $($(#[doc = $doc])* pub const $name: $type = $value;)*
 
-        /// All of them by name.
-        pub(crate) const ALL: &[(&str, u32)] = &[$((stringify!($name), $name)),*];
+        /// All that belong to no record.
+        pub(crate) fn all() -> Vec<Constant> {
+            vec![$(Constant::new(stringify!($name), &[$($doc),*], $name)),*]
+        }
     };
 }
 
+macro_rules! constants_of_records {
+    ($($record:ident { $($(#[doc = $doc:literal])* $name:ident = $value:expr;)* })*) => {
+        $(impl $record { $($(#[doc = $doc])* pub const $name: u32 = $value;)* })*
+
+        /// Those of a record.
+        pub(crate) fn of_record(record: &str) -> Vec<Constant> {
+            match record {
+                $(stringify!($record) => vec![$(Constant::new(stringify!($name), &[$($doc),*], $record::$name)),*],)*
+                _ => Vec::new(),
+            }
+        }
+    };
+}
+
+constants_of_records! {
+    Hit {
+        /// The triangle index that stands for "no triangle".
+        NONE = u32::MAX;
+    }
+    Tally {
+        /// Number of shards.
+        SHARDS = 64;
+    }
+    Light {
+        /// A point light.
+        POINT = 0;
+        /// Parallel light.
+        DIRECTIONAL = 1;
+        /// A spot.
+        SPOT = 2;
+        /// A ball. This kind and all that follow have a size.
+        SPHERE = 3;
+        /// A disk.
+        DISK = 4;
+        /// A rectangle.
+        RECTANGLE = 5;
+    }
+    Texture {
+        /// The same again.
+        REPEAT = 0;
+        /// The same again, every other time mirrored.
+        MIRROR = 1;
+        /// The outermost texels.
+        CLAMP = 2;
+    }
+    Material {
+        /// The material has no texture.
+        NO_TEXTURE = u32::MAX;
+    }
+    LightMesh {
+        /// w of formula (3) is 1.
+        WEIGHT_CONSTANT = 0;
+        /// w falls with the square of the distance.
+        WEIGHT_QUADRATIC = 1;
+        /// w falls with the square of that.
+        WEIGHT_SMOOTH = 2;
+    }
+}
+
 constants! {
+    // Launches.
+
+    /// Threads of a warp, and surface points of an item at most.
+    WARP: u32 = 32;
+    /// Edge of the square of pixels that a block takes, one a thread.
+    BLOCK_SIDE: u32 = 16;
     /// Threads of the blocks that take one ray, one light point or one slot a thread.
-    BLOCK = 256;
+    BLOCK: u32 = BLOCK_SIDE * BLOCK_SIDE;
+    /// Edge of the square of pixels whose surface points one block groups by cell.
+    TILE_SIDE: u32 = 32;
+    /// Rays of such a tile, or of a list, that one block groups.
+    TILE: u32 = TILE_SIDE * TILE_SIDE;
     /// Values that a thread of a prefix sum takes.
-    VALUES_OF_THREAD = 4;
+    VALUES_OF_THREAD: u32 = 4;
+
+    // Numbers of Rust's standard library; kernels have no headers for them.
+
+    /// The largest number of single precision.
+    F32_MAX: f32 = f32::MAX;
+    /// The largest number of double precision.
+    F64_MAX: f64 = f64::MAX;
+    /// The bits of infinity in single precision.
+    F32_INFINITY_BITS: u32 = f32::INFINITY.to_bits();
+    /// 2 π.
+    TAU: f32 = std::f32::consts::TAU;
+    /// 1 / π.
+    FRAC_1_PI: f32 = std::f32::consts::FRAC_1_PI;
+    /// The largest relative error of one operation in single precision, 2^-24.
+    UNIT_ROUNDOFF: f32 = 0.5 * f32::EPSILON;
+
+    // Rays and acceleration structures.
+
+    /// Ray origins farther than this many radii from the middle of the triangles are moved.
+    REACH: f32 = 8.0;
+    /// Directions whose largest component is larger, 2^40, or smaller than the reciprocal are scaled.
+    LARGEST_DIRECTION: f32 = (1u64 << 40) as f32;
+    /// Direction components below this share of the largest, 2^-30, count as such a share or as zero.
+    LEAST_COMPONENT: f32 = 1.0 / (1u32 << 30) as f32;
+    /// Relative margin of tests against the boxes of a BVH, 2^-19; derived in bvh/walk.rs.
+    BVH_MARGIN: f32 = 1.0 / (1u32 << 19) as f32;
+    /// What tests of a box against a region are given for rounding, 2^-20 or 16 units of roundoff; derived in accel/region/.
+    REGION_ROUNDING: f32 = 16.0 * UNIT_ROUNDOFF;
     /// Entries of the stack of a walk through the BVH: the most levels that it may have.
-    BVH_STACK = 64;
+    BVH_STACK: u32 = 64;
+    /// In the word of a walk's hits in a node the first bit of a child that is a node.
+    FIRST_INNER: u32 = 24;
+    /// All bits of children that are nodes.
+    INNER_HITS: u32 = u32::MAX << FIRST_INNER;
+    /// All bits of triangles in children that are leaves.
+    TRIANGLE_HITS: u32 = !INNER_HITS;
+    /// The hits with which a walk begins: the root as the only child, in the slot entered first.
+    ROOT_HIT: u32 = 1 << 31;
+
+    // Surfaces.
+
+    /// Bound on the relative error of a chain of 32 operations (Higham's gamma).
+    GAMMA_32: f32 = 32.0 * UNIT_ROUNDOFF / (1.0 - 32.0 * UNIT_ROUNDOFF);
+    /// Below this square of twice its area a triangle's normal has lost its bits to underflow.
+    LEAST_SQUARE: f32 = 1e-30;
+    /// Below this square of its length an interpolated normal has cancelled out.
+    LEAST_SMOOTH_SQUARE: f32 = 1e-12;
+
+    // Light points.
+
     /// Bits of a brick's key for each axis.
-    AXIS_BITS = 19;
+    AXIS_BITS: u32 = 19;
+    /// Bits of a light point's index on an axis that say where in its brick it lies: bricks have 4 x 4 x 4 points.
+    BRICK_BITS: u32 = 2;
+    /// Bits of a light point's index on an axis.
+    INDEX_BITS: u32 = AXIS_BITS + BRICK_BITS;
+    /// Added to indices, so that keys have no sign.
+    INDEX_BIAS: i32 = 1 << (INDEX_BITS - 1);
+    /// Bits of a light point's number within its brick.
+    POINT_BITS: u32 = 3 * BRICK_BITS;
+    /// What stands for the place of a brick that is not there.
+    NO_SLOT: u32 = u32::MAX;
+    /// 2^64 over the golden ratio: multiplied with it, numbers that follow each other lie far apart (Fibonacci hashing, SplitMix64).
+    GOLDEN_RATIO: u64 = 0x9e37_79b9_7f4a_7c15;
+    /// The farthest that the template of the largest radius reaches, in steps; added to offsets before they are packed.
+    MOST_REACH: i32 = 16;
+    /// Lines along x of that template.
+    TEMPLATE_LINES: i32 = (2 * MOST_REACH) * (2 * MOST_REACH);
+
+    // Lights.
+
     /// Points of a light that decide how much of it stands above the horizon.
-    HORIZON_SAMPLES = 64;
+    HORIZON_SAMPLES: u32 = 64;
     /// Points of a light with a size from which its unshadowed light is computed.
-    LIGHT_TARGETS = 16;
-    /// Rays whose object points one block groups by cell: 32 x 32 pixels, or so many of a list.
-    TILE = 1024;
-    /// Tangent planes of an item's object points that short tests tell apart.
-    TANGENT_PLANES = 4;
+    LIGHT_TARGETS: u32 = 16;
+    /// First factor of the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
+    MIX_1: u64 = 0xbf58_476d_1ce4_e5b9;
+    /// Second factor.
+    MIX_2: u64 = 0x94d0_49bb_1331_11eb;
+    /// The upper byte of each pair.
+    UPPER_BYTES: u32 = 0xff00_ff00;
+    /// The upper half of each byte.
+    UPPER_NIBBLES: u32 = 0xf0f0_f0f0;
+    /// The upper pair of each four bits.
+    UPPER_PAIRS: u32 = 0xcccc_cccc;
+    /// The upper bit of each pair.
+    UPPER_BITS: u32 = 0xaaaa_aaaa;
+    /// First factor of Owen scrambling (Laine and Karras 2011, factors of Burley's paper, JCGT 2020).
+    OWEN_1: u32 = 0x6c50_b47c;
+    /// Second factor.
+    OWEN_2: u32 = 0xb82f_1e52;
+    /// Third factor.
+    OWEN_3: u32 = 0xc7af_e638;
+    /// Last factor.
+    OWEN_4: u32 = 0x8d22_f6e6;
+    /// Binary digits of a sample's coordinate: as many as a float has.
+    SAMPLE_DIGITS: u32 = f32::MANTISSA_DIGITS;
+    /// What the last of them is worth.
+    LAST_DIGIT: f32 = 1.0 / (1u32 << SAMPLE_DIGITS) as f32;
+
+    // Short tests.
+
+    /// Tangent planes of an item's surface points that short tests tell apart.
+    TANGENT_PLANES: u32 = 4;
     /// Words of a candidate of the short tests by cell, a triangle that can matter.
-    CANDIDATE_WORDS = 24;
+    CANDIDATE_WORDS: u32 = 24;
     /// Candidates of one round.
-    CANDIDATES = 32;
+    CANDIDATES: u32 = 32;
     /// Pairs of a candidate and a light point that are tested in one go.
-    LISTED_TARGETS = 64;
+    LISTED_TARGETS: u32 = 64;
     /// Words of such a pair.
-    TARGET_WORDS = 4;
+    TARGET_WORDS: u32 = 4;
     /// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of the search adds.
-    FOUND_TRIANGLES = 128;
+    FOUND_TRIANGLES: u32 = 128;
     /// Entries of the search's stack up to which a round takes four nodes.
-    STACK_OF_ROUNDS = 64;
+    STACK_OF_ROUNDS: u32 = 64;
     /// Entries kept beyond those for each level of the tree.
-    STACK_PER_LEVEL = 7;
-    /// Warps of a block that interpolates, an item each.
-    ITEM_WARPS = 4;
+    STACK_PER_LEVEL: u32 = 7;
+
+    // Interpolation.
+
+    /// Warps of a block that marks light points or interpolates, an item each.
+    ITEM_WARPS: u32 = 4;
     /// Lights without a size that are interpolated at once, at most.
-    MOST_LIGHTS = 3;
+    MOST_LIGHTS: u32 = 3;
 }

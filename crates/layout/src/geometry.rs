@@ -1,5 +1,6 @@
 //! Rays, what they hit, and the structures that find it.
 
+use crate::counters::Counters;
 use crate::record::records;
 use crate::{In, Out};
 
@@ -161,26 +162,6 @@ records! {
         count: u32,
     }
 
-    /// Counters of one shard: kernels add to the shard of their block, the host sums all.
-    Counters {
-        /// Rays that hit something.
-        object_points: u64,
-        /// Light points in the half-balls, before visibility.
-        half_ball: u64,
-        /// Light points in the masks.
-        used: u64,
-        /// Short tests for which triangles were asked.
-        short_tests: u64,
-        /// Object points without light points.
-        fallbacks: u64,
-        /// Shadow rays from object points.
-        shadow_rays: u64,
-        /// Walks through a grid that reached the bound on their steps: never, unless that bound is wrong.
-        overruns: u64,
-        /// Camera rays that hit something.
-        hits: u64,
-    }
-
     /// Where kernels count.
     Tally {
         /// [`Tally::SHARDS`] of them.
@@ -198,14 +179,4 @@ impl From<[f64; 3]> for DVec3 {
     fn from([x, y, z]: [f64; 3]) -> DVec3 {
         DVec3 { x, y, z }
     }
-}
-
-impl Hit {
-    /// The triangle index that stands for "no triangle".
-    pub const NONE: u32 = u32::MAX;
-}
-
-impl Tally {
-    /// Number of shards.
-    pub const SHARDS: usize = 64;
 }

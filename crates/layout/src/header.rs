@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::{Record, constants, geometry, mesh, scene, stages};
+use crate::literal::Constant;
+use crate::{Record, constants, counters, geometry, mesh, scene, stages, structure};
 
 /// How the two compilers of kernels say `offsetof`: NVRTC has no `<stddef.h>`, and no builtin of that name.
 const PLACE_OF: &str = "
@@ -18,13 +19,16 @@ pub fn header() -> String {
     let mut text = String::from(
         "// Made from crates/layout by `cargo xtask kernels`; do not edit.\n//\n// What host and device share: constants and records.\n#pragma once\n\n",
     );
-    for (name, value) in constants::ALL {
+    for constant in constants::all() {
+        print_docs(&mut text, "", constant.docs);
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "#define {name} {value}u");
+        let _ = writeln!(text, "#define {} {}", constant.name, constant.literal);
     }
     text.push_str(PLACE_OF);
+    counters::print(&mut text);
     geometry::print(&mut text);
     scene::print(&mut text);
+    structure::print(&mut text);
     mesh::print(&mut text);
     stages::print(&mut text);
     text
@@ -32,11 +36,12 @@ pub fn header() -> String {
 
 pub(crate) fn print_record<T: Record>(text: &mut String) {
     let name = T::NAME;
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "\nstruct alignas({}) {name} {{", align_of::<T>());
+    print_codes(text, &constants::of_record(name));
     let mut print = |line: String| {
-        // Writing to a string cannot fail.
         let _ = writeln!(text, "{line}");
     };
-    print(format!("\nstruct alignas({}) {name} {{", align_of::<T>()));
     let fields = T::fields();
     for field in &fields {
         print(format!("    {};", field.declaration));
@@ -51,10 +56,31 @@ pub(crate) fn print_record<T: Record>(text: &mut String) {
     }
 }
 
+/// The constants of a record. An enumeration: the compiler would give a variable memory in every module.
+fn print_codes(text: &mut String, codes: &[Constant]) {
+    if codes.is_empty() {
+        return;
+    }
+    text.push_str("    enum : unsigned {\n");
+    for code in codes {
+        print_docs(text, "        ", code.docs);
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "        {} = {},", code.name, code.literal);
+    }
+    text.push_str("    };\n");
+}
+
+fn print_docs(text: &mut String, indent: &str, docs: &[&str]) {
+    for line in docs {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{indent}//{line}");
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Bvh;
+    use crate::geometry::{Bvh, Hit};
 
     #[test]
     fn fields_are_declared_as_in_rust() {
@@ -65,5 +91,13 @@ mod tests {
         let mut text = String::new();
         print_record::<crate::geometry::Triangle>(&mut text);
         assert!(text.contains("    float corners[3][4];\n"), "{text}");
+    }
+
+    #[test]
+    fn constants_come_with_what_they_mean() {
+        assert!(header().contains("// Threads of a warp, and surface points of an item at most.\n#define WARP 32u\n"));
+        let mut text = String::new();
+        print_record::<Hit>(&mut text);
+        assert!(text.contains("no triangle\".\n        NONE = 0xffffffffu,\n    };\n    float t;\n"), "{text}");
     }
 }

@@ -7,17 +7,23 @@
 //! * [`scene`]: lights, materials, and the whole scene as a device holds it.
 //! * [`mesh`]: the light mesh and what is computed about it.
 //! * [`stages`]: the arguments of every kernel.
-//! * [`constants`]: numbers that both sides must agree on.
+//! * [`Structure`]: the acceleration structures, for each of which there is a kernel where rays are traced.
+//! * [`constants`]: numbers that both sides must agree on; those of a record are its own.
+//! * [`counters`]: everything that is counted.
 //!
 //! A crate of its own, because the tool that makes the header and the kernels needs nothing else of the renderer.
 
 pub mod constants;
+pub mod counters;
 pub mod geometry;
 mod header;
+mod literal;
 pub mod mesh;
 mod record;
 pub mod scene;
 pub mod stages;
+mod structure;
 
 pub use header::header;
 pub use record::{DeviceType, Field, In, Out, Record};
+pub use structure::Structure;

@@ -7,8 +7,8 @@ use crate::{In, Out};
 records! {
     /// The light mesh of one picture.
     LightMesh {
-        /// Light point (0, 0, 0).
-        origin: Vec3,
+        /// Position of light point (0, 0, 0).
+        anchor: Vec3,
         /// h.
         step: f32,
         /// r, scene units.
@@ -19,7 +19,7 @@ records! {
         edge_on: f32,
         /// How much boxes grow before triangles are looked up.
         slack: f32,
-        /// w of formula (3): 0 constant, 1 quadratic, 2 smooth.
+        /// w of formula (3): one of [`LightMesh`]'s constants.
         weight: u32,
         /// Light points of the template.
         points: u32,
@@ -27,12 +27,12 @@ records! {
         words: u32,
         /// Largest component of an offset.
         reach: i32,
-        /// Light points along each axis: formula (7).
-        dims: [u32; 3],
+        /// What it is numbered by on each axis: formula (7).
+        number: [u32; 3],
         /// Lines of the template that have points.
         lines: u32,
-        /// Offset of each template point from the cell: x + 16, y + 16, z + 16, a byte each. For lanes that take a point each; a
-        /// warp that takes them one by one has the rows in constant memory.
+        /// Offset of each template point from the cell: x, y and z, each plus [`MOST_REACH`](crate::constants::MOST_REACH), a byte
+        /// each. For lanes that take a point each; a warp that takes them one by one has the rows in constant memory.
         offsets: In<u32>,
         /// The template's rows, packed: first bit, and number of points in the upper half. For lanes that take a row each.
         rows: In<u32>,
@@ -78,6 +78,16 @@ records! {
         /// Seen or not, a word a slot of the table; null for a light with a size.
         bits: Out<u64>,
         /// Rays that reached a light with a size, by rank; null for one without.
+        seen: Out<u16>,
+    }
+
+    /// What is kept about one light from picture to picture, by slot of a table that outlives them.
+    KeptBy {
+        /// Light points whose answer is known.
+        known: Out<u64>,
+        /// Seen or not; null for a light with a size.
+        bits: Out<u64>,
+        /// Rays that reached a light with a size, 64 numbers a slot; null for one without.
         seen: Out<u16>,
     }
 

@@ -5,11 +5,11 @@ use crate::geometry::{BruteForce, Bvh, Grid, Triangle, Vec3};
 use crate::record::records;
 
 records! {
-    /// A light; what a kind does not need is zero. Kinds: see [`Light`]'s constants.
+    /// A light; what a kind does not need is zero.
     Light {
         /// Middle of the light.
         position: Vec3,
-        /// Kind of light.
+        /// Kind of light: one of [`Light`]'s constants.
         kind: u32,
         /// Where a directional light or a spot shines, or the normal of a disk.
         direction: Vec3,
@@ -140,33 +140,4 @@ records! {
         /// 1: point lights are strewn over their spread.
         spread: u32,
     }
-}
-
-impl Light {
-    /// A point light.
-    pub const POINT: u32 = 0;
-    /// Parallel light.
-    pub const DIRECTIONAL: u32 = 1;
-    /// A spot.
-    pub const SPOT: u32 = 2;
-    /// A ball.
-    pub const SPHERE: u32 = 3;
-    /// A disk.
-    pub const DISK: u32 = 4;
-    /// A rectangle.
-    pub const RECTANGLE: u32 = 5;
-}
-
-impl Texture {
-    /// The same again.
-    pub const REPEAT: u32 = 0;
-    /// The same again, every other time mirrored.
-    pub const MIRROR: u32 = 1;
-    /// The outermost texels.
-    pub const CLAMP: u32 = 2;
-}
-
-impl Material {
-    /// The material has no texture.
-    pub const NO_TEXTURE: u32 = u32::MAX;
 }

@@ -1,7 +1,7 @@
 //! The arguments of every kernel: one record for the kernels of a stage.
 
 use crate::geometry::{Hit, ListedRay, Rays, Tally, Vec3};
-use crate::mesh::{BrickTable, Item, LightMesh, LitBy, UsedPoints};
+use crate::mesh::{BrickTable, Item, KeptBy, LightMesh, LitBy, UsedPoints};
 use crate::record::records;
 use crate::scene::{Sampling, Scene};
 use crate::{In, Out};
@@ -31,8 +31,6 @@ records! {
         hits: In<Hit>,
         /// Share of each light by light, then ray.
         share: Out<f32>,
-        /// Light from all lights that reaches the eye, by ray (area shadows).
-        direct: Out<Vec3>,
         /// How lights with a size are sampled.
         sampling: Sampling,
         /// Counts shadow rays.
@@ -56,8 +54,6 @@ records! {
         hits: In<Hit>,
         /// Share of each light by light, then ray.
         share: In<f32>,
-        /// Light from all lights by ray; null where `share` gives it.
-        direct: In<Vec3>,
         /// Light points used, by ray; null where none are.
         used: In<u32>,
         /// The first pixel of the film.
@@ -130,10 +126,8 @@ records! {
         members: In<u32>,
         /// Up to 32 object points of a cell each.
         items: In<Item>,
-        /// Masks: 32 · words words an item; bit l of word k says whether the item's l-th object point sees light point k.
+        /// Masks: 32 · words words an item; bit l of word k says whether the item's l-th surface point sees light point k.
         masks: Out<u32>,
-        /// The used points of each brick of the window around each item's cell.
-        marks: Out<u64>,
         /// Counts.
         tally: Tally,
         /// The first item of this launch.
@@ -142,14 +136,17 @@ records! {
         item_count: u64,
     }
 
-    /// `insert_bricks` and `mark_points`: one thread a brick of an item's window; `count_points` and `list_points`: one thread a slot.
+    /// `mark_items`: one warp an item; `insert_bricks` and `mark_points`: one thread a brick of an item's window; `count_points` and
+    /// `list_points`: one thread a slot.
     LightPoints {
         /// The light mesh.
         mesh: LightMesh,
         /// Items.
         items: In<Item>,
+        /// Their masks.
+        masks: In<u32>,
         /// The used points of each brick of the window around each item's cell.
-        marks: In<u64>,
+        marks: Out<u64>,
         /// The first item of this launch.
         first_item: u64,
         /// Items of this launch.
@@ -176,8 +173,8 @@ records! {
         mesh: LightMesh,
         /// The used light points.
         points: UsedPoints,
-        /// What is found out, by light.
-        lit: In<LitBy>,
+        /// What is found out.
+        lit: LitBy,
         /// How lights with a size are sampled.
         sampling: Sampling,
         /// Counts overruns.
@@ -192,6 +189,29 @@ records! {
         first_sample: u32,
         /// Rays from each light point in this launch.
         sample_count: u32,
+    }
+
+    /// `admit_bricks`, `find_unknown`, `learn` and `recall`: one thread a slot of the picture's table; `move_bricks` and `move_answers`: one
+    /// a slot of the smaller table.
+    Cache {
+        /// Used light points of the picture, or some of them.
+        points: UsedPoints,
+        /// The bricks that are kept.
+        table: BrickTable,
+        /// How many they are.
+        bricks: Out<u32>,
+        /// For each slot that a thread takes the slot in the table that is kept.
+        rows: Out<u32>,
+        /// What is kept about the light.
+        kept: KeptBy,
+        /// What the points see of the light.
+        lit: LitBy,
+        /// The points whose answer is not known, by slot of the picture's table.
+        unknown: Out<u64>,
+        /// The table that became too small.
+        from_table: BrickTable,
+        /// What it knows of the light.
+        from: KeptBy,
     }
 
     /// `interpolate`: one warp an item; `fallback`: one thread a ray.

@@ -1,36 +1,36 @@
-//! Megabytes per second at which scene files are read, and the most memory that takes, as a multiple of the file's size.
+//! Loading speed of scene files in megabytes per second, and peak memory as a multiple of the file size.
 //!
-//! `cargo bench -p lightmesh --bench load [-- MEGABYTES] [RUNS]`: makes one file of each kind in a temporary folder, 100 MB large
-//! unless said otherwise, and reads each in a process of its own on one thread, from the system's cache; the median of the runs is
-//! printed. The mesh is a rolling landscape with digits as a modeller writes them. Peak memory is `VmHWM` of that process, so it is
-//! known on Linux alone.
+//! `cargo bench -p lightmesh --bench load [-- MEGABYTES] [RUNS]`: creates one file of each kind in a temporary folder, of 100 MB
+//! by default, and reads each in a separate process on one thread, from the system's cache; the median of the runs is printed.
+//! The mesh is a rolling landscape with as many digits as modellers write. Peak memory is `VmHWM` of that process, so it is only
+//! known on Linux.
 #![allow(clippy::print_stdout, reason = "a benchmark prints its result")]
 
 use std::{fmt::Write as _, fs, path::Path, process::Command, time::Instant};
 
 use lightmesh::Scene;
 
-/// The word that makes this program read one file and print what that took.
+/// The argument with which this program reads one file and prints its cost.
 const READ: &str = "--read";
 
 const MEGABYTE: f64 = 1e6;
 
-/// One kind of file: what it is called, its ending, and how it is written with about so many bytes.
+/// A kind of file: its name, its extension, and its writer for an approximate size.
 struct Kind {
     name: &'static str,
     ending: &'static str,
     encode: fn(&Landscape) -> Vec<u8>,
-    /// Bytes of one vertex and its two triangles, to begin with a grid of the right size.
+    /// Bytes per vertex with its two triangles, to estimate the size of the grid.
     bytes_per_vertex: usize,
 }
 
-/// All rows of the table: a format has its rows here and its writer below.
+/// All rows of the table: each format has its rows here and its writer below.
 const KINDS: [Kind; 6] = [
-    Kind { name: "obj, positions alone", ending: "obj", encode: obj_plain, bytes_per_vertex: 80 },
+    Kind { name: "obj, positions only", ending: "obj", encode: obj_plain, bytes_per_vertex: 80 },
     Kind { name: "obj, v/vt/vn", ending: "obj", encode: obj_full, bytes_per_vertex: 190 },
     Kind { name: "ply, binary", ending: "ply", encode: ply, bytes_per_vertex: 38 },
     Kind { name: "stl, binary", ending: "stl", encode: stl, bytes_per_vertex: 100 },
-    Kind { name: "glb, positions alone", ending: "glb", encode: glb_plain, bytes_per_vertex: 36 },
+    Kind { name: "glb, positions only", ending: "glb", encode: glb_plain, bytes_per_vertex: 36 },
     Kind { name: "glb, with normals and uvs", ending: "glb", encode: glb_full, bytes_per_vertex: 56 },
 ];
 
@@ -40,7 +40,7 @@ struct Landscape {
 }
 
 impl Landscape {
-    /// About as many vertices.
+    /// With about this many vertices.
     fn of(vertices: usize) -> Landscape {
         Landscape { edge: (vertices as f64).sqrt().ceil().max(2.0) as usize }
     }
@@ -77,7 +77,7 @@ impl Landscape {
 fn obj_positions(landscape: &Landscape) -> String {
     let mut text = String::from("# a landscape\no ground\n");
     for [x, y, z] in landscape.vertices() {
-        writeln!(text, "v {x:.6} {y:.6} {z:.6}").expect("memory takes all");
+        writeln!(text, "v {x:.6} {y:.6} {z:.6}").expect("writing to memory does not fail");
     }
     text
 }
@@ -86,7 +86,7 @@ fn obj_plain(landscape: &Landscape) -> Vec<u8> {
     let mut text = obj_positions(landscape);
     for corners in landscape.triangles() {
         let [a, b, c] = corners.map(|corner| corner + 1);
-        writeln!(text, "f {a} {b} {c}").expect("memory takes all");
+        writeln!(text, "f {a} {b} {c}").expect("writing to memory does not fail");
     }
     text.into_bytes()
 }
@@ -94,14 +94,14 @@ fn obj_plain(landscape: &Landscape) -> Vec<u8> {
 fn obj_full(landscape: &Landscape) -> Vec<u8> {
     let mut text = obj_positions(landscape);
     for [u, v] in landscape.uvs() {
-        writeln!(text, "vt {u:.6} {v:.6}").expect("memory takes all");
+        writeln!(text, "vt {u:.6} {v:.6}").expect("writing to memory does not fail");
     }
     for [x, y, z] in landscape.normals() {
-        writeln!(text, "vn {x:.4} {y:.4} {z:.4}").expect("memory takes all");
+        writeln!(text, "vn {x:.4} {y:.4} {z:.4}").expect("writing to memory does not fail");
     }
     for corners in landscape.triangles() {
         let [a, b, c] = corners.map(|corner| corner + 1);
-        writeln!(text, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}").expect("memory takes all");
+        writeln!(text, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}").expect("writing to memory does not fail");
     }
     text.into_bytes()
 }
@@ -182,27 +182,27 @@ fn stl(landscape: &Landscape) -> Vec<u8> {
     bytes
 }
 
-/// The bytes of a vector in single precision.
+/// The bytes of a single-precision vector.
 fn floats<const N: usize>(vector: [f64; N]) -> impl Iterator<Item = u8> {
     vector.into_iter().flat_map(|value| (value as f32).to_le_bytes())
 }
 
-/// Seconds and peak bytes of one reading, in this process.
+/// Seconds and peak bytes of reading once in this process.
 fn read(path: &str) {
     let start = Instant::now();
     let scene = Scene::open(path).expect("what was just written can be read");
     let seconds = start.elapsed().as_secs_f64();
-    println!("{seconds} {} {}", peak_bytes().unwrap_or(f64::NAN), scene.mesh.triangles.len());
+    println!("{seconds} {} {}", peak_bytes().unwrap_or(f64::NAN), scene.geometry.mesh.triangles.len());
 }
 
-/// The most memory that this process has held so far.
+/// Peak memory of this process so far.
 fn peak_bytes() -> Option<f64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     line.trim().strip_suffix(" kB")?.trim().parse::<f64>().ok().map(|kilobytes| 1024.0 * kilobytes)
 }
 
-/// The same in a process of its own: seconds, peak bytes and triangles.
+/// The same in a separate process: seconds, peak bytes and triangles.
 fn measured(path: &Path) -> [f64; 3] {
     let this = std::env::current_exe().expect("a running program has a file");
     let output = Command::new(this).arg(READ).arg(path).output().expect("this program starts");
@@ -216,7 +216,7 @@ fn print_row(kind: &Kind, megabytes: f64, runs: usize, folder: &Path) {
     let path = folder.join("landscape").with_extension(kind.ending);
     let vertices = megabytes * MEGABYTE / kind.bytes_per_vertex as f64;
     let bytes = (kind.encode)(&Landscape::of(vertices as usize));
-    fs::write(&path, &bytes).expect("the temporary folder has room");
+    fs::write(&path, &bytes).expect("the temporary folder has space");
     let size = bytes.len() as f64;
     drop(bytes);
     let mut results: Vec<[f64; 3]> = (0..runs).map(|_| measured(&path)).collect();

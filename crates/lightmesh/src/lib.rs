@@ -1,4 +1,4 @@
-//! Soft shadows without noise: the light mesh method.
+//! Noise-free soft shadows by the light mesh method.
 //!
 //! Visibility to the lights is computed once at the nodes of a lattice in space (*light points*) and interpolated at every
 //! surface point that a pixel sees, so that many shadow rays per pixel become a few short segment tests.
@@ -17,14 +17,14 @@
 //!
 //! * [`Scene`] is what is rendered: open a file or one of the built-in scenes (`builtin:gazebo`, `builtin:childpark`,
 //!   `builtin:garden`), or put triangles together with [`SceneBuilder`](scene::SceneBuilder).
-//! * [`Settings`] says how: [`Mode`] (the method, hard-shadow ray tracing, or the area-shadow reference), picture size,
-//!   light-mesh step and radius, and so on. The defaults make a good picture.
-//! * [`Renderer`] does it on a [`Device`]: the CPU, on all of its cores, or a CUDA GPU; [`Device::Auto`] takes a GPU where one
-//!   works. One call to [`Renderer::prepare`] serves any number of pictures, and a GPU keeps its copy of the scene for as long.
-//!   [`render::devices`] lists what there is.
-//! * [`Frame`] is the picture with its [`Stats`]; an [`Observer`] watches progress and can stop the work.
+//! * [`Settings`] are the parameters: [`Mode`] (the method, hard-shadow ray tracing, or the area-shadow reference), image size,
+//!   light-mesh step and radius, and so on. The defaults give a good image.
+//! * [`Renderer`] renders on a [`Device`]: all cores of the CPU, or a CUDA GPU; [`Device::Auto`] uses a GPU if one works. One
+//!   call to [`Renderer::prepare`] serves any number of images, and a GPU keeps its copy of the scene for as long.
+//!   [`render::devices`] lists the devices.
+//! * [`Frame`] is the image with its [`Stats`]; an [`Observer`] receives progress and can stop the work.
 //!
-//! The parts live in crates of their own, which are re-exported whole as [`scene`], [`image`] and [`render`].
+//! The parts are separate crates, which are re-exported completely as [`scene`], [`image`] and [`render`].
 #![forbid(unsafe_code)]
 
 pub use lightmesh_image as image;
@@ -33,6 +33,8 @@ pub use lightmesh_scene as scene;
 
 pub use lightmesh_image::{SaveError, Transfer};
 pub use lightmesh_render::{
-    Acceleration, Device, Frame, Lookup, Mode, Observer, RenderError, Renderer, Settings, Stage, Stats, Step,
+    Acceleration, Device, Frame, Lookup, MeshCache, Mode, Observer, RenderError, Renderer, Settings, Stage, Stats, Step,
 };
+/// The vectors and matrices of this library's types.
+pub use lightmesh_scene::glam;
 pub use lightmesh_scene::{LoadError, Scene};

@@ -18,10 +18,10 @@ fn the_repository_s_scenes_render_in_every_mode() {
         let scene = Scene::open(&path).unwrap();
         assert!(scene.warnings.is_empty(), "{}: {:?}", path.display(), scene.warnings);
         for mode in [Mode::LightMesh, Mode::RayTrace, Mode::Area] {
-            let settings = Settings { mode, size: [40, 30], samples: Some(4), bounces: 1, ..Settings::default() };
+            let settings = Settings::default().with_mode(mode).with_size([40, 30]).with_samples(4).with_bounces(1);
             let frame = renderer.render(&scene, &settings).unwrap();
             let seen = frame.stats.counts.hits as f64 / frame.stats.counts.pixels as f64;
-            assert!(seen > 0.9, "{}: {seen} of the picture shows something", path.display());
+            assert!(seen > 0.9, "{}: {seen} of the image shows something", path.display());
             assert!(frame.image.color().iter().flatten().all(|value| value.is_finite()), "{}", path.display());
         }
     }

@@ -1,10 +1,14 @@
 //! What can go wrong in a render.
 
+use lightmesh_scene::GeometryError;
+
 use crate::accel::{GridError, GridFileError};
 use crate::light_mesh::{LatticeError, TemplateError};
+use crate::settings::Setting;
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// The light mesh cannot be numbered.
     #[error(transparent)]
@@ -12,6 +16,9 @@ pub enum RenderError {
     /// There is no template for the radius.
     #[error(transparent)]
     Template(#[from] TemplateError),
+    /// The geometry does not hold together.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
     /// The grid cannot be built.
     #[error(transparent)]
     Grid(#[from] GridError),
@@ -19,17 +26,17 @@ pub enum RenderError {
     #[error(transparent)]
     GridFile(#[from] GridFileError),
     /// A setting has no sense.
-    #[error("{what} {value} in the settings: {remedy}")]
+    #[error("{setting} = {value} cannot be used: {remedy}")]
     Setting {
-        /// Which one, and what is wrong with it.
-        what: &'static str,
+        /// Which one.
+        setting: Setting,
         /// What was given.
         value: String,
         /// What to give instead.
         remedy: &'static str,
     },
     /// The threads could not be started.
-    #[error("cannot start {threads} threads ({reason}): ask for fewer with --threads")]
+    #[error("cannot start {threads} threads ({reason}): ask for fewer")]
     Threads {
         /// How many were asked for.
         threads: usize,
@@ -38,7 +45,7 @@ pub enum RenderError {
     },
     /// Not even one row of the picture fits.
     #[error(
-        "one row of the picture needs {needed} bytes for {buffer}, more than the limit of {limit}: raise --memory-limit, or choose a smaller picture, a larger step or a smaller radius"
+        "one row of the picture needs {needed} bytes for {buffer}, more than the limit of {limit}: raise the limit, or choose a smaller picture, a larger step or a smaller radius"
     )]
     Memory {
         /// The largest buffer.
@@ -58,7 +65,7 @@ pub enum RenderError {
     },
     /// A device has not enough memory, however few rows are taken at once.
     #[error(
-        "{device} cannot hold {buffer}: {needed} bytes are needed, {} are free; choose a smaller picture, a larger step or a smaller radius, or --device cpu",
+        "{device} cannot hold {buffer}: {needed} bytes are needed, {} are free; choose a smaller picture, a larger step or a smaller radius, or the device cpu",
         free.map_or_else(|| "fewer".to_owned(), |free| free.to_string())
     )]
     DeviceMemory {
@@ -72,7 +79,7 @@ pub enum RenderError {
         free: Option<u64>,
     },
     /// A device failed.
-    #[error("{device} failed: {reason}; --device cpu renders without it")]
+    #[error("{device} failed: {reason}; the device cpu renders without it")]
     DeviceFault {
         /// What the maker calls the device.
         device: String,
@@ -82,4 +89,23 @@ pub enum RenderError {
     /// The observer asked to stop.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl RenderError {
+    /// The settings that the message speaks of and that may mend it; none where the cause lies elsewhere.
+    pub fn settings(&self) -> Vec<Setting> {
+        match self {
+            RenderError::Lattice(_) => vec![Setting::Step],
+            RenderError::Template(_) => vec![Setting::Radius],
+            RenderError::Grid(_) | RenderError::GridFile(_) => vec![Setting::Acceleration],
+            RenderError::Setting { setting, .. } => vec![*setting],
+            RenderError::Threads { .. } => vec![Setting::Threads],
+            RenderError::Memory { .. } => vec![Setting::MemoryLimit, Setting::Size, Setting::Step, Setting::Radius],
+            RenderError::DeviceMemory { .. } => {
+                vec![Setting::Size, Setting::Step, Setting::Radius, Setting::Device]
+            }
+            RenderError::Device { .. } | RenderError::DeviceFault { .. } => vec![Setting::Device],
+            RenderError::Geometry(_) | RenderError::Cancelled => Vec::new(),
+        }
+    }
 }

@@ -1,13 +1,17 @@
-//! What all stages of one picture share: choices, counts, clocks and the observer.
+//! What all stages of one picture share: choices, counts, clocks, progress and the observer.
 
-use std::collections::HashMap;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use crate::backend::Backend;
+use lightmesh_scene::Lights;
+
+use crate::counters::Tally;
+use crate::error::RenderError;
+use crate::observer::Observer;
+use crate::progress::Work;
 use crate::settings::ShortTests;
-use crate::{Observer, RenderError, Stage};
+use crate::stage::{Seconds, Stage};
 
 /// How lights with a size are sampled.
 #[derive(Clone, Copy, Debug)]
@@ -16,66 +20,19 @@ pub struct Sampling {
     pub samples: u32,
     /// Random pattern.
     pub seed: u64,
-    /// Point lights are strewn over their spread (area mode).
+    /// Point lights are distributed over their spread (area mode).
     pub spread: bool,
 }
 
-/// Everything that is counted, summed over all tiles and bounces.
-#[derive(Debug, Default)]
-pub struct Tally {
-    /// Rays cast for pixels and mirrors.
-    pub rays: AtomicU64,
-    /// Camera rays that hit something.
-    pub hits: AtomicU64,
-    /// Object points, those in mirrors included.
-    pub object_points: AtomicU64,
-    /// Light points in all half-balls, before visibility.
-    pub half_ball: AtomicU64,
-    /// Light points used by all object points.
-    pub used: AtomicU64,
-    /// Object points that found no light point.
-    pub fallbacks: AtomicU64,
-    /// Distinct light points, S_total.
-    pub light_points: AtomicU64,
-    /// Short tests that asked triangles.
-    pub short_tests: AtomicU64,
-    /// Short tests that were decided without asking.
-    pub short_tests_culled: AtomicU64,
-    /// Long tests from light points.
-    pub long_tests: AtomicU64,
-    /// Shadow rays from object points.
-    pub shadow_rays: AtomicU64,
-}
-
-impl Tally {
-    /// Adds `amount` to a count.
-    pub fn add(count: &AtomicU64, amount: u64) {
-        count.fetch_add(amount, Ordering::Relaxed);
+impl Sampling {
+    /// The same where light points, or surface points in their stead, look at the lights: point lights are points there.
+    pub(crate) fn of_light_points(self) -> Sampling {
+        Sampling { spread: false, ..self }
     }
 
-    /// Reads a count.
-    pub fn get(count: &AtomicU64) -> u64 {
-        count.load(Ordering::Relaxed)
-    }
-
-    /// What has been counted so far.
-    pub(crate) fn snapshot(&self) -> [u64; 11] {
-        self.all().map(Tally::get)
-    }
-
-    /// Goes back to an earlier state: what was counted since belongs to work that is done again.
-    pub(crate) fn restore(&self, snapshot: &[u64; 11]) {
-        for (count, &value) in self.all().into_iter().zip(snapshot) {
-            count.store(value, Ordering::Relaxed);
-        }
-    }
-
-    fn all(&self) -> [&AtomicU64; 11] {
-        let Tally { rays, hits, object_points, half_ball, used, fallbacks, light_points, .. } = self;
-        let Tally { short_tests, short_tests_culled, long_tests, shadow_rays, .. } = self;
-        let mesh = [half_ball, used, fallbacks, light_points, short_tests, short_tests_culled];
-        let [a, b, c, d, e, f] = mesh;
-        [rays, hits, object_points, a, b, c, d, e, f, long_tests, shadow_rays]
+    /// Long tests from one light point to all lights.
+    pub(crate) fn rays_to(&self, lights: &Lights) -> usize {
+        lights.iter().map(|light| if light.has_size() { self.samples as usize } else { 1 }).sum()
     }
 }
 
@@ -89,14 +46,18 @@ pub struct Job<'a> {
     pub short_tests: ShortTests,
     /// What has been counted.
     pub tally: Tally,
-    seconds: Mutex<HashMap<Stage, f64>>,
+    pub(crate) work: Work,
+    seconds: Mutex<Seconds>,
+    /// Some work was left out, since the observer had asked to stop.
+    stopped: AtomicBool,
 }
 
 impl<'a> Job<'a> {
     /// A job that has done nothing yet.
     pub fn new(observer: &'a dyn Observer, sampling: Sampling) -> Job<'a> {
         let short_tests = ShortTests::default();
-        Job { observer, sampling, short_tests, tally: Tally::default(), seconds: Mutex::default() }
+        let (tally, work) = (Tally::default(), Work::new());
+        Job { observer, sampling, short_tests, tally, work, seconds: Mutex::default(), stopped: AtomicBool::new(false) }
     }
 
     /// The same with short tests evaluated in another way.
@@ -104,25 +65,25 @@ impl<'a> Job<'a> {
         Job { short_tests, ..self }
     }
 
-    /// Runs one stage: tells the observer, lets the backend take the time, and fails if the observer has asked to stop.
-    pub fn stage<B: Backend, T>(
-        &self,
-        backend: &B,
-        stage: Stage,
-        pieces: u64,
-        work: impl FnOnce() -> Result<T, RenderError>,
-    ) -> Result<T, RenderError> {
-        self.check()?;
-        self.observer.begin(stage, pieces);
-        let result = backend.timed(self, stage, work);
-        self.observer.end(stage);
-        let result = result?;
-        self.check()?;
-        Ok(result)
+    /// Does a piece of the current stage's work, and tells that `pieces` more are done. Does nothing where the observer has asked to stop.
+    #[inline(always)]
+    pub(crate) fn piece<T: Default>(&self, pieces: usize, work: impl FnOnce() -> T) -> T {
+        if self.observer.cancelled() {
+            self.stopped.store(true, Ordering::Relaxed);
+            return T::default();
+        }
+        let result = work();
+        self.advance(pieces as u64);
+        result
+    }
+
+    /// Tells that `pieces` more pieces of the current stage's work are done.
+    pub(crate) fn advance(&self, pieces: u64) {
+        self.work.advance(self.observer, pieces);
     }
 
     /// Takes the wall time of `work` for `stage`.
-    pub fn wall_time<T>(&self, stage: Stage, work: impl FnOnce() -> T) -> T {
+    pub(crate) fn wall_time<T>(&self, stage: Stage, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let result = work();
         self.add_seconds(stage, start.elapsed().as_secs_f64());
@@ -130,17 +91,22 @@ impl<'a> Job<'a> {
     }
 
     /// Adds to the seconds spent in `stage`.
-    pub fn add_seconds(&self, stage: Stage, seconds: f64) {
-        *self.seconds.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).entry(stage).or_default() += seconds;
+    pub(crate) fn add_seconds(&self, stage: Stage, seconds: f64) {
+        *self.locked().of_mut(stage) += seconds;
     }
 
-    /// Seconds spent in `stage`.
-    pub fn seconds(&self, stage: Stage) -> f64 {
-        self.seconds.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).get(&stage).copied().unwrap_or(0.0)
+    /// Seconds spent in each stage so far.
+    pub fn seconds(&self) -> Seconds {
+        self.locked().clone()
     }
 
     /// Fails if the observer has asked to stop.
     pub(crate) fn check(&self) -> Result<(), RenderError> {
-        if self.observer.cancelled() { Err(RenderError::Cancelled) } else { Ok(()) }
+        let stopped = self.stopped.load(Ordering::Relaxed) || self.observer.cancelled();
+        if stopped { Err(RenderError::Cancelled) } else { Ok(()) }
+    }
+
+    fn locked(&self) -> std::sync::MutexGuard<'_, Seconds> {
+        self.seconds.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }

@@ -1,57 +1,22 @@
 //! Watching a render: progress, timing, choices made, and a way to stop it.
 
-/// The stages of a render, in order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Stage {
-    /// Building the acceleration structure.
-    Build,
-    /// Copying the scene to a device that has memory of its own.
-    Upload,
-    /// What does each pixel see?
-    PrimaryRays,
-    /// Which light points does each object point see?
-    ShortTests,
-    /// Each used light point once.
-    Collect,
-    /// Which lights does each light point (or, in the other modes, object point) see?
-    LongTests,
-    /// Formula (3), then (1).
-    Shade,
-    /// Copying the picture from a device.
-    Download,
-}
+use crate::settings::Setting;
+use crate::stage::Stage;
 
-impl Stage {
-    /// All of them, in order.
-    pub const ALL: [Stage; 8] = [
-        Stage::Build,
-        Stage::Upload,
-        Stage::PrimaryRays,
-        Stage::ShortTests,
-        Stage::Collect,
-        Stage::LongTests,
-        Stage::Shade,
-        Stage::Download,
-    ];
-
-    /// The word in statistics.
-    pub fn name(self) -> &'static str {
-        match self {
-            Stage::Build => "build",
-            Stage::Upload => "upload",
-            Stage::PrimaryRays => "primary_rays",
-            Stage::ShortTests => "short_tests",
-            Stage::Collect => "collect",
-            Stage::LongTests => "long_tests",
-            Stage::Shade => "shade",
-            Stage::Download => "download",
-        }
-    }
+/// How far a picture is, over all of its stages.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Progress {
+    /// The part of the work that is done, 0 to 1. Mirrors may send it back a little: how many rays they add is known only when they do.
+    pub done: f64,
+    /// Seconds since the picture was begun.
+    pub seconds: f64,
+    /// Seconds to go, if the rest takes as long as what was done; unknown at the very beginning.
+    pub left: Option<f64>,
 }
 
 /// Somebody who watches a render. Called from many threads.
 pub trait Observer: Sync {
-    /// A stage begins that has `total` pieces of work.
+    /// A stage begins that has `total` pieces of work. Before it ends, [`advance`](Observer::advance) has told of as many.
     fn begin(&self, stage: Stage, total: u64) {
         let _ = (stage, total);
     }
@@ -61,12 +26,23 @@ pub trait Observer: Sync {
         let _ = pieces;
     }
 
+    /// The whole picture has come so far. Called now and then, after pieces of work.
+    fn progress(&self, progress: Progress) {
+        let _ = progress;
+    }
+
     /// The stage is over.
     fn end(&self, stage: Stage) {
         let _ = stage;
     }
 
-    /// The renderer chose something by itself; a sentence for people.
+    /// The renderer chose a setting by itself; a sentence for people. Unless this is overridden it is a note like others.
+    fn chose(&self, setting: Setting, text: &str) {
+        let _ = setting;
+        self.note(text);
+    }
+
+    /// There is something to know about the picture; a sentence for people.
     fn note(&self, text: &str) {
         let _ = text;
     }

@@ -1,46 +1,54 @@
 //! A scene made ready for rays.
+//!
+//! What is built over the triangles ([`PreparedGeometry`]) lives as long as they do: lights, cameras, sizes and settings may change from
+//! picture to picture, and nothing is built or uploaded again.
 
-use std::any::Any;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use glam::Vec3;
-use lightmesh_scene::{Bounds, Scene};
+use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Scene};
 
 use crate::accel::{Accelerator, BruteForce, Bvh, Grid, GridOptions, Triangle};
-use crate::settings::Acceleration;
-use crate::{Observer, RenderError, Stage};
+use crate::error::RenderError;
+use crate::observer::Observer;
+use crate::settings::{Acceleration, Setting};
+use crate::stage::Stage;
 
-/// A scene with its acceleration structure. Any number of pictures can be taken of it.
-pub struct PreparedScene<'s> {
-    /// The scene itself.
-    pub scene: &'s Scene,
-    /// The scene's triangles by index.
+/// Triangles with the acceleration structure over them. Shared behind an [`Arc`] by all pictures of a geometry, and the key of the copies
+/// that devices keep.
+pub struct PreparedGeometry {
+    /// The triangles by index.
     pub triangles: Vec<Triangle>,
     /// What finds triangles.
     pub accelerator: Box<dyn Accelerator>,
     /// The box around all triangles that can be hit.
     pub bounds: Bounds,
-    /// Seconds that building took.
-    pub build_seconds: f64,
-    /// Copies that devices hold, by [`Runtime::id`](crate::cuda::Runtime::id).
-    pub(crate) resident: Mutex<Vec<(u64, Arc<dyn Any + Send + Sync>)>>,
-    pub(crate) center: Vec3,
+    /// The setting that chose the structure.
+    acceleration: Acceleration,
+    /// Seconds that building took, until the first picture reports them.
+    unreported: Mutex<f64>,
+    center: Vec3,
     /// A little more than the diagonal of the bounds; 1 where there are none.
-    pub(crate) far: f32,
+    far: f32,
 }
 
-impl<'s> PreparedScene<'s> {
-    /// Builds the acceleration structure over `scene`.
+impl PreparedGeometry {
+    /// Builds the acceleration structure over `geometry`.
+    ///
+    /// # Errors
+    /// [`RenderError::Geometry`] where the geometry does not hold together, [`RenderError::Grid`] or [`RenderError::GridFile`] where a
+    /// grid was asked for and cannot be built or read.
     pub fn new(
-        scene: &'s Scene,
+        geometry: &Geometry,
         acceleration: &Acceleration,
         observer: &dyn Observer,
-    ) -> Result<PreparedScene<'s>, RenderError> {
-        observer.begin(Stage::Build, scene.mesh.triangles.len() as u64);
+    ) -> Result<PreparedGeometry, RenderError> {
+        geometry.check()?;
+        let mesh = &geometry.mesh;
+        observer.begin(Stage::Build, mesh.triangles.len() as u64);
         let start = std::time::Instant::now();
-        let triangles: Vec<Triangle> = (0..scene.mesh.triangles.len())
-            .map(|index| Triangle::new(scene.mesh.corners(index), index as u32))
-            .collect();
+        let triangles: Vec<Triangle> =
+            (0..mesh.triangles.len()).map(|index| Triangle::new(mesh.corners(index), index as u32)).collect();
         let accelerator: Box<dyn Accelerator> = match acceleration {
             Acceleration::Auto | Acceleration::Bvh => Box::new(Bvh::new(&triangles)),
             Acceleration::Grid(dims) => {
@@ -49,33 +57,143 @@ impl<'s> PreparedScene<'s> {
             Acceleration::GridFile(path) => Box::new(Grid::load(path, &triangles)?),
             Acceleration::BruteForce => Box::new(BruteForce::new(&triangles)),
         };
-        let build_seconds = start.elapsed().as_secs_f64();
+        let unreported = Mutex::new(start.elapsed().as_secs_f64());
+        observer.advance(mesh.triangles.len() as u64);
         observer.end(Stage::Build);
         // Triangles that cannot be hit take no part.
         let usable = triangles.iter().filter(|triangle| triangle.is_usable());
         let bounds = Bounds::around(usable.flat_map(Triangle::corners));
         let (center, far) =
             if bounds.is_empty() { (Vec3::ZERO, 1.0) } else { (bounds.center(), 1.25 * bounds.diagonal()) };
-        Ok(PreparedScene {
-            scene,
-            bounds,
+        Ok(PreparedGeometry {
             triangles,
             accelerator,
-            build_seconds,
-            resident: Mutex::default(),
+            bounds,
+            acceleration: acceleration.clone(),
+            unreported,
             center,
             far,
         })
     }
 
-    /// How far a directional light stands from `from`: farther than any triangle. Asked for every segment, so without a root.
+    /// The setting that chose the structure.
+    pub fn acceleration(&self) -> &Acceleration {
+        &self.acceleration
+    }
+
+    /// How far a directional light stands from `from`: farther than any triangle. Needed for every segment, so without a root.
     #[inline(always)]
     pub fn reach(&self, from: Vec3) -> f32 {
         self.far + 2.0 * (from - self.center).abs().element_sum()
     }
 
+    /// What [`reach`](PreparedGeometry::reach) is computed from, for devices.
+    pub(crate) fn reach_parameters(&self) -> (Vec3, f32) {
+        (self.center, self.far)
+    }
+
     /// Bytes that the geometry takes on the host, acceleration structure included.
     pub fn memory(&self) -> usize {
         size_of_val(self.triangles.as_slice()) + self.accelerator.memory()
+    }
+
+    /// Seconds that building took, at the first call; 0 at all later ones. So they count for the first picture alone.
+    pub(crate) fn take_build_seconds(&self) -> f64 {
+        std::mem::take(&mut *self.unreported.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+/// A scene whose geometry is prepared. Any number of pictures can be taken of it, on any device; clones share the geometry.
+#[derive(Clone)]
+pub struct PreparedScene {
+    /// The scene itself.
+    pub scene: Scene,
+    /// What was built over its geometry.
+    pub geometry: Arc<PreparedGeometry>,
+}
+
+impl PreparedScene {
+    /// Builds the acceleration structure over the geometry of `scene`.
+    ///
+    /// # Errors
+    /// As [`PreparedGeometry::new`].
+    pub fn new(
+        scene: &Scene,
+        acceleration: &Acceleration,
+        observer: &dyn Observer,
+    ) -> Result<PreparedScene, RenderError> {
+        let geometry = Arc::new(PreparedGeometry::new(&scene.geometry, acceleration, observer)?);
+        Ok(PreparedScene { scene: scene.clone(), geometry })
+    }
+
+    /// The same geometry under other lights. Their positions are in the geometry's local frame.
+    pub fn with_lights(&self, lights: impl Into<Lights>) -> PreparedScene {
+        PreparedScene { scene: self.scene.clone().with_lights(lights), ..self.clone() }
+    }
+
+    /// The same geometry and lights seen by other cameras.
+    pub fn with_cameras(&self, cameras: Vec<Camera>) -> PreparedScene {
+        PreparedScene { scene: self.scene.clone().with_cameras(cameras), ..self.clone() }
+    }
+
+    /// Fails where pictures are to be made with another structure than the geometry was prepared with.
+    pub(crate) fn check(&self, acceleration: &Acceleration) -> Result<(), RenderError> {
+        let resolved = |acceleration: &Acceleration| match acceleration {
+            Acceleration::Auto => Acceleration::Bvh,
+            other => other.clone(),
+        };
+        let prepared = &self.geometry.acceleration;
+        if resolved(prepared) == resolved(acceleration) {
+            return Ok(());
+        }
+        Err(RenderError::Setting {
+            setting: Setting::Acceleration,
+            value: acceleration.to_string(),
+            remedy: "the scene was prepared with another one: prepare it again, or keep the setting",
+        })
+    }
+}
+
+/// Geometry that was prepared for earlier scenes, as long as the scenes' geometry lives.
+#[derive(Default)]
+pub(crate) struct Preparations {
+    known: Mutex<Vec<Preparation>>,
+}
+
+struct Preparation {
+    /// The geometry itself is not kept alive. While this is here no other geometry can have its address, and nobody can change it in place.
+    geometry: Weak<Geometry>,
+    prepared: Arc<PreparedGeometry>,
+}
+
+impl Preparations {
+    /// The scene with its geometry prepared: what is known is reused.
+    pub(crate) fn prepare(
+        &self,
+        scene: &Scene,
+        acceleration: &Acceleration,
+        observer: &dyn Observer,
+    ) -> Result<PreparedScene, RenderError> {
+        if let Some(geometry) = self.find(scene, acceleration) {
+            return Ok(PreparedScene { scene: scene.clone(), geometry });
+        }
+        // Not under the lock: others may prepare other geometry meanwhile.
+        let prepared = PreparedScene::new(scene, acceleration, observer)?;
+        let geometry = Arc::downgrade(&scene.geometry);
+        self.locked().push(Preparation { geometry, prepared: Arc::clone(&prepared.geometry) });
+        Ok(prepared)
+    }
+
+    fn find(&self, scene: &Scene, acceleration: &Acceleration) -> Option<Arc<PreparedGeometry>> {
+        let mut known = self.locked();
+        known.retain(|known| known.geometry.strong_count() > 0);
+        let same = |known: &&Preparation| {
+            known.geometry.as_ptr() == Arc::as_ptr(&scene.geometry) && known.prepared.acceleration == *acceleration
+        };
+        known.iter().find(same).map(|known| Arc::clone(&known.prepared))
+    }
+
+    fn locked(&self) -> std::sync::MutexGuard<'_, Vec<Preparation>> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -3,16 +3,6 @@
 
 #include "cuda/prelude.cuh"
 
-// Kinds of light, as the record `Light` numbers them.
-#define LIGHT_POINT 0
-#define LIGHT_DIRECTIONAL 1
-#define LIGHT_SPOT 2
-#define LIGHT_SPHERE 3
-#define LIGHT_DISK 4
-#define LIGHT_RECTANGLE 5
-
-#define TAU 6.28318530717958647692f
-
 // A stream of stratified points in the unit cube, different for each key.
 struct Pattern {
     unsigned seeds[4];
@@ -20,9 +10,9 @@ struct Pattern {
 
 // The finaliser of SplitMix64.
 DEVICE unsigned long long mix(unsigned long long value) {
-    value += 0x9e3779b97f4a7c15ull;
-    value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9ull;
-    value = (value ^ (value >> 27)) * 0x94d049bb133111ebull;
+    value += GOLDEN_RATIO;
+    value = (value ^ (value >> 30)) * MIX_1;
+    value = (value ^ (value >> 27)) * MIX_2;
     return value ^ (value >> 31);
 }
 
@@ -36,10 +26,10 @@ DEVICE Pattern pattern_of(unsigned long long seed, unsigned long long key, unsig
 // Owen scrambling of binary digits.
 DEVICE unsigned scramble(unsigned digits, unsigned seed) {
     unsigned x = digits + seed;
-    x ^= x * 0x6c50b47cu;
-    x ^= x * 0xb82f1e52u;
-    x ^= x * 0xc7afe638u;
-    x ^= x * 0x8d22f6e6u;
+    x ^= x * OWEN_1;
+    x ^= x * OWEN_2;
+    x ^= x * OWEN_3;
+    x ^= x * OWEN_4;
     return x;
 }
 
@@ -47,10 +37,10 @@ DEVICE unsigned scramble(unsigned digits, unsigned seed) {
 DEVICE unsigned sobol_1(unsigned index) {
     unsigned digits = index;
     digits ^= digits >> 16;
-    digits ^= (digits & 0xff00ff00u) >> 8;
-    digits ^= (digits & 0xf0f0f0f0u) >> 4;
-    digits ^= (digits & 0xccccccccu) >> 2;
-    digits ^= (digits & 0xaaaaaaaau) >> 1;
+    digits ^= (digits & UPPER_BYTES) >> 8;
+    digits ^= (digits & UPPER_NIBBLES) >> 4;
+    digits ^= (digits & UPPER_PAIRS) >> 2;
+    digits ^= (digits & UPPER_BITS) >> 1;
     return digits;
 }
 
@@ -69,7 +59,7 @@ DEVICE unsigned sobol_2(unsigned index) {
 }
 
 DEVICE float unit_interval(unsigned digits, unsigned seed) {
-    return (float)(__brev(scramble(digits, seed)) >> 8) * (1.0f / 16777216.0f);
+    return (float)(__brev(scramble(digits, seed)) >> (32 - SAMPLE_DIGITS)) * LAST_DIGIT;
 }
 
 // Point `index` of the sequence, each component in [0, 1).
@@ -89,27 +79,27 @@ DEVICE Vec3 in_ball(Vec3 u) {
 }
 
 // Whether the light has a size of its own.
-DEVICE bool has_size(const Light &light) { return light.kind >= LIGHT_SPHERE; }
+DEVICE bool has_size(const Light &light) { return light.kind >= Light::SPHERE; }
 
 // The point of a light that the numbers `u` in [0, 1)³ stand for; a directional light lies `reach` away from `from`.
 DEVICE Vec3 light_point(const Light &light, Vec3 from, float reach, Vec3 u) {
-    if (light.kind == LIGHT_DIRECTIONAL)
+    if (light.kind == Light::DIRECTIONAL)
         return from - reach * light.direction;
-    if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPHERE)
+    if (light.kind == Light::POINT || light.kind == Light::SPHERE)
         return light.position + light.radius * in_ball(u);
-    if (light.kind == LIGHT_DISK) {
+    if (light.kind == Light::DISK) {
         float sine, cosine;
         sincosf(TAU * u.x, &sine, &cosine);
         return light.position + light.radius * sqrtf(u.y) * (cosine * light.half_u + sine * light.half_v);
     }
-    if (light.kind == LIGHT_RECTANGLE)
+    if (light.kind == Light::RECTANGLE)
         return light.position + (2.0f * u.x - 1.0f) * light.half_u + (2.0f * u.y - 1.0f) * light.half_v;
     return light.position;
 }
 
 // The middle of a light; a directional light lies `reach` away from `from`.
 DEVICE Vec3 light_center(const Light &light, Vec3 from, float reach) {
-    return light.kind == LIGHT_DIRECTIONAL ? from - reach * light.direction : light.position;
+    return light.kind == Light::DIRECTIONAL ? from - reach * light.direction : light.position;
 }
 
 // How far a directional light stands from `from`: twin of prepared.rs.

@@ -5,6 +5,10 @@
 //! not form patterns and the result depends on the seed alone.
 
 use glam::Vec3;
+use lightmesh_layout::constants::{
+    GOLDEN_RATIO, LAST_DIGIT, MIX_1, MIX_2, OWEN_1, OWEN_2, OWEN_3, OWEN_4, SAMPLE_DIGITS, UPPER_BITS, UPPER_BYTES,
+    UPPER_NIBBLES, UPPER_PAIRS,
+};
 use lightmesh_scene::{Light, LightKind};
 
 /// A stream of stratified points in the unit cube, different for each key.
@@ -26,7 +30,8 @@ impl Pattern {
     #[inline(always)]
     pub fn point(&self, index: u32) -> Vec3 {
         let index = scramble(index.reverse_bits(), self.seeds[0]).reverse_bits();
-        let axis = |digits: u32, seed: u32| (scramble(digits, seed).reverse_bits() >> 8) as f32 * (1.0 / 16_777_216.0);
+        let first_digits = |digits: u32| digits.reverse_bits() >> (u32::BITS - SAMPLE_DIGITS);
+        let axis = |digits: u32, seed: u32| first_digits(scramble(digits, seed)) as f32 * LAST_DIGIT;
         Vec3::new(axis(index, self.seeds[1]), axis(sobol_1(index), self.seeds[2]), axis(sobol_2(index), self.seeds[3]))
     }
 }
@@ -34,23 +39,23 @@ impl Pattern {
 /// The finaliser of SplitMix64 (Steele, Lea, Flood 2014).
 #[inline(always)]
 fn mix(value: u64) -> u64 {
-    let value = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let value = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let value = (value ^ (value >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    let value = value.wrapping_add(GOLDEN_RATIO);
+    let value = (value ^ (value >> 30)).wrapping_mul(MIX_1);
+    let value = (value ^ (value >> 27)).wrapping_mul(MIX_2);
     value ^ (value >> 31)
 }
 
 // Here the first binary digit after the point is the least significant bit. So the first dimension of Sobol's sequence, van der
 // Corput's, is the index itself.
 
-/// Owen scrambling of binary digits (Laine and Karras 2011, constants of Burley's paper).
+/// Owen scrambling of binary digits (Laine and Karras 2011).
 #[inline(always)]
 fn scramble(digits: u32, seed: u32) -> u32 {
     let mut x = digits.wrapping_add(seed);
-    x ^= x.wrapping_mul(0x6c50_b47c);
-    x ^= x.wrapping_mul(0xb82f_1e52);
-    x ^= x.wrapping_mul(0xc7af_e638);
-    x ^= x.wrapping_mul(0x8d22_f6e6);
+    x ^= x.wrapping_mul(OWEN_1);
+    x ^= x.wrapping_mul(OWEN_2);
+    x ^= x.wrapping_mul(OWEN_3);
+    x ^= x.wrapping_mul(OWEN_4);
     x
 }
 
@@ -60,10 +65,10 @@ fn scramble(digits: u32, seed: u32) -> u32 {
 fn sobol_1(index: u32) -> u32 {
     let mut digits = index;
     digits ^= digits >> 16;
-    digits ^= (digits & 0xff00_ff00) >> 8;
-    digits ^= (digits & 0xf0f0_f0f0) >> 4;
-    digits ^= (digits & 0xcccc_cccc) >> 2;
-    digits ^= (digits & 0xaaaa_aaaa) >> 1;
+    digits ^= (digits & UPPER_BYTES) >> 8;
+    digits ^= (digits & UPPER_NIBBLES) >> 4;
+    digits ^= (digits & UPPER_PAIRS) >> 2;
+    digits ^= (digits & UPPER_BITS) >> 1;
     digits
 }
 

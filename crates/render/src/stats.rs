@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
-use crate::job::{Job, Tally};
-use crate::light_mesh::{Lattice, LightMesh};
+use crate::counters::Counts;
+use crate::light_mesh::Lattice;
+use crate::memory;
 use crate::prepared::PreparedScene;
-use crate::{Stage, memory};
+use crate::stage::Seconds;
 
 /// Counts, seconds and every resolved setting of a picture. Seconds are wall time.
 #[derive(Clone, Debug, Serialize)]
@@ -98,42 +99,6 @@ pub struct SettingsStats {
     pub lattice: Option<LatticeStats>,
 }
 
-/// How often what happened. Means are over the object points, those in mirrors included.
-#[derive(Clone, Debug, Default, Serialize)]
-#[allow(missing_docs, reason = "the fields are explained in METHOD.md, cost model")]
-pub struct Counts {
-    pub pixels: u64,
-    pub rays: u64,
-    pub hits: u64,
-    pub template: u64,
-    pub half_ball_mean: f64,
-    pub used_mean: f64,
-    pub fallback_share: f64,
-    pub light_points: u64,
-    pub short_tests: u64,
-    pub short_tests_culled: u64,
-    pub long_tests: u64,
-    pub shadow_rays: u64,
-}
-
-/// How long what took. `load`, `build` and `write` are no part of `render`. On a device the stages from `primary_rays` to `shade`
-/// are the device's own time.
-#[derive(Clone, Debug, Default, Serialize)]
-#[allow(missing_docs, reason = "named as the stages are")]
-pub struct Seconds {
-    pub load: f64,
-    pub build: f64,
-    pub upload: f64,
-    pub primary_rays: f64,
-    pub short_tests: f64,
-    pub collect: f64,
-    pub long_tests: f64,
-    pub shade: f64,
-    pub download: f64,
-    pub render: f64,
-    pub write: f64,
-}
-
 /// Peak memory in bytes; 0 where the system does not tell.
 #[derive(Clone, Debug, Default, Serialize)]
 #[allow(missing_docs, reason = "the names say all")]
@@ -144,46 +109,8 @@ pub struct MemoryStats {
 
 impl LatticeStats {
     pub(crate) fn new(scene: &PreparedScene, lattice: &Lattice) -> LatticeStats {
-        let origin = scene.scene.to_world(lattice.origin).to_array();
+        let origin = scene.scene.to_world(lattice.point(lattice.first)).to_array();
         LatticeStats { origin, step: lattice.step, dims: lattice.dims }
-    }
-}
-
-impl Counts {
-    pub(crate) fn new(job: &Job, pixels: u64, mesh: Option<&LightMesh>) -> Counts {
-        let tally = &job.tally;
-        let mean = |count| Tally::get(count) as f64 / (Tally::get(&tally.object_points) as f64).max(1.0);
-        Counts {
-            pixels,
-            rays: Tally::get(&tally.rays),
-            hits: Tally::get(&tally.hits),
-            template: mesh.map_or(0, |mesh| mesh.template.len() as u64),
-            half_ball_mean: mean(&tally.half_ball),
-            used_mean: mean(&tally.used),
-            fallback_share: mean(&tally.fallbacks),
-            light_points: Tally::get(&tally.light_points),
-            short_tests: Tally::get(&tally.short_tests),
-            short_tests_culled: Tally::get(&tally.short_tests_culled),
-            long_tests: Tally::get(&tally.long_tests),
-            shadow_rays: Tally::get(&tally.shadow_rays),
-        }
-    }
-}
-
-impl Seconds {
-    pub(crate) fn new(job: &Job, build: f64, render: f64) -> Seconds {
-        Seconds {
-            build,
-            upload: job.seconds(Stage::Upload),
-            download: job.seconds(Stage::Download),
-            primary_rays: job.seconds(Stage::PrimaryRays),
-            short_tests: job.seconds(Stage::ShortTests),
-            collect: job.seconds(Stage::Collect),
-            long_tests: job.seconds(Stage::LongTests),
-            shade: job.seconds(Stage::Shade),
-            render,
-            ..Seconds::default()
-        }
     }
 }
 

@@ -4,11 +4,6 @@
 #include "accel/triangle.cuh"
 #include "cuda/rays.cuh"
 
-// γ(32): relative rounding error of a chain of 32 operations.
-#define GAMMA_32 (32.0f * 5.9604644775390625e-8f / (1.0f - 32.0f * 5.9604644775390625e-8f))
-// Below this square of twice its area a triangle's normal has lost its bits to underflow.
-#define LEAST_SQUARE 1e-30f
-
 // An object point P.
 struct SurfacePoint {
     Vec3 position, origin, normal;
@@ -55,7 +50,7 @@ DEVICE Vec3 shading_normal(const Scene &scene, const Hit &hit, Vec3 facing) {
     const float square = length_squared(smooth);
     // A corner without a normal makes the triangle flat; so do normals that cancel out.
     const Vec3 none = splat(0.0f);
-    if (a == none || b == none || c == none || square < 1e-12f)
+    if (a == none || b == none || c == none || square < LEAST_SMOOTH_SQUARE)
         return facing;
     const Vec3 normal = smooth / sqrtf(square);
     return dot(normal, facing) < 0.0f ? -normal : normal;

@@ -1,6 +1,7 @@
 //! From a hit to the object point that everything else starts from.
 
 use glam::Vec3;
+use lightmesh_layout::constants::{GAMMA_32, LEAST_SMOOTH_SQUARE, LEAST_SQUARE};
 use lightmesh_scene::Mesh;
 
 use crate::accel::{Hit, Ray, Triangle};
@@ -15,15 +16,6 @@ pub struct SurfacePoint {
     /// Geometric normal n, unit length, on the viewer's side.
     pub normal: Vec3,
 }
-
-/// Relative rounding error of a chain of `n` operations (Higham's γ_n for `f32`).
-pub(crate) const fn gamma(n: u32) -> f32 {
-    let error = n as f32 * (0.5 * f32::EPSILON);
-    error / (1.0 - error)
-}
-
-/// Below this square of twice its area a triangle's normal has lost its bits to underflow.
-const LEAST_SQUARE: f32 = 1e-30;
 
 /// The unit normal of a tiny triangle, or of one so narrow that single precision sees no area; where double precision sees
 /// none either, the direction to the viewer.
@@ -51,7 +43,7 @@ impl SurfacePoint {
         // ray that leaves it meets its own triangle up to 9 ε S off, S being the largest coordinate of the corners relative
         // to the origin, whatever the axis: a floor at height 0 errs by its width. S is at most twice the largest corner
         // coordinate. The sum of the corners, three times a typical one, with γ(32) bounds both with room for the move itself.
-        let error = gamma(32) * (a.abs() + b.abs() + c.abs()).max_element();
+        let error = GAMMA_32 * (a.abs() + b.abs() + c.abs()).max_element();
         let origin = position + error * normal;
         SurfacePoint { position, origin, normal }
     }
@@ -68,7 +60,7 @@ pub(crate) fn shading_normal(mesh: &Mesh, hit: &Hit, facing: Vec3) -> Vec3 {
     let smooth = (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
     let square = smooth.length_squared();
     // A corner without a normal makes the triangle flat; so do normals that cancel out.
-    if a == Vec3::ZERO || b == Vec3::ZERO || c == Vec3::ZERO || square < 1e-12 {
+    if a == Vec3::ZERO || b == Vec3::ZERO || c == Vec3::ZERO || square < LEAST_SMOOTH_SQUARE {
         return facing;
     }
     let normal = smooth / square.sqrt();
@@ -83,7 +75,7 @@ pub(crate) fn shading_normal(mesh: &Mesh, hit: &Hit, facing: Vec3) -> Vec3 {
 pub(crate) fn long_segment(origin: Vec3, target: Vec3) -> Ray {
     let direction = target - origin;
     let length = direction.abs().max_element();
-    let error = gamma(32) * origin.abs().max(target.abs()).max_element();
+    let error = GAMMA_32 * origin.abs().max(target.abs()).max_element();
     let spared = if error < 0.5 * length { error / length } else { 0.5 };
     Ray { origin, direction, t_max: 1.0 - spared }
 }

@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     fn camera(projection: Projection) -> Camera {
-        Camera { name: String::new(), position: Vec3::ZERO, direction: Vec3::NEG_Z, up: Vec3::Y, projection }
+        Camera::look_to(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 50.0).unwrap().with_projection(projection)
     }
 
     #[test]

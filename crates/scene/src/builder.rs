@@ -2,55 +2,23 @@
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
-use crate::{Mesh, Position, Scene, loaded_mesh::LoadedMesh, vertices::Vertices};
+use crate::{
+    Geometry, GeometryError, Material, Mesh, MeshPart, Position, Scene, geometry_check::check_room,
+    loaded_mesh::LoadedMesh, mesh_part::Room, vertices::Vertices,
+};
 
-/// One mesh as a file holds it, before it is placed. Slices are as long as `positions` or empty.
-#[derive(Clone, Copy, Debug)]
-pub struct MeshPart<'a, P = DVec3> {
-    /// Vertices in the part's own coordinates, `Vec3` or `DVec3`.
-    pub positions: &'a [P],
-    /// Normals by vertex; need not be unit length.
-    pub normals: &'a [Vec3],
-    /// Texture coordinates by vertex.
-    pub uvs: &'a [Vec2],
-    /// Linear colours by vertex.
-    pub colors: &'a [Vec3],
-    /// Three vertex indices a triangle, all in range.
-    pub triangles: &'a [[u32; 3]],
-}
-
-impl<P> Default for MeshPart<'_, P> {
-    fn default() -> Self {
-        MeshPart { positions: &[], normals: &[], uvs: &[], colors: &[], triangles: &[] }
-    }
-}
-
-/// How much room a scene needs, where that is known before it is read.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Room {
-    pub(crate) vertices: usize,
-    pub(crate) triangles: usize,
-    /// Whether any part has them.
-    pub(crate) normals: bool,
-    pub(crate) uvs: bool,
-    pub(crate) colors: bool,
-}
-
-impl Room {
-    /// Room for this, and for `count` times `more`.
-    pub(crate) fn and(&self, more: &Room, count: usize) -> Room {
-        let sum = |a: usize, b: usize| a.saturating_add(b.saturating_mul(count));
-        Room {
-            vertices: sum(self.vertices, more.vertices),
-            triangles: sum(self.triangles, more.triangles),
-            normals: self.normals || more.normals,
-            uvs: self.uvs || more.uvs,
-            colors: self.colors || more.colors,
-        }
-    }
-}
-
-/// Gathers placed meshes; [`SceneBuilder::finish`] makes them one [`Mesh`] in a local frame.
+/// Gathers placed meshes and their materials; [`SceneBuilder::finish_scene`] makes them a scene in a local frame.
+///
+/// ```
+/// use lightmesh_scene::{MeshPart, SceneBuilder, glam::{DMat4, Vec3}};
+///
+/// let positions = [Vec3::ZERO, Vec3::X, Vec3::Y];
+/// let mut builder = SceneBuilder::new();
+/// builder.add(MeshPart { positions: &positions, triangles: &[[0, 1, 2]], ..MeshPart::default() }, &DMat4::IDENTITY, |_| 0)?;
+/// let scene = builder.finish_scene("one triangle");
+/// assert_eq!(scene.geometry.mesh.triangles.len(), 1);
+/// # Ok::<(), lightmesh_scene::GeometryError>(())
+/// ```
 #[derive(Debug, Default)]
 pub struct SceneBuilder {
     vertices: Vertices,
@@ -58,7 +26,9 @@ pub struct SceneBuilder {
     uvs: Vec<Vec2>,
     colors: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
+    /// Material by triangle.
     materials: Vec<u32>,
+    palette: Vec<Material>,
     origin: Option<DVec3>,
 }
 
@@ -68,9 +38,37 @@ impl SceneBuilder {
         SceneBuilder::default()
     }
 
+    /// Adds a material; its index is for [`SceneBuilder::add`].
+    pub fn add_material(&mut self, material: Material) -> u32 {
+        self.palette.push(material);
+        self.palette.len() as u32 - 1
+    }
+
     /// Adds `part` placed by `transform`; `material` gives the material of each of its triangles. A transform that mirrors
     /// turns the triangles' order round, so that front faces stay front faces.
-    pub fn add<P: Position>(&mut self, part: MeshPart<P>, transform: &DMat4, material: impl Fn(usize) -> u32) {
+    ///
+    /// # Errors
+    ///
+    /// [`GeometryError`] where an index leads to no vertex or lengths do not fit; then nothing was added.
+    pub fn add<P: Position>(
+        &mut self,
+        part: MeshPart<P>,
+        transform: &DMat4,
+        material: impl Fn(usize) -> u32,
+    ) -> Result<(), GeometryError> {
+        part.check()?;
+        check_room(self.vertex_count() + part.positions.len(), self.triangle_count() + part.triangles.len())?;
+        self.append(part, transform, material);
+        Ok(())
+    }
+
+    /// [`SceneBuilder::add`] of a part that is known to hold together, as loaders make them.
+    pub(crate) fn append<P: Position>(
+        &mut self,
+        part: MeshPart<P>,
+        transform: &DMat4,
+        material: impl Fn(usize) -> u32,
+    ) {
         let first = self.vertices.len() as u32;
         self.vertices.add(P::slice(part.positions), transform);
 
@@ -90,11 +88,11 @@ impl SceneBuilder {
         self.materials.extend((0..part.triangles.len()).map(material));
     }
 
-    /// [`SceneBuilder::add`] of a mesh that is handed over: the first one is placed where it lies in memory.
+    /// [`SceneBuilder::append`] of a mesh that is handed over: the first one is placed where it lies in memory.
     pub(crate) fn take<P: Position>(&mut self, mut mesh: LoadedMesh<P>, transform: &DMat4) {
         if self.vertex_count() > 0 || self.triangle_count() > 0 {
             let materials = std::mem::take(&mut mesh.materials);
-            self.add(mesh.part(), transform, |index| materials[index]);
+            self.append(mesh.part(), transform, |index| materials[index]);
             return;
         }
         self.vertices.take(P::owned(mesh.positions), transform);
@@ -162,22 +160,15 @@ impl SceneBuilder {
         (origin, mesh)
     }
 
-    /// A scene that holds the mesh alone, in its local frame: place cameras and lights with [`Scene::to_local`].
-    pub fn finish_scene(self, name: impl Into<String>) -> Scene {
-        let (origin, mesh) = self.finish();
-        Scene {
-            name: name.into(),
-            origin,
-            mesh,
-            materials: Vec::new(),
-            textures: Vec::new(),
-            lights: Vec::new(),
-            cameras: Vec::new(),
-            ambient: None,
-            background: None,
-            light_mesh: Default::default(),
-            warnings: Vec::new(),
+    /// A scene of the meshes and materials alone, in its local frame: place cameras and lights with [`Scene::to_local`]. Where no
+    /// material was added there is one, the default.
+    pub fn finish_scene(mut self, name: impl Into<String>) -> Scene {
+        let mut materials = std::mem::take(&mut self.palette);
+        if materials.is_empty() && self.triangle_count() > 0 {
+            materials.push(Material::default());
         }
+        let (origin, mesh) = self.finish();
+        Scene::new(name, Geometry { origin, mesh, materials, ..Geometry::default() })
     }
 }
 
@@ -231,7 +222,7 @@ mod tests {
     #[test]
     fn a_scene_at_home_keeps_its_coordinates() {
         let mut builder = SceneBuilder::new();
-        builder.add(part(), &DMat4::IDENTITY, |_| 0);
+        builder.add(part(), &DMat4::IDENTITY, |_| 0).unwrap();
         let (origin, mesh) = builder.finish();
         assert_eq!(origin, DVec3::ZERO);
         assert_eq!(mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
@@ -241,7 +232,7 @@ mod tests {
     fn a_scene_far_away_keeps_its_shape() {
         let offset = DVec3::new(1e6 + 0.125, -3e5, 7e4);
         let mut builder = SceneBuilder::new();
-        builder.add(part(), &DMat4::from_translation(offset), |_| 0);
+        builder.add(part(), &DMat4::from_translation(offset), |_| 0).unwrap();
         let (origin, mesh) = builder.finish();
         let [a, b, c] = mesh.corners(0);
         assert!((b - a - Vec3::X).length() < 1e-6 && (c - a - Vec3::Y).length() < 1e-6);
@@ -251,7 +242,7 @@ mod tests {
     #[test]
     fn a_mirror_keeps_the_front_in_front() {
         let mut builder = SceneBuilder::new();
-        builder.add(part(), &DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)), |_| 0);
+        builder.add(part(), &DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)), |_| 0).unwrap();
         let [a, b, c] = builder.finish().1.corners(0);
         assert!((b - a).cross(c - a).z > 0.0);
     }
@@ -270,7 +261,7 @@ mod tests {
             let (mut added, mut taken) = (SceneBuilder::new(), SceneBuilder::new());
             // The first is moved in, the second copied behind it.
             for _ in 0..2 {
-                added.add(loaded().part(), &placement, |_| 7);
+                added.add(loaded().part(), &placement, |_| 7).unwrap();
                 taken.take(loaded(), &placement);
             }
             assert_eq!(added.bounds(), taken.bounds());
@@ -289,9 +280,9 @@ mod tests {
     #[test]
     fn parts_without_normals_stand_beside_parts_with() {
         let mut builder = SceneBuilder::new();
-        builder.add(part(), &DMat4::IDENTITY, |_| 0);
-        builder.add(MeshPart { normals: &[Vec3::Z; 3], ..part() }, &DMat4::IDENTITY, |_| 1);
-        builder.add(part(), &DMat4::IDENTITY, |_| 2);
+        builder.add(part(), &DMat4::IDENTITY, |_| 0).unwrap();
+        builder.add(MeshPart { normals: &[Vec3::Z; 3], ..part() }, &DMat4::IDENTITY, |_| 1).unwrap();
+        builder.add(part(), &DMat4::IDENTITY, |_| 2).unwrap();
         let mesh = builder.finish().1;
         assert_eq!(mesh.normals.len(), 9);
         assert_eq!((mesh.normals[0], mesh.normals[3], mesh.normals[8]), (Vec3::ZERO, Vec3::Z, Vec3::ZERO));

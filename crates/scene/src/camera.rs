@@ -1,6 +1,6 @@
 //! Cameras: where the picture is taken from.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// The angle a perspective camera sees. The other angle follows from the picture's shape, because pixels are square.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,8 +33,9 @@ pub enum Projection {
     },
 }
 
-/// A camera in the scene's local frame (see [`Scene::origin`](crate::Scene::origin)).
+/// A camera in the scene's local frame (see [`Geometry::origin`](crate::Geometry::origin)).
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Camera {
     /// Name in the file; empty where it has none.
     pub name: String,
@@ -48,11 +49,149 @@ pub struct Camera {
     pub projection: Projection,
 }
 
+/// A camera that would show nothing.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CameraError {
+    /// The view has no direction.
+    #[error("the camera's view direction {direction} has no length: look at a point other than the camera's own")]
+    Direction {
+        /// What was given, or target less position.
+        direction: DVec3,
+    },
+    /// No side is up.
+    #[error("the camera's up vector {up} has no length: give one such as +Y, [0, 1, 0]")]
+    Up {
+        /// What was given.
+        up: DVec3,
+    },
+    /// The angle is not that of a perspective view.
+    #[error("the camera's vertical angle of {vfov} degrees is not between 0 and 180: 40 to 60 is usual")]
+    Angle {
+        /// What was given, degrees.
+        vfov: f32,
+    },
+}
+
 impl Camera {
+    /// A camera at `position` that looks at `target`, both in the local frame, with the full vertical angle `vfov` in degrees.
+    /// `up` shows upwards in the picture; it need not be at a right angle to the view. Where the view is parallel to it, the picture is
+    /// a plan or a view from below, and its upper edge is the scene's back: −Z, or +Y where `up` is ±Z.
+    ///
+    /// ```
+    /// use lightmesh_scene::{Camera, glam::Vec3};
+    ///
+    /// let camera = Camera::look_at(Vec3::new(0.0, 2.0, 5.0), Vec3::Y, Vec3::Y, 45.0)?.named("front");
+    /// assert_eq!(camera.position.y, 2.0);
+    /// # Ok::<(), lightmesh_scene::CameraError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`CameraError`] where `target` is the position itself, `up` has no length, or the angle is not between 0 and 180 degrees.
+    pub fn look_at(position: Vec3, target: Vec3, up: Vec3, vfov: f32) -> Result<Camera, CameraError> {
+        Camera::look_to(position, target.as_dvec3() - position.as_dvec3(), up, vfov)
+    }
+
+    /// [`Camera::look_at`] by the view direction, of any length, in single or double precision.
+    ///
+    /// # Errors
+    ///
+    /// [`CameraError`] where `direction` or `up` has no length, or the angle is not between 0 and 180 degrees.
+    pub fn look_to(
+        position: Vec3,
+        direction: impl Into<DVec3>,
+        up: impl Into<DVec3>,
+        vfov: f32,
+    ) -> Result<Camera, CameraError> {
+        let (direction, up) = (direction.into(), up.into());
+        let forward = direction.try_normalize().ok_or(CameraError::Direction { direction })?;
+        let up = up.try_normalize().ok_or(CameraError::Up { up })?;
+        if !(vfov > 0.0 && vfov < 180.0) {
+            return Err(CameraError::Angle { vfov });
+        }
+        Ok(Camera {
+            name: String::new(),
+            position,
+            direction: forward.as_vec3(),
+            up: upper_edge(forward, up).as_vec3(),
+            projection: Projection::Perspective(Fov::Vertical(vfov)),
+        })
+    }
+
+    /// The same camera under a name.
+    pub fn named(self, name: impl Into<String>) -> Camera {
+        Camera { name: name.into(), ..self }
+    }
+
+    /// The same place and direction with another projection.
+    pub fn with_projection(self, projection: Projection) -> Camera {
+        Camera { projection, ..self }
+    }
+
+    /// The same direction and projection from another place, in the local frame.
+    pub fn with_position(self, position: Vec3) -> Camera {
+        Camera { position, ..self }
+    }
+
     /// The camera's axes: right, up and forward, orthonormal. Forward is the view direction.
     pub fn basis(&self) -> (Vec3, Vec3, Vec3) {
         let forward = self.direction.normalize();
         let right = forward.cross(self.up).normalize();
         (right, right.cross(forward), forward)
+    }
+}
+
+/// `up` at a right angle to the view; where they are parallel, the direction to the back of what stands upright. All of unit length.
+fn upper_edge(forward: DVec3, up: DVec3) -> DVec3 {
+    const PARALLEL: f64 = 1e-6;
+    let upright = |up: DVec3| {
+        let side = forward.cross(up);
+        (side.length() > PARALLEL).then(|| side.cross(forward).normalize())
+    };
+    let back = if up.z.abs() > 1.0 - PARALLEL { DVec3::Y } else { DVec3::NEG_Z };
+    upright(up).or_else(|| upright(back)).unwrap_or(back)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_upper_edge_is_up_or_the_back_of_a_plan() {
+        assert_eq!(upper_edge(DVec3::NEG_Z, DVec3::Y), DVec3::Y);
+        assert_eq!(upper_edge(DVec3::NEG_Y, DVec3::Y), DVec3::NEG_Z);
+        assert_eq!(upper_edge(DVec3::NEG_Z, DVec3::Z), DVec3::Y);
+        assert_eq!(upper_edge(DVec3::X, DVec3::X), DVec3::NEG_Z);
+        let slanted = upper_edge(DVec3::new(0.0, -1.0, -1.0).normalize(), DVec3::Y);
+        assert!((slanted - DVec3::new(0.0, 1.0, -1.0).normalize()).length() < 1e-12);
+    }
+
+    #[test]
+    fn a_camera_looks_at_its_target() {
+        let camera = Camera::look_at(Vec3::new(1.0, 2.0, 7.0), Vec3::new(1.0, 2.0, -3.5), 3.0 * Vec3::Y, 45.0).unwrap();
+        let (right, up, forward) = camera.basis();
+        assert_eq!([right, up, forward], [Vec3::X, Vec3::Y, Vec3::NEG_Z]);
+        assert_eq!(camera.projection, Projection::Perspective(Fov::Vertical(45.0)));
+    }
+
+    #[test]
+    fn straight_down_has_axes_too() {
+        for up in [Vec3::X, Vec3::Y, Vec3::NEG_Y, Vec3::Z] {
+            let camera = Camera::look_to(Vec3::ZERO, -up, up, 45.0).unwrap();
+            let (right, above, forward) = camera.basis();
+            assert!(right.is_normalized() && above.is_normalized() && forward == -up, "{up}: {camera:?}");
+        }
+    }
+
+    #[test]
+    fn what_shows_nothing_is_refused() {
+        let message = |target, up, vfov| Camera::look_at(Vec3::ONE, target, up, vfov).unwrap_err().to_string();
+        assert!(message(Vec3::ONE, Vec3::Y, 45.0).contains("view direction [0, 0, 0] has no length"));
+        assert!(message(Vec3::NAN, Vec3::Y, 45.0).contains("view direction"));
+        assert!(message(Vec3::X, Vec3::ZERO, 45.0).contains("up vector [0, 0, 0]"));
+        for vfov in [0.0, -1.0, 180.0, f32::NAN] {
+            assert!(message(Vec3::X, Vec3::Y, vfov).contains(&format!("angle of {vfov} degrees")));
+        }
     }
 }

@@ -7,10 +7,10 @@ use std::path::{Component, Path, PathBuf};
 use glam::{DMat4, DVec3, Vec3};
 
 use crate::{
-    Camera, Light, LightKind, LightMeshDefaults, LoadError, LoadOptions, Material, MeshPart, Place, Position, Scene,
-    SceneBuilder, Texture,
-    builder::Room,
+    Camera, Geometry, Light, LightKind, LightMeshDefaults, Lights, LoadError, LoadOptions, Material, MeshPart, Place,
+    Position, Scene, SceneBuilder, Texture,
     loaded_mesh::LoadedMesh,
+    mesh_part::Room,
     texture::{TextureFiles, untextured},
     usable::{is_place, keep_finite, keep_placed},
 };
@@ -108,7 +108,7 @@ impl Draft {
         self.check_room(part.positions.len())?;
         let usable = usable_in(transform);
         if part.positions.iter().all(&usable) {
-            self.builder.add(part, transform, material);
+            self.builder.append(part, transform, material);
             self.note_uvs(part.triangles.len(), !part.uvs.is_empty());
         } else {
             self.add_usable(part, transform, material, usable);
@@ -157,7 +157,7 @@ impl Draft {
         self.unusable_triangles += part.triangles.len() - kept.len();
         let triangles: Vec<[u32; 3]> = kept.iter().map(|&index| part.triangles[index]).collect();
         let part = MeshPart { positions: &positions, triangles: &triangles, ..part };
-        self.builder.add(part, transform, |index| material(kept[index]));
+        self.builder.append(part, transform, |index| material(kept[index]));
         self.note_uvs(part.triangles.len(), !part.uvs.is_empty());
     }
 
@@ -233,22 +233,24 @@ impl Draft {
             self.warnings.push("the scene has no triangles".to_owned());
         }
         let name = self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let mut scene = self.builder.finish_scene(name);
-        self.warnings.extend(untextured(&mut scene.mesh, &mut self.materials, &self.without_uvs));
+        let (origin, mut mesh) = self.builder.finish();
+        self.warnings.extend(untextured(&mut mesh, &mut self.materials, &self.without_uvs));
         if self.options.strict && !self.warnings.is_empty() {
             return Err(LoadError::Warnings { path: self.path, warnings: self.warnings });
         }
-        let local = |world: DVec3| (world - scene.origin).as_vec3();
-        scene.cameras =
-            self.cameras.into_iter().map(|(camera, world)| Camera { position: local(world), ..camera }).collect();
-        scene.lights = self.lights.into_iter().map(|(light, world)| moved(light, local(world))).collect();
-        scene.materials = self.materials;
-        scene.textures = self.textures;
-        scene.ambient = self.ambient;
-        scene.background = self.background;
-        scene.light_mesh = self.light_mesh;
-        scene.warnings = self.warnings;
-        Ok(scene)
+        let geometry = Geometry { origin, mesh, materials: self.materials, textures: self.textures };
+        let cameras = self.cameras.into_iter();
+        let cameras = cameras.map(|(camera, world)| Camera { position: geometry.to_local(world), ..camera }).collect();
+        let lights = self.lights.into_iter();
+        let list = lights.map(|(light, world)| moved(light, geometry.to_local(world))).collect();
+        Ok(Scene {
+            name,
+            geometry: geometry.into(),
+            lights: Lights { list, ambient: self.ambient, background: self.background },
+            cameras,
+            light_mesh: self.light_mesh,
+            warnings: self.warnings,
+        })
     }
 }
 
@@ -297,9 +299,9 @@ mod tests {
         let mut draft = Draft::new(Path::new("scene.obj"), &LoadOptions::default());
         draft.add(part, &DMat4::IDENTITY, |index| index as u32).unwrap();
         let scene = draft.finish().unwrap();
-        assert_eq!(scene.mesh.triangles, [[0, 1, 2]]);
-        assert_eq!(scene.mesh.materials, [1]);
-        assert_eq!(scene.mesh.corners(0), [Vec3::X, Vec3::Y, Vec3::Z]);
+        assert_eq!(scene.geometry.mesh.triangles, [[0, 1, 2]]);
+        assert_eq!(scene.geometry.mesh.materials, [1]);
+        assert_eq!(scene.geometry.mesh.corners(0), [Vec3::X, Vec3::Y, Vec3::Z]);
         assert!(scene.warnings[0].starts_with("2 triangles"), "{:?}", scene.warnings);
     }
 
@@ -325,6 +327,6 @@ mod tests {
     fn strict_reading_ends_at_a_warning() {
         let strict = LoadOptions { strict: true, ..Default::default() };
         let message = Draft::new(Path::new("a.obj"), &strict).finish().unwrap_err().to_string();
-        assert_eq!(message, "the scene has no triangles, a.obj; mend it, or leave out --strict");
+        assert_eq!(message, "the scene has no triangles, a.obj; mend it, or read the scene less strictly");
     }
 }

@@ -168,7 +168,7 @@ pub enum LoadError {
         known: Vec<String>,
     },
     /// A reference that leads out of the scene's folder.
-    #[error("`{name}` lies outside the scene's folder, {place}; move it there, or allow it (--allow-outside)")]
+    #[error("`{name}` lies outside the scene's folder, {place}; move it there, or allow references to lead outside")]
     Outside {
         /// The file that refers to it.
         place: Box<Place>,
@@ -176,7 +176,7 @@ pub enum LoadError {
         name: String,
     },
     /// Something to warn of, where warnings count as errors.
-    #[error("{}, {}; mend it, or leave out --strict", warnings.join("; "), path.display())]
+    #[error("{}, {}; mend it, or read the scene less strictly", warnings.join("; "), path.display())]
     Warnings {
         /// The file.
         path: PathBuf,

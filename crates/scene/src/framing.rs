@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::{Bounds, Camera, Fov, Light, LightKind, Projection, Scene, Up};
+use crate::{Bounds, Camera, Fov, Light, Projection, Scene, Up};
 
 /// No camera of the scene has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -10,6 +10,7 @@ use crate::{Bounds, Camera, Fov, Light, LightKind, Projection, Scene, Up};
     true => "it has no named cameras: give a position and a target instead".to_owned(),
     false => format!("known are {}", known.join(", ")),
 })]
+#[non_exhaustive]
 pub struct UnknownCamera {
     /// The name asked for.
     pub name: String,
@@ -34,10 +35,34 @@ const DEFAULT_LIGHT_SPREAD: f32 = 0.02;
 /// Strength of the fill light; that of the key light is 1.
 const FILL_LIGHT: f32 = 0.25;
 
+/// What [`Scene::complete`] had to add.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Added {
+    /// A camera that frames the scene.
+    pub camera: bool,
+    /// A key light and a fill light.
+    pub lights: bool,
+}
+
 impl Scene {
+    /// Makes the scene one that can be looked at: adds [`Scene::default_camera`] where it has no camera, and
+    /// [`Scene::default_lights`], placed about its first camera, where it has no light. Says what was added.
+    pub fn complete(&mut self, up: Up) -> Added {
+        let added = Added { camera: self.cameras.is_empty(), lights: self.lights.is_empty() };
+        if added.camera {
+            self.cameras.push(self.default_camera(up));
+        }
+        if added.lights {
+            let lights = self.default_lights(&self.cameras[0]);
+            self.lights.extend(lights);
+        }
+        added
+    }
+
     /// A camera that shows the whole scene from the front, the right and above, for square pictures and wider ones.
     pub fn default_camera(&self, up: Up) -> Camera {
-        let bounds = framed(self.mesh.bounds());
+        let bounds = framed(self.geometry.mesh.bounds());
         let (right, front) = sides(up);
         let direction = -(VIEW[0] * right + VIEW[1] * up.axis() + VIEW[2] * front).normalize();
         let mut camera = Camera {
@@ -54,14 +79,13 @@ impl Scene {
     /// Two white point lights without falloff. The key light stands above and beside the camera's eye, so that shadows fall away from
     /// the viewer and to the side; the fill light, weaker and lower, on its other side, so that they are not black.
     pub fn default_lights(&self, camera: &Camera) -> [Light; 2] {
-        let bounds = framed(self.mesh.bounds());
+        let bounds = framed(self.geometry.mesh.bounds());
         let (right, up, _) = camera.basis();
         let reach = camera.position.distance(bounds.center()).max(bounds.diagonal());
         let spread = DEFAULT_LIGHT_SPREAD * bounds.diagonal();
         let light = |name: &str, beside: f32, above: f32, intensity: f32| {
             let position = camera.position + reach * (above * up + beside * right);
-            let kind = LightKind::Point { position, spread };
-            Light { name: name.to_owned(), kind, ..Light::point(position, Vec3::splat(intensity)) }
+            Light::point(position).with_spread(spread).with_intensity(Vec3::splat(intensity)).named(name)
         };
         [light("key", -0.5, 0.8, 1.0), light("fill", 0.9, 0.2, FILL_LIGHT)]
     }
@@ -110,8 +134,8 @@ mod tests {
 
     fn scene(min: Vec3, max: Vec3) -> Scene {
         let mut scene = SceneBuilder::new().finish_scene("test");
-        scene.mesh.positions = vec![min, max, min];
-        scene.mesh.triangles = vec![[0, 1, 2]];
+        scene.geometry_mut().mesh.positions = vec![min, max, min];
+        scene.geometry_mut().mesh.triangles = vec![[0, 1, 2]];
         scene
     }
 
@@ -138,7 +162,7 @@ mod tests {
         for (min, max) in boxes {
             for up in [Up::Y, Up::Z] {
                 let scene = scene(min, max);
-                let extent = extent_in_picture(&scene.mesh.bounds(), &scene.default_camera(up));
+                let extent = extent_in_picture(&scene.geometry.mesh.bounds(), &scene.default_camera(up));
                 assert!((extent - FILL).abs() < 1e-3, "{min} {max} {up:?}: {extent}");
             }
         }
@@ -164,6 +188,21 @@ mod tests {
             assert!(from_camera(&key).dot(right) < -1.0 && from_camera(&fill).dot(right) > 1.0);
             assert!(fill.intensity.max_element() < 0.5 * key.intensity.min_element());
         }
+    }
+
+    #[test]
+    fn a_scene_is_completed_once() {
+        let mut bare = scene(Vec3::ZERO, Vec3::ONE);
+        let lit = bare.default_lights(&bare.default_camera(Up::Z));
+        assert_eq!(bare.complete(Up::Z), Added { camera: true, lights: true });
+        assert_eq!((bare.cameras.as_slice(), bare.lights.as_slice()), (&[bare.default_camera(Up::Z)][..], &lit[..]));
+        assert_eq!(bare.complete(Up::Y), Added::default());
+        // What is there stays, and lights stand about the first camera.
+        let camera = Camera::look_at(Vec3::new(0.0, 0.0, 9.0), Vec3::ZERO, Vec3::Y, 30.0).unwrap();
+        bare.cameras = vec![camera.clone(), bare.default_camera(Up::Y)];
+        bare.lights.clear();
+        assert_eq!(bare.complete(Up::Y), Added { camera: false, lights: true });
+        assert_eq!((bare.cameras.len(), bare.lights.as_slice()), (2, &bare.default_lights(&camera)[..]));
     }
 
     #[test]

@@ -4,10 +4,11 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::{Camera, Falloff, Fov, Light, LightKind, Projection, Scene, UpInfo};
+use crate::{Camera, Fov, Light, LightKind, Projection, Scene, UpInfo};
 
 /// A scene in figures. World coordinates, scene units and degrees.
 #[derive(Clone, Debug, Serialize, PartialEq)]
+#[non_exhaustive]
 pub struct SceneInfo {
     /// Number of triangles.
     pub triangles: usize,
@@ -38,6 +39,7 @@ pub struct BoundsInfo {
 
 /// A light. Fields that its kind does not have are `None`; of those only `position` and `direction` are written then.
 #[derive(Clone, Debug, Serialize, PartialEq)]
+#[non_exhaustive]
 pub struct LightInfo {
     /// point, directional, spot, sphere, disk or rectangle.
     pub kind: &'static str,
@@ -71,6 +73,7 @@ pub struct LightInfo {
 
 /// A camera.
 #[derive(Clone, Debug, Serialize, PartialEq)]
+#[non_exhaustive]
 pub struct CameraInfo {
     /// Name in the file; may be empty.
     pub name: String,
@@ -94,15 +97,15 @@ pub struct CameraInfo {
 impl Scene {
     /// The scene in figures.
     pub fn info(&self) -> SceneInfo {
-        let bounds = self.mesh.bounds();
+        let bounds = self.geometry.mesh.bounds();
         let world = |local| self.to_world(local).to_array();
         SceneInfo {
-            triangles: self.mesh.triangles.len(),
+            triangles: self.geometry.mesh.triangles.len(),
             bounds: (!bounds.is_empty()).then(|| BoundsInfo { min: world(bounds.min), max: world(bounds.max) }),
             lights: self.lights.iter().map(|light| light_info(self, light)).collect(),
             cameras: self.cameras.iter().map(|camera| camera_info(self, camera)).collect(),
-            materials: self.materials.len(),
-            textures: self.textures.len(),
+            materials: self.geometry.materials.len(),
+            textures: self.geometry.textures.len(),
             up: self.suggested_up(),
             warnings: self.warnings.clone(),
         }
@@ -164,16 +167,6 @@ fn camera_info(scene: &Scene, camera: &Camera) -> CameraInfo {
 /// The `f64` with the fewest digits that is this `f32`: 0.1 stays 0.1.
 pub(crate) fn shortest(number: f32) -> f64 {
     number.to_string().parse().unwrap_or(f64::from(number))
-}
-
-impl Falloff {
-    /// The word for it in scene files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Falloff::None => "none",
-            Falloff::InverseSquare => "inverse-square",
-        }
-    }
 }
 
 impl fmt::Display for SceneInfo {
@@ -251,13 +244,11 @@ mod tests {
 
     fn scene() -> Scene {
         let mut scene = SceneBuilder::new().finish_scene("test");
-        scene.origin = DVec3::new(1000.0, 0.0, 0.0);
-        scene.mesh.positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
-        scene.mesh.triangles = vec![[0, 1, 2]];
-        scene.lights = vec![
-            Light::point(Vec3::Z, Vec3::splat(0.1)),
-            Light { kind: LightKind::Directional { direction: Vec3::NEG_Y }, ..Light::point(Vec3::ZERO, Vec3::ONE) },
-        ];
+        scene.geometry_mut().origin = DVec3::new(1000.0, 0.0, 0.0);
+        scene.geometry_mut().mesh.positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+        scene.geometry_mut().mesh.triangles = vec![[0, 1, 2]];
+        scene.lights.list =
+            vec![Light::point(Vec3::Z).with_intensity(Vec3::splat(0.1)), Light::directional(Vec3::NEG_Y).unwrap()];
         let camera = Camera {
             name: "main".into(),
             position: Vec3::Z,

@@ -1,12 +1,12 @@
 //! What a scene is, and how one is read. No rendering happens here.
 //!
-//! A [`Scene`] is what every loader and generator returns: opaque triangles with materials, lights, cameras and the
-//! ambient term of the shading model, all in one coordinate frame. One file format lives in one module under `formats`, and
+//! A [`Scene`] is what every loader and generator returns: [`Geometry`] (opaque triangles with materials and textures), [`Lights`] and
+//! cameras, all in one coordinate frame. One file format lives in one module under `formats`, and
 //! each ends in `-> Scene`.
 //!
 //! # Coordinates
 //!
-//! Right-handed. Files are read in double precision and stored as `f32` relative to [`Scene::origin`], a point near the
+//! Right-handed. Files are read in double precision and stored as `f32` relative to [`Geometry::origin`], a point near the
 //! geometry: a scene that lies a hundred kilometres from the world's origin keeps the precision that it has at home.
 #![warn(missing_docs)]
 
@@ -18,11 +18,16 @@ mod error;
 mod export;
 mod formats;
 mod framing;
+mod geometry;
+mod geometry_check;
 mod info;
 mod light;
+mod lights;
 mod loaded_mesh;
 mod material;
 mod mesh;
+mod mesh_part;
+mod names;
 mod open;
 mod scene;
 mod shapes;
@@ -31,15 +36,23 @@ mod up;
 mod usable;
 mod vertices;
 
-pub use builder::{MeshPart, SceneBuilder};
-pub use camera::{Camera, Fov, Projection};
+/// The vectors and matrices of this crate's types.
+pub use glam;
+
+pub use builder::SceneBuilder;
+pub use camera::{Camera, CameraError, Fov, Projection};
 pub use error::{LoadError, Place};
 pub use export::ExportError;
-pub use framing::UnknownCamera;
+pub use framing::{Added, UnknownCamera};
+pub use geometry::Geometry;
+pub use geometry_check::GeometryError;
 pub use info::{BoundsInfo, CameraInfo, LightInfo, SceneInfo};
-pub use light::{Falloff, Light, LightKind};
+pub use light::{Falloff, Light, LightError, LightKind};
+pub use lights::Lights;
 pub use material::Material;
 pub use mesh::{Bounds, Mesh};
+pub use mesh_part::MeshPart;
+pub use names::UnknownName;
 pub use open::LoadOptions;
 pub use scene::{LightMeshDefaults, Scene, Weight};
 pub use texture::{Texture, TextureUse, Wrap};

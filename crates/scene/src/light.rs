@@ -1,6 +1,10 @@
 //! Lights: where they are, how large they are, and how their strength is meant.
 
+use std::f32::consts::FRAC_PI_2;
+
 use glam::Vec3;
+
+use crate::parse_by_name;
 
 /// What distance does to a light, and with it the unit of [`Light::intensity`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,6 +16,29 @@ pub enum Falloff {
     /// I / (π d²) (directional: I / π).
     InverseSquare,
 }
+
+impl Falloff {
+    /// All of them.
+    pub const ALL: &'static [Falloff] = &[Falloff::None, Falloff::InverseSquare];
+
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Falloff::None => "none",
+            Falloff::InverseSquare => "inverse-square",
+        }
+    }
+
+    /// What distance does, in a few words.
+    pub fn help(self) -> &'static str {
+        match self {
+            Falloff::None => "Nothing, as in the thesis",
+            Falloff::InverseSquare => "Intensity is in candela",
+        }
+    }
+}
+
+parse_by_name!(Falloff, "falloff");
 
 /// The shape of a light. Positions and lengths are in the scene's local frame and units.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,6 +96,7 @@ pub enum LightKind {
 
 /// One light.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Light {
     /// Name in the file; empty where it has none.
     pub name: String,
@@ -80,14 +108,130 @@ pub struct Light {
     pub falloff: Falloff,
 }
 
+/// A light whose shape has no sense.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("a {kind} light cannot have the {what} {value}: {remedy}")]
+#[non_exhaustive]
+pub struct LightError {
+    /// The word for the light's shape.
+    pub kind: &'static str,
+    /// The part of it that is wrong.
+    pub what: &'static str,
+    /// What was given.
+    pub value: String,
+    /// What to give instead.
+    pub remedy: &'static str,
+}
+
+/// White lights of strength 1 without falloff and name; the methods `with_…` and [`Light::named`] change that.
+///
+/// ```
+/// use lightmesh_scene::{Falloff, Light, glam::Vec3};
+///
+/// let lamp = Light::sphere(Vec3::new(0.0, 3.0, 0.0), 0.2)?.with_intensity([80.0, 75.0, 60.0]).with_falloff(Falloff::InverseSquare);
+/// assert!(lamp.has_size());
+/// # Ok::<(), lightmesh_scene::LightError>(())
+/// ```
 impl Light {
-    /// A point light of the thesis: no falloff, no spread.
-    pub fn point(position: Vec3, intensity: Vec3) -> Light {
-        Light {
-            name: String::new(),
-            kind: LightKind::Point { position, spread: 0.0 },
-            intensity,
-            falloff: Falloff::None,
+    /// A point light; see [`Light::with_spread`].
+    pub fn point(position: Vec3) -> Light {
+        Light::new(LightKind::Point { position, spread: 0.0 })
+    }
+
+    /// Parallel light that travels along `direction`, of any length.
+    ///
+    /// # Errors
+    ///
+    /// [`LightError`] where `direction` has no length.
+    pub fn directional(direction: Vec3) -> Result<Light, LightError> {
+        let direction = unit("directional", "direction", direction)?;
+        Ok(Light::new(LightKind::Directional { direction }))
+    }
+
+    /// A point light with a cone around `direction`, of any length: full strength up to the half-angle `inner`, nothing beyond `outer`,
+    /// radians.
+    ///
+    /// # Errors
+    ///
+    /// [`LightError`] where `direction` has no length, or not 0 ≤ `inner` ≤ `outer` ≤ π/2 and `outer` > 0.
+    pub fn spot(position: Vec3, direction: Vec3, inner: f32, outer: f32) -> Result<Light, LightError> {
+        let direction = unit("spot", "direction", direction)?;
+        if !(0.0 <= inner && inner <= outer && 0.0 < outer && outer <= FRAC_PI_2) {
+            let remedy = "give half-angles in radians, 0 <= inner <= outer <= pi/2, outer above 0";
+            return Err(LightError { kind: "spot", what: "cone", value: format!("{inner} to {outer}"), remedy });
+        }
+        Ok(Light::new(LightKind::Spot { position, direction, inner, outer }))
+    }
+
+    /// A ball of light.
+    ///
+    /// # Errors
+    ///
+    /// [`LightError`] where `radius` is not above 0.
+    pub fn sphere(position: Vec3, radius: f32) -> Result<Light, LightError> {
+        let radius = size("sphere", radius)?;
+        Ok(Light::new(LightKind::Sphere { position, radius }))
+    }
+
+    /// A flat round light about the axis `normal`, of any length.
+    ///
+    /// # Errors
+    ///
+    /// [`LightError`] where `normal` has no length, or `radius` is not above 0.
+    pub fn disk(position: Vec3, normal: Vec3, radius: f32) -> Result<Light, LightError> {
+        let (normal, radius) = (unit("disk", "normal", normal)?, size("disk", radius)?);
+        Ok(Light::new(LightKind::Disk { position, normal, radius }))
+    }
+
+    /// A flat rectangular light: `half_u` and `half_v` lead from its centre to the middles of two neighbouring sides.
+    ///
+    /// # Errors
+    ///
+    /// [`LightError`] where they are not at a right angle, or span no area.
+    pub fn rectangle(position: Vec3, half_u: Vec3, half_v: Vec3) -> Result<Light, LightError> {
+        /// Cosine of the angle between the sides, from which on they lean.
+        const LEANING: f32 = 1e-4;
+        let refuse = |remedy| LightError {
+            kind: "rectangle",
+            what: "half sides",
+            value: format!("{half_u} and {half_v}"),
+            remedy,
+        };
+        let area = half_u.cross(half_v).length();
+        if !(area > 0.0 && area.is_finite()) {
+            return Err(refuse("give two finite vectors that span an area"));
+        }
+        if half_u.dot(half_v).abs() > LEANING * half_u.length() * half_v.length() {
+            return Err(refuse("turn one of them, so that they are at a right angle"));
+        }
+        Ok(Light::new(LightKind::Rectangle { position, half_u, half_v }))
+    }
+
+    /// A light of a shape that is taken as it is.
+    pub fn new(kind: LightKind) -> Light {
+        Light { name: String::new(), kind, intensity: Vec3::ONE, falloff: Falloff::None }
+    }
+
+    /// The same light with this strength, see [`Light::intensity`].
+    pub fn with_intensity(self, intensity: impl Into<Vec3>) -> Light {
+        Light { intensity: intensity.into(), ..self }
+    }
+
+    /// The same light, its strength meant in another way.
+    pub fn with_falloff(self, falloff: Falloff) -> Light {
+        Light { falloff, ..self }
+    }
+
+    /// The same light under a name.
+    pub fn named(self, name: impl Into<String>) -> Light {
+        Light { name: name.into(), ..self }
+    }
+
+    /// The same point light, strewn by area mode over a ball of this radius. Lights of other kinds have no spread and stay as they are.
+    pub fn with_spread(self, spread: f32) -> Light {
+        match self.kind {
+            LightKind::Point { position, .. } => Light { kind: LightKind::Point { position, spread }, ..self },
+            _ => self,
         }
     }
 
@@ -118,5 +262,58 @@ impl Light {
     /// Whether the light has a size of its own, so that a point can see a share of it.
     pub fn has_size(&self) -> bool {
         matches!(self.kind, LightKind::Sphere { .. } | LightKind::Disk { .. } | LightKind::Rectangle { .. })
+    }
+}
+
+fn unit(kind: &'static str, what: &'static str, vector: Vec3) -> Result<Vec3, LightError> {
+    let refused =
+        || LightError { kind, what, value: vector.to_string(), remedy: "give a finite vector that is not zero" };
+    vector.as_dvec3().try_normalize().map(|unit| unit.as_vec3()).ok_or_else(refused)
+}
+
+fn size(kind: &'static str, radius: f32) -> Result<f32, LightError> {
+    if radius > 0.0 && radius.is_finite() {
+        return Ok(radius);
+    }
+    let remedy = "give a radius above 0; a light without a size is a point light";
+    Err(LightError { kind, what: "radius", value: radius.to_string(), remedy })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_light_is_built_in_one_expression() {
+        let lamp = Light::point(Vec3::Y).with_intensity([1.0, 2.0, 3.0]).with_spread(0.5).named("lamp");
+        assert_eq!(lamp.kind, LightKind::Point { position: Vec3::Y, spread: 0.5 });
+        assert_eq!((lamp.name.as_str(), lamp.intensity), ("lamp", Vec3::new(1.0, 2.0, 3.0)));
+        let sun = Light::directional(Vec3::new(0.0, -2.0, 0.0)).unwrap().with_falloff(Falloff::InverseSquare);
+        assert_eq!(
+            (sun.kind, sun.falloff),
+            (LightKind::Directional { direction: Vec3::NEG_Y }, Falloff::InverseSquare)
+        );
+        let ball = Light::sphere(Vec3::Y, 0.5).unwrap();
+        assert_eq!(ball.clone().with_spread(2.0), ball);
+    }
+
+    #[test]
+    fn shapes_without_sense_are_refused() {
+        let message = |light: Result<Light, LightError>| light.unwrap_err().to_string();
+        assert!(
+            message(Light::directional(Vec3::ZERO)).contains("directional light cannot have the direction [0, 0, 0]")
+        );
+        assert!(message(Light::disk(Vec3::Y, Vec3::NAN, 1.0)).contains("normal"));
+        for radius in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            assert!(message(Light::sphere(Vec3::Y, radius)).contains(&format!("the radius {radius}: give")));
+            assert!(Light::disk(Vec3::Y, Vec3::Y, radius).is_err());
+        }
+        for (inner, outer) in [(0.5, 0.4), (-0.1, 0.4), (0.0, 0.0), (0.0, 1.6), (f32::NAN, 0.4)] {
+            assert!(message(Light::spot(Vec3::Y, Vec3::X, inner, outer)).contains("radians"), "{inner} {outer}");
+        }
+        assert!(Light::spot(Vec3::Y, Vec3::X, 0.0, FRAC_PI_2).is_ok());
+        assert!(message(Light::rectangle(Vec3::Y, Vec3::X, 2.0 * Vec3::X)).contains("span an area"));
+        assert!(message(Light::rectangle(Vec3::Y, Vec3::X, Vec3::ONE)).contains("right angle"));
+        assert!(Light::rectangle(Vec3::Y, Vec3::X, 3.0 * Vec3::Z).is_ok());
     }
 }

@@ -9,6 +9,7 @@ use crate::TextureUse;
 /// Where a texture or vertex colours give a surface point a tint t — their product, white where there are neither — its
 /// coefficients are `ka` t, `kd` t and `ks` + `ks_tinted` t, and it gives off `emission` + `emission_tinted` t.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Material {
     /// Name in the file; empty where it has none.
     pub name: String,
@@ -44,5 +45,66 @@ impl Default for Material {
             emission_tinted: Vec3::ZERO,
             texture: None,
         }
+    }
+}
+
+/// Materials in one expression; each method sets the field of its name.
+///
+/// ```
+/// use lightmesh_scene::Material;
+///
+/// let brass = Material::matt([0.3, 0.22, 0.1]).with_ks([0.6, 0.5, 0.3]).with_shininess(60.0).named("brass");
+/// assert_eq!(brass.ka, brass.kd);
+/// ```
+impl Material {
+    /// A matt surface of this colour, in ambient light too.
+    pub fn matt(color: impl Into<Vec3>) -> Material {
+        let color = color.into();
+        Material { ka: color, kd: color, ..Material::default() }
+    }
+
+    /// The same material under a name.
+    pub fn named(self, name: impl Into<String>) -> Material {
+        Material { name: name.into(), ..self }
+    }
+
+    /// Share of the ambient intensity.
+    pub fn with_ka(self, ka: impl Into<Vec3>) -> Material {
+        Material { ka: ka.into(), ..self }
+    }
+
+    /// Diffuse reflectance.
+    pub fn with_kd(self, kd: impl Into<Vec3>) -> Material {
+        Material { kd: kd.into(), ..self }
+    }
+
+    /// Specular coefficient.
+    pub fn with_ks(self, ks: impl Into<Vec3>) -> Material {
+        Material { ks: ks.into(), ..self }
+    }
+
+    /// The part of the specular coefficient that takes on the tint.
+    pub fn with_ks_tinted(self, ks_tinted: impl Into<Vec3>) -> Material {
+        Material { ks_tinted: ks_tinted.into(), ..self }
+    }
+
+    /// Phong exponent.
+    pub fn with_shininess(self, shininess: f32) -> Material {
+        Material { shininess, ..self }
+    }
+
+    /// Radiance that the surface gives off by itself.
+    pub fn with_emission(self, emission: impl Into<Vec3>) -> Material {
+        Material { emission: emission.into(), ..self }
+    }
+
+    /// The part of that radiance that takes on the tint.
+    pub fn with_emission_tinted(self, emission_tinted: impl Into<Vec3>) -> Material {
+        Material { emission_tinted: emission_tinted.into(), ..self }
+    }
+
+    /// A picture that tints the surface.
+    pub fn with_texture(self, texture: TextureUse) -> Material {
+        Material { texture: Some(texture), ..self }
     }
 }

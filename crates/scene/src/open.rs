@@ -15,11 +15,24 @@ const SCENE_FORMATS: [&str; 6] = ["toml", "obj", "gltf", "glb", "ply", "stl"];
 
 /// How strictly a scene is read, and what it may refer to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct LoadOptions {
     /// Follow references out of the folder of the opened file. Not by default: a scene from elsewhere must not look around.
     pub allow_outside: bool,
     /// Whatever would be a warning is an error.
     pub strict: bool,
+}
+
+impl LoadOptions {
+    /// Whether to follow references out of the folder of the opened file.
+    pub fn with_allow_outside(self, allow_outside: bool) -> LoadOptions {
+        LoadOptions { allow_outside, ..self }
+    }
+
+    /// Whether warnings are errors.
+    pub fn with_strict(self, strict: bool) -> LoadOptions {
+        LoadOptions { strict, ..self }
+    }
 }
 
 impl Scene {

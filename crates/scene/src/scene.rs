@@ -1,8 +1,10 @@
 //! The scene itself.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
 
-use crate::{Camera, Light, Material, Mesh, Texture};
+use crate::{Camera, Geometry, Lights, parse_by_name};
 
 /// The weight w of formula (3) as a function of q = distance / radius.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,7 +19,10 @@ pub enum Weight {
 }
 
 impl Weight {
-    /// The word for it in scene files and on the command line.
+    /// All of them.
+    pub const ALL: &'static [Weight] = &[Weight::Constant, Weight::Quadratic, Weight::Smooth];
+
+    /// The word for it.
     pub fn name(self) -> &'static str {
         match self {
             Weight::Constant => "constant",
@@ -26,14 +31,21 @@ impl Weight {
         }
     }
 
-    /// The weight of this name.
-    pub fn from_name(name: &str) -> Option<Weight> {
-        [Weight::Constant, Weight::Quadratic, Weight::Smooth].into_iter().find(|weight| weight.name() == name)
+    /// What it is, in a few words.
+    pub fn help(self) -> &'static str {
+        match self {
+            Weight::Constant => "w = 1, as in the thesis",
+            Weight::Quadratic => "w = 1 − q²",
+            Weight::Smooth => "w = (1 − q²)²",
+        }
     }
 }
 
-/// What a scene proposes for the light mesh; a flag on the command line wins over it.
+parse_by_name!(Weight, "weight");
+
+/// What a scene proposes for the light mesh; what a render is told wins over it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct LightMeshDefaults {
     /// Step h in scene units.
     pub step: Option<f32>,
@@ -43,27 +55,19 @@ pub struct LightMeshDefaults {
     pub weight: Option<Weight>,
 }
 
-/// Everything there is to render, in one local frame.
+/// Everything there is to render: geometry, lights and cameras, which change independently of each other. Cloning is cheap: the geometry
+/// is shared.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Scene {
     /// For people: the file's stem or the built-in's name.
     pub name: String,
-    /// World position of the local frame's zero. All `f32` positions are relative to it.
-    pub origin: DVec3,
-    /// The triangles.
-    pub mesh: Mesh,
-    /// Materials, at least one where there are triangles.
-    pub materials: Vec<Material>,
-    /// Textures of the materials.
-    pub textures: Vec<Texture>,
-    /// Lights; may be empty.
-    pub lights: Vec<Light>,
+    /// What rays can hit.
+    pub geometry: Arc<Geometry>,
+    /// What shines.
+    pub lights: Lights,
     /// Cameras; may be empty.
     pub cameras: Vec<Camera>,
-    /// I_a of formula (1), per channel; `None` where the file is silent.
-    pub ambient: Option<Vec3>,
-    /// Radiance of rays that hit nothing; `None` where the file is silent.
-    pub background: Option<Vec3>,
     /// Proposed settings of the light mesh.
     pub light_mesh: LightMeshDefaults,
     /// What a loader mended, left out or guessed; a sentence each.
@@ -71,13 +75,40 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A scene of `geometry` alone, without lights and cameras.
+    pub fn new(name: impl Into<String>, geometry: impl Into<Arc<Geometry>>) -> Scene {
+        Scene {
+            name: name.into(),
+            geometry: geometry.into(),
+            lights: Lights::default(),
+            cameras: Vec::new(),
+            light_mesh: LightMeshDefaults::default(),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// The same geometry and cameras under other lights, in the geometry's local frame.
+    pub fn with_lights(self, lights: impl Into<Lights>) -> Scene {
+        Scene { lights: lights.into(), ..self }
+    }
+
+    /// The same geometry and lights seen by other cameras; pictures are taken by the first.
+    pub fn with_cameras(self, cameras: Vec<Camera>) -> Scene {
+        Scene { cameras, ..self }
+    }
+
+    /// The geometry, to change it. A copy is made first where somebody else shares it, such as a renderer that has prepared it.
+    pub fn geometry_mut(&mut self) -> &mut Geometry {
+        Arc::make_mut(&mut self.geometry)
+    }
+
     /// World coordinates of a local point.
     pub fn to_world(&self, local: Vec3) -> DVec3 {
-        self.origin + local.as_dvec3()
+        self.geometry.to_world(local)
     }
 
     /// Local coordinates of a world point.
     pub fn to_local(&self, world: DVec3) -> Vec3 {
-        (world - self.origin).as_vec3()
+        self.geometry.to_local(world)
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 use serde::Serialize;
 
-use crate::Scene;
+use crate::{Scene, parse_by_name};
 
 /// Which axis points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,7 +42,10 @@ impl Up {
         }
     }
 
-    /// The word for it on the command line.
+    /// All of them.
+    pub const ALL: &'static [Up] = &[Up::Y, Up::Z];
+
+    /// The word for it.
     pub fn name(self) -> &'static str {
         match self {
             Up::Y => "y",
@@ -58,6 +61,8 @@ impl Up {
         }
     }
 }
+
+parse_by_name!(Up, "axis");
 
 impl Scene {
     /// Which way is up by the scene's cameras, or by the ground that it stands on; `None` where neither tells.
@@ -77,7 +82,7 @@ impl Scene {
 
     /// Area of the triangles that lie at the very bottom, as a share of the box's base.
     fn ground(&self, up: Up) -> f32 {
-        let (bounds, axis) = (self.mesh.bounds(), up.axis());
+        let (bounds, axis) = (self.geometry.mesh.bounds(), up.axis());
         let extent = bounds.extent();
         let height = extent.dot(axis);
         let base = extent.x * (extent.y + extent.z - height);
@@ -87,7 +92,12 @@ impl Scene {
         }
         let low = |corners: &[Vec3; 3]| corners.iter().all(|corner| corner.dot(axis) <= top);
         let area = |[a, b, c]: [Vec3; 3]| 0.5 * (b - a).cross(c - a).length();
-        (0..self.mesh.triangles.len()).map(|index| self.mesh.corners(index)).filter(low).map(area).sum::<f32>() / base
+        (0..self.geometry.mesh.triangles.len())
+            .map(|index| self.geometry.mesh.corners(index))
+            .filter(low)
+            .map(area)
+            .sum::<f32>()
+            / base
     }
 }
 
@@ -103,16 +113,16 @@ mod tests {
             Up::Z => Vec3::new(x, side, height),
         };
         let mut scene = SceneBuilder::new().finish_scene("tent");
-        scene.mesh.positions = vec![
+        scene.geometry_mut().mesh.positions = vec![
             place(-1.0, -1.0, 0.0),
             place(1.0, -1.0, 0.0),
             place(1.0, 1.0, 0.0),
             place(-1.0, 1.0, 0.0),
             place(0.0, 0.0, 3.0),
         ];
-        scene.mesh.triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        scene.geometry_mut().mesh.triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
         if ground {
-            scene.mesh.triangles.extend([[0, 1, 2], [0, 2, 3]]);
+            scene.geometry_mut().mesh.triangles.extend([[0, 1, 2], [0, 2, 3]]);
         }
         scene
     }

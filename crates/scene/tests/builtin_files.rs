@@ -12,12 +12,22 @@ fn a_built_in_scene_survives_being_written_and_read() {
             scene.export(&path).unwrap();
             let copy = Scene::open(&path).unwrap_or_else(|error| panic!("{builtin}: {error}"));
             let corners = |scene: &Scene| {
-                (0..scene.mesh.triangles.len()).map(|index| scene.mesh.corners(index)).collect::<Vec<_>>()
+                (0..scene.geometry.mesh.triangles.len())
+                    .map(|index| scene.geometry.mesh.corners(index))
+                    .collect::<Vec<_>>()
             };
             assert!(corners(&copy) == corners(&scene), "{builtin}, {name}");
-            assert_eq!(copy.mesh.materials, scene.mesh.materials, "{builtin}, {name}");
-            assert_eq!((&copy.materials, &copy.lights), (&scene.materials, &scene.lights), "{builtin}, {name}");
-            assert_eq!((copy.ambient, copy.background), (scene.ambient, scene.background), "{builtin}, {name}");
+            assert_eq!(copy.geometry.mesh.materials, scene.geometry.mesh.materials, "{builtin}, {name}");
+            assert_eq!(
+                (&copy.geometry.materials, &copy.lights),
+                (&scene.geometry.materials, &scene.lights),
+                "{builtin}, {name}"
+            );
+            assert_eq!(
+                (copy.lights.ambient, copy.lights.background),
+                (scene.lights.ambient, scene.lights.background),
+                "{builtin}, {name}"
+            );
             // The copy's `up` stands at a right angle to the view; the picture's axes are the same.
             for (copy, camera) in copy.cameras.iter().zip(&scene.cameras) {
                 assert_eq!(

@@ -3,7 +3,7 @@
 use std::{collections::BTreeSet, fs, path::PathBuf};
 
 use glam::{DVec3, Vec3};
-use lightmesh_scene::{Camera, Falloff, Fov, LightKind, Projection, Scene};
+use lightmesh_scene::{Camera, Falloff, Fov, Geometry, LightKind, Projection, Scene};
 
 fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes")
@@ -73,9 +73,9 @@ fn the_table_lists_every_file() {
 fn files_have_the_triangles_boxes_and_lights_of_the_table() {
     for Row { file, triangles, corners: [min, max], lights } in table() {
         let scene = open(&file);
-        assert_eq!(scene.mesh.triangles.len(), triangles, "{file}");
-        assert_eq!(scene.origin, DVec3::ZERO, "{file}");
-        let bounds = scene.mesh.bounds();
+        assert_eq!(scene.geometry.mesh.triangles.len(), triangles, "{file}");
+        assert_eq!(scene.geometry.origin, DVec3::ZERO, "{file}");
+        let bounds = scene.geometry.mesh.bounds();
         // Three decimals. Of `complete` the table's box holds lines and points too.
         if file != "complete/complete.glb" {
             assert_near(&file, bounds.min, min, 0.00051);
@@ -94,7 +94,8 @@ fn files_have_the_triangles_boxes_and_lights_of_the_table() {
 #[cfg_attr(not(shared_scenes), ignore = "needs ../shared/scenes")]
 fn attributes_are_whole() {
     for Row { file, .. } in table() {
-        let Scene { mesh, materials, textures, .. } = open(&file);
+        let scene = open(&file);
+        let Geometry { mesh, materials, textures, .. } = &*scene.geometry;
         let vertices = mesh.positions.len();
         for length in [mesh.normals.len(), mesh.uvs.len(), mesh.colors.len()] {
             assert!(length == 0 || length == vertices, "{file}");
@@ -170,12 +171,22 @@ fn textures_and_colours_are_there() {
         ("milk_truck/CesiumMilkTruck.glb", 2, 1),
     ] {
         let scene = open(file);
-        assert_eq!(scene.textures.len(), textures, "{file}: {:?}", scene.warnings);
-        assert_eq!(scene.materials.iter().filter(|material| material.texture.is_some()).count(), materials, "{file}");
-        assert!(scene.textures.iter().all(|texture| texture.texels.len() as u32 == texture.size[0] * texture.size[1]));
-        assert!(!scene.mesh.uvs.is_empty(), "{file}");
+        assert_eq!(scene.geometry.textures.len(), textures, "{file}: {:?}", scene.warnings);
+        assert_eq!(
+            scene.geometry.materials.iter().filter(|material| material.texture.is_some()).count(),
+            materials,
+            "{file}"
+        );
+        assert!(
+            scene
+                .geometry
+                .textures
+                .iter()
+                .all(|texture| texture.texels.len() as u32 == texture.size[0] * texture.size[1])
+        );
+        assert!(!scene.geometry.mesh.uvs.is_empty(), "{file}");
     }
-    assert!(!open("complete/complete.glb").mesh.colors.is_empty());
+    assert!(!open("complete/complete.glb").geometry.mesh.colors.is_empty());
 }
 
 #[test]

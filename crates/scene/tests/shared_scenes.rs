@@ -52,11 +52,11 @@ fn assert_near(what: &str, value: Vec3, expected: [f64; 3], tolerance: f32) {
 fn models_have_their_triangles_and_boxes() {
     for (file, triangles, min, max) in MODELS {
         let scene = open(file);
-        assert_eq!(scene.mesh.triangles.len(), triangles, "{file}");
-        assert_eq!(scene.mesh.materials.len(), triangles, "{file}");
-        let bounds = scene.mesh.bounds();
+        assert_eq!(scene.geometry.mesh.triangles.len(), triangles, "{file}");
+        assert_eq!(scene.geometry.mesh.materials.len(), triangles, "{file}");
+        let bounds = scene.geometry.mesh.bounds();
         // The table has three decimals; the local frame of these is the world's.
-        assert_eq!(scene.origin, DVec3::ZERO, "{file}");
+        assert_eq!(scene.geometry.origin, DVec3::ZERO, "{file}");
         assert_near(file, bounds.min, min, 0.00051);
         assert_near(file, bounds.max, max, 0.00051);
     }
@@ -67,11 +67,11 @@ fn models_have_their_triangles_and_boxes() {
 fn models_are_whole() {
     for (file, ..) in MODELS {
         let scene = open(file);
-        let (mesh, vertices) = (&scene.mesh, scene.mesh.positions.len());
+        let (mesh, vertices) = (&scene.geometry.mesh, scene.geometry.mesh.positions.len());
         assert!(mesh.normals.is_empty() || mesh.normals.len() == vertices, "{file}");
         assert!(mesh.uvs.is_empty() || mesh.uvs.len() == vertices, "{file}");
         assert!(mesh.triangles.iter().flatten().all(|&vertex| (vertex as usize) < vertices), "{file}");
-        assert!(mesh.materials.iter().all(|&material| (material as usize) < scene.materials.len()), "{file}");
+        assert!(mesh.materials.iter().all(|&material| (material as usize) < scene.geometry.materials.len()), "{file}");
         assert!(mesh.normals.iter().all(|n| n.length() == 0.0 || (n.length() - 1.0).abs() < 1e-5), "{file}");
     }
 }
@@ -120,7 +120,7 @@ fn cameras_stand_where_the_file_says() {
 #[cfg_attr(not(shared_scenes), ignore = "needs ../shared/scenes")]
 fn a_directional_light_points_where_the_file_says_and_lines_are_left_out() {
     let scene = open("complete/complete.glb");
-    assert_eq!(scene.mesh.triangles.len(), 19_930);
+    assert_eq!(scene.geometry.mesh.triangles.len(), 19_930);
     let LightKind::Directional { direction } = scene.lights[0].kind else { panic!("{:?}", scene.lights) };
     assert_near("direction", direction, [-0.447, -0.894, 0.0], 0.001);
     assert!(scene.warnings.iter().any(|warning| warning.contains("points or lines")), "{:?}", scene.warnings);
@@ -145,10 +145,11 @@ fn a_missing_material_library_is_a_warning() {
 #[cfg_attr(not(shared_scenes), ignore = "needs ../shared/scenes")]
 fn materials_of_an_obj_come_from_its_library() {
     let scene = open("cornell_box/cornell_box.obj");
-    assert_eq!(scene.materials.len(), 5);
-    let light = scene.materials.iter().find(|material| material.name == "light").expect("a material named light");
+    assert_eq!(scene.geometry.materials.len(), 5);
+    let light =
+        scene.geometry.materials.iter().find(|material| material.name == "light").expect("a material named light");
     assert_eq!(light.ka, Vec3::splat(20.0));
-    assert_eq!(open("sponza/sponza.obj").materials.len(), 20);
+    assert_eq!(open("sponza/sponza.obj").geometry.materials.len(), 20);
 }
 
 #[test]
@@ -162,11 +163,13 @@ fn models_survive_being_written_and_read() {
             scene.export(&path).unwrap();
             let copy = Scene::open(&path).unwrap_or_else(|error| panic!("{file}, {name}: {error}"));
             let corners = |scene: &Scene| {
-                (0..scene.mesh.triangles.len()).map(|index| scene.mesh.corners(index)).collect::<Vec<_>>()
+                (0..scene.geometry.mesh.triangles.len())
+                    .map(|index| scene.geometry.mesh.corners(index))
+                    .collect::<Vec<_>>()
             };
             assert!(corners(&copy) == corners(&scene), "{file}, {name}");
-            assert_eq!(copy.mesh.materials, scene.mesh.materials, "{file}, {name}");
-            assert_eq!(copy.materials, scene.materials, "{file}, {name}");
+            assert_eq!(copy.geometry.mesh.materials, scene.geometry.mesh.materials, "{file}, {name}");
+            assert_eq!(copy.geometry.materials, scene.geometry.materials, "{file}, {name}");
             assert_eq!(copy.lights.len(), scene.lights.len(), "{file}, {name}");
             assert_eq!(copy.cameras, scene.cameras, "{file}, {name}");
         }

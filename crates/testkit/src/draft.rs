@@ -1,9 +1,9 @@
-//! Scenes put together by hand, in world coordinates.
+//! Scenes assembled by hand, in world coordinates.
 
 use glam::{DMat4, DVec3, Vec3};
 use lightmesh_scene::{Camera, Falloff, Fov, Light, LightKind, Material, MeshPart, Projection, Scene, SceneBuilder};
 
-/// A scene in the making. Everything is given near the world's origin and moved by one offset when the scene is finished.
+/// A scene under construction. Everything is specified near the world's origin and moved by an offset when the scene is finished.
 ///
 /// Ambient light and background are black unless they are set.
 #[derive(Debug)]
@@ -43,7 +43,7 @@ impl SceneDraft {
         SceneDraft { offset, ..self }
     }
 
-    /// The triangles that follow are of this material.
+    /// Subsequent triangles have this material.
     pub fn painted(mut self, material: Material) -> SceneDraft {
         self.materials.push(material);
         self
@@ -53,11 +53,12 @@ impl SceneDraft {
     pub fn triangles(mut self, positions: &[DVec3], triangles: &[[u32; 3]]) -> SceneDraft {
         let material = self.materials.len() as u32 - 1;
         let part = MeshPart { positions, triangles, ..Default::default() };
-        self.builder.add(part, &DMat4::from_translation(self.offset), |_| material);
+        let added = self.builder.add(part, &DMat4::from_translation(self.offset), |_| material);
+        added.unwrap_or_else(|error| panic!("{error}"));
         self
     }
 
-    /// Adds a flat quadrilateral, corners in order round its border.
+    /// Adds a planar quadrilateral, corners in order around its border.
     pub fn quad(self, corners: [[f64; 3]; 4]) -> SceneDraft {
         self.triangles(&corners.map(DVec3::from), &[[0, 1, 2], [0, 2, 3]])
     }
@@ -83,7 +84,7 @@ impl SceneDraft {
 
     /// Adds a white light.
     pub fn light_of(mut self, kind: LightKind, intensity: f32, falloff: Falloff) -> SceneDraft {
-        self.lights.push(Light { name: String::new(), kind, intensity: Vec3::splat(intensity), falloff });
+        self.lights.push(Light::new(kind).with_intensity([intensity; 3]).with_falloff(falloff));
         self
     }
 
@@ -92,12 +93,12 @@ impl SceneDraft {
         self.light(LightKind::Point { position: Vec3::from(position), spread: 0.0 })
     }
 
-    /// Looks from `eye` to `target` with a vertical angle of 50 degrees.
+    /// Looks from `eye` to `target` with a vertical field of view of 50 degrees.
     pub fn camera(self, eye: [f64; 3], target: [f64; 3]) -> SceneDraft {
         self.projected(eye, target, Projection::Perspective(Fov::Vertical(50.0)))
     }
 
-    /// Looks from `eye` to `target` along parallel rays; the picture is `height` high.
+    /// Looks from `eye` to `target` along parallel rays; the image is `height` high.
     pub fn orthographic(self, eye: [f64; 3], target: [f64; 3], height: f32) -> SceneDraft {
         self.projected(eye, target, Projection::Orthographic { height })
     }
@@ -120,11 +121,11 @@ impl SceneDraft {
     /// The scene, in the local frame that the builder chooses.
     pub fn finish(self, name: &str) -> Scene {
         let mut scene = self.builder.finish_scene(name);
-        let (offset, origin) = (self.offset, scene.origin);
+        let (offset, origin) = (self.offset, scene.geometry.origin);
         let local = |position: DVec3| (offset + position - origin).as_vec3();
         scene.cameras =
             self.camera.iter().map(|&(eye, target, projection)| camera(local(eye), eye, target, projection)).collect();
-        scene.lights = self.lights;
+        scene.lights.list = self.lights;
         for light in &mut scene.lights {
             if let LightKind::Point { position, .. }
             | LightKind::Spot { position, .. }
@@ -135,16 +136,15 @@ impl SceneDraft {
                 *position = local(position.as_dvec3());
             }
         }
-        scene.materials = self.materials;
-        scene.ambient = Some(self.ambient);
-        scene.background = Some(self.background);
+        scene.geometry_mut().materials = self.materials;
+        scene.lights.ambient = Some(self.ambient);
+        scene.lights.background = Some(self.background);
         scene
     }
 }
 
 fn camera(position: Vec3, eye: DVec3, target: DVec3, projection: Projection) -> Camera {
-    let direction = (target - eye).normalize().as_vec3();
     // Seen from above, the picture's top is -z, so that x runs to the right.
-    let up = if direction.y.abs() > 0.99 { Vec3::NEG_Z } else { Vec3::Y };
-    Camera { name: String::new(), position, direction, up, projection }
+    let camera = Camera::look_to(position, target - eye, Vec3::Y, 50.0);
+    camera.unwrap_or_else(|error| panic!("{error}")).with_projection(projection)
 }

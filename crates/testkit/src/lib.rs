@@ -1,12 +1,13 @@
-//! What tests of rendering share: small scenes with known answers, the shared models, the matrix of devices and settings, and
-//! judges of pictures.
+//! Shared code of rendering tests: small scenes with known answers, the shared models, the matrix of devices and settings, and
+//! image checks.
 //!
-//! * [`SceneDraft`] puts analytic scenes together in double precision, anywhere in the world.
-//! * [`MODELS`] lists the models beside the repository with the cameras and lights to look at them with.
-//! * [`each_device`], [`ACCELERATIONS`], [`RADII`] and their like are what a promise must hold for.
-//! * [`Picture`] reads the planes of a rendered frame and judges them. Every judge has a test that it can say no.
+//! * [`SceneDraft`] assembles analytic scenes in double precision, anywhere in the world.
+//! * [`MODELS`] lists the models next to the repository, with cameras and lights.
+//! * [`each_device`], [`ACCELERATIONS`], [`RADII`] and others are the cases for which a guarantee must hold.
+//! * [`Watch`] is an observer that checks progress.
+//! * [`Picture`] reads the planes of a rendered frame and checks them. Every check has a test in which it fails.
 //!
-//! Helpers panic with the reason: a test that cannot set itself up has failed.
+//! Helpers panic with the reason: a test whose setup fails has failed.
 
 mod draft;
 mod matrix;
@@ -14,6 +15,7 @@ mod models;
 mod picture;
 mod random;
 mod scenes;
+mod watch;
 
 pub use draft::SceneDraft;
 pub use matrix::{ACCELERATIONS, MODES, RADII, WEIGHTS, each_device, render};
@@ -21,3 +23,4 @@ pub use models::{MODELS, Model};
 pub use picture::{Picture, mean_difference, rms_difference};
 pub use random::Random;
 pub use scenes::{BALL_LIGHT, half_plane, open_floor, pile, soup, thin_wall};
+pub use watch::{Watch, Watched};

@@ -1,20 +1,20 @@
-//! The models that lie beside the repository, with the cameras and lights to look at them with.
+//! The models next to the repository, with cameras and lights.
 
 use std::path::PathBuf;
 
 use glam::{DVec3, Vec3};
-use lightmesh_scene::{Camera, Fov, Light, Projection, Scene};
+use lightmesh_scene::{Camera, Light, Scene};
 
-/// One shared model: how to look at it, in world coordinates.
+/// A shared model with its view, in world coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct Model {
     /// File below the folder of shared scenes.
     pub file: &'static str,
     /// The eye.
     pub eye: [f64; 3],
-    /// What it looks at.
+    /// The view target.
     pub target: [f64; 3],
-    /// Vertical angle, degrees.
+    /// Vertical field of view, degrees.
     pub vfov: f32,
     /// Position of a point light.
     pub light: [f64; 3],
@@ -58,7 +58,7 @@ pub const MODELS: [Model; 28] = [
 ];
 
 impl Model {
-    /// Whether the file is there.
+    /// Whether the file exists.
     pub fn is_there(&self) -> bool {
         self.path().is_file()
     }
@@ -69,21 +69,21 @@ impl Model {
         shared.join("scenes").join(self.file)
     }
 
-    /// Which way is up: z in CAD parts and scans, and in one file that says otherwise.
+    /// The up axis: z in CAD parts and scans, and in one file that specifies it.
     fn up(&self) -> Vec3 {
         const Z_UP: [&str; 5] = ["camera_light/", "cycloidal/", "featuretype/", "teapot/teapot.ply", "spider/spider_"];
         if Z_UP.iter().any(|beginning| self.file.starts_with(beginning)) { Vec3::Z } else { Vec3::Y }
     }
 
-    /// Reads the model, with the file's own lights, or a white point light where it has none.
+    /// Reads the model, with the file's own lights, or a white point light if it has none.
     pub fn open(&self) -> Scene {
         let mut scene = Scene::open(self.path()).unwrap_or_else(|error| panic!("{error}"));
-        let direction = (DVec3::from(self.target) - DVec3::from(self.eye)).normalize().as_vec3();
-        let projection = Projection::Perspective(Fov::Vertical(self.vfov));
-        let position = scene.to_local(DVec3::from(self.eye));
-        scene.cameras.insert(0, Camera { name: "test".into(), position, direction, up: self.up(), projection });
+        let direction = DVec3::from(self.target) - DVec3::from(self.eye);
+        let camera = Camera::look_to(scene.to_local(DVec3::from(self.eye)), direction, self.up(), self.vfov);
+        scene.cameras.insert(0, camera.unwrap_or_else(|error| panic!("{error}")).named("test"));
         if scene.lights.is_empty() {
-            scene.lights.push(Light::point(scene.to_local(DVec3::from(self.light)), Vec3::ONE));
+            let position = scene.to_local(DVec3::from(self.light));
+            scene.lights.push(Light::point(position));
         }
         scene
     }

@@ -1,4 +1,4 @@
-//! A rendered frame, read plane by plane and judged.
+//! A rendered frame, read plane by plane and checked.
 
 use glam::Vec3;
 use lightmesh_image::Layers;
@@ -12,7 +12,7 @@ pub struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    /// Panics where the frame was rendered without layers.
+    /// Panics if the frame was rendered without layers.
     pub fn new(frame: &'a Frame) -> Picture<'a> {
         Picture { frame, layers: frame.image.layers().expect("rendered with layers") }
     }
@@ -33,7 +33,7 @@ impl<'a> Picture<'a> {
         (0..layers.depth.len()).filter(move |&pixel| layers.depth[pixel] < f32::INFINITY)
     }
 
-    /// Object point of a pixel, world coordinates.
+    /// Surface point of a pixel, world coordinates.
     pub fn position(&self, pixel: usize) -> Vec3 {
         Vec3::from_array(self.layers.position[pixel])
     }
@@ -48,8 +48,8 @@ impl<'a> Picture<'a> {
         self.hits().map(|pixel| self.layers.visibility[light][pixel]).collect()
     }
 
-    /// What is wrong with the values of this picture, if anything: colours must be finite and not negative, visibility in
-    /// [0, 1], normals of unit length, and everything but the colour as documented where a ray missed.
+    /// A problem with the values of this image, if any: colours must be finite and not negative, visibility in [0, 1], normals of
+    /// unit length, and everything but the colour as documented if a ray missed.
     pub fn fault(&self) -> Option<String> {
         let colors = self.frame.image.color();
         (0..colors.len()).find_map(|pixel| {
@@ -78,8 +78,8 @@ impl<'a> Picture<'a> {
         })
     }
 
-    /// Pixels whose visibility of light `light` differs by more than a half from all four neighbours', while those agree and
-    /// lie with the pixel on one smooth piece of surface; and how many pixels were looked at. Acne and leaks look like this.
+    /// Pixels whose visibility of light `light` differs by more than a half from that of all four neighbours, while those agree
+    /// and are on the same smooth piece of surface as the pixel; and the number of pixels checked. Acne and leaks look like this.
     pub fn isolated(&self, light: usize) -> (usize, usize) {
         let width = self.frame.image.width() as usize;
         let height = self.frame.image.height() as usize;
@@ -99,14 +99,14 @@ impl<'a> Picture<'a> {
         (isolated, looked_at)
     }
 
-    /// Whether two pixels lie on one smooth piece of surface: normals agree, and the chord lies in the tangent plane.
+    /// Whether two pixels are on the same smooth piece of surface: normals agree, and the chord is in the tangent plane.
     fn smooth(&self, pixel: usize, other: usize) -> bool {
         let (n, m) = (self.normal(pixel), self.normal(other));
         let chord = self.position(other) - self.position(pixel);
         self.hit(pixel) && self.hit(other) && n.dot(m) > 0.98 && n.dot(chord).abs() < 0.2 * chord.length()
     }
 
-    /// Every value of the picture as bits: equal pictures have equal lists.
+    /// All values of the image as bits: equal images have equal lists.
     pub fn bits(&self) -> Vec<u32> {
         let colors = self.frame.image.color().as_flattened();
         let vectors = [&self.layers.normal, &self.layers.position].into_iter().flat_map(|plane| plane.as_flattened());
@@ -116,13 +116,13 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// Mean of |a − b|. Panics where there is nothing to compare.
+/// Mean of |a − b|. Panics if there is nothing to compare.
 pub fn mean_difference(a: &[f32], b: &[f32]) -> f64 {
     assert!(a.len() == b.len() && !a.is_empty(), "{} and {} values", a.len(), b.len());
     a.iter().zip(b).map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / a.len() as f64
 }
 
-/// Root of the mean square of a − b. Panics where there is nothing to compare.
+/// Root of the mean square of a − b. Panics if there is nothing to compare.
 pub fn rms_difference(a: &[f32], b: &[f32]) -> f64 {
     assert!(a.len() == b.len() && !a.is_empty(), "{} and {} values", a.len(), b.len());
     (a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>() / a.len() as f64).sqrt()
@@ -136,13 +136,13 @@ mod tests {
     use super::*;
     use crate::{BALL_LIGHT, open_floor, render};
 
-    /// A fully lit floor that fills the picture.
+    /// A fully lit floor that fills the image.
     fn floor() -> Frame {
         let mut scene = open_floor(BALL_LIGHT);
         scene.cameras[0].position = Vec3::new(0.0, 1.0, 0.0);
         scene.cameras[0].direction = Vec3::NEG_Y;
         scene.cameras[0].up = Vec3::NEG_Z;
-        render(&scene, &Settings { mode: Mode::RayTrace, size: [16, 16], ..Settings::default() })
+        render(&scene, &Settings::default().with_mode(Mode::RayTrace).with_size([16, 16]))
     }
 
     /// The same with its layers or colours changed.

@@ -1,11 +1,11 @@
-//! Analytic scenes: what is lit and what is dark in them is known without rendering.
+//! Analytic scenes: what is lit and what is in shadow is known without rendering.
 
 use glam::{DVec3, Vec3};
 use lightmesh_scene::{LightKind, Scene};
 
 use crate::{Random, SceneDraft};
 
-/// A small ball of light that [`open_floor`] and [`thin_wall`] can take.
+/// A small spherical light for [`open_floor`] and [`thin_wall`].
 pub const BALL_LIGHT: LightKind = LightKind::Sphere { position: Vec3::new(-2.0, 3.0, 0.7), radius: 0.25 };
 
 /// A floor under a light with nothing between them: every visible point is fully lit.
@@ -14,7 +14,7 @@ pub fn open_floor(light: LightKind) -> Scene {
 }
 
 /// A wall from x = 0 to x = `thickness` between a lit yard (x < 0) and a closed room (x > 0). No light reaches the room. The
-/// room's sheets stick into each other, so that no corner has a crack; the camera stands inside and sees the wall's foot.
+/// room's sheets intersect, so that no corner has a crack; the camera is inside and sees the base of the wall.
 ///
 /// The light must be on the yard's side.
 pub fn thin_wall(thickness: f64, light: LightKind) -> SceneDraft {
@@ -31,10 +31,10 @@ pub fn thin_wall(thickness: f64, light: LightKind) -> SceneDraft {
 }
 
 /// A half-plane (x < 0, at height 2) under a square light (2 × 2, at height 4) over a floor. The camera looks down on the floor
-/// from below the half-plane: its pixels run over x in [-2, 2] where the picture is four times as wide as high.
+/// from below the half-plane: its pixels cover x in [-2, 2] if the image is four times as wide as high.
 ///
-/// The share of the light that the floor's point (x, 0, z) sees is `clamp((1 + x) / 2, 0, 1)`: the line from it past the edge
-/// meets the light at -x.
+/// The fraction of the light visible from the floor's point (x, 0, z) is `clamp((1 + x) / 2, 0, 1)`: the line from it past the
+/// edge meets the light at -x.
 pub fn half_plane() -> Scene {
     let light = LightKind::Rectangle { position: Vec3::new(0.0, 4.0, 0.0), half_u: Vec3::X, half_v: Vec3::Z };
     SceneDraft::new()
@@ -45,7 +45,7 @@ pub fn half_plane() -> Scene {
         .finish("half-plane")
 }
 
-/// A few boxes on a floor with the lights `lights`, all moved by `offset`.
+/// A few boxes on a floor with lights `lights`, all moved by `offset`.
 pub fn pile(offset: DVec3, lights: &[LightKind]) -> Scene {
     let draft = SceneDraft::new()
         .moved(offset)
@@ -60,7 +60,7 @@ pub fn pile(offset: DVec3, lights: &[LightKind]) -> Scene {
         .finish("pile")
 }
 
-/// `count` random triangles in the cube [-3, 3]³ with a point light in the middle of them.
+/// `count` random triangles in the cube [-3, 3]³ with a point light at its centre.
 pub fn soup(seed: u64, count: usize) -> Scene {
     let mut random = Random::new(seed);
     let mut draft = SceneDraft::new();

@@ -13,7 +13,7 @@ fn every_model_is_seen_in_every_mode() {
     for model in MODELS {
         let scene = model.open();
         for mode in MODES {
-            let frame = render(&scene, &Settings { mode, size: SIZE, samples: Some(4), ..Settings::default() });
+            let frame = render(&scene, &Settings::default().with_mode(mode).with_size(SIZE).with_samples(4));
             let picture = Picture::new(&frame);
             assert_eq!(picture.fault(), None, "{}, {mode:?}", model.file);
             let hits = picture.hits().count();
@@ -31,7 +31,7 @@ fn no_model_is_speckled() {
     let (mut all_isolated, mut all_looked_at) = (0, 0);
     for model in MODELS {
         let scene = model.open();
-        let frame = render(&scene, &Settings { mode: Mode::RayTrace, size: [128, 128], ..Settings::default() });
+        let frame = render(&scene, &Settings::default().with_mode(Mode::RayTrace).with_size([128, 128]));
         let picture = Picture::new(&frame);
         for light in 0..scene.lights.len() {
             let (isolated, looked_at) = picture.isolated(light);
@@ -46,8 +46,8 @@ fn no_model_is_speckled() {
 #[test]
 #[cfg_attr(not(shared_scenes), ignore = "needs ../shared/scenes")]
 fn files_of_one_mesh_in_two_formats_show_the_same() {
-    // One file of each pair was rounded when it was written, to some 1e-6: the triangles agree to that, and the pictures but for
-    // pixels on edges.
+    // One file of each pair was rounded to about 1e-6 when it was written: the triangles agree to that precision, and the images
+    // except for pixels on edges.
     for pair in
         [["bunny/bunny.ply", "bunny/stanford-bunny.obj"], ["spider/spider_ascii.stl", "spider/spider_binary.stl"]]
     {
@@ -68,7 +68,7 @@ fn the_same_numbers_in_another_format_give_the_same_picture() {
     {
         let scene = open(file);
         let path = std::env::temp_dir().join(format!("lightmesh-{}-copy.{format}", std::process::id()));
-        std::fs::write(&path, text(&scene, format)).expect("the temporary folder takes files");
+        std::fs::write(&path, text(&scene, format)).expect("the temporary folder is writable");
         let mut copy = Scene::open(&path).expect("what was just written can be read");
         std::fs::remove_file(&path).expect("the file was just written");
         (copy.cameras, copy.lights) = (scene.cameras.clone(), scene.lights.clone());
@@ -82,14 +82,14 @@ fn open(file: &str) -> Scene {
 }
 
 fn picture(scene: &Scene) -> Frame {
-    render(scene, &Settings { mode: Mode::LightMesh, size: [256, 256], ..Settings::default() })
+    render(scene, &Settings::default().with_mode(Mode::LightMesh).with_size([256, 256]))
 }
 
 fn corners(scene: &Scene) -> Vec<Vec3> {
-    (0..scene.mesh.triangles.len()).flat_map(|index| scene.mesh.corners(index)).collect()
+    (0..scene.geometry.mesh.triangles.len()).flat_map(|index| scene.geometry.mesh.corners(index)).collect()
 }
 
-/// The triangles as text of a format, each with vertices of its own, with all digits.
+/// The triangles in a text format, each with its own vertices, with all digits.
 fn text(scene: &Scene, format: &str) -> String {
     let corners = corners(scene);
     let point = |p: &Vec3| format!("{} {} {}\n", p.x, p.y, p.z);

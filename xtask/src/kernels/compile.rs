@@ -11,8 +11,8 @@ use cudarc::nvrtc::sys;
 use super::tools::Tools;
 use super::{Module, SOURCES, Source};
 
-/// The oldest devices that are served have compute capability 7.5. No operation is fused or made approximate: decisions are to fall
-/// as on the host. Headers hold functions that not every kernel calls, which is no matter for a warning.
+/// The oldest supported devices have compute capability 7.5. No operation is fused or approximated, so that decisions are the
+/// same as on the host. Headers contain functions that not every kernel calls, which does not deserve a warning.
 const OPTIONS: [&str; 8] = [
     "--gpu-architecture=compute_75",
     "--std=c++17",
@@ -39,18 +39,18 @@ pub(super) fn all(tools: &Tools, sources: &[Source]) -> Result<Vec<Module>, Box<
     if errors.is_empty() { Ok(modules) } else { Err(errors.into()) }
 }
 
-/// Loads the pinned library. `cudarc` asks the system for one of the same name and gets what is loaded already, unless the system
-/// has another under a name that it asks for earlier: therefore the version is checked.
+/// Loads the pinned library. `cudarc` opens a library of the same name and gets the one already loaded, unless the system has
+/// another with a name that it tries earlier: therefore the version is checked.
 fn load(tools: &Tools) -> Result<libloading::Library, Box<dyn Error>> {
-    // SAFETY: NVIDIA's library has no initialisers that ask anything of the program.
+    // SAFETY: the initialisers of NVIDIA's library have no requirements.
     let library = unsafe { libloading::Library::new(&tools.nvrtc) }?;
     let mut found = (0, 0);
-    // SAFETY: both places outlive the call.
+    // SAFETY: both variables outlive the call.
     unsafe { sys::nvrtcVersion(&mut found.0, &mut found.1) }.result()?;
     if found != tools.nvrtc_version {
         let ((major, minor), pinned) = (found, tools.nvrtc_version);
         return Err(format!(
-            "the system's NVRTC {major}.{minor} comes before the pinned {}.{}; take it out of LD_LIBRARY_PATH",
+            "the system's NVRTC {major}.{minor} takes precedence over the pinned {}.{}; remove it from LD_LIBRARY_PATH",
             pinned.0, pinned.1
         )
         .into());
@@ -64,17 +64,17 @@ fn compile(source: &Source) -> Result<String, Box<dyn Error>> {
     let program = result::create_program(&text, Some(&name))?;
     // SAFETY: just created, and destroyed below; text and name live until then.
     let outcome = unsafe { compile_program(program) };
-    // SAFETY: nothing refers to it any more.
+    // SAFETY: nothing refers to it anymore.
     unsafe { result::destroy_program(program) }?;
     outcome
 }
 
 /// # Safety
-/// `program` exists.
+/// `program` is valid.
 unsafe fn compile_program(program: sys::nvrtcProgram) -> Result<String, Box<dyn Error>> {
     let include = format!("--include-path={SOURCES}");
     let options: Vec<&str> = OPTIONS.into_iter().chain([include.as_str()]).collect();
-    // SAFETY: the caller's promise, for all three calls.
+    // SAFETY: guaranteed by the caller, for all three calls.
     let (compiled, log) =
         unsafe { (result::compile_program(program, &options), text(result::get_program_log(program))?) };
     if let Err(error) = compiled {
@@ -83,11 +83,11 @@ unsafe fn compile_program(program: sys::nvrtcProgram) -> Result<String, Box<dyn 
     if !log.trim().is_empty() {
         return Err(log.into());
     }
-    // SAFETY: the caller's promise.
+    // SAFETY: guaranteed by the caller.
     unsafe { text(result::get_ptx(program)) }
 }
 
-/// NVRTC's text, which ends with a zero.
+/// Text from NVRTC, which is null-terminated.
 fn text(characters: Result<Vec<c_char>, NvrtcError>) -> Result<String, Box<dyn Error>> {
     let bytes = characters?.into_iter().map(|character| character as u8).take_while(|&byte| byte != 0);
     Ok(String::from_utf8(bytes.collect())?)

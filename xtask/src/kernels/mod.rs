@@ -1,12 +1,14 @@
-//! `cargo xtask kernels`: everything that is made from the CUDA kernels and committed.
+//! `cargo xtask kernels`: committed files generated from the CUDA kernels.
 //!
 //! 1. `crates/render/src/cuda/layout.cuh` from the records of `crates/layout`.
 //! 2. `crates/render/src/cuda/ptx/<module>.ptx` from each kernel file: the code that users' drivers compile.
-//! 3. `docs/kernels.md`: what each kernel needs of a device, as `ptxas` reports it.
+//! 3. `docs/kernels.md`: the resources of each kernel, as reported by `ptxas`.
 //!
-//! With `--check` nothing is written; what would change is named. The compilers are pinned in `xtask/cuda-tools.txt`.
+//! Before that, kernels are checked for copies of host constants. With `--check` nothing is written, and stale files are listed.
+//! The compilers are pinned in `xtask/cuda-tools.txt`.
 
 mod compile;
+mod copies;
 mod report;
 mod tools;
 
@@ -17,13 +19,13 @@ use std::path::{Path, PathBuf};
 
 use crate::{Outcome, Verdict};
 
-/// Where kernels and what they include lie; all paths of this module are relative to the repository.
+/// The folder of kernels and headers; all paths in this module are relative to the repository.
 const SOURCES: &str = "crates/render/src";
 const LAYOUT: &str = "crates/render/src/cuda/layout.cuh";
 const PTX: &str = "crates/render/src/cuda/ptx";
 const REPORT: &str = "docs/kernels.md";
 
-/// A file and what it should hold; `None` where it should not be.
+/// A file and its expected content; `None` if it should not exist.
 struct Product {
     path: PathBuf,
     content: Option<String>,
@@ -43,10 +45,14 @@ struct Module {
     ptx: String,
 }
 
-/// Makes everything anew and writes what differs, or says so where it is only to `check`.
+/// Regenerates everything and writes what differs; with `check` only reports it.
 pub(crate) fn run(root: &Path, check: bool) -> Outcome {
-    // Relative paths, so that what is made does not depend on where the repository lies.
+    // Relative paths, so that generated files do not depend on the location of the repository.
     std::env::set_current_dir(root)?;
+    let copies = copies::find(Path::new(SOURCES))?;
+    if !copies.is_empty() {
+        return Ok(Verdict::Failed(copies));
+    }
     let layout = Product { path: LAYOUT.into(), content: Some(lightmesh_layout::header()) };
     if layout.differs() && !check {
         layout.write()?;
@@ -59,7 +65,7 @@ pub(crate) fn run(root: &Path, check: bool) -> Outcome {
     let mut products = ptx_files(&modules)?;
     products.push(report);
     let stale: Vec<&Product> = products.iter().chain(check.then_some(&layout)).filter(|it| it.differs()).collect();
-    let done = format!("{} kernel files, header, PTX and report as they should be", sources.len());
+    let done = format!("{} kernel files; header, PTX and report up to date", sources.len());
     if check {
         let say = |it: &&Product| format!("{} is stale; run `cargo xtask kernels` and commit it", it.path.display());
         return Ok(Verdict::new(stale.iter().map(say).collect(), || done));
@@ -87,7 +93,7 @@ impl Product {
     }
 }
 
-/// One file for each module, and the end of those whose module is gone.
+/// One file per module, and the removal of those whose module no longer exists.
 fn ptx_files(modules: &[Module]) -> Result<Vec<Product>, Box<dyn Error>> {
     let path = |name: &str| Path::new(PTX).join(format!("{name}.ptx"));
     let mut products: Vec<Product> =
@@ -101,23 +107,34 @@ fn ptx_files(modules: &[Module]) -> Result<Vec<Product>, Box<dyn Error>> {
     Ok(products)
 }
 
-/// The kernel files under `folder`, in order of their modules: `kernel.cu` is named after its folder, every other after itself.
+/// The kernel files under `folder`, in order of module: `kernel.cu` is named after its folder, any other file after itself.
 fn kernel_files(folder: &Path) -> Result<Vec<Source>, Box<dyn Error>> {
     let mut sources = Vec::new();
+    for path in sources_under(folder, &["cu"])? {
+        let named_by = if path.ends_with("kernel.cu") { path.parent() } else { Some(path.as_path()) };
+        let module = named_by.and_then(Path::file_stem).and_then(OsStr::to_str);
+        let module = module.ok_or_else(|| format!("{} has no module name", path.display()))?.to_owned();
+        sources.push(Source { module, path: path.strip_prefix(folder)?.to_owned() });
+    }
+    sources.sort_by(|a, b| a.module.cmp(&b.module));
+    Ok(sources)
+}
+
+/// All files under `folder` with one of some extensions, in order.
+fn sources_under(folder: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+    let mut found = Vec::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(inner) = folders.pop() {
         for entry in fs::read_dir(inner)? {
             let path = entry?.path();
+            let ending = path.extension().and_then(OsStr::to_str);
             if path.is_dir() {
                 folders.push(path);
-            } else if path.extension() == Some(OsStr::new("cu")) {
-                let named_by = if path.ends_with("kernel.cu") { path.parent() } else { Some(path.as_path()) };
-                let module = named_by.and_then(Path::file_stem).and_then(OsStr::to_str);
-                let module = module.ok_or_else(|| format!("{} names no module", path.display()))?.to_owned();
-                sources.push(Source { module, path: path.strip_prefix(folder)?.to_owned() });
+            } else if ending.is_some_and(|ending| endings.contains(&ending)) {
+                found.push(path);
             }
         }
     }
-    sources.sort_by(|a, b| a.module.cmp(&b.module));
-    Ok(sources)
+    found.sort();
+    Ok(found)
 }

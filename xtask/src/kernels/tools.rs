@@ -5,10 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What is pinned, in pip's form.
+/// The pinned packages, in pip's format.
 const REQUIREMENTS: &str = "xtask/cuda-tools.txt";
 
-/// Where the compilers are.
+/// The compilers.
 pub(super) struct Tools {
     /// NVRTC, the compiler from CUDA C++ to PTX.
     pub(super) nvrtc: PathBuf,
@@ -16,14 +16,14 @@ pub(super) struct Tools {
     pub(super) nvrtc_version: (i32, i32),
     /// The assembler from PTX to machine code.
     pub(super) ptxas: PathBuf,
-    /// Its version as pinned.
+    /// Its pinned version.
     pub(super) ptxas_version: String,
 }
 
-/// Gives the pinned compilers; installs them into `folder` unless they are there.
+/// Returns the pinned compilers; installs them into `folder` if they are missing.
 pub(super) fn install(folder: &Path) -> Result<Tools, Box<dyn Error>> {
     if !cfg!(all(target_os = "linux", target_arch = "x86_64")) {
-        return Err("the pinned CUDA compilers run on Linux on x86-64; build the kernels there".into());
+        return Err("the pinned CUDA compilers run on x86-64 Linux; build the kernels there".into());
     }
     let requirements =
         fs::read_to_string(REQUIREMENTS).map_err(|error| format!("cannot read {REQUIREMENTS}: {error}"))?;
@@ -35,7 +35,7 @@ pub(super) fn install(folder: &Path) -> Result<Tools, Box<dyn Error>> {
     let nvrtc_version = pinned(&requirements, "nvidia-cuda-nvrtc-cu12")?;
     let mut parts = nvrtc_version.split('.').map(str::parse);
     let (Some(Ok(major)), Some(Ok(minor))) = (parts.next(), parts.next()) else {
-        return Err(format!("{REQUIREMENTS}: '{nvrtc_version}' is no version").into());
+        return Err(format!("{REQUIREMENTS}: '{nvrtc_version}' is not a version").into());
     };
     Ok(Tools {
         nvrtc: fs::canonicalize(folder.join(format!("nvidia/cuda_nvrtc/lib/libnvrtc.so.{major}")))?,
@@ -52,7 +52,7 @@ fn pinned(requirements: &str, package: &str) -> Result<String, String> {
     requirements.lines().find_map(version).ok_or_else(|| format!("{REQUIREMENTS} does not pin {package}"))
 }
 
-/// Lets pip fetch the wheels, check their hashes and unpack them.
+/// Runs pip to fetch the wheels, check their hashes and unpack them.
 fn fetch(folder: &Path) -> Result<(), Box<dyn Error>> {
     if folder.exists() {
         fs::remove_dir_all(folder)?;

@@ -1,4 +1,4 @@
-//! A judge must be able to say no.
+//! The comparison must be able to reject.
 
 use super::*;
 use crate::{Machine, Program};

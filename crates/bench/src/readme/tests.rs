@@ -3,7 +3,7 @@ use crate::{Gpu, Machine, Program, Results, Row, Samples};
 
 const COMMENT: &str = "<!-- from runs/a.json: any; where scene=garden; columns step, render ms as ms -->";
 
-/// A folder with results in it.
+/// A folder with results.
 fn root() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let mut rows = Vec::new();

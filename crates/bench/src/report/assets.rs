@@ -1,36 +1,33 @@
-//! The files that go with a report: plots and pictures.
+//! The files of a report: plots and images.
 
 use std::collections::BTreeMap;
 
 use super::document::{Block, Document};
 
-/// A picture as PNG.
+/// An image as PNG.
 #[derive(Clone, Debug)]
 struct Picture {
     size: [u32; 2],
     png: Vec<u8>,
 }
 
-/// Plots and pictures by their names.
+/// Plots and images by name.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Assets {
     pictures: BTreeMap<String, Picture>,
-    /// As they stand in a page, and as files.
+    /// As embedded in a page, and as files.
     plots: BTreeMap<String, (String, String)>,
 }
 
 impl Assets {
-    /// Keeps a picture; gives the name of its file, made from `title`.
+    /// Adds an image; returns its file name, derived from `title`.
     pub(crate) fn add_picture(&mut self, title: &str, size: [u32; 2], png: Vec<u8>) -> String {
-        let base = slug(title);
-        let names = std::iter::once(String::new()).chain((2..).map(|number| format!("-{number}")));
-        let mut names = names.map(|ending| format!("pictures/{base}{ending}.png"));
-        let file = names.find(|name| !self.pictures.contains_key(name)).unwrap_or_default();
+        let file = free_name(&format!("pictures/{}", slug(title)), ".png", |name| self.pictures.contains_key(name));
         self.pictures.insert(file.clone(), Picture { size, png });
         file
     }
 
-    /// Draws the plots of a document. Those without a point are taken out of it.
+    /// Draws the plots of a document. Plots without points are removed from it.
     pub(crate) fn draw_plots(&mut self, document: &mut Document) {
         for section in &mut document.sections {
             section.blocks.retain_mut(|block| {
@@ -42,24 +39,31 @@ impl Assets {
         }
     }
 
-    /// A plot as it stands in a page.
+    /// A plot as embedded in a page.
     pub(crate) fn plot(&self, name: &str) -> Option<&str> {
         self.plots.get(name).map(|(svg, _)| svg.as_str())
     }
 
-    /// Name, size and PNG of every picture.
+    /// Name, size and PNG of every image.
     pub(crate) fn pictures(&self) -> impl Iterator<Item = (&str, [u32; 2], &[u8])> {
         self.pictures.iter().map(|(name, picture)| (name.as_str(), picture.size, &picture.png[..]))
     }
 
-    /// Every file with its name in the folder.
+    /// All files with their names in the folder.
     pub(crate) fn files(&self) -> impl Iterator<Item = (String, &[u8])> {
         let plots = self.plots.iter().map(|(name, (_, file))| (format!("plots/{name}.svg"), file.as_bytes()));
         plots.chain(self.pictures.iter().map(|(name, picture)| (name.clone(), &picture.png[..])))
     }
 }
 
-/// A name for a file from any text: small letters, digits and hyphens.
+/// The base with the extension, numbered if that name is taken.
+pub(crate) fn free_name(base: &str, extension: &str, taken: impl Fn(&str) -> bool) -> String {
+    let endings = std::iter::once(String::new()).chain((2..).map(|number| format!("-{number}")));
+    let mut names = endings.map(|ending| format!("{base}{ending}{extension}"));
+    names.find(|name| !taken(name)).unwrap_or_default()
+}
+
+/// A file name from any text: lower-case letters, digits and hyphens.
 pub(crate) fn slug(text: &str) -> String {
     let words = text.to_lowercase();
     let words: Vec<&str> =

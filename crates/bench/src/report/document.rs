@@ -1,4 +1,5 @@
-//! What a report says, apart from how it looks: [`markdown`](super::markdown) and [`html`](super::html) both show this.
+//! The content of a report, independent of its presentation: [`markdown`](super::markdown) and [`html`](super::html) both render
+//! it.
 
 use super::plot::Plot;
 
@@ -21,19 +22,19 @@ pub(crate) struct Section {
 pub(crate) enum Block {
     /// A paragraph.
     Text(String),
-    /// Sentences that follow from the data.
+    /// Statements derived from the data.
     Findings(Vec<Finding>),
     /// A table.
     Table(Table),
     /// Curves.
     Plot(Plot),
-    /// Pictures in a row.
+    /// Images in a row.
     Strip(Vec<Shot>),
-    /// A picture against its reference.
+    /// An image compared with its reference.
     Pair(Box<Pair>),
 }
 
-/// A sentence that follows from the data, and whom it speaks for.
+/// A statement derived from the data, with its verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Finding {
     pub(crate) verdict: Verdict,
@@ -45,13 +46,13 @@ pub(crate) struct Finding {
 pub(crate) enum Verdict {
     Wins,
     Loses,
-    /// It is in some pictures and not in others, or in time and not in error; the sentence says where.
+    /// In some images but not in others, or in time but not in error; the statement says where.
     Depends,
     Open,
 }
 
 impl Verdict {
-    /// A word for it, so that it does not hang on a colour.
+    /// A word for it, so that it does not rely on colour.
     pub(crate) fn word(self) -> &'static str {
         match self {
             Verdict::Wins => "wins",
@@ -65,25 +66,25 @@ impl Verdict {
 /// A table. Every row has a cell for each column.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
-    /// What it is found by; stays put.
+    /// Its stable name.
     pub(crate) name: String,
     pub(crate) caption: String,
     pub(crate) columns: Vec<Column>,
     pub(crate) rows: Vec<Vec<Cell>>,
-    /// Long, and for those who want to know more: a page may open it on request.
+    /// Detailed: a page may collapse it.
     pub(crate) folded: bool,
 }
 
 /// A column of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Column {
-    /// What it is found by; stays put.
+    /// Its stable name.
     pub(crate) name: String,
-    /// What stands above it.
+    /// Its heading.
     pub(crate) title: String,
-    /// What stands above it and its neighbours; empty for none.
+    /// The common heading of this and neighbouring columns; empty for none.
     pub(crate) group: String,
-    /// Whether it holds numbers, which end at the right.
+    /// Whether it holds numbers, which are right-aligned.
     pub(crate) number: bool,
 }
 
@@ -91,11 +92,11 @@ pub(crate) struct Column {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Cell {
     pub(crate) text: String,
-    /// Length of a bar behind the number, in [0, 1].
+    /// Length of the bar behind the number, in [0, 1].
     pub(crate) bar: Option<f64>,
 }
 
-/// A picture: the name of its file, and what it shows.
+/// An image: its file name and title.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Shot {
     pub(crate) file: String,
@@ -103,7 +104,7 @@ pub(crate) struct Shot {
     pub(crate) title: String,
 }
 
-/// A picture, its reference, and where they differ.
+/// An image, its reference, and their difference.
 #[derive(Clone, Debug)]
 pub(crate) struct Pair {
     pub(crate) picture: Shot,
@@ -143,7 +144,7 @@ impl Column {
 }
 
 impl Cell {
-    /// A number, or an empty cell where there is none.
+    /// A number, or an empty cell if there is none.
     pub(crate) fn number(value: Option<f64>, text: impl Fn(f64) -> String) -> Cell {
         Cell { text: value.map(text).unwrap_or_default(), bar: None }
     }
@@ -161,12 +162,12 @@ impl Table {
         Table { name: name.into(), caption: caption.into(), columns, rows: Vec::new(), folded: false }
     }
 
-    /// The same, to be opened on request.
+    /// The same, collapsible.
     pub(crate) fn folded(self) -> Table {
         Table { folded: true, ..self }
     }
 
-    /// The same without columns that are empty in every row.
+    /// The same without columns that are empty in all rows.
     pub(crate) fn without_empty_columns(mut self) -> Table {
         let filled: Vec<bool> =
             (0..self.columns.len()).map(|column| self.rows.iter().any(|row| !row[column].text.is_empty())).collect();
@@ -179,7 +180,7 @@ impl Table {
         self
     }
 
-    /// Columns next to each other below one heading, with how many they are.
+    /// Adjacent columns under one heading, with their number.
     pub(crate) fn groups(&self) -> Vec<(&str, usize)> {
         self.columns
             .chunk_by(|a, b| a.group == b.group)

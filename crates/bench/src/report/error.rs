@@ -4,54 +4,35 @@ use std::io;
 use std::path::PathBuf;
 
 use lightmesh::image::{CompareError, DecodeError, EncodeError};
-use lightmesh_files::TargetError;
 
 use crate::BenchError;
 
-/// Why there is no report. Where files were at fault, nothing was written.
+/// Why a report cannot be created.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReportError {
-    /// A file does not hold results.
+    /// A file does not contain results.
     #[error(transparent)]
     Results(Box<BenchError>),
-    /// Two rows of a file, or two pictures, have one name.
-    #[error("{} has two {what} with the id `{id}`; make it anew with `lightmesh bench SUITE --json FILE`", path.display())]
+    /// Two rows or images in a file have the same id.
+    #[error("{} has two {what} with the id `{id}`; generate it again", path.display())]
     Twice {
         /// The file.
         path: PathBuf,
-        /// Rows or pictures.
+        /// Rows or images.
         what: &'static str,
-        /// Their name.
+        /// Their id.
         id: String,
     },
-    /// A picture in a file is none.
-    #[error("the picture `{id}` in {} cannot be shown: {reason}", path.display())]
+    /// An image in a file is invalid.
+    #[error("the image `{id}` in {} cannot be shown: {reason}", path.display())]
     Picture {
         /// The file.
         path: PathBuf,
-        /// The picture's name.
+        /// The id of the image.
         id: String,
-        /// What is wrong with it.
+        /// The problem.
         reason: PictureError,
-    },
-    /// The folder cannot be made.
-    #[error("cannot make the folder {}: {reason}; choose another or change its permissions", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// What the system said.
-        reason: io::Error,
-    },
-    /// A file cannot be written where it should go.
-    #[error(transparent)]
-    Target(#[from] TargetError),
-    /// Filling a file failed.
-    #[error("cannot write {}: {reason}; check the space left on the disk, then make the report again", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        reason: io::Error,
     },
 }
 
@@ -61,30 +42,36 @@ impl From<BenchError> for ReportError {
     }
 }
 
-/// What is wrong with a picture among results.
+/// A problem with an image in results.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PictureError {
-    /// It is not Base64.
-    #[error("its PNG file is not in Base64 ({0}), get the file of results anew")]
-    Base64(base64::DecodeError),
+    /// Its file cannot be read.
+    #[error("cannot read {} ({reason}); keep images next to the result file or generate both again", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The system's message.
+        reason: io::Error,
+    },
     /// It is not a PNG file.
-    #[error("it is no PNG file")]
+    #[error("it is not a PNG file")]
     NotPng,
-    /// It is a damaged one.
+    /// It is damaged.
     #[error(transparent)]
     Decode(#[from] DecodeError),
     /// Its reference is missing.
-    #[error("there is no picture `{0}` to hold it against, get the file of results anew")]
+    #[error("its reference image `{0}` is missing; generate the results again")]
     NoReference(String),
-    /// It cannot be held against its reference.
-    #[error("it cannot be held against `{reference}`: {reason}")]
+    /// It cannot be compared with its reference.
+    #[error("it cannot be compared with `{reference}`: {reason}")]
     Compare {
-        /// The other picture.
+        /// The reference image.
         reference: String,
         /// Why not.
         reason: CompareError,
     },
-    /// The picture of the differences cannot be packed.
-    #[error("its difference to the reference has no PNG form: {0}")]
+    /// The difference image cannot be encoded.
+    #[error("its difference image cannot be stored as PNG: {0}")]
     Encode(#[from] EncodeError),
 }

@@ -1,4 +1,4 @@
-//! Where the method wins and where it loses: sentences that are computed from the rows, for each scene and place.
+//! Where the method wins and where it loses: statements computed from the rows, for each scene and device.
 
 use super::document::{Block, Finding, Section, Verdict};
 use super::layouts::lights::{Contest, contests, lights_text};
@@ -7,10 +7,10 @@ use super::runs::{Measured, Runs, distinct};
 use super::spread::Spread;
 use super::{numbers, rivals, settings};
 
-/// Light points a pixel from which on half the long rays of plain tracing are cast, or more.
+/// Light points per pixel at which the method casts at least half as many long rays as plain ray tracing.
 const MANY_POINTS: f64 = 0.5;
 
-/// All that follows from the rows; `None` where nothing does.
+/// All statements that follow from the rows; `None` if there are none.
 pub(crate) fn section(runs: &Runs) -> Option<Section> {
     let rows: Vec<Measured> = runs.all().collect();
     let mut findings = Vec::new();
@@ -23,22 +23,22 @@ pub(crate) fn section(runs: &Runs) -> Option<Section> {
         return None;
     }
     findings.sort_by_key(|finding| finding.verdict);
-    let intro = "Each sentence is computed from the rows below: medians of whole pictures, the same scene, size and lights, at the same \
-                 place; a range goes over the pictures that are named. Wins and loses speak of time, and of errors where the sentence \
-                 gives them. Without errors they say nothing of quality: light meshes make soft shadows and blur; hard shadows, one \
-                 shadow ray for each pixel and light, have no soft edges; few shadow rays are noisy.";
+    let intro = "Each statement is computed from the rows below: medians of full frames, for the same scene, size and lights, on the same \
+                 device; a range covers the images that are named. Wins and loses refer to time, and to errors if the statement gives \
+                 them. Without errors they say nothing about quality: light meshes give soft shadows and blur; hard shadows, one shadow \
+                 ray per pixel and light, have no soft edges; few shadow rays are noisy.";
     Some(Section::new(
-        "Where the method wins, and where it loses",
+        "Where the method wins and where it loses",
         vec![Block::Text(intro.to_owned()), Block::Findings(findings)],
     ))
 }
 
-/// From how many lights on the method is ahead, by the clock and by the model.
+/// The number of lights from which on the method is ahead, as measured and by the model.
 fn break_even(contest: &Contest) -> Finding {
     let place = format!("{}, on {}", contest.subject, contest.place);
     let predicted = contest.predicted.map_or_else(
-        || "by the cost model never".to_owned(),
-        |lights| format!("the cost model says {}", lights_text(lights)),
+        || "never, according to the cost model".to_owned(),
+        |lights| format!("the cost model predicts {}", lights_text(lights)),
     );
     let most = contest.most().map(numbers::setting).unwrap_or_default();
     let at_most = contest.ratio_at_most().map(numbers::ratio).unwrap_or_default();
@@ -47,7 +47,7 @@ fn break_even(contest: &Contest) -> Finding {
             Verdict::Depends,
             format!(
                 "{place}: from {} lights on the light mesh takes less time than hard shadows ({predicted}), {at_most} with {most}; \
-                 with fewer it loses.",
+                 with fewer it takes more.",
                 lights_text(lights)
             ),
         ),
@@ -60,7 +60,7 @@ fn break_even(contest: &Contest) -> Finding {
     }
 }
 
-/// Pictures that need about as many light points as there are pixels: a sentence for each scene. Places agree on them.
+/// Images that need about as many light points as there are pixels: a statement per scene. They are the same on every device.
 fn light_points(rows: &[Measured]) -> Vec<Finding> {
     let share = |row: &Measured| Some(row.value("light_points")? / row.value("pixels")?);
     let many: Vec<(Measured, f64)> = rows
@@ -82,7 +82,7 @@ fn light_points(rows: &[Measured]) -> Vec<Finding> {
         });
         let parts = settings::enumerated(&parts.collect::<Vec<_>>());
         let text = format!(
-            "{}: {parts} light points a pixel, so that there are at least half as many long tests as hard shadows cast shadow rays.",
+            "{}: {parts} light points per pixel, so there are at least half as many long tests as shadow rays for hard shadows.",
             layouts::title(&scene)
         );
         Finding::new(Verdict::Loses, text)

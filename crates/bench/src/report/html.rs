@@ -1,7 +1,7 @@
-//! A report as one page of HTML that asks for nothing from elsewhere: style, script, plots and pictures are in it.
+//! A report as a self-contained HTML page: style, script, plots and images are embedded.
 //!
-//! Each picture is in the page once, in a list that is not shown; wherever it appears it is referred to. Without scripts a picture
-//! stands beside its reference; with them both lie upon each other, below a slider.
+//! Each image is embedded once, in a hidden list, and referenced wherever it appears. Without scripts an image is shown next to its
+//! reference; with scripts they are overlaid, with a slider.
 
 use std::fmt::Write;
 
@@ -16,7 +16,7 @@ use super::{numbers, summary};
 const STYLE: &str = include_str!("report.css");
 const SCRIPT: &str = include_str!("report.js");
 
-/// Text for the page: nothing in it is taken as a tag or ends an attribute.
+/// Escapes text for elements and attributes.
 pub(crate) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -53,7 +53,7 @@ pub(crate) fn page(document: &Document, assets: &Assets) -> String {
     )
 }
 
-/// All pictures, to be referred to.
+/// All images, to be referenced.
 fn pictures(assets: &Assets) -> String {
     let images = assets.pictures().fold(String::new(), |mut out, (file, [width, height], png)| {
         let data = STANDARD.encode(png);
@@ -67,7 +67,7 @@ fn pictures(assets: &Assets) -> String {
     format!("<svg class=\"store\" width=\"0\" height=\"0\" aria-hidden=\"true\"><defs>\n{images}</defs></svg>\n")
 }
 
-/// What a picture is referred to by.
+/// The id by which an image is referenced.
 fn anchor(file: &str) -> String {
     file.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' }).collect()
 }
@@ -124,7 +124,7 @@ fn table(table: &Table) -> String {
     format!("<figure class=\"{kind}\">\n<figcaption>{caption}</figcaption>\n{scroll}</figure>\n")
 }
 
-/// A row. Cells at its left that say what those above say step back, so that groups are seen.
+/// A row. Leading cells that repeat the cells above are dimmed, to make groups visible.
 fn line(row: &[Cell], above: Option<&Vec<Cell>>, columns: &[Column]) -> String {
     let repeated = above.map_or(0, |above| row.iter().zip(above).take_while(|(cell, above)| cell == above).count());
     let cells = row.iter().zip(columns).enumerate();
@@ -183,7 +183,7 @@ fn picture(shot: &Shot) -> String {
 
 fn pair(pair: &Pair) -> String {
     let caption = format!(
-        "{} against {}: mean FLIP {}, RMSE {}",
+        "{} compared with {}: mean FLIP {}, RMSE {}",
         pair.picture.title,
         pair.reference.title,
         numbers::small(pair.mean_flip),

@@ -1,25 +1,25 @@
-//! Whether two pictures of the same thing are alike: the same in every pixel, nearly so, or not.
+//! Whether two corresponding images are equal: identical in every pixel, nearly so, or different.
 
 use lightmesh::image::{CompareError, Frame, compare};
 
-/// Mean FLIP up to which pictures count as alike: about that of one pixel in fifty thousand that is white for grey, or of one in a
-/// thousand that was rounded the other way. Runs on other processors differ by so much where a ray just meets an edge.
+/// Mean FLIP up to which images count as alike: about that of one pixel in fifty thousand that is white instead of grey, or of
+/// one in a thousand that is rounded differently. Runs on different CPUs differ by as much where a ray just hits an edge.
 pub(crate) const ALIKE: f64 = 1e-4;
 
-/// How a picture compares with another of the same thing.
+/// The difference between corresponding images.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Likeness {
     /// No pixel differs.
     Same,
-    /// Some do, by no more than [`ALIKE`] in the mean.
+    /// Some pixels differ, by no more than [`ALIKE`] on average.
     Alike(Trace),
     /// It differs by more.
     Different,
-    /// It has another size, so that pixels cannot be compared.
+    /// It has a different size, so pixels cannot be compared.
     OtherSize,
 }
 
-/// How little pictures differ that are alike.
+/// The small difference between images that are alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Trace {
     /// Pixels that differ.
@@ -44,7 +44,7 @@ impl Likeness {
         Ok(if mean_flip <= ALIKE { Likeness::Alike(trace) } else { Likeness::Different })
     }
 
-    /// Whether one picture may stand for both.
+    /// Whether one image may represent both.
     pub(crate) fn one_for_both(&self) -> bool {
         matches!(self, Likeness::Same | Likeness::Alike(_))
     }
@@ -54,7 +54,7 @@ impl Likeness {
 mod tests {
     use super::*;
 
-    /// A grey picture with its first pixels lighter.
+    /// A grey image with its first pixels lighter.
     fn frame(width: u32, lighter: usize) -> Frame {
         let pixel = |index| if index < lighter { [0.3; 3] } else { [0.2; 3] };
         Frame::new(width, 128, (0..width as usize * 128).map(pixel).collect()).unwrap()

@@ -1,9 +1,9 @@
-//! A report as Markdown, with plots and pictures as files beside it.
+//! A report as Markdown, with plots and images as separate files.
 
 use super::document::{Block, Column, Document, Finding, Pair, Shot, Table};
 use super::numbers;
 
-/// Pixels that a picture in a row is shown with, at the most.
+/// Maximum width of an image in a row, in pixels.
 const WIDTH: u32 = 260;
 
 /// The whole text.
@@ -19,7 +19,7 @@ pub(crate) fn text(document: &Document) -> String {
     out
 }
 
-/// Text that is not taken for a table, a tag or emphasis.
+/// Escapes tables, tags and emphasis.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -51,7 +51,7 @@ fn finding(Finding { verdict, text }: &Finding) -> String {
     format!("- **{}**: {}\n", verdict.word(), escaped(text))
 }
 
-/// The table alone; headings of groups are put before the titles below them.
+/// The table without its caption; group headings are prepended to titles.
 pub(crate) fn table(table: &Table) -> String {
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let mut out = line(table.columns.iter().map(title).collect());
@@ -71,7 +71,7 @@ fn title(column: &Column) -> String {
     }
 }
 
-/// Pictures side by side, as a table with one row of them.
+/// Images side by side, as a table with one row.
 fn row(shots: &[&Shot]) -> String {
     let cells = |cell: &dyn Fn(&Shot) -> String| {
         format!("| {} |\n", shots.iter().map(|shot| cell(shot)).collect::<Vec<_>>().join(" | "))

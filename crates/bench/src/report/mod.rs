@@ -1,10 +1,10 @@
-//! Reports: results as Markdown and as one page of HTML.
+//! Reports: results as Markdown and as a single HTML page.
 //!
-//! 1. Files of results are read and checked ([`Report::open`]); several are shown side by side, rows matched by their ids.
-//! 2. From them a document is made: what was run, what follows from it, a section for each experiment (`layouts`). Sentences about
-//!    where the method wins and loses are computed from the rows (`findings`, `rivals`). Experiments that no layout is made for get a table of
-//!    all their keys and values.
-//! 3. The document is shown twice, by `markdown` and `html`, and written with its plots and pictures ([`Report::write`]).
+//! 1. Result files are read and checked ([`Report::open`]); several are shown side by side, with rows matched by id.
+//! 2. They are turned into a document: what was run, what follows from it, and a section for each experiment (`layouts`).
+//!    Statements about where the method wins and loses are computed from the rows (`findings`, `rivals`). Experiments without a
+//!    layout are shown as a table of all keys and values.
+//! 3. The document is rendered by `markdown` and `html`, and written with its plots and images ([`Report::write`]).
 
 mod assets;
 mod document;
@@ -28,22 +28,22 @@ mod summary;
 mod write;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use assets::Assets;
+pub(crate) use assets::{free_name, slug};
 use document::{Block, Document, Section, Table};
 pub use error::{PictureError, ReportError};
 use pictures::Gallery;
 use runs::{Run, Runs};
 pub use select::{Selection, TableError};
-pub use write::prepare_folder;
 
 use crate::Results;
 
-/// A report, ready to be written.
+/// A report ready to be written.
 #[derive(Clone, Debug)]
 pub struct Report {
     document: Document,
@@ -51,24 +51,23 @@ pub struct Report {
 }
 
 impl Report {
-    /// Reads files of results and makes a report of them. Each is called by the name of its file.
+    /// Creates a report from result files. Runs are named after their files.
     ///
     /// # Errors
     /// [`ReportError`], which names the file.
     pub fn open(paths: &[PathBuf]) -> Result<Report, ReportError> {
-        let results: Result<Vec<_>, ReportError> =
-            paths.iter().map(|path| Ok((path.clone(), Results::load(path)?))).collect();
+        let results: Result<Vec<_>, ReportError> = paths.iter().map(|path| Ok((path.clone(), opened(path)?))).collect();
         Report::new(results?)
     }
 
-    /// Makes a report of results, each with the path that it is known by.
+    /// Creates a report from results, each with its path.
     ///
     /// # Errors
-    /// [`ReportError`] where ids are not unique or a picture cannot be shown.
+    /// [`ReportError`] if ids are not unique or an image cannot be shown.
     pub fn new(results: Vec<(PathBuf, Results)>) -> Result<Report, ReportError> {
         for (path, results) in &results {
             check_ids(path, "rows", results.rows.iter().map(|row| &row.id))?;
-            check_ids(path, "pictures", results.pictures.iter().map(|picture| &picture.id))?;
+            check_ids(path, "images", results.pictures.iter().map(|picture| &picture.id))?;
         }
         let paths: Vec<PathBuf> = results.iter().map(|(path, _)| path.clone()).collect();
         let faulty = |(run, id, reason): pictures::Fault| ReportError::Picture { path: paths[run].clone(), id, reason };
@@ -80,12 +79,12 @@ impl Report {
         Ok(Report { document, assets })
     }
 
-    /// The report as Markdown; plots and pictures are files in `plots` and `pictures`.
+    /// The report as Markdown; plots and images are files in `plots` and `pictures`.
     pub fn markdown(&self) -> String {
         markdown::text(&self.document)
     }
 
-    /// The report as one page that needs nothing else.
+    /// The report as a self-contained page.
     pub fn html(&self) -> String {
         html::page(&self.document, &self.assets)
     }
@@ -99,7 +98,21 @@ impl Report {
     }
 }
 
-/// The whole report. Blocks for experiments come in the order in which suites name them.
+/// Results with their images.
+fn opened(path: &Path) -> Result<Results, ReportError> {
+    let mut results = Results::load(path)?;
+    for picture in &mut results.pictures {
+        let file = path.with_file_name(&picture.file);
+        picture.png = std::fs::read(&file).map_err(|reason| ReportError::Picture {
+            path: path.to_owned(),
+            id: picture.id.clone(),
+            reason: PictureError::Read { path: file, reason },
+        })?;
+    }
+    Ok(results)
+}
+
+/// The whole report. Experiments appear in the order in which suites name them.
 fn document(runs: &Runs, gallery: &Gallery, assets: &mut Assets) -> Result<Document, pictures::Fault> {
     let mut sections = vec![summary::section(runs)];
     sections.extend(findings::section(runs));
@@ -114,7 +127,7 @@ fn document(runs: &Runs, gallery: &Gallery, assets: &mut Assets) -> Result<Docum
     Ok(Document { title: format!("Lightmesh: {}", suites.join(", ")), sections })
 }
 
-/// Runs with distinct names: those of their files, with numbers where they are the same.
+/// Runs with distinct names: those of their files, numbered if they are the same.
 fn named(results: Vec<(PathBuf, Results)>) -> Runs {
     let mut runs: Vec<Run> = Vec::with_capacity(results.len());
     for (path, results) in results {

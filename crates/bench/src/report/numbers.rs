@@ -1,21 +1,21 @@
-//! Numbers as people read them.
+//! Human-readable numbers.
 
-/// Between groups of three digits: narrow, and no line ends there.
+/// Separator of groups of three digits: narrow and non-breaking.
 const GROUP: char = '\u{202f}';
 
-/// `digits` significant digits without an exponent, thousands apart: 0.0282, 2.82, 551, 12 345.
+/// `digits` significant digits without an exponent, with grouped thousands: 0.0282, 2.82, 551, 12 345.
 pub(crate) fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 { "0".to_owned() } else { "—".to_owned() };
     }
-    // Rounded first, so that 9.996 counts as a number of two digits before the point.
+    // Rounded first, so that 9.996 has two digits before the decimal point.
     let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
     let before = rounded.abs().log10().floor() as i32 + 1;
     let after = usize::try_from(digits as i32 - before).unwrap_or(0);
     grouped(&format!("{rounded:.after$}"))
 }
 
-/// An error with three significant digits; one below a ten-thousandth with two and an exponent: 0.0341, 5.9e-7.
+/// An error with three significant digits; below a ten-thousandth, with two and an exponent: 0.0341, 5.9e-7.
 pub(crate) fn small(error: f64) -> String {
     const LEAST: f64 = 1e-4;
     if error != 0.0 && error.abs() < LEAST { format!("{error:.1e}") } else { significant(error, 3) }
@@ -26,12 +26,12 @@ pub(crate) fn milliseconds(seconds: f64) -> String {
     significant(1e3 * seconds, 3)
 }
 
-/// A whole number.
+/// An integer.
 pub(crate) fn count(value: f64) -> String {
     grouped(&format!("{value:.0}"))
 }
 
-/// A quotient, as in 2.4×.
+/// A ratio, as in 2.4×.
 pub(crate) fn ratio(value: f64) -> String {
     format!("{}×", significant(value, if value < 10.0 { 2 } else { 3 }))
 }
@@ -48,13 +48,13 @@ pub(crate) fn bytes(value: f64) -> String {
     format!("{}\u{a0}{}", significant(value / 1024_f64.powi(steps as i32), 3), UNITS[steps])
 }
 
-/// A setting: as short as it can be written, and no shorter.
+/// A setting, in its shortest exact form.
 pub(crate) fn setting(value: f64) -> String {
     let text = format!("{value}");
     if text.len() > 8 { significant(value, 4) } else { text }
 }
 
-/// Of ten thousand on; four digits are read at a glance.
+/// Groups digits from ten thousand on; four digits are readable without.
 fn grouped(text: &str) -> String {
     let (sign, digits) = text.strip_prefix('-').map_or(("", text), |rest| ("-", rest));
     let (whole, fraction) = digits.split_once('.').map_or((digits, ""), |(whole, fraction)| (whole, fraction));

@@ -1,9 +1,7 @@
-//! Pictures among results: unpacked, held against their references, and laid out.
+//! Images in results: decoded, compared with their references, and laid out.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use lightmesh::image::{Frame, compare};
 
 use super::assets::Assets;
@@ -15,15 +13,15 @@ use crate::Picture;
 
 /// The first bytes of every PNG file.
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
-/// With so many pictures an experiment shows all of them in a row first.
+/// From this number of images on, an experiment first shows all of them in a row.
 const ROW: usize = 3;
 
-/// Pictures of all runs, ready to be shown. Of those that are alike in several runs the first stands for all.
+/// Images of all runs, ready to be shown. Of images that are alike in several runs, only the first is shown.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Gallery {
-    /// By run and id; those alone that stand for themselves.
+    /// By run and id; only those that are shown.
     shots: BTreeMap<(usize, String), Unpacked>,
-    /// Where another run has the same picture, or nearly, how it compares with it.
+    /// Images that are not shown: the run whose image is shown instead, and the difference.
     alike: BTreeMap<(usize, String), (usize, Likeness)>,
 }
 
@@ -33,60 +31,60 @@ struct Unpacked {
     frame: Frame,
 }
 
-/// A picture that stands for itself: its run's index, what it is, its pixels and its file.
-type Candidate<'a> = (usize, &'a Picture, Frame, Vec<u8>);
+/// An image that is shown: its run's index, the result, and its pixels.
+type Candidate<'a> = (usize, &'a Picture, Frame);
 
-/// A picture that cannot be shown: the run's index, the picture's id, and why.
+/// An image that cannot be shown: the run's index, the image's id, and why.
 pub(crate) type Fault = (usize, String, PictureError);
 
-/// Pictures that several runs have, each held against the first run's.
+/// Images that several runs have, each compared with that of the first run.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Common {
-    /// How many are the same in every pixel.
+    /// Number of identical images.
     pub(crate) same: usize,
-    /// Titles and traces of those that are nearly so.
+    /// Titles and differences of those that are nearly identical.
     pub(crate) alike: Vec<(String, Trace)>,
     /// Those that differ.
     pub(crate) different: Vec<Block>,
-    /// How many have other sizes.
+    /// Number of images with different sizes.
     pub(crate) other_sizes: usize,
 }
 
 impl Gallery {
-    /// Unpacks every picture; keeps those that stand for themselves.
+    /// Decodes every image; keeps those that are shown.
     pub(crate) fn new(runs: &[Run], assets: &mut Assets) -> Result<Gallery, Fault> {
         let mut gallery = Gallery::default();
         let mut frames: BTreeMap<&str, Vec<Candidate>> = BTreeMap::new();
         for (index, run) in runs.iter().enumerate() {
             for picture in &run.results.pictures {
                 let fault = |reason| (index, picture.id.clone(), reason);
-                let (frame, png) = unpack(picture).map_err(fault)?;
+                let frame = unpack(picture).map_err(fault)?;
                 let shown = frames.entry(&picture.id).or_default();
                 match first_alike(&frame, shown).map_err(fault)? {
                     Some(other) => drop(gallery.alike.insert((index, picture.id.clone()), other)),
-                    None => shown.push((index, picture, frame, png)),
+                    None => shown.push((index, picture, frame)),
                 }
             }
         }
         for shown in frames.into_values() {
             let several = shown.len() > 1;
-            for (index, picture, frame, png) in shown {
+            for (index, picture, frame) in shown {
                 let label = &runs[index].label;
                 let title = if several { format!("{label}: {}", picture.title) } else { picture.title.clone() };
                 let name = format!("{} {} {}", if several { label } else { "" }, picture.experiment, picture.title);
-                let shot = shot(&name, title, &frame, png, assets);
+                let shot = shot(&name, title, &frame, picture.png.clone(), assets);
                 gallery.shots.insert((index, picture.id.clone()), Unpacked { shot, frame });
             }
         }
         Ok(gallery)
     }
 
-    /// The run whose picture is shown for that of `run`.
+    /// The run whose image is shown for that of `run`.
     fn shown_for(&self, run: usize, id: &str) -> usize {
         self.alike.get(&(run, id.to_owned())).map_or(run, |(first, _)| *first)
     }
 
-    /// Blocks for the pictures of an experiment: whose they are, all in a row where they are many, then each against its reference.
+    /// Blocks for the images of an experiment: their origin, all in a row if there are many, then each with its reference.
     pub(crate) fn blocks(&self, runs: &[Run], experiment: &str, assets: &mut Assets) -> Result<Vec<Block>, Fault> {
         let mut blocks: Vec<Block> = self.credits(runs, experiment).map(Block::Text).into_iter().collect();
         for (index, run) in runs.iter().enumerate() {
@@ -107,48 +105,44 @@ impl Gallery {
         Ok(blocks)
     }
 
-    /// Whose pictures an experiment shows, and which other runs made the same; `None` for a single run.
+    /// The run whose images are shown, and how those of other runs compare; `None` for a single run.
     fn credits(&self, runs: &[Run], experiment: &str) -> Option<String> {
         let mut having = runs
             .iter()
             .enumerate()
             .filter(|(_, run)| runs.len() > 1 && of_experiment(run, experiment).next().is_some());
         let (_, first) = having.next()?;
-        let mut text = format!("Pictures of {}.", first.label);
+        let mut text = format!("Images of {}.", first.label);
         for (index, run) in having {
             let likeness =
                 |picture: &Picture| self.alike.get(&(index, picture.id.clone())).map(|(_, likeness)| *likeness);
             let all: Vec<Option<Likeness>> = of_experiment(run, experiment).map(likeness).collect();
             let same = all.iter().filter(|likeness| **likeness == Some(Likeness::Same)).count();
             let own = all.iter().filter(|likeness| likeness.is_none()).count();
-            let parts = [
-                (same, "the same in every pixel"),
-                (all.len() - same - own, "so but for traces"),
-                (own, "shown after them"),
-            ];
+            let parts = [(same, "identical"), (all.len() - same - own, "nearly identical"), (own, "shown below")];
             let said = |(count, what): &(usize, &str)| {
                 (*count > 0).then(|| format!("{count} {} {what}", if *count == 1 { "is" } else { "are" }))
             };
             let parts: Vec<String> = parts.iter().filter_map(said).collect();
-            text += &format!(" Of those of {} {}.", run.label, parts.join(", "));
+            text += &format!(" Of the images of {}, {}.", run.label, parts.join(", "));
         }
         Some(text)
     }
 
-    /// Pictures that are to be shown without a reference: all where they are many, else those that no pair shows.
+    /// Images to show without a reference: all if there are many, otherwise those that are not in a pair.
     fn in_a_row(&self, index: usize, pictures: &[&Picture]) -> Vec<Shot> {
         let references: BTreeSet<&str> = pictures.iter().filter_map(|picture| picture.reference.as_deref()).collect();
         let paired = |picture: &Picture| picture.reference.is_some() || references.contains(picture.id.as_str());
         let many = pictures.len() >= ROW;
         let own = |id: &str| pictures.iter().any(|picture| picture.id == id);
-        // References that lie among the pictures of another experiment come first.
+        // References from other experiments come first.
         let others = references.iter().filter(|id| many && !own(id)).map(|id| (*id).to_owned());
         let ids = pictures.iter().filter(|picture| many || !paired(picture)).map(|picture| picture.id.clone());
         let place = |id: String| (self.shown_for(index, &id), id);
         others.chain(ids).filter_map(|id| Some(self.shots.get(&place(id))?.shot.clone())).collect()
     }
 
-    /// Pictures that several runs have, and how they compare.
+    /// Images that several runs have, and how they compare.
     pub(crate) fn between_runs(&self, runs: &[Run], assets: &mut Assets) -> Result<Common, Fault> {
         let mut common = Common::default();
         for ((index, id), (_, likeness)) in &self.alike {
@@ -185,7 +179,7 @@ impl Gallery {
             .map_err(|reason| PictureError::Compare { reference: reference.1.to_owned(), reason })?;
         let png = comparison.difference.to_small_png()?;
         let name = format!("{} difference", test.shot.file.trim_start_matches("pictures/").trim_end_matches(".png"));
-        let title = "Difference (FLIP): black is equal, yellow as different as can be".to_owned();
+        let title = "Difference (FLIP): from black, equal, to yellow, maximum".to_owned();
         Ok(Block::Pair(Box::new(Pair {
             picture: test.shot.clone(),
             reference: other.shot.clone(),
@@ -196,9 +190,9 @@ impl Gallery {
     }
 }
 
-/// Of the pictures that are shown, the first that may stand for `frame`, by its run.
+/// The first of the images shown that may represent `frame`, with its run.
 fn first_alike(frame: &Frame, shown: &[Candidate]) -> Result<Option<(usize, Likeness)>, PictureError> {
-    for (run, picture, other, _) in shown {
+    for (run, picture, other) in shown {
         let likeness = Likeness::of(frame, other)
             .map_err(|reason| PictureError::Compare { reference: picture.id.clone(), reason })?;
         if likeness.one_for_both() {
@@ -217,10 +211,9 @@ fn shot(name: &str, title: String, frame: &Frame, png: Vec<u8>, assets: &mut Ass
     Shot { file: assets.add_picture(name, size, png), size, title }
 }
 
-fn unpack(picture: &Picture) -> Result<(Frame, Vec<u8>), PictureError> {
-    let png = STANDARD.decode(&picture.png).map_err(PictureError::Base64)?;
-    if !png.starts_with(SIGNATURE) {
+fn unpack(picture: &Picture) -> Result<Frame, PictureError> {
+    if !picture.png.starts_with(SIGNATURE) {
         return Err(PictureError::NotPng);
     }
-    Ok((Frame::decode(&png)?, png))
+    Ok(Frame::decode(&picture.png)?)
 }

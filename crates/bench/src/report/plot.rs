@@ -1,8 +1,8 @@
 //! Curves as SVG.
 //!
-//! Colours are those of Okabe and Ito, which people with colour-blindness tell apart; each curve has a mark of its own besides,
-//! and its name stands at its end. Pages that embed a plot, and the style in a file of its own, exchange colours in dark
-//! surroundings by what the attributes say (`[stroke="#0072B2"]`).
+//! Colours are those of Okabe and Ito, which are distinguishable with colour blindness; each curve also has its own marker, and
+//! its name at its end. For dark mode, pages that embed a plot, and the style of a plot in a separate file, replace colours by
+//! attribute selectors (`[stroke="#0072B2"]`).
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -11,9 +11,9 @@ use super::scale::Scale;
 
 /// Size in pixels.
 const SIZE: (u32, u32) = (760, 400);
-/// Room for the names of curves at the right.
+/// Space for the names of curves on the right.
 const NAMES: u32 = 190;
-/// The least distance of two names.
+/// Minimum distance between names.
 const LINE: i32 = 17;
 const TEXT: i32 = 13;
 const MARK: i32 = 4;
@@ -28,10 +28,10 @@ const COLORS: [RGBColor; 6] = [
     RGBColor(86, 180, 233),
 ];
 
-/// Lines of the grid.
+/// Grid lines.
 const FAINT: RGBColor = RGBColor(204, 204, 204);
 
-/// For plots in files of their own.
+/// For plots in separate files.
 const STYLE: &str = "<style>svg{color-scheme:light dark}@media(prefers-color-scheme:dark){\
 [fill=\"#000000\"]{fill:#ddd}[stroke=\"#000000\"]{stroke:#999}[stroke=\"#CCCCCC\"]{stroke:#444}\
 [stroke=\"#0072B2\"]{stroke:#4aa8e0}[fill=\"#0072B2\"]{fill:#4aa8e0}}</style>";
@@ -39,13 +39,13 @@ const STYLE: &str = "<style>svg{color-scheme:light dark}@media(prefers-color-sch
 /// Curves over two axes.
 #[derive(Clone, Debug)]
 pub(crate) struct Plot {
-    /// Name of its file, without the ending.
+    /// File name without extension.
     pub(crate) name: String,
     pub(crate) caption: String,
     pub(crate) x: Axis,
     pub(crate) y: Axis,
     pub(crate) curves: Vec<Curve>,
-    /// Upright lines with a name at a place of x.
+    /// Vertical lines at some x, with a label.
     pub(crate) marks: Vec<(f64, String)>,
 }
 
@@ -61,21 +61,21 @@ pub(crate) struct Axis {
 pub(crate) struct Curve {
     pub(crate) name: String,
     pub(crate) points: Vec<(f64, f64)>,
-    /// Points of their own, without a line between.
+    /// Separate points, without a line between them.
     pub(crate) scattered: bool,
 }
 
 type DrawResult = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 impl Plot {
-    /// The plot as SVG; `None` without a point that the axes can show.
+    /// The plot as SVG; `None` without a point that can be shown.
     pub(crate) fn svg(&self) -> Option<String> {
         let shown = self.shown();
         let points = || shown.iter().flat_map(|curve| curve.points.iter().copied());
         let x = Scale::over(points().map(|point| point.0), self.x.log)?;
         let y = Scale::over(points().map(|point| point.1), self.y.log)?;
         let mut svg = String::new();
-        // Drawing into a string cannot fail for want of a disk, only for a mistake of ours: then there is no plot.
+        // Drawing to a string does no I/O and only fails because of a bug: then there is no plot.
         self.draw(&shown, x, y, SVGBackend::with_string(&mut svg, SIZE)).ok()?;
         Some(labelled(&svg, &self.caption))
     }
@@ -87,7 +87,7 @@ impl Plot {
         Some(format!("{head}>{STYLE}{rest}"))
     }
 
-    /// Curves with those points alone that the axes have.
+    /// Curves with only the points that the axes can show.
     fn shown(&self) -> Vec<Curve> {
         let fits = |value: f64, axis: &Axis| value.is_finite() && (!axis.log || value > 0.0);
         let mut curves = self.curves.clone();
@@ -132,7 +132,7 @@ impl Plot {
         }
         for (index, (mark, name)) in self.marks.iter().enumerate() {
             let (left, top) = place(&(*mark, y.high()));
-            // One below the other: marks may stand close.
+            // One below the other, as marks may be close to each other.
             let top = top + 3 + LINE * index as i32;
             area.draw(&Text::new(name.clone(), (left + 5, top), ("sans-serif", TEXT)))?;
         }
@@ -142,7 +142,7 @@ impl Plot {
     }
 }
 
-/// A mark whose shape goes with its curve.
+/// A marker with the shape of its curve.
 fn draw_mark<B: DrawingBackend>(
     area: &DrawingArea<B, plotters::coord::Shift>,
     curve: usize,
@@ -157,7 +157,7 @@ fn draw_mark<B: DrawingBackend>(
     }
 }
 
-/// Names beside the ends of curves, moved apart where they would meet.
+/// Names at the ends of curves, moved apart if they would overlap.
 fn draw_names<B: DrawingBackend>(
     area: &DrawingArea<B, plotters::coord::Shift>,
     curves: &[Curve],
@@ -176,13 +176,13 @@ fn draw_names<B: DrawingBackend>(
     Ok(())
 }
 
-/// Heights, in order, at least a line apart and on the page.
+/// Heights in order, at least a line apart and within the page.
 fn apart(heights: &[i32]) -> Vec<i32> {
     let mut placed: Vec<i32> = Vec::with_capacity(heights.len());
     for &height in heights {
         placed.push(placed.last().map_or(height, |last| height.max(last + LINE)));
     }
-    // What went below the edge moves up again, and pushes those above it.
+    // Names beyond the edge move up again, and push those above.
     let mut limit = SIZE.1 as i32 - LINE / 2;
     for height in placed.iter_mut().rev() {
         *height = (*height).min(limit);
@@ -191,12 +191,12 @@ fn apart(heights: &[i32]) -> Vec<i32> {
     placed
 }
 
-/// With a name for those who hear the page, and no size but that of the place it stands in.
+/// With a label for screen readers, and scaled to its container.
 fn labelled(svg: &str, caption: &str) -> String {
     let fixed = format!("<svg width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
     let head = format!("<svg role=\"img\" aria-label=\"{}\"", super::html::escaped(caption));
     let svg = svg.replacen(&fixed, &head, 1);
-    // Of the prolog and the like nothing is left in a page.
+    // Without the prolog, which has no place within a page.
     svg.find("<svg").map_or(svg.clone(), |start| svg[start..].to_owned())
 }
 

@@ -1,4 +1,4 @@
-// Lays each picture over its reference, with a slider for where one ends. Without this they stand side by side.
+// Overlays each image and its reference, with a slider between them. Without scripts they are shown side by side.
 "use strict";
 for (const pair of document.querySelectorAll(".pair")) {
   const [test, reference] = [".test", ".reference"].map((name) => pair.querySelector(name));

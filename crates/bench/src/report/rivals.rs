@@ -1,7 +1,7 @@
-//! The method's time against that of other modes: a sentence for each scene, number of lights and number of samples.
+//! The method's time compared with that of other modes: a statement for each scene, number of lights and number of samples.
 //!
-//! A mode may be faster and worse. Where rows have errors, less time counts as won with an error alone that is no larger, and more time
-//! as lost with one that is no smaller.
+//! A mode may be faster and less accurate. If rows have errors, less time only counts as a win if the error is no larger, and
+//! more time only as a loss if the error is no smaller.
 
 use super::document::{Finding, Verdict};
 use super::layouts::thesis::same_picture;
@@ -10,22 +10,22 @@ use super::runs::{Measured, distinct};
 use super::spread::{Spread, verdict};
 use super::{numbers, settings};
 
-/// A picture by the method and the same by a rival, at one place.
+/// The same image with the method and with a competing mode, on one device.
 #[derive(Clone, Copy)]
 struct Duel<'a> {
     mesh: Measured<'a>,
-    /// The method's time over the rival's.
+    /// The method's time over the competitor's.
     ratio: f64,
-    /// Mean FLIP of both, where the method's is known. A rival without one is the reference.
+    /// Mean FLIP of both, if the method's is known. A competitor without one is the reference.
     errors: Option<(f64, f64)>,
 }
 
-/// Scene, lights and samples of a rival.
+/// Scene, lights and samples of a competitor.
 type Subject = (String, String, String);
 
-/// Sentences on the method and `mode`.
+/// Statements on the method compared with `mode`.
 pub(crate) fn findings(rows: &[Measured], mode: &str) -> Vec<Finding> {
-    // Figure 11 has sentences of its own.
+    // Figure 11 has its own statements.
     let others: Vec<Measured> = rows.iter().filter(|row| row.row.experiment != LIGHTS).copied().collect();
     let rivals: Vec<Measured> = others.iter().filter(|row| row.is("mode", mode)).copied().collect();
     let subject = |row: &Measured| (row.text("scene"), row.text("lights"), row.text("samples"));
@@ -36,7 +36,7 @@ pub(crate) fn findings(rows: &[Measured], mode: &str) -> Vec<Finding> {
         let places = distinct(duels.iter().map(|duel| duel.mesh.place()));
         let of_place = |place: &String| duels.iter().filter(|duel| duel.mesh.place() == *place).copied().collect();
         let places: Vec<Vec<Duel>> = places.iter().map(of_place).collect();
-        // Places that agree share a sentence.
+        // Devices with the same verdict share a statement.
         for wanted_verdict in [Verdict::Wins, Verdict::Loses, Verdict::Open] {
             let agreeing: Vec<&[Duel]> =
                 places.iter().filter(|duels| by_time(duels) == wanted_verdict).map(Vec::as_slice).collect();
@@ -48,7 +48,7 @@ pub(crate) fn findings(rows: &[Measured], mode: &str) -> Vec<Finding> {
     findings
 }
 
-/// A rival's picture against each by the method that shows the same.
+/// A competitor's image and each corresponding image of the method.
 fn duels<'a>(rival: &Measured, rows: &[Measured<'a>]) -> Vec<Duel<'a>> {
     let mesh = rows.iter().filter(|row| row.is("mode", "light-mesh") && same_picture(row, rival));
     let duel = |mesh: &Measured<'a>| {
@@ -62,7 +62,7 @@ fn by_time(duels: &[Duel]) -> Verdict {
     ratios(duels).map_or(Verdict::Open, |ratios| ratios.verdict())
 }
 
-/// Time and error: less time with a larger error is not won, nor more time with a smaller one lost.
+/// Time and error: less time with a larger error is not a win, nor more time with a smaller one a loss.
 fn by_both(duels: &[Duel]) -> Verdict {
     let errors = || duels.iter().filter_map(|duel| duel.errors);
     match by_time(duels) {
@@ -76,7 +76,7 @@ fn ratios(duels: &[Duel]) -> Option<Spread> {
     Spread::of(duels.iter().map(|duel| duel.ratio))
 }
 
-/// One sentence for places at which all pictures come out alike.
+/// One statement for devices with the same verdict on all images.
 fn agreed(subject: &Subject, places: &[&[Duel]]) -> Finding {
     let all: Vec<Duel> = places.concat();
     let groups = places.chunk_by(|a, b| pictures(a) == pictures(b)).map(|group| {
@@ -88,7 +88,7 @@ fn agreed(subject: &Subject, places: &[&[Duel]]) -> Finding {
     });
     let groups: Vec<String> = groups.collect();
     let text = format!(
-        "{}: against {} the light mesh takes {}.{}",
+        "{}: compared with {}, the light mesh takes {}.{}",
         named(subject),
         rival(subject),
         groups.join("; "),
@@ -97,7 +97,7 @@ fn agreed(subject: &Subject, places: &[&[Duel]]) -> Finding {
     Finding::new(by_both(&all), text)
 }
 
-/// A sentence for a place at which the method takes less time for some pictures and not for others.
+/// A statement for a device on which the method takes less time for some images but not for others.
 fn divided(subject: &Subject, duels: &[Duel]) -> Finding {
     let parts = [(Verdict::Wins, "less time for"), (Verdict::Open, "as much for"), (Verdict::Loses, "more for")];
     let parts = parts.map(|(wanted, words)| {
@@ -105,7 +105,7 @@ fn divided(subject: &Subject, duels: &[Duel]) -> Finding {
         (words, of)
     });
     let mut parts: Vec<(&str, Vec<Duel>)> = parts.into_iter().filter(|(_, part)| !part.is_empty()).collect();
-    // The most come last: of them it is enough that they are the others.
+    // The largest part comes last, as "the others".
     parts.sort_by_key(|(_, part)| part.len());
     let last = parts.len() - 1;
     let parts = parts.iter().enumerate().map(|(index, (words, part))| match index == last {
@@ -116,7 +116,7 @@ fn divided(subject: &Subject, duels: &[Duel]) -> Finding {
     });
     let parts: Vec<String> = parts.collect();
     let text = format!(
-        "{}: against {} the light mesh on {} takes {}.{}",
+        "{}: compared with {}, the light mesh on {} takes {}.{}",
         named(subject),
         rival(subject),
         duels[0].mesh.place(),
@@ -131,7 +131,7 @@ fn times(duels: &[Duel]) -> String {
     ratios(duels).map_or_else(String::new, |ratios| ratios.text(numbers::ratio))
 }
 
-/// How many pictures, and their settings.
+/// The number of images, and their settings.
 fn pictures(duels: &[Duel]) -> String {
     let rows = meshes(duels);
     let settings = settings::text(&rows, &rows);
@@ -139,14 +139,14 @@ fn pictures(duels: &[Duel]) -> String {
 }
 
 fn count(duels: &[Duel]) -> String {
-    if duels.len() == 1 { "1 picture".to_owned() } else { format!("{} pictures", duels.len()) }
+    if duels.len() == 1 { "1 image".to_owned() } else { format!("{} images", duels.len()) }
 }
 
 fn meshes<'a>(duels: &[Duel<'a>]) -> Vec<Measured<'a>> {
     duels.iter().map(|duel| duel.mesh).collect()
 }
 
-/// What errors both have; nothing where none is known.
+/// The errors of both; empty if unknown.
 fn errors(duels: &[Duel]) -> String {
     let known = || duels.iter().filter_map(|duel| duel.errors);
     let (Some(mesh), Some(rival)) =
@@ -156,7 +156,7 @@ fn errors(duels: &[Duel]) -> String {
     };
     let text = |spread: Spread| spread.text(|error| numbers::significant(error, 2));
     if rival.most == 0.0 {
-        return format!(" Its error is a mean FLIP of {}; theirs is none: they are the reference.", text(mesh));
+        return format!(" Its error is a mean FLIP of {}; theirs is 0, as they are the reference.", text(mesh));
     }
     format!(" Its error is a mean FLIP of {}, theirs {}.", text(mesh), text(rival))
 }
@@ -173,8 +173,8 @@ fn named((scene, lights, _): &Subject) -> String {
 fn rival((_, _, samples): &Subject) -> String {
     match samples.as_str() {
         "" => "hard shadows".to_owned(),
-        "1" => "area shadows with 1 shadow ray for each pixel and light".to_owned(),
-        samples => format!("area shadows with {samples} shadow rays for each pixel and light"),
+        "1" => "area shadows with 1 shadow ray per pixel and light".to_owned(),
+        samples => format!("area shadows with {samples} shadow rays per pixel and light"),
     }
 }
 
@@ -183,7 +183,7 @@ mod tests {
     use super::*;
     use crate::{Row, Samples};
 
-    /// Sentences on area shadows of one second with an error of 0.03 and pictures of the method, by radius, seconds and error.
+    /// Statements on area shadows of one second with an error of 0.03 and images of the method, by radius, seconds and error.
     fn sentences(mesh: &[(f64, f64, Option<f64>)]) -> Vec<Finding> {
         let results = crate::report::tests::results("thesis", |rows| {
             let mut area = Row::new("a", [("scene", "park".into()), ("mode", "area".into()), ("samples", 4.0.into())]);
@@ -220,7 +220,7 @@ mod tests {
         let findings = sentences(&[(1.1, 0.5, None), (2.1, 1.0, None), (3.1, 2.0, None), (4.1, 3.0, None)]);
         assert_eq!(findings.len(), 1);
         assert_eq!(findings[0].verdict, Verdict::Depends);
-        let wanted = "takes less time for 1 picture (0.50×; R = 1.1), as much for 1 picture (1.0×; R = 2.1) and more for the other 2 \
+        let wanted = "takes less time for 1 image (0.50×; R = 1.1), as much for 1 image (1.0×; R = 2.1) and more for the other 2 \
                       (2.0× to 3.0×).";
         assert!(findings[0].text.ends_with(wanted), "{}", findings[0].text);
     }

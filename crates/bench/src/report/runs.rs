@@ -1,40 +1,40 @@
-//! Results side by side: several files, each a run of a suite.
+//! Results side by side: several result files, each a run of a suite.
 
 use std::collections::BTreeMap;
 
 use crate::{Key, Results, Row};
 
-/// Keys that say where a row was measured, not what.
+/// Keys that say where a row was measured rather than what.
 const PLACES: [&str; 2] = ["device", "threads"];
 
-/// A file of results.
+/// A result file.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
-    /// What it is called in the report.
+    /// Its name in the report.
     pub(crate) label: String,
     pub(crate) results: Results,
 }
 
-/// All files of a report.
+/// All result files of a report.
 #[derive(Clone, Debug)]
 pub(crate) struct Runs(pub(crate) Vec<Run>);
 
-/// A row and where it comes from.
+/// A row and its run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Measured<'a> {
     pub(crate) run: &'a Run,
     pub(crate) row: &'a Row,
-    /// Whether the run's name is needed to tell it from others.
+    /// Whether the run's name is needed to distinguish it.
     several: bool,
 }
 
-/// What a row tells by the names of [`Row::keys`], [`Row::seconds`] and [`Row::values`].
+/// Access to a row by the names of [`Row::keys`], [`Row::seconds`] and [`Row::values`].
 impl<'a> Measured<'a> {
     pub(crate) fn key(&self, name: &str) -> Option<&'a Key> {
         self.row.keys.get(name)
     }
 
-    /// A key as text; empty without it.
+    /// A key as text; empty if missing.
     pub(crate) fn text(&self, name: &str) -> String {
         self.key(name).map(super::layouts::key_text).unwrap_or_default()
     }
@@ -54,17 +54,17 @@ impl<'a> Measured<'a> {
         self.row.values.get(name).copied()
     }
 
-    /// Median seconds of a stage; `render` is the whole.
+    /// Median seconds of a stage; `render` is the whole frame.
     pub(crate) fn median(&self, stage: &str) -> Option<f64> {
         self.row.median(stage)
     }
 
-    /// The least seconds of a stage.
+    /// Minimum seconds of a stage.
     pub(crate) fn min(&self, stage: &str) -> Option<f64> {
         self.row.seconds.get(stage)?.min()
     }
 
-    /// Where it was measured, for people: the processor with its threads, or the GPU.
+    /// The device as text: the CPU with its threads, or the GPU.
     pub(crate) fn place(&self) -> String {
         let machine = &self.run.results.machine;
         let threads = match self.key("threads") {
@@ -89,14 +89,14 @@ impl<'a> Measured<'a> {
         }
     }
 
-    /// Where it was measured, in words that are the same on every machine: `cpu all`, `cpu 1`, `cuda`.
+    /// The device, in words that are the same on every machine: `cpu all`, `cpu 1`, `cuda`.
     pub(crate) fn place_name(&self) -> String {
         let words = PLACES.iter().filter_map(|key| self.key(key)).map(ToString::to_string);
         let label = self.several.then(|| self.run.label.clone());
         label.into_iter().chain(words).collect::<Vec<_>>().join(" ")
     }
 
-    /// What was done, wherever: all keys but those of the place and those named.
+    /// All keys except those of the device and those named.
     pub(crate) fn case(&self, without: &[&str]) -> Case {
         let keys = self
             .row
@@ -129,7 +129,7 @@ impl Runs {
         self.0.iter().flat_map(move |run| run.results.rows.iter().map(move |row| Measured { run, row, several }))
     }
 
-    /// Names of experiments that have rows or pictures, in the order in which they appear.
+    /// Names of experiments with rows or images, in order of appearance.
     pub(crate) fn experiments(&self) -> Vec<&str> {
         let rows = self.0.iter().flat_map(|run| run.results.rows.iter().map(|row| row.experiment.as_str()));
         let pictures =
@@ -138,7 +138,7 @@ impl Runs {
     }
 }
 
-/// Each value once, in the order in which they appear.
+/// Each value once, in order of appearance.
 pub(crate) fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<T> {
     let mut seen = Vec::new();
     for value in values {

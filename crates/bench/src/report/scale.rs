@@ -6,9 +6,9 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 
 use super::numbers;
 
-/// The most ticks at multiples of a power of ten, on a logarithmic axis; with more, powers alone have one.
+/// Maximum number of ticks at multiples of powers of ten on a logarithmic axis; beyond it, only powers have one.
 const DECADES_WITH_MULTIPLES: f64 = 2.5;
-/// How many ticks a linear axis should have.
+/// Desired number of ticks on a linear axis.
 const TICKS: f64 = 6.0;
 
 /// An axis from a low to a high value.
@@ -20,13 +20,13 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
-    /// An axis that shows all values, which a logarithmic one wants above 0; `None` without any. A linear one begins at 0 where
-    /// no value is below, so that lengths can be compared.
+    /// An axis that shows all values, which must be above 0 if it is logarithmic; `None` if there are none. A linear axis begins
+    /// at 0 unless values are negative, so that lengths can be compared.
     pub(crate) fn over(values: impl Iterator<Item = f64> + Clone, log: bool) -> Option<Scale> {
         let low = values.clone().min_by(f64::total_cmp)?;
         let high = values.max_by(f64::total_cmp)?;
         Some(if log {
-            // A little air, and never an empty axis.
+            // A small margin, and never an empty axis.
             Scale { low: low / 1.15, high: high * 1.15, log }
         } else {
             let low = low.min(0.0);
@@ -57,7 +57,7 @@ impl Scale {
     }
 }
 
-/// The least of 1, 2, 5 times a power of ten that is not below `step`.
+/// The smallest of 1, 2, 5 times a power of ten that is not below `step`.
 fn round_step(step: f64) -> f64 {
     let power = 10_f64.powf(step.log10().floor());
     [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power).into_iter().find(|&round| round >= step).unwrap_or(step)

@@ -1,26 +1,26 @@
-//! A part of a table, as Markdown, for documents that show it.
+//! A part of a table, as Markdown, for documents.
 
 use super::document::{Column, Table};
 use super::{Report, markdown};
 
-/// What is wanted of a table.
+/// A selection from a table.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Selection {
     /// The table's name.
     pub table: String,
-    /// Columns and what the cell of a row must hold there.
+    /// Columns and the value that a row must have there.
     pub conditions: Vec<(String, String)>,
-    /// Columns in order, with titles in place of their own; none: all.
+    /// Columns in order, with replacement titles; empty: all.
     pub columns: Vec<(String, Option<String>)>,
 }
 
-/// Why there is no such part.
+/// Why a selection is invalid.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableError {
-    /// No table has the name.
-    #[error("there is no table `{name}`; there are {}", known.join(", "))]
+    /// There is no table with this name.
+    #[error("there is no table `{name}`; the tables are {}", known.join(", "))]
     NoTable {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// All names.
         known: Vec<String>,
@@ -30,17 +30,17 @@ pub enum TableError {
     NoColumn {
         /// The table's name.
         table: String,
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// All names.
         known: Vec<String>,
     },
-    /// The conditions leave nothing.
-    #[error("the table `{table}` has no row with {conditions}; leave conditions out or correct them")]
+    /// No row matches the conditions.
+    #[error("the table `{table}` has no row with {conditions}; correct or remove conditions")]
     NoRow {
         /// The table's name.
         table: String,
-        /// What was asked of rows.
+        /// The conditions.
         conditions: String,
     },
 }
@@ -49,7 +49,7 @@ impl Report {
     /// A part of a table, as Markdown.
     ///
     /// # Errors
-    /// [`TableError`] where there is no such table, column or row.
+    /// [`TableError`] if there is no such table, column or row.
     pub fn table(&self, selection: &Selection) -> Result<String, TableError> {
         let table = self.tables().find(|table| table.name == selection.table).ok_or_else(|| TableError::NoTable {
             name: selection.table.clone(),
@@ -74,7 +74,7 @@ impl Report {
     }
 }
 
-/// The columns that are wanted and where they stand.
+/// The selected columns and their indices.
 fn columns(table: &Table, selection: &Selection) -> Result<Vec<(usize, Column)>, TableError> {
     if selection.columns.is_empty() {
         return Ok(table.columns.iter().cloned().enumerate().collect());

@@ -1,10 +1,10 @@
-//! Which pictures a sentence speaks of: their settings in words.
+//! The images that a statement is about: their settings as text.
 
 use super::layouts::key_text;
 use super::runs::{Measured, distinct};
 use crate::Key;
 
-/// Settings of a picture by the method, with what is written before their values.
+/// Settings of an image with the method, with the prefix of their values.
 const SETTINGS: [(&str, &str); 6] = [
     ("size", "size "),
     ("step", "h = "),
@@ -14,11 +14,11 @@ const SETTINGS: [(&str, &str); 6] = [
     ("emitter", "lights as "),
 ];
 
-/// The values of a picture's settings.
+/// The values of an image's settings.
 type Values<'a> = [Option<&'a Key>; SETTINGS.len()];
 
-/// The settings of `part`, which lies among `all`. Values of a setting are listed together where that says no more than is true: where
-/// none of the others has a combination of them. Else picture by picture, by the settings in which they differ.
+/// The settings of `part`, a subset of `all`. Values of a setting are listed together if that is accurate, that is, if none of
+/// the other images has a combination of them; otherwise image by image, by the settings in which they differ.
 pub(crate) fn text(part: &[Measured], all: &[Measured]) -> String {
     let wanted = distinct(part.iter().map(values));
     let others = all.iter().map(values).filter(|values| !wanted.contains(values));
@@ -36,7 +36,7 @@ pub(crate) fn text(part: &[Measured], all: &[Measured]) -> String {
     phrases.collect::<Vec<_>>().join("; ")
 }
 
-/// Settings that are there, with their values.
+/// Settings that are present, with their values.
 fn phrase(lists: &[Vec<Option<&Key>>]) -> String {
     let parts = SETTINGS.iter().zip(lists).filter_map(|((_, before), list)| {
         let values: Vec<String> = list.iter().flatten().map(|key| key_text(key)).collect();
@@ -45,7 +45,7 @@ fn phrase(lists: &[Vec<Option<&Key>>]) -> String {
     parts.collect::<Vec<_>>().join(", ")
 }
 
-/// Words with commas and a last "and" between them.
+/// Joins words with commas and a final "and".
 pub(crate) fn enumerated(words: &[String]) -> String {
     match words {
         [] => String::new(),

@@ -1,4 +1,4 @@
-//! Rows that several runs have in common, with the ratios of their times.
+//! Rows common to several runs, with the ratios of their times.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use super::numbers;
 use super::pictures::{Common, Fault, Gallery};
 use super::runs::{Measured, Runs, distinct};
 
-/// A table for each experiment, then pictures that came out different; nothing without a row or a picture in common.
+/// A table for each experiment, then images that differ; nothing without a common row or image.
 pub(crate) fn section(runs: &Runs, gallery: &Gallery, assets: &mut Assets) -> Result<Option<Section>, Fault> {
     let mut blocks = Vec::new();
     for experiment in runs.experiments() {
@@ -19,15 +19,15 @@ pub(crate) fn section(runs: &Runs, gallery: &Gallery, assets: &mut Assets) -> Re
     let common = gallery.between_runs(&runs.0, assets)?;
     blocks.extend(sentence(&common).map(Block::Text));
     blocks.extend(common.different);
-    Ok((!blocks.is_empty()).then(|| Section::new("The runs against each other", blocks)))
+    Ok((!blocks.is_empty()).then(|| Section::new("Comparison of the runs", blocks)))
 }
 
-/// How pictures compare that several runs have; `None` without any.
+/// How common images compare; `None` if there are none.
 fn sentence(common: &Common) -> Option<String> {
     let verb = |count: usize, one: &str, many: &str| format!("{count} {}", if count == 1 { one } else { many });
     let mut parts = Vec::new();
     if common.same > 0 {
-        parts.push(verb(common.same, "is the same in every pixel", "are the same in every pixel"));
+        parts.push(verb(common.same, "is identical", "are identical"));
     }
     if let Some((title, trace)) = common.alike.iter().max_by(|a, b| a.1.mean_flip.total_cmp(&b.1.mean_flip)) {
         let count = common.alike.len();
@@ -35,7 +35,7 @@ fn sentence(common: &Common) -> Option<String> {
             "{} by a mean FLIP below {} ({}{title}, {} of {} pixels, mean FLIP {})",
             verb(count, "differs", "differ"),
             numbers::setting(ALIKE),
-            if count == 1 { "" } else { "the most: " },
+            if count == 1 { "" } else { "at most: " },
             numbers::count(trace.differing as f64),
             numbers::count(trace.pixels as f64),
             numbers::small(trace.mean_flip)
@@ -46,12 +46,13 @@ fn sentence(common: &Common) -> Option<String> {
         count => parts.push(verb(count, "differs and is shown below", "differ and are shown below")),
     }
     if common.other_sizes > 0 {
-        parts.push(verb(common.other_sizes, "has another size", "have other sizes") + " and cannot be compared");
+        parts
+            .push(verb(common.other_sizes, "has a different size", "have different sizes") + " and cannot be compared");
     }
-    (!parts.is_empty()).then(|| format!("Of the pictures that runs have in common, {}.", parts.join("; ")))
+    (!parts.is_empty()).then(|| format!("Of the common images, {}.", parts.join("; ")))
 }
 
-/// Milliseconds of the rows of an experiment in every run, and how many times those of the first they are.
+/// Milliseconds of the rows of an experiment in every run, and their ratios to the first run.
 fn table(runs: &Runs, experiment: &str) -> Option<Table> {
     let mut by_id: BTreeMap<&str, Vec<Option<Measured>>> = BTreeMap::new();
     for (index, run) in runs.0.iter().enumerate() {
@@ -75,7 +76,7 @@ fn table(runs: &Runs, experiment: &str) -> Option<Table> {
     columns.extend(
         runs.0[1..]
             .iter()
-            .map(|run| Column::numbers(format!("{} ratio", run.label), &run.label).below(format!("times {first}"))),
+            .map(|run| Column::numbers(format!("{} ratio", run.label), &run.label).below(format!("ratio to {first}"))),
     );
     let mut ratios: Vec<Vec<f64>> = vec![Vec::new(); runs.0.len()];
     let mut table = Table::new(format!("{experiment}, runs"), "", columns);
@@ -100,10 +101,10 @@ fn timed(cell: &Option<Measured>) -> bool {
 
 fn caption(experiment: &str, runs: &Runs, ratios: &[Vec<f64>]) -> String {
     let means = runs.0.iter().zip(ratios).skip(1).filter_map(|(run, ratios)| {
-        Some(format!("{} takes {} of {}", run.label, numbers::ratio(geometric_mean(ratios)?), runs.0[0].label))
+        Some(format!("{} takes {} the time of {}", run.label, numbers::ratio(geometric_mean(ratios)?), runs.0[0].label))
     });
     let means: Vec<String> = means.collect();
-    let means = if means.is_empty() { String::new() } else { format!(" In the geometric mean {}.", means.join(", ")) };
+    let means = if means.is_empty() { String::new() } else { format!(" Geometric mean: {}.", means.join(", ")) };
     format!("{}: rows with the same id.{means}", layouts::title(experiment))
 }
 

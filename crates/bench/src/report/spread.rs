@@ -1,18 +1,18 @@
-//! The range of figures that a sentence gives.
+//! The range of values in a statement.
 
 use super::document::Verdict;
 
-/// Ratios that are as good as 1.
+/// Ratios that count as 1.
 pub(crate) const EVEN: std::ops::Range<f64> = 0.95..1.05;
 
-/// The least and the most of some figures.
+/// Minimum and maximum of some values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spread {
     pub(crate) least: f64,
     pub(crate) most: f64,
 }
 
-/// A ratio of times: below 1 wins, above 1 loses, about 1 is left open.
+/// The verdict on a ratio of times: below 1 wins, above 1 loses, about 1 is open.
 pub(crate) fn verdict(ratio: f64) -> Verdict {
     if ratio < EVEN.start {
         Verdict::Wins
@@ -24,7 +24,7 @@ pub(crate) fn verdict(ratio: f64) -> Verdict {
 }
 
 impl Spread {
-    /// `None` without any.
+    /// `None` without values.
     pub(crate) fn of(figures: impl Iterator<Item = f64>) -> Option<Spread> {
         figures.fold(None, |spread: Option<Spread>, figure| {
             Some(spread.map_or(Spread { least: figure, most: figure }, |spread| Spread {
@@ -34,13 +34,13 @@ impl Spread {
         })
     }
 
-    /// Both, or one where they read the same.
+    /// Both, or one if they are formatted the same.
     pub(crate) fn text(&self, format: impl Fn(f64) -> String) -> String {
         let (least, most) = (format(self.least), format(self.most));
         if least == most { least } else { format!("{least} to {most}") }
     }
 
-    /// Of ratios of times: that of all, or that it depends.
+    /// The verdict on ratios of times: the common one, or that it depends.
     pub(crate) fn verdict(&self) -> Verdict {
         let (least, most) = (verdict(self.least), verdict(self.most));
         if least == most { least } else { Verdict::Depends }

@@ -1,37 +1,37 @@
-//! What was run, where, and how.
+//! Facts about the runs.
 
 use super::document::{Block, Cell, Column, Finding, Section, Table, Verdict};
 use super::numbers;
 use super::runs::{Run, Runs};
 use crate::Gpu;
 
-/// Seconds of a minute.
+/// Seconds per minute.
 const MINUTE: f64 = 60.0;
 
 /// The name of the table of facts.
 pub(crate) const TABLE: &str = "runs";
 
-/// What is told of a run.
+/// A fact about a run.
 type Fact = fn(&Run) -> String;
 
-/// Characters after which a note that lists things breaks off.
+/// Length after which a note with a list is shortened.
 const LONG_NOTE: usize = 240;
 
-/// A column a run, a line a fact.
+/// One column per run, one line per fact.
 pub(crate) fn section(runs: &Runs) -> Section {
     let columns = runs.0.iter().map(|run| Column::words(run.label.as_str(), run.label.as_str()));
     let columns = std::iter::once(Column::words("fact", "")).chain(columns).collect();
-    let mut table = Table::new(TABLE, "One column for each file of results.", columns);
+    let mut table = Table::new(TABLE, "One column per result file.", columns);
     let facts: [(&str, Fact); 9] = [
-        ("Suite", |run| format!("{}{}", run.results.suite, if run.results.quick { ", the short form" } else { "" })),
-        ("Processor", |run| format!("{}, {} threads", run.results.machine.cpu, run.results.machine.threads)),
+        ("Suite", |run| format!("{}{}", run.results.suite, if run.results.quick { ", the short version" } else { "" })),
+        ("CPU", |run| format!("{}, {} threads", run.results.machine.cpu, run.results.machine.threads)),
         ("Memory", |run| numbers::bytes(run.results.machine.memory_bytes as f64)),
         ("System", |run| run.results.machine.os.clone()),
         ("GPU, driver", |run| gpus(&run.results.machine.gpus)),
         ("Program", |run| format!("{} {}", run.results.program.name, run.results.program.version)),
         ("Commit", |run| run.results.program.commit.clone().unwrap_or_else(|| "unknown".to_owned())),
         ("Command", |run| run.results.program.command.clone()),
-        ("Begun, took", |run| format!("{}, {}", run.results.started, duration(run.results.seconds))),
+        ("Started, took", |run| format!("{}, {}", run.results.started, duration(run.results.seconds))),
     ];
     for (name, fact) in facts {
         table.rows.push(std::iter::once(Cell::from(name)).chain(runs.0.iter().map(|run| fact(run).into())).collect());
@@ -39,7 +39,7 @@ pub(crate) fn section(runs: &Runs) -> Section {
     Section::new("What was run", vec![Block::Table(table)])
 }
 
-/// What the runs have to note; `None` where that is nothing.
+/// Notes of the runs; `None` if there are none.
 pub(crate) fn notes(runs: &Runs) -> Option<Section> {
     let notes: Vec<Finding> = runs
         .0
@@ -53,7 +53,7 @@ pub(crate) fn notes(runs: &Runs) -> Option<Section> {
     (!notes.is_empty()).then(|| Section::new("Notes", vec![Block::Findings(notes)]))
 }
 
-/// The note; of a long list the beginning, and how much more there is.
+/// The note; a long list is shortened to its beginning and the number of omitted items.
 fn shortened(note: &str) -> String {
     const SEPARATOR: &str = "; ";
     let mut parts = note.split(SEPARATOR);
@@ -72,7 +72,7 @@ fn shortened(note: &str) -> String {
     }
     match rest.len() - fit {
         0 => text,
-        left => format!("{text}{SEPARATOR}and {left} more, which the file of results names."),
+        left => format!("{text}{SEPARATOR}and {left} more, listed in the result file."),
     }
 }
 
@@ -102,6 +102,6 @@ mod tests {
         let short = shortened(&parts.join("; "));
         assert!(short.starts_with("part 0; part 1; ") && short.len() < 300, "{short}");
         let kept = short.matches("part ").count();
-        assert!(short.ends_with(&format!("; and {} more, which the file of results names.", 100 - kept)), "{short}");
+        assert!(short.ends_with(&format!("; and {} more, listed in the result file.", 100 - kept)), "{short}");
     }
 }

@@ -1,10 +1,8 @@
-//! Reports on results that were made by hand.
+//! Reports on handmade results.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use lightmesh::image::Frame;
 
 use super::*;
@@ -47,7 +45,7 @@ fn timed(experiment: &str, keys: &[(&'static str, Key)], seconds: f64) -> Row {
     row
 }
 
-/// The method takes `mesh` seconds, hard shadows one; figure 11 crosses at 8 lights; a row that no layout knows.
+/// The method takes `mesh` seconds, hard shadows one; figure 11 crosses at 8 lights; one row has no layout.
 fn thesis(mesh: f64) -> Results {
     let mut results = results("thesis", |rows| {
         let common = |mode: &str| {
@@ -81,26 +79,27 @@ fn picture(id: &str, reference: Option<&str>, value: f32) -> Picture {
         experiment: "p".into(),
         title: id.into(),
         reference: reference.map(str::to_owned),
+        file: String::new(),
         png: png(16, &[], value),
     }
 }
 
-/// A picture of one grey but for single pixels, by their places; 8 pixels high.
-fn png(width: u32, others: &[(usize, f32)], value: f32) -> String {
+/// A grey image, 8 pixels high, with other values for single pixels.
+fn png(width: u32, others: &[(usize, f32)], value: f32) -> Vec<u8> {
     let mut color = vec![[value; 3]; 8 * width as usize];
     for &(place, other) in others {
         color[place] = [other; 3];
     }
-    STANDARD.encode(Frame::new(width, 8, color).unwrap().to_png().unwrap())
+    Frame::new(width, 8, color).unwrap().to_png().unwrap()
 }
 
 fn report(results: Results) -> Result<Report, ReportError> {
     Report::new(vec![("runs/a.json".into(), results)])
 }
 
-/// Checks that every tag that begins ends, in order; gives the names of all.
+/// Checks that all tags are closed in order; returns their names.
 fn tags(html: &str) -> BTreeSet<String> {
-    // What lies in scripts and styles is no markup.
+    // Scripts and styles contain no markup.
     let mut rest = html.to_owned();
     for raw in ["script", "style"] {
         let (open, close) = (format!("<{raw}>"), format!("</{raw}>"));
@@ -137,7 +136,7 @@ fn the_page_is_whole_and_asks_for_nothing() {
         let known = html.replace("http://www.w3.org/", "");
         assert!(!known.contains(address), "{address}");
     }
-    // Every link leads somewhere in the page.
+    // Every link has a target in the page.
     for target in html.split("href=\"#").skip(1).filter_map(|rest| rest.split('"').next()) {
         assert!(html.contains(&format!("id=\"{target}\"")), "{target}");
     }
@@ -150,7 +149,7 @@ fn the_page_is_whole_and_asks_for_nothing() {
 #[test]
 fn print_is_light_and_has_no_sliders() {
     let style = include_str!("report.css");
-    // What is dark or slides is for screens alone.
+    // Dark mode and sliders are for screens only.
     for (rule, _) in style.match_indices(".sliding .stack").chain(style.match_indices("prefers-color-scheme: dark")) {
         let media = style[..rule + 1].rfind("@media").map(|begin| &style[begin..]);
         assert!(media.is_some_and(|media| media.starts_with("@media screen")), "{}", &style[rule..rule + 30]);
@@ -167,9 +166,8 @@ fn tags_that_cross_are_found() {
 #[test]
 fn markdown_shows_files_that_are_there() {
     let folder = tempfile::tempdir().unwrap();
-    let report = report(thesis(2.0)).unwrap();
-    report.write(&folder.path().join("new/report")).unwrap();
-    let place = folder.path().join("new/report");
+    let (report, place) = (report(thesis(2.0)).unwrap(), folder.path().join("new/report"));
+    report.write(&place).unwrap();
     let text = std::fs::read_to_string(place.join("report.md")).unwrap();
     let files = text.split("src=\"").chain(text.split("](")).filter_map(|rest| rest.split(['"', ')']).next());
     let files: BTreeSet<&str> =
@@ -186,9 +184,9 @@ fn markdown_shows_files_that_are_there() {
 fn sentences_follow_from_the_rows() {
     let sentences = |mesh| report(thesis(mesh)).unwrap().markdown();
     let lost = sentences(2.0);
-    let hard = "Garden, 1 light: against hard shadows the light mesh takes";
+    let hard = "Garden, 1 light: compared with hard shadows, the light mesh takes";
     assert!(
-        lost.contains(&format!("- **loses**: {hard} 2.0× the time on Some GPU (1 picture, h = 0.1, R = 2.1).")),
+        lost.contains(&format!("- **loses**: {hard} 2.0× the time on Some GPU (1 image, h = 0.1, R = 2.1).")),
         "{lost}"
     );
     assert!(
@@ -212,7 +210,7 @@ fn light_points_are_told_of_pictures_that_have_many() {
     });
     let text = report(results).unwrap().markdown();
     let wanted =
-        "- **loses**: Garden: 0.70 (size 512, h = 1, R = 7) and 0.60 (size 1024, h = 1, R = 6) light points a pixel";
+        "- **loses**: Garden: 0.70 (size 512, h = 1, R = 7) and 0.60 (size 1024, h = 1, R = 6) light points per pixel";
     assert!(text.contains(wanted), "{text}");
 }
 
@@ -223,14 +221,14 @@ fn two_runs_have_ratios() {
     new.pictures[1] = picture("p: test \"1\"", Some("p: reference"), 0.5);
     let report = Report::new(vec![("old/a.json".into(), old), ("new/a.json".into(), new)]).unwrap();
     let text = report.markdown();
-    assert!(text.contains("In the geometric mean a 2 takes 1.2× of a."), "{text}");
-    assert!(text.contains("| median, ms: a | median, ms: a 2 | times a: a 2 |"), "{text}");
+    assert!(text.contains("Geometric mean: a 2 takes 1.2× the time of a."), "{text}");
+    assert!(text.contains("| median, ms: a | median, ms: a 2 | ratio to a: a 2 |"), "{text}");
     assert!(text.contains("| 2200 | 3300 | 1.5× |"), "{text}");
-    assert!(text.contains("in common, 1 is the same in every pixel; 1 differs and is shown below."), "{text}");
+    assert!(text.contains("Of the common images, 1 is identical; 1 differs and is shown below."), "{text}");
     tags(&report.html());
 }
 
-/// Two runs, the pictures of which were `change`d.
+/// Two runs, with images `change`d in the second.
 fn two(change: impl FnOnce(&mut [Picture], &mut [Picture])) -> Report {
     let (mut first, mut second) = (thesis(2.0), thesis(2.0));
     change(&mut first.pictures, &mut second.pictures);
@@ -243,10 +241,10 @@ fn pictures_that_are_alike_are_shown_once() {
     let text = once.markdown();
     // Test, reference and difference.
     assert_eq!((text.matches("<img").count(), once.html().matches("<image ").count()), (3, 3), "{text}");
-    assert!(text.contains("in common, 2 are the same in every pixel."), "{text}");
-    assert!(text.contains("Pictures of a. Of those of b 2 are the same in every pixel."), "{text}");
+    assert!(text.contains("Of the common images, 2 are identical."), "{text}");
+    assert!(text.contains("Images of a. Of the images of b, 2 are identical."), "{text}");
 
-    // One step of 8 bits in one pixel.
+    // A difference of 1/255 in one pixel.
     let nearly = two(|first, second| {
         for pictures in [&mut *first, &mut *second] {
             pictures.iter_mut().for_each(|picture| picture.png = png(128, &[], 0.6));
@@ -259,14 +257,14 @@ fn pictures_that_are_alike_are_shown_once() {
         text.contains("1 differs by a mean FLIP below 0.0001 (b: p: test \"1\", 1 of 1024 pixels, mean FLIP "),
         "{text}"
     );
-    assert!(text.contains("Of those of b 1 is the same in every pixel, 1 is so but for traces."), "{text}");
+    assert!(text.contains("Of the images of b, 1 is identical, 1 is nearly identical."), "{text}");
 }
 
 #[test]
 fn pictures_of_other_sizes_are_shown_but_not_compared() {
     let report = two(|_, pictures| pictures.iter_mut().for_each(|picture| picture.png = png(8, &[], 0.6)));
     let text = report.markdown();
-    assert!(text.contains("in common, 2 have other sizes and cannot be compared."), "{text}");
+    assert!(text.contains("Of the common images, 2 have different sizes and cannot be compared."), "{text}");
     assert_eq!(text.matches("<img").count(), 6, "{text}");
 }
 
@@ -293,11 +291,10 @@ fn doctored_results_are_refused() {
         refused(|results| results.rows.push(results.rows[0].clone()))
             .contains("a.json has two rows with the id `timings: ")
     );
-    assert!(refused(|results| results.pictures[1].id = results.pictures[0].id.clone()).contains("two pictures"));
-    assert!(refused(|results| results.pictures[0].png.truncate(21)).contains("not in Base64"));
-    assert!(refused(|results| results.pictures[0].png = STANDARD.encode("GIF89a")).contains("it is no PNG file"));
-    assert!(refused(|results| results.pictures[0].png.truncate(64)).contains("png data is damaged"));
+    assert!(refused(|results| results.pictures[1].id = results.pictures[0].id.clone()).contains("two images"));
+    assert!(refused(|results| results.pictures[0].png = b"GIF89a".into()).contains("it is not a PNG file"));
+    assert!(refused(|results| results.pictures[0].png.truncate(48)).contains("png data is damaged"));
     assert!(
-        refused(|results| drop(results.pictures.remove(0))).contains("no picture `p: reference` to hold it against")
+        refused(|results| drop(results.pictures.remove(0))).contains("its reference image `p: reference` is missing")
     );
 }

@@ -2,6 +2,7 @@
 
 mod quality;
 mod rays;
+mod stages;
 mod subjects;
 mod thesis;
 mod turns;
@@ -12,12 +13,12 @@ use lightmesh::{Observer, RenderError};
 
 use crate::{BenchError, Findings, Machine, Plan, Program, Results, Suite, machine};
 
-/// Runs a suite. The observer's [`note`](Observer::note) says where it is; the sentences are for people. Where the observer asks to
-/// stop, the rows so far are the results, and a note in them says so.
+/// Runs a suite. The observer's [`note`](Observer::note) gets human-readable progress. If the observer requests a stop, the
+/// results contain the rows so far, with a note.
 ///
 /// # Errors
-/// [`BenchError`], most often because a device cannot be used; [`RenderError::Cancelled`] in it where the suite was stopped before it
-/// had a row.
+/// [`BenchError`], most often because a device cannot be used; it is [`RenderError::Cancelled`] if the suite was stopped before
+/// its first row.
 pub fn run(suite: Suite, plan: &Plan, observer: &dyn Observer) -> Result<Results, BenchError> {
     let (started, begin) = (machine::utc_now(), Instant::now());
     let mut findings = Findings::default();
@@ -25,10 +26,11 @@ pub fn run(suite: Suite, plan: &Plan, observer: &dyn Observer) -> Result<Results
         Suite::Thesis => thesis::run(plan, observer, &mut findings),
         Suite::Quality => quality::run(plan, observer, &mut findings),
         Suite::Rays => rays::run(plan, observer, &mut findings),
+        Suite::Stages => stages::run(plan, observer, &mut findings),
     };
     match outcome {
         Err(BenchError::Render(RenderError::Cancelled)) if !findings.rows.is_empty() => {
-            findings.notes.push("Stopped before its end; later rows are missing.".to_owned());
+            findings.notes.push("Stopped early; later rows are missing.".to_owned());
         }
         outcome => outcome?,
     }

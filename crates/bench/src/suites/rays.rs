@@ -1,27 +1,27 @@
-//! Rays per second of each acceleration structure, alone: primary rays, hard-shadow rays and short segments.
+//! Rays per second of each acceleration structure in isolation: primary rays, hard-shadow rays and short segments.
 //!
-//! Rows of the experiment `rays` have the keys scene, size, `rays` (`primary`, `hard shadow`, `short`), `accel`, device and threads; values
-//! are how many `rays` there were and `million_per_second`, by the median. Seconds are those of the stage that casts them, forming the
-//! rays included. Short segments are tested one by one ([`ShortTests::Plain`]), as they are where a ray caster is asked; the method's own
-//! short tests by cell cast none. Brute force serves tiny scenes, as a measure of the triangle test.
+//! Rows of the experiment `rays` have the keys scene, size, `rays` (`primary`, `hard shadow`, `short`), `accel`, device and
+//! threads; values are the number of `rays` and `million_per_second`, by the median. Times are those of the stage that casts
+//! them, including ray generation. Short segments are traced one by one ([`ShortTests::Plain`]), as by a generic ray tracer; the
+//! method's own short tests by cell cast no rays. Brute force is included for tiny scenes, as a measure of the triangle test.
 
 use lightmesh::render::{Counts, PreparedScene, ShortTests};
 use lightmesh::{Acceleration, Mode, Observer, Settings, Stage, Step};
 
-use super::subjects::{Subject, paths};
-use super::turns::{Clock, Turns};
+use super::subjects::{self, Subject};
+use super::turns::Turns;
 use crate::engine::{self, Engine};
 use crate::measure::{Measured, Silent, Variant};
 use crate::{BenchError, Findings, Plan, Row, Samples};
 
-/// Pixels of a side, and in the short form.
+/// Pixels along a side, and in the short version.
 const SIDES: [u32; 2] = [1024, 512];
-/// Most triangles for which each ray may ask all of them,
+/// Maximum number of triangles for which brute force is measured,
 const TINY: usize = 1000;
-/// in a picture with so much shorter sides: rates do not depend on it.
+/// in an image with sides reduced by this factor: rates do not depend on it.
 const SHORTER: u32 = 4;
 
-/// Rays of a kind.
+/// A kind of rays.
 struct Kind {
     name: &'static str,
     mode: Mode,
@@ -35,40 +35,35 @@ const KINDS: [Kind; 3] = [
     Kind { name: "short", mode: Mode::LightMesh, stage: Stage::ShortTests, count: |counts| counts.short_tests },
 ];
 
-/// A picture to make: how, by what, where.
+/// An image to render: settings, structure, device.
 struct Case<'a> {
     mode: Mode,
     engine: &'a Engine,
-    scene: &'a PreparedScene<'a>,
+    scene: &'a PreparedScene,
     side: u32,
 }
 
 pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings) -> Result<(), BenchError> {
-    let clock = Clock::new(plan.budget);
     let engines = ray_engines(plan)?;
     findings.devices = engines.iter().map(|engine| engine.device.clone()).collect();
-    let paths = paths(plan);
-    for index in 0..paths.len() {
-        let subject = Subject::open(&paths, index)?;
-        observer.note(&format!("scene {} of {}: {}", index + 1, paths.len(), subject.name));
-        let share = clock.share(paths.len() - index);
+    subjects::each(plan, observer, |subject, share| {
         let silent = Silent(observer);
-        let structures = structures(plan, &subject);
+        let structures = structures(plan, subject);
         let prepared =
             structures.iter().map(|(acceleration, _)| PreparedScene::new(&subject.scene, acceleration, &silent));
         let prepared: Vec<PreparedScene> = prepared.collect::<Result<_, _>>()?;
         let cases = cases(&engines, &structures, &prepared);
-        let variants: Vec<Variant> = cases.iter().map(|case| case.variant(&subject)).collect();
+        let variants: Vec<Variant> = cases.iter().map(|case| case.variant(subject)).collect();
         let turns = Turns::take(&variants, plan.repetitions, share, observer)?;
         for (case, measured) in cases.iter().zip(&turns.measured) {
-            findings.rows.extend(case.rows(&subject, measured));
+            findings.rows.extend(case.rows(subject, measured));
         }
         findings.notes.extend(turns.notes(&subject.name, plan.repetitions));
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
-/// The devices of the plan, and one thread of the processor beside many.
+/// The devices of the plan, and a single CPU thread if there are several.
 fn ray_engines(plan: &Plan) -> Result<Vec<Engine>, BenchError> {
     let mut engines = engine::engines(plan)?;
     if engines.iter().any(|engine| engine.thread_count.is_some_and(|threads| threads > 1)) {
@@ -77,21 +72,21 @@ fn ray_engines(plan: &Plan) -> Result<Vec<Engine>, BenchError> {
     Ok(engines)
 }
 
-/// Acceleration structures for a scene, with the sides of their pictures.
+/// Acceleration structures for a scene, with the sizes of their images.
 fn structures(plan: &Plan, subject: &Subject) -> Vec<(Acceleration, u32)> {
-    let side = plan.side(SIDES[usize::from(plan.quick)]);
+    let side = plan.side_or(SIDES);
     let mut structures = vec![(Acceleration::Bvh, side), (Acceleration::Grid(None), side)];
-    if subject.scene.mesh.triangles.len() <= TINY {
+    if subject.scene.geometry.mesh.triangles.len() <= TINY {
         structures.push((Acceleration::BruteForce, plan.side(side / SHORTER)));
     }
     structures
 }
 
-/// Structures first: where time ends early, one device has all of them.
+/// Structures first: if time runs out, one device has all of them.
 fn cases<'a>(
     engines: &'a [Engine],
     structures: &[(Acceleration, u32)],
-    prepared: &'a [PreparedScene<'a>],
+    prepared: &'a [PreparedScene],
 ) -> Vec<Case<'a>> {
     let mut cases = Vec::new();
     for engine in engines {
@@ -104,17 +99,16 @@ fn cases<'a>(
 
 impl Case<'_> {
     fn variant(&self, subject: &Subject) -> Variant<'_> {
-        let settings = Settings {
-            mode: self.mode,
-            size: [self.side, self.side],
-            step: subject.step.map(Step::Fixed),
-            short_tests: ShortTests::Plain,
-            ..Settings::default()
-        };
+        let mut settings = Settings::default()
+            .with_mode(self.mode)
+            .with_size([self.side; 2])
+            .with_short_tests(ShortTests::Plain)
+            .with_acceleration(self.scene.geometry.acceleration().clone());
+        settings.step = subject.step.map(Step::Fixed);
         Variant { renderer: &self.engine.renderer, scene: self.scene, settings }
     }
 
-    /// A row for each kind of rays that the picture needed.
+    /// A row for each kind of rays in the image.
     fn rows(&self, subject: &Subject, measured: &Measured) -> Vec<Row> {
         let kinds = KINDS.iter().filter(|kind| kind.mode == self.mode);
         kinds.filter_map(|kind| self.row(subject, kind, measured)).collect()
@@ -127,7 +121,7 @@ impl Case<'_> {
             ("scene", subject.name.as_str().into()),
             ("size", f64::from(self.side).into()),
             ("rays", kind.name.into()),
-            ("accel", self.scene.accelerator.name().into()),
+            ("accel", self.scene.geometry.accelerator.name().into()),
         ];
         let mut row = Row::new("rays", keys.into_iter().chain(self.engine.keys()));
         row.values.insert("rays".to_owned(), rays);

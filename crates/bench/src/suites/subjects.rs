@@ -1,15 +1,16 @@
-//! The scenes of a suite that takes any: the built-in ones, or those of the plan.
+//! The scenes of a suite that accepts any: the built-in ones, or those of the plan.
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use lightmesh::scene::{LightKind, Up};
-use lightmesh::{LoadError, Scene};
+use lightmesh::{LoadError, Observer, Scene};
 
-use crate::Plan;
+use crate::{BenchError, Plan};
 
 /// The built-in scenes with the thesis' steps h, in scene units.
 const BUILT_IN: [(&str, f32); 3] = [("builtin:gazebo", 2.0), ("builtin:childpark", 1.0), ("builtin:garden", 0.1)];
-/// Radius of a light that has none of its own, as a share of the scene's diagonal: that of the lights which a scene without any gets.
+/// Radius of a light without extent, as a fraction of the scene's diagonal: that of the default lights.
 const LIGHT_RADIUS: f32 = 0.02;
 
 /// A scene to measure.
@@ -18,12 +19,27 @@ pub(super) struct Subject {
     pub(super) name: String,
     /// The scene, with lights and a camera.
     pub(super) scene: Scene,
-    /// The step h that it is known with; `None`: automatic.
+    /// Its usual step h; `None`: automatic.
     pub(super) step: Option<f32>,
 }
 
-/// Where the scenes of a plan lie.
-pub(super) fn paths(plan: &Plan) -> Vec<PathBuf> {
+/// Calls `study` for each scene of the plan with an equal share of the remaining time.
+pub(super) fn each(
+    plan: &Plan,
+    observer: &dyn Observer,
+    mut study: impl FnMut(&Subject, Duration) -> Result<(), BenchError>,
+) -> Result<(), BenchError> {
+    let (begin, paths) = (Instant::now(), paths(plan));
+    for index in 0..paths.len() {
+        let subject = Subject::open(&paths, index)?;
+        observer.note(&format!("scene {} of {}: {}", index + 1, paths.len(), subject.name));
+        study(&subject, plan.budget.saturating_sub(begin.elapsed()) / (paths.len() - index) as u32)?;
+    }
+    Ok(())
+}
+
+/// The scenes of a plan.
+fn paths(plan: &Plan) -> Vec<PathBuf> {
     match plan.scenes.as_slice() {
         [] => BUILT_IN.iter().map(|(path, _)| PathBuf::from(path)).collect(),
         scenes => scenes.to_vec(),
@@ -31,8 +47,8 @@ pub(super) fn paths(plan: &Plan) -> Vec<PathBuf> {
 }
 
 impl Subject {
-    /// Opens the scene `paths[index]`. Its name is short, or the path where another scene has that name.
-    pub(super) fn open(paths: &[PathBuf], index: usize) -> Result<Subject, LoadError> {
+    /// Opens the scene `paths[index]`. Its name is short, or its path if another scene has the same short name.
+    fn open(paths: &[PathBuf], index: usize) -> Result<Subject, LoadError> {
         let path = &paths[index];
         let mut scene = Scene::open(path)?;
         if scene.cameras.is_empty() {
@@ -48,10 +64,10 @@ impl Subject {
         Ok(Subject { name, step: known.or(scene.light_mesh.step), scene })
     }
 
-    /// The scene with the same lights as balls: as large as area mode strews them, or of a radius by the scene's size.
+    /// The scene with its lights as balls, with the spread of area mode or a radius derived from the scene's size.
     pub(super) fn with_balls(&self) -> Scene {
         let mut scene = self.scene.clone();
-        let usual = LIGHT_RADIUS * scene.mesh.bounds().diagonal();
+        let usual = LIGHT_RADIUS * scene.geometry.mesh.bounds().diagonal();
         for light in &mut scene.lights {
             if let LightKind::Point { position, spread } = light.kind {
                 light.kind = LightKind::Sphere { position, radius: if spread > 0.0 { spread } else { usual } };
@@ -61,7 +77,7 @@ impl Subject {
     }
 }
 
-/// `garden?lights=3` of `builtin:garden?lights=3`, `bunny` of `models/bunny.ply`.
+/// `garden?lights=3` for `builtin:garden?lights=3`, `bunny` for `models/bunny.ply`.
 fn short(path: &Path) -> String {
     let whole = path.to_string_lossy();
     match whole.strip_prefix("builtin:") {

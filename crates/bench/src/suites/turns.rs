@@ -1,9 +1,9 @@
-//! Timing of many pictures within a share of the time.
+//! Timing of many images within a share of the time.
 //!
-//! 1. Each picture is made once, in the order of worth, until the share is used; those that come later are left out.
-//! 2. All of them are made again in turn, as often as fits into what is left. The first round then counts as warm-up.
+//! 1. Each image is rendered once, most important first, until the share is used up; later ones are dropped.
+//! 2. All of them are rendered again alternately, as often as fits into the remaining time. The first round then counts as warm-up.
 //!
-//! So no estimates are needed; a share is overrun by one picture at the most.
+//! This needs no estimates; a share is exceeded by at most one image.
 
 use std::time::{Duration, Instant};
 
@@ -11,38 +11,20 @@ use lightmesh::{Observer, RenderError};
 
 use crate::measure::{Measured, Rounds, Variant, measure};
 
-/// The time of a suite.
-pub(super) struct Clock {
-    begin: Instant,
-    budget: Duration,
-}
-
-impl Clock {
-    /// Begins now.
-    pub(super) fn new(budget: Duration) -> Clock {
-        Clock { begin: Instant::now(), budget }
-    }
-
-    /// What is left for each of `shares` equal parts.
-    pub(super) fn share(&self, shares: usize) -> Duration {
-        self.budget.saturating_sub(self.begin.elapsed()) / shares.max(1) as u32
-    }
-}
-
-/// The pictures that were made.
+/// The measured variants.
 pub(super) struct Turns {
-    /// Of the variants, from the first.
+    /// The measurements of the variants, from the first.
     pub(super) measured: Vec<Measured>,
-    /// Variants that were left out for want of time.
+    /// Variants that were dropped for lack of time.
     pub(super) left_out: usize,
-    /// How often the others were measured.
+    /// Repetitions of the others.
     pub(super) repetitions: usize,
-    /// Whether a first round did not count.
+    /// Whether there was an uncounted first round.
     pub(super) warm_up: bool,
 }
 
 impl Turns {
-    /// Measures `variants` up to `repetitions` times within `share`; the first one at any rate.
+    /// Measures `variants` up to `repetitions` times within `share`, and at least the first one.
     ///
     /// # Errors
     /// As [`Renderer::render_prepared`](lightmesh::Renderer::render_prepared).
@@ -72,16 +54,19 @@ impl Turns {
         Ok(Turns { measured, left_out, repetitions, warm_up })
     }
 
-    /// What a reader should know where time was short.
+    /// Notes if time was short.
     pub(super) fn notes(&self, what: &str, wanted: usize) -> Vec<String> {
         let mut notes = Vec::new();
         if !self.warm_up {
-            notes.push(format!("For want of time {what} was measured once, without warm-up."));
+            notes.push(format!("Because of the time budget {what} was measured only once, without warm-up."));
         } else if self.repetitions < wanted {
-            notes.push(format!("For want of time {what} was measured {} times, not {wanted}.", self.repetitions));
+            notes.push(format!(
+                "Because of the time budget {what} was measured {} times instead of {wanted}.",
+                self.repetitions
+            ));
         }
         if self.left_out > 0 {
-            notes.push(format!("For want of time {} rows of {what} were left out.", self.left_out));
+            notes.push(format!("Because of the time budget {} rows of {what} were dropped.", self.left_out));
         }
         notes
     }
@@ -97,7 +82,7 @@ mod tests {
     #[test]
     fn without_time_the_first_picture_is_made_once_and_with_time_all_are_repeated() {
         let (scene, renderer) = (Scene::open("builtin:gazebo").unwrap(), Renderer::new(Device::Cpu).unwrap());
-        let settings = Settings { size: [8, 8], ..Settings::default() };
+        let settings = Settings::default().with_size([8, 8]);
         let prepared = renderer.prepare(&scene, &settings, &Unobserved).unwrap();
         let variant = || Variant { renderer: &renderer, scene: &prepared, settings: settings.clone() };
         let variants = [variant(), variant()];

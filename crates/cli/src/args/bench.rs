@@ -4,16 +4,17 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use lightmesh::Device;
-use lightmesh_bench::Suite;
+use lightmesh_bench::{Plan, Suite};
 
 use super::Progress;
 use crate::value::Budget;
 
 /// Run a suite of experiments, or compare two runs
 ///
-/// The suites: `thesis` has every table and figure of the thesis, `quality` errors against converged area shadows and what equal
-/// errors cost by shadow rays, `rays` the rays per second of each acceleration structure. A table is printed; --json keeps
-/// everything, for `lightmesh bench compare` and `lightmesh report`. A file that is called compare is written ./compare.
+/// Suites: `thesis` reproduces all tables and figures of the thesis, `quality` measures errors relative to converged area shadows
+/// and the cost of shadow rays with equal error, `rays` measures rays per second for each acceleration structure, `stages` the
+/// time of each stage by acceleration structure, kind of short tests and radius. A table is printed; --json saves all rows, for
+/// `lightmesh bench compare` and `lightmesh report`. To name a file `compare`, write ./compare.
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true)]
 pub(crate) struct BenchArgs {
@@ -24,42 +25,46 @@ pub(crate) struct BenchArgs {
     pub(crate) run: SuiteArgs,
 }
 
-/// What else can be done with suites.
+/// Commands on the results of suites.
 #[derive(Debug, Subcommand)]
 pub(crate) enum BenchCommand {
-    /// Compare two runs of a suite: exit code 1 where the later is slower by more than the noise of both
+    /// Compare two runs of a suite: exit code 1 if the later one is significantly slower
     Compare(BenchCompareArgs),
 }
 
 /// Run a suite.
 #[derive(Debug, Args)]
 pub(crate) struct SuiteArgs {
-    /// thesis, quality or rays
+    /// thesis, quality, rays or stages
     #[arg(value_name = "SUITE", required_unless_present = "list")]
     pub(crate) suite: Option<Suite>,
 
     /// List the suites
-    #[arg(long, conflicts_with_all = ["suite", "json", "report", "short", "budget", "device", "threads", "scenes"])]
+    #[arg(long, conflicts_with_all = ["suite", "json", "pictures", "report", "short", "budget", "device", "threads", "scenes", "size", "repeat"])]
     pub(crate) list: bool,
 
-    /// Keep rows, pictures and notes as JSON [default: off]
+    /// Save rows and notes as JSON [default: off]
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 
-    /// A report on the results: report.md with its plots and pictures, and report.html, which needs nothing else [default: off]
+    /// Also save images next to the JSON, in the folder FILE-pictures (FILE without extension), for reports
+    #[arg(long, requires = "json")]
+    pub(crate) pictures: bool,
+
+    /// Write a report on the results: report.md with its plots and images, and the self-contained report.html [default: off]
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
 
-    /// The short form: fewer rows and smaller pictures
+    /// A short version: fewer rows and smaller images
     #[arg(long = "quick", id = "short")]
     pub(crate) quick: bool,
 
-    /// Time for all of it, as in 90s, 15m or 2h: repetitions are cut to fit, then rows are left out, and notes say so [default: 15m, or
-    /// 150s with --quick]
+    /// Time budget, as in 90s, 15m or 2h: to fit, repetitions are reduced, then rows are dropped, with notes in the results
+    /// [default: 15m, or 150s with --quick]
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     pub(crate) budget: Option<Budget>,
 
-    /// Where to compute: auto (the processor and, where one works, a GPU), cpu, cuda or cuda:N
+    /// Device: auto (the CPU and, if one works, a GPU), cpu, cuda or cuda:N
     #[arg(long, value_name = "DEVICE", default_value = "auto")]
     pub(crate) device: Device,
 
@@ -67,23 +72,32 @@ pub(crate) struct SuiteArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub(crate) threads: Option<u32>,
 
-    /// A scene to measure, for suites that take any; repeatable [default: the suite's own]
+    /// Scene to measure, for suites that accept any; repeatable [default: the suite's own]
     #[arg(long = "scene", id = "scenes", value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
-    /// Progress on stderr
+    /// Pixels along a side, for suites that accept any [default: the suite's own]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) size: Option<u32>,
+
+    /// Counted repetitions of each image; fewer if the budget is short
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = Plan::REPETITIONS as u32,
+        value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) repeat: u32,
+
+    /// How to show progress on stderr
     #[arg(long, value_enum, default_value_t = Progress::Auto)]
     pub(crate) progress: Progress,
 
-    /// Print nothing but the table and errors
+    /// Print only the table and errors
     #[arg(short, long)]
     pub(crate) quiet: bool,
 }
 
 /// Compare two runs of a suite
 ///
-/// Rows are matched by their ids. For each stage that both have, the ratio of the medians is held against a noise band from the
-/// repetitions of both. A row is judged by its stage `render`, or by all stages where it has none.
+/// Rows are matched by id. For each stage present in both runs, the ratio of the medians is compared with a noise band derived
+/// from the repetitions of both. A row is judged by its stage `render`, or by all stages if it has none or the suite is `stages`.
 #[derive(Debug, Args)]
 pub(crate) struct BenchCompareArgs {
     /// The earlier run

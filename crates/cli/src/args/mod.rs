@@ -1,7 +1,6 @@
-//! The command line as it is typed: one struct a subcommand. Doc comments are the help text.
+//! The command line as typed: one struct per subcommand. Doc comments are the help text.
 //!
-//! Values are parsed where they stand (see [`value`](crate::value)); what they mean together is checked in
-//! [`plan`](crate::plan).
+//! Values are parsed individually (see [`value`](crate::value)); combinations are checked in [`plan`](crate::plan).
 
 mod bench;
 mod render;
@@ -13,7 +12,7 @@ use clap::{Args, Parser, Subcommand};
 
 pub(crate) use bench::{BenchArgs, BenchCommand, BenchCompareArgs, SuiteArgs};
 pub(crate) use render::RenderArgs;
-pub(crate) use words::{Accel, Falloff, Lookup, Mode, Progress, ShortTests, Transfer, Up, Weight};
+pub(crate) use words::{Progress, Up};
 
 use crate::value::{Bound, Dims};
 
@@ -26,29 +25,29 @@ pub(crate) struct Cli {
 }
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 done, 1 a comparison exceeded its bound, 2 bad input or usage, 3 device or memory cannot do it, \
-130 interrupted.";
+Exit codes: 0 success, 1 a comparison exceeded its threshold, 2 bad input or usage, 3 device unusable or memory \
+insufficient, 130 interrupted.";
 
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Render one picture of a scene
+    /// Render an image of a scene
     Render(Box<RenderArgs>),
-    /// Say what is in a scene, or which devices can be used
+    /// Describe a scene, or list devices
     Info(InfoArgs),
-    /// Say how far two pictures are apart
+    /// Compare two images
     Compare(CompareArgs),
-    /// Build the acceleration grid of a scene and keep it in a file
+    /// Build the acceleration grid of a scene and save it
     Grid(GridArgs),
-    /// Write a built-in or loaded scene as files
+    /// Export a built-in or loaded scene
     Export(ExportArgs),
     /// Run a suite of experiments, or compare two runs
     Bench(Box<BenchArgs>),
-    /// Show results of suites as Markdown and as one HTML page
+    /// Write a report on benchmark results, as Markdown and HTML
     Report(ReportArgs),
-    /// Print the JSON Schema of scene files in TOML, for editors and checkers
+    /// Print the JSON Schema of TOML scene files, for editors and validators
     Schema,
-    /// Print a script that completes command lines in a shell
+    /// Print a shell completion script
     Completions(CompletionsArgs),
     /// Print the manual page
     Man(ManArgs),
@@ -57,8 +56,8 @@ pub(crate) enum Command {
 /// Where a scene comes from.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct SceneArg {
-    /// A .toml, .obj, .gltf, .glb, .ply or .stl file, or builtin:gazebo, builtin:childpark, builtin:garden (also with options, as in
-    /// builtin:garden?lights=3)
+    /// A .toml, .obj, .gltf, .glb, .ply or .stl file, or builtin:gazebo, builtin:childpark, builtin:garden (also with options, as
+    /// in builtin:garden?lights=3)
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 
@@ -69,16 +68,16 @@ pub(crate) struct SceneArg {
 /// How a scene is read.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct ReadingArgs {
-    /// Follow references out of the folder that the scene lies in; elsewhere lies what its author cannot know
+    /// Allow references to files outside the scene's folder
     #[arg(long, help_heading = "Reading")]
     pub(crate) allow_outside: bool,
 
-    /// End with exit code 2 where there is something to warn of
+    /// Treat warnings as errors (exit code 2)
     #[arg(long, help_heading = "Reading")]
     pub(crate) strict: bool,
 }
 
-/// Say what is in a scene, or which devices can be used
+/// Describe a scene, or list devices
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
     /// The scene to describe
@@ -88,7 +87,7 @@ pub(crate) struct InfoArgs {
     #[command(flatten)]
     pub(crate) reading: ReadingArgs,
 
-    /// List the devices, and why those that cannot be used cannot
+    /// List devices, and why some cannot be used
     #[arg(long)]
     pub(crate) devices: bool,
 
@@ -97,29 +96,29 @@ pub(crate) struct InfoArgs {
     pub(crate) json: bool,
 }
 
-/// Say how far two pictures are apart
+/// Compare two images
 ///
-/// RMSE, PSNR and the largest difference are taken over display values in [0, 1]; FLIP predicts what a viewer sees who flips
-/// between both. With a bound the exit code is 1 where it is exceeded.
+/// RMSE, PSNR and the maximum difference are computed on display values in [0, 1]; FLIP predicts the difference that a viewer
+/// perceives when flipping between the images. The exit code is 1 if a threshold is exceeded.
 #[derive(Debug, Args)]
 pub(crate) struct CompareArgs {
-    /// The reference: bmp, png, exr or jpg
+    /// Reference image: bmp, png, exr or jpg
     #[arg(value_name = "A")]
     pub(crate) reference: PathBuf,
 
-    /// The picture to hold against it
+    /// Image to compare with the reference
     #[arg(value_name = "B")]
     pub(crate) test: PathBuf,
 
-    /// Save the FLIP error of each pixel as a picture: black is equal, yellow as different as can be
+    /// Save the FLIP error of each pixel as an image, from black (equal) to yellow (maximum error)
     #[arg(long, value_name = "D.png")]
     pub(crate) diff: Option<PathBuf>,
 
-    /// The largest mean FLIP error that is accepted
+    /// Maximum mean FLIP error
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub(crate) max_flip: Option<Bound>,
 
-    /// The largest RMSE that is accepted
+    /// Maximum RMSE
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub(crate) max_rmse: Option<Bound>,
 
@@ -128,68 +127,67 @@ pub(crate) struct CompareArgs {
     pub(crate) json: bool,
 }
 
-/// Build the acceleration grid of a scene and keep it in a file
+/// Build the acceleration grid of a scene and save it
 ///
-/// `lightmesh render SCENE --grid-file FILE` takes it instead of building one. It belongs to this very geometry and is
-/// refused for any other.
+/// `lightmesh render SCENE --grid-file FILE` loads it instead of building one. The file is only valid for the geometry from which
+/// it was built, and rejected for any other.
 #[derive(Debug, Args)]
 pub(crate) struct GridArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArg,
 
-    /// Where the grid goes
+    /// Output file
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
 
-    /// Cells along each axis [default: after the number of triangles]
+    /// Cells along each axis [default: from the number of triangles]
     #[arg(long, value_name = "NXxNYxNZ")]
     pub(crate) grid: Option<Dims>,
 
-    /// 1: one grid; 2: cells with many triangles hold a grid of their own
+    /// 1: a single grid; 2: cells with many triangles contain a nested grid
     #[arg(long, value_name = "1|2", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=2))]
     pub(crate) levels: u8,
 
-    /// Print nothing but errors
+    /// Print only errors
     #[arg(short, long)]
     pub(crate) quiet: bool,
 }
 
-/// Write a built-in or loaded scene as files
+/// Export a built-in or loaded scene
 #[derive(Debug, Args)]
 pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArg,
 
-    /// NAME.glb: everything in one file; NAME.toml: cameras and lights as text, with the triangles beside it in
-    /// NAME.mesh.glb
+    /// NAME.glb: everything in one file; NAME.toml: cameras and lights as text, and the triangles in NAME.mesh.glb
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
 
-    /// Print nothing but errors
+    /// Print only errors
     #[arg(short, long)]
     pub(crate) quiet: bool,
 }
 
-/// Show results of suites as Markdown and as one HTML page
+/// Write a report on benchmark results, as Markdown and HTML
 ///
-/// Both have tables, plots, pictures held against their references, and the machine, driver, commit and command of each run. Several
-/// files are shown side by side: rows with the same id get ratios to the first file.
+/// Both contain tables, plots, images compared with their references, and the machine, driver, commit and command of each run.
+/// Several files are shown side by side, with ratios to the first file for rows with the same id.
 #[derive(Debug, Args)]
 pub(crate) struct ReportArgs {
-    /// Results of `lightmesh bench SUITE --json FILE`; each is called by the name of its file
+    /// Results of `lightmesh bench SUITE --json FILE`; the file name is used as the name of the run
     #[arg(value_name = "BENCH.json", required = true)]
     pub(crate) results: Vec<PathBuf>,
 
-    /// The folder for report.md with its plots and pictures, and for report.html, which needs nothing else; made where it is missing
+    /// Output folder for report.md with its plots and images, and for the self-contained report.html; created if missing
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
 
-    /// Print nothing but errors
+    /// Print only errors
     #[arg(short, long)]
     pub(crate) quiet: bool,
 }
 
-/// Print a script that completes command lines in a shell
+/// Print a shell completion script
 #[derive(Debug, Args)]
 pub(crate) struct CompletionsArgs {
     /// The shell
@@ -200,11 +198,11 @@ pub(crate) struct CompletionsArgs {
 /// Print the manual page
 #[derive(Debug, Args)]
 pub(crate) struct ManArgs {
-    /// The page of this subcommand rather than the general one
+    /// The page of a subcommand instead of the general one
     #[arg(value_name = "COMMAND", conflicts_with = "output")]
     pub(crate) page: Option<String>,
 
-    /// Write all pages into this directory
+    /// Write all pages to a directory
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 }

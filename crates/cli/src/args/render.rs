@@ -3,110 +3,106 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lightmesh::Device;
+use lightmesh::render::ShortTests;
+use lightmesh::scene::{Falloff, Weight};
+use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
 
-use super::{Accel, Falloff, Lookup, Mode, Progress, SceneArg, ShortTests, Transfer, Up, Weight};
-use crate::value::{ByteSize, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size, StepValue};
+use super::{Progress, SceneArg, Up, words};
+use crate::value::{ByteSize, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size};
 
-/// Render one picture of a scene
+/// Render an image of a scene
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArg,
 
-    /// Where the picture goes; the extension chooses the format: bmp, png, exr or jpg
+    /// Output image; the extension determines the format: bmp, png, exr or jpg
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
-    /// How visibility is found
-    #[arg(long, value_enum, default_value_t = Mode::LightMesh, help_heading = "Method")]
+    /// How visibility is computed
+    #[arg(long, value_parser = words::mode(), default_value_t = Mode::LightMesh, help_heading = "Method")]
     pub(crate) mode: Mode,
 
-    /// Depth of mirror recursion, in any mode
+    /// Maximum depth of mirror reflections, in any mode
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, help_heading = "Method")]
     pub(crate) bounces: u32,
 
-    /// Light-mesh step h in scene units; auto ties it to the size of a pixel in the scene [default: the scene's, else auto]
+    /// Light-mesh step h in scene units; auto derives it from the size of a pixel in the scene [default: the scene's, else auto]
     #[arg(long, value_name = "H|auto", allow_negative_numbers = true, help_heading = "Method")]
-    pub(crate) step: Option<StepValue>,
+    pub(crate) step: Option<Step>,
 
     /// Interpolation radius in steps, r/h [default: the scene's, else 2.1]
     #[arg(long, value_name = "R", allow_negative_numbers = true, help_heading = "Method")]
     pub(crate) radius: Option<Positive>,
 
     /// Weight of a light point at distance d, with q = d/r [default: the scene's, else smooth]
-    #[arg(long, value_enum, help_heading = "Method")]
+    #[arg(long, value_parser = words::weight(), help_heading = "Method")]
     pub(crate) weight: Option<Weight>,
 
-    /// How light-mesh mode finds the visibility of a light
-    #[arg(long, value_enum, default_value_t = Lookup::Auto, help_heading = "Method")]
+    /// How light-mesh mode looks up the visibility of a light
+    #[arg(long, value_parser = words::lookup(), default_value_t = Lookup::Auto, help_heading = "Method")]
     pub(crate) lookup: Lookup,
 
-    /// How short tests are evaluated; the picture is the same
-    #[arg(long, value_enum, default_value_t = ShortTests::Cells, help_heading = "Method")]
+    /// How short tests are evaluated; the image is the same
+    #[arg(long, value_parser = words::short_tests(), default_value_t = ShortTests::Cells, help_heading = "Method")]
     pub(crate) short_tests: ShortTests,
 
-    /// Shadow rays per light (area), or per light point and light that has a size (light-mesh) [default: 225 / 4]
+    /// Number of shadow rays per light (area), or per light point and area light (light-mesh) [default: 225 / 4]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65535), help_heading = "Method")]
     pub(crate) samples: Option<u32>,
 
-    /// Random pattern of sampled lights: same seed, same picture
+    /// Seed of the sampling pattern: same seed, same image
     #[arg(long, value_name = "S", allow_negative_numbers = true, default_value_t = 0, help_heading = "Method")]
     pub(crate) seed: u64,
 
     /// Width and height in pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x1024", help_heading = "Picture")]
+    #[arg(long, value_name = "WxH", default_value = "1024x1024", help_heading = "Image")]
     pub(crate) size: Size,
 
-    /// Transfer function of 8-bit files; an exr is always linear
-    #[arg(long, value_enum, default_value_t = Transfer::Srgb, help_heading = "Picture")]
+    /// Transfer function of 8-bit files; exr files are always linear
+    #[arg(long, value_parser = words::transfer(), default_value_t = Transfer::Srgb, help_heading = "Image")]
     pub(crate) transfer: Transfer,
 
-    /// How many stops brighter 8-bit files show the picture, one stop doubling it; auto brings any light level into range. An exr
-    /// and --layers hold what was computed
-    #[arg(
-        long,
-        value_name = "STOPS|auto",
-        allow_negative_numbers = true,
-        default_value = "0",
-        help_heading = "Picture"
-    )]
+    /// Exposure of 8-bit files in stops, each of which doubles the brightness; auto brings any light level into range. Does not
+    /// affect exr files and --layers
+    #[arg(long, value_name = "STOPS|auto", allow_negative_numbers = true, default_value = "0", help_heading = "Image")]
     pub(crate) exposure: Exposure,
 
-    /// Write what each pixel saw as a multilayer exr: colour, depth, normal, position, visibility of each light, light
+    /// Write per-pixel data as a multilayer exr: colour, depth, normal, position, visibility of each light, number of light
     /// points used [default: off]
-    #[arg(long, value_name = "F.exr", help_heading = "Picture")]
+    #[arg(long, value_name = "F.exr", help_heading = "Image")]
     pub(crate) layers: Option<PathBuf>,
 
-    /// Position, target and vertical angle in degrees, as in "0,2,5;0,1,0;45" [default: the scene's first camera, else one
-    /// that frames the scene]
+    /// Position, target and vertical field of view in degrees, as in "0,2,5;0,1,0;45" [default: the scene's first camera, else
+    /// one that frames the scene]
     #[arg(long, value_name = "P;T;VFOV", allow_hyphen_values = true, help_heading = "Scene")]
     pub(crate) camera: Option<CameraView>,
 
-    /// Take the scene's camera of this name
+    /// Use the scene's camera of this name
     #[arg(long, value_name = "NAME", conflicts_with = "camera", help_heading = "Scene")]
     pub(crate) camera_name: Option<String>,
 
-    /// Which way is up for --camera and for the camera that frames the scene
+    /// Up axis for --camera and for the camera that frames the scene
     #[arg(long, value_enum, default_value_t = Up::Auto, help_heading = "Scene")]
     pub(crate) up: Up,
 
-    /// Replace the scene's lights: position, intensity (one number or r,g,b; 1 where left out) and radius, as in
-    /// "3,8,2;0.9,0.8,0.7;0.25"; repeatable. A radius above 0 makes a ball, which area and light-mesh mode sample
-    /// [default: the scene's, else a key light above the camera and a weaker fill light on its other side]
+    /// Replace the scene's lights: position, intensity (one number or r,g,b; 1 if omitted) and radius, as in
+    /// "3,8,2;0.9,0.8,0.7;0.25"; repeatable. With a radius above 0 the light is a ball, which area and light-mesh mode sample
+    /// [default: the scene's, else a key light above the camera and a weaker fill light on the other side]
     #[arg(long = "light", value_name = "P[;I[;RADIUS]]", allow_hyphen_values = true, help_heading = "Scene")]
     pub(crate) lights: Vec<LightSpec>,
 
-    /// What distance does to the lights of --light
-    #[arg(long, value_enum, default_value_t = Falloff::None, requires = "lights", help_heading = "Scene")]
+    /// Distance falloff of the lights of --light
+    #[arg(long, value_parser = words::falloff(), default_value_t = Falloff::None, requires = "lights", help_heading = "Scene")]
     pub(crate) falloff: Falloff,
 
-    /// Ambient intensity, one number or r,g,b [default: the scene's, else 0.1]
+    /// Ambient intensity: one number or r,g,b [default: the scene's, else 0.1]
     #[arg(long, value_name = "V", allow_hyphen_values = true, help_heading = "Scene")]
     pub(crate) ambient: Option<Color>,
 
-    /// Where to compute: auto, cpu, cuda (the first CUDA device that works) or cuda:N; auto takes the fastest that works, cuda
-    /// before cpu, and says which and why. `lightmesh info --devices` lists them; CUDA_VISIBLE_DEVICES hides and renumbers them
+    /// Device: auto, cpu, cuda (the first CUDA device that works) or cuda:N; auto uses the fastest that works, cuda before cpu,
+    /// and reports which and why. `lightmesh info --devices` lists devices; CUDA_VISIBLE_DEVICES hides and renumbers them
     #[arg(long, value_name = "DEVICE", default_value = "auto", help_heading = "Machine")]
     pub(crate) device: Device,
 
@@ -115,32 +111,32 @@ pub(crate) struct RenderArgs {
     pub(crate) threads: Option<u32>,
 
     /// Acceleration structure
-    #[arg(long, value_enum, default_value_t = Accel::Auto, help_heading = "Machine")]
-    pub(crate) accel: Accel,
+    #[arg(long, value_parser = words::acceleration(), default_value_t = Acceleration::Auto, help_heading = "Machine")]
+    pub(crate) accel: Acceleration,
 
-    /// Cells of the acceleration grid along each axis; implies --accel grid [default: after the number of triangles]
+    /// Cells of the acceleration grid along each axis; implies --accel grid [default: from the number of triangles]
     #[arg(long, value_name = "NXxNYxNZ", conflicts_with = "grid_file", help_heading = "Machine")]
     pub(crate) grid: Option<Dims>,
 
-    /// Take the acceleration grid that `lightmesh grid` kept; implies --accel grid
+    /// Load the acceleration grid saved by `lightmesh grid`; implies --accel grid
     #[arg(long, value_name = "F", help_heading = "Machine")]
     pub(crate) grid_file: Option<PathBuf>,
 
-    /// Memory to stay under, work is split to fit: bytes, or with K, M, G, T (or KiB, …) in steps of 1024, or kB, MB, GB,
-    /// TB in steps of 1000 [default: free memory less a reserve]
+    /// Memory limit; work is split to fit. In bytes, or with a unit: K, M, G, T (or KiB, …) are powers of 1024, kB, MB, GB, TB
+    /// powers of 1000 [default: free memory minus a reserve]
     #[arg(long, value_name = "SIZE", help_heading = "Machine")]
     pub(crate) memory_limit: Option<ByteSize>,
 
-    /// Write counts, seconds and every resolved setting as JSON. Seconds are of the render alone, file input and output
-    /// apart [default: off]
+    /// Write counts, timings and all resolved settings as JSON. The time of the render excludes file input and output [default:
+    /// off]
     #[arg(long, value_name = "F.json", help_heading = "Reports")]
     pub(crate) stats: Option<PathBuf>,
 
-    /// Progress on stderr
+    /// How to show progress on stderr
     #[arg(long, value_enum, default_value_t = Progress::Auto, help_heading = "Reports")]
     pub(crate) progress: Progress,
 
-    /// Print nothing but errors, and progress only where --progress asks for it
+    /// Print only errors, and progress only if --progress requests it
     #[arg(short, long, help_heading = "Reports")]
     pub(crate) quiet: bool,
 }

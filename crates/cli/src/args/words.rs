@@ -1,103 +1,55 @@
-//! The values of flags that are chosen from a list, and what they stand for in the library.
+//! Flag values that are chosen from a list. Where the library has the list, names and help texts come from there.
 
 use std::path::Path;
+use std::str::FromStr;
 
 use clap::ValueEnum;
-use lightmesh::{render, scene};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use lightmesh::scene::{Falloff, Weight};
+use lightmesh::{Acceleration, Lookup, Mode, Transfer, render::ShortTests, scene};
 
-/// How visibility is found.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Mode {
-    /// The method
-    LightMesh,
-    /// One hard shadow ray per light
-    RayTrace,
-    /// Many shadow rays per light: the reference
-    Area,
+/// Reads one of these names, each of which comes with its help text.
+fn one_of<T>(names: impl Iterator<Item = (&'static str, &'static str)>) -> impl TypedValueParser<Value = T>
+where
+    T: FromStr<Err: std::error::Error + Send + Sync + 'static> + Clone + Send + Sync + 'static,
+{
+    let values = names.map(|(name, help)| PossibleValue::new(name).help(help.trim_end_matches('.')));
+    PossibleValuesParser::new(values).try_map(|name| name.parse())
 }
 
-impl From<Mode> for render::Mode {
-    fn from(mode: Mode) -> render::Mode {
-        match mode {
-            Mode::LightMesh => render::Mode::LightMesh,
-            Mode::RayTrace => render::Mode::RayTrace,
-            Mode::Area => render::Mode::Area,
-        }
-    }
+pub(super) fn mode() -> impl TypedValueParser<Value = Mode> {
+    one_of(Mode::ALL.iter().map(|mode| (mode.name(), mode.help())))
 }
 
-/// The weight of formula (3).
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Weight {
-    /// w = 1, as in the thesis
-    Constant,
-    /// w = 1 − q²
-    Quadratic,
-    /// w = (1 − q²)²
-    Smooth,
+pub(super) fn weight() -> impl TypedValueParser<Value = Weight> {
+    one_of(Weight::ALL.iter().map(|weight| (weight.name(), weight.help())))
 }
 
-impl From<Weight> for scene::Weight {
-    fn from(weight: Weight) -> scene::Weight {
-        match weight {
-            Weight::Constant => scene::Weight::Constant,
-            Weight::Quadratic => scene::Weight::Quadratic,
-            Weight::Smooth => scene::Weight::Smooth,
-        }
-    }
+pub(super) fn lookup() -> impl TypedValueParser<Value = Lookup> {
+    one_of(Lookup::ALL.iter().map(|lookup| (lookup.name(), lookup.help())))
 }
 
-/// How light-mesh mode looks visibility up.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Lookup {
-    /// The best there is
-    Auto,
-    /// The weighted mean over the light points of a half-ball, formula (3)
-    HalfBall,
+pub(super) fn short_tests() -> impl TypedValueParser<Value = ShortTests> {
+    one_of(ShortTests::ALL.iter().map(|tests| (tests.name(), tests.help())))
 }
 
-impl From<Lookup> for render::Lookup {
-    fn from(lookup: Lookup) -> render::Lookup {
-        match lookup {
-            Lookup::Auto => render::Lookup::Auto,
-            Lookup::HalfBall => render::Lookup::HalfBall,
-        }
-    }
+/// See `plan::settings` for what becomes of it.
+pub(super) fn acceleration() -> impl TypedValueParser<Value = Acceleration> {
+    one_of(Acceleration::ALL.iter().map(|structure| (structure.name(), structure.help())))
 }
 
-/// How short tests are evaluated.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum ShortTests {
-    /// By light-mesh cell, with the cell's possible occluders found once
-    Cells,
-    /// One segment after the other: the oracle
-    Plain,
+pub(super) fn falloff() -> impl TypedValueParser<Value = Falloff> {
+    one_of(Falloff::ALL.iter().map(|falloff| (falloff.name(), falloff.help())))
 }
 
-impl From<ShortTests> for render::ShortTests {
-    fn from(short_tests: ShortTests) -> render::ShortTests {
-        match short_tests {
-            ShortTests::Cells => render::ShortTests::Cells,
-            ShortTests::Plain => render::ShortTests::Plain,
-        }
-    }
-}
-
-/// The acceleration structure; see `plan::settings` for what becomes of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Accel {
-    /// The fastest on the device
-    Auto,
-    /// The regular grid of the thesis
-    Grid,
-    /// A wide bounding volume hierarchy
-    Bvh,
+pub(super) fn transfer() -> impl TypedValueParser<Value = Transfer> {
+    one_of(Transfer::ALL.iter().map(|transfer| (transfer.name(), transfer.help())))
 }
 
 /// Which axis points up.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Up {
-    /// What files of the scene's kind have: z for STL, else y
+    /// By file format: z for STL, else y
     Auto,
     /// glTF, most OBJ
     Y,
@@ -116,60 +68,14 @@ impl Up {
     }
 }
 
-/// What distance does to a light.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Falloff {
-    /// Nothing, as in the thesis
-    None,
-    /// Intensity is in candela
-    InverseSquare,
-}
-
-impl From<Falloff> for scene::Falloff {
-    fn from(falloff: Falloff) -> scene::Falloff {
-        match falloff {
-            Falloff::None => scene::Falloff::None,
-            Falloff::InverseSquare => scene::Falloff::InverseSquare,
-        }
-    }
-}
-
-/// The transfer function of 8-bit files.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Transfer {
-    /// For screens
-    Srgb,
-    /// For measuring
-    Linear,
-}
-
-impl Transfer {
-    /// The word on the command line and in statistics.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Transfer::Srgb => "srgb",
-            Transfer::Linear => "linear",
-        }
-    }
-}
-
-impl From<Transfer> for lightmesh::Transfer {
-    fn from(transfer: Transfer) -> lightmesh::Transfer {
-        match transfer {
-            Transfer::Srgb => lightmesh::Transfer::Srgb,
-            Transfer::Linear => lightmesh::Transfer::Linear,
-        }
-    }
-}
-
 /// How progress is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Progress {
     /// A bar, unless --quiet
     Auto,
-    /// A bar where stderr is a terminal
+    /// A bar, if stderr is a terminal
     Bar,
-    /// One JSON object a line
+    /// One JSON object per line
     Json,
     /// Nothing
     None,

@@ -1,4 +1,4 @@
-//! The files that a render writes.
+//! Files written by a render.
 
 use std::path::{Path, PathBuf};
 
@@ -10,12 +10,12 @@ use crate::args::RenderArgs;
 use crate::output;
 use crate::value::Exposure;
 
-/// What to write, and how.
+/// The output files.
 pub(crate) struct PictureFiles {
-    /// The picture.
+    /// The image.
     pub(crate) picture: PathBuf,
-    /// Transfer function of 8-bit pictures, and the word for it.
-    pub(crate) transfer: (Transfer, &'static str),
+    /// Transfer function of 8-bit pictures.
+    pub(crate) transfer: Transfer,
     /// How much brighter 8-bit pictures are.
     pub(crate) exposure: Exposure,
     /// The multilayer exr.
@@ -25,11 +25,11 @@ pub(crate) struct PictureFiles {
 }
 
 impl PictureFiles {
-    /// Checks that each file can be written, holds the picture, and overwrites none of the others.
+    /// Checks that each file can be written, that its format can store the image, and that it overwrites none of the others.
     pub(super) fn new(args: &RenderArgs) -> Result<PictureFiles, PlanError> {
         check_writable(&args.output)?;
         let [width, height] = args.size.0;
-        // Pictures that the format cannot hold are refused now rather than after the render.
+        // Images that the format cannot store are rejected now rather than after the render.
         check_size(&args.output, width, height)?;
         if let Some(layers) = &args.layers {
             check_layers(layers)?;
@@ -46,7 +46,7 @@ impl PictureFiles {
         ])?;
         Ok(PictureFiles {
             picture: args.output.clone(),
-            transfer: (args.transfer.into(), args.transfer.name()),
+            transfer: args.transfer,
             exposure: args.exposure,
             layers: args.layers.clone(),
             stats: args.stats.clone(),

@@ -1,4 +1,4 @@
-//! From what was typed to what will be done: everything that can be known before work begins is checked here.
+//! From arguments to a plan: everything that can be checked before the work begins is checked here.
 
 mod files;
 mod scene;
@@ -6,6 +6,7 @@ mod settings;
 
 use std::num::NonZeroUsize;
 
+use lightmesh::scene::CameraError;
 use lightmesh::{Device, SaveError, Settings};
 
 use crate::args::{RenderArgs, SceneArg};
@@ -13,45 +14,49 @@ use crate::output::OutputError;
 pub(crate) use files::PictureFiles;
 pub(crate) use scene::SceneChoices;
 
-/// Why a command line cannot be followed.
+/// Why a command line is invalid.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum PlanError {
     #[error(transparent)]
     Save(#[from] SaveError),
     #[error(transparent)]
     Output(#[from] OutputError),
+    #[error(transparent)]
+    Camera(#[from] CameraError),
     /// A grid was described and something else chosen.
-    #[error("{flag} describes a grid, but --accel bvh asks for something else; leave one of them out")]
+    #[error("{flag} describes a grid, but --accel {chosen} asks for something else; leave one of them out")]
     NoGrid {
-        /// The flag that describes the grid.
+        /// The flag that specifies the grid.
         flag: &'static str,
+        /// The structure that was asked for.
+        chosen: &'static str,
     },
 }
 
-/// A render, checked as far as it can be without the scene.
+/// A render, validated as far as possible without the scene.
 pub(crate) struct RenderPlan {
     /// The scene to open.
     pub(crate) scene: SceneArg,
-    /// What replaces parts of it.
+    /// Overrides for parts of it.
     pub(crate) choices: SceneChoices,
-    /// Everything else about the picture; the camera comes from `choices`.
+    /// Everything else about the picture.
     pub(crate) settings: Settings,
-    /// Where to compute.
+    /// The device.
     pub(crate) device: Device,
     /// CPU threads; `None`: all.
     pub(crate) threads: Option<NonZeroUsize>,
-    /// What to write.
+    /// The output files.
     pub(crate) files: PictureFiles,
 }
 
 impl RenderPlan {
-    /// Checks the flags against each other, and that every output can be written.
+    /// Checks that the flags are consistent and that every output can be written.
     pub(crate) fn new(args: &RenderArgs) -> Result<RenderPlan, PlanError> {
         let settings = settings::settings(args)?;
         let files = PictureFiles::new(args)?;
         Ok(RenderPlan {
             scene: args.scene.clone(),
-            choices: SceneChoices::new(args),
+            choices: SceneChoices::new(args)?,
             settings,
             device: args.device,
             threads: args.threads.and_then(|threads| NonZeroUsize::new(threads as usize)),

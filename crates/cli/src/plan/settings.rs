@@ -1,43 +1,41 @@
-//! Flags to [`Settings`].
+//! Conversion of flags to [`Settings`].
 
 use lightmesh::{Acceleration, Settings};
 
 use super::PlanError;
-use crate::args::{Accel, RenderArgs};
+use crate::args::RenderArgs;
 
-/// All settings but the camera, which needs the scene.
+/// All settings but the camera, which is put into the scene.
 pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
-    Ok(Settings {
-        mode: args.mode.into(),
-        bounces: args.bounces,
-        size: args.size.0,
-        camera: None,
-        up: args.up.of(&args.scene.scene),
-        step: args.step.map(|step| step.0),
-        radius: args.radius.map(|radius| radius.0),
-        weight: args.weight.map(Into::into),
-        lookup: args.lookup.into(),
-        short_tests: args.short_tests.into(),
-        samples: args.samples,
-        acceleration: acceleration(args)?,
-        seed: args.seed,
-        layers: args.layers.is_some(),
-        memory_limit: args.memory_limit.map(|limit| limit.0),
-    })
+    let mut settings = Settings::default()
+        .with_mode(args.mode)
+        .with_bounces(args.bounces)
+        .with_size(args.size.0)
+        .with_up(args.up.of(&args.scene.scene))
+        .with_lookup(args.lookup)
+        .with_short_tests(args.short_tests)
+        .with_acceleration(acceleration(args)?)
+        .with_seed(args.seed)
+        .with_layers(args.layers.is_some());
+    // What is left out is left open.
+    settings.step = args.step;
+    settings.radius = args.radius.map(|radius| radius.0);
+    settings.weight = args.weight;
+    settings.samples = args.samples;
+    settings.memory_limit = args.memory_limit.map(|limit| limit.0);
+    Ok(settings)
 }
 
-/// A description of a grid implies one. The parser has refused `--grid` together with `--grid-file`.
+/// Grid parameters imply the grid. The parser has rejected `--grid` together with `--grid-file`.
 fn acceleration(args: &RenderArgs) -> Result<Acceleration, PlanError> {
     let described = match (args.grid, &args.grid_file) {
         (Some(dims), _) => Some(("--grid", Acceleration::Grid(Some(dims.0)))),
         (None, Some(file)) => Some(("--grid-file", Acceleration::GridFile(file.clone()))),
         (None, None) => None,
     };
-    match (args.accel, described) {
-        (Accel::Auto, None) => Ok(Acceleration::Auto),
-        (Accel::Grid, None) => Ok(Acceleration::Grid(None)),
-        (Accel::Bvh, None) => Ok(Acceleration::Bvh),
-        (Accel::Auto | Accel::Grid, Some((_, acceleration))) => Ok(acceleration),
-        (Accel::Bvh, Some((flag, _))) => Err(PlanError::NoGrid { flag }),
+    match (&args.accel, described) {
+        (chosen, None) => Ok(chosen.clone()),
+        (Acceleration::Auto | Acceleration::Grid(_), Some((_, described))) => Ok(described),
+        (chosen, Some((flag, _))) => Err(PlanError::NoGrid { flag, chosen: chosen.name() }),
     }
 }

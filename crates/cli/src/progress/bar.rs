@@ -1,18 +1,19 @@
-//! A bar that shows one stage after the other.
+//! A progress bar for one stage after the other, with the whole image beside it.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmesh::Stage;
+use lightmesh::render::Progress;
 
 use crate::output;
 
-/// A bar on standard error; it is gone when it is dropped.
+/// A bar on standard error, removed when dropped.
 pub(super) struct Bar(ProgressBar);
 
 impl Bar {
     pub(super) fn new() -> Bar {
         let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
-        // A template that cannot be read leaves the library's own.
-        if let Ok(style) = ProgressStyle::with_template("{msg:12} {bar:40} {percent:>3}%  {elapsed}") {
+        // If the template is invalid, the library's default remains.
+        if let Ok(style) = ProgressStyle::with_template("{msg:12} {bar:40} {percent:>3}%  {prefix}") {
             bar.set_style(style);
         }
         Bar(bar)
@@ -24,9 +25,16 @@ impl Bar {
         self.0.set_message(stage.name().replace('_', " "));
     }
 
-    /// Cheap: counts, and draws at most 20 times a second.
+    /// Cheap: counts, and draws at most 20 times per second.
     pub(super) fn advance(&self, pieces: u64) {
         self.0.inc(pieces);
+    }
+
+    /// Shows how far the whole image is, and how long it will take.
+    pub(super) fn whole(&self, progress: Progress) {
+        let percent = (100.0 * progress.done).floor();
+        let left = progress.left.map_or_else(String::new, |left| format!(", {left:.0} s left"));
+        self.0.set_prefix(format!("image {percent}%{left}"));
     }
 
     /// Prints a line above the bar.

@@ -1,14 +1,16 @@
-//! Progress for programs: one JSON object a line.
+//! Progress for programs: one JSON object per line.
 //!
 //! ```text
 //! {"event":"begin","stage":"short_tests","done":0,"total":4096,"seconds":0.0}
 //! {"event":"progress","stage":"short_tests","done":1024,"total":4096,"seconds":0.21}
 //! {"event":"end","stage":"short_tests","done":4096,"total":4096,"seconds":0.84}
+//! {"event":"image","done":0.41,"seconds":2.1,"left":3.0}
 //! {"event":"note","text":"…"}
 //! ```
 //!
-//! Seconds count from the beginning of the stage. A stage comes again for each part of a picture that is split to fit into
-//! memory, and for each bounce. The texts of `note`, `warning` and `summary` are for people.
+//! `image` is about the whole image: the part that is done, seconds since it was begun, and seconds to go (null at the very beginning).
+//! Elsewhere seconds count from the beginning of the stage. A stage repeats for each band of an image that is split to fit into memory, and
+//! for each bounce. The texts of `note`, `warning` and `summary` are for humans.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -28,7 +30,7 @@ pub(super) struct Json {
     current: Mutex<Option<Current>>,
 }
 
-/// The stage that is being worked on.
+/// The current stage.
 struct Current {
     stage: Stage,
     total: u64,
@@ -43,6 +45,14 @@ struct Progress {
     done: u64,
     total: u64,
     seconds: f64,
+}
+
+#[derive(Serialize)]
+struct Whole {
+    event: &'static str,
+    done: f64,
+    seconds: f64,
+    left: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -64,7 +74,7 @@ impl Json {
         *self.current() = Some(current);
     }
 
-    /// Cheap: counts, and leaves printing to the thread that gets the lock.
+    /// Cheap: counts, and leaves printing to the thread that acquires the lock.
     pub(super) fn advance(&self, pieces: u64) {
         let done = self.done.fetch_add(pieces, Ordering::Relaxed) + pieces;
         let Ok(mut current) = self.current.try_lock() else { return };
@@ -78,6 +88,11 @@ impl Json {
         if let Some(current) = current.take_if(|current| current.stage == stage) {
             current.print("end", self.done.load(Ordering::Relaxed));
         }
+    }
+
+    pub(super) fn whole(&self, progress: lightmesh::render::Progress) {
+        let lightmesh::render::Progress { done, seconds, left } = progress;
+        print(&Whole { event: "image", done, seconds, left });
     }
 
     pub(super) fn text(&self, event: &'static str, text: &str) {
@@ -97,7 +112,7 @@ impl Current {
 }
 
 fn print(event: &impl Serialize) {
-    // Strings and finite numbers always have a JSON form.
+    // Strings and finite numbers can always be represented in JSON.
     if let Ok(line) = serde_json::to_string(event) {
         output::complain(&line);
     }

@@ -1,18 +1,19 @@
-//! What people and programs see on standard error while something is computed: sentences, a bar, or JSON.
+//! Output on standard error during a computation: messages, a bar, or JSON.
 
 mod bar;
 mod json;
 
 use std::io::{self, IsTerminal};
 
+use lightmesh::render::Setting;
 use lightmesh::{Observer, Stage};
 
 use crate::args::Progress;
-use crate::{interrupt, output};
+use crate::{flags, interrupt, output};
 use bar::Bar;
 use json::Json;
 
-/// Watches a render and says what there is to say.
+/// Observes a render and reports on it.
 pub(crate) struct Watcher {
     quiet: bool,
     sink: Sink,
@@ -25,7 +26,7 @@ enum Sink {
 }
 
 impl Watcher {
-    /// Shows progress as asked; `quiet` leaves out sentences, and the bar that nobody asked for.
+    /// Shows progress as requested; `quiet` suppresses messages, and the bar unless requested.
     pub(crate) fn new(progress: Progress, quiet: bool) -> Watcher {
         let terminal = io::stderr().is_terminal();
         let sink = match progress {
@@ -37,17 +38,17 @@ impl Watcher {
         Watcher { quiet, sink }
     }
 
-    /// Sentences alone.
+    /// Messages only.
     pub(crate) fn plain(quiet: bool) -> Watcher {
         Watcher { quiet, sink: Sink::Plain }
     }
 
-    /// Something that the user should look at.
+    /// A warning.
     pub(crate) fn warning(&self, text: &str) {
         self.say("warning", &format!("warning: {text}"), text);
     }
 
-    /// What was done, at the very end.
+    /// A summary at the end.
     pub(crate) fn summary(&self, text: &str) {
         if let Sink::Bar(bar) = &self.sink {
             bar.close();
@@ -84,11 +85,23 @@ impl Observer for Watcher {
         }
     }
 
+    fn progress(&self, progress: lightmesh::render::Progress) {
+        match &self.sink {
+            Sink::Plain => {}
+            Sink::Bar(bar) => bar.whole(progress),
+            Sink::Json(json) => json.whole(progress),
+        }
+    }
+
     fn end(&self, stage: Stage) {
         match &self.sink {
             Sink::Plain | Sink::Bar(_) => {}
             Sink::Json(json) => json.end(stage),
         }
+    }
+
+    fn chose(&self, setting: Setting, text: &str) {
+        self.note(&format!("{text} ({} sets another)", flags::of(setting)));
     }
 
     fn note(&self, text: &str) {

@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use lightmesh_bench::report::{Report, prepare_folder};
-use lightmesh_bench::{Plan, Results, Suite};
+use lightmesh_bench::report::Report;
+use lightmesh_bench::{Plan, Results, Suite, prepare_folder};
 
 use crate::args::{BenchArgs, BenchCommand, SuiteArgs};
 use crate::failure::Failure;
 use crate::progress::Watcher;
-use crate::report::json;
 use crate::{interrupt, output};
 
 pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
@@ -26,6 +25,9 @@ fn list() -> String {
 fn measure(suite: Suite, args: &SuiteArgs) -> Result<(), Failure> {
     if let Some(path) = &args.json {
         output::check_writable(path)?;
+        if args.pictures {
+            prepare_folder(&Results::pictures_folder(path))?;
+        }
     }
     if let Some(folder) = &args.report {
         prepare_folder(folder)?;
@@ -34,12 +36,12 @@ fn measure(suite: Suite, args: &SuiteArgs) -> Result<(), Failure> {
     interrupt::watch();
     let results = lightmesh_bench::run(suite, &plan(args), &watcher)?;
     if let Some(path) = &args.json {
-        output::write(path, json(&results).as_bytes())?;
+        if args.pictures { results.save_with_pictures(path) } else { results.save(path) }?;
     }
     output::print(&results.to_string())?;
     let summary = summary(&results, args);
     if let Some(folder) = &args.report {
-        // Called as the report of the file would be.
+        // Named as in a report on the file.
         let name = args.json.clone().unwrap_or_else(|| PathBuf::from(suite.name()));
         Report::new(vec![(name, results)])?.write(folder)?;
     }
@@ -54,12 +56,14 @@ fn plan(args: &SuiteArgs) -> Plan {
         device: args.device,
         threads: args.threads.map(|threads| threads as usize),
         scenes: args.scenes.clone(),
+        size: args.size,
+        repetitions: args.repeat as usize,
         command: command_line(std::env::args().skip(1)),
         ..plan
     }
 }
 
-/// The command as it would be typed again; the program's own path is nobody's business.
+/// The command line to repeat the run, without the path of the program.
 fn command_line(words: impl Iterator<Item = String>) -> String {
     let quoted = words.map(|word| if word.contains([' ', '?', '*', '"']) { format!("'{word}'") } else { word });
     std::iter::once("lightmesh".to_owned()).chain(quoted).collect::<Vec<_>>().join(" ")
@@ -68,13 +72,13 @@ fn command_line(words: impl Iterator<Item = String>) -> String {
 fn summary(results: &Results, args: &SuiteArgs) -> String {
     let page = args.report.as_ref().map(|folder| folder.join("report.html"));
     let files: String = args.json.iter().chain(&page).map(|path| format!(", {}", path.display())).collect();
-    format!(
-        "{}: {} rows, {} pictures in {:.0} s{files}",
-        results.suite,
-        results.rows.len(),
-        results.pictures.len(),
-        results.seconds
-    )
+    // Images that are neither saved nor shown are not mentioned.
+    let pictures = if args.pictures || args.report.is_some() {
+        format!(", {} images", results.pictures.len())
+    } else {
+        String::new()
+    };
+    format!("{}: {} rows{pictures} in {:.0} s{files}", results.suite, results.rows.len(), results.seconds)
 }
 
 #[cfg(test)]

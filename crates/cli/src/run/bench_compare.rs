@@ -15,7 +15,7 @@ pub(super) fn run(args: &BenchCompareArgs) -> Result<(), Failure> {
     output::print(&if args.json { json(&comparison) } else { comparison.to_string() })?;
     match comparison.regressions {
         0 => Ok(()),
-        1 => Err(Failure::Exceeded("1 row is slower beyond the noise".to_owned())),
-        count => Err(Failure::Exceeded(format!("{count} rows are slower beyond the noise"))),
+        1 => Err(Failure::Exceeded("1 row is significantly slower".to_owned())),
+        count => Err(Failure::Exceeded(format!("{count} rows are significantly slower"))),
     }
 }

@@ -35,7 +35,7 @@ fn check(args: &CompareArgs, comparison: &Comparison) -> Result<(), Failure> {
     ];
     let exceeded = bounds.into_iter().filter_map(|(name, value, flag, bound)| {
         let bound = bound?.0;
-        // Written so that NaN exceeds every bound.
+        // Written so that NaN exceeds every threshold.
         let within = value <= bound;
         (!within).then(|| format!("{name} {value:.6} exceeds {flag} {bound}"))
     });

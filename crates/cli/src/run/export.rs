@@ -13,6 +13,11 @@ pub(super) fn run(args: &ExportArgs) -> Result<(), Failure> {
     let scene = open(&args.scene, &watcher)?;
     interrupt::watch();
     scene.export(&args.output)?;
-    watcher.summary(&format!("{}, {} triangles: {}", scene.name, scene.mesh.triangles.len(), args.output.display()));
+    watcher.summary(&format!(
+        "{}, {} triangles: {}",
+        scene.name,
+        scene.geometry.mesh.triangles.len(),
+        args.output.display()
+    ));
     Ok(())
 }

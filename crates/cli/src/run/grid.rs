@@ -18,8 +18,9 @@ pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
 
     let start = Instant::now();
     let levels = if args.levels == 1 { Levels::One } else { Levels::Two };
-    let triangles: Vec<Triangle> =
-        (0..scene.mesh.triangles.len()).map(|index| Triangle::new(scene.mesh.corners(index), index as u32)).collect();
+    let triangles: Vec<Triangle> = (0..scene.geometry.mesh.triangles.len())
+        .map(|index| Triangle::new(scene.geometry.mesh.corners(index), index as u32))
+        .collect();
     let grid = Grid::new(&triangles, &GridOptions { dims: args.grid.map(|dims| dims.0), levels })?;
     let seconds = start.elapsed().as_secs_f64();
     interrupt::watch();

@@ -31,11 +31,14 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     Ok(output::print(&text)?)
 }
 
-/// For scenes that do not show it themselves.
+/// For scenes whose geometry does not indicate it.
 fn usual_up(path: &Path) -> UpInfo {
     let kind =
         path.extension().map_or_else(|| "built-in scenes".to_owned(), |ending| format!(".{} files", ending.display()));
-    UpInfo { axis: Up::of_file(path).name(), reason: format!("its shape does not tell, and {kind} mostly have it so") }
+    UpInfo {
+        axis: Up::of_file(path).name(),
+        reason: format!("its shape gives no indication, and it is the usual axis of {kind}"),
+    }
 }
 
 fn device_line(DeviceReport { device, name, usable, remark, .. }: &DeviceReport) -> String {

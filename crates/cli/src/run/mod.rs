@@ -1,4 +1,4 @@
-//! One file a subcommand.
+//! One file per subcommand.
 
 mod bench;
 mod bench_compare;
@@ -18,7 +18,7 @@ use crate::args::Command;
 use crate::failure::Failure;
 use crate::output;
 
-/// Does what was asked for; gives the exit code.
+/// Runs the subcommand; returns the exit code.
 pub(crate) fn run(command: Command) -> Result<u8, Failure> {
     match command {
         Command::Render(args) => render::run(&args),

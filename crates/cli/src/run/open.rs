@@ -1,4 +1,4 @@
-//! Opening the scene of a command line.
+//! Opening the scene given on the command line.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -9,7 +9,7 @@ use lightmesh::{LoadError, Scene};
 use crate::args::{ReadingArgs, SceneArg};
 use crate::progress::Watcher;
 
-/// Reads the scene as asked, and says once what there is to warn of.
+/// Reads the scene, and prints each warning once.
 pub(super) fn open(arg: &SceneArg, watcher: &Watcher) -> Result<Scene, LoadError> {
     let scene = read(&arg.scene, arg.reading)?;
     let mut said = HashSet::new();
@@ -17,8 +17,8 @@ pub(super) fn open(arg: &SceneArg, watcher: &Watcher) -> Result<Scene, LoadError
     Ok(scene)
 }
 
-/// Reads the scene as asked.
+/// Reads the scene.
 pub(super) fn read(path: &Path, reading: ReadingArgs) -> Result<Scene, LoadError> {
-    let options = LoadOptions { allow_outside: reading.allow_outside, strict: reading.strict };
+    let options = LoadOptions::default().with_allow_outside(reading.allow_outside).with_strict(reading.strict);
     Scene::open_with(path, &options)
 }

@@ -25,15 +25,15 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let mut scene = open(&plan.scene, &watcher)?;
     let load = start.elapsed().as_secs_f64();
     if matches!(plan.device, Device::Auto | Device::Cuda(None)) {
-        watcher.note(&format!("device {} takes {}", plan.device, reason));
+        watcher.note(&format!("device {}: using {}", plan.device, reason));
     }
 
-    let mut settings = plan.settings;
-    settings.camera = Some(plan.choices.apply(&mut scene, &watcher)?);
+    let settings = plan.settings;
+    plan.choices.apply(&mut scene, &watcher)?;
     let prepared = renderer.prepare(&scene, &settings, &watcher)?;
     interrupt::watch();
     let mut frame = renderer.render_prepared(&prepared, &settings, &watcher)?;
-    drop(prepared); // room for the encoders
+    drop(prepared); // frees memory for the encoders
     if watcher.cancelled() {
         return Err(RenderError::Cancelled.into());
     }
@@ -44,10 +44,9 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes all files; the statistics last, because they say how long the others took.
+/// Writes all files; the statistics last, because they include the time taken by the others.
 fn write(frame: &mut Frame, scene: &Scene, files: &PictureFiles, watcher: &Watcher) -> Result<(), Failure> {
     let start = Instant::now();
-    let (transfer, transfer_name) = files.transfer;
     if let Some(path) = &files.layers {
         frame.image.save_layers(path)?;
     }
@@ -55,24 +54,24 @@ fn write(frame: &mut Frame, scene: &Scene, files: &PictureFiles, watcher: &Watch
     if stops != 0.0 {
         frame.image.expose(stops);
     }
-    frame.image.save_with(&files.picture, transfer)?;
+    frame.image.save_with(&files.picture, files.transfer)?;
     frame.stats.seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &files.stats {
         let lights = scene.info().lights;
-        let report = Report::new(&frame.stats, transfer_name, stops, &lights);
+        let report = Report::new(&frame.stats, files.transfer.name(), stops, &lights);
         output::write(path, json(&report).as_bytes())?;
     }
     Ok(())
 }
 
-/// Stops that the picture's file is brightened by: none where it holds linear values.
+/// Exposure of the image file: none if it stores linear values.
 fn exposure(image: &image::Frame, files: &PictureFiles, watcher: &Watcher) -> f32 {
     match files.exposure {
         _ if Format::from_path(&files.picture) == Some(Format::Exr) => 0.0,
         Exposure::Stops(stops) => stops,
         Exposure::Auto => {
             let stops = image.auto_exposure();
-            watcher.note(&format!("exposure auto takes {stops} stops (--exposure {stops} keeps them)"));
+            watcher.note(&format!("exposure auto: using {stops} stops (--exposure {stops} keeps this value)"));
             stops
         }
     }

@@ -12,6 +12,6 @@ pub(super) fn run(args: &ReportArgs) -> Result<(), Failure> {
     interrupt::watch();
     report.write(&args.output)?;
     let page = args.output.join("report.html");
-    Watcher::plain(args.quiet).summary(&format!("{} and report.md beside it", page.display()));
+    Watcher::plain(args.quiet).summary(&format!("{} and report.md next to it", page.display()));
     Ok(())
 }

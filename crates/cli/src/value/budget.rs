@@ -1,4 +1,4 @@
-//! Times to stay under.
+//! Time budgets.
 
 use std::str::FromStr;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use super::number::number_and_unit;
 pub(crate) struct Budget(pub(crate) Duration);
 
 const FORM: ValueError = ValueError::Form { form: "a number of seconds, or one with s, m or h", example: "15m" };
-/// More than anybody waits.
+/// More than anybody would wait.
 const MAX_SECONDS: f64 = 1e7;
 
 impl FromStr for Budget {

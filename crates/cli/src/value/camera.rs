@@ -7,19 +7,21 @@ use glam::DVec3;
 use super::ValueError;
 use super::number::{number, triple};
 
-/// A perspective camera as it is typed.
+/// A perspective camera as typed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CameraView {
     /// The eye, world coordinates.
     pub(crate) position: DVec3,
-    /// Where it looks; unit length.
+    /// Where it looks; of a length that can be made 1.
     pub(crate) direction: DVec3,
-    /// Full vertical angle, degrees.
+    /// Vertical field of view, degrees.
     pub(crate) vfov: f32,
 }
 
-const FORM: ValueError =
-    ValueError::Form { form: "POSITION;TARGET;VERTICAL ANGLE IN DEGREES", example: "\"0,2,5;0,1,0;45\"" };
+const FORM: ValueError = ValueError::Form {
+    form: "POSITION;TARGET;VFOV, the vertical field of view in degrees",
+    example: "\"0,2,5;0,1,0;45\"",
+};
 
 impl FromStr for CameraView {
     type Err = ValueError;
@@ -29,12 +31,13 @@ impl FromStr for CameraView {
         let [position, target, angle] = parts[..] else { return Err(FORM) };
         let position = triple(position)?.ok_or(FORM)?;
         let target = triple(target)?.ok_or(FORM)?;
-        let direction = (target - position).try_normalize().ok_or(ValueError::NoDirection)?;
+        let direction = target - position;
+        direction.try_normalize().ok_or(ValueError::NoDirection)?;
         let vfov = number(angle)? as f32;
         if vfov <= 0.0 || vfov >= 180.0 {
             let text = angle.trim().to_owned();
             return Err(ValueError::OutOfRange {
-                what: "the vertical angle",
+                what: "the vertical field of view",
                 text,
                 range: "between 0 and 180 degrees",
             });
@@ -50,7 +53,10 @@ mod tests {
     #[test]
     fn position_target_and_angle_are_read() {
         let view = "1, 2, 7; 1, 2, -3.5; 45".parse();
-        assert_eq!(view, Ok(CameraView { position: DVec3::new(1.0, 2.0, 7.0), direction: DVec3::NEG_Z, vfov: 45.0 }));
+        assert_eq!(
+            view,
+            Ok(CameraView { position: DVec3::new(1.0, 2.0, 7.0), direction: -10.5 * DVec3::Z, vfov: 45.0 })
+        );
     }
 
     #[test]
@@ -59,7 +65,10 @@ mod tests {
         assert!(message("1,2,3").contains("POSITION;TARGET"));
         assert!(message("1,2;1,2,3;45").contains("POSITION;TARGET"));
         assert!(message("1,2,3;1,2,3;45").contains("same point"));
-        assert!(message("1,2,x;1,2,3;45").contains("`x` is not a number"));
-        assert_eq!(message("1,2,3;0,0,0;180"), "the vertical angle 180 is not between 0 and 180 degrees");
+        assert!(message("1,2,x;1,2,3;45").contains("`x` is not a valid number"));
+        assert_eq!(
+            message("1,2,3;0,0,0;180"),
+            "the vertical field of view must be between 0 and 180 degrees, but is 180"
+        );
     }
 }

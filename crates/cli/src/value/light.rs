@@ -25,10 +25,10 @@ impl FromStr for Color {
     }
 }
 
-/// A light as it is typed.
+/// A light as typed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightSpec {
-    /// Its middle, world coordinates.
+    /// Its centre, world coordinates.
     pub(crate) position: DVec3,
     /// Red, green and blue.
     pub(crate) intensity: Vec3,
@@ -78,8 +78,8 @@ mod tests {
         assert!(message("").contains("POSITION"));
         assert!(message("1,2").contains("POSITION"));
         assert!(message("1,2,3;1,2").contains("red,green,blue"));
-        assert_eq!(message("1,2,3;-1"), "the intensity -1 is not 0 or more");
-        assert_eq!(message("1,2,3;1;-0.5"), "the radius -0.5 is not 0 or more");
+        assert_eq!(message("1,2,3;-1"), "the intensity must be 0 or more, but is -1");
+        assert_eq!(message("1,2,3;1;-0.5"), "the radius must be 0 or more, but is -0.5");
         assert!(message("1,2,3;1;1;1").contains("POSITION"));
     }
 }

@@ -1,6 +1,6 @@
-//! Values of flags, read from text: each type is checked when it is made, so that nothing later has to doubt it.
+//! Flag values parsed from text: each type is validated on construction.
 //!
-//! All lengths and positions are in world coordinates and scene units, in double precision as scene files are.
+//! All lengths and positions are in world coordinates and scene units, in double precision like scene files.
 
 mod budget;
 mod camera;
@@ -13,34 +13,34 @@ pub(crate) use budget::Budget;
 pub(crate) use camera::CameraView;
 pub(crate) use light::{Color, LightSpec};
 pub(crate) use memory::ByteSize;
-pub(crate) use number::{Bound, Exposure, Positive, StepValue};
+pub(crate) use number::{Bound, Exposure, Positive};
 pub(crate) use size::{Dims, Size};
 
-/// What is wrong with the text of a value. The parser of the command line puts the flag and the text before it.
+/// Why a value is invalid. The command line parser prepends the flag and the text.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum ValueError {
-    /// The text has another form.
+    /// The text has the wrong form.
     #[error("write {form}, for instance {example}")]
     Form {
-        /// What is expected.
+        /// The expected form.
         form: &'static str,
-        /// A text that would do.
+        /// A valid example.
         example: &'static str,
     },
-    /// A part of the text is no number, or one that single precision cannot hold.
-    #[error("`{text}` is not a number that can be used: write a decimal number, for instance 0.5")]
+    /// A part of the text is not a number, or out of range of single precision.
+    #[error("`{text}` is not a valid number: write a decimal number, for instance 0.5")]
     NotANumber {
         /// The part.
         text: String,
     },
     /// A number is too large or too small.
-    #[error("{what} {text} is not {range}")]
+    #[error("{what} must be {range}, but is {text}")]
     OutOfRange {
-        /// What the number is.
+        /// The name of the number.
         what: &'static str,
         /// The number.
         text: String,
-        /// What it must be.
+        /// Its valid range.
         range: &'static str,
     },
     /// The camera has no direction.

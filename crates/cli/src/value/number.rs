@@ -3,11 +3,10 @@
 use std::str::FromStr;
 
 use glam::DVec3;
-use lightmesh::Step;
 
 use super::ValueError;
 
-/// A number that single precision can hold.
+/// A number in the range of single precision.
 pub(super) fn number(text: &str) -> Result<f64, ValueError> {
     let text = text.trim();
     let number = text.parse().ok().filter(|number: &f64| (*number as f32).is_finite());
@@ -23,7 +22,7 @@ pub(super) fn not_negative(what: &'static str, text: &str) -> Result<f64, ValueE
     Err(ValueError::OutOfRange { what, text: text.trim().to_owned(), range: "0 or more" })
 }
 
-/// The digits and points that a text begins with, and the unit behind them.
+/// The leading digits and points of a text, and the unit after them.
 pub(super) fn number_and_unit(text: &str) -> (&str, &str) {
     let text = text.trim();
     let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
@@ -31,7 +30,7 @@ pub(super) fn number_and_unit(text: &str) -> (&str, &str) {
     (number, unit.trim())
 }
 
-/// Three numbers; `None` where there are more or fewer.
+/// Three numbers; `None` if there are more or fewer.
 pub(super) fn triple(text: &str) -> Result<Option<DVec3>, ValueError> {
     let parts: Vec<&str> = text.split(',').collect();
     let Ok(parts) = <[&str; 3]>::try_from(parts) else { return Ok(None) };
@@ -55,7 +54,7 @@ impl FromStr for Positive {
     }
 }
 
-/// A bound on a measure: a number of at least 0.
+/// A threshold on a measure: a number of at least 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bound(pub(crate) f64);
 
@@ -63,24 +62,20 @@ impl FromStr for Bound {
     type Err = ValueError;
 
     fn from_str(text: &str) -> Result<Bound, ValueError> {
-        not_negative("the bound", text).map(Bound)
+        not_negative("the threshold", text).map(Bound)
     }
 }
-
-/// A light-mesh step, or `auto`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct StepValue(pub(crate) Step);
 
 /// How much brighter a picture is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Exposure {
-    /// As the picture needs it.
+    /// Chosen for the image.
     Auto,
-    /// By so many stops.
+    /// A number of stops.
     Stops(f32),
 }
 
-/// Stops beyond which single precision has no brightness left.
+/// Beyond this, single precision cannot represent the brightness.
 const MAX_STOPS: f32 = 100.0;
 
 impl FromStr for Exposure {
@@ -97,19 +92,8 @@ impl FromStr for Exposure {
         Err(ValueError::OutOfRange {
             what: "the exposure",
             text: text.trim().to_owned(),
-            range: "from -100 to 100 stops",
+            range: "between -100 and 100 stops",
         })
-    }
-}
-
-impl FromStr for StepValue {
-    type Err = ValueError;
-
-    fn from_str(text: &str) -> Result<StepValue, ValueError> {
-        match text {
-            "auto" => Ok(StepValue(Step::Auto)),
-            _ => text.parse().map(|Positive(step)| StepValue(Step::Fixed(step))),
-        }
     }
 }
 
@@ -128,16 +112,12 @@ mod tests {
     }
 
     #[test]
-    fn a_step_is_a_number_or_auto() {
+    fn an_exposure_is_a_number_of_stops_or_auto() {
         assert_eq!(["auto".parse(), "-2.5".parse()], [Ok(Exposure::Auto), Ok(Exposure::Stops(-2.5))]);
         assert_eq!(
             "1e9".parse::<Exposure>().unwrap_err().to_string(),
-            "the exposure 1e9 is not from -100 to 100 stops"
+            "the exposure must be between -100 and 100 stops, but is 1e9"
         );
-        assert_eq!("auto".parse(), Ok(StepValue(Step::Auto)));
-        assert_eq!("1e-1".parse(), Ok(StepValue(Step::Fixed(0.1))));
-        let message = "-2".parse::<StepValue>().unwrap_err().to_string();
-        assert_eq!(message, "the number -2 is not above 0");
     }
 
     #[test]

@@ -1,16 +1,16 @@
-//! Whole numbers with an x between them.
+//! Integers separated by x.
 
 use std::str::FromStr;
 
 use super::ValueError;
 
-/// Whole numbers of at least 1, separated by `x`; `None` where the text is anything else.
+/// Integers of at least 1, separated by `x`; `None` for any other text.
 fn counts<const N: usize>(text: &str) -> Option<[u32; N]> {
     let parts: Option<Vec<u32>> = text.split(['x', 'X']).map(|part| part.parse().ok().filter(|&n| n > 0)).collect();
     parts?.try_into().ok()
 }
 
-/// Width and height of a picture in pixels.
+/// Width and height of an image in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Size(pub(crate) [u32; 2]);
 
@@ -18,7 +18,7 @@ impl FromStr for Size {
     type Err = ValueError;
 
     fn from_str(text: &str) -> Result<Size, ValueError> {
-        let form = ValueError::Form { form: "WIDTHxHEIGHT, both whole numbers of at least 1", example: "1024x768" };
+        let form = ValueError::Form { form: "WIDTHxHEIGHT, both integers of at least 1", example: "1024x768" };
         counts(text).map(Size).ok_or(form)
     }
 }
@@ -31,7 +31,7 @@ impl FromStr for Dims {
     type Err = ValueError;
 
     fn from_str(text: &str) -> Result<Dims, ValueError> {
-        let form = ValueError::Form { form: "NXxNYxNZ, all whole numbers of at least 1", example: "160x120x140" };
+        let form = ValueError::Form { form: "NXxNYxNZ, all integers of at least 1", example: "160x120x140" };
         counts(text).map(Dims).ok_or(form)
     }
 }

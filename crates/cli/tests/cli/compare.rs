@@ -55,8 +55,10 @@ fn what_cannot_be_compared_is_refused() {
     let refused = |args: &[&str]| place.refused(&[&["compare"], args].concat());
     assert!(refused(&["dark.png", "small.png"]).contains("16x16 pixels with one of 8x8"));
     assert!(refused(&["none.png", "dark.png"]).contains("cannot read none.png"));
-    assert!(refused(&["room.toml", "dark.png"]).contains("cannot load room.toml: not a picture of a known format"));
-    assert!(refused(&["dark.png", "light.png", "--max-flip", "-1"]).contains("the bound -1 is not 0 or more"));
+    assert!(refused(&["room.toml", "dark.png"]).contains("cannot load room.toml: not an image in a known format"));
+    assert!(
+        refused(&["dark.png", "light.png", "--max-flip", "-1"]).contains("the threshold must be 0 or more, but is -1")
+    );
     assert!(refused(&["dark.png", "light.png", "--diff", "no/d.png"]).contains("does not exist"));
     assert!(refused(&["dark.png", "light.png", "--diff", "light.png"]).contains("B and --diff are the same file"));
 }

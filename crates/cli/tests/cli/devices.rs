@@ -1,16 +1,16 @@
-//! Devices: what is listed, what is taken, and what is said where there is none. What holds depends on the machine, and the machine
-//! is asked through `lightmesh info --devices --json`.
+//! Devices: what is listed, what is used, and what is reported if there is none. Expectations depend on the machine and come from
+//! `lightmesh info --devices --json`.
 
 use serde_json::{Value, json};
 
 use crate::run::{Done, LAMP, Place};
 
-/// Runs with the devices that there are.
+/// Runs with the machine's devices.
 fn run(place: &Place, args: &[&str]) -> Done {
     place.command_with_devices(args).output().unwrap().into()
 }
 
-/// Asks for a device on the command line.
+/// Renders on a device.
 fn render_on(place: &Place, device: &str) -> Done {
     let base = ["render", "room.toml", "-o", "a.exr", "--size", "48x32", "--light", LAMP, "--stats", "a.json"];
     run(place, &[&base[..], &["--device", device]].concat())
@@ -38,7 +38,7 @@ fn devices_are_listed() {
     let devices = devices(&place);
     let text = run(&place, &["info", "--devices"]).stdout;
     assert_eq!((&devices[0]["device"], &devices[0]["usable"]), (&json!("cpu"), &json!(true)));
-    assert!(devices.len() > 1, "CUDA is spoken of, whether it is there or not");
+    assert!(devices.len() > 1, "CUDA is listed, whether it is available or not");
     assert_eq!(text.lines().count(), devices.len());
     for (line, device) in text.lines().zip(&devices) {
         let state = if device["usable"] == true { "usable: " } else { "not usable: " };
@@ -91,16 +91,16 @@ fn what_auto_takes_is_said_with_the_reason() {
     let place = Place::new();
     let devices = devices(&place);
     let done = render_on(&place, "auto");
-    let line = done.stderr.lines().find(|line| line.starts_with("device auto takes ")).unwrap();
+    let line = done.stderr.lines().find(|line| line.starts_with("device auto: using ")).unwrap();
     match first_cuda(&devices) {
-        Some(device) => assert!(line.starts_with(&format!("device auto takes {device} (")), "{line}"),
+        Some(device) => assert!(line.starts_with(&format!("device auto: using {device} (")), "{line}"),
         None => {
-            assert!(line.starts_with("device auto takes cpu ("), "{line}");
+            assert!(line.starts_with("device auto: using cpu ("), "{line}");
             let why = devices[1]["remark"].as_str().unwrap();
             assert!(line.contains("; no CUDA device can be used: ") && line.contains(why), "{line}");
         }
     }
-    assert!(!render_on(&place, "cpu").stderr.contains("takes"));
+    assert!(!render_on(&place, "cpu").stderr.contains("using"));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Help, completions, the manual, and standard output that ends early.
+//! Help, completions, the manual, and standard output that is closed early.
 
 use std::process::Stdio;
 
@@ -75,7 +75,9 @@ fn the_manual_has_a_page_for_each_subcommand() {
     ] {
         assert!(place.read(&format!("man/{name}.1")).len() > 200, "{name}");
     }
-    assert!(place.refused(&["man", "paint"]).contains("there is no subcommand `paint`; known are render, info"));
+    assert!(
+        place.refused(&["man", "paint"]).contains("there is no subcommand `paint`; the subcommands are render, info")
+    );
     assert!(place.refused(&["man", "-o", "none"]).contains("the directory none does not exist"));
 }
 

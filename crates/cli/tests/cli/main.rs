@@ -1,4 +1,4 @@
-//! The command line as a user meets it: every subcommand and flag, exit codes, and the text of messages.
+//! The command line from a user's view: every subcommand and flag, exit codes, and messages.
 
 mod bench;
 mod compare;

@@ -1,4 +1,4 @@
-//! `lightmesh render`: each flag does what it says.
+//! `lightmesh render`: the effect of each flag.
 
 use lightmesh::image::Frame;
 use serde_json::json;
@@ -22,7 +22,7 @@ fn every_format_holds_the_picture() {
 fn choices_made_for_the_user_are_said_and_quiet_is_quiet() {
     let place = Place::new();
     let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16"]);
-    assert!(done.stderr.contains("device auto takes "), "{done:?}");
+    assert!(done.stderr.contains("device auto: using "), "{done:?}");
     assert!(
         done.stderr.contains("the scene has no light: taking a key light above the camera and a weaker fill light"),
         "{done:?}"
@@ -41,7 +41,7 @@ fn a_scene_without_camera_is_framed() {
         let done = place.good(&["render", "ball.toml", "-o", "a.exr", "--size", "16x16", "--up", up]);
         assert!(
             done.stderr
-                .contains(&format!("the scene has no camera: taking one that frames it from the front, with {up} up")),
+                .contains(&format!("the scene has no camera: using one that frames it from the front, with {up} up")),
             "{done:?}"
         );
         place.read("a.exr")
@@ -194,7 +194,7 @@ fn progress_is_one_json_object_a_line() {
     assert_eq!((&primary["done"], &primary["total"]), (&json!(1024), &json!(1024)));
     assert!(primary["seconds"].is_f64());
     assert_eq!(events.last().unwrap()["event"], "summary");
-    // A bar is for terminals: here there is none.
+    // A bar is only shown on terminals.
     let bar = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16", "--progress", "bar", "-q"]);
     assert_eq!(bar.stderr, "");
 }
@@ -229,7 +229,7 @@ fn any_light_level_comes_into_range() {
         let light = format!("3,5,2;{intensity}");
         let base = ["render", "room.toml", "-o", "a.png", "--size", "32x24", "--ambient", "0", "--exposure", "auto"];
         let done = place.good(&[&base[..], &["--light", &light]].concat());
-        assert!(done.stderr.contains("exposure auto takes "), "{done:?}");
+        assert!(done.stderr.contains("exposure auto: using "), "{done:?}");
         place.read("a.png")
     });
     let mean = |bytes: &[u8]| {

@@ -33,9 +33,9 @@ fn what_holds_no_results_is_refused_and_nothing_written() {
     place.write("b.json", &RESULTS.replace("\"version\": 1", "\"version\": 9"));
     let refused = |args: &[&str]| place.refused(&[&["report"], args].concat());
     assert!(refused(&["none.json", "-o", "out"]).contains("cannot read none.json"));
-    assert!(refused(&["room.toml", "-o", "out"]).contains("room.toml does not hold results"));
-    assert!(refused(&["a.json", "b.json", "-o", "out"]).contains("b.json has version 9"));
+    assert!(refused(&["room.toml", "-o", "out"]).contains("room.toml does not contain results"));
+    assert!(refused(&["a.json", "b.json", "-o", "out"]).contains("b.json has format version 9"));
     assert!(!place.path("out").exists());
-    assert!(refused(&["a.json", "-o", "a.json"]).contains("cannot make the folder a.json"));
+    assert!(refused(&["a.json", "-o", "a.json"]).contains("cannot create the folder a.json"));
     refused(&["-o", "out"]);
 }

@@ -1,4 +1,4 @@
-//! Running the program in a folder of its own.
+//! Running the program in a separate folder.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -83,14 +83,14 @@ impl Place {
         names
     }
 
-    /// Not yet started. Sees no CUDA device, so that what is tested, bytes of pictures for instance, is the same on every machine.
+    /// Not yet started. No CUDA device is visible, so that results, such as the bytes of images, are the same on every machine.
     pub(crate) fn command(&self, args: &[&str]) -> Command {
         let mut command = self.command_with_devices(args);
         command.env("CUDA_VISIBLE_DEVICES", "-1");
         command
     }
 
-    /// Not yet started. Sees the devices that this process sees.
+    /// Not yet started. The devices of this process are visible.
     pub(crate) fn command_with_devices(&self, args: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_lightmesh"));
         command.current_dir(self.0.path()).args(args).stdin(Stdio::null());
@@ -101,14 +101,14 @@ impl Place {
         self.command(args).output().unwrap().into()
     }
 
-    /// Runs what must succeed.
+    /// Runs a command that must succeed.
     pub(crate) fn good(&self, args: &[&str]) -> Done {
         let done = self.run(args);
         assert_eq!(done.code, Some(0), "{args:?}: {done:?}");
         done
     }
 
-    /// Runs what must be refused with exit code 2 and leave no file; gives the first line of the message.
+    /// Runs a command that must be rejected with exit code 2 and leave no file; returns the first line of the message.
     pub(crate) fn refused(&self, args: &[&str]) -> String {
         let before = self.files();
         let done = self.run(args);
@@ -119,7 +119,7 @@ impl Place {
         line.unwrap_or_else(|| panic!("no error in {done:?}")).to_owned()
     }
 
-    /// Renders a small picture of the room, quietly, as an exr; gives its bytes.
+    /// Renders a small image of the room, quietly, as an exr; returns its bytes.
     pub(crate) fn room(&self, flags: &[&str]) -> Vec<u8> {
         let base = ["render", "room.toml", "-o", "room.exr", "--size", "48x32", "--quiet", "--light", LAMP];
         let done = self.good(&[&base, flags].concat());
@@ -127,7 +127,7 @@ impl Place {
         self.read("room.exr")
     }
 
-    /// As [`Place::room`]; gives the statistics.
+    /// As [`Place::room`]; returns the statistics.
     pub(crate) fn room_stats(&self, flags: &[&str]) -> Value {
         self.room(&[&["--stats", "room.json"], flags].concat());
         self.json("room.json")

@@ -36,7 +36,7 @@ fn an_exported_scene_gives_the_same_picture() {
     for name in ["copy.glb", "text.toml"] {
         place.good(&["export", "builtin:gazebo", "-o", name, "--quiet"]);
         render(name, "copy.exr");
-        // Not to the last bit: the camera's upper side is written at a right angle to its direction.
+        // Not to the last bit: the camera's up vector is orthogonalised when written.
         place.good(&["compare", "original.exr", "copy.exr", "--max-rmse", "1e-6"]);
     }
     let refused = place.refused(&["export", "room.toml", "-o", "room.obj"]);
@@ -53,7 +53,11 @@ fn info_says_which_way_is_up() {
     place.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n");
     place.write("table.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\nf 1 2 3\nf 1 4 5\n");
     assert_eq!(up("sheet.obj")["axis"], "y");
-    assert!(up("sheet.obj")["reason"].as_str().unwrap().contains(".obj files mostly"), "{}", up("sheet.obj"));
+    assert!(
+        up("sheet.obj")["reason"].as_str().unwrap().contains("the usual axis of .obj files"),
+        "{}",
+        up("sheet.obj")
+    );
     assert_eq!(
         up("table.obj"),
         serde_json::json!({"axis": "z", "reason": "it stands on a flat ground at its lowest z"})
@@ -69,7 +73,7 @@ fn the_schema_is_the_published_one() {
     assert!(printed == serde_json::from_str::<Value>(&published).unwrap());
 }
 
-/// A picture of 2 x 2 texels: red, green, blue and white.
+/// An image of 2 x 2 texels: red, green, blue and white.
 const TILES: &[u8] = b"BM\x46\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\x02\0\0\0\x02\0\0\0\x01\0\x18\0\0\0\0\0\x10\0\0\0\
     \0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\xff\0\0\xff\xff\xff\0\0\0\0\xff\0\xff\0\0\0";
 

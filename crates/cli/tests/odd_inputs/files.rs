@@ -1,4 +1,4 @@
-//! What is no readable file, in place of one of each format; and odd names.
+//! Things that are not readable files, in place of one of each format; and odd names.
 
 use std::fs;
 use std::path::Path;
@@ -23,7 +23,7 @@ pub(crate) fn inputs() -> Vec<Input> {
     all
 }
 
-/// What `make` makes at the place of the file.
+/// What `make` creates in place of the file.
 fn instead(format: &'static str, what: &str, make: fn(&Path)) -> Input {
     let file = format!("input.{format}");
     let opened = file.clone();
@@ -54,7 +54,7 @@ fn names() -> Vec<Input> {
     all
 }
 
-/// Files of one format under the name of another.
+/// Files of one format with the name of another.
 fn contents() -> Vec<Input> {
     let all = FORMATS.iter().filter(|&&format| format != "grid");
     all.flat_map(|format| {
@@ -90,13 +90,13 @@ mod unix {
         ]
     }
 
-    /// A file that nobody may read.
+    /// A file without read permission.
     fn lock(path: &Path) {
         fs::write(path, "v 0 0 0\n").unwrap();
         fs::set_permissions(path, Permissions::from_mode(0o000)).unwrap();
     }
 
-    /// Whether a file can be closed to this user; root may read them all.
+    /// Whether permissions apply to this user; root can read all files.
     fn permissions_count() -> bool {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("locked");

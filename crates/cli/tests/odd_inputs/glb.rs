@@ -4,7 +4,7 @@ use crate::gltf::{CORNERS, bytes, square, text};
 use crate::input::Expected::{Opens, Refused};
 use crate::input::{Input, cut, patched};
 
-/// Where the container says what it holds.
+/// Offset of the container's content type.
 const VERSION: usize = 4;
 const LENGTH: usize = 8;
 const JSON_LENGTH: usize = 12;
@@ -44,7 +44,7 @@ pub(crate) fn inputs() -> Vec<Input> {
     all
 }
 
-/// A GLB file of these chunks.
+/// A GLB file with these chunks.
 fn glb(json: &[u8], bin: Option<&[u8]>) -> Vec<u8> {
     let chunk = |kind: &[u8; 4], data: &[u8], padding: u8| {
         let data = [data, &vec![padding; data.len().wrapping_neg() % 4]].concat();

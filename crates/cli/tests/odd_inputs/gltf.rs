@@ -9,7 +9,7 @@ use crate::input::{Input, cut, utf_16};
 pub(crate) const CORNERS: usize = 48;
 const INDICES: usize = 12;
 
-/// Every place of the square that refers to something by its number.
+/// Every place in the square that refers to something by index.
 const REFERENCES: [(&str, Expected); 13] = [
     ("/scene", Refused),
     ("/scenes/0/nodes/0", Refused),
@@ -26,12 +26,12 @@ const REFERENCES: [(&str, Expected); 13] = [
     ("/materials/0/pbrMetallicRoughness/baseColorTexture/index", Opens),
 ];
 
-/// The largest number of an element that a file can name.
+/// The largest index that a file can contain.
 const BEYOND: &str = "4294967295";
-/// Values that no reference has; the first is at least a number of the right kind.
+/// Values that are not valid references; the first at least has the right type.
 const NO_REFERENCES: [&str; 5] = [BEYOND, "4294967296", "-1", "0.5", "\"0\""];
 
-/// Other values, given as JSON, and what must come of them.
+/// Other values, as JSON, and the expected outcome.
 const VALUES: [(&str, &str, Expected); 52] = [
     ("/asset/version", "\"1.0\"", Refused),
     ("/asset/version", "\"3.0\"", Refused),
@@ -87,7 +87,7 @@ const VALUES: [(&str, &str, Expected); 52] = [
     ("/extensionsRequired", "[\"EVIL_extension\"]", Refused),
 ];
 
-/// URIs of the buffer without which there is no shape.
+/// URIs of the buffer, without which there is no geometry.
 const BUFFERS: [&str; 14] = [
     "none.bin",
     "../a.bin",
@@ -139,7 +139,7 @@ fn with(mut document: Value, place: &str, value: Value) -> Value {
     document
 }
 
-/// The square with a value that may be more than `serde_json` can hold.
+/// The square with a value that `serde_json` may be unable to represent.
 fn changed(place: &str, value: &str, expected: Expected) -> Input {
     const MARK: &str = "the value";
     let document = text(&with(square(true), place, MARK.into())).replace(&format!("\"{MARK}\""), value);

@@ -7,7 +7,7 @@ use crate::input::{Input, lengths, patched};
 
 const ROOM: &str = "[[sphere]]\ncenter = [0, 1, 0]\nradius = 1\nsegments = 8\n";
 
-/// Where a file has its version, and the numbers of triangles, integers and references.
+/// Offsets of the version, and of the numbers of triangles, integers and references.
 const WORDS: [(&str, usize); 4] = [("version", 8), ("triangles", 12), ("integers", 24), ("references", 32)];
 /// Bytes of the header.
 const HEADER: usize = 40;

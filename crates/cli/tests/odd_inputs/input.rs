@@ -1,20 +1,20 @@
-//! What an odd input is.
+//! An odd input.
 
 use std::fs;
 use std::path::Path;
 
-/// What must come of opening it.
+/// The expected outcome of opening it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Expected {
     /// A scene.
     Opens,
     /// Exit code 2.
     Refused,
-    /// One or the other: where exactly a file is cut does not matter.
+    /// Either: where exactly a file is truncated does not matter.
     Either,
 }
 
-/// How the program comes by the input.
+/// How the program is given the input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum As {
     Scene,
@@ -22,19 +22,19 @@ pub(crate) enum As {
     Grid,
 }
 
-/// Files in a folder of their own, and what must come of them.
+/// Files in a separate folder, and the expected outcome.
 pub(crate) struct Input {
-    /// Format, and what is odd.
+    /// Format and oddity.
     pub(crate) name: String,
-    /// The file that the program is given.
+    /// The file passed to the program.
     pub(crate) opened: String,
     pub(crate) opened_as: As,
-    /// Makes the files in the folder.
+    /// Creates the files in the folder.
     pub(crate) make: Box<dyn Fn(&Path) + Send>,
     pub(crate) expected: Expected,
-    /// The file that a refusal must name.
+    /// The file that an error must name.
     pub(crate) culprit: String,
-    /// The system does not do what it takes.
+    /// The system does not support the test.
     pub(crate) ignored: bool,
 }
 
@@ -46,7 +46,7 @@ impl Input {
         Input::made(format, oddity, &opened, expected, move |folder| fs::write(folder.join(&file), &bytes).unwrap())
     }
 
-    /// Whatever `make` makes in the folder, with the name `opened`.
+    /// Whatever `make` creates in the folder, opened as `opened`.
     pub(crate) fn made(
         format: &str,
         oddity: impl ToString,
@@ -65,7 +65,7 @@ impl Input {
         }
     }
 
-    /// With another file beside it.
+    /// With another file next to it.
     pub(crate) fn beside(mut self, name: &str, bytes: impl AsRef<[u8]>) -> Input {
         let (name, bytes) = (name.to_owned(), bytes.as_ref().to_vec());
         let make = self.make;
@@ -76,13 +76,13 @@ impl Input {
         self
     }
 
-    /// A refusal names another file.
+    /// Errors name another file.
     pub(crate) fn blaming(self, culprit: &str) -> Input {
         Input { culprit: culprit.to_owned(), ..self }
     }
 }
 
-/// The file cut off after 1, 2, 4 … bytes.
+/// The file truncated after 1, 2, 4 … bytes.
 pub(crate) fn cut(format: &str, what: &str, whole: &[u8]) -> Vec<Input> {
     lengths(whole)
         .map(|length| Input::new(format, format!("{what} cut after {length}"), &whole[..length], Expected::Either))
@@ -95,14 +95,14 @@ pub(crate) fn lengths(whole: &[u8]) -> impl Iterator<Item = usize> + use<> {
     (0..usize::BITS).map(|power| 1 << power).take_while(move |&cut| cut < length)
 }
 
-/// The bytes with others from `at` on.
+/// The bytes, overwritten from `at` on.
 pub(crate) fn patched(bytes: &[u8], at: usize, patch: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     bytes[at..at + patch.len()].copy_from_slice(patch);
     bytes
 }
 
-/// Each text in UTF-16, as editors of Windows write it.
+/// The text in UTF-16, as Windows editors write it.
 pub(crate) fn utf_16(text: &str) -> Vec<u8> {
     let units = std::iter::once('\u{feff}').chain(text.chars()).collect::<String>();
     units.encode_utf16().flat_map(u16::to_le_bytes).collect()

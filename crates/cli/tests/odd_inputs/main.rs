@@ -1,7 +1,7 @@
-//! Odd inputs: damaged, contradictory, hostile and merely unusual files, each made here and opened by the program itself.
+//! Odd inputs: damaged, contradictory, hostile and merely unusual files, each created here and opened by the program itself.
 //!
-//! Each is a trial of its own: with little memory and little time the program must open the file or refuse it with one paragraph
-//! that names it. What opens must render as well. `cargo test -p lightmesh-cli --test odd_inputs -- ply` runs those of one format.
+//! Each is a separate trial: with little memory and little time the program must open the file or reject it with one paragraph
+//! that names it. What opens must also render. `cargo test -p lightmesh-cli --test odd_inputs -- ply` runs those of one format.
 
 mod files;
 mod glb;

@@ -8,7 +8,7 @@ const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 const LIBRARY: &str =
     "newmtl red\nKa 0.1 0.1 0.1\nKd 1 0 0\nKs 0.5 0.5 0.5\nNs 10\nd 0.5\nmap_Kd -s 2 2 1 -clamp on none.png\n";
 
-/// What stands where a triangle's face should, and what must come of it.
+/// Replacements for a triangle's face, and the expected outcome.
 const FACES: [(&str, Expected); 20] = [
     ("f 1 2 3", Opens),
     ("f 0 2 3", Refused),
@@ -32,7 +32,7 @@ const FACES: [(&str, Expected); 20] = [
     ("f 1 2 3\nf 1 2 3 1 2 3 1 2 3", Opens),
 ];
 
-/// Words where a coordinate should be.
+/// Replacements for a coordinate.
 const COORDINATES: [(&str, Expected); 9] = [
     ("nan", Opens),
     ("inf", Opens),
@@ -45,7 +45,7 @@ const COORDINATES: [(&str, Expected); 9] = [
     ("", Refused),
 ];
 
-/// Names where a library's should be; the shape is there without it.
+/// Replacements for the name of a library; the geometry loads without it.
 const LIBRARIES: [&str; 10] = [
     "none.mtl",
     "../a.mtl",
@@ -89,7 +89,7 @@ pub(crate) fn inputs() -> Vec<Input> {
     all
 }
 
-/// Each index of each corner beyond the end in turn.
+/// Each index of each corner out of range, in turn.
 fn each_index() -> impl Iterator<Item = Input> {
     let corners = SQUARE.match_indices("/1").map(|(at, _)| at).chain(SQUARE.match_indices(" 1/").map(|(at, _)| at));
     corners.map(|at| {
@@ -117,7 +117,7 @@ fn libraries() -> Vec<Input> {
     all
 }
 
-/// Texts as a whole.
+/// Whole files.
 fn texts() -> [Input; 14] {
     let triangle = format!("{TRIANGLE}f 1 2 3\n");
     let many = |count: usize, word: &str| word.repeat(count);

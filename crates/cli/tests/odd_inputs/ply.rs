@@ -10,7 +10,7 @@ const ROWS: &str = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 const LITTLE: &str = "binary_little_endian";
 const BIG: &str = "binary_big_endian";
 
-/// Lines in place of others of the header, and what must come of it.
+/// Lines of the header, their replacements, and the expected outcome.
 const HEADERS: [(&str, &str, Expected); 22] = [
     ("vertex 4", "vertex 4294967295", Refused),
     ("vertex 4", "vertex 18446744073709551615", Refused),
@@ -36,7 +36,7 @@ const HEADERS: [(&str, &str, Expected); 22] = [
     ("ply\n", "PLY\n", Either),
 ];
 
-/// Faces, and what must come of them.
+/// Faces, and the expected outcome.
 const FACES: [(&str, Expected); 16] = [
     ("4 0 1 2 3", Opens),
     ("4 4 1 2 3", Refused),
@@ -56,7 +56,7 @@ const FACES: [(&str, Expected); 16] = [
     ("1e308 0 1 2", Refused),
 ];
 
-/// Pictures that a comment may name; the shape is there without them.
+/// Textures named in a comment; the geometry loads without them.
 const PICTURES: [&str; 6] = ["none.png", "../a.png", "/etc/passwd", "http://example.org/a.png", "a\0.png", "."];
 
 pub(crate) fn inputs() -> Vec<Input> {
@@ -95,7 +95,7 @@ fn ascii(face: &str) -> String {
     format!("{}{ROWS}{face}\n", header("ascii"))
 }
 
-/// A square whose header names one byte order, and whose numbers may have another.
+/// A square whose header names one byte order and whose numbers may have another.
 fn binary(named: &str, order: &str, last: i32) -> Vec<u8> {
     let ordered = |bytes: [u8; 4]| if order == LITTLE { bytes } else { [bytes[3], bytes[2], bytes[1], bytes[0]] };
     let mut bytes = header(named).into_bytes();

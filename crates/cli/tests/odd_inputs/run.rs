@@ -1,4 +1,4 @@
-//! Opening an odd input with the program, and what must come of it.
+//! Opening an odd input with the program, and checking the outcome.
 
 use std::fs::{self, File};
 use std::path::Path;
@@ -13,7 +13,7 @@ use crate::input::{As, Expected, Input};
 /// Address space of the program, in kibibytes.
 const MEMORY: u32 = 1 << 20;
 const TIME: Duration = Duration::from_secs(10);
-/// How often to look whether it has ended.
+/// How often to poll for its end.
 const LOOK: Duration = Duration::from_millis(2);
 
 const BAD_INPUT: i32 = 2;
@@ -51,13 +51,13 @@ fn try_out(input: &Input) -> Result<(), String> {
     }
 }
 
-/// Whether it was opened; an error where that is not as it must be.
+/// Whether it was opened; an error if that is not the expected outcome.
 fn check(input: &Input, Done { status, stderr, .. }: &Done) -> Result<bool, String> {
     match (status.code(), input.expected) {
         (Some(0), Expected::Opens | Expected::Either) => Ok(true),
         (Some(BAD_INPUT), Expected::Refused | Expected::Either) => {
             let paragraph = stderr.strip_suffix('\n').unwrap_or(stderr);
-            // Where what a file sets does not fit the picture, the flag is named that replaces it.
+            // If a setting in the file does not suit the image, the message names the flag that overrides it.
             let named = [input.culprit.as_str(), "--step", "--radius"].iter().any(|name| paragraph.contains(*name));
             let good = paragraph.starts_with("error: ") && named && !paragraph.contains(char::is_control);
             if good { Ok(false) } else { Err(format!("no paragraph about {}: {stderr:?}", input.culprit)) }
@@ -70,7 +70,7 @@ fn check(input: &Input, Done { status, stderr, .. }: &Done) -> Result<bool, Stri
 fn run(folder: &Path, args: &[&str]) -> Result<Done, String> {
     let said = tempfile::tempdir().map_err(|error| error.to_string())?;
     let [stdout, stderr] = ["stdout", "stderr"].map(|name| said.path().join(name));
-    // Into files: a pipe that nobody empties would make it wait.
+    // Into files: it would block on a pipe that nobody reads.
     let file = |path: &Path| File::create(path).map_err(|error| error.to_string());
     let mut child = limited(args)
         .current_dir(folder)
@@ -85,7 +85,7 @@ fn run(folder: &Path, args: &[&str]) -> Result<Done, String> {
         match child.try_wait().map_err(|error| error.to_string())? {
             Some(status) => break status,
             None if start.elapsed() > TIME => {
-                // It may have ended just now.
+                // It may just have ended.
                 let _ = child.kill();
                 let _ = child.wait();
                 return Err(format!("{args:?} has not ended after {TIME:?}"));
@@ -97,7 +97,7 @@ fn run(folder: &Path, args: &[&str]) -> Result<Done, String> {
     Ok(Done { status, stdout: text(&stdout)?, stderr: text(&stderr)? })
 }
 
-/// The program with little memory, where the system can limit it.
+/// The program with limited memory, if the system supports limits.
 fn limited(args: &[&str]) -> Command {
     let program = env!("CARGO_BIN_EXE_lightmesh");
     if cfg!(target_os = "linux") {

@@ -5,12 +5,12 @@ use crate::input::{Input, cut, patched, utf_16};
 
 const TEXT: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
 
-/// Where a binary file has its number of facets.
+/// Offset of the number of facets in a binary file.
 const COUNT: usize = 80;
-/// Where the first facet has its first corner.
+/// Offset of the first corner of the first facet.
 const CORNER: usize = 96;
 
-/// Parts of the text in place of others, and what must come of it.
+/// Parts of the text, their replacements, and the expected outcome.
 const WORDS: [(&str, &str, Expected); 13] = [
     ("vertex 1 0 0", "vertex nan 0 0", Opens),
     ("vertex 1 0 0", "vertex inf 0 0", Opens),
@@ -39,7 +39,7 @@ pub(crate) fn inputs() -> Vec<Input> {
     all
 }
 
-/// So many facets, of which the header may say another number.
+/// A number of facets, for which the header may claim another number.
 fn binary(said: u32, facets: usize) -> Vec<u8> {
     let numbers: [f32; 12] = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let mut facet: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();

@@ -1,4 +1,4 @@
-//! Textures. A scene whose texture cannot be had is shown without it, so all of these open.
+//! Textures. A scene is rendered without textures that cannot be read, so all of these open.
 
 use crate::input::Expected::Opens;
 use crate::input::{Input, lengths, patched};
@@ -7,13 +7,13 @@ const SCENE: &str = "[[material]]\nname = \"a\"\ntexture = \"picture\"\n\
                      [[triangle]]\na = [0, 0, 0]\nb = [1, 0, 0]\nc = [0, 1, 0]\nmaterial = \"a\"\n";
 
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
-/// Where the chunk's data begins that says the size.
+/// Offset of the data of the chunk that holds the size.
 const HEADER: usize = 16;
 
 /// Two by two texels of 24 bits.
 const BMP: &[u8] = b"BM\x46\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\x02\0\0\0\x02\0\0\0\x01\0\x18\0\0\0\0\0\x10\0\0\0\
     \0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\xff\0\0\xff\xff\xff\0\0\0\0\xff\0\xff\0\0\0";
-/// Where a BMP file has width, height, bits and compression.
+/// Offsets of width, height, bits and compression in a BMP file.
 const BMP_WORDS: [(&str, usize); 4] = [("width", 18), ("height", 22), ("bits", 28), ("compression", 30)];
 /// Two by two grey texels.
 const TGA: &[u8] = &[0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 8, 0x20, 10, 20, 30, 40];
@@ -60,10 +60,10 @@ fn shown(oddity: impl ToString, name: &str, bytes: &[u8]) -> Input {
     input
 }
 
-/// A PNG file of 2 x 2 grey texels, whose header may say something else.
+/// A PNG file of 2 x 2 grey texels, whose header may claim another size.
 fn png(width: u32, height: u32, depth: u8) -> Vec<u8> {
     let header = [&width.to_be_bytes()[..], &height.to_be_bytes(), &[depth, 0, 0, 0, 0]].concat();
-    // Zlib around one stored block: two rows of a filter and two texels.
+    // Zlib around one stored block: two rows of a filter byte and two texels.
     let rows = [0, 10, 20, 0, 30, 40];
     let (sum, sums) = rows.iter().fold((1_u32, 0_u32), |(sum, sums), &byte| (sum + byte, sums + sum + byte));
     let stored =

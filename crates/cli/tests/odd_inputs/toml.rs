@@ -24,7 +24,7 @@ radius = 1
 segments = 8
 "#;
 
-/// Lines of the room in place of others, and what must come of it.
+/// Lines of the room, their replacements, and the expected outcome.
 const LINES: [(&str, &str, Expected); 46] = [
     ("vfov = 45", "vfov = nan", Refused),
     ("vfov = 45", "vfov = 0", Refused),
@@ -74,7 +74,7 @@ const LINES: [(&str, &str, Expected); 46] = [
     ("file = \"one.obj\"", "file = \"one.obj\"\nrotate = [1e17, nan, 0]", Refused),
 ];
 
-/// Models that cannot be had.
+/// Models that cannot be read.
 const MODELS: [&str; 12] = [
     "none.obj",
     "input.toml",
@@ -90,7 +90,7 @@ const MODELS: [&str; 12] = [
     "builtin:gazebo",
 ];
 
-/// Tables beside the room.
+/// Additional tables.
 const TABLES: [(&str, Expected); 12] = [
     ("[lightmesh]\nstep = 1e-30\n", Either),
     ("[lightmesh]\nstep = 1e17\nradius = 1e17\n", Either),
@@ -116,7 +116,7 @@ pub(crate) fn inputs() -> Vec<Input> {
     }));
     all.extend(MODELS.map(|name| room(format!("model `{name}`"), ROOM.replace("one.obj", name), Refused).blaming("")));
     all.extend(TABLES.map(|(table, expected)| {
-        // Behind the first table, which is one of a kind.
+        // After the first table, which must be unique.
         room(format!("`{}`", table.escape_debug()), format!("{ROOM}{table}"), expected)
     }));
     all.push(room("origin = [1e17, 0, 0]".to_owned(), format!("origin = [1e17, 0, 0]\n{ROOM}"), Either));

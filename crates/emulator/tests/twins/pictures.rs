@@ -23,16 +23,14 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
 
 fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, mode: Mode) {
     let scene = subject.prepared(0);
-    let settings = Settings {
-        mode,
-        size: SIZE,
-        bounces: 2,
-        layers: true,
-        samples: Some(4),
-        step: Some(Step::Fixed(subject.step)),
-        radius: Some(2.1),
-        ..Settings::default()
-    };
+    let settings = Settings::default()
+        .with_mode(mode)
+        .with_size(SIZE)
+        .with_bounces(2)
+        .with_layers(true)
+        .with_samples(4)
+        .with_step(Step::Fixed(subject.step))
+        .with_radius(2.1);
     let host = render_on(&Cpu, scene, &settings, &Unobserved).unwrap();
     let device = render_on(cuda, scene, &settings, &Unobserved).unwrap();
     same_colors::<R>(&host, &device);

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Acceleration, PreparedScene, Unobserved, View};
-use lightmesh_scene::{Falloff, LightKind, Material, Scene};
+use lightmesh_scene::{Falloff, LightKind, Scene};
 use lightmesh_testkit::{SceneDraft, half_plane, pile, soup};
 
 /// The structures, in the order of [`Subject::prepared`].
@@ -21,7 +21,7 @@ pub(crate) struct Subject {
     pub(crate) small: bool,
     build: fn() -> Scene,
     scene: OnceLock<Scene>,
-    prepared: [OnceLock<PreparedScene<'static>>; 3],
+    prepared: [OnceLock<PreparedScene>; 3],
 }
 
 const fn subject(name: &'static str, step: f32, small: bool, build: fn() -> Scene) -> Subject {
@@ -50,7 +50,7 @@ impl Subject {
     }
 
     /// With one of [`ACCELERATIONS`].
-    pub(crate) fn prepared(&'static self, acceleration: usize) -> &'static PreparedScene<'static> {
+    pub(crate) fn prepared(&'static self, acceleration: usize) -> &'static PreparedScene {
         self.prepared[acceleration].get_or_init(|| {
             PreparedScene::new(self.scene(), &ACCELERATIONS[acceleration], &Unobserved)
                 .unwrap_or_else(|error| panic!("{}: {error}", self.name))
@@ -93,9 +93,9 @@ fn all_lights() -> Scene {
         light.intensity = Vec3::new(0.3, 0.25, 0.2) * (1.0 + index as f32);
         light.falloff = if index % 2 == 0 { Falloff::None } else { Falloff::InverseSquare };
     }
-    let material = Material { ks: Vec3::new(0.4, 0.3, 0.2), ..scene.materials[0].clone() };
-    scene.materials.fill(material);
-    scene.ambient = Some(Vec3::splat(0.1));
-    scene.background = Some(Vec3::new(0.2, 0.3, 0.4));
+    let material = scene.geometry.materials[0].clone().with_ks([0.4, 0.3, 0.2]);
+    scene.geometry_mut().materials.fill(material);
+    scene.lights.ambient = Some(Vec3::splat(0.1));
+    scene.lights.background = Some(Vec3::new(0.2, 0.3, 0.4));
     scene
 }

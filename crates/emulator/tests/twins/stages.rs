@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use lightmesh_render::accel::Hit;
-use lightmesh_render::backend::{Backend, Cpu, Cuda, DeviceHits, DeviceLit, DevicePoints, DeviceRays};
+use lightmesh_render::backend::{
+    Aim, Backend, Cpu, Cuda, DeviceHits, DeviceLit, DevicePoints, DeviceRays, DeviceScene, Needs, Seen, Wave, WaveOf,
+};
 use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, UsedPoints};
 use lightmesh_render::{Job, Lit, LitBy, RayList, Sampling, ShortTests, Unobserved, Visibility};
 use lightmesh_scene::Weight;
@@ -64,9 +66,10 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
 struct Twins<'a, R: Target> {
     cuda: &'a Cuda<R>,
     subject: &'static Subject,
-    scene: &'static lightmesh_render::PreparedScene<'static>,
+    scene: &'static lightmesh_render::PreparedScene,
     rays: RayList,
     hits: Vec<Hit>,
+    device_scene: DeviceScene<R>,
     device_rays: DeviceRays<R>,
     device_hits: DeviceHits<R>,
     /// Rays to each light with a size.
@@ -86,27 +89,48 @@ impl<'a, R: Target> Twins<'a, R> {
         let job = job(4);
         let hits = Cpu.primary_rays(&job, scene, &rays).unwrap();
         let device_rays = cuda.camera_rays(&view, 0..size[1]).unwrap();
-        let device_hits = cuda.primary_rays(&job, scene, &device_rays).unwrap();
+        let needs = Needs { search: true, ..Needs::default() };
+        let device_scene = cuda.scene(&job, scene, &needs).unwrap();
+        let device_hits = cuda.primary_rays(&job, &device_scene, &device_rays).unwrap();
         let found = device_hits.read().unwrap();
         assert_eq!(found.len(), hits.len());
         for (hit, &pixel) in hits.iter().zip(&rays.pixels) {
             let twin = &found[pixel as usize];
             assert_eq!(bits(hit), bits(twin), "pixel {pixel}: {hit:?} on the CPU, {twin:?} on the device");
         }
-        Twins { cuda, subject, scene, rays, hits, device_rays, device_hits, samples: job.sampling.samples }
+        Twins {
+            cuda,
+            subject,
+            scene,
+            rays,
+            hits,
+            device_scene,
+            device_rays,
+            device_hits,
+            samples: job.sampling.samples,
+        }
     }
 
     fn job(&self) -> Job<'static> {
         job(self.samples)
     }
 
+    fn on_host<'b>(&'b self, job: &'b Job<'b>) -> WaveOf<'b, Cpu> {
+        Wave { job, scene: self.scene, rays: &self.rays, hits: &self.hits }
+    }
+
+    fn on_device<'b>(&'b self, job: &'b Job<'b>) -> WaveOf<'b, Cuda<R>> {
+        Wave { job, scene: &self.device_scene, rays: &self.device_rays, hits: &self.device_hits }
+    }
+
     /// Shadow rays, one and many a light.
     fn shadow_rays(&self) {
-        let host = Cpu.shadow_rays(&self.job(), self.scene, &self.rays, &self.hits).unwrap();
-        let device = self.cuda.shadow_rays(&self.job(), self.scene, &self.device_rays, &self.device_hits).unwrap();
+        let job = self.job();
+        let host = Cpu.shadow_rays(&self.on_host(&job), &Aim::Middle).unwrap();
+        let device = self.cuda.shadow_rays(&self.on_device(&job), &Aim::Middle).unwrap();
         self.same_shares("hard shadows", &host, &device.read().unwrap(), 0.0, 0);
-        let host = Cpu.area_shadows(&self.job(), self.scene, &self.rays, &self.hits).unwrap();
-        let device = self.cuda.area_shadows(&self.job(), self.scene, &self.device_rays, &self.device_hits).unwrap();
+        let host = Cpu.shadow_rays(&self.on_host(&job), &Aim::Extent(job.sampling)).unwrap();
+        let device = self.cuda.shadow_rays(&self.on_device(&job), &Aim::Extent(job.sampling)).unwrap();
         let allowed = R::allowed(host.share.len(), 1000);
         self.same_shares("area shadows", &host, &device.read().unwrap(), 0.0, allowed);
     }
@@ -115,54 +139,57 @@ impl<'a, R: Target> Twins<'a, R> {
     fn light_mesh(&self, radius: f32, weight: Weight) {
         let step = self.subject.step;
         let mesh = LightMesh {
-            lattice: Lattice::around(&self.scene.bounds, step, radius).unwrap(),
+            lattice: Lattice::around(self.scene, step, radius).unwrap(),
             template: Template::new(radius).unwrap(),
             radius: radius * step,
             weight,
         };
-        let (rays, hits) = (&self.rays, &self.hits);
-        let masks = Cpu.short_tests(&self.job(), self.scene, rays, hits, &mesh).unwrap();
-        let mut expected: Vec<(u32, Vec<u32>)> = (masks.groups.members().iter().enumerate())
-            .map(|(slot, &ray)| (rays.pixels[ray as usize], masks.mask(slot).to_vec()))
+        let (job, plain) = (self.job(), self.job().with_short_tests(ShortTests::Plain));
+        let wave = self.on_host(&job);
+        let cells = Cpu.cells(&wave, &mesh).unwrap();
+        let masks = Cpu.short_tests(&wave, &cells, &mesh).unwrap();
+        let mut expected: Vec<(u32, Vec<u32>)> = (cells.members().iter().enumerate())
+            .map(|(slot, &ray)| (self.rays.pixels[ray as usize], masks.mask(slot).to_vec()))
             .collect();
         expected.sort_unstable();
-        let on_device = |how| {
-            let job = self.job().with_short_tests(how);
-            self.cuda.short_tests(&job, self.scene, &self.device_rays, &self.device_hits, &mesh).unwrap()
-        };
-        for how in [ShortTests::Plain, ShortTests::Cells] {
-            let found: Vec<_> = on_device(how).read().unwrap().into_iter().map(|(ray, _, mask)| (ray, mask)).collect();
-            assert_eq!(found.len(), expected.len(), "{how:?}: object points");
+        let device_cells = self.cuda.cells(&self.on_device(&job), &mesh).unwrap();
+        let on_device = |job| self.cuda.short_tests(&self.on_device(job), &device_cells, &mesh).unwrap();
+        for job in [&plain, &job] {
+            let found = on_device(job).read(&device_cells).unwrap();
+            let found: Vec<_> = found.into_iter().map(|(ray, _, mask)| (ray, mask)).collect();
+            let how = job.short_tests;
+            assert_eq!(found.len(), expected.len(), "{how:?}: surface points");
             for (found, expected) in found.iter().zip(&expected) {
                 assert_eq!(found, expected, "{how:?}: pixel and mask");
             }
         }
 
-        let device_masks = on_device(ShortTests::Cells);
-        let points = Cpu.light_points(&self.job(), &masks, &mesh).unwrap();
-        let device_points = self.cuda.light_points(&self.job(), &device_masks, &mesh).unwrap();
+        let device_masks = on_device(&job);
+        let points = Cpu.light_points(&job, &cells, &masks, &mesh).unwrap();
+        let device_points = self.cuda.light_points(&job, &device_cells, &device_masks, &mesh).unwrap();
         same_points(&points, &device_points);
 
-        let lit = Cpu.long_tests(&self.job(), self.scene, &points, &mesh).unwrap();
-        let device_lit = self.cuda.long_tests(&self.job(), self.scene, &device_points, &mesh).unwrap();
+        let lit = Cpu.long_tests(&wave, &points, &mesh, None).unwrap();
+        let device_lit = self.cuda.long_tests(&self.on_device(&job), &device_points, &mesh, None).unwrap();
         same_light(&points, &lit, &device_points, &device_lit);
 
-        let host = Cpu.interpolate(&self.job(), self.scene, rays, hits, &masks, &points, &lit, &mesh).unwrap();
-        let (rays, hits) = (&self.device_rays, &self.device_hits);
-        let (masks, points, lit) = (&device_masks, &device_points, &device_lit);
-        let device = self.cuda.interpolate(&self.job(), self.scene, rays, hits, masks, points, lit, &mesh).unwrap();
+        let seen = Seen { mesh: &mesh, cells: &cells, masks: &masks, points: &points, lit: &lit };
+        let host = Cpu.interpolate(&wave, &seen).unwrap();
+        let (cells, masks, points, lit) = (&device_cells, &device_masks, &device_points, &device_lit);
+        let seen = Seen { mesh: &mesh, cells, masks, points, lit };
+        let device = self.cuda.interpolate(&self.on_device(&job), &seen).unwrap();
         let allowed = R::allowed(host.share.len(), 100);
         self.same_shares("interpolated", &host, &device.read().unwrap(), SHARE_TOLERANCE, allowed);
     }
 
-    /// The CPU has shares by its order of rays, then light; the device by light, then pixel.
+    /// Both have shares by light; then the CPU by its order of rays, the device by pixel.
     fn same_shares(&self, what: &str, host: &Visibility, device: &[f32], tolerance: f32, allowed: usize) {
         assert_eq!(host.share.len(), device.len(), "{what}");
         let rays = self.rays.pixels.len();
         let mut differ = Vec::new();
-        for (ray, &pixel) in self.rays.pixels.iter().enumerate() {
-            for light in 0..host.lights {
-                let (a, b) = (host.share[ray * host.lights + light], device[light * rays + pixel as usize]);
+        for light in 0..host.share.len() / rays {
+            for (ray, &pixel) in self.rays.pixels.iter().enumerate() {
+                let (a, b) = (host.of(light, ray), device[light * rays + pixel as usize]);
                 if !alike(a, b, tolerance) {
                     differ.push((pixel, light, a, b));
                 }

@@ -16,24 +16,23 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
 pub(crate) fn textured() -> Scene {
     let light = LightKind::Point { position: Vec3::new(2.0, 3.0, 3.0), spread: 0.0 };
     let mut scene = pile(DVec3::ZERO, &[light]);
-    scene.textures = vec![checks("odd", [5, 3]), checks("wide", [64, 2])];
+    scene.geometry_mut().textures = vec![checks("odd", [5, 3]), checks("wide", [64, 2])];
     let matrix = Affine2::from_scale_angle_translation(Vec2::new(1.7, -0.6), 0.4, Vec2::new(0.3, -9.2));
-    let material = |texture, ks_tinted: f32, emission_tinted: f32| Material {
-        ks: Vec3::new(0.1, 0.0, 0.0),
-        ks_tinted: Vec3::splat(ks_tinted),
-        emission_tinted: Vec3::splat(emission_tinted),
-        texture,
-        ..Material::default()
+    let material = |texture, ks_tinted: f32, emission_tinted: f32| {
+        let plain = Material::default().with_ks([0.1, 0.0, 0.0]).with_ks_tinted([ks_tinted; 3]);
+        let mut material = plain.with_emission_tinted([emission_tinted; 3]);
+        material.texture = texture;
+        material
     };
     let uses = |texture, wrap| Some(TextureUse { wrap, transform: matrix, ..TextureUse::new(texture) });
-    scene.materials = vec![
+    scene.geometry_mut().materials = vec![
         material(uses(0, [Wrap::Repeat; 2]), 0.0, 0.0),
         material(uses(1, [Wrap::Mirror, Wrap::Clamp]), 0.5, 0.0),
         material(None, 0.25, 0.0),
         material(uses(0, [Wrap::Clamp, Wrap::Mirror]), 0.0, 0.75),
         material(Some(TextureUse::new(7)), 0.0, 0.5),
     ];
-    let mesh = &mut scene.mesh;
+    let mesh = &mut scene.geometry_mut().mesh;
     mesh.materials = (0..mesh.triangles.len() as u32).map(|index| index % 5).collect();
     mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(1.3 * p.x + 0.7 * p.y, p.z - 0.2 * p.y)).collect();
     mesh.colors = mesh.positions.iter().map(|p| (0.5 * p.abs()).min(Vec3::ONE)).collect();
@@ -50,13 +49,13 @@ fn checks(name: &str, size: [u32; 2]) -> Texture {
 fn same_bits<R: Target>(cuda: &Cuda<R>) {
     let colored = textured();
     let mut plain = colored.clone();
-    plain.mesh.colors.clear();
+    plain.geometry_mut().mesh.colors.clear();
     for mut scene in [colored, plain] {
-        for material in &mut scene.materials {
+        for material in &mut scene.geometry_mut().materials {
             (material.ks, material.ks_tinted) = (Vec3::ZERO, Vec3::ZERO);
         }
         let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
-        let settings = Settings { mode: Mode::RayTrace, size: [64, 48], ..Settings::default() };
+        let settings = Settings::default().with_mode(Mode::RayTrace).with_size([64, 48]);
         let bits = |frame: Frame| frame.image.color().iter().map(|color| color.map(f32::to_bits)).collect::<Vec<_>>();
         let host = bits(render_on(&Cpu, &scene, &settings, &Unobserved).unwrap());
         let device = bits(render_on(cuda, &scene, &settings, &Unobserved).unwrap());

@@ -1,7 +1,7 @@
-//! OpenEXR: linear 32-bit floats in one part, compressed without loss (ZIP, 16 rows a block).
+//! OpenEXR: linear 32-bit floats in one part, with lossless compression (ZIP, 16 rows per block).
 //!
-//! Channels of a multilayer file, each one plane: `R G B`, `Z`, `N.X N.Y N.Z`, `P.X P.Y P.Z`, `V.0 V.1 …`, `M`. They lie in
-//! one part with their full names because this is what readers of single-part files show.
+//! Channels of a multilayer file, one plane each: `R G B`, `Z`, `N.X N.Y N.Z`, `P.X P.Y P.Z`, `V.0 V.1 …`, `M`. They are in one
+//! part with their full names because this is what readers of single-part files support.
 
 mod read;
 mod write;

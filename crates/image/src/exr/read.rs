@@ -1,4 +1,4 @@
-//! Reading EXR: the first part's full-size level, of any number type and compression.
+//! Reading EXR: the full-resolution level of the first part, with any number type and compression.
 
 use std::io::Cursor;
 
@@ -12,14 +12,14 @@ use super::{COLOR, DEPTH, LUMINANCE, NORMAL, POSITION, USED, visibility_name};
 use crate::load::{DecodeError, checked_pixels};
 use crate::{Format, Frame, Layers};
 
-/// The most bytes that the channels of a file may take once decompressed.
+/// Maximum decompressed size of the channels of a file, in bytes.
 const MAX_BYTES: u64 = 1 << 36;
 
-/// No method of compression makes more than this out of a byte: deflate reaches 1032, times 4/3 for 24-bit floats.
+/// Maximum expansion of any compression method: deflate reaches 1032, times 4/3 for 24-bit floats.
 const MAX_EXPANSION: u64 = 1376;
 
-/// Reads colours from the channels `R G B`, or from `Y` as grey, and the layers where all of their channels are there.
-/// The picture is the file's data window.
+/// Reads colours from the channels `R G B`, or from `Y` as grey, and the layers if all of their channels are present. The image
+/// is the file's data window.
 pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
     let chunks = ::exr::block::read(Cursor::new(bytes), false).map_err(malformed)?;
     for header in chunks.headers() {
@@ -48,18 +48,18 @@ fn malformed(message: impl ToString) -> DecodeError {
     DecodeError::malformed(Format::Exr, message)
 }
 
-/// Refuses what would take too much memory, or more than a file of `length` bytes can hold, and what cannot be read:
-/// DWA compression, and channels of reduced resolution.
+/// Rejects files that would take too much memory, or more than `length` bytes can contain, and unsupported ones: DWA compression,
+/// and channels of reduced resolution.
 fn check_header(header: &Header, length: u64) -> Result<(), DecodeError> {
     if matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) {
-        return Err(malformed("it is compressed with DWA, not with ZIP or another known method"));
+        return Err(malformed("DWA compression is not supported; use ZIP or another method"));
     }
     let [width, height] =
         [header.layer_size.0, header.layer_size.1].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
     let pixels = checked_pixels(Format::Exr, width, height)? as u64;
     let needed = pixels.saturating_mul(header.channels.bytes_per_pixel as u64);
     if needed > MAX_BYTES.min(length.saturating_mul(MAX_EXPANSION)) {
-        return Err(malformed(format_args!("channels of {needed} bytes cannot be read from {length} bytes")));
+        return Err(malformed(format_args!("channels of {needed} bytes cannot be stored in {length} bytes")));
     }
     if header.channels.list.iter().any(|channel| (channel.sampling.0, channel.sampling.1) != (1, 1)) {
         return Err(malformed("it has channels of reduced resolution"));
@@ -67,7 +67,7 @@ fn check_header(header: &Header, length: u64) -> Result<(), DecodeError> {
     Ok(())
 }
 
-/// The channels of a file by their names.
+/// The channels of a file by name.
 struct Planes(Vec<(String, FlatSamples)>);
 
 impl Planes {

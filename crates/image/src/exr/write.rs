@@ -1,4 +1,4 @@
-//! Writing EXR straight from a frame's planes, without copies of them.
+//! Writing EXR directly from a frame's planes, without copying them.
 
 use std::io::{self, Seek, Write};
 
@@ -14,7 +14,7 @@ use super::{COLOR, DEPTH, NORMAL, POSITION, USED, visibility_name};
 use crate::save::{EncodeError, check_fits};
 use crate::{Format, Frame, Layers};
 
-/// Rows and a fixed order, so that every reader takes the file and threads do not change its bytes.
+/// Scan lines in a fixed order, so that every reader supports the file and its bytes do not depend on threads.
 const ENCODING: Encoding =
     Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
 
@@ -91,7 +91,7 @@ impl<'a> WritableSamples<'a> for Plane<'_> {
     }
 }
 
-/// Hands rows of a plane to the encoder, from any of its threads.
+/// Passes rows of a plane to the encoder, on any of its threads.
 struct PlaneWriter<'a> {
     plane: Plane<'a>,
     width: usize,
@@ -105,7 +105,7 @@ impl SamplesWriter for PlaneWriter<'_> {
             Plane::Count(counts) => line.write_samples(|x| counts[start + x] as f32),
             Plane::Component(vectors, axis) => line.write_samples(|x| vectors[start + x][axis]),
         };
-        // The line is a slice of memory that the encoder measured for exactly these samples.
+        // The line is a slice that the encoder sized for exactly these samples.
         written.expect("a line of samples fits the block made for it");
     }
 }

@@ -1,4 +1,4 @@
-//! The judge of pictures is judged: equal pictures pass, and every kind of difference is seen with the value it has.
+//! Tests of the image comparison: equal images pass, and every kind of difference is detected with its value.
 
 use crate::pictures::{coded, layered, plain, ramp};
 use lightmesh_image::{CompareError, Frame, Transfer, compare};
@@ -16,7 +16,7 @@ fn equal_pictures_differ_by_nothing() {
         let difference = &comparison.difference;
         assert_eq!((difference.width(), difference.height()), (frame.width(), frame.height()));
         assert!(difference.layers().is_none());
-        assert!(difference.color().iter().all(|color| color == &difference.color()[0]), "one colour stands for equal");
+        assert!(difference.color().iter().all(|color| color == &difference.color()[0]), "equal pixels have one colour");
     }
 }
 
@@ -39,7 +39,7 @@ fn one_changed_pixel_has_its_known_weight() {
     assert!(close(comparison.max_difference, 0.2), "{}", comparison.max_difference);
     assert!(comparison.mean_flip > 0.0);
     let map = comparison.difference.color();
-    assert_ne!(map[37], map[99], "the map shows where");
+    assert_ne!(map[37], map[99], "the map shows the location");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What is saved is what is loaded, in every format; what is damaged is refused.
+//! Round trips in every format; damaged files are rejected.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use crate::pictures::{coded, layered, ramp};
 use lightmesh_image::{DecodeError, Format, Frame, LoadError, Transfer, compare};
 use tempfile::tempdir;
 
-/// Sizes that need every kind of row padding, and more rows than one exr block has.
+/// Sizes that need every kind of row padding, and more rows than an exr block.
 const SIZES: [(u32, u32); 7] = [(1, 1), (2, 3), (3, 2), (5, 7), (7, 5), (16, 40), (33, 17)];
 
 fn saved(frame: &Frame, name: &str) -> Vec<u8> {
@@ -40,7 +40,7 @@ fn jpg_returns_nearly_the_same() {
         let loaded = Frame::decode(&saved(&frame, "a.jpg")).unwrap();
         let comparison = compare(&frame, &loaded).unwrap();
         assert!(comparison.rmse < 0.02, "{comparison:?}");
-        assert!(comparison.rmse > 0.0, "a lossy format that loses nothing is another format");
+        assert!(comparison.rmse > 0.0, "a lossy format must lose something");
     }
 }
 
@@ -95,7 +95,7 @@ fn damaged_bytes_never_panic() {
             for value in [0x00, 0x7f, 0x80, 0xff] {
                 let mut damaged = bytes.clone();
                 damaged[position] = value;
-                // Some damage goes unnoticed, as that of a colour; what is asked here is an end without a panic.
+                // Some damage goes unnoticed, such as a changed colour; here it only matters that nothing panics.
                 if let Ok(frame) = Frame::decode(&damaged) {
                     assert_eq!(frame.color().len(), frame.width() as usize * frame.height() as usize);
                 }
@@ -125,7 +125,7 @@ fn absurd_sizes_are_refused_by_the_header() {
     };
     assert_eq!(sized(40_000, 2_500), DecodeError::TooLarge { format: Format::Exr, width: 40_000, height: 40_000 });
     let error = sized(10_000, 625);
-    assert!(error.to_string().contains("channels of 1200000000 bytes cannot be read from"), "{error}");
+    assert!(error.to_string().contains("channels of 1200000000 bytes cannot be stored in"), "{error}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Pictures through the public interface: saved, loaded and compared.
+//! Images through the public interface: saved, loaded and compared.
 
 mod comparison;
 mod formats;

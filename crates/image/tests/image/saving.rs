@@ -1,4 +1,4 @@
-//! Where files can be saved, where not, and what is left behind.
+//! Where files can be saved and where not, and what is left behind.
 
 use std::fs;
 use std::path::Path;
@@ -41,7 +41,7 @@ fn directories_are_checked() {
     assert_eq!(names(folder.path()), ["pictures.png"], "the check leaves nothing");
 }
 
-/// No user, root included, can make files in /proc.
+/// No user, not even root, can create files in /proc.
 #[cfg(target_os = "linux")]
 #[test]
 fn unwritable_directories_are_found() {
@@ -56,7 +56,7 @@ fn a_failed_save_leaves_the_earlier_file() {
     let path = folder.path().join("wide.jpg");
     fs::write(&path, "earlier").unwrap();
     let error = plain(65_536, 1, [0.5; 3]).save(&path).unwrap_err();
-    assert!(matches!(error, SaveError::TooLarge { limit: "65535 pixels a side", .. }), "{error}");
+    assert!(matches!(error, SaveError::TooLarge { limit: "65535 pixels per side", .. }), "{error}");
     assert_eq!(fs::read(&path).unwrap(), b"earlier");
     assert_eq!(names(folder.path()), ["wide.jpg"], "no temporary file is left");
 }

@@ -3,12 +3,6 @@
 
 #include "accel/ray.cuh"
 
-// Origins farther than this many radii from the middle of the triangles are moved.
-#define REACH 8.0f
-// Directions whose largest component lies outside 2^-40 to 2^40 are scaled.
-#define LARGEST_DIRECTION 1.099511627776e12f
-#define SMALLEST_DIRECTION (1.0f / LARGEST_DIRECTION)
-
 // A ray near the triangles, and how its parameter relates to that of the ray asked for: t = start + t' · scale.
 struct NearRay {
     Ray ray;
@@ -54,7 +48,7 @@ DEVICE NearRay near_ray(const Approach &approach, const Ray &ray) {
     const Vec3 distance = abs(ray.origin - approach.center);
     const float reach = REACH * approach.radius;
     const bool near = distance.x <= reach && distance.y <= reach && distance.z <= reach;
-    const bool usual = largest >= SMALLEST_DIRECTION && largest <= LARGEST_DIRECTION && is_finite(ray.direction);
+    const bool usual = largest >= 1.0f / LARGEST_DIRECTION && largest <= LARGEST_DIRECTION && is_finite(ray.direction);
     if (near && usual && ray.t_max > 0.0f)
         return NearRay{ray, 1.0, 0.0};
     return far_ray(approach.center, approach.radius, ray);

@@ -6,16 +6,13 @@
 //! every rounding error in a walk.
 
 use glam::{DVec3, Vec3};
+use lightmesh_layout::constants::{LARGEST_DIRECTION, REACH};
 use lightmesh_scene::Bounds;
 
 use super::{Hit, Ray, Triangle};
 
-/// Origins farther than this many radii from the middle of the triangles are moved.
-pub(super) const REACH: f32 = 8.0;
-
 /// Directions whose largest component lies outside these powers of two are scaled.
-const DIRECTION_RANGE: std::ops::RangeInclusive<f32> = 1.0 / SCALE..=SCALE;
-const SCALE: f32 = (1u64 << 40) as f32;
+const DIRECTION_RANGE: std::ops::RangeInclusive<f32> = 1.0 / LARGEST_DIRECTION..=LARGEST_DIRECTION;
 
 /// The sphere of interest: where the triangles of a structure are.
 #[derive(Clone, Copy, Debug)]

@@ -1,10 +1,14 @@
 //! Asks every triangle: the oracle that the other structures are held against.
 
-use lightmesh_scene::Bounds;
+use fearless_simd::Level;
+use fearless_simd::prelude::*;
+use fearless_simd_macros::simd;
 
-use super::approach::{Approach, NearRay, overlap, usable};
+use super::approach::{Approach, NearRay, usable};
+use super::sieve::Sieve;
 use super::triangle::RayShear;
-use super::{Accelerator, Form, Hit, Ray, ShortSegments, Triangle};
+use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Triangle};
+use crate::simd::dispatch;
 
 /// A list of triangles, all of which are asked.
 #[derive(Clone, Debug)]
@@ -59,10 +63,8 @@ impl Accelerator for BruteForce {
         segments.ask(self.triangles.iter(), blocked);
     }
 
-    fn triangles_in(&self, region: &Bounds, found: &mut Vec<u32>) {
-        found.clear();
-        found.extend(self.triangles.iter().filter(|triangle| overlap(&triangle.bounds(), region)).map(Triangle::index));
-        found.sort_unstable();
+    fn triangles_in(&self, region: &Region, found: &mut Vec<u32>) {
+        dispatch!(Level::new(), simd => triangles_in(simd, &self.triangles, region, found));
     }
 
     fn name(&self) -> &'static str {
@@ -76,4 +78,13 @@ impl Accelerator for BruteForce {
     fn memory(&self) -> usize {
         size_of_val(self.triangles.as_slice())
     }
+}
+
+#[simd]
+fn triangles_in<S: Simd>(simd: S, triangles: &[Triangle], region: &Region, found: &mut Vec<u32>) {
+    let mut sieve = Sieve::new(simd, region, found);
+    for triangle in triangles {
+        sieve.take(triangle);
+    }
+    sieve.finish();
 }

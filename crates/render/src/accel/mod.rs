@@ -20,6 +20,8 @@ mod brute_force;
 mod bvh;
 mod grid;
 mod packet;
+mod region;
+mod sieve;
 #[cfg(test)]
 mod tests;
 pub mod triangle;
@@ -31,6 +33,7 @@ use lightmesh_scene::Bounds;
 pub use brute_force::BruteForce;
 pub use bvh::Bvh;
 pub use grid::{Grid, GridError, GridFault, GridFileError, GridOptions, GridSaveError, Levels};
+pub use region::{Region, TangentPlanes};
 pub use triangle::{ShortTest, Triangle};
 
 /// A ray or segment: the points `origin + t · direction` with `0 < t < t_max`. The direction need not be unit length; a
@@ -61,7 +64,7 @@ pub struct Hit {
 
 impl Hit {
     /// The triangle index that stands for "no triangle".
-    pub const NONE: u32 = u32::MAX;
+    pub const NONE: u32 = lightmesh_layout::geometry::Hit::NONE;
 
     /// The answer for a ray that hits nothing.
     pub const MISS: Hit = Hit { t: f32::INFINITY, u: 0.0, v: 0.0, triangle: Hit::NONE };
@@ -131,9 +134,10 @@ pub trait Accelerator: Send + Sync {
     /// overwritten.
     fn short_segments(&self, segments: &ShortSegments, blocked: &mut [bool]);
 
-    /// Replaces the content of `found` by all triangles that meet `region` (a closed box), each once, in ascending order of
-    /// index. May give others as well, but only such whose bounding box overlaps the region.
-    fn triangles_in(&self, region: &Bounds, found: &mut Vec<u32>);
+    /// Replaces the content of `found` by all triangles that meet `region`, each once, in ascending order of index. May give others
+    /// as well, but only such whose bounding box the region [may meet](Region). A list and a BVH give all of those; a grid need not
+    /// find a triangle that stays away from the region's cells though its bounding box does not.
+    fn triangles_in(&self, region: &Region, found: &mut Vec<u32>);
 
     /// The word for it in settings and statistics: `grid`, `bvh` or `brute-force`.
     fn name(&self) -> &'static str;

@@ -3,9 +3,7 @@
 
 #include "cuda/prelude.cuh"
 
-// The triangle index that stands for "no triangle".
-#define HIT_NONE 0xffffffffu
-#define INFINITE __uint_as_float(0x7f800000u)
+#define INFINITE __uint_as_float(F32_INFINITY_BITS)
 
 // The points origin + t · direction with 0 < t < t_max.
 struct Ray {
@@ -13,7 +11,7 @@ struct Ray {
     float t_max;
 };
 
-DEVICE Hit hit_nothing() { return Hit{INFINITE, 0.0f, 0.0f, HIT_NONE}; }
+DEVICE Hit hit_nothing() { return Hit{INFINITE, 0.0f, 0.0f, Hit::NONE}; }
 
 // Hits are moved sixteen bytes at once.
 DEVICE Hit load_hit(const Hit *hits, unsigned ray) {

@@ -59,7 +59,7 @@ struct Closest {
     unsigned best;
 };
 
-DEVICE Closest find_closest(const Ray &ray) { return Closest{ray_shear(ray.origin, ray.direction), ray.t_max, HIT_NONE}; }
+DEVICE Closest find_closest(const Ray &ray) { return Closest{ray_shear(ray.origin, ray.direction), ray.t_max, Hit::NONE}; }
 
 DEVICE float limit(const Closest &closest) { return closest.limit; }
 
@@ -73,7 +73,7 @@ DEVICE bool ask(Closest &closest, const Triangle *triangles, Set set) {
             continue;
         const float t = hit_distance(closest.ray, corners, weights);
         // As near as the best one: the smaller index wins.
-        const bool wins = t < closest.limit || (t == closest.limit && closest.best != HIT_NONE &&
+        const bool wins = t < closest.limit || (t == closest.limit && closest.best != Hit::NONE &&
                                                 triangle_index(triangles + triangle) < triangle_index(triangles + closest.best));
         if (t > 0.0f && wins) {
             closest.limit = t;
@@ -85,7 +85,7 @@ DEVICE bool ask(Closest &closest, const Triangle *triangles, Set set) {
 
 // The hit that was found. Its barycentric weights are computed only now, once.
 DEVICE Hit found_hit(const Closest &closest, const Triangle *triangles) {
-    if (closest.best == HIT_NONE)
+    if (closest.best == Hit::NONE)
         return hit_nothing();
     const Triangle *triangle = triangles + closest.best;
     Sheared corners;

@@ -2,34 +2,44 @@
 
 use std::ops::Range;
 
-use super::Backend;
+use super::{Backend, Needs, SeenOf, WaveOf};
 use crate::accel::Hit;
+use crate::bands;
+use crate::cache::{HostTable, Kept};
+use crate::data::cells::CellGroups;
+use crate::data::lit::Lit;
+use crate::data::masks::Masks;
+use crate::data::picture::Picture;
+use crate::data::rays::RayList;
+use crate::data::visibility::Visibility;
 use crate::device::cpu_name;
+use crate::error::RenderError;
 use crate::job::Job;
 use crate::light_mesh::{LightMesh, UsedPoints};
-use crate::modes::{Plan, bands};
+use crate::plan::Plan;
 use crate::prepared::PreparedScene;
-use crate::stages::interpolate::cpu::Interpolation;
-use crate::stages::long_tests::Lit;
-use crate::stages::primary_rays::RayList;
-use crate::stages::shadow_rays::Visibility;
-use crate::stages::short_tests::Masks;
-use crate::stages::{light_points, long_tests, mirror_rays, primary_rays, shade, shadow_rays, short_tests};
+use crate::shadow::Aim;
+use crate::stage::Stage;
+use crate::stages::{
+    cells, interpolate, light_points, long_tests, mirror_rays, primary_rays, shade, shadow_rays, short_tests,
+};
 use crate::view::View;
-use crate::{Picture, RenderError, Stage};
 
 /// The host's processor. Results do not depend on the number of threads.
 #[derive(Clone, Copy, Debug)]
 pub struct Cpu;
 
 impl Backend for Cpu {
+    type Scene = PreparedScene;
     type Rays = RayList;
     type Hits = Vec<Hit>;
+    type Cells = CellGroups;
     type Masks = Masks;
     type Points = UsedPoints;
     type Lit = Lit;
     type Visibility = Visibility;
     type Film = Picture;
+    type Table = HostTable;
 
     fn kind(&self) -> &'static str {
         "cpu"
@@ -52,8 +62,8 @@ impl Backend for Cpu {
         job.wall_time(stage, work)
     }
 
-    fn upload(&self, _: &Job, _: &PreparedScene, _: &Plan) -> Result<(), RenderError> {
-        Ok(())
+    fn scene(&self, _: &Job, scene: &PreparedScene, _: &Needs) -> Result<PreparedScene, RenderError> {
+        Ok(scene.clone())
     }
 
     fn rows_at_once(&self, scene: &PreparedScene, plan: &Plan) -> Result<u32, RenderError> {
@@ -76,90 +86,65 @@ impl Backend for Cpu {
         Ok(primary_rays::cpu::primary_rays(job, scene, rays))
     }
 
-    fn short_tests(
-        &self,
-        job: &Job,
-        scene: &PreparedScene,
-        rays: &RayList,
-        hits: &Vec<Hit>,
-        mesh: &LightMesh,
-    ) -> Result<Masks, RenderError> {
-        Ok(short_tests::cpu::short_tests(job, scene, rays, hits, mesh, job.short_tests))
+    fn cells(&self, wave: &WaveOf<Cpu>, mesh: &LightMesh) -> Result<CellGroups, RenderError> {
+        Ok(cells::cpu::cells(wave, &mesh.lattice))
     }
 
-    fn light_points(&self, job: &Job, masks: &Masks, mesh: &LightMesh) -> Result<UsedPoints, RenderError> {
-        Ok(light_points::cpu::light_points(job, masks, mesh))
+    fn cell_pieces(&self, cells: &CellGroups) -> usize {
+        cells.members().len()
+    }
+
+    fn short_tests(&self, wave: &WaveOf<Cpu>, cells: &CellGroups, mesh: &LightMesh) -> Result<Masks, RenderError> {
+        Ok(short_tests::cpu::short_tests(wave, cells, mesh))
+    }
+
+    fn light_points(
+        &self,
+        job: &Job,
+        cells: &CellGroups,
+        masks: &Masks,
+        mesh: &LightMesh,
+    ) -> Result<UsedPoints, RenderError> {
+        Ok(light_points::cpu::light_points(job, cells, masks, mesh))
+    }
+
+    fn long_test_count(&self, wave: &WaveOf<Cpu>, points: &UsedPoints) -> usize {
+        points.count() * wave.job.sampling.rays_to(wave.lights())
     }
 
     fn long_tests(
         &self,
-        job: &Job,
-        scene: &PreparedScene,
+        wave: &WaveOf<Cpu>,
         points: &UsedPoints,
         mesh: &LightMesh,
+        kept: Option<&mut Kept<HostTable>>,
     ) -> Result<Lit, RenderError> {
-        Ok(long_tests::cpu::long_tests(job, scene, points, mesh))
+        Ok(long_tests::cpu::long_tests(wave, points, mesh, kept))
     }
 
-    fn interpolate(
-        &self,
-        job: &Job,
-        scene: &PreparedScene,
-        list: &RayList,
-        hits: &Vec<Hit>,
-        masks: &Masks,
-        points: &UsedPoints,
-        lit: &Lit,
-        mesh: &LightMesh,
-    ) -> Result<Visibility, RenderError> {
-        Ok(Interpolation { job, scene, list, hits, masks, points, lit, mesh }.run())
+    fn interpolate(&self, wave: &WaveOf<Cpu>, seen: &SeenOf<Cpu>) -> Result<Visibility, RenderError> {
+        Ok(interpolate::cpu::interpolate(wave, seen))
     }
 
-    fn shadow_rays(
-        &self,
-        job: &Job,
-        scene: &PreparedScene,
-        rays: &RayList,
-        hits: &Vec<Hit>,
-    ) -> Result<Visibility, RenderError> {
-        Ok(shadow_rays::cpu::shadow_rays(job, scene, rays, hits))
+    fn shadow_rays(&self, wave: &WaveOf<Cpu>, aim: &Aim) -> Result<Visibility, RenderError> {
+        Ok(shadow_rays::cpu::shadow_rays(wave, aim))
     }
 
-    fn area_shadows(
-        &self,
-        job: &Job,
-        scene: &PreparedScene,
-        rays: &RayList,
-        hits: &Vec<Hit>,
-    ) -> Result<Visibility, RenderError> {
-        Ok(shadow_rays::cpu::area_shadows(job, scene, rays, hits))
-    }
-
-    fn shade(
-        &self,
-        job: &Job,
-        scene: &PreparedScene,
-        rays: &RayList,
-        hits: &Vec<Hit>,
-        visibility: &Visibility,
-        film: &mut Picture,
-    ) -> Result<(), RenderError> {
-        shade::cpu::shade(job, scene, rays, hits, visibility, film);
+    fn shade(&self, wave: &WaveOf<Cpu>, visibility: &Visibility, film: &mut Picture) -> Result<(), RenderError> {
+        shade::cpu::shade(wave, visibility, film);
         Ok(())
     }
 
-    fn develop(&self, _: &Job, _: &PreparedScene, film: Picture, picture: &mut Picture) -> Result<(), RenderError> {
+    fn mirror_rays(&self, wave: &WaveOf<Cpu>) -> Result<RayList, RenderError> {
+        Ok(mirror_rays::cpu::mirror_rays(wave))
+    }
+
+    fn finish(&self, _: &Job) -> Result<(), RenderError> {
+        Ok(())
+    }
+
+    fn develop(&self, _: &PreparedScene, film: Picture, picture: &mut Picture) -> Result<(), RenderError> {
         picture.take(film);
         Ok(())
-    }
-
-    fn mirror_rays(
-        &self,
-        _: &Job,
-        scene: &PreparedScene,
-        rays: &RayList,
-        hits: &Vec<Hit>,
-    ) -> Result<RayList, RenderError> {
-        Ok(mirror_rays::cpu::mirror_rays(scene, rays, hits))
     }
 }

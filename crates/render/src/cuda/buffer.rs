@@ -7,7 +7,7 @@ use bytemuck::Pod;
 use lightmesh_layout::{In, Out};
 
 use super::{Fault, Runtime};
-use crate::RenderError;
+use crate::error::RenderError;
 
 /// A device's memory, with an account of what is taken.
 pub struct Pool<R: Runtime> {

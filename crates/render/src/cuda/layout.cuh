@@ -3,22 +3,121 @@
 // What host and device share: constants and records.
 #pragma once
 
+// Threads of a warp, and surface points of an item at most.
+#define WARP 32u
+// Edge of the square of pixels that a block takes, one a thread.
+#define BLOCK_SIDE 16u
+// Threads of the blocks that take one ray, one light point or one slot a thread.
 #define BLOCK 256u
-#define VALUES_OF_THREAD 4u
-#define BVH_STACK 64u
-#define AXIS_BITS 19u
-#define HORIZON_SAMPLES 64u
-#define LIGHT_TARGETS 16u
+// Edge of the square of pixels whose surface points one block groups by cell.
+#define TILE_SIDE 32u
+// Rays of such a tile, or of a list, that one block groups.
 #define TILE 1024u
+// Values that a thread of a prefix sum takes.
+#define VALUES_OF_THREAD 4u
+// The largest number of single precision.
+#define F32_MAX 0x1.fffffep127f
+// The largest number of double precision.
+#define F64_MAX 0x1.fffffffffffffp1023
+// The bits of infinity in single precision.
+#define F32_INFINITY_BITS 0x7f800000u
+// 2 π.
+#define TAU 0x1.921fb6p2f
+// 1 / π.
+#define FRAC_1_PI 0x1.45f306p-2f
+// The largest relative error of one operation in single precision, 2^-24.
+#define UNIT_ROUNDOFF 0x1p-24f
+// Ray origins farther than this many radii from the middle of the triangles are moved.
+#define REACH 0x1p3f
+// Directions whose largest component is larger, 2^40, or smaller than the reciprocal are scaled.
+#define LARGEST_DIRECTION 0x1p40f
+// Direction components below this share of the largest, 2^-30, count as such a share or as zero.
+#define LEAST_COMPONENT 0x1p-30f
+// Relative margin of tests against the boxes of a BVH, 2^-19; derived in bvh/walk.rs.
+#define BVH_MARGIN 0x1p-19f
+// What tests of a box against a region are given for rounding, 2^-20 or 16 units of roundoff; derived in accel/region/.
+#define REGION_ROUNDING 0x1p-20f
+// Entries of the stack of a walk through the BVH: the most levels that it may have.
+#define BVH_STACK 64u
+// In the word of a walk's hits in a node the first bit of a child that is a node.
+#define FIRST_INNER 24u
+// All bits of children that are nodes.
+#define INNER_HITS 0xff000000u
+// All bits of triangles in children that are leaves.
+#define TRIANGLE_HITS 0x00ffffffu
+// The hits with which a walk begins: the root as the only child, in the slot entered first.
+#define ROOT_HIT 0x80000000u
+// Bound on the relative error of a chain of 32 operations (Higham's gamma).
+#define GAMMA_32 0x1.00002p-19f
+// Below this square of twice its area a triangle's normal has lost its bits to underflow.
+#define LEAST_SQUARE 0x1.4484cp-100f
+// Below this square of its length an interpolated normal has cancelled out.
+#define LEAST_SMOOTH_SQUARE 0x1.197998p-40f
+// Bits of a brick's key for each axis.
+#define AXIS_BITS 19u
+// Bits of a light point's index on an axis that say where in its brick it lies: bricks have 4 x 4 x 4 points.
+#define BRICK_BITS 2u
+// Bits of a light point's index on an axis.
+#define INDEX_BITS 21u
+// Added to indices, so that keys have no sign.
+#define INDEX_BIAS 1048576
+// Bits of a light point's number within its brick.
+#define POINT_BITS 6u
+// What stands for the place of a brick that is not there.
+#define NO_SLOT 0xffffffffu
+// 2^64 over the golden ratio: multiplied with it, numbers that follow each other lie far apart (Fibonacci hashing, SplitMix64).
+#define GOLDEN_RATIO 0x9e3779b97f4a7c15ull
+// The farthest that the template of the largest radius reaches, in steps; added to offsets before they are packed.
+#define MOST_REACH 16
+// Lines along x of that template.
+#define TEMPLATE_LINES 1024
+// Points of a light that decide how much of it stands above the horizon.
+#define HORIZON_SAMPLES 64u
+// Points of a light with a size from which its unshadowed light is computed.
+#define LIGHT_TARGETS 16u
+// First factor of the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
+#define MIX_1 0xbf58476d1ce4e5b9ull
+// Second factor.
+#define MIX_2 0x94d049bb133111ebull
+// The upper byte of each pair.
+#define UPPER_BYTES 0xff00ff00u
+// The upper half of each byte.
+#define UPPER_NIBBLES 0xf0f0f0f0u
+// The upper pair of each four bits.
+#define UPPER_PAIRS 0xccccccccu
+// The upper bit of each pair.
+#define UPPER_BITS 0xaaaaaaaau
+// First factor of Owen scrambling (Laine and Karras 2011, factors of Burley's paper, JCGT 2020).
+#define OWEN_1 0x6c50b47cu
+// Second factor.
+#define OWEN_2 0xb82f1e52u
+// Third factor.
+#define OWEN_3 0xc7afe638u
+// Last factor.
+#define OWEN_4 0x8d22f6e6u
+// Binary digits of a sample's coordinate: as many as a float has.
+#define SAMPLE_DIGITS 24u
+// What the last of them is worth.
+#define LAST_DIGIT 0x1p-24f
+// Tangent planes of an item's surface points that short tests tell apart.
 #define TANGENT_PLANES 4u
+// Words of a candidate of the short tests by cell, a triangle that can matter.
 #define CANDIDATE_WORDS 24u
+// Candidates of one round.
 #define CANDIDATES 32u
+// Pairs of a candidate and a light point that are tested in one go.
 #define LISTED_TARGETS 64u
+// Words of such a pair.
 #define TARGET_WORDS 4u
+// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of the search adds.
 #define FOUND_TRIANGLES 128u
+// Entries of the search's stack up to which a round takes four nodes.
 #define STACK_OF_ROUNDS 64u
+// Entries kept beyond those for each level of the tree.
 #define STACK_PER_LEVEL 7u
+// Warps of a block that marks light points or interpolates, an item each.
 #define ITEM_WARPS 4u
+// Lights without a size that are interpolated at once, at most.
 #define MOST_LIGHTS 3u
 
 #if defined(__CUDACC_RTC__)
@@ -26,6 +125,36 @@
 #else
 #define PLACE_OF(record, field) __builtin_offsetof(record, field)
 #endif
+
+struct alignas(8) Counters {
+    unsigned long long rays;
+    unsigned long long hits;
+    unsigned long long surface_points;
+    unsigned long long half_ball;
+    unsigned long long used;
+    unsigned long long fallbacks;
+    unsigned long long light_points;
+    unsigned long long short_tests;
+    unsigned long long short_tests_culled;
+    unsigned long long long_tests;
+    unsigned long long long_tests_saved;
+    unsigned long long shadow_rays;
+    unsigned long long overruns;
+};
+static_assert(sizeof(Counters) == 104, "size of Counters");
+static_assert(PLACE_OF(Counters, rays) == 0, "place of Counters::rays");
+static_assert(PLACE_OF(Counters, hits) == 8, "place of Counters::hits");
+static_assert(PLACE_OF(Counters, surface_points) == 16, "place of Counters::surface_points");
+static_assert(PLACE_OF(Counters, half_ball) == 24, "place of Counters::half_ball");
+static_assert(PLACE_OF(Counters, used) == 32, "place of Counters::used");
+static_assert(PLACE_OF(Counters, fallbacks) == 40, "place of Counters::fallbacks");
+static_assert(PLACE_OF(Counters, light_points) == 48, "place of Counters::light_points");
+static_assert(PLACE_OF(Counters, short_tests) == 56, "place of Counters::short_tests");
+static_assert(PLACE_OF(Counters, short_tests_culled) == 64, "place of Counters::short_tests_culled");
+static_assert(PLACE_OF(Counters, long_tests) == 72, "place of Counters::long_tests");
+static_assert(PLACE_OF(Counters, long_tests_saved) == 80, "place of Counters::long_tests_saved");
+static_assert(PLACE_OF(Counters, shadow_rays) == 88, "place of Counters::shadow_rays");
+static_assert(PLACE_OF(Counters, overruns) == 96, "place of Counters::overruns");
 
 struct alignas(4) Vec3 {
     float x;
@@ -48,6 +177,10 @@ static_assert(PLACE_OF(DVec3, y) == 8, "place of DVec3::y");
 static_assert(PLACE_OF(DVec3, z) == 16, "place of DVec3::z");
 
 struct alignas(4) Hit {
+    enum : unsigned {
+        // The triangle index that stands for "no triangle".
+        NONE = 0xffffffffu,
+    };
     float t;
     float u;
     float v;
@@ -195,33 +328,31 @@ static_assert(PLACE_OF(Rays, list) == 64, "place of Rays::list");
 static_assert(PLACE_OF(Rays, first_pixel) == 72, "place of Rays::first_pixel");
 static_assert(PLACE_OF(Rays, count) == 76, "place of Rays::count");
 
-struct alignas(8) Counters {
-    unsigned long long object_points;
-    unsigned long long half_ball;
-    unsigned long long used;
-    unsigned long long short_tests;
-    unsigned long long fallbacks;
-    unsigned long long shadow_rays;
-    unsigned long long overruns;
-    unsigned long long hits;
-};
-static_assert(sizeof(Counters) == 64, "size of Counters");
-static_assert(PLACE_OF(Counters, object_points) == 0, "place of Counters::object_points");
-static_assert(PLACE_OF(Counters, half_ball) == 8, "place of Counters::half_ball");
-static_assert(PLACE_OF(Counters, used) == 16, "place of Counters::used");
-static_assert(PLACE_OF(Counters, short_tests) == 24, "place of Counters::short_tests");
-static_assert(PLACE_OF(Counters, fallbacks) == 32, "place of Counters::fallbacks");
-static_assert(PLACE_OF(Counters, shadow_rays) == 40, "place of Counters::shadow_rays");
-static_assert(PLACE_OF(Counters, overruns) == 48, "place of Counters::overruns");
-static_assert(PLACE_OF(Counters, hits) == 56, "place of Counters::hits");
-
 struct alignas(8) Tally {
+    enum : unsigned {
+        // Number of shards.
+        SHARDS = 64u,
+    };
     Counters *shards;
 };
 static_assert(sizeof(Tally) == 8, "size of Tally");
 static_assert(PLACE_OF(Tally, shards) == 0, "place of Tally::shards");
 
 struct alignas(4) Light {
+    enum : unsigned {
+        // A point light.
+        POINT = 0u,
+        // Parallel light.
+        DIRECTIONAL = 1u,
+        // A spot.
+        SPOT = 2u,
+        // A ball. This kind and all that follow have a size.
+        SPHERE = 3u,
+        // A disk.
+        DISK = 4u,
+        // A rectangle.
+        RECTANGLE = 5u,
+    };
     Vec3 position;
     unsigned kind;
     Vec3 direction;
@@ -264,6 +395,14 @@ static_assert(PLACE_OF(Uv, u) == 0, "place of Uv::u");
 static_assert(PLACE_OF(Uv, v) == 4, "place of Uv::v");
 
 struct alignas(8) Texture {
+    enum : unsigned {
+        // The same again.
+        REPEAT = 0u,
+        // The same again, every other time mirrored.
+        MIRROR = 1u,
+        // The outermost texels.
+        CLAMP = 2u,
+    };
     const unsigned *texels;
     unsigned size[2];
     unsigned wrap[2];
@@ -280,6 +419,10 @@ static_assert(PLACE_OF(Texture, v_axis) == 32, "place of Texture::v_axis");
 static_assert(PLACE_OF(Texture, translation) == 40, "place of Texture::translation");
 
 struct alignas(4) Material {
+    enum : unsigned {
+        // The material has no texture.
+        NO_TEXTURE = 0xffffffffu,
+    };
     Vec3 ka;
     float shininess;
     Vec3 kd;
@@ -361,8 +504,19 @@ static_assert(PLACE_OF(Sampling, seed) == 0, "place of Sampling::seed");
 static_assert(PLACE_OF(Sampling, samples) == 8, "place of Sampling::samples");
 static_assert(PLACE_OF(Sampling, spread) == 12, "place of Sampling::spread");
 
+// DO(structure, …) for each acceleration structure, by the name of its field in `Scene`.
+#define PER_STRUCTURE(DO, ...) DO(bvh, __VA_ARGS__) DO(grid, __VA_ARGS__) DO(brute_force, __VA_ARGS__)
+
 struct alignas(8) LightMesh {
-    Vec3 origin;
+    enum : unsigned {
+        // w of formula (3) is 1.
+        WEIGHT_CONSTANT = 0u,
+        // w falls with the square of the distance.
+        WEIGHT_QUADRATIC = 1u,
+        // w falls with the square of that.
+        WEIGHT_SMOOTH = 2u,
+    };
+    Vec3 anchor;
     float step;
     float radius;
     float least_height;
@@ -372,13 +526,13 @@ struct alignas(8) LightMesh {
     unsigned points;
     unsigned words;
     int reach;
-    unsigned dims[3];
+    unsigned number[3];
     unsigned lines;
     const unsigned *offsets;
     const unsigned *rows;
 };
 static_assert(sizeof(LightMesh) == 80, "size of LightMesh");
-static_assert(PLACE_OF(LightMesh, origin) == 0, "place of LightMesh::origin");
+static_assert(PLACE_OF(LightMesh, anchor) == 0, "place of LightMesh::anchor");
 static_assert(PLACE_OF(LightMesh, step) == 12, "place of LightMesh::step");
 static_assert(PLACE_OF(LightMesh, radius) == 16, "place of LightMesh::radius");
 static_assert(PLACE_OF(LightMesh, least_height) == 20, "place of LightMesh::least_height");
@@ -388,7 +542,7 @@ static_assert(PLACE_OF(LightMesh, weight) == 32, "place of LightMesh::weight");
 static_assert(PLACE_OF(LightMesh, points) == 36, "place of LightMesh::points");
 static_assert(PLACE_OF(LightMesh, words) == 40, "place of LightMesh::words");
 static_assert(PLACE_OF(LightMesh, reach) == 44, "place of LightMesh::reach");
-static_assert(PLACE_OF(LightMesh, dims) == 48, "place of LightMesh::dims");
+static_assert(PLACE_OF(LightMesh, number) == 48, "place of LightMesh::number");
 static_assert(PLACE_OF(LightMesh, lines) == 60, "place of LightMesh::lines");
 static_assert(PLACE_OF(LightMesh, offsets) == 64, "place of LightMesh::offsets");
 static_assert(PLACE_OF(LightMesh, rows) == 72, "place of LightMesh::rows");
@@ -435,6 +589,16 @@ static_assert(sizeof(LitBy) == 16, "size of LitBy");
 static_assert(PLACE_OF(LitBy, bits) == 0, "place of LitBy::bits");
 static_assert(PLACE_OF(LitBy, seen) == 8, "place of LitBy::seen");
 
+struct alignas(8) KeptBy {
+    unsigned long long *known;
+    unsigned long long *bits;
+    unsigned short *seen;
+};
+static_assert(sizeof(KeptBy) == 24, "size of KeptBy");
+static_assert(PLACE_OF(KeptBy, known) == 0, "place of KeptBy::known");
+static_assert(PLACE_OF(KeptBy, bits) == 8, "place of KeptBy::bits");
+static_assert(PLACE_OF(KeptBy, seen) == 16, "place of KeptBy::seen");
+
 struct alignas(8) UsedPoints {
     BrickTable table;
     const unsigned long long *used;
@@ -466,31 +630,28 @@ struct alignas(8) ShadowRays {
     Rays rays;
     const Hit *hits;
     float *share;
-    Vec3 *direct;
     Sampling sampling;
     Tally tally;
     unsigned long long first_block;
     unsigned long long first_sample;
     unsigned long long sample_count;
 };
-static_assert(sizeof(ShadowRays) == 456, "size of ShadowRays");
+static_assert(sizeof(ShadowRays) == 448, "size of ShadowRays");
 static_assert(PLACE_OF(ShadowRays, scene) == 0, "place of ShadowRays::scene");
 static_assert(PLACE_OF(ShadowRays, rays) == 304, "place of ShadowRays::rays");
 static_assert(PLACE_OF(ShadowRays, hits) == 384, "place of ShadowRays::hits");
 static_assert(PLACE_OF(ShadowRays, share) == 392, "place of ShadowRays::share");
-static_assert(PLACE_OF(ShadowRays, direct) == 400, "place of ShadowRays::direct");
-static_assert(PLACE_OF(ShadowRays, sampling) == 408, "place of ShadowRays::sampling");
-static_assert(PLACE_OF(ShadowRays, tally) == 424, "place of ShadowRays::tally");
-static_assert(PLACE_OF(ShadowRays, first_block) == 432, "place of ShadowRays::first_block");
-static_assert(PLACE_OF(ShadowRays, first_sample) == 440, "place of ShadowRays::first_sample");
-static_assert(PLACE_OF(ShadowRays, sample_count) == 448, "place of ShadowRays::sample_count");
+static_assert(PLACE_OF(ShadowRays, sampling) == 400, "place of ShadowRays::sampling");
+static_assert(PLACE_OF(ShadowRays, tally) == 416, "place of ShadowRays::tally");
+static_assert(PLACE_OF(ShadowRays, first_block) == 424, "place of ShadowRays::first_block");
+static_assert(PLACE_OF(ShadowRays, first_sample) == 432, "place of ShadowRays::first_sample");
+static_assert(PLACE_OF(ShadowRays, sample_count) == 440, "place of ShadowRays::sample_count");
 
 struct alignas(8) Shade {
     Scene scene;
     Rays rays;
     const Hit *hits;
     const float *share;
-    const Vec3 *direct;
     const unsigned *used;
     unsigned long long film_pixel;
     Vec3 *color;
@@ -502,22 +663,21 @@ struct alignas(8) Shade {
     unsigned long long film_pixels;
     unsigned long long first_block;
 };
-static_assert(sizeof(Shade) == 488, "size of Shade");
+static_assert(sizeof(Shade) == 480, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
 static_assert(PLACE_OF(Shade, rays) == 304, "place of Shade::rays");
 static_assert(PLACE_OF(Shade, hits) == 384, "place of Shade::hits");
 static_assert(PLACE_OF(Shade, share) == 392, "place of Shade::share");
-static_assert(PLACE_OF(Shade, direct) == 400, "place of Shade::direct");
-static_assert(PLACE_OF(Shade, used) == 408, "place of Shade::used");
-static_assert(PLACE_OF(Shade, film_pixel) == 416, "place of Shade::film_pixel");
-static_assert(PLACE_OF(Shade, color) == 424, "place of Shade::color");
-static_assert(PLACE_OF(Shade, depth) == 432, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 440, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 448, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 456, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 464, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, film_pixels) == 472, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 480, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, used) == 400, "place of Shade::used");
+static_assert(PLACE_OF(Shade, film_pixel) == 408, "place of Shade::film_pixel");
+static_assert(PLACE_OF(Shade, color) == 416, "place of Shade::color");
+static_assert(PLACE_OF(Shade, depth) == 424, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 432, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 440, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 448, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 456, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, film_pixels) == 464, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 472, "place of Shade::first_block");
 
 struct alignas(8) MirrorRays {
     Scene scene;
@@ -563,12 +723,11 @@ struct alignas(8) ShortTests {
     const unsigned *members;
     const Item *items;
     unsigned *masks;
-    unsigned long long *marks;
     Tally tally;
     unsigned long long first_item;
     unsigned long long item_count;
 };
-static_assert(sizeof(ShortTests) == 528, "size of ShortTests");
+static_assert(sizeof(ShortTests) == 520, "size of ShortTests");
 static_assert(PLACE_OF(ShortTests, scene) == 0, "place of ShortTests::scene");
 static_assert(PLACE_OF(ShortTests, rays) == 304, "place of ShortTests::rays");
 static_assert(PLACE_OF(ShortTests, hits) == 384, "place of ShortTests::hits");
@@ -576,15 +735,15 @@ static_assert(PLACE_OF(ShortTests, mesh) == 392, "place of ShortTests::mesh");
 static_assert(PLACE_OF(ShortTests, members) == 472, "place of ShortTests::members");
 static_assert(PLACE_OF(ShortTests, items) == 480, "place of ShortTests::items");
 static_assert(PLACE_OF(ShortTests, masks) == 488, "place of ShortTests::masks");
-static_assert(PLACE_OF(ShortTests, marks) == 496, "place of ShortTests::marks");
-static_assert(PLACE_OF(ShortTests, tally) == 504, "place of ShortTests::tally");
-static_assert(PLACE_OF(ShortTests, first_item) == 512, "place of ShortTests::first_item");
-static_assert(PLACE_OF(ShortTests, item_count) == 520, "place of ShortTests::item_count");
+static_assert(PLACE_OF(ShortTests, tally) == 496, "place of ShortTests::tally");
+static_assert(PLACE_OF(ShortTests, first_item) == 504, "place of ShortTests::first_item");
+static_assert(PLACE_OF(ShortTests, item_count) == 512, "place of ShortTests::item_count");
 
 struct alignas(8) LightPoints {
     LightMesh mesh;
     const Item *items;
-    const unsigned long long *marks;
+    const unsigned *masks;
+    unsigned long long *marks;
     unsigned long long first_item;
     unsigned long long item_count;
     BrickTable table;
@@ -594,24 +753,25 @@ struct alignas(8) LightPoints {
     unsigned *bricks;
     unsigned *slots;
 };
-static_assert(sizeof(LightPoints) == 168, "size of LightPoints");
+static_assert(sizeof(LightPoints) == 176, "size of LightPoints");
 static_assert(PLACE_OF(LightPoints, mesh) == 0, "place of LightPoints::mesh");
 static_assert(PLACE_OF(LightPoints, items) == 80, "place of LightPoints::items");
-static_assert(PLACE_OF(LightPoints, marks) == 88, "place of LightPoints::marks");
-static_assert(PLACE_OF(LightPoints, first_item) == 96, "place of LightPoints::first_item");
-static_assert(PLACE_OF(LightPoints, item_count) == 104, "place of LightPoints::item_count");
-static_assert(PLACE_OF(LightPoints, table) == 112, "place of LightPoints::table");
-static_assert(PLACE_OF(LightPoints, used) == 128, "place of LightPoints::used");
-static_assert(PLACE_OF(LightPoints, rank) == 136, "place of LightPoints::rank");
-static_assert(PLACE_OF(LightPoints, points) == 144, "place of LightPoints::points");
-static_assert(PLACE_OF(LightPoints, bricks) == 152, "place of LightPoints::bricks");
-static_assert(PLACE_OF(LightPoints, slots) == 160, "place of LightPoints::slots");
+static_assert(PLACE_OF(LightPoints, masks) == 88, "place of LightPoints::masks");
+static_assert(PLACE_OF(LightPoints, marks) == 96, "place of LightPoints::marks");
+static_assert(PLACE_OF(LightPoints, first_item) == 104, "place of LightPoints::first_item");
+static_assert(PLACE_OF(LightPoints, item_count) == 112, "place of LightPoints::item_count");
+static_assert(PLACE_OF(LightPoints, table) == 120, "place of LightPoints::table");
+static_assert(PLACE_OF(LightPoints, used) == 136, "place of LightPoints::used");
+static_assert(PLACE_OF(LightPoints, rank) == 144, "place of LightPoints::rank");
+static_assert(PLACE_OF(LightPoints, points) == 152, "place of LightPoints::points");
+static_assert(PLACE_OF(LightPoints, bricks) == 160, "place of LightPoints::bricks");
+static_assert(PLACE_OF(LightPoints, slots) == 168, "place of LightPoints::slots");
 
 struct alignas(8) LongTests {
     Scene scene;
     LightMesh mesh;
     UsedPoints points;
-    const LitBy *lit;
+    LitBy lit;
     Sampling sampling;
     Tally tally;
     unsigned light;
@@ -620,18 +780,40 @@ struct alignas(8) LongTests {
     unsigned first_sample;
     unsigned sample_count;
 };
-static_assert(sizeof(LongTests) == 480, "size of LongTests");
+static_assert(sizeof(LongTests) == 488, "size of LongTests");
 static_assert(PLACE_OF(LongTests, scene) == 0, "place of LongTests::scene");
 static_assert(PLACE_OF(LongTests, mesh) == 304, "place of LongTests::mesh");
 static_assert(PLACE_OF(LongTests, points) == 384, "place of LongTests::points");
 static_assert(PLACE_OF(LongTests, lit) == 424, "place of LongTests::lit");
-static_assert(PLACE_OF(LongTests, sampling) == 432, "place of LongTests::sampling");
-static_assert(PLACE_OF(LongTests, tally) == 448, "place of LongTests::tally");
-static_assert(PLACE_OF(LongTests, light) == 456, "place of LongTests::light");
-static_assert(PLACE_OF(LongTests, point_count) == 460, "place of LongTests::point_count");
-static_assert(PLACE_OF(LongTests, first_point) == 464, "place of LongTests::first_point");
-static_assert(PLACE_OF(LongTests, first_sample) == 472, "place of LongTests::first_sample");
-static_assert(PLACE_OF(LongTests, sample_count) == 476, "place of LongTests::sample_count");
+static_assert(PLACE_OF(LongTests, sampling) == 440, "place of LongTests::sampling");
+static_assert(PLACE_OF(LongTests, tally) == 456, "place of LongTests::tally");
+static_assert(PLACE_OF(LongTests, light) == 464, "place of LongTests::light");
+static_assert(PLACE_OF(LongTests, point_count) == 468, "place of LongTests::point_count");
+static_assert(PLACE_OF(LongTests, first_point) == 472, "place of LongTests::first_point");
+static_assert(PLACE_OF(LongTests, first_sample) == 480, "place of LongTests::first_sample");
+static_assert(PLACE_OF(LongTests, sample_count) == 484, "place of LongTests::sample_count");
+
+struct alignas(8) Cache {
+    UsedPoints points;
+    BrickTable table;
+    unsigned *bricks;
+    unsigned *rows;
+    KeptBy kept;
+    LitBy lit;
+    unsigned long long *unknown;
+    BrickTable from_table;
+    KeptBy from;
+};
+static_assert(sizeof(Cache) == 160, "size of Cache");
+static_assert(PLACE_OF(Cache, points) == 0, "place of Cache::points");
+static_assert(PLACE_OF(Cache, table) == 40, "place of Cache::table");
+static_assert(PLACE_OF(Cache, bricks) == 56, "place of Cache::bricks");
+static_assert(PLACE_OF(Cache, rows) == 64, "place of Cache::rows");
+static_assert(PLACE_OF(Cache, kept) == 72, "place of Cache::kept");
+static_assert(PLACE_OF(Cache, lit) == 96, "place of Cache::lit");
+static_assert(PLACE_OF(Cache, unknown) == 112, "place of Cache::unknown");
+static_assert(PLACE_OF(Cache, from_table) == 120, "place of Cache::from_table");
+static_assert(PLACE_OF(Cache, from) == 136, "place of Cache::from");
 
 struct alignas(8) Interpolate {
     Scene scene;

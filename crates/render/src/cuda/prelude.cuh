@@ -7,6 +7,12 @@
 //
 // THREADS is the size of its blocks, BLOCKS how many of them must fit on a multiprocessor (it bounds the registers).
 //
+// A kernel that walks an acceleration structure is a template function of its record and the structure. From it
+//
+//     KERNEL_PER_STRUCTURE(name, Record, THREADS, BLOCKS)
+//
+// makes a kernel for each: name_bvh, name_grid, name_brute_force. The host names them with `per_structure!`.
+//
 // Variables of a block, declared inside functions, and variables that the host sets, declared outside:
 //
 //     SHARED(float, tile, [8][32]);      SHARED(unsigned, total, );
@@ -28,6 +34,10 @@
 #define UNROLL
 #include "shim.h"
 #endif
+
+#define KERNEL_OF_STRUCTURE(structure, name, Record, threads, blocks)                                                            \
+    KERNEL(name##_##structure, Record, threads, blocks) { name(args, args.scene.structure); }
+#define KERNEL_PER_STRUCTURE(name, Record, threads, blocks) PER_STRUCTURE(KERNEL_OF_STRUCTURE, name, Record, threads, blocks)
 
 #include "cuda/layout.cuh"
 #include "cuda/vector.cuh"

@@ -15,7 +15,7 @@ DEVICE bool ray_in_tile(const Rays &rays, unsigned tile, unsigned thread, unsign
         return ray < rays.count;
     }
     const unsigned width = rays.view.size[0], across = (width + SIDE - 1) / SIDE;
-    const unsigned warp = thread / 32, lane = thread % 32;
+    const unsigned warp = thread / WARP, lane = thread % WARP;
     const unsigned x = tile % across * SIDE + warp % (SIDE / 8) * 8 + lane % 8;
     const unsigned y = tile / across * SIDE + warp / (SIDE / 8) * 4 + lane / 8;
     ray = y * width + x;
@@ -23,14 +23,14 @@ DEVICE bool ray_in_tile(const Rays &rays, unsigned tile, unsigned thread, unsign
     return x < width && (unsigned long long)y * width + x < rays.count;
 }
 
-// The ray of a thread of a block of 256.
+// The ray of a thread of a block of BLOCK.
 DEVICE bool ray_of_thread(const Rays &rays, unsigned block, unsigned thread, unsigned &ray) {
-    return ray_in_tile<16>(rays, block, thread, ray);
+    return ray_in_tile<BLOCK_SIDE>(rays, block, thread, ray);
 }
 
-// The same for blocks of 1024.
+// The same for blocks of TILE.
 DEVICE bool tile_ray_of_thread(const Rays &rays, unsigned block, unsigned thread, unsigned &ray) {
-    return ray_in_tile<32>(rays, block, thread, ray);
+    return ray_in_tile<TILE_SIDE>(rays, block, thread, ray);
 }
 
 // The pixel of a ray, y · width + x of the whole picture.

@@ -5,8 +5,8 @@
 #include "cuda/warp.cuh"
 
 KERNEL(scan_blocks, Scan, BLOCK, 4) {
-    SHARED(unsigned, warps, [BLOCK / 32]);
-    const unsigned lane = lane_of_thread(), warp = threadIdx.x / 32;
+    SHARED(unsigned, warps, [BLOCK / WARP]);
+    const unsigned lane = lane_of_thread(), warp = threadIdx.x / WARP;
     const unsigned long long first = ((unsigned long long)blockIdx.x * BLOCK + threadIdx.x) * VALUES_OF_THREAD;
 
     // 1. The values of this thread and their sum.
@@ -17,11 +17,11 @@ KERNEL(scan_blocks, Scan, BLOCK, 4) {
     }
     // 2. The sums of the threads before: in the warp, then of the warps before.
     unsigned until = sum;
-    for (unsigned step = 1; step < 32; step *= 2) {
+    for (unsigned step = 1; step < WARP; step *= 2) {
         const unsigned other = __shfl_up_sync(ALL_LANES, until, step);
         until += lane >= step ? other : 0;
     }
-    if (lane == 31)
+    if (lane == WARP - 1)
         warps[warp] = until;
     __syncthreads();
     unsigned before = until - sum;

@@ -3,11 +3,8 @@
 
 #include "cuda/warp.cuh"
 
-// Number of shards; the host sums them.
-#define TALLY_SHARDS 64
-
 DEVICE Counters &tally_shard(const Tally &tally) {
-    return tally.shards[blockIdx.x % TALLY_SHARDS];
+    return tally.shards[blockIdx.x % Tally::SHARDS];
 }
 
 // Adds the amounts of all lanes. All lanes of the warp take part.

@@ -37,7 +37,7 @@ DEVICE float max_element(Vec3 a) { return larger(a.x, larger(a.y, a.z)); }
 DEVICE float element_sum(Vec3 a) { return a.x + a.y + a.z; }
 
 // Neither infinite nor NaN.
-DEVICE bool is_finite(float a) { return fabsf(a) <= 3.402823466e38f; }
+DEVICE bool is_finite(float a) { return fabsf(a) <= F32_MAX; }
 DEVICE bool is_finite(Vec3 a) { return is_finite(a.x) && is_finite(a.y) && is_finite(a.z); }
 
 // The unit vector along `a`; zero where that has no length.
@@ -66,5 +66,5 @@ DEVICE DVec3 abs(DVec3 a) { return DVec3{fabs(a.x), fabs(a.y), fabs(a.z)}; }
 
 DEVICE DVec3 normalize_or_zero(DVec3 a) {
     const double reciprocal = 1.0 / length(a);
-    return fabs(reciprocal) <= 1.797693134862315708e308 && reciprocal > 0.0 ? reciprocal * a : DVec3{0.0, 0.0, 0.0};
+    return fabs(reciprocal) <= F64_MAX && reciprocal > 0.0 ? reciprocal * a : DVec3{0.0, 0.0, 0.0};
 }

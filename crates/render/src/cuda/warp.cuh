@@ -7,7 +7,7 @@
 #define ALL_LANES 0xffffffffu
 
 DEVICE unsigned lane_of_thread() {
-    return threadIdx.x & 31;
+    return threadIdx.x % WARP;
 }
 
 // The lanes below this one.
@@ -16,13 +16,13 @@ DEVICE unsigned lanes_below(unsigned lane) {
 }
 
 DEVICE unsigned warp_or(unsigned value) {
-    for (int step = 16; step > 0; step /= 2)
+    for (int step = WARP / 2; step > 0; step /= 2)
         value |= __shfl_xor_sync(ALL_LANES, value, step);
     return value;
 }
 
 DEVICE unsigned warp_sum(unsigned value) {
-    for (int step = 16; step > 0; step /= 2)
+    for (int step = WARP / 2; step > 0; step /= 2)
         value += __shfl_xor_sync(ALL_LANES, value, step);
     return value;
 }
@@ -30,7 +30,7 @@ DEVICE unsigned warp_sum(unsigned value) {
 // The sum of this lane's value and those of all lanes before.
 DEVICE unsigned warp_running_sum(unsigned value) {
     const unsigned lane = lane_of_thread();
-    for (unsigned step = 1; step < 32; step *= 2) {
+    for (unsigned step = 1; step < WARP; step *= 2) {
         const unsigned other = __shfl_up_sync(ALL_LANES, value, step);
         value += lane >= step ? other : 0;
     }
@@ -44,13 +44,13 @@ DEVICE Vec3 warp_broadcast(const Vec3 &value, unsigned lane) {
 }
 
 DEVICE float warp_min(float value) {
-    for (int step = 16; step > 0; step /= 2)
+    for (int step = WARP / 2; step > 0; step /= 2)
         value = fminf(value, __shfl_xor_sync(ALL_LANES, value, step));
     return value;
 }
 
 DEVICE float warp_max(float value) {
-    for (int step = 16; step > 0; step /= 2)
+    for (int step = WARP / 2; step > 0; step /= 2)
         value = fmaxf(value, __shfl_xor_sync(ALL_LANES, value, step));
     return value;
 }
@@ -60,7 +60,7 @@ DEVICE float warp_max(float value) {
 DEVICE unsigned warp_transposed(unsigned row) {
     const unsigned lane = lane_of_thread();
     unsigned keep = 0xffff0000u;
-    for (int step = 16; step > 0; step /= 2) {
+    for (int step = WARP / 2; step > 0; step /= 2) {
         const unsigned other = __shfl_xor_sync(ALL_LANES, row, step);
         // `keep` has the upper half of each pair of groups of `step` bits.
         row = (lane & step) ? (row & keep) | ((other & keep) >> step) : (row & ~keep) | ((other & ~keep) << step);

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::Device;
 use super::report::{cpu, ready};
-use crate::RenderError;
 use crate::cuda::{Driver, open_cuda};
+use crate::error::RenderError;
 
 /// What became of a [`Device`] that was asked for.
 pub struct Choice {

@@ -13,6 +13,7 @@ pub use report::{DeviceReport, devices};
 
 /// A device that can be asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Device {
     /// The fastest that works: a CUDA device before the host's processor.
     #[default]

@@ -7,6 +7,7 @@ use crate::cuda::{Driver, Gpu, Library, Runtime, Version, capability, visible_de
 
 /// A device that was looked for, and whether it can be used.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct DeviceReport {
     /// `cpu`, `cuda` or `cuda:N`.
     pub device: String,

@@ -7,6 +7,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::lattice::Lattice;
 use crate::accel::{Hit, Ray};
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
@@ -33,11 +34,16 @@ struct Probe {
 /// not on how it is tiled.
 pub(crate) fn auto_step(scene: &PreparedScene, view: &View, radius: f32) -> f32 {
     // The least step that keeps the lattice's numbers and rounding in bounds.
-    let least = (scene.bounds.diagonal() * 1e-5).max(f32::MIN_POSITIVE.sqrt());
+    let finest = Lattice::finest(scene, radius);
+    let least = (scene.geometry.bounds.diagonal() * 1e-5).max(finest).max(f32::MIN_POSITIVE.sqrt());
     let mut probes = probe(scene, view);
     if probes.is_empty() {
         // Nothing is seen: any step does, and this one is small against the scene.
-        return if scene.bounds.is_empty() { 1.0 } else { rounded((scene.bounds.diagonal() / 256.0).max(least)) };
+        return if scene.geometry.bounds.is_empty() {
+            1.0
+        } else {
+            rounded((scene.geometry.bounds.diagonal() / 256.0).max(least))
+        };
     }
     let middle = probes.len() / 2;
     let (_, median, _) = probes.select_nth_unstable_by(middle, |a, b| a.spacing.total_cmp(&b.spacing));
@@ -80,7 +86,7 @@ fn probe(scene: &PreparedScene, view: &View) -> Vec<Probe> {
             let pixels = (stride / 2..columns).step_by(stride as usize).map(|column| row * width + column);
             let rays: Vec<Ray> = pixels.flat_map(|pixel| [view.ray(pixel), view.ray(pixel + neighbour)]).collect();
             let mut hits = vec![Hit::MISS; rays.len()];
-            scene.accelerator.closest_hits(&rays, &mut hits);
+            scene.geometry.accelerator.closest_hits(&rays, &mut hits);
             let pairs = rays.chunks_exact(2).zip(hits.chunks_exact(2));
             pairs.filter_map(|(rays, hits)| look(scene, rays, hits)).collect::<Vec<Probe>>()
         })
@@ -91,7 +97,7 @@ fn look(scene: &PreparedScene, rays: &[Ray], hits: &[Hit]) -> Option<Probe> {
     if !hits.iter().all(Hit::is_some) {
         return None;
     }
-    let point = |i: usize| SurfacePoint::new(&rays[i], &hits[i], &scene.triangles[hits[i].triangle as usize]);
+    let point = |i: usize| SurfacePoint::new(&rays[i], &hits[i], &scene.geometry.triangles[hits[i].triangle as usize]);
     let (here, there) = (point(0), point(1));
     let spacing = (there.position - here.position).length();
     // Neighbouring rays, followed to this pixel's distance, are one pixel apart.

@@ -3,32 +3,37 @@
 
 #include "light_mesh/lattice.cuh"
 
-// The brick that holds a lattice point (no component negative).
+// The bits of a lattice point's index that say where in its brick it lies.
+#define WITHIN_BRICK ((1 << BRICK_BITS) - 1)
+
+// One axis of a brick's key.
+DEVICE unsigned long long brick_coordinate(int index) { return (unsigned)(index + INDEX_BIAS) >> BRICK_BITS; }
+
+// The brick that holds a lattice point.
 DEVICE unsigned long long brick_of(IVec3 index) {
-    return (unsigned long long)(index.z >> 2) << (2 * AXIS_BITS) | (unsigned long long)(index.y >> 2) << AXIS_BITS |
-           (unsigned long long)(index.x >> 2);
+    return brick_coordinate(index.z) << 2 * AXIS_BITS | brick_coordinate(index.y) << AXIS_BITS | brick_coordinate(index.x);
 }
 
 // The bit of a lattice point within its brick: x in the lowest two bits.
-DEVICE unsigned point_bit(IVec3 index) { return (index.z & 3) << 4 | (index.y & 3) << 2 | (index.x & 3); }
+DEVICE unsigned point_bit(IVec3 index) {
+    return (index.z & WITHIN_BRICK) << (2 * BRICK_BITS) | (index.y & WITHIN_BRICK) << BRICK_BITS | (index.x & WITHIN_BRICK);
+}
 
 // Brick and bit of a lattice point in one number.
-DEVICE unsigned long long point_key(IVec3 index) { return brick_of(index) << 6 | point_bit(index); }
+DEVICE unsigned long long point_key(IVec3 index) { return brick_of(index) << POINT_BITS | point_bit(index); }
 
 // The lattice point of a key: the inverse of point_key.
 DEVICE IVec3 point_of(unsigned long long key) {
     const unsigned mask = (1u << AXIS_BITS) - 1;
-    const unsigned bit = key & 63;
-    return IVec3{(int)(((unsigned)(key >> 6) & mask) << 2 | (bit & 3)),
-                 (int)(((unsigned)(key >> (6 + AXIS_BITS)) & mask) << 2 | (bit >> 2 & 3)),
-                 (int)(((unsigned)(key >> (6 + 2 * AXIS_BITS)) & mask) << 2 | bit >> 4)};
+    const unsigned bit = key & ((1u << POINT_BITS) - 1);
+    const unsigned long long brick = key >> POINT_BITS;
+    return IVec3{(int)(((unsigned)brick & mask) << BRICK_BITS | (bit & WITHIN_BRICK)) - INDEX_BIAS,
+                 (int)(((unsigned)(brick >> AXIS_BITS) & mask) << BRICK_BITS | (bit >> BRICK_BITS & WITHIN_BRICK)) - INDEX_BIAS,
+                 (int)(((unsigned)(brick >> 2 * AXIS_BITS) & mask) << BRICK_BITS | bit >> 2 * BRICK_BITS) - INDEX_BIAS};
 }
 
 // Fibonacci hashing: the golden ratio spreads neighbouring keys.
-DEVICE unsigned brick_hash(unsigned long long key) { return (unsigned)(key * 0x9e3779b97f4a7c15ull >> 32); }
-
-// A brick that is not in the table.
-#define NO_SLOT 0xffffffffu
+DEVICE unsigned brick_hash(unsigned long long key) { return (unsigned)(key * GOLDEN_RATIO >> 32); }
 
 // The slot of a brick, by linear probing. Keys of a run of slots do not ascend from where their probing began, so a smaller one ends
 // the search as an empty slot does.

@@ -5,8 +5,10 @@
 //! all used ones is a brick's base plus a population count. Bricks are found through a hash table and kept in ascending order
 //! of their keys, so that nothing depends on the order in which threads met them.
 
+use std::sync::Arc;
+
 use glam::IVec3;
-use lightmesh_layout::constants::AXIS_BITS;
+use lightmesh_layout::constants::{AXIS_BITS, BRICK_BITS, GOLDEN_RATIO, INDEX_BIAS, NO_SLOT, POINT_BITS};
 
 /// A brick's coordinates packed into 57 bits: x in the lowest 19.
 pub type BrickKey = u64;
@@ -14,53 +16,61 @@ pub type BrickKey = u64;
 /// A lattice point (or the cell above it): its brick's key, then its bit within the brick, in 63 bits.
 pub type PointKey = u64;
 
-/// The brick that holds the lattice point `index` (no component negative).
+/// The bits of a lattice point's index that say where in its brick it lies.
+const WITHIN_BRICK: i32 = (1 << BRICK_BITS) - 1;
+
+/// The brick that holds the lattice point `index`.
 #[inline(always)]
 pub fn brick_of(index: IVec3) -> BrickKey {
-    let brick: IVec3 = index >> 2;
+    let brick: IVec3 = (index + INDEX_BIAS) >> BRICK_BITS;
     (brick.z as u64) << (2 * AXIS_BITS) | (brick.y as u64) << AXIS_BITS | brick.x as u64
 }
 
 /// The bit of lattice point `index` within its brick: x in the lowest two bits.
 #[inline(always)]
 pub fn point_bit(index: IVec3) -> u32 {
-    let within = index & 3;
-    (within.z << 4 | within.y << 2 | within.x) as u32
+    let within = index & WITHIN_BRICK;
+    (within.z << (2 * BRICK_BITS) | within.y << BRICK_BITS | within.x) as u32
 }
 
 /// Brick and bit of a lattice point in one number.
 #[inline(always)]
 pub fn point_key(index: IVec3) -> PointKey {
-    brick_of(index) << 6 | u64::from(point_bit(index))
+    brick_of(index) << POINT_BITS | u64::from(point_bit(index))
 }
 
 /// The lattice point of a key: the inverse of [`point_key`].
 #[inline(always)]
 pub fn point_of(key: PointKey) -> IVec3 {
-    let axis = |shift: u32| ((key >> (6 + shift)) & ((1 << AXIS_BITS) - 1)) as i32;
-    let bit = (key & 63) as i32;
-    (IVec3::new(axis(0), axis(AXIS_BITS), axis(2 * AXIS_BITS)) << 2) + IVec3::new(bit & 3, bit >> 2 & 3, bit >> 4)
+    let axis = |shift: u32| ((key >> (POINT_BITS + shift)) & ((1 << AXIS_BITS) - 1)) as i32;
+    let bit = (key & ((1 << POINT_BITS) - 1)) as u32;
+    (IVec3::new(axis(0), axis(AXIS_BITS), axis(2 * AXIS_BITS)) << BRICK_BITS) + place_of_bit(bit) - INDEX_BIAS
+}
+
+/// Where in its brick the lattice point of a bit lies: the inverse of [`point_bit`].
+#[inline(always)]
+pub(super) fn place_of_bit(bit: u32) -> IVec3 {
+    let bit = bit as i32;
+    IVec3::new(bit, bit >> BRICK_BITS, bit >> (2 * BRICK_BITS)) & WITHIN_BRICK
 }
 
 /// A set of bricks, each with a dense index in ascending order of keys.
 #[derive(Clone, Debug, Default)]
 pub struct BrickMap {
     keys: Vec<BrickKey>,
-    /// Open addressing with linear probing, at most half full; an entry is an index into `keys` or `EMPTY`.
+    /// Open addressing with linear probing, at most half full; an entry is an index into `keys` or `NO_SLOT`.
     table: Vec<u32>,
 }
-
-const EMPTY: u32 = u32::MAX;
 
 impl BrickMap {
     /// The set of `keys`, which must ascend without repetition.
     pub fn new(keys: Vec<BrickKey>) -> BrickMap {
         debug_assert!(keys.is_sorted_by(|a, b| a < b));
-        let mut table = vec![EMPTY; (2 * keys.len()).next_power_of_two()];
+        let mut table = vec![NO_SLOT; (2 * keys.len()).next_power_of_two()];
         let mask = table.len() - 1;
         for (index, &key) in keys.iter().enumerate() {
             let mut slot = hash(key) & mask;
-            while table[slot] != EMPTY {
+            while table[slot] != NO_SLOT {
                 slot = (slot + 1) & mask;
             }
             table[slot] = index as u32;
@@ -80,7 +90,7 @@ impl BrickMap {
         let mut slot = hash(key) & mask;
         loop {
             let index = self.table[slot] as usize;
-            if index == EMPTY as usize {
+            if index == NO_SLOT as usize {
                 return None;
             }
             if self.keys[index] == key {
@@ -94,13 +104,13 @@ impl BrickMap {
 /// Fibonacci hashing: the golden ratio spreads neighbouring keys.
 #[inline(always)]
 fn hash(key: BrickKey) -> usize {
-    (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32) as usize
+    (key.wrapping_mul(GOLDEN_RATIO) >> 32) as usize
 }
 
 /// The used light points of a picture: a bitmap over bricks with a rank directory.
 #[derive(Clone, Debug)]
 pub struct UsedPoints {
-    bricks: BrickMap,
+    bricks: Arc<BrickMap>,
     used: Vec<u64>,
     /// Number of used points in all bricks before each one, and the total at the end.
     rank: Vec<u32>,
@@ -109,6 +119,15 @@ pub struct UsedPoints {
 impl UsedPoints {
     /// Counts the used points of every brick; `used` is as long as the bricks.
     pub fn new(bricks: BrickMap, used: Vec<u64>) -> UsedPoints {
+        UsedPoints::within(Arc::new(bricks), used)
+    }
+
+    /// Some of the points: `used`, by brick. Bricks of which none is left stay.
+    pub(crate) fn only(&self, used: Vec<u64>) -> UsedPoints {
+        UsedPoints::within(Arc::clone(&self.bricks), used)
+    }
+
+    fn within(bricks: Arc<BrickMap>, used: Vec<u64>) -> UsedPoints {
         debug_assert_eq!(bricks.keys().len(), used.len());
         let mut rank = Vec::with_capacity(used.len() + 1);
         let mut total = 0;
@@ -151,7 +170,7 @@ impl UsedPoints {
     /// The used points of brick `brick` in ascending order.
     pub fn points(&self, brick: usize) -> impl Iterator<Item = IVec3> + '_ {
         let key = self.bricks.keys()[brick];
-        bits(self.used[brick]).map(move |bit| point_of(key << 6 | u64::from(bit)))
+        bits(self.used[brick]).map(move |bit| point_of(key << POINT_BITS | u64::from(bit)))
     }
 }
 
@@ -175,7 +194,7 @@ mod tests {
 
     #[test]
     fn a_point_comes_back_from_its_brick_and_bit() {
-        for index in [[0, 0, 0], [3, 2, 1], [4, 7, 1001], [2_097_151, 2_097_148, 2_097_149]] {
+        for index in [[0, 0, 0], [3, 2, 1], [4, 7, 1001], [-1, -4, -5], [1_048_575, -1_048_576, 1_048_573]] {
             let index = IVec3::from_array(index);
             assert_eq!(point_of(point_key(index)), index);
             assert_eq!(point_key(index) >> 6, brick_of(index));

@@ -5,45 +5,19 @@
 
 mod auto_step;
 mod bricks;
+mod cell_points;
 mod lattice;
+mod lattice_error;
+mod mesh;
 mod template;
+mod window;
 
 pub(crate) use auto_step::auto_step;
 pub(crate) use bricks::bits;
 pub use bricks::{BrickKey, BrickMap, PointKey, UsedPoints, brick_of, point_bit, point_key, point_of};
-pub use lattice::{Lattice, LatticeError};
+pub(crate) use cell_points::{CellPoints, sum_in_both, sum_of_products};
+pub use lattice::Lattice;
+pub use lattice_error::LatticeError;
+pub use mesh::LightMesh;
 pub use template::{Template, TemplateError};
-
-/// Everything that stages need to know about the light mesh of one picture.
-#[derive(Clone, Debug)]
-pub struct LightMesh {
-    /// Where the light points lie.
-    pub lattice: Lattice,
-    /// Formula (6) for the chosen radius.
-    pub template: Template,
-    /// Interpolation radius r in scene units.
-    pub radius: f32,
-    /// w of formula (3).
-    pub weight: lightmesh_scene::Weight,
-}
-
-impl LightMesh {
-    /// The smallest `(n, x − P)` that a light point must exceed to be used, in scene units. A thousandth part of a step
-    /// keeps lattice planes that coincide with a surface from flickering in and out of its half-ball.
-    pub fn least_height(&self) -> f32 {
-        1e-3 * self.lattice.step
-    }
-
-    /// How near a triangle's plane may pass to a segment's origin before it counts as edge-on, in scene units. Below that,
-    /// rounding would decide: the distance to the plane of a triangle within reach, R steps away, errs by a few ε R h. What is
-    /// ignored leaks light into pixels that lie this near to the foot of a wall without thickness, so it must not be more.
-    pub fn edge_on(&self) -> f32 {
-        2e-6 * self.lattice.step
-    }
-
-    /// How much boxes grow before triangles are looked up for short tests, in scene units: far above rounding, far below a
-    /// step.
-    pub fn slack(&self) -> f32 {
-        1e-3 * self.lattice.step
-    }
-}
+pub(crate) use window::{Span, Windows, window_bricks};

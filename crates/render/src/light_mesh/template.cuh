@@ -7,12 +7,12 @@
 #include "light_mesh/lattice.cuh"
 
 // The lines of the template along x that have points, `LightMesh::lines` of them by z and y; set by the host.
-CONSTANT(TemplateRow, template_rows, [1024])
+CONSTANT(TemplateRow, template_rows, [TEMPLATE_LINES])
 
 // Offset of template point k from the cell.
 DEVICE IVec3 template_offset(const LightMesh &mesh, unsigned k) {
     const unsigned packed = __ldg(&mesh.offsets[k]);
-    return IVec3{(int)(packed & 255) - 16, (int)(packed >> 8 & 255) - 16, (int)(packed >> 16) - 16};
+    return IVec3{(int)(packed & 255) - MOST_REACH, (int)(packed >> 8 & 255) - MOST_REACH, (int)(packed >> 16) - MOST_REACH};
 }
 
 // A line as lanes see it that take one each: first bit, number of points and offset of the first. The template is symmetric about

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use glam::IVec3;
+use lightmesh_layout::constants::MOST_REACH;
 
 /// The light points that lie within r of *some* point of a cell, as offsets from the cell. Bit k of an object point's mask
 /// speaks of `offsets()[k]`.
@@ -18,7 +19,7 @@ pub struct Template {
 /// A radius for which there is no template.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
-    "interpolation radius R = {radius} is not between {least} and {most} steps: below, half-balls are empty; above, masks take kilobytes a pixel. --radius 2.1 is a good choice",
+    "interpolation radius R = {radius} is not between {least} and {most} steps: below, half-balls are empty; above, masks take kilobytes a pixel. 2.1 is a good choice",
     least = Template::MIN_RADIUS,
     most = Template::MAX_RADIUS
 )]
@@ -31,7 +32,7 @@ impl Template {
     /// Smallest radius in steps.
     pub const MIN_RADIUS: f32 = 0.5;
     /// Largest radius in steps: 20 000 light points.
-    pub const MAX_RADIUS: f32 = 16.0;
+    pub const MAX_RADIUS: f32 = MOST_REACH as f32;
 
     /// The template of interpolation radius `radius` = r/h.
     pub fn new(radius: f32) -> Result<Template, TemplateError> {

@@ -14,13 +14,14 @@ struct Window {
 
 // Bricks of a window along each axis: offsets run from 1 - reach to reach, and a run of n points meets at most (n + 2) / 4 + 1.
 DEVICE int window_side(const LightMesh &mesh) {
-    return (2 * mesh.reach + 2) / 4 + 1;
+    return (2 * mesh.reach + 2) / (1 << BRICK_BITS) + 1;
 }
 
 // The window around a cell.
 DEVICE Window window_around(const LightMesh &mesh, IVec3 cell) {
     const int least = 1 - mesh.reach;
-    return Window{IVec3{(cell.x + least) >> 2, (cell.y + least) >> 2, (cell.z + least) >> 2}, window_side(mesh)};
+    return Window{IVec3{(cell.x + least) >> BRICK_BITS, (cell.y + least) >> BRICK_BITS, (cell.z + least) >> BRICK_BITS},
+                  window_side(mesh)};
 }
 
 // Number of bricks.
@@ -30,12 +31,14 @@ DEVICE int window_size(const Window &window) {
 
 // The place in the window of the brick that holds a light point.
 DEVICE int window_place(const Window &window, IVec3 point) {
-    const int x = (point.x >> 2) - window.low.x, y = (point.y >> 2) - window.low.y, z = (point.z >> 2) - window.low.z;
+    const int x = (point.x >> BRICK_BITS) - window.low.x, y = (point.y >> BRICK_BITS) - window.low.y,
+              z = (point.z >> BRICK_BITS) - window.low.z;
     return (z * window.side + y) * window.side + x;
 }
 
 // The key of the brick at a place.
 DEVICE unsigned long long window_key(const Window &window, int place) {
     const int x = place % window.side, y = place / window.side % window.side, z = place / (window.side * window.side);
-    return brick_of(IVec3{(window.low.x + x) << 2, (window.low.y + y) << 2, (window.low.z + z) << 2});
+    const int side = 1 << BRICK_BITS;
+    return brick_of(IVec3{(window.low.x + x) * side, (window.low.y + y) * side, (window.low.z + z) * side});
 }

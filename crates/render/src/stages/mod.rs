@@ -1,6 +1,7 @@
 //! The stages of a picture: one folder each, with its contract in `mod.rs` and a file for each kind of device beside it:
 //! `cpu.rs`, and `cuda.rs` with the kernels in `kernel.cu`. All have the same numbered steps.
 
+pub(crate) mod cells;
 pub(crate) mod interpolate;
 pub(crate) mod light_points;
 pub(crate) mod long_tests;

@@ -23,7 +23,7 @@ fn area_mode_meets_the_closed_form_of_a_half_plane() {
     // The edge parts the light along one axis. 2^k samples put one into each of 2^k strata, so that the count errs by less
     // than one; 225 = 128 + 64 + 32 + 1 are four such sets. One thousandth of a sample is for the rounding of positions.
     for (samples, sets) in [(256, 1.0), (225, 4.0), (64, 1.0)] {
-        let settings = Settings { samples: Some(samples), ..mode(Mode::Area, STRIP) };
+        let settings = mode(Mode::Area, STRIP).with_samples(samples);
         let (shares, expected) = half_plane_shares(&settings);
         let worst = shares.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(worst <= 1.001 * sets / samples as f32, "{samples} samples: {worst}");
@@ -37,7 +37,7 @@ fn area_mode_meets_the_closed_form_of_a_half_plane() {
 fn the_method_tends_to_the_closed_form_of_a_half_plane() {
     // 16 samples a light point: their noise, 1/16 of a stratum averaged over some twenty points, stays below the bound.
     let error = |step| {
-        let settings = Settings { samples: Some(16), ..light_mesh(STRIP, step, 2.1) };
+        let settings = light_mesh(STRIP, step, 2.1).with_samples(16);
         let (shares, expected) = half_plane_shares(&settings);
         rms_difference(&shares, &expected)
     };
@@ -53,7 +53,7 @@ fn the_method_tends_to_the_area_reference() {
         LightKind::Rectangle { position: Vec3::new(-2.0, 4.0, 2.0), half_u: 0.6 * Vec3::X, half_v: 0.6 * Vec3::Z };
     let scene = pile(DVec3::ZERO, &[sphere, rectangle]);
     let size = [64, 64];
-    let reference = render(&scene, &Settings { samples: Some(256), ..mode(Mode::Area, size) });
+    let reference = render(&scene, &mode(Mode::Area, size).with_samples(256));
     let reference = Picture::new(&reference);
     for light in 0..2 {
         let places: Vec<usize> = reference.hits().collect();
@@ -62,7 +62,7 @@ fn the_method_tends_to_the_area_reference() {
             places.iter().map(|&pixel| picture.layers().visibility[light][pixel]).collect()
         };
         let error = |step| {
-            let frame = render(&scene, &Settings { samples: Some(16), ..light_mesh(size, step, 2.1) });
+            let frame = render(&scene, &light_mesh(size, step, 2.1).with_samples(16));
             rms_difference(&shares(&Picture::new(&frame)), &shares(&reference))
         };
         let errors = [0.2, 0.1, 0.05, 0.025].map(error);

@@ -1,20 +1,20 @@
 //! Input without much sense: no panic, no NaN, and what can be said about the picture holds.
 
 use glam::{DVec3, Vec3};
-use lightmesh_render::{Frame, Mode, Settings, Step};
-use lightmesh_scene::{LightKind, Scene};
+use lightmesh_render::{Device, Frame, Mode, RenderError, Renderer, Settings, Step};
+use lightmesh_scene::{Geometry, GeometryError, LightKind, Scene};
 use lightmesh_testkit::{MODES, Picture, Random, SceneDraft, pile, render};
 
 const SIZE: [u32; 2] = [24, 18];
 
 /// Renders in all modes, with fixed and automatic steps, and lets `judge` look at each picture.
 fn in_all_modes(scene: &Scene, size: [u32; 2], judge: impl Fn(&Frame)) {
-    let extent = scene.mesh.bounds().diagonal();
+    let extent = scene.geometry.mesh.bounds().diagonal();
     let fixed = if extent > 0.0 && extent.is_finite() { extent / 40.0 } else { 1.0 };
     for mode in MODES {
         for step in [Step::Auto, Step::Fixed(fixed)] {
             let settings =
-                Settings { mode, size, step: Some(step), samples: Some(5), bounces: 1, ..Settings::default() };
+                Settings::default().with_mode(mode).with_size(size).with_step(step).with_samples(5).with_bounces(1);
             let frame = render(scene, &settings);
             if let Some(fault) = Picture::new(&frame).fault() {
                 panic!("{}, {mode:?}, {step:?}: {fault}", scene.name);
@@ -58,7 +58,7 @@ fn pictures_may_be_lines() {
 #[test]
 fn a_scene_without_lights_is_ambient() {
     let mut scene = pile(DVec3::ZERO, &[]);
-    scene.ambient = Some(Vec3::splat(0.5));
+    scene.lights.ambient = Some(Vec3::splat(0.5));
     in_all_modes(&scene, SIZE, |frame| {
         for pixel in Picture::new(frame).hits() {
             assert_eq!(frame.image.color()[pixel], [0.4; 3]);
@@ -99,15 +99,15 @@ fn a_needle_met_at_its_corner_has_a_normal() {
 #[test]
 fn coordinates_that_are_no_numbers_are_never_hit() {
     let mut scene = pile(DVec3::ZERO, &[LightKind::Point { position: Vec3::new(2.0, 4.0, 1.0), spread: 0.0 }]);
-    let whole = render(&scene, &Settings { mode: Mode::RayTrace, size: SIZE, ..Settings::default() });
+    let whole = render(&scene, &Settings::default().with_mode(Mode::RayTrace).with_size(SIZE));
     for bad in [f32::NAN, f32::INFINITY, 1e30] {
-        let first = scene.mesh.positions.len() as u32;
-        scene.mesh.positions.extend([Vec3::splat(bad), Vec3::X, Vec3::Y]);
-        scene.mesh.triangles.push([first, first + 1, first + 2]);
-        scene.mesh.materials.push(0);
+        let first = scene.geometry.mesh.positions.len() as u32;
+        scene.geometry_mut().mesh.positions.extend([Vec3::splat(bad), Vec3::X, Vec3::Y]);
+        scene.geometry_mut().mesh.triangles.push([first, first + 1, first + 2]);
+        scene.geometry_mut().mesh.materials.push(0);
     }
-    let settings = Settings { size: SIZE, step: Some(Step::Fixed(0.2)), ..Settings::default() };
-    let ray_traced = render(&scene, &Settings { mode: Mode::RayTrace, ..settings.clone() });
+    let settings = Settings::default().with_size(SIZE).with_step(Step::Fixed(0.2));
+    let ray_traced = render(&scene, &settings.clone().with_mode(Mode::RayTrace));
     assert!(Picture::new(&ray_traced).bits() == Picture::new(&whole).bits());
     let frame = render(&scene, &settings);
     assert_eq!(Picture::new(&frame).fault(), None);
@@ -143,7 +143,7 @@ fn a_light_may_be_the_object_point() {
 fn a_light_may_be_a_light_point() {
     let mut scene =
         SceneDraft::new().floor(0.0, 2.0).point_light([0.0; 3]).camera([0.0, 1.0, 3.0], [0.0; 3]).finish("on");
-    let settings = Settings { size: SIZE, step: Some(Step::Fixed(0.25)), ..Settings::default() };
+    let settings = Settings::default().with_size(SIZE).with_step(Step::Fixed(0.25));
     let lattice = render(&scene, &settings).stats.settings.lattice.unwrap();
     // The first layer of light points above the floor, near its middle.
     let index = [0, 1, 2].map(|axis| (-lattice.origin[axis] / 0.25).ceil());
@@ -170,7 +170,7 @@ fn scenes_may_be_tiny_or_huge() {
             .finish("scaled");
         in_all_modes(&scene, SIZE, |frame| assert!(hits(frame) > 250, "scale {scale}: {}", hits(frame)));
         let step = Step::Fixed(0.2 * scale as f32);
-        let frame = render(&scene, &Settings { size: SIZE, step: Some(step), ..Settings::default() });
+        let frame = render(&scene, &Settings::default().with_size(SIZE).with_step(step));
         Picture::new(&frame).visibilities(0)
     };
     let usual = plain(1.0);
@@ -179,4 +179,21 @@ fn scenes_may_be_tiny_or_huge() {
         let difference = lightmesh_testkit::mean_difference(&plain(scale), &usual);
         assert!(difference < 1e-3, "scale {scale}: {difference}");
     }
+}
+
+#[test]
+fn geometry_that_does_not_hold_together_is_refused() {
+    let render = |change: fn(&mut Geometry)| {
+        let mut scene = pile(DVec3::ZERO, &[]);
+        change(scene.geometry_mut());
+        let settings = Settings::default().with_mode(Mode::RayTrace).with_size(SIZE);
+        Renderer::new(Device::Cpu).unwrap().render(&scene, &settings).map(|_| ())
+    };
+    assert!(render(|_| {}).is_ok());
+    let vertex = render(|geometry| geometry.mesh.triangles[5][1] = 9999);
+    assert!(matches!(vertex, Err(RenderError::Geometry(GeometryError::Vertex { triangle: 5, index: 9999, .. }))));
+    let normals = render(|geometry| geometry.mesh.normals = vec![Vec3::Y; 2]);
+    assert!(matches!(normals, Err(RenderError::Geometry(GeometryError::Attribute { attribute: "normals", .. }))));
+    let material = render(|geometry| geometry.materials.clear());
+    assert!(matches!(material, Err(RenderError::Geometry(GeometryError::Material { triangle: 0, .. }))));
 }

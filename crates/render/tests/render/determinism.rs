@@ -13,7 +13,7 @@ fn scene() -> Scene {
     let sphere = LightKind::Sphere { position: Vec3::new(-2.0, 4.0, 2.0), radius: 0.6 };
     let point = LightKind::Point { position: Vec3::new(2.0, 4.0, 1.0), spread: 0.3 };
     let mut scene = pile(DVec3::ZERO, &[sphere, point]);
-    for material in &mut scene.materials {
+    for material in &mut scene.geometry_mut().materials {
         material.ks = Vec3::splat(0.3);
     }
     scene
@@ -21,7 +21,7 @@ fn scene() -> Scene {
 
 fn settings(which: Mode) -> Settings {
     let settings = if which == Mode::LightMesh { light_mesh(SIZE, 0.15, 2.1) } else { mode(which, SIZE) };
-    Settings { samples: Some(7), bounces: 1, layers: true, ..settings }
+    settings.with_samples(7).with_bounces(1).with_layers(true)
 }
 
 fn render(threads: usize, settings: &Settings) -> Result<Frame, RenderError> {
@@ -44,7 +44,7 @@ fn bands_do_not_change_a_bit() {
     for which in MODES {
         let whole = render(2, &settings(which)).unwrap();
         assert_eq!(whole.stats.settings.rows_per_band, SIZE[1]);
-        let limited = |limit| render(2, &Settings { memory_limit: Some(limit), ..settings(which) });
+        let limited = |limit| render(2, &settings(which).with_memory_limit(limit));
         let Err(RenderError::Memory { needed, .. }) = limited(1) else { panic!("one byte must not suffice") };
         // Just enough for one row, then for some.
         for limit in [needed, needed + 100_000] {
@@ -59,7 +59,7 @@ fn bands_do_not_change_a_bit() {
 #[test]
 fn the_seed_chooses_the_pattern_of_sized_lights() {
     for which in [Mode::LightMesh, Mode::Area] {
-        let seeded = |seed| render(2, &Settings { seed, ..settings(which) }).unwrap();
+        let seeded = |seed| render(2, &settings(which).with_seed(seed)).unwrap();
         let first = seeded(5);
         assert!(Picture::new(&seeded(5)).bits() == Picture::new(&first).bits(), "{which:?}: same seed, same picture");
         assert!(Picture::new(&seeded(6)).bits() != Picture::new(&first).bits(), "{which:?}: another seed, another one");
@@ -68,6 +68,6 @@ fn the_seed_chooses_the_pattern_of_sized_lights() {
 
 #[test]
 fn hard_shadows_know_no_seed() {
-    let seeded = |seed| render(2, &Settings { seed, ..settings(Mode::RayTrace) }).unwrap();
+    let seeded = |seed| render(2, &settings(Mode::RayTrace).with_seed(seed)).unwrap();
     assert!(Picture::new(&seeded(5)).bits() == Picture::new(&seeded(6)).bits());
 }

@@ -1,7 +1,7 @@
 //! Object points that find no light point take their own shadow rays.
 
 use glam::{DVec3, Vec3};
-use lightmesh_render::{Mode, Settings};
+use lightmesh_render::Mode;
 use lightmesh_scene::{LightKind, Scene};
 use lightmesh_testkit::{Picture, pile, render};
 
@@ -13,7 +13,7 @@ const LIGHT: LightKind = LightKind::Point { position: Vec3::new(2.0, 4.0, 1.0), 
 fn with_few_light_points(scene: &Scene, radius: f32) {
     let settings = light_mesh([48, 48], 1.3, radius);
     let sparse = render(scene, &settings);
-    let traced = render(scene, &Settings { mode: Mode::RayTrace, ..settings });
+    let traced = render(scene, &settings.with_mode(Mode::RayTrace));
     let (sparse_picture, traced) = (Picture::new(&sparse), Picture::new(&traced));
     let empty: Vec<usize> = sparse_picture.hits().filter(|&pixel| sparse_picture.layers().used[pixel] == 0).collect();
     assert!(empty.len() > 100, "{} object points without light points", empty.len());

@@ -46,7 +46,7 @@ fn the_template_in_the_counts_is_that_of_the_radius() {
 #[test]
 fn an_automatic_step_needs_fewer_light_points_than_pixels() {
     for name in ["gazebo", "childpark", "garden"] {
-        let frame = render(&built_in(name), &Settings { size: SIZE, ..Settings::default() });
+        let frame = render(&built_in(name), &Settings::default().with_size(SIZE));
         let (counts, settings) = (&frame.stats.counts, &frame.stats.settings);
         assert!(settings.step_auto && settings.step.is_some_and(|step| step > 0.0));
         // A quarter is what it aims at; it knows the surfaces by samples only.

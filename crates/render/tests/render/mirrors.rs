@@ -6,19 +6,13 @@ use lightmesh_scene::{Material, Scene};
 use lightmesh_testkit::{MODES, SceneDraft, render};
 
 fn mirror(ks: f32, emission: f32) -> Material {
-    Material {
-        ka: Vec3::ZERO,
-        kd: Vec3::ZERO,
-        ks: Vec3::splat(ks),
-        emission: Vec3::splat(emission),
-        ..Material::default()
-    }
+    Material::matt(Vec3::ZERO).with_ks([ks; 3]).with_emission([emission; 3])
 }
 
 /// What the camera sees along its axis, in all modes alike.
 fn seen(scene: &Scene, bounces: u32) -> Vec3 {
     let colors = MODES.map(|mode| {
-        let frame = render(scene, &Settings { mode, size: [1, 1], bounces, ..Settings::default() });
+        let frame = render(scene, &Settings::default().with_mode(mode).with_size([1, 1]).with_bounces(bounces));
         Vec3::from_array(frame.image.color()[0])
     });
     assert!(colors.iter().all(|color| *color == colors[0]), "{colors:?}");
@@ -30,7 +24,7 @@ fn mirror_floor() -> Scene {
     SceneDraft::new()
         .painted(mirror(0.75, 0.0))
         .floor(0.0, 4.0)
-        .painted(Material { emission: Vec3::new(0.5, 0.0, 0.0), ka: Vec3::ZERO, kd: Vec3::ZERO, ..Material::default() })
+        .painted(Material::matt(Vec3::ZERO).with_emission([0.5, 0.0, 0.0]))
         .quad([[3.0, 1.5, -1.0], [3.0, 3.5, -1.0], [3.0, 3.5, 1.0], [3.0, 1.5, 1.0]])
         .background(Vec3::new(0.0, 0.25, 0.0))
         .camera([-2.0, 2.0, 0.2], [0.0, 0.0, 0.1])
@@ -49,9 +43,9 @@ fn a_mirror_shows_what_it_faces() {
 #[test]
 fn a_mirror_shows_the_background_too() {
     let mut scene = mirror_floor();
-    let keep = scene.mesh.triangles.len() - 2;
-    scene.mesh.triangles.truncate(keep);
-    scene.mesh.materials.truncate(keep);
+    let keep = scene.geometry.mesh.triangles.len() - 2;
+    scene.geometry_mut().mesh.triangles.truncate(keep);
+    scene.geometry_mut().mesh.materials.truncate(keep);
     assert_eq!(seen(&scene, 1), Vec3::new(0.0, 0.1875, 0.0));
 }
 
@@ -76,7 +70,7 @@ fn slanting_light_between_mirrors_walks_along_them() {
         .painted(mirror(0.5, 0.0))
         .floor(0.0, 5.0)
         .floor(2.0, 5.0)
-        .painted(Material { ks: Vec3::ZERO, ..mirror(0.0, 1.0) })
+        .painted(mirror(0.0, 1.0))
         .quad([[4.0, 0.0, -5.0], [4.0, 2.0, -5.0], [4.0, 2.0, 5.0], [4.0, 0.0, 5.0]])
         .camera([-2.0, 1.0, 0.2], [-1.0, 0.0, 0.2])
         .finish("corridor");

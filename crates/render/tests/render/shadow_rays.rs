@@ -1,7 +1,7 @@
 //! Shadow rays from object points where geometry says what they see.
 
 use glam::{DVec3, Vec3};
-use lightmesh_render::{Mode, Settings};
+use lightmesh_render::Mode;
 use lightmesh_scene::LightKind;
 use lightmesh_testkit::{BALL_LIGHT, Picture, SceneDraft, open_floor, pile, render};
 
@@ -16,7 +16,7 @@ fn a_small_area_light_casts_hard_shadows() {
     let hard =
         render(&pile(DVec3::ZERO, &[LightKind::Point { position, spread: 0.0 }]), &settings(Mode::RayTrace, SIZE));
     let sphere = LightKind::Sphere { position, radius: 1e-4 };
-    let soft = render(&pile(DVec3::ZERO, &[sphere]), &Settings { samples: Some(16), ..settings(Mode::Area, SIZE) });
+    let soft = render(&pile(DVec3::ZERO, &[sphere]), &settings(Mode::Area, SIZE).with_samples(16));
     let (hard, soft) = (Picture::new(&hard).visibilities(0), Picture::new(&soft).visibilities(0));
     let differing = hard.iter().zip(&soft).filter(|(a, b)| a != b).count();
     assert!(differing * 500 < hard.len(), "{differing} of {}", hard.len());
@@ -41,7 +41,7 @@ fn half_of_a_light_over_the_horizon_is_half_seen() {
     // A ball whose centre lies in the floor's plane: half of its samples are below.
     let ball = LightKind::Sphere { position: Vec3::new(0.0, 0.0, -30.0), radius: 1.0 };
     let scene = SceneDraft::new().floor(0.0, 4.0).light(ball).camera([0.0, 3.0, 1.0], [0.0; 3]).finish("sunset");
-    let frame = render(&scene, &Settings { samples: Some(64), ..settings(Mode::Area, SIZE) });
+    let frame = render(&scene, &settings(Mode::Area, SIZE).with_samples(64));
     for share in Picture::new(&frame).visibilities(0) {
         // 64 stratified points in three dimensions: far closer to a half than 8 of them.
         assert!((share - 0.5).abs() < 0.125, "{share}");
@@ -52,7 +52,7 @@ fn half_of_a_light_over_the_horizon_is_half_seen() {
 fn every_ray_is_counted() {
     let point = LightKind::Point { position: Vec3::new(-2.0, 3.0, 0.7), spread: 0.0 };
     for (mode, light, rays) in [(Mode::RayTrace, point, 1), (Mode::Area, BALL_LIGHT, 9)] {
-        let counts = render(&open_floor(light), &Settings { samples: Some(9), ..settings(mode, SIZE) }).stats.counts;
+        let counts = render(&open_floor(light), &settings(mode, SIZE).with_samples(9)).stats.counts;
         assert_eq!(counts.shadow_rays, rays * counts.hits, "{mode:?}");
         assert_eq!((counts.light_points, counts.short_tests, counts.template), (0, 0, 0));
     }

@@ -12,7 +12,7 @@ const POINT: LightKind = LightKind::Point { position: Vec3::new(-2.0, 3.0, 0.7),
 /// Rendered with these settings, every pixel shows geometry that faces the light, and V is `expected` to the last bit.
 fn assert_all(scene: &Scene, settings: &Settings, expected: f32) {
     each_device(|renderer| {
-        let frame = renderer.render(scene, &Settings { layers: true, ..settings.clone() }).unwrap();
+        let frame = renderer.render(scene, &settings.clone().with_layers(true)).unwrap();
         let picture = Picture::new(&frame);
         let light = scene.lights[0].position().unwrap();
         let facing = picture.hits().filter(|&pixel| picture.normal(pixel).dot(light - picture.position(pixel)) > 0.5);
@@ -54,7 +54,7 @@ fn an_open_floor_is_fully_lit() {
         let scene = open_floor(light);
         for radius in RADII {
             for weight in WEIGHTS {
-                assert_all(&scene, &Settings { weight: Some(weight), ..light_mesh([32, 24], 0.17, radius) }, 1.0);
+                assert_all(&scene, &light_mesh([32, 24], 0.17, radius).with_weight(weight), 1.0);
             }
         }
         for other in MODES {
@@ -69,7 +69,7 @@ fn a_closed_room_is_fully_dark() {
         for scene in [dark_room(light.clone()), dark_box(light.clone())] {
             for radius in RADII {
                 for weight in WEIGHTS {
-                    assert_all(&scene, &Settings { weight: Some(weight), ..light_mesh([32, 24], 0.13, radius) }, 0.0);
+                    assert_all(&scene, &light_mesh([32, 24], 0.13, radius).with_weight(weight), 0.0);
                 }
             }
             for other in MODES {
@@ -82,7 +82,7 @@ fn a_closed_room_is_fully_dark() {
 /// Every pixel that shows the dark room behind the thin wall.
 fn assert_no_leak(scene: &Scene, settings: &Settings, least_pixels: usize) {
     each_device(|renderer| {
-        let frame = renderer.render(scene, &Settings { layers: true, ..settings.clone() }).unwrap();
+        let frame = renderer.render(scene, &settings.clone().with_layers(true)).unwrap();
         let picture = Picture::new(&frame);
         let inside: Vec<usize> = picture.hits().filter(|&pixel| picture.position(pixel).x > 0.015).collect();
         assert!(inside.len() >= least_pixels, "{} pixels inside", inside.len());

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::math::around;
-use crate::{Falloff, Light, LightKind};
+use crate::Light;
 
 /// A light as its scene designs it: the first is the key light, the others fill.
 pub(super) struct Lamp {
@@ -33,11 +33,9 @@ pub(super) fn place(lamps: &[Lamp], center: Vec3, total: f32, count: usize, spre
     let designed = lamps.iter().map(|lamp| Lamp { ..*lamp });
     let lamps: Vec<Lamp> = designed.chain(further).take(count).collect();
     let sum: f32 = lamps.iter().map(|lamp| lamp.share).sum();
-    let light = |(index, lamp): (usize, &Lamp)| Light {
-        name: format!("light {}", index + 1),
-        kind: LightKind::Point { position: lamp.position, spread },
-        intensity: lamp.tint * (total * lamp.share / sum),
-        falloff: Falloff::None,
+    let light = |(index, lamp): (usize, &Lamp)| {
+        let intensity = lamp.tint * (total * lamp.share / sum);
+        Light::point(lamp.position).with_spread(spread).with_intensity(intensity).named(format!("light {}", index + 1))
     };
     lamps.iter().enumerate().map(light).collect()
 }

@@ -26,14 +26,14 @@ mod surfaces;
 #[cfg(test)]
 mod tests;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 pub use childpark::childpark;
 pub use garden::garden;
 pub use gazebo::gazebo;
 pub use options::BuiltinOptions;
 
-use crate::{Camera, Fov, Light, LightMeshDefaults, LoadError, Mesh, Projection, Scene};
+use crate::{Camera, Fov, Geometry, Light, Lights, LoadError, Mesh, Projection, Scene};
 use parts::Palette;
 
 /// Generates one of the scenes from its options.
@@ -79,18 +79,8 @@ impl Composition {
             up: Vec3::Y,
             projection: Projection::Perspective(Fov::Vertical(self.vfov)),
         };
-        Scene {
-            name: self.name.into(),
-            origin: DVec3::ZERO,
-            mesh: self.mesh,
-            textures: Vec::new(),
-            materials: self.palette.0,
-            lights: self.lights,
-            cameras: vec![camera],
-            ambient: Some(self.ambient),
-            background: Some(self.sky),
-            light_mesh: LightMeshDefaults::default(),
-            warnings: Vec::new(),
-        }
+        let geometry = Geometry { mesh: self.mesh, materials: self.palette.0, ..Geometry::default() };
+        let lights = Lights { list: self.lights, ambient: Some(self.ambient), background: Some(self.sky) };
+        Scene { lights, cameras: vec![camera], ..Scene::new(self.name, geometry) }
     }
 }

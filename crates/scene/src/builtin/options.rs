@@ -4,6 +4,7 @@ use crate::LoadError;
 
 /// Options of the built-in scenes; `None` leaves what the scene's own design says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct BuiltinOptions {
     /// Number of point lights, 1 to 64; values outside are moved to the nearer end. The sum of intensities does not change.
     pub lights: Option<usize>,

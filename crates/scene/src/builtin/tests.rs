@@ -33,8 +33,8 @@ fn hash(mesh: &Mesh) -> u64 {
 #[test]
 fn counts_are_those_of_the_thesis() {
     for ((name, triangles, lights, ..), scene) in scenes() {
-        let excess = scene.mesh.triangles.len().abs_diff(triangles);
-        assert!(excess * 50 <= triangles, "{name}: {}", scene.mesh.triangles.len());
+        let excess = scene.geometry.mesh.triangles.len().abs_diff(triangles);
+        assert!(excess * 50 <= triangles, "{name}: {}", scene.geometry.mesh.triangles.len());
         assert_eq!(scene.lights.len(), lights, "{name}");
         assert_eq!((scene.cameras.len(), scene.name.as_str()), (1, name));
     }
@@ -43,7 +43,7 @@ fn counts_are_those_of_the_thesis() {
 #[test]
 fn sizes_are_those_of_the_thesis() {
     for ((name, _, _, size, _), scene) in scenes() {
-        let ratio = scene.mesh.bounds().extent() / size;
+        let ratio = scene.geometry.mesh.bounds().extent() / size;
         assert!((ratio - Vec3::ONE).abs().max_element() <= 0.1, "{name}: {ratio}");
     }
 }
@@ -51,7 +51,7 @@ fn sizes_are_those_of_the_thesis() {
 #[test]
 fn every_machine_makes_the_same_bits() {
     for ((name, .., expected), scene) in scenes() {
-        let hash = hash(&scene.mesh);
+        let hash = hash(&scene.geometry.mesh);
         assert_eq!(hash, expected, "{name}: {hash:#018x}; a change on purpose sets the new hash here");
     }
 }
@@ -59,13 +59,13 @@ fn every_machine_makes_the_same_bits() {
 #[test]
 fn triangles_are_sound() {
     for ((name, ..), scene) in scenes() {
-        let mesh = &scene.mesh;
+        let mesh = &scene.geometry.mesh;
         assert_eq!(mesh.normals.len(), mesh.positions.len(), "{name}");
         assert_eq!(mesh.materials.len(), mesh.triangles.len(), "{name}");
         assert!(mesh.positions.iter().all(|position| position.is_finite()), "{name}");
         let sound = |normal: &Vec3| *normal == Vec3::ZERO || (normal.length() - 1.0).abs() < 1e-5;
         assert!(mesh.normals.iter().all(sound), "{name}");
-        assert!(mesh.materials.iter().all(|&material| (material as usize) < scene.materials.len()), "{name}");
+        assert!(mesh.materials.iter().all(|&material| (material as usize) < scene.geometry.materials.len()), "{name}");
         for index in 0..mesh.triangles.len() {
             let [a, b, c] = mesh.corners(index);
             let longest = (b - a).length().max((c - a).length()).max((c - b).length());
@@ -79,10 +79,11 @@ fn triangles_are_sound() {
 #[test]
 fn smooth_normals_point_out_of_their_faces() {
     for ((name, ..), scene) in scenes() {
-        for index in 0..scene.mesh.triangles.len() {
-            let [a, b, c] = scene.mesh.corners(index);
+        for index in 0..scene.geometry.mesh.triangles.len() {
+            let [a, b, c] = scene.geometry.mesh.corners(index);
             let face = (b - a).cross(c - a).normalize();
-            let normals = scene.mesh.triangles[index].map(|vertex| scene.mesh.normals[vertex as usize]);
+            let normals =
+                scene.geometry.mesh.triangles[index].map(|vertex| scene.geometry.mesh.normals[vertex as usize]);
             let outward = normals.iter().all(|&normal| normal == Vec3::ZERO || normal.dot(face) > 0.0);
             assert!(outward, "{name}: triangle {index} {a} {b} {c} {normals:?}");
         }
@@ -92,7 +93,7 @@ fn smooth_normals_point_out_of_their_faces() {
 #[test]
 fn materials_reflect_no_more_than_they_receive() {
     for ((name, ..), scene) in scenes() {
-        for material in &scene.materials {
+        for material in &scene.geometry.materials {
             let sum = (material.kd + material.ks).max_element();
             assert!(material.kd.min_element() >= 0.0 && sum <= 1.3 && material.kd.max_element() < 1.0, "{name}");
             assert!(material.shininess >= 1.0, "{name}: {}", material.name);

@@ -33,19 +33,19 @@ pub(super) fn encode(scene: &Scene, content: Content, path: &Path) -> Result<Vec
     let mut root = json!({"asset": {"version": "2.0", "generator": "lightmesh"}, "scene": 0});
     let mut bin = Vec::new();
     let mut extensions = Vec::new();
-    if !scene.mesh.triangles.is_empty() {
+    if !scene.geometry.mesh.triangles.is_empty() {
         let pictures = Pictures::new(scene).map_err(|cause| ExportError::Write { path: path.to_owned(), cause })?;
         root["materials"] =
-            scene.materials.iter().enumerate().map(|(index, it)| material(it, index, &pictures)).collect();
+            scene.geometry.materials.iter().enumerate().map(|(index, it)| material(it, index, &pictures)).collect();
         if pictures.transformed() {
             extensions.push("KHR_texture_transform");
         }
-        let arrays = Arrays::new(&scene.mesh);
+        let arrays = Arrays::new(&scene.geometry.mesh);
         (root["accessors"], root["bufferViews"], root["meshes"]) = arrays.describe();
         bin = arrays.into_bytes();
         pictures.write(scene, &mut bin, &mut root);
         root["buffers"] = json!([{"byteLength": bin.len()}]);
-        nodes.push(json!({"name": scene.name, "mesh": 0, "translation": scene.origin.to_array()}));
+        nodes.push(json!({"name": scene.name, "mesh": 0, "translation": scene.geometry.origin.to_array()}));
     }
     let mut extras = Map::new();
     if content == Content::Everything {
@@ -277,7 +277,7 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
 
 fn camera_entry(scene: &Scene, camera: &Camera) -> Value {
     // Other programs need planes to clip at: wide enough to hold the scene from anywhere near it.
-    let size = f64::from(scene.mesh.bounds().diagonal()).max(1.0);
+    let size = f64::from(scene.geometry.mesh.bounds().diagonal()).max(1.0);
     match camera.projection {
         Projection::Perspective(fov) => {
             let radians = match fov {
@@ -361,9 +361,9 @@ fn look(position: DVec3, direction: DVec3, up: DVec3) -> [f64; 16] {
 
 fn scene_extras(scene: &Scene) -> SceneExtras {
     SceneExtras {
-        origin: (scene.origin != DVec3::ZERO).then_some(scene.origin.to_array()),
-        ambient: scene.ambient.map(Vec3::into),
-        background: scene.background.map(Vec3::into),
+        origin: (scene.geometry.origin != DVec3::ZERO).then_some(scene.geometry.origin.to_array()),
+        ambient: scene.lights.ambient.map(Vec3::into),
+        background: scene.lights.background.map(Vec3::into),
         step: scene.light_mesh.step,
         radius: scene.light_mesh.radius,
         weight: scene.light_mesh.weight.map(|weight| weight.name().to_owned()),

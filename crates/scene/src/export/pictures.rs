@@ -25,9 +25,10 @@ pub(super) struct Pictures {
 impl Pictures {
     /// Encodes the textures that materials use.
     pub(super) fn new(scene: &Scene) -> io::Result<Pictures> {
-        let mut pictures = Pictures { files: vec![None; scene.textures.len()], ..Pictures::default() };
-        for material in &scene.materials {
-            let found = material.texture.and_then(|uses| Some((uses, scene.textures.get(uses.texture as usize)?)));
+        let mut pictures = Pictures { files: vec![None; scene.geometry.textures.len()], ..Pictures::default() };
+        for material in &scene.geometry.materials {
+            let found =
+                material.texture.and_then(|uses| Some((uses, scene.geometry.textures.get(uses.texture as usize)?)));
             let entry = match found.filter(|(_, texture)| is_whole(texture)) {
                 Some((uses, texture)) => Some((pictures.add(uses, texture)?, uses)),
                 None => None,
@@ -83,7 +84,7 @@ impl Pictures {
             let (Some(file), Some(views)) = (file, root["bufferViews"].as_array_mut()) else { continue };
             place[index] = images.len();
             images
-                .push(json!({"name": scene.textures[index].name, "mimeType": "image/png", "bufferView": views.len()}));
+                .push(json!({"name": scene.geometry.textures[index].name, "mimeType": "image/png", "bufferView": views.len()}));
             views.push(json!({"buffer": 0, "byteOffset": bin.len(), "byteLength": file.len()}));
             bin.extend(file);
         }

@@ -19,11 +19,11 @@ fn scene(offset: DVec3) -> Scene {
     let colors = [Vec3::new(0.1, 0.7, 0.3), Vec3::ONE, Vec3::ZERO, Vec3::splat(0.3)];
     let smooth =
         MeshPart { positions: &positions, normals: &normals, uvs: &uvs, colors: &colors, triangles: &triangles };
-    builder.add(smooth, &DMat4::from_translation(offset), |index| [1, 0, 3][index]);
+    builder.add(smooth, &DMat4::from_translation(offset), |index| [1, 0, 3][index]).unwrap();
     let flat = MeshPart { normals: &[], uvs: &[], colors: &[], ..smooth };
-    builder.add(flat, &DMat4::from_translation(offset + DVec3::X), |_| 2);
+    builder.add(flat, &DMat4::from_translation(offset + DVec3::X), |_| 2).unwrap();
     let mut scene = builder.finish_scene("round trip");
-    scene.materials = vec![
+    scene.geometry_mut().materials = vec![
         Material { name: "plain".into(), ..Material::default() },
         Material {
             name: "shiny".into(),
@@ -47,14 +47,14 @@ fn scene(offset: DVec3) -> Scene {
             ..Material::default()
         },
     ];
-    scene.textures = vec![texture("oak.png", [3, 2]), texture("tiles", [1, 7])];
-    let origin = scene.origin;
+    scene.geometry_mut().textures = vec![texture("oak.png", [3, 2]), texture("tiles", [1, 7])];
+    let origin = scene.geometry.origin;
     let at = |x, y, z| (offset + DVec3::new(x, y, z) - origin).as_vec3();
     let direction = Vec3::new(0.3, -0.8, 0.2).normalize();
     let light = |kind, falloff| Light { name: "l".into(), kind, intensity: Vec3::new(0.1, 700.3, 33.3), falloff };
     let position = at(1.1, 2.2, 3.3);
     let (half_u, half_v) = (Vec3::new(0.3, 0.0, 0.1), Vec3::new(0.0, 0.7, 0.0));
-    scene.lights = vec![
+    scene.lights.list = vec![
         light(LightKind::Point { position, spread: 0.0 }, Falloff::InverseSquare),
         light(LightKind::Point { position, spread: 0.35 }, Falloff::None),
         light(LightKind::Directional { direction }, Falloff::None),
@@ -63,7 +63,7 @@ fn scene(offset: DVec3) -> Scene {
         light(LightKind::Sphere { position, radius: 0.33 }, Falloff::None),
         light(LightKind::Disk { position, normal: direction, radius: 0.33 }, Falloff::InverseSquare),
         light(LightKind::Rectangle { position, half_u, half_v }, Falloff::None),
-        Light { intensity: Vec3::ZERO, ..Light::point(position, Vec3::ONE) },
+        Light::point(position).with_intensity(Vec3::ZERO),
     ];
     let up = direction.cross(Vec3::Y).cross(direction).normalize();
     let camera = |projection| Camera { name: "c".into(), position: at(5.5, 4.4, 3.3), direction, up, projection };
@@ -72,8 +72,8 @@ fn scene(offset: DVec3) -> Scene {
         camera(Projection::Perspective(Fov::Horizontal(73.1))),
         camera(Projection::Orthographic { height: 7.7 }),
     ];
-    scene.ambient = Some(Vec3::new(0.1, 0.2, 0.3));
-    scene.background = Some(Vec3::new(0.6, 0.75, 0.9));
+    scene.lights.ambient = Some(Vec3::new(0.1, 0.2, 0.3));
+    scene.lights.background = Some(Vec3::new(0.6, 0.75, 0.9));
     scene.light_mesh.step = Some(0.1);
     scene.light_mesh.radius = Some(2.1);
     scene.light_mesh.weight = Some(Weight::Constant);
@@ -94,7 +94,7 @@ fn reread(scene: &Scene, name: &str) -> Scene {
 
 /// Triangle by triangle: corners, normals, texture coordinates and colours.
 fn corners(scene: &Scene) -> Vec<[(Vec3, Vec3, Vec2, Vec3); 3]> {
-    let mesh = &scene.mesh;
+    let mesh = &scene.geometry.mesh;
     let corner = |vertex: u32| {
         let vertex = vertex as usize;
         (mesh.positions[vertex], mesh.normals[vertex], mesh.uvs[vertex], mesh.colors[vertex])
@@ -108,13 +108,17 @@ fn a_scene_at_home_is_the_same_to_the_last_bit() {
     for name in ["scene.glb", "scene.toml"] {
         let read = reread(&written, name);
         assert_eq!(corners(&read), corners(&written), "{name}");
-        assert_eq!(read.mesh.materials, written.mesh.materials, "{name}");
-        assert_eq!(read.materials, written.materials, "{name}");
-        assert_eq!(read.textures, written.textures, "{name}");
+        assert_eq!(read.geometry.mesh.materials, written.geometry.mesh.materials, "{name}");
+        assert_eq!(read.geometry.materials, written.geometry.materials, "{name}");
+        assert_eq!(read.geometry.textures, written.geometry.textures, "{name}");
         assert_eq!(read.lights, written.lights, "{name}");
         assert_eq!(read.cameras, written.cameras, "{name}");
-        assert_eq!((read.ambient, read.background), (written.ambient, written.background), "{name}");
-        assert_eq!((read.light_mesh, read.origin), (written.light_mesh, written.origin), "{name}");
+        assert_eq!(
+            (read.lights.ambient, read.lights.background),
+            (written.lights.ambient, written.lights.background),
+            "{name}"
+        );
+        assert_eq!((read.light_mesh, read.geometry.origin), (written.light_mesh, written.geometry.origin), "{name}");
         assert!(read.warnings.is_empty(), "{name}: {:?}", read.warnings);
     }
 }
@@ -122,10 +126,10 @@ fn a_scene_at_home_is_the_same_to_the_last_bit() {
 #[test]
 fn a_scene_far_away_keeps_its_frame_and_shape() {
     let written = scene(DVec3::new(1e6, -3e5, 7e4));
-    assert_ne!(written.origin, DVec3::ZERO);
+    assert_ne!(written.geometry.origin, DVec3::ZERO);
     for name in ["scene.glb", "scene.toml"] {
         let read = reread(&written, name);
-        assert_eq!(read.origin, written.origin, "{name}");
+        assert_eq!(read.geometry.origin, written.geometry.origin, "{name}");
         for (read, written) in corners(&read).iter().flatten().zip(corners(&written).iter().flatten()) {
             assert!(read.0.distance(written.0) < 1e-9, "{name}: {} {}", read.0, written.0);
             assert_eq!((read.1, read.2, read.3), (written.1, written.2, written.3), "{name}");
@@ -140,10 +144,10 @@ fn a_scene_far_away_keeps_its_frame_and_shape() {
 #[test]
 fn a_scene_without_triangles_can_be_written() {
     let mut written = SceneBuilder::new().finish_scene("empty");
-    written.lights.push(Light::point(Vec3::Y, Vec3::ONE));
+    written.lights.push(Light::point(Vec3::Y));
     for name in ["empty.glb", "empty.toml"] {
         let read = reread(&written, name);
-        assert_eq!((read.mesh.triangles.len(), read.lights.len()), (0, 1), "{name}");
+        assert_eq!((read.geometry.mesh.triangles.len(), read.lights.len()), (0, 1), "{name}");
     }
 }
 
@@ -174,9 +178,12 @@ fn written_files_may_be_read_by_others() {
 #[test]
 fn textures_that_nobody_can_use_are_left_out() {
     let mut scene = scene(DVec3::ZERO);
-    scene.textures[0].texels.pop();
-    scene.textures.push(texture("unused", [2, 2]));
+    scene.geometry_mut().textures[0].texels.pop();
+    scene.geometry_mut().textures.push(texture("unused", [2, 2]));
     let read = reread(&scene, "scene.glb");
-    assert_eq!(read.textures, scene.textures[1..2]);
-    assert_eq!((read.materials[1].texture, read.materials[3].texture.map(|uses| uses.texture)), (None, Some(0)));
+    assert_eq!(read.geometry.textures, scene.geometry.textures[1..2]);
+    assert_eq!(
+        (read.geometry.materials[1].texture, read.geometry.materials[3].texture.map(|uses| uses.texture)),
+        (None, Some(0))
+    );
 }

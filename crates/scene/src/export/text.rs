@@ -20,12 +20,14 @@ pub(super) fn encode(scene: &Scene, mesh_file: &str) -> Result<String, toml::ser
     let mesh =
         MeshEntry { file: anywhere(mesh_file.to_owned()), material: None, translate: None, rotate: None, scale: None };
     toml::to_string(&SceneFile {
-        origin: (scene.origin != DVec3::ZERO).then(|| anywhere(scene.origin.to_array())),
+        origin: (scene.geometry.origin != DVec3::ZERO).then(|| anywhere(scene.geometry.origin.to_array())),
         camera: scene.cameras.iter().map(|camera| anywhere(camera_entry(scene, camera))).collect(),
-        ambient: (scene.ambient.is_some() || scene.background.is_some())
-            .then(|| AmbientEntry { intensity: scene.ambient.map(color), background: scene.background.map(color) }),
+        ambient: (scene.lights.ambient.is_some() || scene.lights.background.is_some()).then(|| AmbientEntry {
+            intensity: scene.lights.ambient.map(color),
+            background: scene.lights.background.map(color),
+        }),
         light: scene.lights.iter().map(|light| anywhere(light_entry(scene, light))).collect(),
-        mesh: if scene.mesh.triangles.is_empty() { Vec::new() } else { vec![anywhere(mesh)] },
+        mesh: if scene.geometry.mesh.triangles.is_empty() { Vec::new() } else { vec![anywhere(mesh)] },
         lightmesh: light_mesh_entry(scene),
         ..SceneFile::default()
     })
@@ -50,7 +52,7 @@ fn number(number: f32) -> Spanned<f64> {
 
 /// World coordinates, with no more digits than the local ones have where both frames are the same.
 fn world(scene: &Scene, local: Vec3) -> Spanned<[f64; 3]> {
-    if scene.origin == DVec3::ZERO { vector(local) } else { anywhere(scene.to_world(local).to_array()) }
+    if scene.geometry.origin == DVec3::ZERO { vector(local) } else { anywhere(scene.to_world(local).to_array()) }
 }
 
 fn named(name: &str) -> Option<Spanned<String>> {

@@ -5,7 +5,7 @@ use crate::report::document::{Block, Cell, Column, Table};
 use crate::report::numbers;
 use crate::report::runs::{Measured, distinct};
 
-/// Significant digits of a value that nothing is known of.
+/// Significant digits of an unknown value.
 const DIGITS: usize = 3;
 pub(super) fn blocks(experiment: &str, rows: &[Measured]) -> Vec<Block> {
     let of = |name: &str| (name.to_owned(), spaced(name));
@@ -14,7 +14,7 @@ pub(super) fn blocks(experiment: &str, rows: &[Measured]) -> Vec<Block> {
     vec![Block::Table(table(experiment, "", rows, &stages, &values))]
 }
 
-/// As [`table`], for names and headings that are known.
+/// As [`table`], with known names and headings.
 pub(super) fn chosen(
     name: &str,
     caption: &str,
@@ -28,7 +28,7 @@ pub(super) fn chosen(
     Block::Table(table(name, caption, rows, &owned(stages), &owned(values)))
 }
 
-/// Keys, medians of stages in milliseconds and values, each with its heading. Keys that are the same in all rows are told in the caption.
+/// Keys, medians of stages in milliseconds and values, each with its heading. Keys that are the same in all rows go to the caption.
 fn table(
     name: &str,
     caption: &str,
@@ -60,14 +60,14 @@ fn table(
     table.without_empty_columns()
 }
 
-/// Keys that differ between rows, and a sentence of those that do not.
+/// Keys that differ between rows, and a sentence with those that do not.
 pub(super) fn split_keys(rows: &[Measured]) -> (Vec<String>, String) {
     let same = |key: &str| rows.windows(2).all(|pair| pair[0].key(key) == pair[1].key(key));
     let (common, keys): (Vec<String>, Vec<String>) =
         key_columns(rows).into_iter().partition(|key| rows.len() > 1 && same(key));
     let common: Vec<String> =
         common.iter().map(|key| format!("{} {}", key.replace('_', " "), rows[0].text(key))).collect();
-    (keys, if common.is_empty() { String::new() } else { format!("Throughout: {}.", common.join(", ")) })
+    (keys, if common.is_empty() { String::new() } else { format!("All rows: {}.", common.join(", ")) })
 }
 
 fn spaced(name: &str) -> String {
@@ -75,7 +75,7 @@ fn spaced(name: &str) -> String {
     name.trim_end_matches("_bytes").replace('_', " ")
 }
 
-/// A value after what its name says of it.
+/// A value, formatted according to its name.
 pub(super) fn figure(name: &str, value: f64) -> String {
     match name {
         _ if name.ends_with("_bytes") => numbers::bytes(value),

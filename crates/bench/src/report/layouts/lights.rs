@@ -1,4 +1,4 @@
-//! Figure 11: time against the number of lights, and from how many on the method is faster than hard shadows.
+//! Figure 11: time against the number of lights, and the number from which on the method is faster than hard shadows.
 
 use super::{key_text, title, whole};
 use crate::report::document::{Block, Cell, Column, Table};
@@ -6,26 +6,26 @@ use crate::report::numbers;
 use crate::report::plot::{Axis, Curve, Plot};
 use crate::report::runs::{Measured, distinct};
 
-/// Times of both modes at one place.
+/// Times of both modes on one device.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Contest {
-    /// Scene where there are several, and where it was measured, for people.
+    /// The device, and the scene if there are several, as a title.
     pub(crate) title: String,
-    /// The scene and its settings, for people.
+    /// The scene and its settings, as text.
     pub(crate) subject: String,
-    /// Where it was measured, for people.
+    /// The device, as text.
     pub(crate) place: String,
-    /// The same for columns.
+    /// The device, for column names.
     name: String,
     /// Lights and seconds of the method, in order of lights.
     pub(crate) mesh: Vec<(f64, f64)>,
-    /// The same of hard shadows.
+    /// The same for hard shadows.
     pub(crate) hard: Vec<(f64, f64)>,
-    /// Lights from which on the method is faster, as the cost model predicts.
+    /// Number of lights from which on the method is faster, according to the cost model.
     pub(crate) predicted: Option<f64>,
 }
 
-/// What both modes take, for each scene and place; predictions are rows of the experiment that goes with it.
+/// Times of both modes for each scene and device; predictions are rows of the corresponding experiment.
 pub(crate) fn contests(rows: &[Measured], predictions: &[Measured]) -> Vec<Contest> {
     let several = distinct(rows.iter().map(|measured| measured.text("scene"))).len() > 1;
     let scene = |measured: &Measured, end| if several { measured.text("scene") + end } else { String::new() };
@@ -64,13 +64,13 @@ fn subject(row: &Measured) -> String {
 }
 
 impl Contest {
-    /// Lights and seconds of both modes, where both were measured.
+    /// Lights and seconds of both modes, if both were measured.
     fn both(&self) -> Vec<(f64, f64, f64)> {
         let hard = |lights: f64| self.hard.iter().find(|point| point.0 == lights).map(|point| point.1);
         self.mesh.iter().filter_map(|&(lights, mesh)| Some((lights, mesh, hard(lights)?))).collect()
     }
 
-    /// The number of lights from which on the method takes less time, between measurements by straight lines; `None` where it is
+    /// The number of lights from which on the method takes less time, interpolated linearly between measurements; `None` if it is
     /// slower with the most lights.
     pub(crate) fn break_even(&self) -> Option<f64> {
         let both = self.both();
@@ -82,40 +82,40 @@ impl Contest {
         Some(from + (to - from) * behind / (behind + ahead))
     }
 
-    /// The most lights that were measured in both modes.
+    /// The largest number of lights measured in both modes.
     pub(crate) fn most(&self) -> Option<f64> {
         self.both().last().map(|point| point.0)
     }
 
-    /// The method's time over that of hard shadows with so many lights.
+    /// The method's time over that of hard shadows with that many lights.
     pub(crate) fn ratio_at_most(&self) -> Option<f64> {
         self.both().last().map(|(_, mesh, hard)| mesh / hard)
     }
 }
 
-/// A plot for each place, and a table of all.
+/// A plot for each device, and a table of all.
 pub(super) fn figure(rows: &[Measured], predictions: &[Measured]) -> Vec<Block> {
     let contests = contests(rows, predictions);
     let plots = contests.iter().enumerate().map(|(index, contest)| Block::Plot(plot(index, contest)));
     plots.chain([Block::Table(table(&contests))]).chain(lines(predictions).map(Block::Table)).collect()
 }
 
-/// The straight lines through the times of each mode, where a suite fitted them: values, with their headings.
+/// The linear fits to the times of each mode, if the suite computed them: values, with their headings.
 const LINES: [(&str, &str, &str); 4] = [
-    ("method_seconds", "without lights", "light mesh, ms"),
-    ("method_seconds_per_light", "each light", "light mesh, ms"),
-    ("hard_seconds", "without lights", "hard shadows, ms"),
-    ("hard_seconds_per_light", "each light", "hard shadows, ms"),
+    ("method_seconds", "fixed", "light mesh, ms"),
+    ("method_seconds_per_light", "per light", "light mesh, ms"),
+    ("hard_seconds", "fixed", "hard shadows, ms"),
+    ("hard_seconds_per_light", "per light", "hard shadows, ms"),
 ];
 
-/// What a picture takes without lights and what each light adds; `None` where no suite fitted lines.
+/// The fixed time of an image and the time per light; `None` if the suite fitted no lines.
 fn lines(predictions: &[Measured]) -> Option<Table> {
     let mut columns = vec![Column::words("place", "on")];
     columns.extend(LINES.map(|(name, title, group)| Column::numbers(name, title).below(group)));
-    columns.push(Column::numbers("crossing", "the lines cross at, lights"));
-    let caption = "The same times as straight lines: the part that does not depend on lights, and the part for each light. The cost model, \
-                   formulas (4) and (5), counts tests alone; but each light also costs the method its weighted mean at each pixel and \
-                   both modes their shading, so that the break-even by the clock tends to lie higher than the model's.";
+    columns.push(Column::numbers("crossing", "lights at intersection"));
+    let caption = "Linear fits to the same times: a fixed time, and a time per light. The cost model, formulas (4) and (5), only counts \
+                   tests; but each light also costs the method a weighted mean per pixel, and both modes their shading, so the measured \
+                   break-even tends to be higher than the model's.";
     let mut table = Table::new("figure 11, lines", caption, columns);
     for row in predictions {
         let values = LINES.map(|(name, ..)| row.value(name));
@@ -138,13 +138,13 @@ fn plot(index: usize, contest: &Contest) -> Plot {
     let measured = contest.break_even().map(|lights| (lights, format!("break-even: {}", lights_text(lights))));
     let fits = |lights: &f64| contest.most().is_some_and(|most| *lights <= most);
     let predicted = contest.predicted.filter(fits).filter(|predicted| {
-        // Where both fall together one name is enough.
+        // If both coincide, one label is enough.
         contest.break_even().is_none_or(|measured| (measured / predicted).ln().abs() > 0.2)
     });
     let predicted = predicted.map(|lights| (lights, format!("predicted: {}", lights_text(lights))));
     Plot {
         name: format!("figure-11-{}", index + 1),
-        caption: format!("{}: milliseconds of a picture against the number of lights, medians.", contest.title),
+        caption: format!("{}: milliseconds per frame against the number of lights, medians.", contest.title),
         x: Axis { title: "lights".to_owned(), log: false },
         y: Axis { title: "ms".to_owned(), log: false },
         curves: vec![curve("light mesh", &contest.mesh), curve("hard shadows", &contest.hard)],
@@ -152,7 +152,7 @@ fn plot(index: usize, contest: &Contest) -> Plot {
     }
 }
 
-/// A number of lights, which need not be whole.
+/// A number of lights, which need not be an integer.
 pub(crate) fn lights_text(lights: f64) -> String {
     numbers::significant(lights, 2)
 }
@@ -167,7 +167,7 @@ fn table(contests: &[Contest]) -> Table {
     let mut lights =
         distinct(contests.iter().flat_map(|contest| contest.mesh.iter().chain(&contest.hard)).map(|point| point.0));
     lights.sort_by(f64::total_cmp);
-    let caption = "Medians; a ratio below 1 says that the method takes less time.";
+    let caption = "Medians; at a ratio below 1 the method takes less time.";
     let mut table = Table::new("figure 11", caption, columns);
     for lights in lights {
         let mut cells: Vec<Cell> = vec![numbers::setting(lights).into()];
@@ -206,7 +206,7 @@ mod tests {
         assert_eq!(contest([3.0, 4.0, 5.0], [1.0, 6.0, 60.0]).break_even(), Some(4.5));
         assert_eq!(contest([3.0, 4.0, 5.0], [1.0, 2.0, 3.0]).break_even(), None);
         assert_eq!(contest([1.0, 1.0, 1.0], [2.0, 2.0, 2.0]).break_even(), Some(1.0));
-        // Faster for a while is not enough.
+        // Being faster temporarily is not enough.
         assert_eq!(contest([3.0, 1.0, 9.0], [1.0, 2.0, 3.0]).break_even(), None);
     }
 

@@ -1,4 +1,4 @@
-//! What is shown of each experiment. Those of the suites have layouts of their own; whatever else comes is shown by [`generic`].
+//! The layout of each experiment. Those of the suites have custom layouts; any other is shown by [`generic`].
 
 mod generic;
 pub(super) mod lights;
@@ -11,19 +11,33 @@ use super::document::{Block, Column};
 use super::numbers;
 use super::runs::{Measured, Runs, distinct};
 use crate::Key;
-pub(crate) use crate::WHOLE;
+pub(crate) use crate::{STAGES, WHOLE};
 
-/// Time by the number of lights, and what follows from it.
+/// Time against the number of lights, and the break-even.
 pub(crate) const LIGHTS: &str = "figure 11";
 pub(crate) const BREAK_EVEN: &str = "figure 11, break-even";
 
-/// Keys in the order in which people look for them; others follow by name.
-const ORDER: [&str; 15] = [
-    "scene", "lights", "size", "step", "radius", "weight", "lookup", "mode", "method", "samples", "program", "rays",
-    "accel", "device", "threads",
+/// Keys in their usual order; others follow by name.
+const ORDER: [&str; 16] = [
+    "scene",
+    "lights",
+    "size",
+    "step",
+    "radius",
+    "weight",
+    "lookup",
+    "short_tests",
+    "mode",
+    "method",
+    "samples",
+    "program",
+    "rays",
+    "accel",
+    "device",
+    "threads",
 ];
 
-/// Heading and blocks of an experiment, without its pictures.
+/// Heading and blocks of an experiment, without its images.
 pub(crate) fn of(experiment: &str, runs: &Runs) -> (String, Vec<Block>) {
     let rows = runs.rows(experiment);
     let blocks = match experiment {
@@ -37,6 +51,7 @@ pub(crate) fn of(experiment: &str, runs: &Runs) -> (String, Vec<Block>) {
         "equal error" => quality::equal_errors(&rows),
         "equal time" => quality::equal_time(&rows),
         "rays" => rays::rates(&rows),
+        STAGES => thesis::by_stage(&rows),
         _ if quality::fits(&rows) => quality::errors(experiment, &rows),
         _ => generic::blocks(experiment, &rows),
     };
@@ -46,19 +61,20 @@ pub(crate) fn of(experiment: &str, runs: &Runs) -> (String, Vec<Block>) {
 /// A heading for an experiment.
 pub(crate) fn title(experiment: &str) -> String {
     let known = match experiment {
-        "timings" => "Whole pictures: the table of the thesis",
-        "table 1" => "Table 1: the share of collecting light points",
+        "timings" => "Full frames: the table of the thesis",
+        "table 1" => "Table 1: time share of collecting light points",
         "table 2" => "Table 2: light points",
         "figure 1" => "Figure 1: area shadows",
         LIGHTS => "Figure 11: time against the number of lights",
-        BREAK_EVEN => "Break-even of figure 11, by the cost model and by the clock",
-        "figures 12-15" => "Figures 12 to 15: the picture as R grows",
-        "reference" => "References, and how far they are from having converged",
+        BREAK_EVEN => "Break-even of figure 11, predicted and measured",
+        "figures 12-15" => "Figures 12 to 15: images for growing R",
+        "reference" => "References, and their remaining errors",
         "errors" => "Errors against time",
-        "equal error" => "What equal errors cost",
-        "equal time" => "What equal times give",
+        "equal error" => "Cost at equal error",
+        "equal time" => "Error in equal time",
         "rays" => "Rays per second",
-        "soft shadows" => "Soft shadows by other renderers",
+        STAGES => "Time by stage",
+        "soft shadows" => "Soft shadows with other renderers",
         "peers" => "Other renderers",
         _ => "",
     };
@@ -69,7 +85,7 @@ pub(crate) fn title(experiment: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// A setting for people.
+/// A setting as text.
 pub(crate) fn key_text(key: &Key) -> String {
     match key {
         Key::Number(number) => numbers::setting(*number),
@@ -77,7 +93,7 @@ pub(crate) fn key_text(key: &Key) -> String {
     }
 }
 
-/// Names of the keys that any row has, in order.
+/// Names of all keys present in any row, in order.
 pub(crate) fn key_columns(rows: &[Measured]) -> Vec<String> {
     let mut keys = distinct(rows.iter().flat_map(|measured| measured.row.keys.keys().cloned()));
     let place = |key: &str| ORDER.iter().position(|known| *known == key).unwrap_or(ORDER.len());
@@ -85,14 +101,14 @@ pub(crate) fn key_columns(rows: &[Measured]) -> Vec<String> {
     keys
 }
 
-/// A column for a key: of numbers where all rows have numbers there.
+/// A column for a key: numeric if all rows have numbers.
 pub(crate) fn key_column(key: &str, rows: &[Measured]) -> Column {
     let words = rows.iter().any(|measured| matches!(measured.key(key), Some(Key::Word(_))));
     let title = key.replace('_', " ");
     if words { Column::words(key, title) } else { Column::numbers(key, title) }
 }
 
-/// Median seconds of the whole: of `render`, or of the only thing that was timed.
+/// Median seconds of the whole frame: of `render`, or of the only timed stage.
 pub(crate) fn whole(measured: &Measured) -> Option<f64> {
     let seconds = &measured.row.seconds;
     let only = || if seconds.len() == 1 { seconds.values().next() } else { None };

@@ -1,5 +1,5 @@
-//! Errors against what they cost: for each scene and place a curve or points for each method, on logarithmic axes. What equal errors cost
-//! was worked out by the suite.
+//! Errors against cost: for each scene and device, a curve or points for each method, on logarithmic axes. The cost at equal
+//! error is computed by the suite.
 
 use super::generic;
 use super::{WHOLE, key_text, title, whole};
@@ -10,33 +10,33 @@ use crate::report::plot::{Axis, Curve, Plot};
 use crate::report::runs::{Measured, Runs, distinct};
 use crate::report::spread::{Spread, verdict};
 
-/// Errors that are plotted, with their names.
+/// Errors to plot, with their names.
 const ERRORS: [(&str, &str); 3] =
-    [("visibility_rmse", "RMSE of visibility"), ("mean_flip", "mean FLIP"), ("rmse", "RMSE of the picture")];
-/// What is told of a row beside its time, where it has it.
+    [("visibility_rmse", "RMSE of visibility"), ("mean_flip", "mean FLIP"), ("rmse", "RMSE of the image")];
+/// Values shown for a row besides its time, if present.
 const COLUMNS: [(&str, &str); 8] = [
     ("visibility_rmse", "RMSE of visibility"),
     ("mean_flip", "mean FLIP"),
-    ("rmse", "RMSE of the picture"),
+    ("rmse", "RMSE of the image"),
     ("reference_rmse", "RMSE of the reference"),
     ("shadow_rays", "shadow rays"),
     ("long_tests", "long tests"),
     ("short_tests", "short tests"),
-    ("light_points_per_pixel", "S_total a pixel"),
+    ("light_points_per_pixel", "S_total per pixel"),
 ];
-/// What a method is called by, the first that is there.
+/// The keys that name a method; the first one present is used.
 const METHOD: [&str; 2] = ["program", "mode"];
-/// What the suite found of the cost of equal errors.
+/// The experiment with the cost at equal error.
 const EQUAL_ERROR: &str = "equal error";
-/// Keys that tell plots apart.
+/// Keys that identify a plot.
 const SUBJECT: [&str; 3] = ["scene", "lights", "size"];
 
-/// Whether rows have errors and times to be plotted.
+/// Whether rows have errors and times to plot.
 pub(super) fn fits(rows: &[Measured]) -> bool {
     rows.iter().any(|row| whole(row).is_some() && ERRORS.iter().any(|(error, _)| row.value(error).is_some()))
 }
 
-/// Plots of each error, then all rows with what matters of them.
+/// Plots of each error, then a table of all rows.
 pub(super) fn errors(experiment: &str, rows: &[Measured]) -> Vec<Block> {
     let subjects = distinct(rows.iter().map(subject));
     let plots = subjects.iter().flat_map(|wanted| {
@@ -46,7 +46,7 @@ pub(super) fn errors(experiment: &str, rows: &[Measured]) -> Vec<Block> {
     plots.chain([generic::chosen(experiment, "", rows, &[(WHOLE, "whole")], &COLUMNS)]).collect()
 }
 
-/// Scene and place.
+/// Scene and device.
 fn subject(row: &Measured) -> String {
     let text = |(name, key)| if name == "size" { format!("{0} × {0}", key_text(key)) } else { key_text(key) };
     let keys = SUBJECT.iter().filter_map(|&name| Some((name, row.key(name)?))).map(text);
@@ -59,7 +59,7 @@ fn plot(experiment: &str, (error, title): (&str, &str), subject: &str, rows: &[M
     let curves = curves(&rows, |row| Some((1e3 * whole(row)?, row.value(error)?)));
     (!curves.is_empty()).then(|| Plot {
         name: slug(&format!("{experiment} {subject} {error}")),
-        caption: format!("{subject}: {title} against milliseconds of a picture. Lower and further left is better."),
+        caption: format!("{subject}: {title} against milliseconds per frame. Lower and further left is better."),
         x: Axis { title: "ms".to_owned(), log: true },
         y: Axis { title: title.to_owned(), log: true },
         curves,
@@ -67,8 +67,8 @@ fn plot(experiment: &str, (error, title): (&str, &str), subject: &str, rows: &[M
     })
 }
 
-/// Points by method, each in order of time. Shadow rays differ in their number alone, which makes a line; light meshes differ in all sorts
-/// of settings.
+/// Points by method, each in order of time. Shadow rays differ only in number, which makes a line; light meshes differ in various
+/// settings.
 fn curves(rows: &[Measured], point: impl Fn(&Measured) -> Option<(f64, f64)>) -> Vec<Curve> {
     let names = distinct(rows.iter().map(method));
     let curves = names.into_iter().map(|name| {
@@ -81,7 +81,7 @@ fn curves(rows: &[Measured], point: impl Fn(&Measured) -> Option<(f64, f64)>) ->
     curves.filter(|curve| !curve.points.is_empty()).collect()
 }
 
-/// What a row's method is called.
+/// The name of a row's method.
 fn method(row: &Measured) -> String {
     let name = METHOD.into_iter().map(|key| row.text(key)).find(|name| !name.is_empty()).unwrap_or_default();
     let name = match name.as_str() {
@@ -93,7 +93,7 @@ fn method(row: &Measured) -> String {
     if row.is("emitter", "point") { name + ", point lights" } else { name }
 }
 
-/// What equal errors cost, for each measure, scene and place: the method's time over that of shadow rays.
+/// Cost at equal error for each measure, scene and device: the method's time over that of shadow rays.
 pub(crate) fn findings(runs: &Runs) -> Vec<Finding> {
     let rows = runs.rows(EQUAL_ERROR);
     let name = |row: &Measured| (subject(row), row.text("measure"));
@@ -113,22 +113,22 @@ fn equal_error(subject: &str, measure: &str, rows: &[&Measured]) -> Option<Findi
     let with = |name: &str| -> Vec<&&Measured> { rows.iter().filter(|row| row.value(name).is_some()).collect() };
     let (bounds, never, all) = (with("upper_bound"), with("not_reached").len(), rows.len());
     let mut text = format!(
-        "{}: at equal error ({name}, {}) the light mesh takes {} the time of shadow rays for each pixel, over {all} settings.",
+        "{}: at equal error ({name}, {}) the light mesh takes {} the time of shadow rays, over {all} settings.",
         title(subject),
         errors.text(|error| numbers::significant(error, 2)),
         range.text(numbers::ratio)
     );
     if !bounds.is_empty() {
-        text += &format!(" In {} of them a single shadow ray has a smaller error already", bounds.len());
+        text += &format!(" In {} of them a single shadow ray already has a smaller error", bounds.len());
         let faster =
             bounds.iter().filter_map(|row| ratio(row)).filter(|ratio| verdict(*ratio) != Verdict::Loses).count();
         text += &match faster {
             0 => ".".to_owned(),
-            _ => format!("; to take no more time than that, as in {faster} of these, is no gain at equal error."),
+            _ => format!("; taking no more time than that, as in {faster} of these, is not a gain at equal error."),
         };
     }
     if never > 0 {
-        text += &format!(" In {never} of them no number of shadow rays that was measured has so small an error.");
+        text += &format!(" In {never} of them no measured number of shadow rays has an error this small.");
     }
     let verdicts = distinct(rows.iter().map(|row| outcome(row)));
     if verdicts.len() > 1 {
@@ -138,12 +138,12 @@ fn equal_error(subject: &str, measure: &str, rows: &[&Measured]) -> Option<Findi
     Some(Finding::new(if let [one] = verdicts[..] { one } else { Verdict::Depends }, text))
 }
 
-/// The method's time over that of shadow rays with its error.
+/// The method's time over that of shadow rays with the same error.
 fn ratio(row: &Measured) -> Option<f64> {
     Some(row.value("seconds")? / row.value("area_seconds")?)
 }
 
-/// Who is ahead in one setting. Shadow rays that are better and no faster leave it open, as do those that never get there.
+/// The verdict for one setting. It is open if shadow rays are more accurate but not faster, or never reach the error.
 fn outcome(row: &Measured) -> Verdict {
     match ratio(row).map(verdict) {
         Some(Verdict::Wins) if row.value("upper_bound").is_some() => Verdict::Open,
@@ -152,34 +152,40 @@ fn outcome(row: &Measured) -> Verdict {
     }
 }
 
-/// The suite's table of equal errors, the best ratio first in each scene.
+/// The suite's table of costs at equal error, best ratio first in each scene.
 pub(super) fn equal_errors(rows: &[Measured]) -> Vec<Block> {
     let values = [
         ("error", "error"),
         ("seconds", "light mesh, s"),
         ("area_seconds", "shadow rays, s"),
-        ("faster_than_area", "times faster"),
+        ("faster_than_area", "speed-up"),
         ("rays", "rays"),
         ("short_tests", "short tests"),
-        ("area_samples", "shadow rays a pixel and light"),
+        ("area_samples", "shadow rays per pixel and light"),
         ("area_rays", "shadow rays"),
     ];
-    let caption = "What a light mesh costs, and what shadow rays cost that have the same error. Times faster: below 1 the light mesh is \
-                   slower. Without figures of shadow rays: no number of them that was measured has so small an error.";
+    let caption = "The cost of a light mesh, and of shadow rays with the same error. Speed-up: below 1 the light mesh is slower. Rows \
+                   without values for shadow rays: no measured number of them has an error this small.";
     vec![generic::chosen(EQUAL_ERROR, caption, rows, &[], &values)]
 }
 
-/// What shadow rays reach in the time of the light mesh.
+/// The error of shadow rays in the time of the light mesh.
 pub(super) fn equal_time(rows: &[Measured]) -> Vec<Block> {
     let values = [
         ("seconds", "s"),
-        ("samples", "shadow rays a pixel and light"),
+        ("samples", "shadow rays per pixel and light"),
         ("visibility_rmse", "RMSE of visibility, light mesh"),
         ("area_visibility_rmse", "shadow rays"),
         ("mean_flip", "mean FLIP, light mesh"),
         ("area_mean_flip", "shadow rays"),
     ];
-    vec![generic::chosen("equal time", "As many shadow rays as take the time of the light mesh.", rows, &[], &values)]
+    vec![generic::chosen(
+        "equal time",
+        "As many shadow rays as fit into the time of the light mesh.",
+        rows,
+        &[],
+        &values,
+    )]
 }
 
 #[cfg(test)]
@@ -204,8 +210,8 @@ mod tests {
         assert_eq!(findings[0].verdict, Verdict::Loses);
         assert_eq!(
             findings[0].text,
-            "Garden: at equal error (mean FLIP, 0.10) the light mesh takes 2.0× to 3.0× the time of shadow rays for each pixel, over 2 \
-             settings. In 1 of them a single shadow ray has a smaller error already."
+            "Garden: at equal error (mean FLIP, 0.10) the light mesh takes 2.0× to 3.0× the time of shadow rays, over 2 settings. In 1 \
+             of them a single shadow ray already has a smaller error."
         );
     }
 
@@ -225,7 +231,7 @@ mod tests {
         assert_eq!(findings[0].verdict, Verdict::Depends);
         let text = &findings[0].text;
         assert!(
-            text.contains("to take no more time than that, as in 1 of these, is no gain at equal error."),
+            text.contains("taking no more time than that, as in 1 of these, is not a gain at equal error."),
             "{text}"
         );
         assert!(text.ends_with("It wins in 0 and loses in 1."), "{text}");

@@ -5,10 +5,10 @@ use crate::report::document::{Block, Cell, Column, Table};
 use crate::report::numbers;
 use crate::report::runs::Measured;
 
-/// The figure that bars stand for: a million rays a second.
+/// The value shown as bars: millions of rays per second.
 const RATE: &str = "million_per_second";
 
-/// Bars are to the fastest at the same place.
+/// Bars are relative to the fastest on the same device.
 pub(super) fn rates(rows: &[Measured]) -> Vec<Block> {
     let rate = |row: &Measured| row.value(RATE);
     if !rows.iter().any(|row| rate(row).is_some()) {
@@ -19,8 +19,8 @@ pub(super) fn rates(rows: &[Measured]) -> Vec<Block> {
         key_columns(rows).into_iter().filter(|key| !matches!(key.as_str(), "device" | "threads")).collect();
     let mut columns = vec![Column::words("place", "on")];
     columns.extend(keys.iter().map(|key| key_column(key, rows)));
-    columns.push(Column::numbers("rate", "million rays a second"));
-    let mut table = Table::new("rays", "Bars are to the highest rate at the same place.", columns);
+    columns.push(Column::numbers("rate", "million rays per second"));
+    let mut table = Table::new("rays", "Bars are relative to the highest rate on the same device.", columns);
     for row in rows {
         let mut cells: Vec<Cell> = vec![row.place().into()];
         cells.extend(keys.iter().map(|key| Cell::from(row.text(key))));

@@ -13,21 +13,20 @@ pub(super) fn table_1(rows: &[Measured]) -> Vec<Block> {
         ("share", "share"),
         ("thesis_share", "share in the thesis"),
     ];
-    let caption = "How much of a picture it takes to list the light points that are used. The thesis did this on its CPU, even in \
-                   pictures by its GPU.";
+    let caption =
+        "Time spent listing the used light points. The thesis did this on the CPU, even when rendering on the GPU.";
     vec![chosen("table 1", caption, rows, &[], &values)]
 }
 
-/// S_total against the thesis' and against the pixels.
+/// S_total compared with the thesis, and per pixel.
 pub(super) fn table_2(rows: &[Measured]) -> Vec<Block> {
     let (keys, common) = split_keys(rows);
     let mut columns: Vec<Column> = keys.iter().map(|key| key_column(key, rows)).collect();
     columns.push(Column::numbers("light_points", "S_total"));
-    columns.push(Column::numbers("per_pixel", "a pixel"));
+    columns.push(Column::numbers("per_pixel", "per pixel"));
     columns.push(Column::numbers("thesis_light_points", "S_total in the thesis"));
     columns.push(Column::numbers("ratio", "ratio"));
-    let caption =
-        "Light points that a picture uses: S_total. The scenes are in the spirit of the thesis' scenes, not the same.";
+    let caption = "Light points used: S_total. The scenes are modelled on those of the thesis, but not the same.";
     let mut table = Table::new("table 2", [caption, &common].join(" ").trim(), columns);
     for row in rows {
         let (ours, thesis) = (row.value("light_points"), row.value("thesis_light_points"));
@@ -44,7 +43,7 @@ pub(super) fn table_2(rows: &[Measured]) -> Vec<Block> {
     vec![Block::Table(table)]
 }
 
-/// What goes with the pictures of figures 1 and 12 to 15.
+/// The rows of the images of figures 1 and 12 to 15.
 pub(super) fn pictures(experiment: &str, rows: &[Measured]) -> Vec<Block> {
     let values = [
         ("rmse", "RMSE"),
@@ -55,7 +54,7 @@ pub(super) fn pictures(experiment: &str, rows: &[Measured]) -> Vec<Block> {
     ];
     vec![chosen(
         experiment,
-        "Errors are against area shadows with the most samples.",
+        "Errors are relative to area shadows with the most samples.",
         rows,
         &[(WHOLE, "whole")],
         &values,
@@ -64,8 +63,8 @@ pub(super) fn pictures(experiment: &str, rows: &[Measured]) -> Vec<Block> {
 
 pub(super) fn break_even(rows: &[Measured]) -> Vec<Block> {
     let values = [("predicted_lights", "predicted, lights"), ("measured_lights", "measured, lights")];
-    let caption = "From how many lights on the method takes less time than hard shadows: by formulas (4) and (5) with the costs of tests \
-                   that were measured, and by the clock. An empty cell: never, or not with the lights that were measured.";
+    let caption = "Number of lights from which on the method takes less time than hard shadows: predicted by formulas (4) and (5) with the \
+                   measured cost of tests, and measured. An empty cell: never, or not with the measured numbers of lights.";
     let mut table = vec![chosen(super::BREAK_EVEN, caption, rows, &[], &values)];
     let costs = rows.iter().filter_map(|row| {
         let nanoseconds = |name| Some(numbers::significant(1e9 * row.value(name)?, 3));

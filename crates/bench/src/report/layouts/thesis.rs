@@ -1,23 +1,23 @@
-//! The table of the thesis: whole pictures by both modes, what they cost stage by stage, and what was counted.
+//! The table of the thesis: full frames in both modes, their time by stage, and counts.
 
 use super::{WHOLE, key_column, key_columns};
 use crate::report::document::{Block, Cell, Column, Table};
 use crate::report::numbers;
 use crate::report::runs::{Case, Measured, distinct};
 
-/// The mode, and keys that not every mode has.
+/// The mode, and keys that only some modes have.
 const OF_A_MODE: [&str; 7] = ["mode", "step", "radius", "weight", "lookup", "samples", "method"];
 
 /// Seconds of the thesis on its CPU and its GPU.
 const THESIS: [&str; 2] = ["thesis_cpu_seconds", "thesis_gpu_seconds"];
 
-const TIMES: &str = "Milliseconds of whole pictures by the method. Hard: the median with hard shadows, one shadow ray for each pixel and \
-                     light; the ratio is the method's median to that. × thesis: how many times less than the thesis' seconds on a CPU \
-                     (Core i7-950) or a GPU (Tesla C2070), whichever it ran on here.";
+const TIMES: &str = "Milliseconds per frame with the method. Hard: the median with hard shadows, one shadow ray per pixel and light; the ratio \
+                     is the method's median over that. Speed-up: relative to the thesis' seconds on a CPU (Core i7-950) or a GPU (Tesla \
+                     C2070), according to the device used here.";
 
-/// Said where rows of a GPU are among those of [`TIMES`].
-const GPU_TIMES: &str = "A whole picture is timed by the clock of the processor, with transfers from and to the GPU; stages are timed by the \
-                         GPU itself: the sum of their medians, transfers left out.";
+/// Added to [`TIMES`] if there are rows of a GPU.
+const GPU_TIMES: &str = "A full frame is timed by the host's clock, including transfers; stages are timed by the GPU itself: the sum of their \
+                         medians, without transfers.";
 
 /// Stages that move data to a GPU and back.
 const TRANSFERS: [&str; 2] = ["upload", "download"];
@@ -25,7 +25,7 @@ const TRANSFERS: [&str; 2] = ["upload", "download"];
 /// Counts by name, with their headings.
 const COUNTS: [(&str, &str); 7] = [
     ("light_points", "S_total"),
-    ("light_points_per_pixel", "S_total a pixel"),
+    ("light_points_per_pixel", "S_total per pixel"),
     ("half_ball_mean", "half-ball mean"),
     ("used_mean", "used mean, m"),
     ("fallback_share", "m = 0"),
@@ -33,8 +33,8 @@ const COUNTS: [(&str, &str); 7] = [
     ("device_peak_bytes", "GPU memory"),
 ];
 
-/// Stages by name, with their headings.
-const STAGES: [(&str, &str); 7] = [
+/// Stages by name, with their headings, and the whole frame.
+const STAGES: [(&str, &str); 8] = [
     ("upload", "upload"),
     ("primary_rays", "primary rays"),
     ("short_tests", "short tests"),
@@ -42,25 +42,26 @@ const STAGES: [(&str, &str); 7] = [
     ("long_tests", "long tests, shadow rays"),
     ("shade", "shade"),
     ("download", "download"),
+    (WHOLE, "whole"),
 ];
 
 pub(super) fn frames(rows: &[Measured]) -> Vec<Block> {
     vec![Block::Table(times(rows)), Block::Table(stages(rows).folded()), Block::Table(counts(rows).folded())]
 }
 
-/// Whether two rows show the same scene, lights and pixels, measured at the same place, whatever the mode.
+/// Whether two rows have the same scene, lights, size and device, whatever the mode.
 pub(crate) fn same_picture(row: &Measured, other: &Measured) -> bool {
     let case = |row: &Measured| row.case(&OF_A_MODE);
     row.place_name() == other.place_name() && case(row) == case(other)
 }
 
-/// The row of another mode that shows the same, at the same place.
+/// The corresponding row of another mode on the same device.
 fn companion<'a>(row: &Measured, mode: &str, rows: &'a [Measured<'a>]) -> Option<&'a Measured<'a>> {
     rows.iter().find(|other| other.is("mode", mode) && same_picture(row, other))
 }
 
-/// A line for each picture by the method and place: what it took, hard shadows beside it, and the thesis' seconds. A single place is
-/// told in the caption.
+/// A line for each image with the method on each device: its time, hard shadows, and the thesis' seconds. A single device goes to
+/// the caption.
 fn times(rows: &[Measured]) -> Table {
     let mesh: Vec<Measured> = rows.iter().filter(|row| row.is("mode", "light-mesh")).copied().collect();
     let cases = distinct(mesh.iter().map(|row| row.case(&["mode"])));
@@ -73,7 +74,7 @@ fn times(rows: &[Measured]) -> Table {
     }
     columns.extend(
         [("min", "min"), ("median", "median"), ("hard", "hard"), ("ratio", "ratio")]
-            .map(|(name, title)| Column::numbers(name, title).below("whole picture, ms")),
+            .map(|(name, title)| Column::numbers(name, title).below("full frame, ms")),
     );
     columns.extend(
         [("stages", "method"), ("hard stages", "hard"), ("stages ratio", "ratio")]
@@ -83,14 +84,14 @@ fn times(rows: &[Measured]) -> Table {
         [("thesis cpu", "CPU"), ("thesis gpu", "GPU")]
             .map(|(name, title)| Column::numbers(name, title).below("thesis, s")),
     );
-    columns.push(Column::numbers("faster", "× thesis"));
+    columns.push(Column::numbers("faster", "speed-up"));
 
     let mut caption = TIMES.to_owned();
     if mesh.iter().any(|row| on_gpu(row).is_some()) {
         caption = format!("{caption} {GPU_TIMES}");
     }
     if let [place] = &places[..] {
-        caption = format!("{caption} Throughout: {place}.");
+        caption = format!("{caption} All rows: {place}.");
     }
     let mut table = Table::new("timings", caption, columns);
     for case in &cases {
@@ -106,7 +107,7 @@ fn times(rows: &[Measured]) -> Table {
     table.without_empty_columns()
 }
 
-/// Whole pictures, stages, and the thesis' seconds with how many times less it takes here on the same kind of device.
+/// Full frames, stages, and the thesis' seconds with the speed-up over the same kind of device.
 fn time_cells(row: &Measured, rows: &[Measured]) -> [Cell; 10] {
     let companion = companion(row, "ray-trace", rows);
     let ratio = |ours: Option<f64>, other: Option<f64>| ours.zip(other).map(|(ours, other)| ours / other);
@@ -129,8 +130,8 @@ fn time_cells(row: &Measured, rows: &[Measured]) -> [Cell; 10] {
     ]
 }
 
-/// Seconds of a picture's stages on a GPU, transfers left out: the sum of their medians. `None` on a CPU, where stages are what the
-/// whole is made of.
+/// Seconds of a frame's stages on a GPU, without transfers: the sum of their medians. `None` on a CPU, where the stages add up to
+/// the frame.
 fn on_gpu(row: &Measured) -> Option<f64> {
     let stages = row.row.seconds.iter().filter(|(name, _)| *name != WHOLE && !TRANSFERS.contains(&name.as_str()));
     let medians: Vec<f64> = stages.filter_map(|(_, samples)| samples.median()).collect();
@@ -143,28 +144,30 @@ fn stages(rows: &[Measured]) -> Table {
     let mut columns = vec![Column::words("place", "on"), Column::words("mode", "mode")];
     columns.extend(keys.iter().map(|key| key_column(key, rows)));
     columns.extend(STAGES.iter().map(|(stage, title)| Column::numbers(*stage, *title)));
-    columns.push(Column::numbers(WHOLE, "whole"));
     let mut table =
-        Table::new("timings, stages", "Milliseconds of each stage, medians; stages that took none are empty.", columns);
+        Table::new("timings, stages", "Milliseconds per stage, medians; stages that took no time are empty.", columns);
     for row in rows {
         let mut cells: Vec<Cell> = vec![row.place().into(), row.text("mode").into()];
         cells.extend(keys.iter().map(|key| Cell::from(row.text(key))));
-        let stages = STAGES.iter().map(|(stage, _)| *stage).chain([WHOLE]);
-        cells.extend(stages.map(|stage| Cell::number(row.median(stage), numbers::milliseconds)));
+        cells.extend(STAGES.iter().map(|(stage, _)| Cell::number(row.median(stage), numbers::milliseconds)));
         table.rows.push(cells);
     }
     table.without_empty_columns()
 }
 
-/// What was counted; equal counts of several places share a line.
+/// Rows of the experiment `stages`: medians, and light points.
+pub(super) fn by_stage(rows: &[Measured]) -> Vec<Block> {
+    vec![super::generic::chosen(super::STAGES, "", rows, &STAGES, &COUNTS[..1])]
+}
+
+/// Counts; equal counts on several devices share a line.
 fn counts(rows: &[Measured]) -> Table {
     let mesh: Vec<Measured> = rows.iter().filter(|row| row.is("mode", "light-mesh")).copied().collect();
     let keys = case_columns(&mesh);
     let mut columns = vec![Column::words("place", "on")];
     columns.extend(keys.iter().map(|key| key_column(key, &mesh)));
     columns.extend(COUNTS.iter().map(|(count, title)| Column::numbers(*count, *title)));
-    let mut table =
-        Table::new("timings, counts", "Counts of the method, and the most memory that a picture took.", columns);
+    let mut table = Table::new("timings, counts", "Counts of the method, and the peak memory of a frame.", columns);
     for row in &mesh {
         let mut cells: Vec<Cell> = vec![row.place().into()];
         cells.extend(keys.iter().map(|key| Cell::from(row.text(key))));
@@ -176,7 +179,7 @@ fn counts(rows: &[Measured]) -> Table {
     table.without_empty_columns()
 }
 
-/// Keys that tell what was done, not where.
+/// Keys other than the device.
 fn case_columns(rows: &[Measured]) -> Vec<String> {
     let cases: Vec<Case> = rows.iter().map(|row| row.case(&["mode"])).collect();
     key_columns(rows).into_iter().filter(|key| cases.iter().any(|case| case.0.contains_key(key))).collect()
@@ -188,7 +191,7 @@ mod tests {
     use crate::report::tests::results;
     use crate::{Results, Row, Samples};
 
-    /// A picture in both modes, whole and by stages.
+    /// An image in both modes, with its stages.
     fn run(device: &'static str, faster: f64) -> Results {
         results("thesis", |rows| {
             for (mode, seconds) in [("light-mesh", 0.004), ("ray-trace", 0.002)] {

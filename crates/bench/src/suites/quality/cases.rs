@@ -1,31 +1,31 @@
-//! What is held against the reference.
+//! The cases that are compared with the reference.
 
 use lightmesh::scene::Weight;
 use lightmesh::{Lookup, Mode, Settings, Step};
 
 use crate::Key;
 
-/// Numbers of shadow rays a pixel and light.
+/// Numbers of shadow rays per pixel and light.
 pub(super) const AREA_SAMPLES: [u32; 4] = [1, 4, 16, 64];
 /// The thesis' larger radius.
 const THESIS_RADIUS: f32 = 3.1;
 
-/// What light points look at.
+/// The emitters seen by light points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Emitter {
-    /// Lights with a size.
+    /// Area lights.
     Ball,
-    /// Their middles.
+    /// Their centres.
     Point,
 }
 
-/// One way to find shadows.
+/// One way to compute shadows.
 pub(super) struct Case {
-    /// What tells it from the others.
+    /// Its keys.
     pub(super) keys: Vec<(&'static str, Key)>,
-    /// How it is rendered.
+    /// The render settings.
     pub(super) settings: Settings,
-    /// Which lights there are.
+    /// The lights.
     pub(super) emitter: Emitter,
 }
 
@@ -39,8 +39,8 @@ struct Mesh {
     samples: u32,
 }
 
-/// Shadow rays first, hard ones and n a light; then the light mesh with step `h`, which is the one for pictures; then others that differ
-/// from it in one setting; then the thesis' own. With `automatic` also the step that is chosen for the picture.
+/// Shadow rays first, hard ones and n per light; then the light mesh with step `h`, which is used for images; then others that
+/// differ from it in one setting; then the thesis' own. With `automatic` also the automatic step.
 pub(super) fn cases(h: f32, side: u32, automatic: bool) -> Vec<Case> {
     let usual = Mesh {
         step: Step::Fixed(h),
@@ -65,9 +65,9 @@ pub(super) fn cases(h: f32, side: u32, automatic: bool) -> Vec<Case> {
 }
 
 impl Case {
-    /// Shadow rays to each light.
+    /// Number of shadow rays to each light.
     pub(super) fn shadow_rays(mode: Mode, samples: u32, side: u32) -> Case {
-        let settings = Settings { mode, size: [side; 2], samples: Some(samples), ..Settings::default() };
+        let settings = Settings::default().with_mode(mode).with_size([side; 2]).with_samples(samples);
         let keys = vec![("mode", mode.name().into()), ("samples", f64::from(samples).into())];
         Case { keys, settings, emitter: Emitter::Ball }
     }
@@ -77,32 +77,25 @@ impl Mesh {
     fn case(&self, side: u32) -> Case {
         let step = match self.step {
             Step::Auto => "auto".into(),
-            Step::Fixed(step) => number(step),
+            Step::Fixed(step) => step.into(),
         };
         let mut keys = vec![
             ("mode", Mode::LightMesh.name().into()),
             ("step", step),
-            ("radius", number(self.radius)),
+            ("radius", self.radius.into()),
             ("weight", self.weight.name().into()),
         ];
         match self.emitter {
             Emitter::Ball => keys.extend([("emitter", "ball".into()), ("samples", f64::from(self.samples).into())]),
             Emitter::Point => keys.push(("emitter", "point".into())),
         }
-        let settings = Settings {
-            size: [side; 2],
-            step: Some(self.step),
-            radius: Some(self.radius),
-            weight: Some(self.weight),
-            lookup: Lookup::HalfBall,
-            samples: Some(self.samples),
-            ..Settings::default()
-        };
+        let settings = Settings::default()
+            .with_size([side; 2])
+            .with_step(self.step)
+            .with_radius(self.radius)
+            .with_weight(self.weight)
+            .with_lookup(Lookup::HalfBall)
+            .with_samples(self.samples);
         Case { keys, settings, emitter: self.emitter }
     }
-}
-
-/// With as few digits as tell it from other `f32`: 2.1, not 2.0999999.
-fn number(value: f32) -> Key {
-    Key::Number(value.to_string().parse().unwrap_or(f64::from(value)))
 }

@@ -1,38 +1,38 @@
-//! What an error costs, between the numbers of samples that were measured.
+//! The cost of an error, interpolated between the measured numbers of samples.
 
 /// Area shadows with some number of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Point {
-    /// By some measure.
+    /// The error, in some measure.
     pub(super) error: f64,
-    /// What they cost.
+    /// Their cost.
     pub(super) cost: Cost,
 }
 
-/// What area shadows cost.
+/// The cost of area shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cost {
-    /// Shadow rays a pixel and light.
+    /// Shadow rays per pixel and light.
     pub(super) samples: f64,
-    /// Shadow rays that were cast.
+    /// Shadow rays in total.
     pub(super) rays: f64,
     /// Median seconds of the render.
     pub(super) seconds: f64,
 }
 
-/// How a curve meets an error.
+/// Where a curve reaches an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Reach {
-    /// Its first point already has a smaller error: it costs that at most.
+    /// Its first point already has a smaller error: its cost is an upper bound.
     AtMost(Cost),
-    /// It costs this, interpolated.
+    /// At this cost, interpolated.
     At(Cost),
-    /// No point has so small an error.
+    /// No point has an error this small.
     Never,
 }
 
-/// What `error` costs by the curve through `points`, which are in the order of their samples: the first place where the curve comes
-/// down to the error. Errors and costs are powers of the number of samples, more or less, so logarithms are interpolated.
+/// The cost of `error` on the curve through `points`, which are ordered by samples: where the curve first falls to the error.
+/// Errors and costs are approximately powers of the number of samples, so logarithms are interpolated.
 pub(super) fn cost_at(points: &[Point], error: f64) -> Reach {
     let Some(index) = points.iter().position(|point| point.error <= error) else { return Reach::Never };
     if index == 0 {
@@ -49,7 +49,8 @@ pub(super) fn cost_at(points: &[Point], error: f64) -> Reach {
     })
 }
 
-/// How many samples take `seconds`, rounded down; at least 1. Beyond the measured numbers, seconds grow as the samples do.
+/// The number of samples that take `seconds`, rounded down; at least 1. Beyond the measured numbers, time is proportional to
+/// samples.
 pub(super) fn samples_in(points: &[Point], seconds: f64) -> u32 {
     let costs = points.iter().map(|point| point.cost);
     let samples = match costs.clone().zip(costs.clone().skip(1)).find(|(_, next)| next.seconds > seconds) {
@@ -64,7 +65,7 @@ pub(super) fn samples_in(points: &[Point], seconds: f64) -> u32 {
     (samples as u32).clamp(1, u32::from(u16::MAX))
 }
 
-/// Where `value` lies on the way from `from` to `to`, by logarithms.
+/// The position of `value` between `from` and `to`, by logarithms.
 fn share(from: f64, to: f64, value: f64) -> f64 {
     let way = log(to) - log(from);
     if way == 0.0 { 1.0 } else { (log(value) - log(from)) / way }
@@ -79,7 +80,7 @@ fn log(value: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Errors 1/√n, a second and two rays for each sample.
+    /// Errors 1/√n; a second and two rays per sample.
     fn curve() -> Vec<Point> {
         let cost = |n: f64| Cost { samples: n, rays: 2.0 * n, seconds: n };
         [1.0, 4.0, 16.0].map(|n: f64| Point { error: 1.0 / n.sqrt(), cost: cost(n) }).to_vec()

@@ -1,4 +1,4 @@
-//! The reference, and how far pictures are from it.
+//! The reference, and errors relative to it.
 
 use std::time::{Duration, Instant};
 
@@ -10,41 +10,41 @@ use crate::engine::Engine;
 use crate::measure::Silent;
 use crate::{BenchError, Plan, Row};
 
-/// Shadow rays a light of the reference, and in the short form.
+/// Shadow rays per light of the reference, and in the short version.
 const SAMPLES: [u32; 2] = [1024, 256];
-/// Fewer than this are no reference for 64.
+/// With fewer, it is not a reference for 64.
 const FEWEST: u32 = 128;
-/// Rays of the picture that says how long the reference will take.
+/// Shadow rays of the trial that estimates the time of the reference.
 const TRIAL: u32 = 4;
-/// The share of the time that two references may take.
+/// Share of the time available for two references.
 const SHARE: f64 = 0.4;
-/// Apart from seed 0, which all that is measured has.
+/// Different from seed 0, which all measurements use.
 const SEEDS: [u64; 2] = [1, 2];
 
-/// Errors of a picture.
+/// Errors of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Errors {
-    /// Root of the mean squared difference of visibility over all object points and lights.
+    /// RMSE of visibility over all surface points and lights.
     pub(super) visibility_rmse: f64,
-    /// The same of display values over all pixels and channels.
+    /// RMSE of display values over all pixels and channels.
     pub(super) rmse: f64,
     /// Mean FLIP.
     pub(super) mean_flip: f64,
 }
 
-/// Area shadows with so many samples that they count as true.
+/// Area shadows with enough samples to count as converged.
 pub(super) struct Reference {
-    /// The picture, with layers.
+    /// The image, with layers.
     pub(super) frame: image::Frame,
-    /// Shadow rays a pixel and light.
+    /// Shadow rays per pixel and light.
     pub(super) samples: u32,
-    /// Its own errors, as another seed tells them.
+    /// Its own errors, estimated with another seed.
     pub(super) residue: Errors,
     wanted: u32,
 }
 
 impl Reference {
-    /// Renders it twice, with different seeds. Takes fewer samples than wanted where `share` is too short.
+    /// Renders it twice, with different seeds, and with fewer samples if `share` is too short.
     pub(super) fn converge(
         plan: &Plan,
         engine: &Engine,
@@ -54,14 +54,12 @@ impl Reference {
         observer: &dyn Observer,
     ) -> Result<Reference, BenchError> {
         let render = |samples, seed| {
-            let settings = Settings {
-                mode: Mode::Area,
-                size: [side; 2],
-                samples: Some(samples),
-                seed,
-                layers: true,
-                ..Settings::default()
-            };
+            let settings = Settings::default()
+                .with_mode(Mode::Area)
+                .with_size([side; 2])
+                .with_samples(samples)
+                .with_seed(seed)
+                .with_layers(true);
             engine.renderer.render_prepared(scene, &settings, &Silent(observer)).map(|frame| frame.image)
         };
         render(TRIAL, SEEDS[0])?;
@@ -75,7 +73,7 @@ impl Reference {
         }
         let (frame, other) = (render(samples, SEEDS[0])?, render(samples, SEEDS[1])?);
         let apart = Errors::between(&frame, &other)?;
-        // Both have errors of the same size, and independent ones: those of visibility add by their squares.
+        // The errors of both are of equal size and independent: squared errors of visibility add up.
         let residue = Errors {
             visibility_rmse: apart.visibility_rmse / f64::sqrt(2.0),
             rmse: apart.rmse / f64::sqrt(2.0),
@@ -84,17 +82,17 @@ impl Reference {
         Ok(Reference { frame, samples, residue, wanted })
     }
 
-    /// What a reader should know where time was short.
+    /// A note if time was short.
     pub(super) fn note(&self, scene: &str) -> Option<String> {
         (self.samples < self.wanted).then(|| {
             let (samples, wanted) = (self.samples, self.wanted);
-            format!("For want of time the reference of {scene} has {samples} samples, not {wanted}.")
+            format!("The time budget limited the reference of {scene} to {samples} instead of {wanted} samples.")
         })
     }
 }
 
 impl Errors {
-    /// Of `test`, both with layers.
+    /// Errors of `test`; both have layers.
     pub(super) fn between(reference: &image::Frame, test: &image::Frame) -> Result<Errors, CompareError> {
         let comparison = compare(reference, test)?;
         Ok(Errors {
@@ -104,14 +102,14 @@ impl Errors {
         })
     }
 
-    /// Puts them into a row.
+    /// Adds them to a row.
     pub(super) fn fill(&self, row: &mut Row) {
         let figures = [("visibility_rmse", self.visibility_rmse), ("rmse", self.rmse), ("mean_flip", self.mean_flip)];
         row.values.extend(figures.map(|(name, figure)| (name.to_owned(), figure)));
     }
 }
 
-/// 0 where there is no object point or light.
+/// 0 if there is no surface point or light.
 fn visibility_rmse(reference: &image::Frame, test: &image::Frame) -> f64 {
     let (Some(reference), Some(test)) = (reference.layers(), test.layers()) else { return 0.0 };
     let (mut sum, mut count) = (0.0, 0_usize);

@@ -1,15 +1,16 @@
-//! Errors against converged area shadows, and what equal errors cost.
+//! Errors relative to converged area shadows, and the cost of equal error.
 //!
-//! | experiment | rows | values beside the counts |
+//! | experiment | rows | values besides counts |
 //! |---|---|---|
-//! | `reference` | scene | `samples`; `visibility_rmse`, `mean_flip`: how far it is from having converged |
+//! | `reference` | scene | `samples`; `visibility_rmse`, `mean_flip`: its own remaining error |
 //! | `errors` | scene, mode, step, radius, weight, emitter, samples | `visibility_rmse`, `rmse`, `mean_flip` |
-//! | `equal error` | a light mesh, and by which measure | `error`, `seconds`, `rays`, `short_tests`; `area_…`: what shadow rays cost |
-//! | `equal time` | scene | `samples` that take as long as the light mesh, and the errors of both |
+//! | `equal error` | a light mesh and a measure | `error`, `seconds`, `rays`, `short_tests`; `area_…`: the cost of shadow rays |
+//! | `equal time` | scene | `samples` that take as long as the light mesh, and both errors |
 //!
-//! The rival is area mode: n stratified shadow rays a pixel and light, on the same tracer. Its cost at an error is interpolated between
-//! the n that were measured, linear in the logarithms ([`curve`]). Lights are balls, as large as area mode strews point lights; the
-//! emitter `point` is the thesis' light mesh, which takes their middles. Each scene has an equal share of the time.
+//! The competitor is area mode: n stratified shadow rays per pixel and light, on the same ray tracer. Its cost at an error is
+//! interpolated between the measured n, linearly in the logarithms ([`curve`]). Lights are balls with the spread that area mode
+//! gives point lights; the emitter `point` is the thesis' light mesh, which uses their centres. Each scene gets an equal share of
+//! the time.
 
 mod cases;
 mod curve;
@@ -25,29 +26,29 @@ use lightmesh::{Mode, Observer, Settings, Step};
 
 use self::cases::{Case, Emitter};
 use self::errors::{Errors, Reference};
-use super::subjects::{Subject, paths};
-use super::turns::{Clock, Turns};
+use super::subjects::{self, Subject};
+use super::turns::Turns;
 use crate::engine::{self, Engine};
 use crate::measure::{Measured, Silent, Variant};
 use crate::{BenchError, Findings, Key, Plan, Row};
 
-/// Pixels of a side, and in the short form.
+/// Pixels along a side, and in the short version.
 const SIDES: [u32; 2] = [512, 256];
 
-/// A scene, ready to be rendered in every way.
+/// A scene, prepared for all cases.
 struct Study<'a> {
     plan: &'a Plan,
     subject: &'a Subject,
-    /// With lights that have a size.
-    balls: PreparedScene<'a>,
+    /// With area lights.
+    balls: PreparedScene,
     /// With point lights.
-    points: PreparedScene<'a>,
+    points: PreparedScene,
     side: u32,
     reference: Reference,
     observer: &'a dyn Observer,
 }
 
-/// A case with what was found.
+/// A case with its results.
 struct Outcome {
     case: Case,
     errors: Errors,
@@ -55,19 +56,12 @@ struct Outcome {
 }
 
 pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings) -> Result<(), BenchError> {
-    let clock = Clock::new(plan.budget);
     let engines = engine::engines(plan)?;
     findings.devices = engines.iter().map(|engine| engine.device.clone()).collect();
-    let paths = paths(plan);
-    for index in 0..paths.len() {
-        let subject = Subject::open(&paths, index)?;
-        observer.note(&format!("scene {} of {}: {}", index + 1, paths.len(), subject.name));
-        study(plan, &subject, &engines, clock.share(paths.len() - index), observer, findings)?;
-    }
-    Ok(())
+    subjects::each(plan, observer, |subject, share| study(plan, subject, &engines, share, observer, findings))
 }
 
-/// All about one scene within a share of the time. The first device, which is the fastest, makes the reference and the pictures.
+/// Measures one scene within a share of the time. The first device, which is the fastest, renders the reference and the images.
 fn study(
     plan: &Plan,
     subject: &Subject,
@@ -76,7 +70,7 @@ fn study(
     observer: &dyn Observer,
     findings: &mut Findings,
 ) -> Result<(), BenchError> {
-    let (begin, side) = (Instant::now(), plan.side(SIDES[usize::from(plan.quick)]));
+    let (begin, side) = (Instant::now(), plan.side_or(SIDES));
     let (scene, settings, silent) = (subject.with_balls(), Settings::default(), Silent(observer));
     let balls = engines[0].renderer.prepare(&scene, &settings, &silent)?;
     let points = engines[0].renderer.prepare(&subject.scene, &settings, &silent)?;
@@ -100,17 +94,17 @@ fn study(
 }
 
 impl Study<'_> {
-    /// The step h to vary: the scene's own, or the automatic one for pictures of this size.
+    /// The step h to vary: the scene's own, or the automatic one for images of this size.
     fn step(&self, engine: &Engine) -> Result<f32, BenchError> {
         if let Some(step) = self.subject.step {
             return Ok(step);
         }
-        let settings = Settings { size: [self.side; 2], step: Some(Step::Auto), ..Settings::default() };
+        let settings = Settings::default().with_size([self.side; 2]).with_step(Step::Auto);
         let frame = engine.renderer.render_prepared(&self.points, &settings, &Silent(self.observer))?;
         Ok(frame.stats.settings.step.unwrap_or(1.0))
     }
 
-    /// Errors first, for as many cases as half of the time suffices; then those are timed.
+    /// Errors first, for as many cases as fit into half of the time; then those are timed.
     fn measure(
         &self,
         engine: &Engine,
@@ -123,7 +117,7 @@ impl Study<'_> {
         let wanted = cases.len();
         let mut found = Vec::with_capacity(wanted);
         for case in cases {
-            // The cost of shadow rays is what everything else is held against.
+            // Everything else is compared with the cost of shadow rays.
             if case.settings.mode == Mode::LightMesh && begin.elapsed() >= share / 2 {
                 break;
             }
@@ -139,14 +133,14 @@ impl Study<'_> {
         Ok(outcomes.map(|((errors, case), measured)| Outcome { case, errors, measured }).collect())
     }
 
-    /// Renders a case with layers, which are no part of what is timed.
+    /// Renders a case with layers, which timed renders do not have.
     fn errors(&self, engine: &Engine, case: &Case) -> Result<Errors, BenchError> {
-        let layered = Settings { layers: true, ..case.settings.clone() };
+        let layered = case.settings.clone().with_layers(true);
         let frame = engine.renderer.render_prepared(self.scene(case.emitter), &layered, &Silent(self.observer))?;
         Ok(Errors::between(&self.reference.frame, &frame.image)?)
     }
 
-    fn scene(&self, emitter: Emitter) -> &PreparedScene<'_> {
+    fn scene(&self, emitter: Emitter) -> &PreparedScene {
         match emitter {
             Emitter::Ball => &self.balls,
             Emitter::Point => &self.points,

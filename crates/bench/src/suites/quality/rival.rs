@@ -1,6 +1,6 @@
-//! The light mesh beside shadow rays: at equal error, and in equal time.
+//! The light mesh compared with shadow rays: at equal error, and in equal time.
 
-use lightmesh::{Mode, Settings};
+use lightmesh::Mode;
 
 use super::curve::{Cost, Point, Reach, cost_at, samples_in};
 use super::errors::Errors;
@@ -9,14 +9,14 @@ use crate::engine::Engine;
 use crate::measure::Silent;
 use crate::{BenchError, Findings, Picture, Row};
 
-/// An error as one number.
+/// An error as a single number.
 type Measure = fn(&Errors) -> f64;
 
-/// The measures by which errors are equal.
+/// The measures of equal error.
 const MEASURES: [(&str, Measure); 2] =
     [("visibility_rmse", |errors| errors.visibility_rmse), ("mean_flip", |errors| errors.mean_flip)];
 
-/// Adds rows, and on request pictures, for what was measured on a device.
+/// Adds rows, and on request images, for the measurements on a device.
 pub(super) fn compare(
     study: &Study,
     engine: &Engine,
@@ -40,7 +40,7 @@ pub(super) fn compare(
         let all = MEASURES.len() * meshes.len();
         let (scene, kind) = (&study.subject.name, engine.kind);
         findings.notes.push(format!(
-            "{scene} on {kind}: for {never} of {all} errors of the light mesh, shadow rays never reach as small an error within what was measured."
+            "{scene} on {kind}: for {never} of {all} errors of the light mesh, no measured number of shadow rays reaches an equally small error."
         ));
     }
     let curve: Vec<Point> = of(Mode::Area).map(|outcome| outcome.point(MEASURES[0].1)).collect();
@@ -49,14 +49,14 @@ pub(super) fn compare(
 
 impl Outcome {
     fn point(&self, error: Measure) -> Point {
-        let samples = f64::from(self.case.settings.samples());
+        let samples = f64::from(self.measured.frame.stats.settings.samples);
         let rays = self.measured.frame.stats.counts.shadow_rays as f64;
         Point { error: error(&self.errors), cost: Cost { samples, rays, seconds: self.measured.median() } }
     }
 }
 
-/// The light mesh's cost and that of shadow rays with the same error. `upper_bound` is 1 where one ray has a smaller error already,
-/// `not_reached` where no number of rays that was measured has so small a one; then their cost is left out.
+/// The cost of the light mesh and of shadow rays with the same error. `upper_bound` is 1 if a single ray already has a smaller
+/// error, `not_reached` is 1 if no measured number of rays has an error this small; their cost is then missing.
 fn equal_error(study: &Study, engine: &Engine, mesh: &Outcome, measure: &'static str, error: f64, reach: Reach) -> Row {
     let keys = mesh.case.keys.iter().cloned().chain([("measure", measure.into())]).collect();
     study.row("equal error", engine, keys, |row| {
@@ -84,7 +84,7 @@ fn equal_error(study: &Study, engine: &Engine, mesh: &Outcome, measure: &'static
     })
 }
 
-/// Shadow rays for as long as the usual light mesh takes.
+/// Shadow rays in the time of the usual light mesh.
 fn equal_time(
     study: &Study,
     engine: &Engine,
@@ -95,13 +95,13 @@ fn equal_time(
 ) -> Result<(), BenchError> {
     let seconds = usual.measured.median();
     let case = Case::shadow_rays(Mode::Area, samples_in(curve, seconds), study.side);
-    let layered = Settings { layers: true, ..case.settings.clone() };
-    let rival = engine.renderer.render_prepared(study.scene(case.emitter), &layered, &Silent(study.observer))?.image;
-    let errors = Errors::between(&study.reference.frame, &rival)?;
+    let layered = case.settings.clone().with_layers(true);
+    let rival = engine.renderer.render_prepared(study.scene(case.emitter), &layered, &Silent(study.observer))?;
+    let errors = Errors::between(&study.reference.frame, &rival.image)?;
     findings.rows.push(study.row("equal time", engine, Vec::new(), |row| {
         let figures = [
             ("seconds", seconds),
-            ("samples", f64::from(case.settings.samples())),
+            ("samples", f64::from(rival.stats.settings.samples)),
             ("visibility_rmse", usual.errors.visibility_rmse),
             ("area_visibility_rmse", errors.visibility_rmse),
             ("mean_flip", usual.errors.mean_flip),
@@ -113,7 +113,7 @@ fn equal_time(
         let picture = |what: &str, frame| Picture::new("equal time", &format!("{}, {what}", study.subject.name), frame);
         let reference = picture("reference", &study.reference.frame)?;
         let ours = picture("light mesh", &usual.measured.frame.image)?.against(&reference);
-        let theirs = picture("shadow rays in the same time", &rival)?.against(&reference);
+        let theirs = picture("shadow rays in the same time", &rival.image)?.against(&reference);
         findings.pictures.extend([reference, ours, theirs]);
     }
     Ok(())

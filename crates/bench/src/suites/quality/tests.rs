@@ -27,7 +27,7 @@ fn every_experiment_has_rows_of_their_own() {
     let ids: BTreeSet<&str> = findings.rows.iter().map(|row| row.id.as_str()).collect();
     assert_eq!(ids.len(), findings.rows.len(), "ids repeat");
     let count = |experiment: &str| findings.rows.iter().filter(|row| row.experiment == experiment).count();
-    // Hard shadows, four numbers of shadow rays and 14 light meshes, each by two measures.
+    // Hard shadows, four numbers of shadow rays and 14 light meshes, each with two measures.
     assert_eq!(["reference", "errors", "equal error", "equal time"].map(count), [1, 19, 28, 1]);
     assert_eq!(findings.pictures.len(), 3);
     assert!(findings.pictures[1..].iter().all(|picture| picture.reference.as_ref() == Some(&findings.pictures[0].id)));

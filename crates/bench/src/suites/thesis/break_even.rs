@@ -1,18 +1,19 @@
-//! From how many lights on is the method faster than hard shadows? By the cost model, formulas (4) and (5), and by the clock.
+//! The number of lights above which the method is faster than hard shadows: by the cost model, formulas (4) and (5), and as
+//! measured.
 //!
 //! ```text
 //! wh · nL · c_long = wh · S_sphere · c_short + nL · S_total · c_long                                 (4) = (5)
 //! nL = wh · S_sphere · c_short / ((wh − S_total) · c_long)
 //! ```
 //!
-//! wh are the pixels that hit something. c_short is what the short tests took over wh · S_sphere; c_long what the shadow rays of hard
-//! shadows took over their number: both with the fewest lights that were measured. The model leaves out primary rays, which both have,
-//! and all of the method but its tests. The clock's answer lies on the straight line between the last number of lights where the method
-//! takes longer and the first where it does not.
+//! wh is the number of pixels that hit something. c_short is the time of the short tests over wh · S_sphere, c_long the time of
+//! hard shadows' shadow rays over their number: both with the fewest lights measured. The model omits primary rays, which both
+//! modes have, and everything in the method except its tests. The measured answer is interpolated linearly between the last
+//! number of lights at which the method is slower and the first at which it is not.
 //!
-//! Where the two differ, straight lines through all numbers of lights say why: seconds that do not depend on the lights, and seconds
-//! for each light. By the model a light costs the method S_total long tests. By the clock it also costs a mean, formula (3), and both
-//! modes a term of formula (1), at every pixel.
+//! A linear fit over all numbers of lights explains the difference between the two: a fixed time, and a time per light. In the
+//! model a light costs the method S_total long tests. In practice it also costs one evaluation of formula (3), and in both modes
+//! a term of formula (1), per pixel.
 
 use std::collections::BTreeMap;
 
@@ -28,7 +29,7 @@ struct Pair<'r> {
     hard: &'r Row,
 }
 
-/// Adds a row for each device that figure 11 was measured on.
+/// Adds a row for each device on which figure 11 was measured.
 pub(super) fn add(findings: &mut Findings) {
     let mut devices: BTreeMap<String, Vec<&Row>> = BTreeMap::new();
     for row in findings.rows.iter().filter(|row| row.experiment == LIGHTS) {
@@ -42,11 +43,11 @@ pub(super) fn add(findings: &mut Findings) {
         fit(&pairs, &mut row);
         match measured(&pairs) {
             Some(lights) => drop(row.values.insert("measured_lights".to_owned(), lights)),
-            None => notes.push(format!("{}: the method was slower with every number of lights measured.", row.id)),
+            None => notes.push(format!("{}: the method was slower for every measured number of lights.", row.id)),
         }
         if !row.values.contains_key("predicted_lights") {
             notes.push(format!(
-                "{}: by the cost model the method is never faster, S_total is not below the pixels.",
+                "{}: according to the cost model the method is never faster, as S_total is not below the number of pixels.",
                 row.id
             ));
         }
@@ -56,7 +57,7 @@ pub(super) fn add(findings: &mut Findings) {
     findings.notes.extend(notes);
 }
 
-/// Both modes at each number of lights, the fewest first.
+/// Both modes at each number of lights, in ascending order.
 fn pairs<'r>(rows: &[&'r Row]) -> Vec<Pair<'r>> {
     let of_mode =
         |mode: &str| rows.iter().copied().filter(move |row| row.keys.get("mode") == Some(&mode.into())).collect();
@@ -71,7 +72,7 @@ fn pairs<'r>(rows: &[&'r Row]) -> Vec<Pair<'r>> {
     pairs
 }
 
-/// What the cost model says, and its two constants.
+/// The prediction of the cost model, and its two constants.
 fn predict(pair: &Pair, row: &mut Row) {
     let value = |row: &Row, name: &str| row.values.get(name).copied().unwrap_or(0.0);
     let (hits, half_ball) = (value(pair.method, "hits"), value(pair.method, "half_ball_mean"));
@@ -88,12 +89,12 @@ fn predict(pair: &Pair, row: &mut Row) {
         ("long_test_seconds", c_long),
         ("predicted_lights", lights),
     ];
-    // A negative or infinite number of lights means never; without hits or rays nothing follows.
+    // A negative or infinite number of lights means never; without hits or rays there is no prediction.
     let told = figures.into_iter().filter(|(_, figure)| figure.is_finite() && *figure > 0.0);
     row.values.extend(told.map(|(name, figure)| (name.to_owned(), figure)));
 }
 
-/// Straight lines through the seconds of both modes, by least squares.
+/// Linear least-squares fits to the seconds of both modes.
 fn fit(pairs: &[Pair], row: &mut Row) {
     let mut add = |name: &str, of: for<'p, 'r> fn(&'p Pair<'r>) -> &'r Row| {
         let seconds = pairs.iter().filter_map(|pair| Some((pair.lights, of(pair).median(WHOLE)?)));
@@ -106,7 +107,7 @@ fn fit(pairs: &[Pair], row: &mut Row) {
     add("hard", |pair| pair.hard);
 }
 
-/// Height at 0 and slope of the straight line through points; `None` where they do not lie at two places at least.
+/// Intercept and slope of the line through points; `None` unless there are two distinct abscissae.
 fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
     let (x, y) = (mean(|point| point.0), mean(|point| point.1));
@@ -115,7 +116,7 @@ fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     (spread > 0.0).then(|| (y - together / spread * x, together / spread))
 }
 
-/// What the clock says; `None` where the method is never as fast. The fewest lights where it always is.
+/// The measured break-even: the fewest lights from which on the method is always as fast; `None` if it never is.
 fn measured(pairs: &[Pair]) -> Option<f64> {
     let lead = |pair: &Pair| Some((pair.lights, pair.method.median(WHOLE)? - pair.hard.median(WHOLE)?));
     let leads: Vec<(f64, f64)> = pairs.iter().filter_map(lead).collect();

@@ -1,21 +1,21 @@
-//! What was cut for want of time, and how it is told.
+//! Reductions due to the time budget, and notes about them.
 
 use std::collections::BTreeMap;
 
 use super::task::Task;
 use crate::schedule::Decision;
 
-/// Rows that got less time than they wanted.
+/// Rows that got less time than requested.
 #[derive(Default)]
 pub(super) struct Cuts {
-    /// By repetitions and experiment: the number of rows with fewer repetitions than wanted.
+    /// By repetitions and experiment: the number of rows with fewer repetitions than requested.
     fewer: BTreeMap<usize, BTreeMap<String, usize>>,
-    /// Ids of rows that were left out.
+    /// Ids of rows that were dropped.
     out: Vec<String>,
 }
 
 impl Cuts {
-    /// Takes note of what was decided for a task.
+    /// Records the decision about a task.
     pub(super) fn add(&mut self, task: &Task, decision: Decision) {
         let (kept, out) = task.cases.split_at(decision.variants);
         self.out.extend(out.iter().map(|case| case.row.id.clone()));
@@ -27,7 +27,7 @@ impl Cuts {
         }
     }
 
-    /// A sentence for each number of repetitions, and one that names all that was left out.
+    /// A sentence for each number of repetitions, and one that names all dropped rows.
     pub(super) fn notes(&self) -> Vec<String> {
         let fewer = self.fewer.iter().filter(|(_, rows)| !rows.is_empty()).map(|(repetitions, rows)| {
             let rows: Vec<String> = rows.iter().map(|(experiment, count)| format!("{count} of {experiment}")).collect();
@@ -36,10 +36,10 @@ impl Cuts {
             } else {
                 format!("{repetitions} times after a warm-up")
             };
-            format!("For want of time measured {times}: {}.", rows.join(", "))
+            format!("Measured only {times} because of the time budget: {}.", rows.join(", "))
         });
         let out = (!self.out.is_empty())
-            .then(|| format!("For want of time left out, {} rows: {}.", self.out.len(), self.out.join("; ")));
+            .then(|| format!("Dropped because of the time budget, {} rows: {}.", self.out.len(), self.out.join("; ")));
         fewer.chain(out).collect()
     }
 }

@@ -4,7 +4,7 @@ use super::TIMINGS;
 use super::published::{SCENES, TABLE_1, TABLE_2};
 use crate::{Findings, Key, Row, WHOLE};
 
-/// Table 1: the share of the steps that list used light points and make the mesh, which are one step here. Garden with h and R = 3.1.
+/// Table 1: the share of listing used light points and creating the mesh, which are one step here. Garden with h and R = 3.1.
 pub(super) fn table_1(findings: &mut Findings) {
     let garden = SCENES[2];
     let wanted = [
@@ -31,7 +31,7 @@ fn share(timing: &Row) -> Option<Row> {
     Some(row)
 }
 
-/// Table 2: S_total. It is the same on every device; the thesis does not say for which size and radius its own is.
+/// Table 2: S_total. It is the same on every device; the thesis does not state size and radius for its values.
 pub(super) fn table_2(findings: &mut Findings) {
     let mut rows: Vec<Row> = Vec::new();
     for timing in timings(findings) {
@@ -53,7 +53,7 @@ fn timings(findings: &Findings) -> impl Iterator<Item = &Row> {
     findings.rows.iter().filter(|row| row.experiment == TIMINGS)
 }
 
-/// Those of the row's keys that have these names.
+/// The row's keys with these names.
 pub(super) fn keys(row: &Row, names: &[&'static str]) -> Vec<(&'static str, Key)> {
     names.iter().filter_map(|&name| Some((name, row.keys.get(name)?.clone()))).collect()
 }

@@ -1,17 +1,17 @@
-//! Every table and figure of the thesis.
+//! All tables and figures of the thesis.
 //!
-//! | experiment | rows | values beside the counts |
+//! | experiment | rows | values besides counts |
 //! |---|---|---|
-//! | `timings` | scene, lights, size, mode, step, radius, device, threads | `thesis_cpu_seconds`, `thesis_gpu_seconds`; `faster_than_thesis_cpu` and `…_gpu`: theirs over our median |
-//! | `table 1` | size, device, threads | `collect_seconds`, `total_seconds`, `share` of the list and mesh steps; the thesis' own by `thesis_…` |
+//! | `timings` | scene, lights, size, mode, step, radius, device, threads | `thesis_cpu_seconds`, `thesis_gpu_seconds`; `faster_than_thesis_cpu` and `…_gpu`: speed-up over the thesis |
+//! | `table 1` | size, device, threads | `collect_seconds`, `total_seconds`, `share` of the list and mesh steps; the thesis' values as `thesis_…` |
 //! | `table 2` | scene, step, size, radius | `light_points`, `thesis_light_points` |
-//! | `figure 1` | samples | `rmse`, `mean_flip` against 225 samples |
+//! | `figure 1` | samples | `rmse`, `mean_flip` relative to 225 samples |
 //! | `figure 11` | lights, mode, device, threads | |
-//! | `figure 11, break-even` | size, device, threads | `predicted_lights`, `measured_lights`, the model's `short_test_seconds` and `long_test_seconds`; `method_seconds` and `hard_seconds`, without lights, and what each light adds by `…_per_light` |
-//! | `figures 12-15` | radius | `rmse`, `mean_flip` against area shadows with 225 samples |
+//! | `figure 11, break-even` | size, device, threads | `predicted_lights`, `measured_lights`, the model's `short_test_seconds` and `long_test_seconds`; `method_seconds` and `hard_seconds`, fixed, and the time per light as `…_per_light` |
+//! | `figures 12-15` | radius | `rmse`, `mean_flip` relative to area shadows with 225 samples |
 //!
-//! Steps are run in this order: tasks (`tasks`), small trials (`trial`), a schedule, the measurements (`runner`), and what follows from
-//! them (`derived`, `break_even`).
+//! The order is: tasks (`tasks`), small trials (`trial`), a schedule, the measurements (`runner`), and values derived from them
+//! (`derived`, `break_even`).
 
 mod break_even;
 mod cuts;
@@ -31,27 +31,27 @@ use lightmesh::Observer;
 use crate::engine::{self, Engine};
 use crate::{BenchError, Findings, Plan, Suite};
 
-/// The method by scene, size, step and radius, and hard shadows beside it.
+/// The method by scene, size, step and radius, and hard shadows.
 const TIMINGS: &str = "timings";
 /// Area shadows with few and many samples.
 const AREA_SHADOWS: &str = "figure 1";
-/// Time by the number of lights.
+/// Time against the number of lights.
 const LIGHTS: &str = "figure 11";
-/// The picture as R grows.
+/// Images for growing R.
 const PICTURES: &str = "figures 12-15";
 
 pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings) -> Result<(), BenchError> {
-    if !plan.scenes.is_empty() {
+    if !plan.scenes.is_empty() || plan.size.is_some() {
         return Err(BenchError::OwnScenes(Suite::Thesis));
     }
     let begin = Instant::now();
     let engines = thesis_engines(plan)?;
     findings.devices = engines.iter().map(|engine| engine.device.clone()).collect();
     let tasks = tasks::tasks(plan, &engines);
-    observer.note("small trials, to plan the time");
+    observer.note("small trials, to estimate times");
     let estimates = trial::estimates(&tasks, &engines, begin, plan.budget, observer)?;
     let outcome = runner::run(plan, begin, &engines, tasks, estimates, observer, findings);
-    // From whatever there is, also where the suite was stopped.
+    // From whatever there is, even if the suite was stopped.
     derived::table_1(findings);
     derived::table_2(findings);
     break_even::add(findings);
@@ -59,7 +59,7 @@ pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings)
     outcome
 }
 
-/// The devices of the plan; and one thread of the processor, but in the short form.
+/// The devices of the plan; and a single CPU thread, except in the short version.
 fn thesis_engines(plan: &Plan) -> Result<Vec<Engine>, BenchError> {
     let mut engines = engine::engines(plan)?;
     let many_threads = engines.iter().any(|engine| engine.thread_count.is_some_and(|threads| threads > 1));
@@ -69,24 +69,24 @@ fn thesis_engines(plan: &Plan) -> Result<Vec<Engine>, BenchError> {
     Ok(engines)
 }
 
-/// What a reader of the results should know.
+/// Notes for readers of the results.
 fn notes(plan: &Plan, engines: &[Engine]) -> Vec<String> {
     let mut notes = vec![
-        "Scenes are built in the spirit of the thesis': their counts and sizes, not their shapes. Weight 1 and lookup half-ball, as \
-         there; rays go through the BVH, there through a grid."
+        "Scenes are modelled on those of the thesis: with the same counts and sizes, but not the same shapes. Weight 1 and lookup \
+         half-ball, as in the thesis; rays use the BVH instead of the thesis' grid."
             .to_owned(),
-        "Host memory is the peak of the whole process, scene included; where the system cannot begin it anew for each picture, it \
-         is the peak so far."
+        "Host memory is the peak of the whole process, scene included; if the system cannot reset it for each frame, it is the \
+         peak so far."
             .to_owned(),
     ];
     if plan.quick {
         notes.push(
-            "Short form: 2048x2048 and one thread are left out of the timings; figure 11 has 512x512 pixels and fewer numbers of \
-             lights; pictures are smaller."
+            "Short version: the timings omit 2048x2048 and a single thread; figure 11 has 512x512 pixels and fewer numbers of \
+             lights; images are smaller."
                 .to_owned(),
         );
     } else if engines.iter().all(|engine| engine.kind == "cpu") && engines.len() == 1 {
-        notes.push("The processor ran one thread; there is no second column.".to_owned());
+        notes.push("The CPU ran a single thread; there is no second column.".to_owned());
     }
     if engines.iter().all(|engine| engine.kind == "cpu") {
         notes.push("No GPU was used.".to_owned());

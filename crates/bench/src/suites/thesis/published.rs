@@ -1,10 +1,10 @@
-//! What the thesis prints (Novosibirsk State University, 2012; chapter 5 and its appendix), on a Core i7-950 at 3.07 GHz and a Tesla C2070.
-//! Its scenes are not published: ours share counts and sizes, not shapes.
+//! Values published in the thesis (Novosibirsk State University, 2012; chapter 5 and appendix), for a Core i7-950 at 3.07 GHz and
+//! a Tesla C2070. Its scenes are not published: ours share counts and sizes, not shapes.
 
 /// A scene of the thesis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SceneOfThesis {
-    /// The built-in scene in its spirit.
+    /// The corresponding built-in scene.
     pub(super) name: &'static str,
     /// Lights in the tables.
     pub(super) lights: u32,
@@ -21,14 +21,14 @@ pub(super) const SCENES: [SceneOfThesis; 3] = [
 
 /// Lights of Garden in the appendix.
 pub(super) const GARDEN_LIGHTS: u32 = 3;
-/// Pixels of a side.
+/// Pixels along a side.
 pub(super) const SIZES: [u32; 2] = [1024, 2048];
-/// Interpolation radii R = r/h. The larger is printed as 3.2 in some cells, which the 256 bits of a mask cannot hold.
+/// Interpolation radii R = r/h. Some cells print the larger as 3.2, which would not fit into the thesis' masks of 256 bits.
 pub(super) const RADII: [f64; 2] = [2.1, 3.1];
-/// Steps as parts of the scene's.
+/// Steps as fractions of the scene's.
 pub(super) const STEP_PARTS: [f64; 2] = [1.0, 0.5];
 
-/// Seconds of a frame.
+/// Seconds per frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Seconds {
     pub(super) cpu: f64,
@@ -51,7 +51,7 @@ const SECONDS: [[[(f64, f64); 4]; 2]; 3] = [
     ],
 ];
 
-/// Seconds of a frame of light-mesh mode; `None` where the tables have no such cell.
+/// Seconds per frame in light-mesh mode; `None` if the tables have no such cell.
 pub(super) fn seconds(scene: &str, lights: u32, size: u32, step: f64, radius: f64) -> Option<Seconds> {
     let row = SCENES.iter().position(|known| known.name == scene && known.lights == lights)?;
     let column = SIZES.iter().position(|&known| known == size)?;
@@ -61,10 +61,10 @@ pub(super) fn seconds(scene: &str, lights: u32, size: u32, step: f64, radius: f6
     Some(Seconds { cpu, gpu })
 }
 
-/// Table 1, Garden with h = 0.1 and R = 3.1: by size, seconds of the list and mesh steps, and of all.
+/// Table 1, Garden with h = 0.1 and R = 3.1: by size, seconds of the list and mesh steps, and in total.
 pub(super) const TABLE_1: [(u32, f64, f64); 2] = [(1024, 0.72, 43.70), (2048, 2.8, 171.76)];
 
-/// Table 2: S_total, the light points of a picture, by scene and step.
+/// Table 2: S_total, the number of light points, by scene and step.
 pub(super) const TABLE_2: [(&str, f64, f64); 4] = [
     ("childpark", 1.0, 510_000.0),
     ("childpark", 0.5, 1_574_000.0),

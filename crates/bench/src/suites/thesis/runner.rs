@@ -1,4 +1,4 @@
-//! Measures the tasks in their order, as often as time allows.
+//! Measures the tasks in order, as often as time allows.
 
 use std::time::Instant;
 
@@ -13,7 +13,7 @@ use crate::measure::{Measured, Rounds, Silent, Variant, measure};
 use crate::schedule::{Decision, Estimate, Schedule};
 use crate::{BenchError, Findings, Key, Picture, Plan, Row};
 
-/// Runs all tasks; `begin` is when the time of the plan began.
+/// Runs all tasks; `begin` is the start of the time budget.
 pub(super) fn run(
     plan: &Plan,
     begin: Instant,
@@ -51,16 +51,16 @@ pub(super) fn run(
     Ok(())
 }
 
-/// Where the suite is: a line for people.
+/// A progress message.
 fn progress(task: &Task, rows: usize, total: usize, left: f64, decision: Decision) -> String {
     let last = rows + task.cases.len();
     let what = task.cases.first().map_or("", |case| &case.row.id);
     let Rounds { repetitions, .. } = decision.rounds;
-    let how = if decision.variants == 0 { "left out, no time".to_owned() } else { format!("{repetitions} times") };
+    let how = if decision.variants == 0 { "dropped, no time".to_owned() } else { format!("{repetitions} times") };
     format!("rows {} to {last} of {total}, at least {left:.0} s left: {what} …, {how}", rows + 1)
 }
 
-/// Fills a row; keeps the picture where it has a title. The first of those is what the others are held against.
+/// Fills a row; keeps the image if it has a title. The first of those is the reference of the others.
 fn add(
     case: Case,
     measured: Measured,
@@ -90,7 +90,7 @@ fn add(
     Ok(())
 }
 
-/// The thesis' seconds, where it has such a cell.
+/// The thesis' seconds, if it has such a cell.
 fn add_published(row: &mut Row, median: f64) {
     let number = |name: &str| match row.keys.get(name) {
         Some(Key::Number(number)) => Some(*number),

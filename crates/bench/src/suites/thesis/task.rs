@@ -1,4 +1,4 @@
-//! What is measured, before it is: rows without results.
+//! Measurements to be made: rows without results.
 
 use lightmesh::scene::Weight;
 use lightmesh::{Lookup, Mode, Settings, Step};
@@ -6,30 +6,30 @@ use lightmesh::{Lookup, Mode, Settings, Step};
 use crate::engine::Engine;
 use crate::{Key, Row};
 
-/// Pictures of one scene on one device, measured in turn.
+/// Images of one scene on one device, measured alternately.
 pub(super) struct Task {
     /// The scene, as in `builtin:garden?lights=3`.
     pub(super) scene: String,
     /// Index of the device.
     pub(super) engine: usize,
-    /// Repetitions that are wanted.
+    /// Requested repetitions.
     pub(super) repetitions: usize,
-    /// The pictures, the most wanted first.
+    /// The images, most important first.
     pub(super) cases: Vec<Case>,
 }
 
-/// One of the pictures.
+/// One of the images.
 pub(super) struct Case {
-    /// Its row, with keys alone.
+    /// Its row, with keys only.
     pub(super) row: Row,
-    /// How it is made.
+    /// The render settings.
     pub(super) settings: Settings,
-    /// Its title where it is kept.
+    /// Its title, if it is kept.
     pub(super) title: Option<String>,
 }
 
 impl Task {
-    /// Pixels of a side; they are the same in all cases.
+    /// Pixels along a side, the same in all cases.
     pub(super) fn side(&self) -> u32 {
         self.cases.first().map_or(1, |case| case.settings.size[0])
     }
@@ -40,39 +40,34 @@ pub(super) fn scene_with_lights(name: &str, lights: u32) -> String {
     format!("builtin:{name}?lights={lights}")
 }
 
-/// A picture with `side` pixels a side, as the thesis makes them: w = 1.
+/// Settings of an image with `side` pixels per side, as in the thesis: w = 1.
 fn settings(side: u32, mode: Mode) -> Settings {
-    Settings {
-        size: [side, side],
-        mode,
-        weight: Some(Weight::Constant),
-        lookup: Lookup::HalfBall,
-        ..Settings::default()
-    }
+    Settings::default()
+        .with_size([side, side])
+        .with_mode(mode)
+        .with_weight(Weight::Constant)
+        .with_lookup(Lookup::HalfBall)
 }
 
-/// What tells pictures of a scene apart.
+/// The parameters of a measurement.
 pub(super) struct Picture<'a> {
     /// The table or figure.
     pub(super) experiment: &'static str,
     /// The built-in scene.
     pub(super) scene: &'static str,
-    /// Its lights.
+    /// Number of lights.
     pub(super) lights: u32,
-    /// Pixels of a side.
+    /// Pixels along a side.
     pub(super) side: u32,
     /// The device.
     pub(super) engine: &'a Engine,
 }
 
 impl Picture<'_> {
-    /// By the method, with step h in scene units and radius R in steps.
+    /// With the method, step h in scene units and radius R in steps.
     pub(super) fn light_mesh(&self, step: f64, radius: f64) -> Case {
-        let method = Settings {
-            step: Some(Step::Fixed(step as f32)),
-            radius: Some(radius as f32),
-            ..settings(self.side, Mode::LightMesh)
-        };
+        let method =
+            settings(self.side, Mode::LightMesh).with_step(Step::Fixed(step as f32)).with_radius(radius as f32);
         self.case(method, [("step", step.into()), ("radius", radius.into())])
     }
 
@@ -81,9 +76,9 @@ impl Picture<'_> {
         self.case(settings(self.side, Mode::RayTrace), [])
     }
 
-    /// With area shadows of `samples` shadow rays a light.
+    /// With area shadows of `samples` shadow rays per light.
     pub(super) fn area(&self, samples: u32) -> Case {
-        let area = Settings { samples: Some(samples), ..settings(self.side, Mode::Area) };
+        let area = settings(self.side, Mode::Area).with_samples(samples);
         self.case(area, [("samples", f64::from(samples).into())])
     }
 

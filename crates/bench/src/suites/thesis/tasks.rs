@@ -1,4 +1,4 @@
-//! All that the suite wants to measure, in the order of its worth: what gets no time is at the end.
+//! All measurements of the suite, most important first: those that get no time are at the end.
 
 use super::published::{
     AREA_SAMPLES, FIGURE_SCENE, GARDEN_LIGHTS, LIGHTS_RADIUS, PICTURE_RADII, RADII, SCENES, SIZES, STEP_PARTS,
@@ -11,14 +11,14 @@ use crate::engine::Engine;
 
 /// Numbers of lights of figure 11.
 const LIGHT_COUNTS: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
-/// The same in the short form.
+/// The same in the short version.
 const QUICK_LIGHT_COUNTS: [u32; 4] = [1, 4, 16, 64];
-/// Pixels of a side of figure 11, and in the short form.
+/// Pixels along a side for figure 11, and in the short version.
 const LIGHTS_SIDES: [u32; 2] = [2048, 512];
-/// Pixels of a side of pictures that are kept, and in the short form.
+/// Pixels along a side of images that are kept, and in the short version.
 const PICTURE_SIDES: [u32; 2] = [384, 256];
 
-/// Every task. `engines` has the fastest device first; on one thread alone, where that is among them, there are the timings alone.
+/// All tasks. `engines` has the fastest device first; a single thread, if among them, only gets the timings.
 pub(super) fn tasks(plan: &Plan, engines: &[Engine]) -> Vec<Task> {
     let one_thread = |engine: usize| engine > 0 && engines[engine].thread_count == Some(1);
     let (slow, fast): (Vec<usize>, Vec<usize>) = (0..engines.len()).partition(|&engine| one_thread(engine));
@@ -34,12 +34,12 @@ pub(super) fn tasks(plan: &Plan, engines: &[Engine]) -> Vec<Task> {
     tasks
 }
 
-/// Sizes of the timings: the smaller one in the short form.
+/// Sizes of the timings: only the smaller one in the short version.
 pub(super) fn sizes(plan: &Plan) -> &'static [u32] {
     if plan.quick { &SIZES[..1] } else { &SIZES }
 }
 
-/// The 24 cells of the tables with hard shadows beside them, and Garden with more lights.
+/// The 24 cells of the tables, hard shadows, and Garden with more lights.
 fn timings(plan: &Plan, engines: &[Engine], engine: usize) -> Vec<Task> {
     let more_lights = SceneOfThesis { lights: GARDEN_LIGHTS, ..SCENES[2] };
     let scenes: Vec<SceneOfThesis> = SCENES.into_iter().chain([more_lights]).collect();
@@ -60,7 +60,7 @@ fn timing(plan: &Plan, engines: &[Engine], engine: usize, size: u32, scene: Scen
     }
 }
 
-/// Figure 11: the method against hard shadows, by the number of lights.
+/// Figure 11: the method and hard shadows against the number of lights.
 fn lights(plan: &Plan, engines: &[Engine], engine: usize) -> Vec<Task> {
     let counts: &[u32] = if plan.quick { &QUICK_LIGHT_COUNTS } else { &LIGHT_COUNTS };
     let side = plan.side(LIGHTS_SIDES[usize::from(plan.quick)]);
@@ -77,7 +77,7 @@ fn lights(plan: &Plan, engines: &[Engine], engine: usize) -> Vec<Task> {
     counts.iter().map(task).collect()
 }
 
-/// Figure 1: area shadows. The one with the most samples, which is the reference of all pictures, comes first and alone.
+/// Figure 1: area shadows. The one with the most samples, the reference of all images, is a separate, first task.
 fn area_shadows(plan: &Plan, engines: &[Engine], engine: usize) -> Vec<Task> {
     let picture = kept_picture(plan, engines, engine, AREA_SHADOWS);
     let cases = AREA_SAMPLES.map(|samples| {
@@ -87,12 +87,12 @@ fn area_shadows(plan: &Plan, engines: &[Engine], engine: usize) -> Vec<Task> {
     });
     let scene = scene_with_lights(picture.scene, picture.lights);
     let [reference, few, more] = cases;
-    // It takes long, and is there for its looks.
+    // It takes long, and only its image is needed.
     let once = Task { scene: scene.clone(), engine, repetitions: 1, cases: vec![reference] };
     vec![once, Task { scene, engine, repetitions: plan.repetitions, cases: vec![few, more] }]
 }
 
-/// Figures 12 to 15: the picture as R grows.
+/// Figures 12 to 15: images for growing R.
 fn pictures(plan: &Plan, engines: &[Engine], engine: usize) -> Task {
     let picture = kept_picture(plan, engines, engine, PICTURES);
     let case = |radius: f64| {

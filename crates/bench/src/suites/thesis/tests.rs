@@ -1,4 +1,4 @@
-//! The whole suite, on pictures of a few pixels.
+//! The whole suite, on tiny images.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, OnceLock};
@@ -14,7 +14,7 @@ const SHRINK: u32 = 64;
 #[derive(Default)]
 struct Listener {
     notes: Mutex<Vec<String>>,
-    /// After how many notes the suite is to stop.
+    /// The number of notes after which the suite is stopped.
     patience: Option<usize>,
 }
 
@@ -66,11 +66,11 @@ fn every_experiment_is_there_once() {
     assert_eq!(ids.len(), results.rows.len());
     let counts = ["timings", "table 1", "table 2", "figure 1", "figure 11", "figure 11, break-even", "figures 12-15"]
         .map(|experiment| of(results, experiment).len());
-    // Timings: 24 cells and 8 of Garden with more lights by the method, and 8 with hard shadows, on two numbers of threads.
+    // Timings: 24 cells and 8 of Garden with more lights with the method, and 8 with hard shadows, for two numbers of threads.
     assert_eq!(counts, [2 * 40, 4, 16, 3, 14, 1, 5]);
     assert_eq!(counts.iter().sum::<usize>(), results.rows.len());
     assert!(notes.iter().any(|note| note.starts_with("rows 1 to 1 of 102, at least ")), "{notes:?}");
-    assert!(results.notes.iter().all(|note| !note.contains("want of time")), "{:?}", results.notes);
+    assert!(results.notes.iter().all(|note| !note.contains("time budget")), "{:?}", results.notes);
     assert_eq!((results.suite.as_str(), results.version), ("thesis", Results::VERSION));
 }
 
@@ -104,18 +104,17 @@ fn pictures_refer_to_the_reference() {
     let others = results.pictures.iter().filter(|picture| picture.reference.as_deref() == Some(reference));
     assert_eq!((results.pictures.len(), others.count()), (8, 7));
     assert_eq!((results.pictures[0].id.as_str(), &results.pictures[0].reference), (reference, &None));
-    // The first bytes of every PNG file, in Base64.
-    assert!(results.pictures.iter().all(|picture| picture.png.starts_with("iVBORw0KGgo")));
+    assert!(results.pictures.iter().all(|picture| picture.png.starts_with(b"\x89PNG")));
     let radii = of(&results, "figures 12-15");
     assert!(radii.iter().all(|row| row.values["mean_flip"] > 0.0 && row.values["rmse"] > 0.0));
-    assert!(results.quick && results.notes.iter().any(|note| note.starts_with("Short form: ")));
+    assert!(results.quick && results.notes.iter().any(|note| note.starts_with("Short version: ")));
 }
 
 #[test]
 fn without_time_rows_are_left_out_and_named() {
     let (results, _) = run(&Plan { budget: Duration::from_nanos(1), ..tiny(true) });
     assert!(results.rows.is_empty() && results.pictures.is_empty());
-    let note = results.notes.iter().find(|note| note.starts_with("For want of time left out, ")).unwrap();
+    let note = results.notes.iter().find(|note| note.starts_with("Dropped because of the time budget, ")).unwrap();
     assert!(note.contains("timings: ") && note.contains("figure 11: "), "{note}");
 }
 
@@ -134,8 +133,8 @@ fn a_suite_can_be_stopped() {
     };
     let at_once = stopped_after(0);
     assert!(matches!(at_once, Err(BenchError::Render(lightmesh::RenderError::Cancelled))), "{at_once:?}");
-    // Notes are of the trials and of two tasks: the third task is not begun.
+    // Notes cover the trials and two tasks: the third task is not started.
     let later = stopped_after(3).unwrap();
     assert_eq!((of(&later, "figure 1").len(), of(&later, "figures 12-15").len()), (3, 0));
-    assert!(later.notes.iter().any(|note| note.starts_with("Stopped before its end")), "{:?}", later.notes);
+    assert!(later.notes.iter().any(|note| note.starts_with("Stopped early")), "{:?}", later.notes);
 }

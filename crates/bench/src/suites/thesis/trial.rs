@@ -1,7 +1,7 @@
-//! How long will it take? Each picture once, small; seconds grow with the pixels.
+//! Time estimates: each image is rendered once at a small size, and times are scaled by the number of pixels.
 //!
-//! That says too much for the method, whose light-mesh cells are shared by fewer pixels of a small picture; the schedule learns by how
-//! much. On one thread it would take long to ask: it is taken to be slower than many threads by their number.
+//! This overestimates the method, whose cells are shared by fewer pixels of a small image; the schedule corrects that. A single
+//! thread would take too long to measure: it is assumed to be slower than all threads by their number.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -14,17 +14,18 @@ use crate::engine::Engine;
 use crate::measure::Silent;
 use crate::schedule::Estimate;
 
-/// Sides of a trial are so much shorter,
+/// The sides of a trial are reduced by this factor,
 const SHORTER: u32 = 4;
 /// have no more pixels than this,
 const LONGEST: u32 = 256;
 /// and no fewer than this.
 const SHORTEST: u32 = 8;
 
-/// Seconds of one pixel, by scene, device and settings.
+/// Seconds per pixel, by scene, device and settings.
 type Costs = BTreeMap<(String, usize, String), f64>;
 
-/// An estimate for each task. What has had no trial `budget` after `begin` is taken to last for ever: there is no time for it anyway.
+/// An estimate for each task. Tasks without a trial by `budget` after `begin` are estimated as infinite: there is no time for
+/// them anyway.
 pub(super) fn estimates(
     tasks: &[Task],
     engines: &[Engine],
@@ -50,7 +51,7 @@ pub(super) fn estimates(
     Ok(estimates)
 }
 
-/// The device that is asked in place of this one, and how much faster it is.
+/// The device that is measured instead of this one, and how much faster it is.
 fn asked(engine: usize, engines: &[Engine]) -> (usize, f64) {
     let many = engines.iter().position(|other| other.thread_count.is_some_and(|threads| threads > 1));
     match (engines[engine].thread_count, many) {
@@ -59,7 +60,7 @@ fn asked(engine: usize, engines: &[Engine]) -> (usize, f64) {
     }
 }
 
-/// Adds what is not known yet.
+/// Adds estimates that are still missing.
 fn measure(
     task: &Task,
     engine: usize,
@@ -74,7 +75,7 @@ fn measure(
     let (scene, renderer) = (Scene::open(&task.scene)?, &engines[engine].renderer);
     let silent = Silent(observer);
     let prepared = renderer.prepare(&scene, first, &silent)?;
-    // The first picture pays for caches and, on a GPU, for the copy of the scene.
+    // The first image warms up caches and, on a GPU, uploads the scene.
     renderer.render_prepared(&prepared, first, &silent)?;
     for settings in unknown {
         let start = Instant::now();
@@ -87,7 +88,7 @@ fn measure(
 
 fn small(settings: &Settings) -> Settings {
     let size = settings.size.map(|side| (side / SHORTER).clamp(SHORTEST, LONGEST));
-    Settings { size, ..settings.clone() }
+    settings.clone().with_size(size)
 }
 
 fn key(task: &Task, engine: usize, settings: &Settings) -> (String, usize, String) {

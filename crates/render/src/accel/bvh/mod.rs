@@ -2,20 +2,20 @@
 //! Through Compressed Wide BVHs* (HPG 2017).
 //!
 //! * `build`: the tree comes from `obvhs`; we check that every box holds its triangles, and lay these out in leaf order.
-//! * `walk`: the walk over the nodes, by a ray and by boxes. Nodes and triangles are plain arrays, which devices copy.
+//! * `walk`: the walk over the nodes by a ray; `search`: by a region. Nodes and triangles are plain arrays, which devices copy.
 //! * `packet`: the walk by many coherent rays at once.
 
 mod build;
 mod packet;
+mod search;
 mod walk;
 
 use fearless_simd::Level;
 use glam::Vec3;
-use lightmesh_scene::Bounds;
 use obvhs::cwbvh::node::CwBvhNode as Node;
 
 use super::approach::Approach;
-use super::{Accelerator, Form, Hit, Ray, ShortSegments, Triangle};
+use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Triangle};
 use crate::simd::dispatch;
 
 /// A compressed wide bounding volume hierarchy.
@@ -86,8 +86,8 @@ impl Accelerator for Bvh {
         dispatch!(self.level, simd => walk::short_segments(simd, self, segments, blocked));
     }
 
-    fn triangles_in(&self, region: &Bounds, found: &mut Vec<u32>) {
-        dispatch!(self.level, simd => walk::triangles_in(simd, self, region, found));
+    fn triangles_in(&self, region: &Region, found: &mut Vec<u32>) {
+        dispatch!(self.level, simd => search::triangles_in(simd, self, region, found));
     }
 
     fn name(&self) -> &'static str {

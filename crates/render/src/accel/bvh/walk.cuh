@@ -6,11 +6,6 @@
 
 #include "accel/visit.cuh"
 
-// Relative margin of the slab test: 2^-19.
-#define BVH_MARGIN (1.0f / (1u << 19))
-// Direction components below this share of the largest are raised to it: 2^-30.
-#define BVH_LEAST_COMPONENT (1.0f / (1u << 30))
-
 // A ray prepared for the slab tests.
 struct Slabs {
     Vec3 origin, inverse;
@@ -22,7 +17,7 @@ struct Slabs {
 
 DEVICE Slabs slabs_of(Vec3 origin, Vec3 direction, float slack) {
     const Vec3 size = abs(direction);
-    const float least = BVH_LEAST_COMPONENT * max_element(size);
+    const float least = LEAST_COMPONENT * max_element(size);
     const Vec3 inverse = {1.0f / copysignf(larger(size.x, least), direction.x),
                           1.0f / copysignf(larger(size.y, least), direction.y),
                           1.0f / copysignf(larger(size.z, least), direction.z)};
@@ -116,8 +111,8 @@ DEVICE void meet_node(const BvhNode *node, const Slabs &slabs, float limit, uint
 
     // 2, 3. Which of its children does the ray meet?
     const unsigned hits = child_hits(x, y, z, uint2{links.z, links.w}, limit, slabs.octant);
-    nodes = uint2{links.x, (hits & 0xff000000u) | frame.w >> 24};
-    triangles = Chosen{links.y, hits & 0x00ffffffu};
+    nodes = uint2{links.x, (hits & INNER_HITS) | frame.w >> 24};
+    triangles = Chosen{links.y, hits & TRIANGLE_HITS};
 }
 
 // Visits the triangles of all leaves whose boxes the ray meets between 0 and the visitor's limit, near octants first.
@@ -128,14 +123,14 @@ DEVICE void walk_nodes(const Bvh &bvh, const Slabs &slabs, Visitor &visitor) {
     uint2 stack[BVH_STACK];
     unsigned height = 0;
     // 1. Begin with the root, as if it were the only child in the slot entered first.
-    uint2 nodes = {0, 0x80000000u};
+    uint2 nodes = {0, ROOT_HIT};
     while (true) {
         // 2. Take the nearest node out of its group; keep the rest for later.
         const unsigned bit = 31 - __clz(nodes.y), siblings = nodes.y;
         nodes.y &= ~(1u << bit);
-        if (nodes.y > 0x00ffffffu)
+        if (nodes.y > TRIANGLE_HITS)
             stack[height++] = nodes;
-        const unsigned slot = (bit - 24) ^ slabs.octant;
+        const unsigned slot = (bit - FIRST_INNER) ^ slabs.octant;
         const unsigned node = nodes.x + __popc(siblings & ((1u << slot) - 1));
 
         // 3, 4. Which of its children does the ray meet? Ask the triangles of those that are leaves.
@@ -145,7 +140,7 @@ DEVICE void walk_nodes(const Bvh &bvh, const Slabs &slabs, Visitor &visitor) {
             return;
 
         // 5. No child left to enter: go on with the group left last.
-        if (nodes.y <= 0x00ffffffu) {
+        if (nodes.y <= TRIANGLE_HITS) {
             if (height == 0)
                 return;
             nodes = stack[--height];

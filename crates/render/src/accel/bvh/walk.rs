@@ -1,4 +1,4 @@
-//! The walk over compressed wide nodes: by a ray, by a segment, by a box.
+//! The walk over compressed wide nodes: by a ray, by a segment.
 //!
 //! # Theory
 //!
@@ -22,25 +22,20 @@ use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 use glam::{Vec3, Vec3A};
-use lightmesh_scene::Bounds;
+use lightmesh_layout::constants::{BVH_MARGIN, FIRST_INNER, INNER_HITS, LEAST_COMPONENT, ROOT_HIT, TRIANGLE_HITS};
 
 use super::{Bvh, Node};
-use crate::accel::approach::overlap;
 use crate::accel::visit::{Any, Closest, Short, Visitor};
-use crate::accel::{Hit, Ray, ShortSegments, Triangle};
+use crate::accel::{Hit, Ray, ShortSegments};
 
-/// Relative margin of the slab test: 2⁻¹⁹.
-pub(super) const MARGIN: f32 = 1.0 / (1u32 << 19) as f32;
-/// Direction components below this share of the largest are raised to it: 2⁻³⁰.
-pub(super) const LEAST_COMPONENT: f32 = 1.0 / (1u32 << 30) as f32;
 /// Entries of the stack that lies in registers and cache; deeper trees, which only hostile input makes, get one from the heap.
 const STACK: usize = 32;
 
 /// A set of siblings to enter, or of triangles to ask.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Group {
-    base: u32,
-    bits: u32,
+    pub(super) base: u32,
+    pub(super) bits: u32,
 }
 
 /// A ray prepared for the slab tests.
@@ -64,7 +59,7 @@ impl Slabs {
         let (origin, inverse) = (Vec3A::from(origin), Vec3A::from(direction.recip()));
         let onward = |component: f32| u32::from(component >= 0.0);
         let octant = onward(direction.x) << 2 | onward(direction.y) << 1 | onward(direction.z);
-        Slabs { origin, inverse, margin: MARGIN * inverse.abs(), slack: slack / MARGIN, octant }
+        Slabs { origin, inverse, margin: BVH_MARGIN * inverse.abs(), slack: slack / BVH_MARGIN, octant }
     }
 }
 
@@ -117,27 +112,27 @@ pub(super) fn walk<S: Simd>(
         return;
     }
     // 1. Begin with the root, as if it were the only child in the slot entered first.
-    let mut nodes = Group { base: root, bits: 0x8000_0000 };
+    let mut nodes = Group { base: root, bits: ROOT_HIT };
     let mut height = 0;
     loop {
         // 2. Take the nearest node out of its group; keep the rest for later.
         let bit = 31 - nodes.bits.leading_zeros();
         let siblings = nodes.bits;
         nodes.bits &= !(1 << bit);
-        if nodes.bits > 0x00ff_ffff {
+        if nodes.bits > TRIANGLE_HITS {
             stack[height] = nodes;
             height += 1;
         }
-        let slot = (bit - 24) ^ slabs.octant;
+        let slot = (bit - FIRST_INNER) ^ slabs.octant;
         let before = siblings & ((1 << slot) - 1) & 0xff;
         let node = &bvh.nodes[(nodes.base + before.count_ones()) as usize];
 
         // 3. Which of its children does the ray meet?
         let hits = child_hits(node, met_slots(simd, node, slabs, visitor.limit()), slabs.octant);
-        nodes = Group { base: node.child_base_idx, bits: (hits & 0xff00_0000) | u32::from(node.imask) };
+        nodes = Group { base: node.child_base_idx, bits: (hits & INNER_HITS) | u32::from(node.imask) };
 
         // 4. Ask the triangles of those that are leaves.
-        let mut triangles = hits & 0x00ff_ffff;
+        let mut triangles = hits & TRIANGLE_HITS;
         while triangles != 0 {
             let triangle = node.primitive_base_idx + triangles.trailing_zeros();
             triangles &= triangles - 1;
@@ -147,7 +142,7 @@ pub(super) fn walk<S: Simd>(
         }
 
         // 5. No child left to enter: go on with the group left last.
-        if nodes.bits <= 0x00ff_ffff {
+        if nodes.bits <= TRIANGLE_HITS {
             if height == 0 {
                 return;
             }
@@ -184,9 +179,9 @@ fn met_slots<S: Simd>(simd: S, node: &Node, slabs: &Slabs, limit: f32) -> u32 {
     met.to_bitmask() as u32
 }
 
-/// Where the ray crosses eight planes.
+/// Where eight planes lie: bytes times `scale`, from `start` on.
 #[inline(always)]
-fn planes<S: Simd>(simd: S, bytes: &[u8; 8], scale: f32, start: f32) -> f32x8<S> {
+pub(super) fn planes<S: Simd>(simd: S, bytes: &[u8; 8], scale: f32, start: f32) -> f32x8<S> {
     let [a, b, c, d, e, f, g, h] = *bytes;
     let planes = [a as f32, b as f32, c as f32, d as f32, e as f32, f as f32, g as f32, h as f32];
     f32x8::from_slice(simd, &planes) * scale + start
@@ -200,7 +195,7 @@ fn by_sign<'a>(inverse: f32, low: &'a [u8; 8], high: &'a [u8; 8]) -> (&'a [u8; 8
 /// The hit bits of a node and triangle group for the slots met: inner nodes from bit 24 on in traversal order, the triangles of
 /// leaves below.
 #[inline(always)]
-fn child_hits(node: &Node, mut met: u32, octant: u32) -> u32 {
+pub(super) fn child_hits(node: &Node, mut met: u32, octant: u32) -> u32 {
     let mut hits = 0;
     while met != 0 {
         let slot = met.trailing_zeros();
@@ -211,47 +206,6 @@ fn child_hits(node: &Node, mut met: u32, octant: u32) -> u32 {
         hits |= (meta >> 5) << ((meta & 0b1_1111) ^ order);
     }
     hits
-}
-
-/// All triangles of boxes that overlap `region`, in ascending order.
-#[simd]
-pub(super) fn triangles_in<S: Simd>(_: S, bvh: &Bvh, region: &Bounds, found: &mut Vec<u32>) {
-    found.clear();
-    let mut pending = Vec::from_iter((!bvh.nodes.is_empty()).then_some(0));
-    while let Some(index) = pending.pop() {
-        let node: &Node = &bvh.nodes[index as usize];
-        let hits = child_hits(node, overlapped_slots(node, region), 0);
-        let inner = (0..8).filter(|slot| hits >> (24 + slot) & 1 == 1);
-        pending.extend(inner.map(|slot| {
-            let before = u32::from(node.imask) & ((1 << slot) - 1);
-            node.child_base_idx + before.count_ones()
-        }));
-        let triangles = (0..24).filter(|bit| hits >> bit & 1 == 1);
-        let triangles = triangles.map(|bit| &bvh.triangles[(node.primitive_base_idx + bit) as usize]);
-        found.extend(triangles.filter(|triangle| overlap(&triangle.bounds(), region)).map(Triangle::index));
-    }
-    found.sort_unstable();
-}
-
-/// Bit k: the box of slot k may overlap the region.
-#[inline(always)]
-fn overlapped_slots(node: &Node, region: &Bounds) -> u32 {
-    let extent = Vec3::from(node.compute_extent());
-    // Rounding of a plane is far below this.
-    let margin = MARGIN * (node.p.abs() + 256.0 * extent);
-    let (low, high) = (region.min - margin, region.max + margin);
-    let axes = [
-        (&node.child_min_x, &node.child_max_x),
-        (&node.child_min_y, &node.child_max_y),
-        (&node.child_min_z, &node.child_max_z),
-    ];
-    let overlaps = |slot: usize| {
-        axes.iter().enumerate().all(|(axis, (min, max))| {
-            node.p[axis] + extent[axis] * f32::from(min[slot]) <= high[axis]
-                && node.p[axis] + extent[axis] * f32::from(max[slot]) >= low[axis]
-        })
-    };
-    (0..8).filter(|&slot| overlaps(slot)).map(|slot| 1 << slot).sum()
 }
 
 /// The node groups left for later: at most one for each level of the tree.

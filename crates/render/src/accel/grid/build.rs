@@ -4,7 +4,7 @@ use glam::{DVec3, UVec3, Vec3};
 use lightmesh_scene::Bounds;
 use rayon::prelude::*;
 
-use super::file::geometry_hash;
+use super::hash::geometry_hash;
 use super::lattice::{Lattice, cells_between, margin};
 use super::overlap::triangle_meets_box;
 use super::{Grid, GridError, GridOptions, Levels};

@@ -26,6 +26,7 @@ use lightmesh_files::{Replacement, TargetError};
 use lightmesh_scene::Bounds;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
+use super::hash::geometry_hash;
 use super::{Grid, build};
 use crate::accel::Triangle;
 
@@ -102,20 +103,9 @@ impl GridFault {
     fn remedy(&self) -> &'static str {
         match self {
             GridFault::Read(_) => "check the path and its permissions",
-            _ => "build the grid again with `lightmesh grid SCENE -o FILE`",
+            _ => "build the grid again and save it",
         }
     }
-}
-
-/// Hash of a list of triangles: corners and indices, in order.
-pub(super) fn geometry_hash(triangles: &[Triangle]) -> u64 {
-    let mut hash = Xxh3::new();
-    for triangle in triangles {
-        let corners = triangle.corners().map(|corner| corner.to_array().map(f32::to_le_bytes));
-        hash.update(corners.as_flattened().as_flattened());
-        hash.update(&triangle.index().to_le_bytes());
-    }
-    hash.digest()
 }
 
 impl Grid {

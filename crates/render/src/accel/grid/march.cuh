@@ -5,8 +5,6 @@
 
 #include "accel/ray.cuh"
 
-// Direction components below this share of the largest are raised to it: 2^-30.
-#define GRID_LEAST_COMPONENT (1.0f / (1u << 30))
 // Cells of an axis that the walk can tell apart: their numbers are whole in a float, and `bits_of_cell` needs room.
 #define GRID_MOST_CELLS (1u << 22)
 // A float around which floats are the whole numbers, and its bits.
@@ -91,7 +89,7 @@ DEVICE void march_along(float origin, float direction, float size, float least, 
 
 DEVICE March march_of(const Grid &grid, const Ray &ray) {
     const Vec3 origin = to_single(to_double(ray.origin) - grid.origin), dims = to_float(grid.dims);
-    const float least = GRID_LEAST_COMPONENT * max_element(abs(ray.direction));
+    const float least = LEAST_COMPONENT * max_element(abs(ray.direction));
     March m;
     march_along(origin.x, ray.direction.x, grid.size.x, least, dims.x, m.inverse.x, m.start.x, m.speed.x, m.mirror_x);
     march_along(origin.y, ray.direction.y, grid.size.y, least, dims.y, m.inverse.y, m.start.y, m.speed.y, m.mirror_y);

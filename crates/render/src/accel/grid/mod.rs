@@ -13,25 +13,28 @@
 //!
 //! * `lattice`: where cells lie, and how much they are enlarged so that rounding cannot lose a hit.
 //! * `overlap`: the exact test of a triangle against a box.
-//! * `build`: triangles to cells; `walk`: along a ray (Amanatides, Woo 1987); `file`: saved and loaded.
+//! * `build`: triangles to cells; `walk`: along a ray (Amanatides, Woo 1987); `search`: by a region; `file`: saved and loaded.
 //! * `distance`: how far each cell is from the nearest that is not empty, for the walks of devices.
 
 mod build;
 mod distance;
 mod file;
+mod hash;
 mod lattice;
 pub(super) mod overlap;
+mod search;
 mod walk;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use lightmesh_scene::Bounds;
+use fearless_simd::Level;
 
 use super::approach::{Approach, overlap};
 use super::visit::{Any, Closest};
-use super::{Accelerator, Form, Hit, Ray, ShortSegments, Triangle};
+use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Triangle};
+use crate::simd::dispatch;
 pub use file::{GridFault, GridFileError, GridSaveError};
-use lattice::{Lattice, cells_between};
+use lattice::Lattice;
 
 /// How a grid is laid out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -146,30 +149,6 @@ impl Grid {
         self.overruns.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Calls `visit` with the triangles of every cell that overlaps the region: some several times.
-    fn visit_region<'a>(&'a self, region: &Bounds, visit: &mut impl FnMut(&'a [Triangle])) {
-        self.visit_cells(&self.lattice, 0, region, visit);
-    }
-
-    fn visit_cells<'a>(
-        &'a self,
-        lattice: &Lattice,
-        base: usize,
-        region: &Bounds,
-        visit: &mut impl FnMut(&'a [Triangle]),
-    ) {
-        let Some((first, last)) = lattice.cells(region, self.margin) else { return };
-        for cell in cells_between(first, last) {
-            match self.cell(base, lattice.index(cell)) {
-                Cell::Empty => {}
-                Cell::Leaf(triangles) => visit(triangles),
-                Cell::Nested { base, dims } => {
-                    self.visit_cells(&lattice.nested(cell, dims.into()), base, region, visit)
-                }
-            }
-        }
-    }
-
     /// Reads one cell of the grid that begins at `base`.
     #[inline(always)]
     fn cell(&self, base: usize, index: usize) -> Cell<'_> {
@@ -219,23 +198,17 @@ impl Accelerator for Grid {
     fn short_segments(&self, segments: &ShortSegments, blocked: &mut [bool]) {
         // The segments are short and leave one point: the cells around all of them are about those that each would walk.
         let mut triangles: Vec<&Triangle> = Vec::new();
-        let region = segments.region();
-        self.visit_region(&region, &mut |cell| {
-            triangles.extend(cell.iter().filter(|triangle| overlap(&triangle.bounds(), &region)));
+        let bounds = segments.region();
+        self.visit_region(&Region::within(bounds), &mut |cell| {
+            triangles.extend(cell.iter().filter(|triangle| overlap(&triangle.bounds(), &bounds)));
         });
         triangles.sort_unstable_by_key(|triangle| triangle.index());
         triangles.dedup_by_key(|triangle| triangle.index());
         segments.ask(triangles.into_iter(), blocked);
     }
 
-    fn triangles_in(&self, region: &Bounds, found: &mut Vec<u32>) {
-        found.clear();
-        self.visit_region(region, &mut |cell| {
-            let overlapping = cell.iter().filter(|triangle| overlap(&triangle.bounds(), region));
-            found.extend(overlapping.map(Triangle::index));
-        });
-        found.sort_unstable();
-        found.dedup();
+    fn triangles_in(&self, region: &Region, found: &mut Vec<u32>) {
+        dispatch!(Level::new(), simd => search::triangles_in(simd, self, region, found));
     }
 
     fn name(&self) -> &'static str {

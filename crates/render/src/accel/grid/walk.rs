@@ -10,12 +10,10 @@
 //! before the way out of the current cell.
 
 use glam::{IVec3, UVec3, Vec3};
+use lightmesh_layout::constants::LEAST_COMPONENT;
 
 use super::{Cell, Grid};
 use crate::accel::visit::Visitor;
-
-/// Direction components below this share of the largest count as zero: 2⁻³⁰.
-const LEAST_COMPONENT: f32 = 1.0 / (1u32 << 30) as f32;
 
 /// How a walk through one grid ended.
 #[derive(Clone, Copy, PartialEq, Eq)]

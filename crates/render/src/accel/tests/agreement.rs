@@ -1,7 +1,6 @@
 //! Brute force, grids and BVH agree.
 
 use glam::Vec3;
-use lightmesh_scene::Bounds;
 use proptest::prelude::*;
 
 use super::rays::Targets;
@@ -133,37 +132,6 @@ proptest! {
             }
         }
     }
-
-    #[test]
-    fn regions_hold_what_meets_them(scene in prop::sample::select(&scenes::ALL), seed: u64) {
-        let random = &mut Random(seed);
-        let triangles = scene.triangles(random);
-        let all = structures(&triangles);
-        let oracle = BruteForce::new(&triangles);
-        let mut found = vec![7; 3];
-        let mut overlapping = Vec::new();
-        for _ in 0..20 {
-            let usable: Vec<_> = triangles.iter().filter(|triangle| triangle.is_usable()).collect();
-            let near = if usable.is_empty() { Vec3::ZERO } else { random.pick(&usable).corners()[0] };
-            let half = random.signed().abs() * random.pick(&[0.0, 0.1, 1.0, 5.0]);
-            let center = near + random.signed() * random.pick(&[0.0, 1.0]);
-            let region = Bounds { min: center - half, max: center + half };
-            oracle.triangles_in(&region, &mut overlapping);
-            for (name, accelerator) in &all {
-                accelerator.triangles_in(&region, &mut found);
-                prop_assert!(found.is_sorted_by(|a, b| a < b), "{}: ascending, each once", name);
-                prop_assert!(found.iter().all(|index| overlapping.binary_search(index).is_ok()), "{}", name);
-                for index in overlapping.iter().filter(|&&index| meets(&triangles[index as usize], &region)) {
-                    prop_assert!(found.binary_search(index).is_ok(), "{} lacks {}", name, index);
-                }
-            }
-        }
-    }
-}
-
-fn meets(triangle: &Triangle, region: &Bounds) -> bool {
-    let (min, max) = (region.min.as_dvec3(), region.max.as_dvec3());
-    crate::accel::grid::overlap::triangle_meets_box(triangle.corners(), 0.5 * (min + max), 0.5 * (max - min))
 }
 
 #[test]

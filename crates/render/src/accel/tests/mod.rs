@@ -3,6 +3,7 @@
 mod agreement;
 mod closed;
 mod rays;
+mod regions;
 mod scenes;
 
 use glam::Vec3;

@@ -8,86 +8,79 @@ use glam::Vec3;
 use lightmesh_scene::Weight;
 use rayon::prelude::*;
 
-use crate::accel::Hit;
-use crate::job::{Job, Tally};
-use crate::light_mesh::{LightMesh, UsedPoints, point_of};
-use crate::prepared::PreparedScene;
+use crate::counters::Tally;
+use crate::data::lit::{Lit, LitBy};
+use crate::data::masks::population;
+use crate::data::visibility::Visibility;
+use crate::data::wave::{HostSeen, HostWave};
+use crate::light_mesh::{CellPoints, LightMesh, Span, UsedPoints, Windows, point_of, sum_in_both, sum_of_products};
+use crate::shadow::{above_horizon, fallback};
 use crate::simd::dispatch;
-use crate::stages::light_points::{Span, Windows};
-use crate::stages::long_tests::{Lit, LitBy};
-use crate::stages::primary_rays::{RayList, object_point};
-use crate::stages::shadow_rays::cpu::{fallback, ray_key};
-use crate::stages::shadow_rays::{Visibility, above_horizon};
-use crate::stages::short_tests::{CellPoints, Masks, population, sum_in_both, sum_of_products};
 
 /// Object points that one task takes.
 const RUN: usize = 4096;
 
+pub(crate) fn interpolate(wave: &HostWave, seen: &HostSeen) -> Visibility {
+    Interpolation { wave, seen }.run()
+}
+
 /// What formula (3) needs.
-pub(crate) struct Interpolation<'a> {
-    pub(crate) job: &'a Job<'a>,
-    pub(crate) scene: &'a PreparedScene<'a>,
-    pub(crate) list: &'a RayList,
-    pub(crate) hits: &'a [Hit],
-    pub(crate) masks: &'a Masks,
-    pub(crate) points: &'a UsedPoints,
-    pub(crate) lit: &'a Lit,
-    pub(crate) mesh: &'a LightMesh,
+struct Interpolation<'a> {
+    wave: &'a HostWave<'a>,
+    seen: &'a HostSeen<'a>,
 }
 
 impl Interpolation<'_> {
-    pub(crate) fn run(&self) -> Visibility {
-        let lights = self.lit.lights.len();
+    fn run(&self) -> Visibility {
+        let HostSeen { cells, masks, lit, mesh, .. } = *self.seen;
+        let lights = lit.lights.len();
         let level = Level::new();
-        let windows = Windows::new(&self.mesh.template);
-        let runs = self.masks.groups.runs(RUN);
-        let members = self.masks.groups.members();
+        let windows = Windows::new(&mesh.template);
+        let runs = cells.runs(RUN);
+        let members = cells.members();
         let mut shares = vec![0.0; members.len() * lights];
-        let parts = parts_of(&mut shares, runs.iter().map(|run| self.masks.groups.slots_of(run).len() * lights));
-        let work = runs.par_iter().zip(parts);
-        let fallbacks = work.map(|(run, shares)| {
-            if self.job.observer.cancelled() {
-                return 0;
-            }
-            dispatch!(level, simd => self.fill(simd, &windows, run.clone(), shares))
+        let parts = parts_of(&mut shares, runs.iter().map(|run| cells.slots_of(run).len() * lights));
+        let fallbacks = runs.par_iter().zip(parts).map(|(run, shares)| {
+            let fill = || dispatch!(level, simd => self.fill(simd, &windows, run.clone(), shares));
+            self.wave.job.piece(cells.slots_of(run).len(), fill)
         });
-        Tally::add(&self.job.tally.fallbacks, fallbacks.sum());
+        Tally::add(&self.wave.job.tally.fallbacks, fallbacks.sum());
 
         // From the order of cells back to the order of rays.
-        let mut slots = vec![None; self.hits.len()];
+        let mut slots = vec![None; self.wave.hits.len()];
         for (slot, &ray) in members.iter().enumerate() {
             slots[ray as usize] = Some(slot as u32);
         }
-        let mut share = vec![0.0; self.hits.len() * lights];
-        if lights > 0 {
-            share.par_chunks_mut(lights).zip(&slots).for_each(|(share, slot)| {
-                if let Some(slot) = slot {
-                    share.copy_from_slice(&shares[*slot as usize * lights..][..lights]);
-                }
+        let mut visibility = Visibility::dark(lights, slots.len());
+        for (light, plane) in visibility.share.chunks_exact_mut(slots.len().max(1)).enumerate() {
+            plane.par_iter_mut().zip(&slots).with_min_len(RUN).for_each(|(share, slot)| {
+                *share = slot.map_or(0.0, |slot| shares[slot as usize * lights + light]);
             });
         }
-        let used = |slot: &Option<u32>| slot.map_or(0, |slot| population(self.masks.mask(slot as usize)) as u32);
-        Visibility { lights, share, used: slots.par_iter().map(used).collect(), direct: Vec::new() }
+        let used = |slot: &Option<u32>| slot.map_or(0, |slot| population(masks.mask(slot as usize)) as u32);
+        visibility.used = slots.par_iter().map(used).collect();
+        visibility
     }
 
     /// Finds the shares of the object points of some cells, one for each light, and how many object points found no light point.
     #[inline(always)]
     fn fill<S: Simd>(&self, simd: S, windows: &Windows, run: Range<usize>, shares: &mut [f32]) -> u64 {
-        let lights = &self.scene.scene.lights;
-        let mut points = CellPoints::new(self.mesh);
-        let mut values = CellValues::new(self, windows);
+        let (wave, lights) = (self.wave, self.wave.lights());
+        let HostSeen { cells, masks, mesh, .. } = *self.seen;
+        let mut points = CellPoints::new(mesh);
+        let mut values = CellValues::new(self.seen, windows);
         let mut shares = shares.iter_mut();
         let mut fallbacks = 0;
         for group in run {
-            let cell = point_of(self.masks.groups.cell(group));
-            points.place(self.mesh, cell);
+            let cell = point_of(cells.cell(group));
+            points.place(mesh, cell);
             values.fetch(cell);
-            for slot in self.masks.groups.slots(group) {
-                let ray = self.masks.groups.members()[slot] as usize;
-                let point = object_point(self.scene, self.list, self.hits, ray);
-                let reach = self.scene.reach(point.origin);
-                let mask = self.masks.mask(slot);
-                let mut means = Means::new(&mut values, &points, self.mesh, mask, point.position);
+            for slot in cells.slots(group) {
+                let ray = cells.members()[slot] as usize;
+                let point = wave.surface_point(ray);
+                let reach = wave.scene.geometry.reach(point.origin);
+                let mask = masks.mask(slot);
+                let mut means = Means::new(&mut values, &points, mesh, mask, point.position);
                 let mut fell_back = lights.is_empty() && means.used == 0;
                 for ((index, light), share) in lights.iter().enumerate().zip(&mut shares) {
                     let most = above_horizon(&point, light, reach);
@@ -97,7 +90,7 @@ impl Interpolation<'_> {
                         mean.min(most)
                     } else {
                         fell_back = true;
-                        fallback(self.job, self.scene, ray_key(self.list, ray), &point, index)
+                        fallback(wave, ray, &point, index)
                     };
                 }
                 fallbacks += u64::from(fell_back);
@@ -139,7 +132,7 @@ struct LightValues {
 }
 
 impl<'a> CellValues<'a> {
-    fn new(work: &Interpolation<'a>, windows: &'a Windows) -> CellValues<'a> {
+    fn new(work: &HostSeen<'a>, windows: &'a Windows) -> CellValues<'a> {
         let words = work.mesh.template.words();
         let values = |lit: &LitBy| match lit {
             LitBy::Bits(_) => LightValues { full: Vec::new(), some: vec![0; words], share: Vec::new() },

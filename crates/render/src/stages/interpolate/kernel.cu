@@ -9,8 +9,8 @@
 #include "cuda/warp.cuh"
 #include "light_mesh/lattice.cuh"
 #include "light_mesh/window.cuh"
-#include "stages/shadow_rays/shadow_rays.cuh"
-#include "stages/short_tests/item.cuh"
+#include "shadow/shadow.cuh"
+#include "stages/cells/item.cuh"
 #include "surface.cuh"
 
 // What tells the fallback to find a share.
@@ -37,7 +37,8 @@ DEVICE float light_point_share(const Interpolate &args, const LitBy &lit, const 
 // w of formula (3) as a function of q² = (distance / radius)².
 DEVICE float falling_weight(const LightMesh &mesh, float q2) {
     const float falling = fmaxf(1.0f - q2, 0.0f);
-    return mesh.weight == 0 ? 1.0f : mesh.weight == 1 ? falling : falling * falling;
+    const bool constant = mesh.weight == LightMesh::WEIGHT_CONSTANT, quadratic = mesh.weight == LightMesh::WEIGHT_QUADRATIC;
+    return constant ? 1.0f : quadratic ? falling : falling * falling;
 }
 
 // The lanes, by what their light points see of a light.
@@ -48,7 +49,7 @@ struct LitLanes {
 
 DEVICE LitLanes lit_lanes(const Interpolate &args, const LitBy &lit, const ItemPoints &points) {
     LitLanes lanes = {0, 0, 0};
-    for (unsigned k = lane_of_thread(); k < args.mesh.points; k += 32) {
+    for (unsigned k = lane_of_thread(); k < args.mesh.points; k += WARP) {
         const unsigned seen = points.seen[k];
         if (seen == 0)
             continue;
@@ -75,15 +76,15 @@ DEVICE float weighted_mean(const Interpolate &args, const LitBy &lit, const Item
     for (unsigned row = 0; row < mesh.lines; row++) {
         const TemplateRow line = template_rows[row];
         const int y = points.cell.y + line.y, z = points.cell.z + line.z;
-        const float dy = lattice_coordinate(mesh.origin.y, mesh.step, y) - position.y;
-        const float dz = lattice_coordinate(mesh.origin.z, mesh.step, z) - position.z;
+        const float dy = lattice_coordinate(mesh.anchor.y, mesh.step, y) - position.y;
+        const float dz = lattice_coordinate(mesh.anchor.z, mesh.step, z) - position.z;
         for (int i = 0; i < line.count; i++) {
             const unsigned seen = points.seen[line.bit + i] & mixed;
             if (seen == 0)
                 continue;
             const int x = points.cell.x + line.x + i;
             const float share = light_point_share(args, lit, points, IVec3{x, y, z});
-            const float dx = lattice_coordinate(mesh.origin.x, mesh.step, x) - position.x;
+            const float dx = lattice_coordinate(mesh.anchor.x, mesh.step, x) - position.x;
             const float weight = seen >> lane & 1 ? falling_weight(mesh, (dx * dx + dy * dy + dz * dz) * scale) : 0.0f;
             weights += weight;
             products += weight * share;
@@ -103,11 +104,11 @@ DEVICE unsigned count_lit(const Interpolate &args, const ItemPoints &points, uns
     const unsigned lane = lane_of_thread();
     unsigned used = 0, next_seen = points.seen[lane];
     for (unsigned word = 0; word < mesh.words; word++) {
-        const unsigned k = 32 * word + lane;
+        const unsigned k = WARP * word + lane;
         const unsigned seen = next_seen;
         // Asked for a round before it is needed: masks come from afar.
         if (word + 1 < mesh.words)
-            next_seen = points.seen[k + 32];
+            next_seen = points.seen[k + WARP];
         // Half of the points lie below the tangent plane.
         if (!__any_sync(ALL_LANES, seen != 0)) {
             if (lane < LIGHTS)
@@ -149,14 +150,14 @@ DEVICE void weighted_means(const Interpolate &args, const ItemPoints &points, co
     float weights = 0.0f, products[LIGHTS] = {};
     for (unsigned row = 0; row < mesh.lines; row++) {
         const TemplateRow line = template_rows[row];
-        const float dy = lattice_coordinate(mesh.origin.y, mesh.step, points.cell.y + line.y) - position.y;
-        const float dz = lattice_coordinate(mesh.origin.z, mesh.step, points.cell.z + line.z) - position.z;
+        const float dy = lattice_coordinate(mesh.anchor.y, mesh.step, points.cell.y + line.y) - position.y;
+        const float dz = lattice_coordinate(mesh.anchor.z, mesh.step, points.cell.z + line.z) - position.z;
         for (int i = 0; i < line.count; i++) {
             const unsigned k = line.bit + i;
             const unsigned seen = points.seen[k] & mixed;
             if (seen == 0)
                 continue;
-            const float dx = lattice_coordinate(mesh.origin.x, mesh.step, points.cell.x + line.x + i) - position.x;
+            const float dx = lattice_coordinate(mesh.anchor.x, mesh.step, points.cell.x + line.x + i) - position.x;
             const float weight = seen >> lane & 1 ? falling_weight(mesh, (dx * dx + dy * dy + dz * dz) * scale) : 0.0f;
             weights += weight;
             for (unsigned light = 0; light < LIGHTS; light++)
@@ -190,7 +191,7 @@ DEVICE bool lights_without_size(const Interpolate &args, const ItemPoints &point
         most[i] = is_here && lane.alive ? above_horizon(lane.point, args.scene.lights[first + i], reach) : 0.0f;
         // Where all weights are 1, and where all light points see the same, numbers give the mean.
         means[i] = used > 0 ? (float)lit[i] / (float)used : UNKNOWN;
-        mixed |= args.mesh.weight != 0 && most[i] > 0.0f && lit[i] > 0 && lit[i] < used;
+        mixed |= args.mesh.weight != LightMesh::WEIGHT_CONSTANT && most[i] > 0.0f && lit[i] > 0 && lit[i] < used;
     }
     const unsigned lanes = __ballot_sync(ALL_LANES, mixed);
     if (lanes != 0) {
@@ -238,11 +239,11 @@ DEVICE void list_fallbacks(const Interpolate &args, unsigned ray, bool falls_bac
         args.fallback_rays[place] = ray;
 }
 
-KERNEL(interpolate, Interpolate, 128, 8) {
+KERNEL(interpolate, Interpolate, ITEM_WARPS * WARP, 8) {
     DYNAMIC_SHARED(unsigned, shared);
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
-    const unsigned long long number = (unsigned long long)blockIdx.x * ITEM_WARPS + threadIdx.x / 32;
+    const unsigned long long number = (unsigned long long)blockIdx.x * ITEM_WARPS + threadIdx.x / WARP;
     if (number >= args.count)
         return;
     const unsigned long long index = args.first + number;
@@ -254,10 +255,10 @@ KERNEL(interpolate, Interpolate, 128, 8) {
     points.cell = point_of(item.cell);
     points.window = window_around(mesh, points.cell);
     const int bricks = window_size(points.window);
-    points.slots = shared + threadIdx.x / 32 * (bricks + MOST_LIGHTS * mesh.words);
+    points.slots = shared + threadIdx.x / WARP * (bricks + MOST_LIGHTS * mesh.words);
     unsigned *lit_words = points.slots + bricks;
     points.seen = args.masks + index * 32 * mesh.words;
-    for (int place = lane; place < bricks; place += 32)
+    for (int place = lane; place < bricks; place += (int)WARP)
         points.slots[place] = args.slots[index * bricks + place];
     __syncwarp();
 
@@ -295,14 +296,4 @@ DEVICE void fallback(const Interpolate &args, const Structure &structure) {
     }
 }
 
-KERNEL(fallback_bvh, Interpolate, 256, 2) {
-    fallback(args, args.scene.bvh);
-}
-
-KERNEL(fallback_grid, Interpolate, 256, 2) {
-    fallback(args, args.scene.grid);
-}
-
-KERNEL(fallback_brute_force, Interpolate, 256, 2) {
-    fallback(args, args.scene.brute_force);
-}
+KERNEL_PER_STRUCTURE(fallback, Interpolate, BLOCK, 2)

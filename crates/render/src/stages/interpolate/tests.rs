@@ -5,11 +5,12 @@ use lightmesh_scene::{LightKind, Weight};
 use lightmesh_testkit::{WEIGHTS, pile};
 
 use crate::backend::{Backend, Cpu};
+use crate::data::lit::LitBy;
+use crate::data::wave::{Seen, Wave};
 use crate::job::{Job, Sampling};
 use crate::light_mesh::{Lattice, LightMesh, Template, brick_of, point_bit, point_of};
 use crate::prepared::PreparedScene;
 use crate::settings::Acceleration;
-use crate::stages::long_tests::LitBy;
 use crate::view::View;
 use crate::{SurfacePoint, Unobserved};
 
@@ -32,25 +33,28 @@ fn visibility_is_the_weighted_mean_of_the_light_points() {
     let scene = pile(DVec3::ZERO, &LIGHTS);
     let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
     for (weight, radius) in WEIGHTS.into_iter().zip([2.1, 3.1, 4.1]) {
-        let lattice = Lattice::around(&scene.bounds, 0.2, radius).unwrap();
+        let lattice = Lattice::around(&scene, 0.2, radius).unwrap();
         let template = Template::new(radius).unwrap();
         let mesh = LightMesh { lattice, template, radius: 0.2 * radius, weight };
         let job = Job::new(&Unobserved, Sampling { samples: 5, seed: 0, spread: false });
         let cpu = Cpu;
         let rays = cpu.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64).unwrap();
         let hits = cpu.primary_rays(&job, &scene, &rays).unwrap();
-        let masks = cpu.short_tests(&job, &scene, &rays, &hits, &mesh).unwrap();
-        let points = cpu.light_points(&job, &masks, &mesh).unwrap();
-        let lit = cpu.long_tests(&job, &scene, &points, &mesh).unwrap();
-        let found = cpu.interpolate(&job, &scene, &rays, &hits, &masks, &points, &lit, &mesh).unwrap();
+        let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits };
+        let cells = cpu.cells(&wave, &mesh).unwrap();
+        let masks = cpu.short_tests(&wave, &cells, &mesh).unwrap();
+        let points = cpu.light_points(&job, &cells, &masks, &mesh).unwrap();
+        let lit = cpu.long_tests(&wave, &points, &mesh, None).unwrap();
+        let seen = Seen { mesh: &mesh, cells: &cells, masks: &masks, points: &points, lit: &lit };
+        let found = cpu.interpolate(&wave, &seen).unwrap();
 
         let mut partial = 0;
-        for group in 0..masks.groups.len() {
-            let cell = point_of(masks.groups.cell(group));
-            for slot in masks.groups.slots(group) {
-                let ray = masks.groups.members()[slot] as usize;
+        for group in 0..cells.len() {
+            let cell = point_of(cells.cell(group));
+            for slot in cells.slots(group) {
+                let ray = cells.members()[slot] as usize;
                 let hit = &hits[ray];
-                let point = SurfacePoint::new(&rays.rays[ray], hit, &scene.triangles[hit.triangle as usize]);
+                let point = SurfacePoint::new(&rays.rays[ray], hit, &scene.geometry.triangles[hit.triangle as usize]);
                 let used = mesh.template.offsets().iter().enumerate();
                 let used = used.filter(|(bit, _)| masks.mask(slot)[bit / 32] >> (bit % 32) & 1 != 0);
                 let used: Vec<_> = used.map(|(_, &offset)| cell + offset).collect();
@@ -76,7 +80,7 @@ fn visibility_is_the_weighted_mean_of_the_light_points() {
                         (sum, weights) = (sum + weight * value, weights + weight);
                     }
                     let expected = if facing < 0.0 { 0.0 } else { sum / weights };
-                    let share = f64::from(found.share[ray * 2 + light]);
+                    let share = f64::from(found.of(light, ray));
                     // Sums of a hundred products in `f32`, and weights near the rim that cancel to few digits.
                     assert!((share - expected).abs() < 2e-5, "{weight:?}: {share} instead of {expected}");
                     partial += usize::from(share > 0.01 && share < 0.99);

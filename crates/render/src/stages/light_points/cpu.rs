@@ -5,16 +5,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
-use super::Windows;
-use crate::job::{Job, Tally};
-use crate::light_mesh::{BrickKey, BrickMap, LightMesh, UsedPoints, point_of};
-use crate::stages::short_tests::Masks;
+use crate::counters::Tally;
+use crate::data::cells::CellGroups;
+use crate::data::masks::Masks;
+use crate::job::Job;
+use crate::light_mesh::{BrickKey, BrickMap, LightMesh, UsedPoints, Windows, point_of};
 
 /// Object points that one task takes.
 const RUN: usize = 8192;
 
-pub(crate) fn light_points(job: &Job, masks: &Masks, mesh: &LightMesh) -> UsedPoints {
-    let runs = masks.groups.runs(RUN);
+pub(crate) fn light_points(job: &Job, cells: &CellGroups, masks: &Masks, mesh: &LightMesh) -> UsedPoints {
+    let runs = cells.runs(RUN);
     let windows = Windows::new(&mesh.template);
 
     // 1. The bricks that hold a used point.
@@ -22,7 +23,7 @@ pub(crate) fn light_points(job: &Job, masks: &Masks, mesh: &LightMesh) -> UsedPo
         .par_iter()
         .flat_map_iter(|run| {
             let mut keys = Vec::new();
-            Marker::new(masks, &windows).each_brick(run.clone(), |key, _| keys.push(key));
+            Marker::new(cells, masks, &windows).each_brick(run.clone(), |key, _| keys.push(key));
             keys.sort_unstable();
             keys.dedup();
             keys
@@ -35,12 +36,13 @@ pub(crate) fn light_points(job: &Job, masks: &Masks, mesh: &LightMesh) -> UsedPo
     // 2. The used points in each. The order of marking does not matter to an "or".
     let used: Vec<AtomicU64> = bricks.keys().iter().map(|_| AtomicU64::new(0)).collect();
     runs.par_iter().for_each(|run| {
-        Marker::new(masks, &windows).each_brick(run.clone(), |key, points| {
-            if let Some(brick) = bricks.find(key) {
-                used[brick].fetch_or(points, Ordering::Relaxed);
-            }
+        job.piece(cells.slots_of(run).len(), || {
+            Marker::new(cells, masks, &windows).each_brick(run.clone(), |key, points| {
+                if let Some(brick) = bricks.find(key) {
+                    used[brick].fetch_or(points, Ordering::Relaxed);
+                }
+            });
         });
-        job.observer.advance(masks.groups.slots_of(run).len() as u64);
     });
 
     // 3. Ranks.
@@ -51,6 +53,7 @@ pub(crate) fn light_points(job: &Job, masks: &Masks, mesh: &LightMesh) -> UsedPo
 
 /// Turns the masks of a cell's object points into marks in the bricks around the cell.
 struct Marker<'a> {
+    cells: &'a CellGroups,
     masks: &'a Masks,
     windows: &'a Windows,
     marks: Vec<u64>,
@@ -58,16 +61,16 @@ struct Marker<'a> {
 }
 
 impl<'a> Marker<'a> {
-    fn new(masks: &'a Masks, windows: &'a Windows) -> Marker<'a> {
-        Marker { masks, windows, marks: vec![0; windows.len()], union: vec![0; masks.words] }
+    fn new(cells: &'a CellGroups, masks: &'a Masks, windows: &'a Windows) -> Marker<'a> {
+        Marker { cells, masks, windows, marks: vec![0; windows.len()], union: vec![0; masks.words] }
     }
 
     /// Calls `mark` for each brick that a cell of `run` uses points of, with these points. A brick comes once a cell.
     fn each_brick(&mut self, run: Range<usize>, mut mark: impl FnMut(BrickKey, u64)) {
         for group in run {
-            let window = self.windows.around(point_of(self.masks.groups.cell(group)));
+            let window = self.windows.around(point_of(self.cells.cell(group)));
             self.union.fill(0);
-            for slot in self.masks.groups.slots(group) {
+            for slot in self.cells.slots(group) {
                 for (union, word) in self.union.iter_mut().zip(self.masks.mask(slot)) {
                     *union |= word;
                 }

@@ -3,30 +3,24 @@
 //! The table is filled so that it looks the same whatever the order of the threads (Shun, Blelloch: *Phase-Concurrent Hash Tables for
 //! Determinism*, SPAA 2014). So slots, ranks and lists repeat from run to run.
 
+use std::sync::Arc;
+
 use bytemuck::Zeroable;
-use lightmesh_layout::mesh::{BrickTable, UsedPoints};
+use lightmesh_layout::constants::ITEM_WARPS;
+use lightmesh_layout::mesh::BrickTable;
 use lightmesh_layout::stages::LightPoints;
 
-use super::window_side;
-use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, Work, blocks_for};
+use crate::counters::Tally;
 use crate::cuda::{Buffer, Kernel, Runtime};
-use crate::job::{Job, Tally};
-use crate::light_mesh::{BrickKey, LightMesh};
-use crate::stages::short_tests::cuda::DeviceMasks;
+use crate::error::RenderError;
+use crate::gpu::cells::DeviceCells;
+use crate::gpu::masks::DeviceMasks;
+use crate::gpu::points::DevicePoints;
+use crate::gpu::{BLOCK, Cuda, Work, blocks_for, warps_for};
+use crate::job::Job;
+use crate::light_mesh::{LightMesh, window_bricks};
 
-/// The used light points of a picture on a device.
-pub struct DevicePoints<R: Runtime> {
-    keys: Buffer<R, u64>,
-    used: Buffer<R, u64>,
-    rank: Buffer<R, u32>,
-    points: Buffer<R, u64>,
-    /// The slot of each brick of the window around each item's cell that has used points.
-    pub(crate) slots: Buffer<R, u32>,
-    /// S_total.
-    pub(crate) count: usize,
-}
-
+const MARK_ITEMS: Kernel = Kernel { module: "light_points", name: "mark_items" };
 const INSERT: Kernel = Kernel { module: "light_points", name: "insert_bricks" };
 const MARK: Kernel = Kernel { module: "light_points", name: "mark_points" };
 const COUNT: Kernel = Kernel { module: "light_points", name: "count_points" };
@@ -40,24 +34,34 @@ const LEAST_CAPACITY: usize = 1024;
 pub(crate) fn light_points<R: Runtime>(
     cuda: &Cuda<R>,
     job: &Job,
+    cells: &DeviceCells<R>,
     masks: &DeviceMasks<R>,
     mesh: &LightMesh,
 ) -> Result<DevicePoints<R>, RenderError> {
-    // 1. The bricks that hold a used point, in a table that is at most half full.
-    let mut capacity = masks.count.next_power_of_two().max(LEAST_CAPACITY);
+    // 1. The used points of each brick around each item's cell.
+    let bricks_of_item = window_bricks(mesh.template.reach());
+    let marks = cuda.pool().room("used points around items", cells.count * bricks_of_item as usize)?;
+    let record = LightPoints {
+        mesh: cuda.mesh(mesh)?,
+        items: cells.items.input(),
+        masks: masks.masks.input(),
+        marks: marks.output(),
+        item_count: cells.count as u64,
+        ..LightPoints::zeroed()
+    };
+    let work = Work { units: cells.count as u64, cost: 1, first: FIRST, progress: cells.count as u64 };
+    cuda.in_pieces(job, MARK_ITEMS, work, |piece| {
+        let item_count = piece.end - piece.start;
+        let launch = warps_for(&piece, ITEM_WARPS, 2 * bricks_of_item);
+        cuda.launch(MARK_ITEMS, launch, &LightPoints { first_item: piece.start, item_count, ..record })
+    })?;
+    // 2. The bricks that hold a used point, in a table that is at most half full.
+    let mut capacity = cells.count.next_power_of_two().max(LEAST_CAPACITY);
     let (keys, record) = loop {
         let keys = cuda.pool().zeros("table of bricks", capacity)?;
         let bricks = cuda.pool().zeros("number of bricks", 1)?;
         let table = BrickTable { keys: keys.output(), capacity: capacity as u32, spare: 0 };
-        let record = LightPoints {
-            mesh: cuda.mesh(mesh)?,
-            items: masks.items.input(),
-            marks: masks.marks.input(),
-            item_count: masks.count as u64,
-            table,
-            bricks: bricks.output(),
-            ..LightPoints::zeroed()
-        };
+        let record = LightPoints { table, bricks: bricks.output(), ..record };
         each_item(cuda, job, INSERT, &record)?;
         let mut count = [0u32];
         bricks.read_into(0, &mut count)?;
@@ -66,21 +70,46 @@ pub(crate) fn light_points<R: Runtime>(
         }
         capacity *= 2;
     };
-    // 2. The used points in each. The order of marking does not matter to an "or".
+    // 3. The used points in each. The order of marking does not matter to an "or".
     let used = cuda.pool().zeros("used light points", capacity)?;
-    let slots = cuda.pool().room("bricks around items", masks.marks.len())?;
+    let slots = cuda.pool().room("bricks around items", marks.len())?;
     let record = LightPoints { used: used.output(), slots: slots.output(), ..record };
     each_item(cuda, job, MARK, &record)?;
-    // 3. Ranks.
+    // 4. and 5. Ranks, and the list.
+    let points = listed(cuda, (Arc::new(keys), Arc::new(slots)), used)?;
+    Tally::add(&job.tally.light_points, points.count as u64);
+    Ok(points)
+}
+
+/// Some of the used light points: `used`, by slot.
+pub(crate) fn only<R: Runtime>(
+    cuda: &Cuda<R>,
+    points: &DevicePoints<R>,
+    used: Buffer<R, u64>,
+) -> Result<DevicePoints<R>, RenderError> {
+    listed(cuda, (Arc::clone(&points.keys), Arc::clone(&points.slots)), used)
+}
+
+/// Keys of a table, and where the bricks of each item's window lie in it.
+type Bricks<R> = (Arc<Buffer<R, u64>>, Arc<Buffer<R, u32>>);
+
+/// Ranks and list of used points in a table.
+fn listed<R: Runtime>(
+    cuda: &Cuda<R>,
+    (keys, slots): Bricks<R>,
+    used: Buffer<R, u64>,
+) -> Result<DevicePoints<R>, RenderError> {
+    let capacity = keys.len();
+    let table = BrickTable { keys: keys.output(), capacity: capacity as u32, spare: 0 };
     let rank = cuda.pool().room("ranks of bricks", capacity + 1)?;
-    let record = LightPoints { rank: rank.output(), ..record };
+    let record = LightPoints { table, used: used.output(), rank: rank.output(), ..LightPoints::zeroed() };
     let launch = blocks_for(&(0..capacity.div_ceil(BLOCK as usize) as u64), BLOCK);
     cuda.launch(COUNT, launch, &record)?;
     let count = cuda.scan_total(&rank)?;
-    // 4. The list.
     let points = cuda.pool().room("light points", count)?;
-    cuda.launch(LIST, launch, &LightPoints { points: points.output(), ..record })?;
-    Tally::add(&job.tally.light_points, count as u64);
+    if count > 0 {
+        cuda.launch(LIST, launch, &LightPoints { points: points.output(), ..record })?;
+    }
     Ok(DevicePoints { keys, used, rank, points, slots, count })
 }
 
@@ -93,38 +122,4 @@ fn each_item<R: Runtime>(cuda: &Cuda<R>, job: &Job, kernel: Kernel, record: &Lig
         let launch = blocks_for(&(0..bricks.div_ceil(u64::from(BLOCK))), BLOCK);
         cuda.launch(kernel, launch, &LightPoints { first_item: piece.start, item_count, ..*record })
     })
-}
-
-/// Bricks of the window around a cell.
-pub(crate) fn window_bricks(reach: i32) -> u32 {
-    window_side(reach).pow(3) as u32
-}
-
-impl<R: Runtime> DevicePoints<R> {
-    /// Slots of the table.
-    pub(crate) fn capacity(&self) -> usize {
-        self.keys.len()
-    }
-
-    /// Where everything is.
-    pub(crate) fn record(&self) -> UsedPoints {
-        UsedPoints {
-            table: BrickTable { keys: self.keys.output(), capacity: self.keys.len() as u32, spare: 0 },
-            used: self.used.input(),
-            rank: self.rank.input(),
-            points: self.points.input(),
-        }
-    }
-
-    /// Reads the bricks that hold used points: slot, key and used points of each.
-    pub fn read_bricks(&self) -> Result<Vec<(usize, BrickKey, u64)>, RenderError> {
-        let (keys, used) = (self.keys.read()?, self.used.read()?);
-        let slots = keys.into_iter().zip(used).enumerate();
-        Ok(slots.filter(|(_, (key, _))| *key != 0).map(|(slot, (key, used))| (slot, key - 1, used)).collect())
-    }
-
-    /// Reads the rank of the first used point of each slot.
-    pub fn read_ranks(&self) -> Result<Vec<u32>, RenderError> {
-        self.rank.read()
-    }
 }

@@ -1,9 +1,10 @@
 // Step 3 on a CUDA device: each light point that some object point uses, once. Formula (7).
 //
-// 1. `insert_bricks`: the bricks that hold a used point, in a table.
-// 2. `mark_points`: the used points in each, and for each item where its bricks are.
-// 3. `count_points`, then a scan: ranks.
-// 4. `list_points`: all of them.
+// 1. `mark_items`: the used points of each brick around each item's cell.
+// 2. `insert_bricks`: the bricks that hold a used point, in a table.
+// 3. `mark_points`: the used points in each, and for each item where its bricks are.
+// 4. `count_points`, then a scan: ranks.
+// 5. `list_points`: all of them.
 //
 // The table is an ordered one: whatever the order of insertion, a key lies at the same place (Shun, Blelloch: Phase-Concurrent Hash
 // Tables for Determinism, SPAA 2014). A larger key has priority: it pushes smaller ones on.
@@ -11,6 +12,35 @@
 
 #include "cuda/warp.cuh"
 #include "light_mesh/window.cuh"
+
+// Shared memory of a warp: two words a brick, since it has no 64-bit "or" of its own.
+KERNEL(mark_items, LightPoints, WARP * ITEM_WARPS, 8) {
+    DYNAMIC_SHARED(unsigned, shared);
+    const LightMesh &mesh = args.mesh;
+    const unsigned lane = lane_of_thread();
+    const unsigned long long number = (unsigned long long)blockIdx.x * ITEM_WARPS + threadIdx.x / WARP;
+    if (number >= args.item_count)
+        return;
+    const unsigned long long index = args.first_item + number;
+    const IVec3 cell = point_of(args.items[index].cell);
+    const Window window = window_around(mesh, cell);
+    const unsigned bricks = window_size(window);
+    unsigned *marks = shared + threadIdx.x / WARP * 2 * bricks;
+    for (unsigned word = lane; word < 2 * bricks; word += WARP)
+        marks[word] = 0;
+    __syncwarp();
+    const unsigned *seen = args.masks + index * WARP * mesh.words;
+    for (unsigned k = lane; k < mesh.points; k += WARP) {
+        if (seen[k] == 0)
+            continue;
+        const IVec3 point = cell + template_offset(mesh, k);
+        const unsigned bit = point_bit(point);
+        atomicOr(&marks[2 * window_place(window, point) + bit / 32], 1u << bit % 32);
+    }
+    __syncwarp();
+    for (unsigned place = lane; place < bricks; place += WARP)
+        args.marks[index * bricks + place] = (unsigned long long)marks[2 * place + 1] << 32 | marks[2 * place];
+}
 
 // Inserts a brick. Counts it if it is new; counts more than there can be where the table is full.
 DEVICE void insert(const LightPoints &args, unsigned long long key) {
@@ -60,7 +90,7 @@ DEVICE bool brick_of_thread(const LightPoints &args, WindowBrick &brick) {
     return true;
 }
 
-KERNEL(insert_bricks, LightPoints, 256, 4) {
+KERNEL(insert_bricks, LightPoints, BLOCK, 4) {
     // A table that is more than half full is given up: the host makes a larger one.
     WindowBrick brick;
     if (*(volatile unsigned *)args.bricks <= args.table.capacity / 2 && brick_of_thread(args, brick) &&
@@ -68,7 +98,7 @@ KERNEL(insert_bricks, LightPoints, 256, 4) {
         insert(args, brick.key);
 }
 
-KERNEL(mark_points, LightPoints, 256, 4) {
+KERNEL(mark_points, LightPoints, BLOCK, 4) {
     WindowBrick brick;
     if (!brick_of_thread(args, brick))
         return;
@@ -78,17 +108,17 @@ KERNEL(mark_points, LightPoints, 256, 4) {
     args.slots[brick.index] = slot;
 }
 
-KERNEL(count_points, LightPoints, 256, 4) {
+KERNEL(count_points, LightPoints, BLOCK, 4) {
     const unsigned slot = blockIdx.x * blockDim.x + threadIdx.x;
     if (slot < args.table.capacity)
         args.rank[slot] = __popcll(args.used[slot]);
 }
 
-KERNEL(list_points, LightPoints, 256, 4) {
+KERNEL(list_points, LightPoints, BLOCK, 4) {
     const unsigned slot = blockIdx.x * blockDim.x + threadIdx.x;
     if (slot >= args.table.capacity)
         return;
     unsigned rank = args.rank[slot];
     for (unsigned long long rest = args.used[slot]; rest != 0; rest &= rest - 1)
-        args.points[rank++] = (unsigned long long)slot << 6 | (__ffsll(rest) - 1);
+        args.points[rank++] = (unsigned long long)slot << POINT_BITS | (__ffsll(rest) - 1);
 }

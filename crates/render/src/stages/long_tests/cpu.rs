@@ -1,31 +1,56 @@
 //! Step 4 on the CPU: brick by brick, light by light.
 
+use std::ops::Range;
+
 use lightmesh_scene::Light;
 use rayon::prelude::*;
 
-use super::{Lit, LitBy};
-use crate::accel::Ray;
-use crate::job::{Job, Sampling, Tally};
+use crate::cache::{HostTable, Kept, Seen};
+use crate::counters::Tally;
+use crate::data::lit::{Lit, LitBy};
+use crate::data::wave::HostWave;
 use crate::light_mesh::{LightMesh, UsedPoints, bits};
-use crate::prepared::PreparedScene;
-use crate::sampling::{Pattern, light_center, light_point};
+use crate::shadow::{Aim, Targets, hidden};
 use crate::surface::long_segment;
 
 /// Bricks that one task takes.
 const RUN: usize = 64;
 
-pub(crate) fn long_tests(job: &Job, scene: &PreparedScene, points: &UsedPoints, mesh: &LightMesh) -> Lit {
-    let lights = scene.scene.lights.iter().enumerate();
-    let lit = lights.map(|(index, light)| LongTests { job, scene, points, mesh, index, light }.run()).collect();
-    Lit { lights: lit }
+pub(crate) fn long_tests(
+    wave: &HostWave,
+    points: &UsedPoints,
+    mesh: &LightMesh,
+    kept: Option<&mut Kept<HostTable>>,
+) -> Lit {
+    let lights = wave.lights().iter().enumerate();
+    let aim = Aim::Extent(wave.job.sampling.of_light_points());
+    let test = |points: &UsedPoints, (index, light)| LongTests { wave, points, mesh, aim, index, light }.run();
+    let Some(kept) = kept else {
+        return Lit { lights: lights.map(|light| test(points, light)).collect() };
+    };
+    let table = kept.table(wave.scene, &mesh.lattice);
+    let seen = wave.lights().iter().map(|light| Seen::of(light, &wave.job.sampling)).collect();
+    let rows = table.admit(points.bricks().keys(), seen);
+    let recall = |(index, light)| {
+        let unknown = points.only(table.unknown(index, &rows, points.used()));
+        let found = test(&unknown, (index, light));
+        let saved = (points.count() - unknown.count()) as u64 * u64::from(table.samples(index));
+        Tally::add(&wave.job.tally.long_tests_saved, saved);
+        // Where the observer has asked to stop some answers are missing.
+        if wave.job.check().is_ok() {
+            table.learn(index, &rows, unknown.used(), &found);
+        }
+        table.recall(index, &rows, points.used())
+    };
+    Lit { lights: lights.map(recall).collect() }
 }
 
 /// The long tests towards one light.
 struct LongTests<'a> {
-    job: &'a Job<'a>,
-    scene: &'a PreparedScene<'a>,
+    wave: &'a HostWave<'a>,
     points: &'a UsedPoints,
     mesh: &'a LightMesh,
+    aim: Aim,
     index: usize,
     light: &'a Light,
 }
@@ -39,11 +64,8 @@ impl LongTests<'_> {
         let mut seen = vec![0; self.points.used().len()];
         seen.par_chunks_mut(RUN).enumerate().for_each(|(run, seen)| {
             let first = run * RUN;
-            let segments: Vec<Ray> = self
-                .positions(first..first + seen.len())
-                .map(|(_, from)| long_segment(from, light_center(self.light, from, self.scene.reach(from))))
-                .collect();
-            let mut free = self.trace(&segments).into_iter().map(|occluded| !occluded);
+            let hidden = self.hidden(first..first + seen.len(), 1);
+            let mut free = hidden.into_iter().map(|hidden| !hidden);
             for (brick, word) in seen.iter_mut().enumerate() {
                 for bit in bits(self.points.used()[first + brick]) {
                     *word |= u64::from(free.next().unwrap_or(false)) << bit;
@@ -54,40 +76,32 @@ impl LongTests<'_> {
     }
 
     fn share(&self) -> LitBy {
-        let Sampling { samples, seed, .. } = self.job.sampling;
+        let samples = self.aim.samples(self.light);
         let bricks = self.points.used().len();
         let runs = (0..bricks).step_by(RUN).map(|first| first..(first + RUN).min(bricks)).collect::<Vec<_>>();
-        let seen = runs
-            .into_par_iter()
-            .flat_map_iter(|run| {
-                let segments: Vec<Ray> = self
-                    .positions(run)
-                    .flat_map(|(key, from)| {
-                        let pattern = Pattern::new(seed, key, self.index);
-                        (0..samples).map(move |sample| (from, pattern.point(sample)))
-                    })
-                    .map(|(from, u)| long_segment(from, light_point(self.light, from, self.scene.reach(from), u)))
-                    .collect();
-                let occluded = self.trace(&segments);
-                let free = |rays: &[bool]| rays.iter().filter(|occluded| !**occluded).count() as u16;
-                occluded.chunks_exact(samples as usize).map(free).collect::<Vec<u16>>()
-            })
-            .collect();
-        LitBy::Share { seen, samples }
+        let seen = runs.into_par_iter().flat_map_iter(|run| {
+            let free = |rays: &[bool]| rays.iter().filter(|hidden| !**hidden).count() as u16;
+            self.hidden(run, samples).chunks_exact(samples as usize).map(free).collect::<Vec<u16>>()
+        });
+        LitBy::Share { seen: seen.collect(), samples }
+    }
+
+    /// Whether each of the rays from the used points of some bricks is blocked, `samples` of them a point.
+    fn hidden(&self, bricks: Range<usize>, samples: u32) -> Vec<bool> {
+        let LongTests { wave, aim, light, index, .. } = *self;
+        let mut segments = Vec::new();
+        for (key, from) in self.positions(bricks) {
+            let reach = wave.scene.geometry.reach(from);
+            let targets = Targets::new(&aim, (index, light), from, reach, key);
+            segments.extend((0..samples).map(|sample| long_segment(from, targets.get(sample))));
+        }
+        Tally::add(&wave.job.tally.long_tests, segments.len() as u64);
+        wave.job.piece(segments.len(), || hidden(wave, &segments))
     }
 
     /// Number by formula (7) and position of the used points of some bricks, ascending.
-    fn positions(&self, bricks: std::ops::Range<usize>) -> impl Iterator<Item = (u64, glam::Vec3)> + '_ {
+    fn positions(&self, bricks: Range<usize>) -> impl Iterator<Item = (u64, glam::Vec3)> + '_ {
         let lattice = &self.mesh.lattice;
         bricks.flat_map(|brick| self.points.points(brick)).map(|index| (lattice.packed(index), lattice.point(index)))
-    }
-
-    fn trace(&self, segments: &[Ray]) -> Vec<bool> {
-        let mut occluded = vec![true; segments.len()];
-        if !self.job.observer.cancelled() {
-            self.scene.accelerator.occluded(segments, &mut occluded);
-        }
-        Tally::add(&self.job.tally.long_tests, segments.len() as u64);
-        occluded
     }
 }

@@ -4,11 +4,13 @@ use glam::{DVec3, Vec3};
 use lightmesh_scene::{LightKind, Weight};
 use lightmesh_testkit::pile;
 
-use super::{Lit, LitBy};
 use crate::Unobserved;
 use crate::accel::{Accelerator, BruteForce, Ray};
 use crate::backend::{Backend, Cpu};
-use crate::job::{Job, Sampling, Tally};
+use crate::counters::Tally;
+use crate::data::lit::{Lit, LitBy};
+use crate::data::wave::Wave;
+use crate::job::{Job, Sampling};
 use crate::light_mesh::{Lattice, LightMesh, Template, UsedPoints, point_bit};
 use crate::prepared::PreparedScene;
 use crate::settings::Acceleration;
@@ -30,23 +32,25 @@ fn lights(radius: f32) -> [LightKind; 3] {
 fn with_light_points(radius: f32, judge: impl Fn(&PreparedScene, &LightMesh, &UsedPoints, &Lit, &Job)) {
     let scene = pile(DVec3::ZERO, &lights(radius));
     let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
-    let lattice = Lattice::around(&scene.bounds, 0.2, 2.1).unwrap();
+    let lattice = Lattice::around(&scene, 0.2, 2.1).unwrap();
     let mesh = LightMesh { lattice, template: Template::new(2.1).unwrap(), radius: 0.42, weight: Weight::Smooth };
     let job = Job::new(&Unobserved, Sampling { samples: SAMPLES, seed: 0, spread: false });
     let cpu = Cpu;
     let rays = cpu.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64).unwrap();
     let hits = cpu.primary_rays(&job, &scene, &rays).unwrap();
-    let masks = cpu.short_tests(&job, &scene, &rays, &hits, &mesh).unwrap();
-    let points = cpu.light_points(&job, &masks, &mesh).unwrap();
-    let lit = cpu.long_tests(&job, &scene, &points, &mesh).unwrap();
+    let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits };
+    let cells = cpu.cells(&wave, &mesh).unwrap();
+    let masks = cpu.short_tests(&wave, &cells, &mesh).unwrap();
+    let points = cpu.light_points(&job, &cells, &masks, &mesh).unwrap();
+    let lit = cpu.long_tests(&wave, &points, &mesh, None).unwrap();
     judge(&scene, &mesh, &points, &lit, &job);
 }
 
 #[test]
 fn bits_are_what_a_ray_through_all_triangles_finds() {
     with_light_points(0.4, |scene, mesh, points, lit, _| {
-        let oracle = BruteForce::new(&scene.triangles);
-        let far = scene.reach(Vec3::ZERO) * 4.0;
+        let oracle = BruteForce::new(&scene.geometry.triangles);
+        let far = scene.geometry.reach(Vec3::ZERO) * 4.0;
         for (light, direction) in [(0, None), (1, Some(Vec3::new(-0.6, 0.8, 0.0)))] {
             let LitBy::Bits(words) = &lit.lights[light] else { panic!("seen or not") };
             let (mut seen, mut hidden) = (0, 0);

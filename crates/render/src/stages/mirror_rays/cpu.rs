@@ -2,16 +2,16 @@
 
 use glam::Vec3;
 
-use crate::accel::{Hit, Ray};
-use crate::prepared::PreparedScene;
-use crate::stages::primary_rays::RayList;
-use crate::stages::shade::Surface;
+use crate::accel::Ray;
+use crate::data::rays::RayList;
+use crate::data::wave::HostWave;
+use crate::shading::Surface;
 
-pub(crate) fn mirror_rays(scene: &PreparedScene, list: &RayList, hits: &[Hit]) -> RayList {
+pub(crate) fn mirror_rays(wave: &HostWave) -> RayList {
     let mut next = RayList::default();
-    for ray in (0..hits.len()).filter(|&ray| hits[ray].is_some()) {
-        let surface = Surface::new(scene, list, hits, ray);
-        let weight = list.weight(ray) * surface.coefficients.ks;
+    for ray in (0..wave.hits.len()).filter(|&ray| wave.sees(ray)) {
+        let surface = Surface::new(wave, ray);
+        let weight = wave.rays.weight(ray) * surface.coefficients.ks;
         if weight == Vec3::ZERO {
             continue;
         }
@@ -20,7 +20,7 @@ pub(crate) fn mirror_rays(scene: &PreparedScene, list: &RayList, hits: &[Hit]) -
             direction: surface.mirrored().normalize(),
             t_max: f32::INFINITY,
         });
-        next.pixels.push(list.pixels[ray]);
+        next.pixels.push(wave.rays.pixels[ray]);
         next.weights.push(weight);
     }
     next

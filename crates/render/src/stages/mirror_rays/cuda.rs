@@ -4,31 +4,24 @@ use bytemuck::Zeroable;
 use lightmesh_layout::geometry::Rays;
 use lightmesh_layout::stages::MirrorRays;
 
-use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays, blocks_for};
 use crate::cuda::{Kernel, Runtime};
-use crate::job::Job;
-use crate::prepared::PreparedScene;
+use crate::error::RenderError;
+use crate::gpu::rays::{DeviceRays, DeviceWave};
+use crate::gpu::{BLOCK, Cuda, blocks_for};
 
 const COUNT: Kernel = Kernel { module: "mirror_rays", name: "mirror_rays_count" };
 const EMIT: Kernel = Kernel { module: "mirror_rays", name: "mirror_rays_emit" };
 
-pub(crate) fn mirror_rays<R: Runtime>(
-    cuda: &Cuda<R>,
-    job: &Job,
-    scene: &PreparedScene,
-    rays: &DeviceRays<R>,
-    hits: &DeviceHits<R>,
-) -> Result<DeviceRays<R>, RenderError> {
-    job.check()?;
-    let scene = cuda.scene(scene)?;
+pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> Result<DeviceRays<R>, RenderError> {
+    wave.job.check()?;
+    let rays = wave.rays;
     let blocks = rays.record.count.div_ceil(BLOCK);
     let counts = cuda.pool().room("counts of mirror rays", blocks as usize + 1)?;
     let launch = blocks_for(&(0..u64::from(blocks)), BLOCK);
     let arguments = MirrorRays {
-        scene: scene.record,
+        scene: wave.scene.record,
         rays: rays.record,
-        hits: hits.hits.input(),
+        hits: wave.hits.hits.input(),
         counts: counts.output(),
         ..MirrorRays::zeroed()
     };

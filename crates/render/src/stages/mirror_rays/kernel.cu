@@ -5,14 +5,14 @@
 #include "cuda/prelude.cuh"
 
 #include "cuda/warp.cuh"
-#include "stages/shade/shade.cuh"
+#include "shading/shading.cuh"
 
 // The share of what a mirror at the object point of `ray` shows that reaches the pixel; zero where there is none.
 DEVICE Vec3 mirror_weight(const MirrorRays &args, unsigned ray) {
     if (ray >= args.rays.count)
         return splat(0.0f);
     const Hit hit = load_hit(args.hits, ray);
-    if (hit.triangle == HIT_NONE)
+    if (hit.triangle == Hit::NONE)
         return splat(0.0f);
     Material own;
     return weight_of(args.rays, ray) * material_at(args.scene, hit, own)->ks;
@@ -20,15 +20,15 @@ DEVICE Vec3 mirror_weight(const MirrorRays &args, unsigned ray) {
 
 // How many threads of the block before this one have a flag, and how many have one in all.
 DEVICE unsigned flags_before(bool flag, unsigned &all) {
-    SHARED(unsigned, warps, [BLOCK / 32]);
-    const unsigned lane = lane_of_thread(), warp = threadIdx.x / 32;
+    SHARED(unsigned, warps, [BLOCK / WARP]);
+    const unsigned lane = lane_of_thread(), warp = threadIdx.x / WARP;
     const unsigned flags = __ballot_sync(ALL_LANES, flag);
     if (lane == 0)
         warps[warp] = __popc(flags);
     __syncthreads();
     unsigned before = __popc(flags & lanes_below(lane));
     all = 0;
-    for (unsigned other = 0; other < BLOCK / 32; ++other) {
+    for (unsigned other = 0; other < BLOCK / WARP; ++other) {
         before += other < warp ? warps[other] : 0;
         all += warps[other];
     }

@@ -6,22 +6,27 @@ use lightmesh_testkit::SceneDraft;
 
 use super::cpu::mirror_rays;
 use crate::accel::{Hit, Ray};
+use crate::data::rays::RayList;
+use crate::data::wave::Wave;
+use crate::job::{Job, Sampling};
+use crate::observer::Unobserved;
 use crate::prepared::PreparedScene;
-use crate::stages::primary_rays::RayList;
-use crate::{Acceleration, Unobserved};
+use crate::settings::Acceleration;
 
 fn mirror(ks: Vec3) -> Material {
-    Material { ks, ..Material::default() }
+    Material::default().with_ks(ks)
 }
 
 /// The mirrored rays of `list` on a floor of this material.
 fn mirrored(material: Material, normals: Option<Vec3>, list: &RayList) -> RayList {
     let mut scene = SceneDraft::new().painted(material).floor(0.0, 10.0).finish("floor");
-    scene.mesh.normals = normals.map_or(Vec::new(), |normal| vec![normal; scene.mesh.positions.len()]);
+    scene.geometry_mut().mesh.normals =
+        normals.map_or(Vec::new(), |normal| vec![normal; scene.geometry.mesh.positions.len()]);
     let scene = PreparedScene::new(&scene, &Acceleration::BruteForce, &Unobserved).unwrap();
     let mut hits = vec![Hit::MISS; list.rays.len()];
-    scene.accelerator.closest_hits(&list.rays, &mut hits);
-    mirror_rays(&scene, list, &hits)
+    scene.geometry.accelerator.closest_hits(&list.rays, &mut hits);
+    let job = Job::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
+    mirror_rays(&Wave { job: &job, scene: &scene, rays: list, hits: &hits })
 }
 
 /// Rays of unit length: two that meet the floor and, between them, one that does not.

@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::RayList;
 use crate::accel::{Hit, Ray};
-use crate::job::{Job, Tally};
+use crate::counters::Tally;
+use crate::data::rays::RayList;
+use crate::job::Job;
 use crate::prepared::PreparedScene;
 use crate::view::View;
 
@@ -42,15 +43,11 @@ fn blocks_of_pixels(width: u32, rows: Range<u32>) -> Vec<u32> {
 pub(crate) fn primary_rays(job: &Job, scene: &PreparedScene, list: &RayList) -> Vec<Hit> {
     let mut hits = vec![Hit::MISS; list.rays.len()];
     list.rays.par_chunks(BATCH).zip(hits.par_chunks_mut(BATCH)).for_each(|(rays, hits)| {
-        if job.observer.cancelled() {
-            return;
-        }
-        scene.accelerator.closest_hits(rays, hits);
-        job.observer.advance(rays.len() as u64);
+        job.piece(rays.len(), || scene.geometry.accelerator.closest_hits(rays, hits));
     });
     let found = hits.par_iter().filter(|hit| hit.is_some()).count() as u64;
     Tally::add(&job.tally.rays, list.rays.len() as u64);
-    Tally::add(&job.tally.object_points, found);
+    Tally::add(&job.tally.surface_points, found);
     if list.from_camera() {
         Tally::add(&job.tally.hits, found);
     }

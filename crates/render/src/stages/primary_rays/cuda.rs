@@ -2,26 +2,26 @@
 
 use lightmesh_layout::stages::PrimaryRays;
 
-use crate::RenderError;
-use crate::backend::cuda::{BLOCK, Cuda, DeviceHits, DeviceRays, Work, blocks_for, kernel_of};
+use crate::counters::Tally;
 use crate::cuda::Runtime;
-use crate::job::{Job, Tally};
-use crate::prepared::PreparedScene;
+use crate::error::RenderError;
+use crate::gpu::rays::{DeviceHits, DeviceRays};
+use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerStructure, Work, blocks_for, per_structure};
+use crate::job::Job;
 
+const KERNELS: PerStructure = per_structure!("primary_rays", "primary_rays");
 /// Blocks of the first launch ever.
 const FIRST: u64 = 256;
 
 pub(crate) fn primary_rays<R: Runtime>(
     cuda: &Cuda<R>,
     job: &Job,
-    scene: &PreparedScene,
+    scene: &DeviceScene<R>,
     rays: &DeviceRays<R>,
 ) -> Result<DeviceHits<R>, RenderError> {
-    let scene = cuda.scene(scene)?;
-    let names = ["primary_rays_bvh", "primary_rays_grid", "primary_rays_brute_force"];
-    let kernel = kernel_of("primary_rays", names, scene.structure);
+    let kernel = KERNELS.of(scene.structure);
     let hits = cuda.pool().room("hits", rays.len())?;
-    let work = Work { units: rays.blocks(16), cost: 1, first: FIRST, progress: rays.len() as u64 };
+    let work = Work { units: rays.blocks(BLOCK_SIDE), cost: 1, first: FIRST, progress: rays.len() as u64 };
     cuda.in_pieces(job, kernel, work, |piece| {
         let arguments = PrimaryRays {
             scene: scene.record,

@@ -12,15 +12,11 @@ DEVICE void primary_rays(const PrimaryRays &args, const Structure &structure) {
     if (ray_of_thread(args.rays, args.first_block + blockIdx.x, threadIdx.x, ray)) {
         const Hit hit = closest_hit(structure, args.tally, ray_at(args.rays, ray));
         store_hit(args.hits, ray, hit);
-        found = hit.triangle != HIT_NONE;
+        found = hit.triangle != Hit::NONE;
     }
     Counters &shard = tally_shard(args.tally);
-    count(shard.object_points, found);
+    count(shard.surface_points, found);
     count(shard.hits, found && args.rays.list == nullptr);
 }
 
-KERNEL(primary_rays_bvh, PrimaryRays, 256, 4) { primary_rays(args, args.scene.bvh); }
-
-KERNEL(primary_rays_grid, PrimaryRays, 256, 4) { primary_rays(args, args.scene.grid); }
-
-KERNEL(primary_rays_brute_force, PrimaryRays, 256, 4) { primary_rays(args, args.scene.brute_force); }
+KERNEL_PER_STRUCTURE(primary_rays, PrimaryRays, BLOCK, 4)

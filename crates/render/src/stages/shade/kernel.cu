@@ -1,13 +1,11 @@
 // Formula (1) on a CUDA device: twin of cpu.rs, one thread a ray.
 #include "cuda/prelude.cuh"
 
-#include "stages/shade/shade.cuh"
+#include "shading/shading.cuh"
 
 // Formula (1) without its last term.
 DEVICE Vec3 surface_radiance(const Shade &args, unsigned ray, const Surface &surface) {
     Vec3 radiance = args.scene.ambient * surface.material->ka + surface.material->emission;
-    if (args.direct != nullptr)
-        return radiance + args.direct[ray];
     const float reach = scene_reach(args.scene, surface.point.origin);
     for (unsigned light = 0; light < args.scene.light_count; ++light) {
         const float share = __ldg(args.share + (unsigned long long)light * args.rays.count + ray);
@@ -27,13 +25,13 @@ DEVICE void fill_layers(const Shade &args, unsigned ray, const Surface &surface,
         args.visibility[light * args.film_pixels + place] = args.share[(unsigned long long)light * args.rays.count + ray];
 }
 
-KERNEL(shade, Shade, 256, 4) {
+KERNEL(shade, Shade, BLOCK, 4) {
     unsigned ray;
     if (!ray_of_thread(args.rays, args.first_block + blockIdx.x, threadIdx.x, ray))
         return;
     const unsigned long long place = pixel_of(args.rays, ray) - args.film_pixel;
     Vec3 radiance = args.scene.background;
-    if (load_hit(args.hits, ray).triangle != HIT_NONE) {
+    if (load_hit(args.hits, ray).triangle != Hit::NONE) {
         Material own;
         const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
         radiance = surface_radiance(args, ray, surface);

@@ -5,10 +5,11 @@ use std::ops::Range;
 use fearless_simd::{f32x8, prelude::*};
 use glam::Vec3;
 
+use super::MaskCounts;
 use super::cells::CellOccluders;
-use super::lanes::{Axes, LANES, cross, difference, dot, dot_along_x, scaled, splat};
-use super::{CellPoints, MaskCounts};
-use crate::light_mesh::LightMesh;
+use crate::data::masks::population;
+use crate::light_mesh::{CellPoints, LightMesh};
+use crate::simd::{Axes, LANES, cross, difference, dot, dot_along_x, scaled, splat};
 use crate::surface::SurfacePoint;
 
 /// Up to eight object points and, for each light point of the template, the lanes that still see it.
@@ -70,7 +71,7 @@ impl Batch {
             counts.half_ball += size as u64;
             counts.tested += if tested >> lane & 1 != 0 { size as u64 } else { 0 };
         }
-        counts.used = super::population(masks);
+        counts.used = population(masks);
         counts
     }
 

@@ -26,9 +26,9 @@ DEVICE bool test_occluders(const ShortTests &args, const CellItem &item, const I
     }
     __syncwarp();
     while (height != 0 || found != 0) {
-        while (height != 0 && found < 32)
+        while (height != 0 && found < WARP)
             next_nodes(args, item, memory, height, found);
-        unsigned count = min(found, 32u);
+        unsigned count = min(found, WARP);
         found -= count;
         const unsigned rows = choose_candidates(args, item, memory, found, count);
         asked |= test_candidates(args, item, lane, memory, rows);
@@ -55,6 +55,6 @@ DEVICE void short_tests_by_cell_of_item(const ShortTests &args) {
     const bool asked = test_occluders(args, shape, own, memory);
 
     // 4. The masks, and what was counted.
-    const unsigned used = write_masks(args, index, shape.cell, memory.seen, memory.found);
+    const unsigned used = write_masks(args, index, memory.seen);
     count_short_tests(args.tally, size, used, asked ? size : 0);
 }

@@ -5,6 +5,9 @@
 #include "stages/short_tests/memory.cuh"
 #include "stages/short_tests/span.cuh"
 
+// Added to offsets, which are at least 1 - MOST_REACH, so that they have no sign.
+#define BOX_BIAS (MOST_REACH - 1)
+
 // Whether the plane of a triangle comes nearer than `reach` to the box around the origins.
 DEVICE bool plane_is_near(const CellItem &item, const Vec3 &a, const Vec3 &b, const Vec3 &c, float reach) {
     const Vec3 normal = cross(b - a, c - a);
@@ -22,7 +25,7 @@ DEVICE bool is_behind(const CellItem &item, const float4 *planes, const Vec3 &a,
         const Vec3 normal = {planes[i].x, planes[i].y, planes[i].z};
         // Relative to the box, so that rounding is of the size of the box and the triangle: 8 ε bounds that of both products.
         const float top = fmaxf(fmaxf(dot(normal, from_a), dot(normal, from_b)), dot(normal, from_c));
-        behind &= top + 8.0f / 16777216.0f * dot(abs(normal), size) < planes[i].w;
+        behind &= top + 8.0f * UNIT_ROUNDOFF * dot(abs(normal), size) < planes[i].w;
     }
     return behind;
 }
@@ -58,7 +61,8 @@ DEVICE void span_in_steps(const LightMesh &mesh, float inverse_step, const Span 
     last = min(__float2int_rd((high + span.high + mesh.slack - corner) * inverse_step), mesh.reach);
 }
 
-// The box of light points that a triangle can hide, packed: six numbers of five bits, each offset + 15; `false` where there is none.
+// The box of light points that a triangle can hide, packed: six numbers of five bits, each offset + BOX_BIAS; `false` where there is
+// none.
 DEVICE bool shadow_box(const LightMesh &mesh, const CellItem &item, const Vec3 &a, const Vec3 &b, const Vec3 &c, unsigned &box,
                        Span &own_x, Span &own_y, Span &own_z, float &most) {
     const float reach = mesh.radius + mesh.slack;
@@ -79,17 +83,17 @@ DEVICE bool shadow_box(const LightMesh &mesh, const CellItem &item, const Vec3 &
     stretch(z, most, reach);
     // 3. In steps from the cell.
     int x0, x1, y0, y1, z0, z1;
-    span_in_steps(mesh, item.inverse_step, x, item.low.x, item.high.x, mesh.origin.x, item.cell.x, x0, x1);
-    span_in_steps(mesh, item.inverse_step, y, item.low.y, item.high.y, mesh.origin.y, item.cell.y, y0, y1);
-    span_in_steps(mesh, item.inverse_step, z, item.low.z, item.high.z, mesh.origin.z, item.cell.z, z0, z1);
-    box = (unsigned)(x0 + 15) | (unsigned)(x1 + 15) << 5 | (unsigned)(y0 + 15) << 10 | (unsigned)(y1 + 15) << 15 |
-          (unsigned)(z0 + 15) << 20 | (unsigned)(z1 + 15) << 25;
+    span_in_steps(mesh, item.inverse_step, x, item.low.x, item.high.x, mesh.anchor.x, item.cell.x, x0, x1);
+    span_in_steps(mesh, item.inverse_step, y, item.low.y, item.high.y, mesh.anchor.y, item.cell.y, y0, y1);
+    span_in_steps(mesh, item.inverse_step, z, item.low.z, item.high.z, mesh.anchor.z, item.cell.z, z0, z1);
+    box = (unsigned)(x0 + BOX_BIAS) | (unsigned)(x1 + BOX_BIAS) << 5 | (unsigned)(y0 + BOX_BIAS) << 10 |
+          (unsigned)(y1 + BOX_BIAS) << 15 | (unsigned)(z0 + BOX_BIAS) << 20 | (unsigned)(z1 + BOX_BIAS) << 25;
     return x0 <= x1 && y0 <= y1 && z0 <= z1;
 }
 
 // A number of a packed box.
 DEVICE int box_bound(unsigned box, int index) {
-    return (int)(box >> 5 * index & 31) - 15;
+    return (int)(box >> 5 * index & 31) - BOX_BIAS;
 }
 
 // 3. b. Lanes take up to 32 of the triangles found; those that can matter are kept as candidates. Returns how many rows of

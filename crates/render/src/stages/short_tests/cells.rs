@@ -9,9 +9,9 @@ use std::ops::Range;
 use glam::{IVec3, Vec3};
 use lightmesh_scene::Bounds;
 
+use crate::accel::{Region, TangentPlanes};
 use crate::light_mesh::LightMesh;
 use crate::prepared::PreparedScene;
-#[cfg(doc)]
 use crate::surface::SurfacePoint;
 
 /// A triangle that may block segments which start in one cell.
@@ -31,16 +31,18 @@ pub(super) struct CellOccluders {
 }
 
 impl CellOccluders {
-    /// Collects the triangles that matter to segments from `origins`, the box around all
-    /// [origins](SurfacePoint::origin) in `cell`.
-    pub(super) fn collect(&mut self, scene: &PreparedScene, mesh: &LightMesh, cell: IVec3, origins: &Bounds) {
+    /// Collects the triangles that matter to segments from the [origins](SurfacePoint::origin) of `points`, all in `cell`.
+    pub(super) fn collect(&mut self, scene: &PreparedScene, mesh: &LightMesh, cell: IVec3, points: &[SurfacePoint]) {
+        let origins = &Bounds::around(points.iter().map(|point| point.origin));
         let reach = mesh.radius + mesh.slack();
-        let region = Bounds { min: origins.min - Vec3::splat(reach), max: origins.max + Vec3::splat(reach) };
-        scene.accelerator.triangles_in(&region, &mut self.found);
+        let planes = points.iter().map(|point| (point.origin, point.normal));
+        let region = Region::within(Bounds { min: origins.min - reach, max: origins.max + reach })
+            .above(TangentPlanes::new(origins.min, planes, mesh.slack()));
+        scene.geometry.accelerator.triangles_in(&region, &mut self.found);
         self.candidates.clear();
         self.rows.clear();
         for &index in &self.found {
-            let corners = scene.triangles[index as usize].corners();
+            let corners = scene.geometry.triangles[index as usize].corners();
             if plane_is_near(&corners, origins, reach)
                 && let Some((low, high)) = shadow_box(mesh, cell, origins, &corners)
             {
@@ -111,6 +113,7 @@ fn shadow_box(mesh: &LightMesh, cell: IVec3, origins: &Bounds, [a, b, c]: &[Vec3
 
 #[cfg(test)]
 mod tests {
+    use glam::UVec3;
     use lightmesh_scene::Weight;
 
     use super::*;
@@ -118,7 +121,7 @@ mod tests {
 
     fn mesh() -> LightMesh {
         LightMesh {
-            lattice: Lattice { origin: Vec3::ZERO, step: 1.0, dims: [100; 3] },
+            lattice: Lattice { anchor: Vec3::ZERO, step: 1.0, number: UVec3::ZERO, first: IVec3::ZERO, dims: [100; 3] },
             template: Template::new(3.1).unwrap(),
             radius: 3.1,
             weight: Weight::Smooth,

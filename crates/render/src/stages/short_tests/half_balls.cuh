@@ -3,7 +3,7 @@
 
 #include "light_mesh/lattice.cuh"
 #include "light_mesh/template.cuh"
-#include "stages/short_tests/item.cuh"
+#include "stages/short_tests/cell_item.cuh"
 #include "stages/short_tests/span.cuh"
 
 // What formula (2) makes of one lane's object point and a light point: conditions 1 and 2.
@@ -29,7 +29,7 @@ DEVICE unsigned half_balls(const LightMesh &mesh, const CellItem &item, const It
     const float square = mesh.radius * mesh.radius;
     const unsigned alive = __ballot_sync(ALL_LANES, lane.alive);
     unsigned size = 0;
-    for (unsigned first = 0; first < 32 * mesh.words; first += 32) {
+    for (unsigned first = 0; first < 32 * mesh.words; first += WARP) {
         const unsigned k = first + lane_of_thread();
         bool all = false, some = false;
         Vec3 light_point = {};

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "accel/triangle.cuh"
-#include "light_mesh/window.cuh"
-#include "stages/short_tests/item.cuh"
+#include "stages/short_tests/cell_item.cuh"
 
 // What comes after the last of them.
 #define NO_TARGET 0xffffffffu
@@ -40,8 +39,6 @@ struct CellMemory {
 // done. Whether masks are kept there is known to the compiler, which then knows what kind of memory they are in.
 template <bool SHARED_MASKS>
 DEVICE CellMemory cell_memory(const ShortTests &args, unsigned *shared, unsigned long long item) {
-    // Later the marks are there.
-    const unsigned side = window_side(args.mesh), found = max(FOUND_TRIANGLES, 2 * side * side * side);
     const unsigned stack = 4 * ((STACK_OF_ROUNDS + STACK_PER_LEVEL * args.scene.bvh.depth + 3) / 4);
     const unsigned candidates = CANDIDATE_WORDS * CANDIDATES, targets = TARGET_WORDS * (LISTED_TARGETS + 1);
     const unsigned planes = 4 * TANGENT_PLANES;
@@ -50,7 +47,7 @@ DEVICE CellMemory cell_memory(const ShortTests &args, unsigned *shared, unsigned
     memory.targets = (Target *)(shared + candidates);
     memory.planes = (float4 *)(shared + candidates + targets);
     memory.found = shared + candidates + targets + planes;
-    memory.stack = memory.found + found;
+    memory.stack = memory.found + FOUND_TRIANGLES;
     memory.seen = SHARED_MASKS ? memory.stack + stack : args.masks + item * 32 * args.mesh.words;
     return memory;
 }

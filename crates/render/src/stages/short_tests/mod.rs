@@ -14,36 +14,12 @@ mod batch;
 pub(crate) mod cells;
 pub(crate) mod cpu;
 pub(crate) mod cuda;
-pub(crate) mod group;
-mod lanes;
 pub(crate) mod plain;
 #[cfg(test)]
 mod tests;
 
-pub use group::CellGroups;
-pub(crate) use lanes::{CellPoints, sum_in_both, sum_of_products};
-
 #[cfg(doc)]
 use crate::light_mesh::LightMesh;
-
-/// The masks of all object points, in the order of [`CellGroups::members`].
-#[derive(Clone, Debug)]
-pub struct Masks {
-    /// The object points by cell.
-    pub groups: CellGroups,
-    /// 32-bit words of a mask.
-    pub words: usize,
-    /// `words` words for each object point; bit k of a mask is bit k % 32 of word k / 32.
-    pub bits: Vec<u32>,
-}
-
-impl Masks {
-    /// The mask of the object point at `slot`.
-    #[inline(always)]
-    pub fn mask(&self, slot: usize) -> &[u32] {
-        &self.bits[slot * self.words..][..self.words]
-    }
-}
 
 /// What was counted while masks were made.
 #[derive(Clone, Copy, Debug, Default)]
@@ -66,14 +42,4 @@ impl std::ops::Add for MaskCounts {
             tested: self.tested + other.tested,
         }
     }
-}
-
-/// Number of set bits.
-#[inline(always)]
-pub(crate) fn population(mask: &[u32]) -> u64 {
-    let mut count = 0;
-    for word in mask {
-        count += word.count_ones();
-    }
-    u64::from(count)
 }

@@ -22,8 +22,7 @@ DEVICE void half_balls_of_item(const ShortTests &args) {
 
 // 3. Their segments.
 template <typename Structure>
-DEVICE void short_tests_plain_of_item(const ShortTests &args, const Structure &structure) {
-    DYNAMIC_SHARED(unsigned, shared);
+DEVICE void short_tests_plain(const ShortTests &args, const Structure &structure) {
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
     const unsigned long long index = args.first_item + blockIdx.x;
@@ -34,13 +33,13 @@ DEVICE void short_tests_plain_of_item(const ShortTests &args, const Structure &s
     unsigned *seen = args.masks + index * 32 * mesh.words;
     for (unsigned row = 0; row < mesh.lines; row++) {
         const TemplateRow line = template_rows[row];
-        const float py = lattice_coordinate(mesh.origin.y, mesh.step, cell.y + line.y);
-        const float pz = lattice_coordinate(mesh.origin.z, mesh.step, cell.z + line.z);
+        const float py = lattice_coordinate(mesh.anchor.y, mesh.step, cell.y + line.y);
+        const float pz = lattice_coordinate(mesh.anchor.z, mesh.step, cell.z + line.z);
         for (int i = 0; i < line.count; i++) {
             const unsigned inside = seen[line.bit + i];
             if (inside == 0)
                 continue;
-            const float px = lattice_coordinate(mesh.origin.x, mesh.step, cell.x + line.x + i);
+            const float px = lattice_coordinate(mesh.anchor.x, mesh.step, cell.x + line.x + i);
             const Vec3 direction = Vec3{px, py, pz} - test.origin;
             const bool sees =
                 (inside >> lane & 1) && !short_blocked(structure, args.tally, test, direction, mesh.slack);
@@ -50,7 +49,9 @@ DEVICE void short_tests_plain_of_item(const ShortTests &args, const Structure &s
         }
     }
     __syncwarp();
-    // 4. The masks, and what was counted.
-    const unsigned used = write_masks(args, index, cell, seen, shared);
+    // 4. The masks are where they belong; what was counted.
+    unsigned used = 0;
+    for (unsigned k = lane; k < 32 * mesh.words; k += WARP)
+        used += __popc(seen[k]);
     count_short_tests(args.tally, 0, used, 0);
 }

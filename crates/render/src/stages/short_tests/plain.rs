@@ -2,10 +2,11 @@
 
 use glam::Vec3;
 
-use super::{CellPoints, MaskCounts, population};
+use super::MaskCounts;
 use crate::accel::triangle::dot_along_x;
 use crate::accel::{ShortSegments, ShortTest};
-use crate::light_mesh::LightMesh;
+use crate::data::masks::population;
+use crate::light_mesh::{CellPoints, LightMesh};
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
 
@@ -39,7 +40,7 @@ pub(crate) fn mask(
     blocked.clear();
     blocked.resize(bits.len(), false);
     let test = ShortTest { origin: point.origin, normal: point.normal, edge_on: mesh.edge_on() };
-    scene.accelerator.short_segments(&ShortSegments { test, directions, slack: mesh.slack() }, blocked);
+    scene.geometry.accelerator.short_segments(&ShortSegments { test, directions, slack: mesh.slack() }, blocked);
     for (&bit, _) in bits.iter().zip(blocked.iter()).filter(|(_, blocked)| **blocked) {
         mask[bit / 32] &= !(1 << (bit % 32));
     }

@@ -9,9 +9,8 @@
 DEVICE bool slot_matters(const LightMesh &mesh, const CellItem &item, const float4 *planes, const BvhNode &node, unsigned slot) {
     const Vec3 extent = {__uint_as_float((unsigned)node.e[0] << 23), __uint_as_float((unsigned)node.e[1] << 23),
                          __uint_as_float((unsigned)node.e[2] << 23)};
-    // Rounding of a plane is far below this.
-    const float margin = 1.9073486e-6f, reach = mesh.radius + mesh.slack;
-    const Vec3 grown = margin * (abs(node.p) + 256.0f * extent);
+    const float reach = mesh.radius + mesh.slack;
+    const Vec3 grown = BVH_MARGIN * (abs(node.p) + 256.0f * extent);
     const Vec3 low = node.p + extent * Vec3{(float)node.min_x[slot], (float)node.min_y[slot], (float)node.min_z[slot]} - grown;
     const Vec3 high = node.p + extent * Vec3{(float)node.max_x[slot], (float)node.max_y[slot], (float)node.max_z[slot]} + grown;
     const Vec3 apart = max(max(low - item.high, item.low - high), splat(0.0f));
@@ -35,7 +34,7 @@ DEVICE void next_nodes(const ShortTests &args, const CellItem &item, const CellM
                        unsigned &found) {
     const Bvh &bvh = args.scene.bvh;
     const unsigned lane = lane_of_thread(), slot = lane % 8;
-    const unsigned taken = height + 28 <= STACK_OF_ROUNDS ? min(height, 4u) : 1;
+    const unsigned taken = height + 4 * STACK_PER_LEVEL <= STACK_OF_ROUNDS ? min(height, 4u) : 1;
     height -= taken;
     bool inner = false;
     unsigned child = 0, first = 0, triangles = 0;

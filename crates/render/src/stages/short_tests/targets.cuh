@@ -33,7 +33,7 @@ DEVICE unsigned row_targets(const LightMesh &mesh, const CellItem &item, const C
     const float low_x = candidate.corners[1].w, high_x = candidate.corners[2].w;
     const Span reached = {fminf(least * low_x, most * low_x), fmaxf(least * high_x, most * high_x)};
     int first, last;
-    span_in_steps(mesh, item.inverse_step, reached, item.low.x, item.high.x, mesh.origin.x, item.cell.x, first, last);
+    span_in_steps(mesh, item.inverse_step, reached, item.low.x, item.high.x, mesh.anchor.x, item.cell.x, first, last);
     first = max(first - x, 0);
     last = min(last - x, count - 1);
     unsigned targets = 0;
@@ -52,7 +52,7 @@ DEVICE bool may_hide(const LightMesh &mesh, const CellItem &item, const Candidat
     const Vec3 middle = 0.5f * (item.low + item.high) - target, half = 0.5f * (item.high - item.low) + splat(mesh.slack);
     // The largest products of three lengths that are rounded below and in the test itself, which begins at the other end.
     const float reach = mesh.radius + mesh.slack, size = max_element(max(max(abs(a), abs(b)), abs(c))) + reach;
-    const float rounding = 128.0f / 16777216.0f * size * size * reach;
+    const float rounding = 128.0f * UNIT_ROUNDOFF * size * size * reach;
     return sign * dot(bc, middle) + dot(abs(bc), half) + rounding >= 0.0f &&
            sign * dot(ca, middle) + dot(abs(ca), half) + rounding >= 0.0f &&
            sign * dot(ab, middle) + dot(abs(ab), half) + rounding >= 0.0f &&
@@ -63,7 +63,7 @@ DEVICE bool may_hide(const LightMesh &mesh, const CellItem &item, const Candidat
 DEVICE void filter_targets(const LightMesh &mesh, const CellItem &item, const CellMemory &memory, unsigned count) {
     const unsigned lane = lane_of_thread();
     unsigned kept = 0;
-    for (unsigned first = 0; first < count; first += 32) {
+    for (unsigned first = 0; first < count; first += WARP) {
         bool keep = false;
         Target target = {};
         if (first + lane < count) {
@@ -144,13 +144,13 @@ DEVICE bool test_candidates(const ShortTests &args, const CellItem &item, const 
                             unsigned rows) {
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
-    const unsigned end = warp_running_sum(rows), all = __shfl_sync(ALL_LANES, end, 31);
+    const unsigned end = warp_running_sum(rows), all = __shfl_sync(ALL_LANES, end, WARP - 1);
     bool asked = false;
-    for (unsigned first = 0; first < all; first += 32) {
+    for (unsigned first = 0; first < all; first += WARP) {
         // The candidate of a row: the number of candidates whose rows end before.
         const unsigned number = first + lane;
         unsigned owner = 0;
-        for (unsigned step = 16; step > 0; step /= 2) {
+        for (unsigned step = WARP / 2; step > 0; step /= 2) {
             const unsigned other = __shfl_sync(ALL_LANES, end, owner + step - 1);
             owner += other <= number ? step : 0;
         }
@@ -165,8 +165,8 @@ DEVICE bool test_candidates(const ShortTests &args, const CellItem &item, const 
             // Fewer than 1024 rows: the quotient of floats, moved off whole numbers, is exact.
             const unsigned plane = __float2int_rd(((float)row + 0.5f) * candidate.most.y);
             const int y = box_bound(box, 2) + (int)(row - plane * lines), z = box_bound(box, 4) + (int)plane;
-            py = lattice_coordinate(mesh.origin.y, mesh.step, item.cell.y + y);
-            pz = lattice_coordinate(mesh.origin.z, mesh.step, item.cell.z + z);
+            py = lattice_coordinate(mesh.anchor.y, mesh.step, item.cell.y + y);
+            pz = lattice_coordinate(mesh.anchor.z, mesh.step, item.cell.z + z);
             int count;
             template_row(mesh, row_of(mesh, y, z), bit, count, x);
             targets = row_targets(mesh, item, candidate, py, pz, bit, count, x, memory.seen);
@@ -180,7 +180,7 @@ DEVICE bool test_candidates(const ShortTests &args, const CellItem &item, const 
                 for (unsigned place = until - amount; targets != 0; place++) {
                     const int i = __ffs(targets) - 1;
                     targets &= targets - 1;
-                    const float px = lattice_coordinate(mesh.origin.x, mesh.step, item.cell.x + x + i);
+                    const float px = lattice_coordinate(mesh.anchor.x, mesh.step, item.cell.x + x + i);
                     memory.targets[place] = Target{px, py, pz, __uint_as_float(owner << 16 | (bit + i))};
                 }
             }

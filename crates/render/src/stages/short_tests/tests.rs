@@ -6,24 +6,25 @@ use lightmesh_testkit::soup;
 
 use crate::accel::Hit;
 use crate::backend::{Backend, Cpu};
+use crate::data::cells::CellGroups;
+use crate::data::masks::Masks;
+use crate::data::rays::RayList;
+use crate::data::wave::Wave;
 use crate::job::{Job, Sampling};
 use crate::light_mesh::{Lattice, LightMesh, Template, point_of};
+use crate::observer::Unobserved;
 use crate::prepared::PreparedScene;
 use crate::settings::{Acceleration, ShortTests};
-use crate::stages::primary_rays::RayList;
-use crate::stages::short_tests::Masks;
 use crate::view::View;
-use crate::{Unobserved, settings::Settings};
 
 const ACCELERATIONS: [Acceleration; 3] = [Acceleration::Bvh, Acceleration::Grid(None), Acceleration::BruteForce];
 
 fn job() -> Job<'static> {
-    let settings = Settings::default();
-    Job::new(&Unobserved, Sampling { samples: settings.samples(), seed: 0, spread: false })
+    Job::new(&Unobserved, Sampling { samples: 4, seed: 0, spread: false })
 }
 
 fn mesh(scene: &PreparedScene, step: f32, radius: f32) -> LightMesh {
-    let lattice = Lattice::around(&scene.bounds, step, radius).unwrap();
+    let lattice = Lattice::around(scene, step, radius).unwrap();
     let template = Template::new(radius).unwrap();
     LightMesh { lattice, template, radius: radius * step, weight: lightmesh_scene::Weight::Smooth }
 }
@@ -37,8 +38,17 @@ fn look(scene: &PreparedScene, pixels: u32) -> (RayList, Vec<Hit>) {
     (rays, hits)
 }
 
-fn masks(scene: &PreparedScene, seen: &(RayList, Vec<Hit>), mesh: &LightMesh, short_tests: ShortTests) -> Masks {
-    Cpu.short_tests(&job().with_short_tests(short_tests), scene, &seen.0, &seen.1, mesh).unwrap()
+fn masks(
+    scene: &PreparedScene,
+    (rays, hits): &(RayList, Vec<Hit>),
+    mesh: &LightMesh,
+    short_tests: ShortTests,
+) -> (CellGroups, Masks) {
+    let job = job().with_short_tests(short_tests);
+    let wave = Wave { job: &job, scene, rays, hits };
+    let cells = Cpu.cells(&wave, mesh).unwrap();
+    let masks = Cpu.short_tests(&wave, &cells, mesh).unwrap();
+    (cells, masks)
 }
 
 /// The masks of every accelerator and every way of testing are those of the first accelerator's plain tests.
@@ -48,15 +58,15 @@ fn assert_all_alike(scene: &Scene, accelerations: &[Acceleration], pixels: u32, 
     let seen = look(&prepared[0], pixels);
     for &(step, radius) in cases {
         let mesh = mesh(&prepared[0], step, radius);
-        let oracle = masks(&prepared[0], &seen, &mesh, ShortTests::Plain);
+        let (cells, oracle) = masks(&prepared[0], &seen, &mesh, ShortTests::Plain);
         assert!(oracle.bits.iter().any(|&word| word != 0));
         for scene in &prepared {
             for kind in [ShortTests::Cells, ShortTests::Plain] {
-                let found = masks(scene, &seen, &mesh, kind);
-                let (accelerator, name) = (scene.accelerator.name(), &scene.scene.name);
+                let (found_cells, found) = masks(scene, &seen, &mesh, kind);
+                let (accelerator, name) = (scene.geometry.accelerator.name(), &scene.scene.name);
                 let differing: u32 = found.bits.iter().zip(&oracle.bits).map(|(a, b)| (a ^ b).count_ones()).sum();
                 assert_eq!(differing, 0, "bits of {name}, {accelerator}, {kind:?}, h = {step}, R = {radius}");
-                assert_eq!(found.groups.members(), oracle.groups.members());
+                assert_eq!(found_cells.members(), cells.members());
             }
         }
     }
@@ -89,7 +99,7 @@ fn cells_and_plain_tests_agree_far_from_the_origin() {
     // No frame of its own brings this scene home: it is moved after the frame was chosen.
     let mut scene = soup(9, 150);
     let offset = Vec3::new(700.0, -300.0, 500.0);
-    scene.mesh.positions.iter_mut().for_each(|position| *position += offset);
+    scene.geometry_mut().mesh.positions.iter_mut().for_each(|position| *position += offset);
     scene.cameras[0].position += offset;
     assert_all_alike(&scene, &ACCELERATIONS, 40, &[(0.2, 2.1), (0.6, 3.1)]);
 }
@@ -104,7 +114,7 @@ enum Verdict {
 
 /// Direct evaluation of formula (2) in double precision, without template, cells or accelerator.
 struct Direct<'a> {
-    scene: &'a PreparedScene<'a>,
+    scene: &'a PreparedScene,
     mesh: &'a LightMesh,
     /// How near a border rounding may decide, scene units: far above that of `f32`, far below a step.
     border: f64,
@@ -120,13 +130,13 @@ impl Direct<'_> {
     }
 
     fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        self.scene.triangles[triangle].corners().map(|corner| corner.as_dvec3())
+        self.scene.geometry.triangles[triangle].corners().map(|corner| corner.as_dvec3())
     }
 
     /// Whether lattice point `index` belongs to D(P, r).
     fn uses(&self, position: DVec3, normal: DVec3, index: IVec3) -> Verdict {
         let lattice = &self.mesh.lattice;
-        let target = lattice.origin.as_dvec3() + f64::from(lattice.step) * index.as_dvec3();
+        let target = lattice.anchor.as_dvec3() + f64::from(lattice.step) * index.as_dvec3();
         let height = normal.dot(target - position);
         let inside = f64::from(self.mesh.radius) - target.distance(position);
         let least = f64::from(self.mesh.least_height());
@@ -135,7 +145,7 @@ impl Direct<'_> {
         }
         let mut verdict =
             if inside < self.border || height < least + self.border { Verdict::Border } else { Verdict::Yes };
-        for triangle in 0..self.scene.triangles.len() {
+        for triangle in 0..self.scene.geometry.triangles.len() {
             match self.blocks(self.corners(triangle), position, normal, target) {
                 Verdict::Yes => return Verdict::No,
                 Verdict::Border => verdict = Verdict::Border,
@@ -177,19 +187,19 @@ fn assert_direct(scene: &Scene, pixels: u32, step: f32, radius: f32, at_border: 
     let prepared = PreparedScene::new(scene, &Acceleration::Bvh, &Unobserved).unwrap();
     let seen = look(&prepared, pixels);
     let mesh = mesh(&prepared, step, radius);
-    let masks = masks(&prepared, &seen, &mesh, ShortTests::Cells);
+    let (cells, masks) = masks(&prepared, &seen, &mesh, ShortTests::Cells);
     let direct = Direct { scene: &prepared, mesh: &mesh, border: 2.5e-4 * f64::from(step) };
     let (mut members, mut undecided) = (0, 0);
-    for group in 0..masks.groups.len() {
-        let cell = point_of(masks.groups.cell(group));
-        for slot in masks.groups.slots(group) {
+    for group in 0..cells.len() {
+        let cell = point_of(cells.cell(group));
+        for slot in cells.slots(group) {
             let used: std::collections::HashSet<IVec3> = (mesh.template.offsets().iter().enumerate())
                 .filter(|(bit, _)| masks.mask(slot)[bit / 32] >> (bit % 32) & 1 != 0)
                 .map(|(_, &offset)| cell + offset)
                 .collect();
-            let ray = masks.groups.members()[slot] as usize;
+            let ray = cells.members()[slot] as usize;
             let (position, normal) = direct.surface(&seen.0.rays[ray], &seen.1[ray]);
-            let near = (position - mesh.lattice.origin.as_dvec3()) / f64::from(step);
+            let near = (position - mesh.lattice.anchor.as_dvec3()) / f64::from(step);
             let reach = radius.ceil() as i32 + 1;
             let middle = near.round().as_ivec3();
             let mut found = 0;
@@ -203,7 +213,7 @@ fn assert_direct(scene: &Scene, pixels: u32, step: f32, radius: f32, at_border: 
                     Verdict::Border => undecided += 1,
                 }
             }
-            assert_eq!(found, used.len(), "every used point lies near its object point");
+            assert_eq!(found, used.len(), "every used point lies near its surface point");
             members += found;
         }
     }

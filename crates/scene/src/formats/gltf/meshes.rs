@@ -15,7 +15,7 @@ use super::{
     left_out::LeftOut,
     materials::{Chosen, Materials},
 };
-use crate::{LoadError, MeshPart, builder::Room, draft::Draft};
+use crate::{LoadError, MeshPart, draft::Draft, mesh_part::Room};
 
 /// How a primitive's vertices make triangles, by its number in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

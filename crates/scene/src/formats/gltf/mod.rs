@@ -55,7 +55,7 @@ use self::{
     views::Views,
 };
 use crate::{
-    LightMeshDefaults, LoadError, Weight,
+    LightMeshDefaults, LoadError,
     draft::{Draft, Placement},
     open::read_bytes,
     usable::is_place,
@@ -140,7 +140,7 @@ fn read_scene_extras(path: &Path, document: &Document, draft: &mut Draft) -> Res
     draft.background = own.background.map(Vec3::from);
     let weight = match own.weight.as_deref() {
         None => None,
-        Some(name) => Some(Weight::from_name(name).ok_or_else(|| damaged(format!("has the unknown weight `{name}`")))?),
+        Some(name) => Some(name.parse().map_err(|_| damaged(format!("has the unknown weight `{name}`")))?),
     };
     draft.light_mesh = LightMeshDefaults { step: own.step, radius: own.radius, weight };
     Ok(())

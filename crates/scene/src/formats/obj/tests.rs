@@ -24,17 +24,17 @@ fn open(obj: &str) -> Scene {
 fn absolute_and_relative_indices_mean_the_same() {
     let absolute = open(&format!("{TETRAHEDRON}f 1 2 3\nf 2 3 4\n"));
     let relative = open(&format!("{TETRAHEDRON}f -4 -3 -2\nf 2 -2 -1\n"));
-    assert_eq!(absolute.mesh.triangles.len(), 2);
-    assert_eq!(absolute.mesh.corners(1), [Vec3::X, Vec3::Y, Vec3::Z]);
-    assert_eq!([0, 1].map(|i| absolute.mesh.corners(i)), [0, 1].map(|i| relative.mesh.corners(i)));
+    assert_eq!(absolute.geometry.mesh.triangles.len(), 2);
+    assert_eq!(absolute.geometry.mesh.corners(1), [Vec3::X, Vec3::Y, Vec3::Z]);
+    assert_eq!([0, 1].map(|i| absolute.geometry.mesh.corners(i)), [0, 1].map(|i| relative.geometry.mesh.corners(i)));
 }
 
 #[test]
 fn polygons_are_cut_into_fans() {
     let scene = open("v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5\nf 1 2 3 4\n");
-    assert_eq!(scene.mesh.triangles.len(), 3 + 2);
+    assert_eq!(scene.geometry.mesh.triangles.len(), 3 + 2);
     let area = |i: usize| {
-        let [a, b, c] = scene.mesh.corners(i);
+        let [a, b, c] = scene.geometry.mesh.corners(i);
         0.5 * (b - a).cross(c - a).z
     };
     assert!((0..3).map(area).sum::<f32>() == 2.5);
@@ -43,7 +43,7 @@ fn polygons_are_cut_into_fans() {
 #[test]
 fn one_place_with_two_normals_is_two_vertices() {
     let faces = "vn 0 0 2\nvn 1 0 0\nf 1//1 2//1 3//1\nf 2//2 3//2 4//2\n";
-    let mesh = open(&format!("{TETRAHEDRON}{faces}")).mesh;
+    let mesh = open(&format!("{TETRAHEDRON}{faces}")).geometry.mesh.clone();
     assert_eq!(mesh.positions.len(), 6);
     assert!(mesh.triangles[0].iter().all(|&vertex| mesh.normals[vertex as usize] == Vec3::Z));
     assert!(mesh.triangles[1].iter().all(|&vertex| mesh.normals[vertex as usize] == Vec3::X));
@@ -52,7 +52,7 @@ fn one_place_with_two_normals_is_two_vertices() {
 #[test]
 fn faces_with_and_without_normals_may_follow_each_other() {
     let faces = "vn 0 0 1\nvt 0.5 0.25\nf 1 2 3\nf 1/1/1 2/1/1 3/1/1\nf 2 3 4\nf 1//1 2//1 4//1\nf 1/1/1 2//1 3//1\n";
-    let mesh = open(&format!("{TETRAHEDRON}{faces}")).mesh;
+    let mesh = open(&format!("{TETRAHEDRON}{faces}")).geometry.mesh.clone();
     let normals = |i: usize| mesh.triangles[i].map(|vertex| mesh.normals[vertex as usize]);
     let uvs = |i: usize| mesh.triangles[i].map(|vertex| mesh.uvs[vertex as usize].to_array());
     let (flat, smooth) = ([Vec3::ZERO; 3], [Vec3::Z; 3]);
@@ -63,7 +63,7 @@ fn faces_with_and_without_normals_may_follow_each_other() {
 #[test]
 fn digits_far_from_the_origin_are_kept() {
     let scene = open("v 1000000.125 0 0\nv 1000001.125 0 0\nv 1000000.125 1.0000001 0\nf 1 2 3\n");
-    let [a, b, c] = scene.mesh.corners(0);
+    let [a, b, c] = scene.geometry.mesh.corners(0);
     assert_eq!(b - a, Vec3::X);
     assert!(((c - a).y - 1.000_000_1).abs() < 1e-7);
     assert_eq!(scene.to_world(a).x, 1_000_000.125);
@@ -76,8 +76,8 @@ fn materials_have_their_coefficients() {
     let obj =
         format!("mtllib a b.mtl\n{TETRAHEDRON}usemtl plain\nf 1 2 3\nusemtl shiny\nf 2 3 4\nusemtl gone\nf 1 2 4\n");
     let scene = try_open(&obj, mtl).unwrap();
-    assert_eq!(scene.mesh.materials, [1, 0, 2]);
-    let [shiny, plain, gone] = &scene.materials[..] else { panic!("{:?}", scene.materials) };
+    assert_eq!(scene.geometry.mesh.materials, [1, 0, 2]);
+    let [shiny, plain, gone] = &scene.geometry.materials[..] else { panic!("{:?}", scene.geometry.materials) };
     assert_eq!((shiny.ka, shiny.kd), (Vec3::splat(20.0), Vec3::splat(0.5)));
     assert_eq!((shiny.ks, shiny.shininess), (Vec3::new(0.1, 0.2, 0.3), 96.0));
     assert_eq!(shiny.emission, Vec3::new(1.0, 2.0, 3.0));
@@ -90,8 +90,8 @@ fn materials_have_their_coefficients() {
 fn odd_but_lawful_lines_are_read() {
     let obj = "\u{feff}# caf\u{e9}\r\nv 0 0 0 1\r\nv 1 0 0 0.5 0.5 0.5\r\nv\t0 1 0\r\nvt 0.5\ng a b\nl 1 2\np 1\nf 1/1 \\\n2/1 3/1\n";
     let scene = open(obj);
-    assert_eq!(scene.mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
-    assert_eq!(scene.mesh.uvs[0].to_array(), [0.5, 1.0]);
+    assert_eq!(scene.geometry.mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(scene.geometry.mesh.uvs[0].to_array(), [0.5, 1.0]);
     assert!(scene.warnings[0].contains("2 points and lines"), "{:?}", scene.warnings);
 }
 
@@ -124,7 +124,7 @@ fn damage_is_named_with_its_line() {
 fn a_concave_polygon_keeps_its_notch() {
     let arrow = "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\n";
     for face in ["f 1 2 3 4", "f 4 1 2 3", "f -3 -2 -1 -4", "f 4 3 2 1"] {
-        let mesh = open(&format!("{arrow}{face}\n")).mesh;
+        let mesh = open(&format!("{arrow}{face}\n")).geometry.mesh.clone();
         let areas: f32 = (0..2).map(|i| mesh.corners(i)).map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum();
         assert_eq!((mesh.triangles.len(), areas), (2, 4.0), "{face}");
     }
@@ -134,7 +134,7 @@ fn a_concave_polygon_keeps_its_notch() {
 fn vertex_colours_are_srgb() {
     let scene = open("v 0 0 0 1 0 0.735\nv 1 0 0\nv 0 1 0 2 0.5 0.5 # w\nv 0 0 1 0 0 0 1\nf 1 2 3\nf 1 2 4\n");
     let colors = |scene: &Scene, triangle: usize| {
-        scene.mesh.triangles[triangle].map(|vertex| scene.mesh.colors[vertex as usize])
+        scene.geometry.mesh.triangles[triangle].map(|vertex| scene.geometry.mesh.colors[vertex as usize])
     };
     // One colour above 1: all count to 255.
     let [_, white, dark] = colors(&scene, 0);
@@ -144,7 +144,7 @@ fn vertex_colours_are_srgb() {
     let [violet, white, black] = colors(&scene, 0);
     assert!((violet - Vec3::new(1.0, 0.0, 0.5)).abs().max_element() < 0.002, "{violet}");
     assert_eq!((white, black), (Vec3::ONE, Vec3::ZERO));
-    assert!(open("v 0 0 0 1\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").mesh.colors.is_empty());
+    assert!(open("v 0 0 0 1\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").geometry.mesh.colors.is_empty());
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn names_keep_blanks_and_hashes_and_need_not_be_utf_8() {
     {
         write(mtllib);
         let scene = Scene::open(&path).unwrap();
-        let kd = |triangle: usize| scene.materials[scene.mesh.materials[triangle] as usize].kd;
+        let kd = |triangle: usize| scene.geometry.materials[scene.geometry.mesh.materials[triangle] as usize].kd;
         assert_eq!([0, 1, 2].map(kd), [Vec3::X, Vec3::Y, Vec3::Z], "{mtllib}: {:?}", scene.warnings);
         let missing = scene.warnings.iter().any(|warning| warning.contains("gone.mtl"));
         assert_eq!((missing, scene.warnings.len()), (mtllib.contains("gone"), usize::from(missing)));
@@ -189,12 +189,12 @@ fn textures_come_from_map_kd_with_its_options() {
     let path = folder.path().join("shape.obj");
     fs::write(&path, format!("mtllib a.mtl\n{TETRAHEDRON}{faces}")).unwrap();
     let scene = Scene::open(&path).unwrap();
-    let texture = scene.materials[0].texture.expect("the picture is there");
-    assert_eq!((scene.materials[0].kd, texture.wrap), (Vec3::ONE, [crate::Wrap::Clamp; 2]));
+    let texture = scene.geometry.materials[0].texture.expect("the picture is there");
+    assert_eq!((scene.geometry.materials[0].kd, texture.wrap), (Vec3::ONE, [crate::Wrap::Clamp; 2]));
     // (2 · 0.5 + 0.25, 4 · 0.25 + 0.5) upwards is (1.25, −0.5) downwards.
-    let uv = scene.mesh.uvs[scene.mesh.triangles[0][0] as usize];
+    let uv = scene.geometry.mesh.uvs[scene.geometry.mesh.triangles[0][0] as usize];
     assert_eq!(texture.transform.transform_point2(uv).to_array(), [1.25, -0.5]);
-    assert_eq!((scene.materials[1].kd, scene.materials[1].texture), (Vec3::splat(0.5), None));
+    assert_eq!((scene.geometry.materials[1].kd, scene.geometry.materials[1].texture), (Vec3::splat(0.5), None));
     let warned = |part: &str| scene.warnings.iter().filter(|warning| warning.contains(part)).count();
     assert_eq!(
         ["gone.png", "other.png", "1 textures other than map_Kd", "2 materials are transparent"].map(warned),
@@ -207,15 +207,15 @@ fn thousands_of_texture_coordinates_at_one_place_are_read_quickly() {
     let count = 50_000;
     let uvs: String = (0..count).map(|i| format!("vt {i} 0\n")).collect();
     let faces: String = (1..=count).map(|i| format!("f 1/{i} 2/{i} 3/{i}\n")).collect();
-    let mesh = open(&(TETRAHEDRON.to_owned() + &uvs + &faces)).mesh;
+    let mesh = open(&(TETRAHEDRON.to_owned() + &uvs + &faces)).geometry.mesh.clone();
     assert_eq!((mesh.triangles.len(), mesh.positions.len()), (count, 3 * count));
 }
 
 #[test]
 fn unused_vertices_and_undefined_numbers_do_no_harm() {
     let scene = open(&format!("{TETRAHEDRON}v 1e17 0 0\nv nan 0 inf\nf 1 2 3\nf 1 2 6\n"));
-    assert_eq!(scene.mesh.triangles.len(), 1);
-    assert_eq!(scene.mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(scene.geometry.mesh.triangles.len(), 1);
+    assert_eq!(scene.geometry.mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
     assert!(scene.warnings[0].starts_with("1 triangles"), "{:?}", scene.warnings);
 }
 

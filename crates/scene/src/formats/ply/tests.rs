@@ -22,7 +22,7 @@ fn ascii(header: &str, body: &str) -> String {
 }
 
 fn corners(scene: &Scene) -> Vec<[Vec3; 3]> {
-    (0..scene.mesh.triangles.len()).map(|index| scene.mesh.corners(index)).collect()
+    (0..scene.geometry.mesh.triangles.len()).map(|index| scene.geometry.mesh.corners(index)).collect()
 }
 
 const XYZ: &str = "property float x\nproperty float y\nproperty float z\n";
@@ -107,7 +107,7 @@ fn strips_turn_every_other_triangle_and_begin_anew() {
     let scene = open(ascii(&header, body));
     let normals: Vec<f32> = corners(&scene).iter().map(|[a, b, c]| (b - a).cross(c - a).z).collect();
     // 2 3 3 and 3 3 4 have no area; 3 4 5 is third, as 2 3 4 would be first.
-    assert_eq!((scene.mesh.triangles.len(), normals), (3, vec![1.0, 1.0, -1.0]));
+    assert_eq!((scene.geometry.mesh.triangles.len(), normals), (3, vec![1.0, 1.0, -1.0]));
 }
 
 #[test]
@@ -118,15 +118,19 @@ fn vertices_have_normals_texture_coordinates_and_colours() {
     );
     let body = "0 0 0 0 0 2 0.25 0.25 255 0 188\n1 0 0 0 0 2 0 0 255 0 188\n0 1 0 0 0 2 0 1 255 0 188\n3 0 1 2\n";
     let scene = open(ascii(&header, body));
-    assert_eq!(scene.mesh.normals, [Vec3::Z; 3]);
-    assert_eq!(scene.mesh.uvs[0].to_array(), [0.25, 0.75]);
-    let [r, g, b] = scene.mesh.colors[2].to_array();
+    assert_eq!(scene.geometry.mesh.normals, [Vec3::Z; 3]);
+    assert_eq!(scene.geometry.mesh.uvs[0].to_array(), [0.25, 0.75]);
+    let [r, g, b] = scene.geometry.mesh.colors[2].to_array();
     assert!(r == 1.0 && g == 0.0 && (b - 0.5).abs() < 0.005, "{r} {g} {b}");
     let float = ascii(&header.replace("uchar red", "float red"), body)
         .replace("uchar", "double")
         .replace("list double", "list uchar");
     let scene = open(float.replace("255 0 188", "1 0 0.737"));
-    assert!((scene.mesh.colors[2] - Vec3::new(1.0, 0.0, 0.5)).abs().max_element() < 0.005, "{:?}", scene.mesh.colors);
+    assert!(
+        (scene.geometry.mesh.colors[2] - Vec3::new(1.0, 0.0, 0.5)).abs().max_element() < 0.005,
+        "{:?}",
+        scene.geometry.mesh.colors
+    );
 }
 
 #[test]
@@ -134,7 +138,7 @@ fn coloured_faces_split_their_vertices() {
     let colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
     let header = format!("element vertex 4\n{XYZ}element face 3\n{LIST}{colors}");
     let body = SQUARE.to_owned() + "3 0 1 2 255 0 0\n3 0 2 3 0 255 0\n3 0 1 3 255 0 0\n";
-    let mesh = open(ascii(&header, &body)).mesh;
+    let mesh = open(ascii(&header, &body)).geometry.mesh.clone();
     assert_eq!(mesh.positions.len(), 4 + 3);
     let color = |triangle: usize| mesh.triangles[triangle].map(|vertex| mesh.colors[vertex as usize]);
     assert_eq!([0, 1, 2].map(color), [[Vec3::X; 3], [Vec3::Y; 3], [Vec3::X; 3]]);
@@ -157,7 +161,7 @@ fn vertices_that_no_face_uses_do_not_matter() {
     let header = format!("element vertex 4\n{XYZ}element face 1\n{LIST}");
     let scene = open(ascii(&header, "1e17 0 0\n0 0 0\n1 0 0\n0 1 0\n3 1 2 3\n"));
     assert_eq!(corners(&scene), [[Vec3::ZERO, Vec3::X, Vec3::Y]]);
-    assert_eq!(scene.mesh.positions.len(), 3);
+    assert_eq!(scene.geometry.mesh.positions.len(), 3);
 }
 
 #[test]
@@ -203,7 +207,7 @@ fn damage_is_named_with_its_line() {
         ),
     ];
     for (text, expected) in cases {
-        let message = try_open(text.as_bytes()).map(|scene| scene.mesh).unwrap_err();
+        let message = try_open(text.as_bytes()).map(|scene| scene.geometry.mesh.clone()).unwrap_err();
         assert!(message.contains(expected), "{message}");
     }
 }
@@ -213,7 +217,7 @@ fn a_file_cut_short_anywhere_is_an_error() {
     for whole in [square("4 0 1 2 3\n").into_bytes(), binary(false), binary(true)] {
         // The last line feed of a text may be missing.
         for length in 0..whole.len() - 1 {
-            let message = try_open(&whole[..length]).map(|scene| scene.mesh).unwrap_err();
+            let message = try_open(&whole[..length]).map(|scene| scene.geometry.mesh.clone()).unwrap_err();
             assert!(message.contains(", part.ply"), "{message}");
         }
     }

@@ -19,8 +19,9 @@ fn open(bytes: &[u8]) -> Scene {
 }
 
 fn is_right(scene: &Scene) -> bool {
-    let corners: Vec<[f32; 3]> = (0..2).flat_map(|i| scene.mesh.corners(i)).map(|corner| corner.to_array()).collect();
-    scene.mesh.triangles.len() == 2 && corners == CORNERS && scene.mesh.normals.is_empty()
+    let corners: Vec<[f32; 3]> =
+        (0..2).flat_map(|i| scene.geometry.mesh.corners(i)).map(|corner| corner.to_array()).collect();
+    scene.geometry.mesh.triangles.len() == 2 && corners == CORNERS && scene.geometry.mesh.normals.is_empty()
 }
 
 fn facet(corners: &[[f32; 3]]) -> String {
@@ -58,7 +59,7 @@ fn text_is_read_however_it_is_laid_out() {
     ] {
         // One word a line gives a name on a line of its own, which is no facet.
         let scene = try_open(text.replace("solid   \npart", "solid").as_bytes());
-        assert!(scene.as_ref().is_ok_and(is_right), "{text}: {:?}", scene.map(|scene| scene.mesh));
+        assert!(scene.as_ref().is_ok_and(is_right), "{text}: {:?}", scene.map(|scene| scene.geometry.mesh.clone()));
     }
 }
 
@@ -68,7 +69,7 @@ fn the_length_tells_binary_from_text() {
         assert!(is_right(&open(&binary(header, 2))), "{header:?}");
     }
     let empty = open(&binary(b"solid", 2)[..80].iter().copied().chain([0; 4]).collect::<Vec<_>>());
-    assert_eq!(empty.mesh.triangles.len(), 0);
+    assert_eq!(empty.geometry.mesh.triangles.len(), 0);
     let mut longer = binary(b"solid", 2);
     longer.extend([7; 60]);
     let scene = open(&longer);
@@ -80,7 +81,7 @@ fn facets_of_other_numbers_of_corners_are_cut_or_left_out() {
     let [a, b, c, ..] = CORNERS;
     let text = facet(&[a, b, [1.0, 1.0, 0.0], c]) + &facet(&[a, b]);
     let scene = open(format!("solid\n{text}endsolid").as_bytes());
-    assert_eq!(scene.mesh.triangles.len(), 2);
+    assert_eq!(scene.geometry.mesh.triangles.len(), 2);
     assert!(scene.warnings[0].contains("1 facets with fewer than three corners"), "{:?}", scene.warnings);
 }
 
@@ -104,7 +105,7 @@ fn damage_is_named() {
         (&binary(b"", 2)[..180], "the header promises 2 facets, the rest of the file has room for 1, part.STL; "),
     ];
     for (bytes, expected) in cases {
-        let message = try_open(bytes).map(|scene| scene.mesh).unwrap_err();
+        let message = try_open(bytes).map(|scene| scene.geometry.mesh.clone()).unwrap_err();
         assert!(message.contains(expected), "{message}");
     }
     for length in 0..text.len() {

@@ -61,15 +61,18 @@ fn a_whole_file_is_read() {
     let camera = &scene.cameras[0];
     assert_eq!((camera.position, camera.direction), (Vec3::new(13.0, 6.0, 14.0), Vec3::NEG_Z));
     assert_eq!((camera.up, camera.projection), (Vec3::Y, Projection::Perspective(Fov::Vertical(40.0))));
-    assert_eq!(scene.ambient, Some(Vec3::splat(0.1)));
-    assert_eq!(scene.background, Some(Vec3::new(0.6, 0.75, 0.9)));
+    assert_eq!(scene.lights.ambient, Some(Vec3::splat(0.1)));
+    assert_eq!(scene.lights.background, Some(Vec3::new(0.6, 0.75, 0.9)));
     let light = &scene.lights[0];
     assert_eq!(light.kind, LightKind::Point { position: Vec3::new(8.0, 14.0, 4.0), spread: 0.5 });
     assert_eq!((light.intensity, light.falloff), (Vec3::ONE, Falloff::None));
-    let stone = &scene.materials[0];
+    let stone = &scene.geometry.materials[0];
     assert_eq!((stone.ka, stone.kd), (Vec3::new(0.7, 0.7, 0.65), Vec3::new(0.7, 0.7, 0.65)));
     assert_eq!((stone.ks, stone.shininess, stone.emission), (Vec3::splat(0.25), 30.0, Vec3::ZERO));
-    assert_eq!((scene.mesh.triangles.len(), scene.mesh.materials[0], scene.materials.len()), (1, 0, 1));
+    assert_eq!(
+        (scene.geometry.mesh.triangles.len(), scene.geometry.mesh.materials[0], scene.geometry.materials.len()),
+        (1, 0, 1)
+    );
     let defaults = scene.light_mesh;
     assert_eq!((defaults.step, defaults.radius, defaults.weight), (Some(0.1), Some(3.1), Some(Weight::Quadratic)));
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
@@ -180,11 +183,11 @@ fn solids_have_their_triangles_and_boxes() {
     ];
     for (text, triangles, min, max) in CASES {
         let scene = open(text);
-        let bounds = scene.mesh.bounds();
-        assert_eq!(scene.mesh.triangles.len(), triangles, "{text}");
+        let bounds = scene.geometry.mesh.bounds();
+        assert_eq!(scene.geometry.mesh.triangles.len(), triangles, "{text}");
         assert!((bounds.min - Vec3::from(min)).length() < 1e-6, "{text}: {bounds:?}");
         assert!((bounds.max - Vec3::from(max)).length() < 1e-6, "{text}: {bounds:?}");
-        assert_eq!(scene.materials.len(), 1, "{text}");
+        assert_eq!(scene.geometry.materials.len(), 1, "{text}");
     }
 }
 
@@ -193,7 +196,7 @@ fn a_sphere_far_away_keeps_its_shape() {
     for offset in [0.0, 1e5, 1e6] {
         let scene = open(&format!("[[sphere]]\ncenter = [{offset:?}, {:?}, 0.25]\nradius = 2", -offset));
         let center = scene.to_local(DVec3::new(offset, -offset, 0.25));
-        for (position, normal) in scene.mesh.positions.iter().zip(&scene.mesh.normals) {
+        for (position, normal) in scene.geometry.mesh.positions.iter().zip(&scene.geometry.mesh.normals) {
             assert!((position.distance(center) - 2.0).abs() < 2e-6, "{offset}");
             assert!(((*position - center) / 2.0).distance(*normal) < 2e-6, "{offset}");
         }
@@ -203,7 +206,7 @@ fn a_sphere_far_away_keeps_its_shape() {
 #[test]
 fn a_plane_without_size_reaches_far_around_the_rest() {
     let scene = open("[[plane]]\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\n[[box]]\nmin = [9, 1, 9]\nmax = [10, 2, 10]");
-    let bounds = scene.mesh.bounds();
+    let bounds = scene.geometry.mesh.bounds();
     let (world_min, world_max) = (scene.to_world(bounds.min), scene.to_world(bounds.max));
     let edge = 20.0 * 3f64.sqrt();
     assert!((world_max.x - world_min.x - edge).abs() < 1e-4 && world_min.y.abs() < 1e-6, "{bounds:?}");
@@ -215,7 +218,7 @@ fn a_mesh_is_scaled_then_turned_about_x_y_z_then_moved() {
     let mesh = "[[mesh]]\nfile = \"one.obj\"\nscale = 2\nrotate = [90, 90, 0]\ntranslate = [1e6, 0, 0]";
     let scene = open(mesh);
     // (1,0,0) → scaled (2,0,0) → about X same → about Y (0,0,-2); (0,1,0) → (0,2,0) → (0,0,2) → (2,0,0).
-    let corners = scene.mesh.corners(0).map(|corner| scene.to_world(corner) - DVec3::new(1e6, 0.0, 0.0));
+    let corners = scene.geometry.mesh.corners(0).map(|corner| scene.to_world(corner) - DVec3::new(1e6, 0.0, 0.0));
     let expected = [DVec3::ZERO, DVec3::new(0.0, 0.0, -2.0), DVec3::new(2.0, 0.0, 0.0)];
     for (corner, expected) in corners.iter().zip(expected) {
         assert!(corner.distance(expected) < 1e-6, "{corners:?}");
@@ -225,7 +228,7 @@ fn a_mesh_is_scaled_then_turned_about_x_y_z_then_moved() {
 #[test]
 fn a_mirrored_mesh_keeps_its_front() {
     let scene = open("[[mesh]]\nfile = \"one.obj\"\nscale = [1, 1, -1]");
-    let [a, b, c] = scene.mesh.corners(0);
+    let [a, b, c] = scene.geometry.mesh.corners(0);
     assert!((b - a).cross(c - a).z < 0.0);
 }
 
@@ -325,16 +328,18 @@ fn a_material_may_have_a_texture() {
         "#,
     );
     let scene = Scene::open(path).unwrap();
-    assert_eq!((scene.textures.len(), scene.textures[0].size), (1, [2, 1]));
-    let [oak, floor, plain] = [0, 1, 2].map(|index: usize| scene.materials[index].texture);
+    assert_eq!((scene.geometry.textures.len(), scene.geometry.textures[0].size), (1, [2, 1]));
+    let [oak, floor, plain] = [0, 1, 2].map(|index: usize| scene.geometry.materials[index].texture);
     let (oak, floor) = (oak.unwrap(), floor.unwrap());
     assert_eq!((oak.wrap, floor.wrap), ([Wrap::Clamp, Wrap::Mirror], [Wrap::Mirror; 2]));
     // Scaled to (4, 2), turned to (-2, 4), moved.
     assert!(oak.transform.transform_point2(Vec2::ONE).distance(Vec2::new(-1.5, 4.0)) < 1e-6);
     assert_eq!(floor.transform.transform_point2(Vec2::ONE), Vec2::splat(10.0));
     assert_eq!(plain, None);
-    let uv = |triangle: usize| scene.mesh.triangles[triangle].map(|vertex| scene.mesh.uvs[vertex as usize]);
-    let last = scene.mesh.triangles.len() - 1;
+    let uv = |triangle: usize| {
+        scene.geometry.mesh.triangles[triangle].map(|vertex| scene.geometry.mesh.uvs[vertex as usize])
+    };
+    let last = scene.geometry.mesh.triangles.len() - 1;
     assert_eq!(uv(last), [Vec2::ZERO, Vec2::new(2.0, 0.0), Vec2::new(0.0, -3.0)]);
     assert!((0..12).flat_map(uv).all(|uv| uv.cmpge(Vec2::ZERO).all() && uv.cmple(Vec2::ONE).all()));
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
@@ -343,7 +348,7 @@ fn a_material_may_have_a_texture() {
 #[test]
 fn scenes_without_textures_have_no_texture_coordinates() {
     let scene = open("[[sphere]]\ncenter = [0, 0, 0]\nradius = 1");
-    assert!(scene.mesh.uvs.is_empty() && scene.textures.is_empty());
+    assert!(scene.geometry.mesh.uvs.is_empty() && scene.geometry.textures.is_empty());
 }
 
 #[test]
@@ -351,7 +356,7 @@ fn a_texture_that_cannot_be_had_is_a_warning() {
     let shape = "[[plane]]\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nsize = [1, 1]\nmaterial = \"oak\"";
     for name in ["none.png", "../oak.png", "one.obj"] {
         let scene = open(&format!("[[material]]\nname = \"oak\"\ntexture = \"{name}\"\n{shape}"));
-        assert_eq!(scene.materials[0].texture, None);
+        assert_eq!(scene.geometry.materials[0].texture, None);
         assert!(scene.warnings[0].starts_with("1 texture cannot be used"), "{:?}", scene.warnings);
     }
 }
@@ -361,7 +366,7 @@ fn a_texture_on_a_mesh_without_texture_coordinates_is_a_warning() {
     let text = "[[material]]\nname = \"oak\"\ntexture = \"oak.png\"\n[[mesh]]\nfile = \"one.obj\"\nmaterial = \"oak\"";
     let (_folder, path) = textured_folder(text);
     let scene = Scene::open(path).unwrap();
-    assert_eq!(scene.materials[scene.mesh.materials[0] as usize].texture, None);
+    assert_eq!(scene.geometry.materials[scene.geometry.mesh.materials[0] as usize].texture, None);
     assert!(scene.warnings[0].starts_with("1 triangles have a texture but no"), "{:?}", scene.warnings);
 }
 
@@ -389,6 +394,6 @@ fn a_mesh_outside_of_the_folder_names_its_line() {
     let message = error("[[mesh]]\nfile = \"../one.obj\"");
     assert_eq!(
         message,
-        "`../one.obj` lies outside the scene's folder, room.toml:2; move it there, or allow it (--allow-outside)"
+        "`../one.obj` lies outside the scene's folder, room.toml:2; move it there, or allow references to lead outside"
     );
 }

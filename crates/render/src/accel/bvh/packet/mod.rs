@@ -1,4 +1,4 @@
-//! The walk of many coherent rays at once: one lane a ray, [`GROUPS`] vectors of lanes; nodes and triangles uniform.
+//! The walk of many coherent rays at once: one lane a ray, [`GROUPS`](size::GROUPS) vectors of lanes; nodes and triangles uniform.
 //!
 //! # Theory
 //!
@@ -21,6 +21,7 @@
 mod order;
 mod planes;
 mod rays;
+mod size;
 
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
@@ -33,15 +34,12 @@ use crate::accel::{Hit, Ray};
 use order::Order;
 use planes::{Planes, occupied};
 use rays::Packet;
+use size::{GROUPS, RAYS};
 
 /// Rays that are sorted together.
 const CHUNK: usize = 512;
 /// As few rays do better alone.
 pub(super) const FEW: usize = 3;
-/// Vectors of rays in a packet.
-const GROUPS: usize = 4;
-/// Rays in a packet.
-const RAYS: usize = GROUPS * LANES;
 
 /// A node to enter later: the rays that meet it, and a bound on where the first of them does.
 #[derive(Clone, Copy, Default)]

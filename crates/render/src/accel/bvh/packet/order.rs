@@ -1,6 +1,6 @@
 //! Which rays share a packet.
 
-use super::RAYS;
+use super::size::RAYS;
 use crate::accel::Ray;
 use crate::accel::approach::{Approach, NearRay};
 

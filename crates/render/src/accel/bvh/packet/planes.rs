@@ -4,8 +4,8 @@ use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use glam::Vec3A;
 
-use super::GROUPS;
 use super::rays::{Interval, Packet, PacketSlabs};
+use super::size::GROUPS;
 use crate::accel::bvh::Node;
 use crate::accel::packet::LANES;
 

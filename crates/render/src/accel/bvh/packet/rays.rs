@@ -3,11 +3,11 @@
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use glam::{BVec3A, Vec3A};
+use lightmesh_layout::constants::{BVH_MARGIN, LEAST_COMPONENT};
 
-use super::GROUPS;
 use super::order::Order;
+use super::size::GROUPS;
 use crate::accel::approach::NearRay;
-use crate::accel::bvh::walk::{LEAST_COMPONENT, MARGIN};
 use crate::accel::packet::{LANES, PacketShear};
 
 /// Rays of one kind.
@@ -110,7 +110,7 @@ impl<S: Simd> PacketSlabs<S> {
             one / z.abs().max(least).copysign(z),
         ];
         let [x, y, z] = inverse;
-        PacketSlabs { origin, inverse, margin: [x.abs() * MARGIN, y.abs() * MARGIN, z.abs() * MARGIN] }
+        PacketSlabs { origin, inverse, margin: [x.abs() * BVH_MARGIN, y.abs() * BVH_MARGIN, z.abs() * BVH_MARGIN] }
     }
 }
 
@@ -145,7 +145,7 @@ impl Interval {
             far_origin: Vec3A::select(negative, high, low),
             least,
             most,
-            margin: MARGIN * least.abs().max(most.abs()),
+            margin: BVH_MARGIN * least.abs().max(most.abs()),
         }
     }
 }

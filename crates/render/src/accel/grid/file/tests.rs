@@ -100,7 +100,7 @@ fn each_fault_has_its_name() {
     let error = Grid::load(&path, &moved).unwrap_err();
     assert!(matches!(error.fault, GridFault::OtherGeometry { found: 40, expected: 40 }));
     let message = error.to_string();
-    assert!(message.contains("scene.grid") && message.contains("lightmesh grid"), "{message}");
+    assert!(message.contains("scene.grid") && message.contains("build the grid again"), "{message}");
     assert!(matches!(Grid::load(&path, &moved[..9]).unwrap_err().fault, GridFault::OtherGeometry { .. }));
     assert!(matches!(Grid::load(path.with_extension("no"), &moved).unwrap_err().fault, GridFault::Read(_)));
     assert!(Grid::load(folder.path(), &moved).unwrap_err().to_string().contains("not a regular file"));

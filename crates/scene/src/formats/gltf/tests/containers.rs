@@ -3,7 +3,7 @@
 use super::*;
 
 fn triangles(bytes: &[u8]) -> usize {
-    try_open(bytes).unwrap().mesh.triangles.len()
+    try_open(bytes).unwrap().geometry.mesh.triangles.len()
 }
 
 fn refused(bytes: &[u8]) -> String {
@@ -21,7 +21,7 @@ fn a_json_file_may_be_called_glb() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("model.GLB");
     fs::write(&path, triangle().to_string()).unwrap();
-    assert_eq!(Scene::open(path).unwrap().mesh.triangles.len(), 1);
+    assert_eq!(Scene::open(path).unwrap().geometry.mesh.triangles.len(), 1);
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn other_versions_are_refused_by_their_number() {
     document["asset"] = json!({"version": "2.1", "minVersion": "2.1"});
     assert!(error(&document).contains("version `2.1`"));
     document["asset"] = json!({"version": "2.1", "minVersion": "2.0"});
-    assert_eq!(open(&document).mesh.triangles.len(), 1);
+    assert_eq!(open(&document).geometry.mesh.triangles.len(), 1);
 }
 
 #[test]
@@ -125,7 +125,7 @@ fn a_byte_order_mark_is_taken_off() {
 #[test]
 fn a_file_without_nodes_is_an_empty_scene() {
     let scene = try_open(br#"{"asset": {"version": "2.0"}}"#).unwrap();
-    assert!(scene.mesh.triangles.is_empty());
+    assert!(scene.geometry.mesh.triangles.is_empty());
     assert_eq!(scene.warnings, ["the scene has no triangles"]);
 }
 
@@ -138,7 +138,7 @@ fn buffers_beside_the_file_have_encoded_names() {
     fs::write(folder.path().join("parts/my büro.bin"), [&bin[..], b"more"].concat()).unwrap();
     let path = folder.path().join("model.gltf");
     fs::write(&path, json).unwrap();
-    assert_eq!(Scene::open(&path).unwrap().mesh.triangles.len(), 1);
+    assert_eq!(Scene::open(&path).unwrap().geometry.mesh.triangles.len(), 1);
     fs::write(folder.path().join("parts/my büro.bin"), &bin[..38]).unwrap();
     assert!(Scene::open(&path).unwrap_err().to_string().contains("buffer 0 holds 38 bytes of 39: it was cut off"));
 }
@@ -147,7 +147,7 @@ fn buffers_beside_the_file_have_encoded_names() {
 fn a_buffer_that_nothing_needs_may_be_missing() {
     let mut document = triangle();
     document["buffers"].as_array_mut().unwrap().push(json!({"byteLength": 9, "uri": "animation.bin"}));
-    assert_eq!(open(&document).mesh.triangles.len(), 1);
+    assert_eq!(open(&document).geometry.mesh.triangles.len(), 1);
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn a_buffer_may_lie_outside_where_that_is_allowed() {
     fs::write(&path, json.replace("\"byteLength\":39}", "\"byteLength\":39,\"uri\":\"../model.bin\"}")).unwrap();
     assert!(Scene::open(&path).unwrap_err().to_string().contains("`../model.bin` lies outside the scene's folder"));
     let options = LoadOptions { allow_outside: true, ..Default::default() };
-    assert_eq!(Scene::open_with(&path, &options).unwrap().mesh.triangles.len(), 1);
+    assert_eq!(Scene::open_with(&path, &options).unwrap().geometry.mesh.triangles.len(), 1);
 }
 
 #[test]

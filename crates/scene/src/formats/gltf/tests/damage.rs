@@ -135,7 +135,7 @@ fn places_too_far_to_compute_with_are_left_out() {
     for transform in [json!({"translation": [1e300, 0, 0]}), json!({"scale": [1e308, 1e308, 1e308]})] {
         let mut document = triangle();
         document["nodes"][0].as_object_mut().unwrap().extend(transform.as_object().unwrap().clone());
-        assert!(open(&document).mesh.triangles.is_empty());
+        assert!(open(&document).geometry.mesh.triangles.is_empty());
         assert!(warnings(&document).contains("1 triangles with infinite, undefined or far too large"));
     }
 }
@@ -148,7 +148,7 @@ fn vertices_that_are_no_numbers_are_left_out() {
         let positions = add_floats(&mut document, &numbers, "VEC3", 4);
         let indices = add_accessor(&mut document, &[0, 1, 2, 2, 1, 3], UNSIGNED_BYTE, "SCALAR", 6);
         document["meshes"][0]["primitives"][0] = json!({"attributes": {"POSITION": positions}, "indices": indices});
-        assert_eq!(open(&document).mesh.triangles, [[0, 1, 2]], "{bad}");
+        assert_eq!(open(&document).geometry.mesh.triangles, [[0, 1, 2]], "{bad}");
         assert!(warnings(&document).contains("1 triangles with infinite"), "{bad}");
     }
 }
@@ -157,14 +157,14 @@ fn vertices_that_are_no_numbers_are_left_out() {
 fn a_rotation_without_a_length_turns_nothing() {
     let mut document = triangle();
     document["nodes"][0]["rotation"] = json!([0, 0, 0, 0]);
-    assert_eq!(open(&document).mesh.corners(0)[1], glam::Vec3::X);
+    assert_eq!(open(&document).geometry.mesh.corners(0)[1], glam::Vec3::X);
 }
 
 #[test]
 fn a_node_of_no_size_is_a_point() {
     let mut document = triangle();
     document["nodes"][0]["scale"] = json!([0, 0, 0]);
-    assert_eq!(open(&document).mesh.corners(0), [glam::Vec3::ZERO; 3]);
+    assert_eq!(open(&document).geometry.mesh.corners(0), [glam::Vec3::ZERO; 3]);
 }
 
 #[test]
@@ -274,7 +274,7 @@ fn json_nested_without_end_is_refused() {
     let mut text = triangle().to_string();
     let deep = format!("{}{}", "[".repeat(200_000), "]".repeat(200_000));
     text = text.replacen('{', &format!("{{\"materials\":[{{\"extras\":{deep}}}],\"extras\":{deep},"), 1);
-    assert_eq!(try_open(text.as_bytes()).unwrap().mesh.triangles.len(), 1);
+    assert_eq!(try_open(text.as_bytes()).unwrap().geometry.mesh.triangles.len(), 1);
 }
 
 /// Cut off everywhere: an error that names the file, never a panic.
@@ -282,7 +282,7 @@ fn json_nested_without_end_is_refused() {
 fn files_cut_off_at_every_byte_are_refused() {
     let (json, bin) = separate();
     let whole = glb(&[(b"JSON", json.as_bytes()), (b"BIN\0", &bin)]);
-    assert_eq!(try_open(&whole).unwrap().mesh.triangles.len(), 1);
+    assert_eq!(try_open(&whole).unwrap().geometry.mesh.triangles.len(), 1);
     for length in 0..whole.len() {
         let message = try_open(&whole[..length]).expect_err("cut off");
         assert!(message.contains("model.gltf") && message.contains("; "), "{length}: {message}");

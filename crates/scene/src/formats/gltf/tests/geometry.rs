@@ -10,17 +10,17 @@ use super::*;
 #[test]
 fn a_data_uri_with_byte_indices_is_read() {
     let scene = open(&triangle());
-    assert_eq!(scene.mesh.triangles.len(), 1);
-    assert_eq!(scene.mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(scene.geometry.mesh.triangles.len(), 1);
+    assert_eq!(scene.geometry.mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
     // glTF's default material is a white rough metal.
-    assert_eq!((scene.materials.len(), scene.materials[0].kd), (1, Vec3::ONE));
+    assert_eq!((scene.geometry.materials.len(), scene.geometry.materials[0].kd), (1, Vec3::ONE));
 }
 
 #[test]
 fn a_mesh_without_indices_is_read() {
     let mut document = triangle();
     document["meshes"][0]["primitives"][0] = json!({"attributes": {"POSITION": 0}});
-    assert_eq!(open(&document).mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(open(&document).geometry.mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
 }
 
 #[test]
@@ -33,7 +33,8 @@ fn nested_nodes_keep_the_digits_of_the_file() {
         {"children": [0], "rotation": [0, 0, (FRAC_PI_2 / 2.0).sin(), (FRAC_PI_2 / 2.0).cos()]},
     ]);
     let scene = open(&document);
-    let corners = scene.mesh.corners(0).map(|c| scene.to_world(c) - DVec3::new(1_000_000.125, -300_000.062_5, 0.0));
+    let corners =
+        scene.geometry.mesh.corners(0).map(|c| scene.to_world(c) - DVec3::new(1_000_000.125, -300_000.062_5, 0.0));
     let expected = [DVec3::ZERO, DVec3::new(0.0, 2.0, 0.0), DVec3::new(-2.0, 0.0, 0.0)];
     for (corner, expected) in corners.iter().zip(expected) {
         assert!(corner.distance(expected) < 1e-6, "{corners:?}");
@@ -44,7 +45,7 @@ fn nested_nodes_keep_the_digits_of_the_file() {
 fn a_mirroring_node_keeps_the_front() {
     let mut document = triangle();
     document["nodes"][0]["scale"] = json!([1, 1, -1]);
-    let [a, b, c] = open(&document).mesh.corners(0);
+    let [a, b, c] = open(&document).geometry.mesh.corners(0);
     assert!((b - a).cross(c - a).z < 0.0);
 }
 
@@ -59,7 +60,7 @@ fn quantized_positions_are_read() {
     document["accessors"] = json!([{"bufferView": 0, "componentType": 5123, "normalized": true, "count": 3,
         "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]);
     document["meshes"][0]["primitives"][0] = json!({"attributes": {"POSITION": 0}});
-    assert_eq!(open(&document).mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(open(&document).geometry.mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
 }
 
 #[test]
@@ -72,7 +73,7 @@ fn indices_of_all_widths_are_read() {
         let mut document = triangle();
         let indices = add_accessor(&mut document, &bytes, component, "SCALAR", 3);
         document["meshes"][0]["primitives"][0]["indices"] = json!(indices);
-        assert_eq!(open(&document).mesh.corners(0), [Vec3::Y, Vec3::ZERO, Vec3::X], "{component}");
+        assert_eq!(open(&document).geometry.mesh.corners(0), [Vec3::Y, Vec3::ZERO, Vec3::X], "{component}");
     }
 }
 
@@ -82,7 +83,7 @@ fn indices_that_lie_askew_are_read() {
     let indices = add_accessor(&mut document, &[9, 2, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0], UNSIGNED_INT, "SCALAR", 3);
     document["accessors"][indices]["byteOffset"] = json!(1);
     document["meshes"][0]["primitives"][0]["indices"] = json!(indices);
-    assert_eq!(open(&document).mesh.triangles, [[2, 0, 1]]);
+    assert_eq!(open(&document).geometry.mesh.triangles, [[2, 0, 1]]);
 }
 
 #[test]
@@ -92,10 +93,10 @@ fn strips_and_fans_are_cut_with_and_without_indices() {
         let mut document = triangle();
         let positions = add_floats(&mut document, &corners, "VEC3", 4);
         document["meshes"][0]["primitives"][0] = json!({"attributes": {"POSITION": positions}, "mode": mode});
-        assert_eq!(open(&document).mesh.triangles, expected);
+        assert_eq!(open(&document).geometry.mesh.triangles, expected);
         let indices = add_accessor(&mut document, &[0, 1, 2, 3], UNSIGNED_BYTE, "SCALAR", 4);
         document["meshes"][0]["primitives"][0]["indices"] = json!(indices);
-        assert_eq!(open(&document).mesh.triangles, expected);
+        assert_eq!(open(&document).geometry.mesh.triangles, expected);
     }
 }
 
@@ -114,7 +115,7 @@ fn interleaved_attributes_are_read() {
     }
     document["meshes"][0]["primitives"][0]["attributes"] =
         json!({"POSITION": position, "NORMAL": position + 1, "TEXCOORD_0": position + 2});
-    let mesh = open(&document).mesh;
+    let mesh = open(&document).geometry.mesh.clone();
     assert_eq!(mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
     assert_eq!(mesh.normals, [Vec3::Z; 3]);
     assert_eq!(mesh.uvs, [Vec2::Y, Vec2::ONE, Vec2::ZERO]);
@@ -127,7 +128,7 @@ fn sparse_accessors_replace_elements() {
     let values = add_view(&mut document, &bytes_of(&[5.0, 6.0, 7.0]));
     document["accessors"][0]["sparse"] = json!({"count": 1, "values": {"bufferView": values},
         "indices": {"bufferView": indices, "componentType": UNSIGNED_BYTE}});
-    assert_eq!(open(&document).mesh.corners(0), [Vec3::ZERO, Vec3::new(5.0, 6.0, 7.0), Vec3::Y]);
+    assert_eq!(open(&document).geometry.mesh.corners(0), [Vec3::ZERO, Vec3::new(5.0, 6.0, 7.0), Vec3::Y]);
 }
 
 #[test]
@@ -137,7 +138,7 @@ fn sparse_indices_replace_indices() {
     let values = add_view(&mut document, &[2, 0]);
     document["accessors"][1]["sparse"] = json!({"count": 2, "values": {"bufferView": values},
         "indices": {"bufferView": at, "componentType": UNSIGNED_SHORT}});
-    assert_eq!(open(&document).mesh.triangles, [[2, 1, 0]]);
+    assert_eq!(open(&document).geometry.mesh.triangles, [[2, 1, 0]]);
 }
 
 #[test]
@@ -147,7 +148,7 @@ fn an_accessor_without_a_view_is_zeros_where_nothing_replaces_it() {
     let values = add_view(&mut document, &bytes_of(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0]));
     document["accessors"][0] = json!({"componentType": FLOAT, "count": 3, "type": "VEC3", "sparse": {"count": 2,
         "values": {"bufferView": values}, "indices": {"bufferView": indices, "componentType": UNSIGNED_BYTE}}});
-    assert_eq!(open(&document).mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(open(&document).geometry.mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
 }
 
 #[test]
@@ -161,7 +162,7 @@ fn normals_and_coordinates_may_be_quantized() {
     let uvs = add_accessor(&mut document, &shorts, SHORT, "VEC2", 3);
     document["accessors"][uvs]["normalized"] = json!(true);
     document["meshes"][0]["primitives"][0]["attributes"] = json!({"POSITION": 0, "NORMAL": normals, "TEXCOORD_0": uvs});
-    let mesh = open(&document).mesh;
+    let mesh = open(&document).geometry.mesh.clone();
     assert_eq!(mesh.normals, [Vec3::Z; 3]);
     assert_eq!(mesh.uvs[1..], [Vec2::X, Vec2::new(-1.0, 1.0 / 32767.0)]);
 }
@@ -172,7 +173,7 @@ fn quantized_positions_need_not_be_normalized() {
     let positions = add_accessor(&mut document, &[0, 0, 0, 200, 0, 0, 0, 100, 0], UNSIGNED_BYTE, "VEC3", 3);
     document["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(positions);
     document["nodes"][0]["scale"] = json!([0.01, 0.01, 0.01]);
-    let corners = open(&document).mesh.corners(0);
+    let corners = open(&document).geometry.mesh.corners(0);
     assert!(corners[1].distance(2.0 * Vec3::X) < 1e-6 && corners[2].distance(Vec3::Y) < 1e-6, "{corners:?}");
 }
 
@@ -181,7 +182,7 @@ fn one_mesh_in_two_nodes_is_there_twice() {
     let mut document = triangle();
     document["scenes"][0]["nodes"] = json!([0, 1]);
     document["nodes"] = json!([{"mesh": 0}, {"mesh": 0, "translation": [0, 0, 5]}]);
-    let mesh = open(&document).mesh;
+    let mesh = open(&document).geometry.mesh.clone();
     assert_eq!(mesh.triangles, [[0, 1, 2], [3, 4, 5]]);
     assert_eq!(mesh.corners(1)[0], 5.0 * Vec3::Z);
 }
@@ -190,7 +191,7 @@ fn one_mesh_in_two_nodes_is_there_twice() {
 fn a_matrix_is_read_by_columns() {
     let mut document = triangle();
     document["nodes"][0]["matrix"] = json!([0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 7, 8, 9, 1]);
-    let corners = open(&document).mesh.corners(0);
+    let corners = open(&document).geometry.mesh.corners(0);
     assert_eq!(corners, [Vec3::new(7.0, 8.0, 9.0), Vec3::new(7.0, 10.0, 9.0), Vec3::new(5.0, 8.0, 9.0)]);
 }
 
@@ -211,7 +212,7 @@ fn instanced() -> serde_json::Value {
 
 #[test]
 fn instances_stand_below_their_node() {
-    let mesh = open(&instanced()).mesh;
+    let mesh = open(&instanced()).geometry.mesh.clone();
     assert_eq!(mesh.triangles.len(), 2);
     let node = 10.0 * Vec3::X;
     assert_eq!(mesh.corners(0), [node, node + Vec3::X, node + Vec3::Y]);
@@ -228,7 +229,7 @@ fn rotations_of_instances_may_be_quantized() {
     let rotation = add_accessor(&mut document, &[0, 0, 0, 127, 0, 0, 90, 90], BYTE, "VEC4", 2);
     document["accessors"][rotation]["normalized"] = json!(true);
     document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["ROTATION"] = json!(rotation);
-    assert!(open(&document).mesh.corners(1)[1].distance(Vec3::new(10.0, 2.0, 3.0)) < 1e-5);
+    assert!(open(&document).geometry.mesh.corners(1)[1].distance(Vec3::new(10.0, 2.0, 3.0)) < 1e-5);
 }
 
 #[test]
@@ -243,7 +244,7 @@ fn instances_by_unequal_attributes_are_refused() {
 fn instances_without_a_place_show_as_one() {
     let mut document = instanced();
     document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = json!({"_ID": 0});
-    assert_eq!(open(&document).mesh.triangles.len(), 1);
+    assert_eq!(open(&document).geometry.mesh.triangles.len(), 1);
 }
 
 #[test]
@@ -254,7 +255,7 @@ fn a_chain_of_very_many_nodes_is_no_recursion() {
     nodes.push(json!({"mesh": 0}));
     document["nodes"] = json!(nodes);
     let scene = open(&document);
-    assert_eq!(scene.to_world(scene.mesh.corners(0)[0]), DVec3::new(0.5 * (LENGTH - 1) as f64, 0.0, 0.0));
+    assert_eq!(scene.to_world(scene.geometry.mesh.corners(0)[0]), DVec3::new(0.5 * (LENGTH - 1) as f64, 0.0, 0.0));
 }
 
 #[test]
@@ -262,7 +263,7 @@ fn a_file_without_scenes_shows_all_roots() {
     let mut document = triangle();
     document.as_object_mut().unwrap().retain(|key, _| key != "scene" && key != "scenes");
     document["nodes"] = json!([{"mesh": 0}, {"children": [0], "translation": [1, 0, 0]}, {"mesh": 0}]);
-    let mesh = open(&document).mesh;
+    let mesh = open(&document).geometry.mesh.clone();
     assert_eq!((mesh.triangles.len(), mesh.corners(0)[0]), (2, Vec3::X));
 }
 
@@ -271,7 +272,7 @@ fn of_several_scenes_the_named_one_is_read() {
     let mut document = triangle();
     document["scenes"] = json!([{"nodes": []}, {"nodes": [0]}]);
     document["scene"] = json!(1);
-    assert_eq!(open(&document).mesh.triangles.len(), 1);
+    assert_eq!(open(&document).geometry.mesh.triangles.len(), 1);
     assert!(warnings(&document).contains("of 2 scenes only number 1 is read"));
 }
 
@@ -281,7 +282,7 @@ fn a_flat_node_has_triangles_without_normals() {
     let normals = add_floats(&mut document, &[0.0, 1.0, 1.0].repeat(3), "VEC3", 3);
     document["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = json!(normals);
     document["nodes"][0]["scale"] = json!([1, 1, 0]);
-    let mesh = open(&document).mesh;
+    let mesh = open(&document).geometry.mesh.clone();
     assert_eq!((mesh.triangles.len(), &mesh.normals[..]), (1, &[Vec3::ZERO; 3][..]));
 }
 
@@ -291,7 +292,7 @@ fn primitives_without_triangles_are_counted_or_nothing() {
     let primitives = &mut document["meshes"][0]["primitives"];
     *primitives = json!([{"attributes": {"POSITION": 0}, "mode": 0}, {"attributes": {"POSITION": 0}, "mode": 3},
         {"attributes": {}}, {"attributes": {"POSITION": 0}, "indices": 1}]);
-    assert_eq!(open(&document).mesh.triangles.len(), 1);
+    assert_eq!(open(&document).geometry.mesh.triangles.len(), 1);
     let warnings = warnings(&document);
     assert!(warnings.contains("2 primitives of points or lines: left out"), "{warnings}");
     assert!(warnings.contains("1 primitive without positions: left out"), "{warnings}");

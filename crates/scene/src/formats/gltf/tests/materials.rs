@@ -42,21 +42,21 @@ fn info(document: &mut Value) -> &mut Value {
 fn a_texture_in_a_view_is_read() {
     let scene = open(&textured());
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-    assert_eq!(scene.textures[0].texels, [[0, 128, 255, 255]]);
-    let found = scene.materials[0].texture.unwrap();
+    assert_eq!(scene.geometry.textures[0].texels, [[0, 128, 255, 255]]);
+    let found = scene.geometry.materials[0].texture.unwrap();
     assert_eq!((found.texture, found.wrap, found.transform), (0, [Wrap::Repeat; 2], Affine2::IDENTITY));
-    assert_eq!(scene.mesh.uvs, [Vec2::ZERO, Vec2::X, Vec2::Y]);
+    assert_eq!(scene.geometry.mesh.uvs, [Vec2::ZERO, Vec2::X, Vec2::Y]);
 }
 
 #[test]
 fn a_textured_material_has_its_metal_part_tinted() {
-    let material = &open(&textured()).materials[0];
+    let material = &open(&textured()).geometry.materials[0];
     let base = Vec3::new(1.0, 0.5, 0.25);
     assert!((material.kd - 0.875 * base).length() < 1e-6);
     assert!((material.ks - Vec3::splat(0.005)).length() < 1e-7 && (material.ks_tinted - 0.125 * base).length() < 1e-6);
     let mut document = textured();
     document["materials"][0]["pbrMetallicRoughness"].as_object_mut().unwrap().remove("baseColorTexture");
-    let material = &open(&document).materials[0];
+    let material = &open(&document).geometry.materials[0];
     assert_eq!(material.ks_tinted, Vec3::ZERO);
     assert!((material.ks - (Vec3::splat(0.005) + 0.125 * base)).length() < 1e-6);
 }
@@ -65,14 +65,14 @@ fn a_textured_material_has_its_metal_part_tinted() {
 fn a_texture_may_be_data_or_a_file() {
     let mut document = textured();
     document["images"] = json!([{"uri": format!("data:image/png;base64,{}", STANDARD.encode(png()))}]);
-    assert_eq!(open(&document).textures.len(), 1);
+    assert_eq!(open(&document).geometry.textures.len(), 1);
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("blue sky.png"), png()).unwrap();
     let path = folder.path().join("model.gltf");
     document["images"] = json!([{"uri": "blue%20sky.png"}]);
     fs::write(&path, document.to_string()).unwrap();
     let scene = Scene::open(path).unwrap();
-    assert_eq!((scene.textures.len(), scene.warnings.len()), (1, 0));
+    assert_eq!((scene.geometry.textures.len(), scene.warnings.len()), (1, 0));
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn an_image_of_many_materials_is_read_once() {
     document["materials"].as_array_mut().unwrap().push(material);
     document["textures"].as_array_mut().unwrap().push(json!({"source": 0}));
     document["materials"][1]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = json!(1);
-    assert_eq!(open(&document).textures.len(), 1);
+    assert_eq!(open(&document).geometry.textures.len(), 1);
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn samplers_say_what_lies_beyond_the_edge() {
         [(0, [Wrap::Clamp, Wrap::Mirror]), (1, [Wrap::Repeat; 2]), (2, [Wrap::Repeat; 2]), (9, [Wrap::Repeat; 2])]
     {
         document["textures"][0]["sampler"] = json!(sampler);
-        assert_eq!(open(&document).materials[0].texture.unwrap().wrap, wrap, "{sampler}");
+        assert_eq!(open(&document).geometry.materials[0].texture.unwrap().wrap, wrap, "{sampler}");
     }
 }
 
@@ -101,13 +101,13 @@ fn samplers_say_what_lies_beyond_the_edge() {
 fn a_material_picks_its_set_of_coordinates() {
     let mut document = textured();
     info(&mut document)["texCoord"] = json!(1);
-    assert_eq!(open(&document).mesh.uvs, [Vec2::splat(0.5); 3]);
+    assert_eq!(open(&document).geometry.mesh.uvs, [Vec2::splat(0.5); 3]);
     // The transform's own set goes before.
     info(&mut document)["extensions"] =
         json!({"KHR_texture_transform": {"texCoord": 0, "scale": [2, 3], "offset": [1, 0]}});
     let scene = open(&document);
-    assert_eq!(scene.mesh.uvs[1], Vec2::X);
-    let transform = scene.materials[0].texture.unwrap().transform;
+    assert_eq!(scene.geometry.mesh.uvs[1], Vec2::X);
+    let transform = scene.geometry.materials[0].texture.unwrap().transform;
     assert_eq!(transform.transform_point2(Vec2::ONE), Vec2::new(3.0, 3.0));
 }
 
@@ -118,13 +118,13 @@ fn a_texture_without_coordinates_is_left_out_of_that_primitive() {
     let without = json!({"attributes": {"POSITION": 0}, "material": 0});
     document["meshes"][0]["primitives"] = json!([with, without, without]);
     let scene = open(&document);
-    assert_eq!(scene.materials.len(), 2);
-    assert_eq!(scene.mesh.materials, [0, 1, 1]);
-    assert!(scene.materials[0].texture.is_some() && scene.materials[1].texture.is_none());
+    assert_eq!(scene.geometry.materials.len(), 2);
+    assert_eq!(scene.geometry.mesh.materials, [0, 1, 1]);
+    assert!(scene.geometry.materials[0].texture.is_some() && scene.geometry.materials[1].texture.is_none());
     assert!(warnings(&document).contains("2 triangles have a texture but no texture coordinates"));
     let mut document = textured();
     info(&mut document)["texCoord"] = json!(5);
-    assert!(open(&document).materials[1].texture.is_none());
+    assert!(open(&document).geometry.materials[1].texture.is_none());
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn textures_that_the_file_does_not_hold_are_counted() {
         let mut document = textured();
         document.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());
         let scene = open(&document);
-        assert!(scene.materials[0].texture.is_none() && scene.mesh.triangles.len() == 1);
+        assert!(scene.geometry.materials[0].texture.is_none() && scene.geometry.mesh.triangles.len() == 1);
         assert!(warnings(&document).contains("1 material with a texture that the file does not hold"), "{change}");
     }
 }
@@ -151,8 +151,8 @@ fn textures_that_cannot_be_read_are_a_warning() {
         let mut document = textured();
         document["images"] = json!([{"uri": uri}]);
         let scene = open(&document);
-        assert_eq!((scene.mesh.triangles.len(), scene.warnings.len()), (1, 1), "{uri}: {:?}", scene.warnings);
-        assert_eq!(scene.materials[0].texture, None);
+        assert_eq!((scene.geometry.mesh.triangles.len(), scene.warnings.len()), (1, 1), "{uri}: {:?}", scene.warnings);
+        assert_eq!(scene.geometry.materials[0].texture, None);
     }
 }
 
@@ -170,7 +170,7 @@ fn vertex_colours_of_all_kinds_are_linear_tints() {
         document["accessors"][accessor]["normalized"] =
             json!(document["accessors"][accessor]["componentType"] != FLOAT);
         document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(accessor);
-        assert_eq!(open(&document).mesh.colors, expected, "{accessor}");
+        assert_eq!(open(&document).geometry.mesh.colors, expected, "{accessor}");
     }
 }
 
@@ -180,7 +180,7 @@ fn colours_of_one_primitive_are_white_on_the_others() {
     let colors = add_floats(&mut document, &[0.5; 9], "VEC3", 3);
     document["meshes"][0]["primitives"] = json!([{"attributes": {"POSITION": 0}},
         {"attributes": {"POSITION": 0, "COLOR_0": colors}}, {"attributes": {"POSITION": 0}}]);
-    let mesh = open(&document).mesh;
+    let mesh = open(&document).geometry.mesh.clone();
     assert_eq!([mesh.colors[0], mesh.colors[3], mesh.colors[8]], [Vec3::ONE, Vec3::splat(0.5), Vec3::ONE]);
 }
 
@@ -190,12 +190,12 @@ fn unlit_materials_give_off_their_colour() {
     document["materials"][0]["extensions"] = json!({"KHR_materials_unlit": {}});
     document["materials"][0]["emissiveFactor"] = json!([1, 1, 1]);
     let base = Vec3::new(1.0, 0.5, 0.25);
-    let material = &open(&document).materials[0];
+    let material = &open(&document).geometry.materials[0];
     assert_eq!([material.ka, material.kd, material.ks, material.ks_tinted, material.emission], [Vec3::ZERO; 5]);
     assert_eq!(material.emission_tinted, base);
     assert!(material.texture.is_some());
     document["materials"][0]["pbrMetallicRoughness"].as_object_mut().unwrap().remove("baseColorTexture");
-    let material = &open(&document).materials[0];
+    let material = &open(&document).geometry.materials[0];
     assert_eq!((material.emission, material.emission_tinted), (base, Vec3::ZERO));
 }
 
@@ -203,12 +203,12 @@ fn unlit_materials_give_off_their_colour() {
 fn emission_has_its_strength() {
     let mut document = textured();
     document["materials"][0]["emissiveFactor"] = json!([1, 0.5, 0]);
-    assert_eq!(open(&document).materials[0].emission, Vec3::new(1.0, 0.5, 0.0));
+    assert_eq!(open(&document).geometry.materials[0].emission, Vec3::new(1.0, 0.5, 0.0));
     document["materials"][0]["extensions"] = json!({"KHR_materials_emissive_strength": {"emissiveStrength": 4}});
-    assert_eq!(open(&document).materials[0].emission, Vec3::new(4.0, 2.0, 0.0));
+    assert_eq!(open(&document).geometry.materials[0].emission, Vec3::new(4.0, 2.0, 0.0));
     // A texture that is black nearly everywhere must not make all of the surface glow.
     document["materials"][0]["emissiveTexture"] = json!({"index": 0});
-    assert_eq!(open(&document).materials[0].emission, Vec3::ZERO);
+    assert_eq!(open(&document).geometry.materials[0].emission, Vec3::ZERO);
 }
 
 #[test]
@@ -241,7 +241,7 @@ fn a_material_that_is_not_there_is_the_white_one() {
     let mut document = triangle();
     document["meshes"][0]["primitives"][0]["material"] = json!(8);
     let scene = open(&document);
-    assert_eq!((scene.materials.len(), scene.materials[0].kd), (1, Vec3::ONE));
+    assert_eq!((scene.geometry.materials.len(), scene.geometry.materials[0].kd), (1, Vec3::ONE));
     assert!(warnings(&document).contains("1 primitive with a material that the file does not hold: shown white"));
 }
 
@@ -272,6 +272,9 @@ fn the_material_of_a_scene_around_replaces_colours_too() {
     )
     .unwrap();
     let scene = Scene::open(path).unwrap();
-    assert_eq!((scene.materials.len(), scene.textures.len(), scene.mesh.colors.len()), (1, 0, 0));
-    assert_eq!(scene.mesh.uvs.len(), 3);
+    assert_eq!(
+        (scene.geometry.materials.len(), scene.geometry.textures.len(), scene.geometry.mesh.colors.len()),
+        (1, 0, 0)
+    );
+    assert_eq!(scene.geometry.mesh.uvs.len(), 3);
 }

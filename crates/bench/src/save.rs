@@ -1,0 +1,94 @@
+//! Saving results: rows and notes in a JSON file, images in a folder next to it.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crate::output::{make_folder, write};
+use crate::report::{free_name, slug};
+use crate::{OutputError, Picture, Results, json};
+
+impl Results {
+    /// The folder of images saved with results in `path`: `thesis-pictures` next to `thesis.json`.
+    pub fn pictures_folder(path: &Path) -> PathBuf {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        path.with_file_name(format!("{stem}-pictures"))
+    }
+
+    /// Writes rows and notes, without images.
+    ///
+    /// # Errors
+    /// [`OutputError`], which names the file.
+    pub fn save(&self, path: &Path) -> Result<(), OutputError> {
+        self.write(path, Vec::new())
+    }
+
+    /// Writes rows and notes, and images to the [folder](Results::pictures_folder) next to them, which is created if missing.
+    ///
+    /// # Errors
+    /// [`OutputError`], which names the file or folder.
+    pub fn save_with_pictures(&self, path: &Path) -> Result<(), OutputError> {
+        let folder = Results::pictures_folder(path);
+        make_folder(&folder)?;
+        let beside = folder.file_name().unwrap_or_default().to_string_lossy();
+        let (mut taken, mut pictures) = (BTreeSet::new(), self.pictures.clone());
+        for picture in &mut pictures {
+            let name = free_name(&slug(&picture.id), ".png", |name| taken.contains(name));
+            write(&folder.join(&name), &picture.png)?;
+            picture.file = format!("{beside}/{name}");
+            taken.insert(name);
+        }
+        self.write(path, pictures)
+    }
+
+    fn write(&self, path: &Path, pictures: Vec<Picture>) -> Result<(), OutputError> {
+        write(path, &json::lines(&Results { pictures, ..self.clone() }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lightmesh::image::Frame;
+
+    use super::*;
+    use crate::Row;
+    use crate::report::Report;
+
+    /// A row, and two images whose files would have the same name.
+    fn results() -> Results {
+        let grey = Frame::new(8, 8, vec![[0.5; 3]; 64]).unwrap();
+        let mut results = crate::report::tests::results("any", |rows| {
+            rows.push(Row::new("timings", [("scene", "room".into())]));
+            rows[0].seconds.entry("render".to_owned()).or_default().push(0.25);
+        });
+        results.pictures = ["R = 1", "R: 1"].map(|title| Picture::new("p", title, &grey).unwrap()).into();
+        results
+    }
+
+    #[test]
+    fn rows_are_kept_without_pictures_unless_they_are_wanted() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, results) = (folder.path().join("a.json"), results());
+        results.save(&path).unwrap();
+        let bare = Results { pictures: Vec::new(), ..results.clone() };
+        assert_eq!(Results::load(&path).unwrap(), bare);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+
+        results.save_with_pictures(&path).unwrap();
+        let files: Vec<String> =
+            Results::load(&path).unwrap().pictures.into_iter().map(|picture| picture.file).collect();
+        assert_eq!(files, ["a-pictures/p-r-1.png", "a-pictures/p-r-1-2.png"]);
+        assert_eq!(std::fs::read(folder.path().join(&files[1])).unwrap(), results.pictures[1].png);
+    }
+
+    #[test]
+    fn a_report_shows_pictures_that_were_kept_and_says_which_is_missing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        results().save_with_pictures(&path).unwrap();
+        let report = Report::open(std::slice::from_ref(&path)).unwrap();
+        assert_eq!(report.markdown().matches("<img").count(), 2);
+        std::fs::remove_file(folder.path().join("a-pictures/p-r-1-2.png")).unwrap();
+        let refused = Report::open(&[path]).unwrap_err().to_string();
+        assert!(refused.contains("`p: R: 1`") && refused.contains("p-r-1-2.png"), "{refused}");
+    }
+}

@@ -1,0 +1,75 @@
+//! What the command line calls what a message of the library speaks of.
+//!
+//! The library's messages name settings in words; here each gets its flag, which the program adds in brackets.
+
+use lightmesh::render::Setting;
+use lightmesh::{LoadError, RenderError};
+use lightmesh_bench::BenchError;
+use lightmesh_bench::report::ReportError;
+
+use crate::failure::Failure;
+
+/// The flag of a setting: named like it, but for the structure.
+pub(crate) fn of(setting: Setting) -> String {
+    match setting {
+        Setting::Acceleration => "--accel".to_owned(),
+        other => format!("--{}", other.name().replace('_', "-")),
+    }
+}
+
+/// The flags and commands that mend what a failure is about.
+pub(crate) fn that_mend(failure: &Failure) -> Vec<String> {
+    const RESULTS: &str = "lightmesh bench SUITE --json FILE";
+    let fixed: &[&str] = match failure {
+        Failure::Render(RenderError::Grid(_)) | Failure::Grid(_) => &["--grid"],
+        Failure::Render(RenderError::GridFile(_)) => &["lightmesh grid SCENE -o FILE"],
+        Failure::Render(error) => return error.settings().into_iter().map(of).collect(),
+        Failure::Load(LoadError::Outside { .. }) => &["--allow-outside"],
+        Failure::Load(LoadError::Warnings { .. }) => &["--strict"],
+        Failure::Bench(error) => match **error {
+            BenchError::OwnScenes(_) => &["--scene", "--size"],
+            BenchError::Malformed { .. } | BenchError::Version { .. } => &[RESULTS],
+            BenchError::NothingInCommon { .. } => &["--quick"],
+            _ => &[],
+        },
+        Failure::Report(error) => match &**error {
+            ReportError::Twice { .. } => &[RESULTS],
+            ReportError::Results(error)
+                if matches!(**error, BenchError::Malformed { .. } | BenchError::Version { .. }) =>
+            {
+                &[RESULTS]
+            }
+            _ => &[],
+        },
+        _ => &[],
+    };
+    fixed.iter().map(|&flag| flag.to_owned()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+    use crate::args::Cli;
+
+    #[test]
+    fn every_setting_has_a_flag() {
+        let cli = Cli::command();
+        let render = cli.find_subcommand("render").unwrap();
+        let known: Vec<String> =
+            render.get_arguments().filter_map(|flag| flag.get_long()).map(|long| format!("--{long}")).collect();
+        for &setting in Setting::ALL {
+            assert!(known.contains(&of(setting)), "{setting}: {known:?}");
+        }
+    }
+
+    #[test]
+    fn a_failure_names_the_flags_that_mend_it() {
+        let memory = RenderError::Memory { buffer: "masks", needed: 2, limit: 1 };
+        assert_eq!(that_mend(&memory.into()), ["--memory-limit", "--size", "--step", "--radius"]);
+        let strict = LoadError::Warnings { path: "a.obj".into(), warnings: vec!["odd".into()] };
+        assert_eq!(that_mend(&strict.into()), ["--strict"]);
+        assert!(that_mend(&RenderError::Cancelled.into()).is_empty());
+    }
+}

@@ -1,0 +1,81 @@
+//! Pictures with what is known of light points: the same bits as without, and the same long tests saved as on the CPU.
+
+use glam::Vec3;
+use lightmesh_render::backend::{Cpu, Cuda};
+use lightmesh_render::{Frame, Kept, PreparedScene, Settings, Step, Unobserved, render_on, render_on_with};
+use lightmesh_scene::{Light, LightKind};
+
+use crate::scenes::{SUBJECTS, Subject};
+use crate::trials::{Case, Target};
+
+const SIZE: [u32; 2] = [45, 37];
+
+pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
+    let case = |subject: &'static Subject| {
+        Case::new(format!("{}::kept", subject.name), move |cuda| same_pictures(cuda, subject))
+    };
+    SUBJECTS.iter().map(case).collect()
+}
+
+fn same_pictures<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
+    let (mut kept, mut on_host) = (Kept::default(), Kept::default());
+    let mut saved = 0;
+    for (step, scene) in scenes(subject).iter().enumerate() {
+        let settings = settings(subject, step);
+        let with = render_on_with(cuda, &mut kept, scene, &settings, &Unobserved).unwrap();
+        let without = render_on(cuda, scene, &settings, &Unobserved).unwrap();
+        assert!(bits(&with) == bits(&without), "picture {step}");
+        let host = render_on_with(&Cpu, &mut on_host, scene, &settings, &Unobserved).unwrap();
+        assert_eq!(tests(&with), tests(&host), "picture {step}");
+        assert_eq!(tests(&with).iter().sum::<u64>(), tests(&without)[0], "picture {step}");
+        saved += tests(&with)[1];
+    }
+    assert_eq!(kept.len(), on_host.len());
+    assert_eq!(kept.len() > 0, saved > 0, "what is known is used");
+}
+
+/// The scene; and with its last light moved.
+fn scenes(subject: &'static Subject) -> [PreparedScene; 4] {
+    let scene = subject.prepared(0);
+    let mut lights = scene.scene.lights.clone();
+    if let Some(light) = lights.last_mut() {
+        move_light(light);
+    }
+    let moved = scene.with_lights(lights);
+    [scene.clone(), scene.clone(), moved.clone(), moved]
+}
+
+fn move_light(light: &mut Light) {
+    match &mut light.kind {
+        LightKind::Directional { direction } => *direction = Vec3::new(0.6, -0.8, 0.0),
+        LightKind::Point { position, .. }
+        | LightKind::Spot { position, .. }
+        | LightKind::Sphere { position, .. }
+        | LightKind::Disk { position, .. }
+        | LightKind::Rectangle { position, .. } => *position += Vec3::new(0.2, 0.1, -0.1),
+    }
+}
+
+/// A camera that goes to its right; lights with a size, mirrors.
+fn settings(subject: &'static Subject, step: usize) -> Settings {
+    let scene = subject.scene();
+    let camera = scene.cameras.first().cloned().unwrap_or_else(|| scene.default_camera(Default::default()));
+    let (right, ..) = camera.basis();
+    let position = camera.position + 3.0 * subject.step * step as f32 * right;
+    Settings::default()
+        .with_size(SIZE)
+        .with_bounces(2)
+        .with_samples(4)
+        .with_step(Step::Fixed(subject.step))
+        .with_radius(2.1)
+        .with_camera(camera.with_position(position))
+}
+
+fn bits(frame: &Frame) -> Vec<[u32; 3]> {
+    frame.image.color().iter().map(|color| color.map(f32::to_bits)).collect()
+}
+
+/// Long tests made and saved.
+fn tests(frame: &Frame) -> [u64; 2] {
+    [frame.stats.counts.long_tests, frame.stats.counts.long_tests_saved]
+}

@@ -1,0 +1,44 @@
+//! Draws the figures of METHOD.md, from what the renderer itself computes: `cargo xtask drawings`.
+//!
+//! `cargo run -p lightmesh-render --example drawings -- DIR [--check]` writes each figure to DIR, or only compares it with the file
+//! that is there.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
+
+mod canvas;
+mod half_ball;
+mod occluders;
+mod segments;
+mod template;
+mod world;
+
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+use std::process::ExitCode;
+
+type Draw = fn() -> Result<String, Box<dyn Error>>;
+
+const DRAWINGS: [(&str, Draw); 4] = [
+    ("half-ball.svg", half_ball::draw),
+    ("template.svg", template::draw),
+    ("tests.svg", segments::draw),
+    ("occluders.svg", occluders::draw),
+];
+
+fn main() -> Result<ExitCode, Box<dyn Error>> {
+    let (flags, folders): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|word| word == "--check");
+    let [folder] = &folders[..] else { return Err("usage: drawings DIR [--check]".into()) };
+    let mut code = ExitCode::SUCCESS;
+    for (name, draw) in DRAWINGS {
+        let file = Path::new(folder).join(name);
+        let svg = draw()?;
+        if flags.is_empty() {
+            fs::write(&file, &svg)?;
+        } else if fs::read_to_string(&file).ok().as_ref() != Some(&svg) {
+            eprintln!("error: {} is out of date; run `cargo xtask drawings`", file.display());
+            code = ExitCode::FAILURE;
+        }
+    }
+    println!("{} drawings in {folder}", DRAWINGS.len());
+    Ok(code)
+}

@@ -1,0 +1,159 @@
+//! A CUDA device: every stage as kernels, nothing of it on the host.
+
+use std::ops::Range;
+
+use lightmesh_layout::In;
+use lightmesh_layout::geometry::Rays;
+
+use super::{
+    Backend, Cuda, DeviceCells, DeviceFilm, DeviceHits, DeviceLit, DeviceMasks, DevicePoints, DeviceRays, DeviceScene,
+    DeviceVisibility, Needs, SeenOf, WaveOf,
+};
+use crate::cache::{DeviceTable, Kept};
+use crate::cuda::Runtime;
+use crate::data::picture::Picture;
+use crate::error::RenderError;
+use crate::job::Job;
+use crate::light_mesh::LightMesh;
+use crate::plan::Plan;
+use crate::prepared::PreparedScene;
+use crate::shadow::Aim;
+use crate::stage::Stage;
+use crate::stages::{
+    cells, interpolate, light_points, long_tests, mirror_rays, primary_rays, shade, shadow_rays, short_tests,
+};
+use crate::view::View;
+
+impl<R: Runtime> Backend for Cuda<R> {
+    type Scene = DeviceScene<R>;
+    type Rays = DeviceRays<R>;
+    type Hits = DeviceHits<R>;
+    type Cells = DeviceCells<R>;
+    type Masks = DeviceMasks<R>;
+    type Points = DevicePoints<R>;
+    type Lit = DeviceLit<R>;
+    type Visibility = DeviceVisibility<R>;
+    type Film = DeviceFilm<R>;
+    type Table = DeviceTable<R>;
+
+    fn kind(&self) -> &'static str {
+        "cuda"
+    }
+
+    fn name(&self) -> String {
+        self.pool().runtime().name()
+    }
+
+    fn peak_memory(&self) -> u64 {
+        self.pool().peak()
+    }
+
+    /// By the device's clock; the time is read when the band is done.
+    fn timed<T>(&self, _: &Job, stage: Stage, work: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
+        self.on_device_clock(stage, work)
+    }
+
+    fn scene(&self, job: &Job, scene: &PreparedScene, needs: &Needs) -> Result<DeviceScene<R>, RenderError> {
+        self.pool().set_limit(needs.memory_limit);
+        self.device_scene(job, scene, needs.search)
+    }
+
+    fn rows_at_once(&self, scene: &DeviceScene<R>, plan: &Plan) -> Result<u32, RenderError> {
+        self.rows_that_fit(scene, plan)
+    }
+
+    fn film(&self, plan: &Plan, rows: Range<u32>) -> Result<DeviceFilm<R>, RenderError> {
+        self.begin_band()?;
+        DeviceFilm::new(self, plan, rows)
+    }
+
+    fn camera_rays(&self, view: &View, rows: Range<u32>) -> Result<DeviceRays<R>, RenderError> {
+        let [width, _] = view.size();
+        let count = width * rows.len() as u32;
+        let record = Rays { view: view.record(), list: In::NULL, first_pixel: rows.start * width, count };
+        Ok(DeviceRays { record, list: None })
+    }
+
+    fn ray_count(&self, rays: &DeviceRays<R>) -> usize {
+        rays.len()
+    }
+
+    fn primary_rays(
+        &self,
+        job: &Job,
+        scene: &DeviceScene<R>,
+        rays: &DeviceRays<R>,
+    ) -> Result<DeviceHits<R>, RenderError> {
+        primary_rays::cuda::primary_rays(self, job, scene, rays)
+    }
+
+    fn cells(&self, wave: &WaveOf<Self>, mesh: &LightMesh) -> Result<DeviceCells<R>, RenderError> {
+        cells::cuda::cells(self, wave, mesh)
+    }
+
+    fn cell_pieces(&self, cells: &DeviceCells<R>) -> usize {
+        cells.count
+    }
+
+    fn short_tests(
+        &self,
+        wave: &WaveOf<Self>,
+        cells: &DeviceCells<R>,
+        mesh: &LightMesh,
+    ) -> Result<DeviceMasks<R>, RenderError> {
+        short_tests::cuda::short_tests(self, wave, cells, mesh)
+    }
+
+    fn light_points(
+        &self,
+        job: &Job,
+        cells: &DeviceCells<R>,
+        masks: &DeviceMasks<R>,
+        mesh: &LightMesh,
+    ) -> Result<DevicePoints<R>, RenderError> {
+        light_points::cuda::light_points(self, job, cells, masks, mesh)
+    }
+
+    fn long_test_count(&self, wave: &WaveOf<Self>, points: &DevicePoints<R>) -> usize {
+        points.count * wave.job.sampling.rays_to(&wave.scene.host.scene.lights)
+    }
+
+    fn long_tests(
+        &self,
+        wave: &WaveOf<Self>,
+        points: &DevicePoints<R>,
+        mesh: &LightMesh,
+        kept: Option<&mut Kept<DeviceTable<R>>>,
+    ) -> Result<DeviceLit<R>, RenderError> {
+        long_tests::cuda::long_tests(self, wave, points, mesh, kept)
+    }
+
+    fn interpolate(&self, wave: &WaveOf<Self>, seen: &SeenOf<Self>) -> Result<DeviceVisibility<R>, RenderError> {
+        interpolate::cuda::interpolate(self, wave, seen)
+    }
+
+    fn shadow_rays(&self, wave: &WaveOf<Self>, aim: &Aim) -> Result<DeviceVisibility<R>, RenderError> {
+        shadow_rays::cuda::shadow_rays(self, wave, aim)
+    }
+
+    fn shade(
+        &self,
+        wave: &WaveOf<Self>,
+        visibility: &DeviceVisibility<R>,
+        film: &mut DeviceFilm<R>,
+    ) -> Result<(), RenderError> {
+        shade::cuda::shade(self, wave, visibility, film)
+    }
+
+    fn mirror_rays(&self, wave: &WaveOf<Self>) -> Result<DeviceRays<R>, RenderError> {
+        mirror_rays::cuda::mirror_rays(self, wave)
+    }
+
+    fn finish(&self, job: &Job) -> Result<(), RenderError> {
+        self.end_band(job)
+    }
+
+    fn develop(&self, scene: &DeviceScene<R>, film: DeviceFilm<R>, picture: &mut Picture) -> Result<(), RenderError> {
+        film.develop(&scene.host.scene.geometry, picture)
+    }
+}

@@ -1,0 +1,65 @@
+//! How many rows of a picture fit into the host's memory at once.
+
+use crate::accel::{Hit, Ray};
+use crate::error::RenderError;
+use crate::memory;
+use crate::plan::Plan;
+use crate::prepared::PreparedScene;
+
+/// What is kept free for everything that is not counted below: stacks, the segments in flight, the allocator's waste.
+const RESERVE: u64 = 64 << 20;
+
+/// Rows that can be made at once on the host.
+pub(crate) fn rows_on_host(scene: &PreparedScene, plan: &Plan) -> Result<u32, RenderError> {
+    let lights = scene.scene.lights.len() as u64;
+    let picture = plan.pixels() * plan.film_bytes();
+    match plan.memory_limit {
+        // The limit is on the process: what it already holds counts.
+        Some(limit) => rows_per_band(plan, lights, scene.geometry.memory() as u64 + plan.kept + picture, Some(limit)),
+        None => rows_per_band(plan, lights, picture, memory::available().map(|bytes| bytes - bytes / 8)),
+    }
+}
+
+/// Rows that fit under `limit` bytes beside the `resident` bytes of scene and picture.
+///
+/// The estimate is an upper bound per pixel, taken at the stage that holds most; see the sum.
+fn rows_per_band(plan: &Plan, lights: u64, resident: u64, limit: Option<u64>) -> Result<u32, RenderError> {
+    let size = plan.size;
+    let Some(limit) = limit else { return Ok(size[1]) };
+    let row = u64::from(size[0]) * (bytes_per_ray(plan, lights) + plan.film_bytes());
+    let free = limit.saturating_sub(resident).saturating_sub(RESERVE);
+    match free / row {
+        0 => Err(RenderError::Memory {
+            buffer: "masks and visibility, beside the scene",
+            needed: row + resident + RESERVE,
+            limit,
+        }),
+        rows => Ok(rows.min(u64::from(size[1])) as u32),
+    }
+}
+
+fn bytes_per_ray(plan: &Plan, lights: u64) -> u64 {
+    // A ray with pixel and weight, twice (mirrors make the next list from this one), and its hit and radiance.
+    let ray = 2 * (size_of::<Ray>() as u64 + 4 + 12) + size_of::<Hit>() as u64 + 12;
+    // Shares by cell and by ray, and light points used.
+    let visibility = 2 * 4 * lights + 4;
+    ray + visibility + plan.footprint.host
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Footprint;
+
+    #[test]
+    fn a_limit_splits_the_picture_and_none_does_not() {
+        let footprint = Footprint::default();
+        let plan = Plan { size: [1000, 1000], bounces: 0, layers: None, memory_limit: None, kept: 0, footprint };
+        let rows = |limit| rows_per_band(&plan, 3, 0, limit);
+        assert_eq!(rows(None).unwrap(), 1000);
+        assert_eq!(rows(Some(u64::MAX)).unwrap(), 1000);
+        let some = rows(Some(RESERVE + (20 << 20))).unwrap();
+        assert!((1..1000).contains(&some), "{some}");
+        assert!(matches!(rows(Some(RESERVE + 1)), Err(RenderError::Memory { .. })));
+    }
+}

@@ -1,0 +1,133 @@
+//! What light points see, kept on the host.
+
+use std::collections::HashMap;
+
+use lightmesh_layout::constants::POINT_BITS;
+
+use super::{Seen, Table};
+use crate::data::lit::LitBy;
+use crate::light_mesh::{BrickKey, bits};
+
+/// Light points of a brick.
+const POINTS: usize = 1 << POINT_BITS;
+
+/// Rows of bricks, columns of lights. What is known does not move when bricks come or lights change.
+#[derive(Default)]
+pub struct HostTable {
+    rows: HashMap<BrickKey, usize>,
+    columns: Vec<Column>,
+}
+
+/// What is known of one light, by row.
+struct Column {
+    seen: Seen,
+    /// The light points whose answer is known.
+    known: Vec<u64>,
+    answers: Answers,
+}
+
+enum Answers {
+    /// Seen or not.
+    Bits(Vec<u64>),
+    /// Rays that got through.
+    Shares(Vec<[u16; POINTS]>),
+}
+
+impl Table for HostTable {
+    fn len(&self) -> u64 {
+        self.columns.iter().flat_map(|column| &column.known).map(|known| u64::from(known.count_ones())).sum()
+    }
+
+    fn memory(&self) -> u64 {
+        let columns: usize = self.columns.iter().map(Column::memory).sum();
+        (self.rows.capacity() * size_of::<(BrickKey, usize)>() + columns) as u64
+    }
+}
+
+impl HostTable {
+    /// The rows of some bricks, new ones where they have none, and a column for each light. What was known of another light, or of
+    /// other samples, is forgotten.
+    pub(crate) fn admit(&mut self, bricks: &[BrickKey], lights: Vec<Seen>) -> Vec<usize> {
+        let mut rows = Vec::with_capacity(bricks.len());
+        for &brick in bricks {
+            let next = self.rows.len();
+            rows.push(*self.rows.entry(brick).or_insert(next));
+        }
+        self.columns.truncate(lights.len());
+        for (index, seen) in lights.into_iter().enumerate() {
+            match self.columns.get_mut(index) {
+                Some(column) if column.seen == seen => {}
+                Some(column) => *column = Column::new(seen),
+                None => self.columns.push(Column::new(seen)),
+            }
+        }
+        for column in &mut self.columns {
+            column.grow(self.rows.len());
+        }
+        rows
+    }
+
+    /// Rays from each light point to a light.
+    pub(crate) fn samples(&self, light: usize) -> u32 {
+        self.columns[light].seen.samples()
+    }
+
+    /// The points of `used`, by brick, whose answer for a light is not known.
+    pub(crate) fn unknown(&self, light: usize, rows: &[usize], used: &[u64]) -> Vec<u64> {
+        let known = &self.columns[light].known;
+        rows.iter().zip(used).map(|(&row, used)| used & !known[row]).collect()
+    }
+
+    /// Takes over what was found about the points of `asked`, by brick.
+    pub(crate) fn learn(&mut self, light: usize, rows: &[usize], asked: &[u64], found: &LitBy) {
+        let column = &mut self.columns[light];
+        match (&mut column.answers, found) {
+            (Answers::Bits(kept), LitBy::Bits(words)) => {
+                rows.iter().zip(words).for_each(|(&row, word)| kept[row] |= word);
+            }
+            (Answers::Shares(kept), LitBy::Share { seen, .. }) => {
+                let points = rows.iter().zip(asked).flat_map(|(&row, &asked)| bits(asked).map(move |bit| (row, bit)));
+                points.zip(seen).for_each(|((row, bit), &share)| kept[row][bit as usize] = share);
+            }
+            // A column has the form of its light.
+            _ => return,
+        }
+        rows.iter().zip(asked).for_each(|(&row, asked)| column.known[row] |= asked);
+    }
+
+    /// What the points of `used`, by brick, see of a light.
+    pub(crate) fn recall(&self, light: usize, rows: &[usize], used: &[u64]) -> LitBy {
+        let column = &self.columns[light];
+        let places = rows.iter().zip(used);
+        match &column.answers {
+            Answers::Bits(kept) => LitBy::Bits(places.map(|(&row, used)| kept[row] & used).collect()),
+            Answers::Shares(kept) => {
+                let shares = places.flat_map(|(&row, &used)| bits(used).map(move |bit| kept[row][bit as usize]));
+                LitBy::Share { seen: shares.collect(), samples: column.seen.samples() }
+            }
+        }
+    }
+}
+
+impl Column {
+    fn new(seen: Seen) -> Column {
+        let answers = if seen.is_share() { Answers::Shares(Vec::new()) } else { Answers::Bits(Vec::new()) };
+        Column { seen, known: Vec::new(), answers }
+    }
+
+    fn grow(&mut self, rows: usize) {
+        self.known.resize(rows, 0);
+        match &mut self.answers {
+            Answers::Bits(words) => words.resize(rows, 0),
+            Answers::Shares(shares) => shares.resize(rows, [0; POINTS]),
+        }
+    }
+
+    fn memory(&self) -> usize {
+        let answers = match &self.answers {
+            Answers::Bits(words) => words.capacity() * size_of::<u64>(),
+            Answers::Shares(shares) => shares.capacity() * size_of::<[u16; POINTS]>(),
+        };
+        self.known.capacity() * size_of::<u64>() + answers
+    }
+}

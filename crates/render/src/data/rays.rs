@@ -1,0 +1,42 @@
+//! Rays, and the surface points that they see.
+
+use glam::Vec3;
+
+use crate::accel::{Hit, Ray};
+use crate::prepared::PreparedScene;
+use crate::surface::SurfacePoint;
+
+/// Rays with the pixels that they bring light to. Each pixel has at most one ray in a list.
+#[derive(Clone, Debug, Default)]
+pub struct RayList {
+    /// The rays; directions have unit length.
+    pub rays: Vec<Ray>,
+    /// The pixel of each ray, y · width + x.
+    pub pixels: Vec<u32>,
+    /// The share of a ray's radiance that reaches its pixel. Empty: all of it, the rays come from the camera.
+    pub weights: Vec<Vec3>,
+}
+
+impl RayList {
+    /// The share of the radiance of ray `index` that reaches its pixel.
+    #[inline(always)]
+    pub fn weight(&self, index: usize) -> Vec3 {
+        self.weights.get(index).copied().unwrap_or(Vec3::ONE)
+    }
+
+    /// Whether the rays come from the camera.
+    pub fn from_camera(&self) -> bool {
+        self.weights.is_empty()
+    }
+
+    /// What tells the random patterns of two surface points apart: the pixel, and whether it is seen in a mirror.
+    pub(crate) fn key(&self, ray: usize) -> u64 {
+        u64::from(self.pixels[ray]) << 1 | u64::from(!self.from_camera())
+    }
+}
+
+/// The surface point that ray number `ray` sees; the ray must have hit something.
+#[inline(always)]
+pub(crate) fn surface_point_of(scene: &PreparedScene, list: &RayList, hits: &[Hit], ray: usize) -> SurfacePoint {
+    SurfacePoint::new(&list.rays[ray], &hits[ray], &scene.geometry.triangles[hits[ray].triangle as usize])
+}

@@ -1,0 +1,73 @@
+//! The bundles that the stages of a picture work on.
+
+use lightmesh_scene::Lights;
+
+use super::cells::CellGroups;
+use super::lit::Lit;
+use super::masks::Masks;
+use super::rays::{RayList, surface_point_of};
+use crate::accel::Hit;
+use crate::job::Job;
+use crate::light_mesh::{LightMesh, UsedPoints};
+use crate::prepared::PreparedScene;
+use crate::surface::SurfacePoint;
+
+/// A wave of rays, those of the camera or of one bounce, with what they hit and what all stages need to go on from there.
+pub struct Wave<'a, Scene, Rays, Hits> {
+    /// Choices, counts and progress of the picture.
+    pub job: &'a Job<'a>,
+    /// The scene where the device needs it.
+    pub scene: &'a Scene,
+    /// The rays.
+    pub rays: &'a Rays,
+    /// What each of them hit.
+    pub hits: &'a Hits,
+}
+
+impl<Scene, Rays, Hits> Clone for Wave<'_, Scene, Rays, Hits> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Scene, Rays, Hits> Copy for Wave<'_, Scene, Rays, Hits> {}
+
+/// What the light mesh method has found out about a wave when it comes to formula (3).
+pub struct Seen<'a, Cells, Masks, Points, Lit> {
+    /// The light mesh.
+    pub mesh: &'a LightMesh,
+    /// Surface points by cell.
+    pub cells: &'a Cells,
+    /// Which light points each of them sees.
+    pub masks: &'a Masks,
+    /// Each light point that is used.
+    pub points: &'a Points,
+    /// Which lights each of these sees.
+    pub lit: &'a Lit,
+}
+
+/// [`Seen`] on the host.
+pub(crate) type HostSeen<'a> = Seen<'a, CellGroups, Masks, UsedPoints, Lit>;
+
+/// A wave on the host.
+pub(crate) type HostWave<'a> = Wave<'a, PreparedScene, RayList, Vec<Hit>>;
+
+impl<'a> HostWave<'a> {
+    /// The surface point that ray number `ray` sees; the ray must have hit something.
+    #[inline(always)]
+    pub(crate) fn surface_point(&self, ray: usize) -> SurfacePoint {
+        surface_point_of(self.scene, self.rays, self.hits, ray)
+    }
+
+    /// Whether ray number `ray` sees anything.
+    #[inline(always)]
+    pub(crate) fn sees(&self, ray: usize) -> bool {
+        self.hits[ray].is_some()
+    }
+
+    /// The scene's lights.
+    #[inline(always)]
+    pub(crate) fn lights(&self) -> &'a Lights {
+        &self.scene.scene.lights
+    }
+}

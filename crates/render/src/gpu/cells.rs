@@ -1,0 +1,14 @@
+//! Surface points by cell on a device.
+
+use lightmesh_layout::mesh::Item;
+
+use crate::cuda::{Buffer, Runtime};
+
+/// The surface points of a wave by cell, cut into items: up to 32 surface points of one cell, the work of one warp.
+pub struct DeviceCells<R: Runtime> {
+    /// Ray numbers by slot.
+    pub(crate) members: Buffer<R, u32>,
+    pub(crate) items: Buffer<R, Item>,
+    /// Number of items.
+    pub(crate) count: usize,
+}

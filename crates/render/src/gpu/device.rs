@@ -1,0 +1,133 @@
+//! A CUDA device: memory, launches, counters and clocks.
+
+use std::ops::Range;
+use std::sync::{Arc, Mutex};
+
+use bytemuck::Pod;
+use lightmesh_layout::constants::WARP;
+use lightmesh_layout::counters::Counters;
+use lightmesh_layout::geometry::Tally;
+
+use super::held::{DeviceTemplate, Resident};
+use super::rates::Rates;
+use crate::cuda::{Buffer, Kernel, Launch, Pool, Runtime};
+use crate::error::RenderError;
+use crate::job::Job;
+use crate::stage::Stage;
+use crate::sync::locked;
+
+/// A launch of one block of `threads` threads for each unit of a piece of work.
+pub(crate) fn blocks_for(piece: &Range<u64>, threads: u32) -> Launch {
+    Launch { blocks: (piece.end - piece.start) as u32, threads, shared: 0 }
+}
+
+/// A launch of one warp for each unit of a piece of work, `warps` to a block, with `words` 32-bit words of shared memory a warp.
+pub(crate) fn warps_for(piece: &Range<u64>, warps: u32, words: u32) -> Launch {
+    let blocks = ((piece.end - piece.start) as u32).div_ceil(warps);
+    Launch { blocks, threads: warps * WARP, shared: warps * 4 * words }
+}
+
+/// A CUDA device, or what stands in for one.
+pub struct Cuda<R: Runtime> {
+    pub(super) pool: Pool<R>,
+    pub(super) rates: Rates<R>,
+    /// Stages whose time is not read yet.
+    spans: Mutex<Vec<Span<R>>>,
+    counters: Mutex<Option<Arc<Buffer<R, Counters>>>>,
+    /// The template that the device holds.
+    pub(super) template: Mutex<Option<DeviceTemplate<R>>>,
+    /// Geometry that the device holds.
+    pub(super) resident: Mutex<Resident<R>>,
+}
+
+/// A stage, and the moments of the queue between which it ran.
+type Span<R> = (Stage, <R as Runtime>::Mark, <R as Runtime>::Mark);
+
+impl<R: Runtime> Cuda<R> {
+    /// A backend on a device.
+    pub fn new(runtime: Arc<R>) -> Cuda<R> {
+        Cuda {
+            pool: Pool::new(runtime),
+            rates: Rates::default(),
+            spans: Mutex::default(),
+            counters: Mutex::default(),
+            template: Mutex::default(),
+            resident: Mutex::default(),
+        }
+    }
+
+    /// Memory.
+    pub(crate) fn pool(&self) -> &Pool<R> {
+        &self.pool
+    }
+
+    /// Launches a kernel once.
+    pub(crate) fn launch<A: Pod>(&self, kernel: Kernel, launch: Launch, arguments: &A) -> Result<(), RenderError> {
+        let result = self.pool.runtime().launch(kernel, launch, bytemuck::bytes_of(arguments));
+        result.map_err(|fault| self.pool.fault(fault))
+    }
+
+    /// A moment in the device's queue.
+    pub(super) fn mark(&self) -> Result<R::Mark, RenderError> {
+        self.pool.runtime().mark().map_err(|fault| self.pool.fault(fault))
+    }
+
+    /// Where kernels count.
+    pub(crate) fn tally(&self) -> Result<Tally, RenderError> {
+        Ok(Tally { shards: self.counters()?.output() })
+    }
+
+    fn counters(&self) -> Result<Arc<Buffer<R, Counters>>, RenderError> {
+        let mut counters = locked(&self.counters);
+        if let Some(counters) = &*counters {
+            return Ok(Arc::clone(counters));
+        }
+        let fresh = Arc::new(self.pool.zeros("counters", Tally::SHARDS as usize)?);
+        Ok(Arc::clone(counters.insert(fresh)))
+    }
+
+    /// Sets the counters to zero and forgets times that were not read: a band begins.
+    pub(crate) fn begin_band(&self) -> Result<(), RenderError> {
+        locked(&self.spans).clear();
+        self.rates.forget_pending();
+        self.counters()?.clear()
+    }
+
+    /// Runs a stage between two marks of the device's clock; the time is read when the band is done.
+    pub(crate) fn on_device_clock<T>(
+        &self,
+        stage: Stage,
+        work: impl FnOnce() -> Result<T, RenderError>,
+    ) -> Result<T, RenderError> {
+        let from = self.mark()?;
+        let result = work()?;
+        let to = self.mark()?;
+        locked(&self.spans).push((stage, from, to));
+        Ok(result)
+    }
+
+    /// Reads counters and clocks: a band is done.
+    pub(crate) fn end_band(&self, job: &Job) -> Result<(), RenderError> {
+        let counted = sum_of(&self.counters()?.read()?);
+        // Kernels count the tests that they make; the rest was decided without.
+        let short_tests_culled = counted.half_ball - counted.short_tests;
+        job.tally.add_all(&Counters { short_tests_culled, ..counted });
+        for (stage, from, to) in locked(&self.spans).drain(..) {
+            let seconds = self.pool.runtime().seconds(&from, &to).map_err(|fault| self.pool.fault(fault))?;
+            job.add_seconds(stage, seconds);
+        }
+        self.rates.settle(&self.pool)
+    }
+}
+
+/// What all shards counted.
+fn sum_of(shards: &[Counters]) -> Counters {
+    let mut sums: Counters = bytemuck::Zeroable::zeroed();
+    let words = bytemuck::cast_slice_mut::<Counters, u64>(std::slice::from_mut(&mut sums));
+    for shard in shards {
+        for (sum, count) in words.iter_mut().zip(bytemuck::cast_slice::<Counters, u64>(std::slice::from_ref(shard))) {
+            *sum += count;
+        }
+    }
+    sums
+}

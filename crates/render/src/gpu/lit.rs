@@ -1,0 +1,48 @@
+//! What light points see, on a device.
+
+use lightmesh_layout::Out;
+use lightmesh_layout::mesh::LitBy;
+use lightmesh_scene::Light;
+
+use super::device::Cuda;
+use super::points::DevicePoints;
+use crate::cuda::{Buffer, Runtime};
+use crate::error::RenderError;
+
+/// What every used light point sees of every light, on a device.
+pub struct DeviceLit<R: Runtime> {
+    /// One a light.
+    pub(crate) lit: Buffer<R, LitBy>,
+    /// The same.
+    pub(crate) records: Vec<LitBy>,
+    bits: Buffer<R, u64>,
+    seen: Buffer<R, u16>,
+}
+
+impl<R: Runtime> DeviceLit<R> {
+    pub(crate) fn new(cuda: &Cuda<R>, lights: &[Light], points: &DevicePoints<R>) -> Result<DeviceLit<R>, RenderError> {
+        let sized = lights.iter().filter(|light| light.has_size()).count();
+        let (slots, count) = (points.capacity(), points.count);
+        let bits = cuda.pool().zeros("light points that see lights", slots * (lights.len() - sized))?;
+        let seen = cuda.pool().room("light points' shares of lights", count * sized)?;
+        let (mut next_bits, mut next_seen) = (bits.output().address(), seen.output().address());
+        let records: Vec<LitBy> = lights
+            .iter()
+            .map(|light| {
+                if light.has_size() {
+                    next_seen += (2 * count) as u64;
+                    LitBy { bits: Out::NULL, seen: Out::to(next_seen - (2 * count) as u64) }
+                } else {
+                    next_bits += (8 * slots) as u64;
+                    LitBy { bits: Out::to(next_bits - (8 * slots) as u64), seen: Out::NULL }
+                }
+            })
+            .collect();
+        Ok(DeviceLit { lit: cuda.pool().upload("lights' tables", &records)?, records, bits, seen })
+    }
+
+    /// Reads back what the light points see, in the form of the CPU's twin but in the order of the device's slots.
+    pub fn read(&self) -> Result<(Vec<u64>, Vec<u16>), RenderError> {
+        Ok((self.bits.read()?, self.seen.read()?))
+    }
+}

@@ -1,0 +1,32 @@
+//! Masks on a device.
+
+use super::cells::DeviceCells;
+use crate::cuda::{Buffer, Runtime};
+use crate::error::RenderError;
+
+/// The masks of all surface points on a device, transposed: a block of 32 · words words for each item.
+pub struct DeviceMasks<R: Runtime> {
+    pub(crate) masks: Buffer<R, u32>,
+    pub(crate) words: usize,
+}
+
+impl<R: Runtime> DeviceMasks<R> {
+    /// Reads the masks: for each ray that has a surface point its cell and its mask, ordered by ray.
+    ///
+    /// # Errors
+    /// [`RenderError::DeviceFault`] where the device fails.
+    pub fn read(&self, cells: &DeviceCells<R>) -> Result<Vec<(u32, u64, Vec<u32>)>, RenderError> {
+        let (members, items, masks) = (cells.members.read()?, cells.items.read()?, self.masks.read()?);
+        let mut found = Vec::new();
+        for (item, columns) in items.iter().zip(masks.chunks_exact(32 * self.words)) {
+            for lane in 0..item.count {
+                let bit = |k: usize| columns[k] >> lane & 1;
+                let word = |word: usize| (0..32).map(|k| bit(32 * word + k) << k).sum();
+                let mask = (0..self.words).map(word).collect();
+                found.push((members[(item.first + lane) as usize], item.cell, mask));
+            }
+        }
+        found.sort_unstable_by_key(|(ray, ..)| *ray);
+        Ok(found)
+    }
+}

@@ -1,0 +1,89 @@
+//! Materials and their textures as a device holds them.
+
+use std::collections::HashMap;
+
+use glam::Vec2;
+use lightmesh_image::Transfer;
+use lightmesh_layout::In;
+use lightmesh_layout::geometry::Vec3;
+use lightmesh_layout::scene::{Material, Scene as Record, Texture, Uv};
+use lightmesh_scene::{Geometry, Wrap};
+
+use super::scene::{Upload, vec3};
+use crate::cuda::Runtime;
+use crate::error::RenderError;
+use crate::shading::tint::{Coefficients, is_tinted, texture_of};
+
+impl<R: Runtime> Upload<'_, R> {
+    /// What decides about the colours of surfaces. Texture coordinates and the table of sRGB only where a texture needs them.
+    pub(super) fn materials(&mut self, geometry: &Geometry, record: &mut Record) -> Result<(), RenderError> {
+        record.triangle_materials = self.array("materials of triangles", &geometry.mesh.materials)?;
+        record.colors = self.array::<Vec3>("colours", bytemuck::cast_slice(&geometry.mesh.colors))?;
+        let textures = self.textures(geometry)?;
+        if !textures.is_empty() {
+            let srgb: Vec<f32> = (0..=u8::MAX).map(|code| Transfer::Srgb.decode(code)).collect();
+            record.srgb = self.array("table of sRGB", &srgb)?;
+            record.uvs = self.array::<Uv>("texture coordinates", bytemuck::cast_slice(&geometry.mesh.uvs))?;
+            record.textures = self.array("textures", &textures)?;
+        }
+        let mut used = 0..;
+        let materials: Vec<Material> = geometry
+            .materials
+            .iter()
+            .map(|material| {
+                let texture = texture_of(geometry, material).and_then(|_| used.next());
+                material_record(geometry, material, texture.unwrap_or(Material::NO_TEXTURE))
+            })
+            .collect();
+        record.materials = self.array("materials", &materials)?;
+        Ok(())
+    }
+
+    /// The textures of the materials that have one, in their order. A picture is uploaded once.
+    fn textures(&mut self, geometry: &Geometry) -> Result<Vec<Texture>, RenderError> {
+        let mut uploaded: HashMap<u32, In<u32>> = HashMap::new();
+        let mut records = Vec::new();
+        for (uses, texture) in geometry.materials.iter().filter_map(|material| texture_of(geometry, material)) {
+            let texels = match uploaded.get(&uses.texture) {
+                Some(&texels) => texels,
+                None => {
+                    let packed: Vec<u32> = texture.texels.iter().map(|&texel| u32::from_le_bytes(texel)).collect();
+                    let texels = self.array("texels", &packed)?;
+                    uploaded.insert(uses.texture, texels);
+                    texels
+                }
+            };
+            let axis = |axis: Vec2| axis.to_array();
+            records.push(Texture {
+                texels,
+                size: texture.size,
+                wrap: uses.wrap.map(wrap),
+                u_axis: axis(uses.transform.matrix2.x_axis),
+                v_axis: axis(uses.transform.matrix2.y_axis),
+                translation: axis(uses.transform.translation),
+            });
+        }
+        Ok(records)
+    }
+}
+
+fn wrap(wrap: Wrap) -> u32 {
+    match wrap {
+        Wrap::Repeat => Texture::REPEAT,
+        Wrap::Mirror => Texture::MIRROR,
+        Wrap::Clamp => Texture::CLAMP,
+    }
+}
+
+/// A material that has no tint is uploaded as the sum that it is everywhere, so that kernels ask for nothing more.
+fn material_record(geometry: &Geometry, material: &lightmesh_scene::Material, texture: u32) -> Material {
+    let mut record = Material { shininess: material.shininess, texture, ..bytemuck::Zeroable::zeroed() };
+    let mut own = Coefficients::untinted(material);
+    if is_tinted(geometry, material) {
+        record.tinted = 1;
+        (own.ks, own.emission) = (material.ks, material.emission);
+        record.ks_tinted = vec3(material.ks_tinted);
+        record.emission_tinted = vec3(material.emission_tinted);
+    }
+    Material { ka: vec3(own.ka), kd: vec3(own.kd), ks: vec3(own.ks), emission: vec3(own.emission), ..record }
+}

@@ -1,0 +1,60 @@
+//! The plan of memory: what each buffer will take, before the first is allocated.
+
+use lightmesh_layout::geometry::{Hit, ListedRay};
+use lightmesh_layout::mesh::Item;
+
+use super::device::Cuda;
+use super::scene::DeviceScene;
+use crate::cuda::Runtime;
+use crate::error::RenderError;
+use crate::plan::Plan;
+
+/// Surface points that an item is expected to have: a cell's points fill warps of 32, and cells are cut at the borders of tiles.
+const POINTS_PER_ITEM: u64 = 8;
+/// Share of free memory that is left to others.
+const RESERVE: u64 = 16;
+
+impl<R: Runtime> Cuda<R> {
+    /// Rows that fit into what is free, or under the limit, beside the scene.
+    ///
+    /// The estimate of light points and items is an expectation. Where a picture has more, allocation fails and the band is
+    /// begun again with half of its rows.
+    pub(crate) fn rows_that_fit(&self, scene: &DeviceScene<R>, plan: &Plan) -> Result<u32, RenderError> {
+        let free = self.pool.runtime().free_memory().map(|free| free - free / RESERVE);
+        let free = match plan.memory_limit {
+            Some(limit) => {
+                let rest = limit.saturating_sub(self.pool.taken());
+                Some(free.map_or(rest, |free| free.min(rest)))
+            }
+            None => free,
+        };
+        let Some(free) = free else { return Ok(plan.size[1]) };
+        let row = u64::from(plan.size[0]) * bytes_per_ray(plan, scene.host.scene.lights.len() as u64);
+        match free / row {
+            0 => Err(RenderError::DeviceMemory {
+                device: self.pool.runtime().name(),
+                buffer: "one row of the picture",
+                needed: row,
+                free: Some(free),
+            }),
+            rows => Ok(rows.min(u64::from(plan.size[1])) as u32),
+        }
+    }
+}
+
+/// Bytes per ray when most is held.
+fn bytes_per_ray(plan: &Plan, lights: u64) -> u64 {
+    let listed = if plan.bounces > 0 { 2 * size_of::<ListedRay>() as u64 } else { 0 };
+    plan.film_bytes() + listed + size_of::<Hit>() as u64 + 4 * lights + plan.footprint.device
+}
+
+/// What the light mesh method adds per ray, for a template of `words` words of masks and `bricks` bricks around a cell.
+pub(crate) fn bytes_of_light_mesh(words: usize, bricks: usize, lights: u64) -> u64 {
+    // Members and items of tiles; items with their masks, and the used points and slots of the bricks around them.
+    let grouping = 4 + size_of::<Item>() as u64;
+    let items = (size_of::<Item>() + 32 * 4 * words + (8 + 4) * bricks) as u64 / POINTS_PER_ITEM;
+    // Half a light point a pixel: its entry and share, and its part of a brick that is a quarter full.
+    let points = (8 + 2 * lights + 2 * (8 + 8 + 4 + 8 * lights) / 16) / 2;
+    // Light points used, and the list of rays that fall back.
+    grouping + items + points + 4 + 4
+}

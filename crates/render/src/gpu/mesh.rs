@@ -1,0 +1,94 @@
+//! What kernels know of the light mesh and of sampling.
+
+use glam::IVec3;
+use lightmesh_layout::constants::MOST_REACH;
+use lightmesh_layout::mesh::{LightMesh as Record, TemplateRow};
+use lightmesh_layout::scene::Sampling;
+use lightmesh_scene::Weight;
+
+use super::device::Cuda;
+use super::held::DeviceTemplate;
+use crate::cuda::Runtime;
+use crate::error::RenderError;
+use crate::light_mesh::LightMesh;
+use crate::sync::locked;
+
+/// Modules that have the template in constant memory.
+const USERS: [&str; 3] = ["short_tests", "light_points", "interpolate"];
+
+impl<R: Runtime> Cuda<R> {
+    /// The light mesh as kernels know it. Brings the template to the device, if another one is there.
+    pub(crate) fn mesh(&self, mesh: &LightMesh) -> Result<Record, RenderError> {
+        let mut held = locked(&self.template);
+        let template = match held.take().filter(|held| held.radius == mesh.template.radius()) {
+            Some(template) => template,
+            None => self.bring_template(mesh)?,
+        };
+        let template = held.insert(template);
+        Ok(record(mesh, template))
+    }
+
+    fn bring_template(&self, mesh: &LightMesh) -> Result<DeviceTemplate<R>, RenderError> {
+        let rows = template_rows(mesh);
+        let lines: Vec<TemplateRow> = rows.iter().copied().filter(|row| row.count > 0).collect();
+        for module in USERS {
+            let result = self.pool.runtime().constant(module, "template_rows", bytemuck::cast_slice(&lines));
+            result.map_err(|fault| self.pool.fault(fault))?;
+        }
+        let packed: Vec<u32> = rows.iter().map(|row| u32::from(row.bit) | u32::from(row.count) << 16).collect();
+        let offsets: Vec<u32> = mesh.template.offsets().iter().map(|&offset| packed_offset(offset)).collect();
+        Ok(DeviceTemplate {
+            radius: mesh.template.radius(),
+            lines: lines.len() as u32,
+            offsets: self.pool.upload("template", &offsets)?,
+            rows: self.pool.upload("rows of the template", &packed)?,
+        })
+    }
+}
+
+fn packed_offset(offset: IVec3) -> u32 {
+    let [x, y, z] = (offset + MOST_REACH).to_array().map(|i| i as u32);
+    x | y << 8 | z << 16
+}
+
+/// The lines of the template along x, by z and y from 1 − reach on.
+fn template_rows(mesh: &LightMesh) -> Vec<TemplateRow> {
+    let template = &mesh.template;
+    let side = 1 - template.reach()..=template.reach();
+    let lines = side.clone().flat_map(|z| side.clone().map(move |y| (y, z)));
+    lines
+        .map(|(y, z)| {
+            let bits = template.row(y, z, 1 - template.reach(), template.reach());
+            let x = template.offsets().get(bits.start).map_or(0, |offset| offset.x);
+            TemplateRow { bit: bits.start as u16, count: bits.len() as u16, x, y, z }
+        })
+        .collect()
+}
+
+fn record<R: Runtime>(mesh: &LightMesh, template: &DeviceTemplate<R>) -> Record {
+    Record {
+        anchor: mesh.lattice.anchor.to_array().into(),
+        step: mesh.lattice.step,
+        radius: mesh.radius,
+        least_height: mesh.least_height(),
+        edge_on: mesh.edge_on(),
+        slack: mesh.slack(),
+        weight: match mesh.weight {
+            Weight::Constant => Record::WEIGHT_CONSTANT,
+            Weight::Quadratic => Record::WEIGHT_QUADRATIC,
+            Weight::Smooth => Record::WEIGHT_SMOOTH,
+        },
+        points: mesh.template.len() as u32,
+        words: mesh.template.words() as u32,
+        reach: mesh.template.reach(),
+        number: mesh.lattice.number.to_array(),
+        lines: template.lines,
+        offsets: template.offsets.input(),
+        rows: template.rows.input(),
+    }
+}
+
+/// How lights with a size are sampled, as kernels know it.
+pub(crate) fn sampling(sampling: crate::job::Sampling) -> Sampling {
+    Sampling { seed: sampling.seed, samples: sampling.samples, spread: u32::from(sampling.spread) }
+}

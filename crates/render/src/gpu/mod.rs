@@ -1,0 +1,30 @@
+//! What the stages on a CUDA device share: the scene's copy, data between stages, memory, launches, counters and clocks.
+//!
+//! The stages' launches lie beside their CPU twins (`stages/<stage>/cuda.rs` and `kernel.cu`); [`backend`](crate::backend) puts them
+//! together. Here are the device itself ([`device`]), the copy of the scene ([`scene`]), what stages hand to each other ([`rays`], [`cells`], [`masks`], [`points`],
+//! [`lit`], [`film`]), launches cut into pieces that no watchdog minds ([`pieces`]), and the plan of memory ([`memory`]).
+
+pub(crate) mod cells;
+mod device;
+pub(crate) mod film;
+mod held;
+pub(crate) mod lit;
+pub(crate) mod masks;
+mod materials;
+pub(crate) mod memory;
+mod mesh;
+mod per_structure;
+mod pieces;
+pub(crate) mod points;
+mod rates;
+pub(crate) mod rays;
+mod scan;
+mod scene;
+
+pub use device::Cuda;
+pub(crate) use device::{blocks_for, warps_for};
+pub(crate) use lightmesh_layout::constants::{BLOCK, BLOCK_SIDE};
+pub(crate) use mesh::sampling;
+pub(crate) use per_structure::{PerStructure, per_structure};
+pub(crate) use rates::{Work, slices_of_rays};
+pub use scene::DeviceScene;

@@ -1,0 +1,74 @@
+//! Rays, hits and visibility on a device.
+
+use lightmesh_layout::geometry::{Hit, ListedRay, Rays};
+
+use super::scene::DeviceScene;
+use crate::accel;
+use crate::cuda::{Buffer, Runtime};
+use crate::data::wave::Wave;
+use crate::error::RenderError;
+
+/// A wave on a device.
+pub(crate) type DeviceWave<'a, R> = Wave<'a, DeviceScene<R>, DeviceRays<R>, DeviceHits<R>>;
+
+/// Rays on a device.
+pub struct DeviceRays<R: Runtime> {
+    pub(crate) record: Rays,
+    /// Holds the list that the record points to.
+    pub(crate) list: Option<Buffer<R, ListedRay>>,
+}
+
+/// Hits on a device, one a ray.
+pub struct DeviceHits<R: Runtime> {
+    pub(crate) hits: Buffer<R, Hit>,
+}
+
+/// What surface points see of each light, on a device.
+pub struct DeviceVisibility<R: Runtime> {
+    /// By light, then ray.
+    pub(crate) share: Buffer<R, f32>,
+    /// Light points used by each ray.
+    pub(crate) used: Option<Buffer<R, u32>>,
+}
+
+impl<R: Runtime> DeviceHits<R> {
+    /// Reads the hits in the order of the rays: for a camera, y · width + x of the band.
+    ///
+    /// # Errors
+    /// [`RenderError::DeviceFault`] where the device fails.
+    pub fn read(&self) -> Result<Vec<accel::Hit>, RenderError> {
+        Ok(bytemuck::cast_vec(self.hits.read()?))
+    }
+}
+
+impl<R: Runtime> DeviceVisibility<R> {
+    /// Reads the shares, by light, then ray.
+    ///
+    /// # Errors
+    /// [`RenderError::DeviceFault`] where the device fails.
+    pub fn read(&self) -> Result<Vec<f32>, RenderError> {
+        self.share.read()
+    }
+}
+
+impl<R: Runtime> DeviceRays<R> {
+    /// Rays from the camera, not from mirrors.
+    pub(crate) fn is_from_camera(&self) -> bool {
+        self.list.is_none()
+    }
+
+    /// Number of rays.
+    pub(crate) fn len(&self) -> usize {
+        self.record.count as usize
+    }
+
+    /// Blocks of `edge`² threads that take one ray a thread: tiles of a camera's rows, runs of a list.
+    pub(crate) fn blocks(&self, edge: u32) -> u64 {
+        if !self.is_from_camera() {
+            return u64::from(self.record.count.div_ceil(edge * edge));
+        }
+        let width = self.record.view.size[0];
+        let rows = self.record.count / width;
+        u64::from(width.div_ceil(edge)) * u64::from(rows.div_ceil(edge))
+    }
+}

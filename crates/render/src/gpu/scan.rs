@@ -1,0 +1,40 @@
+//! Exclusive prefix sums on the device.
+
+use lightmesh_layout::constants::{BLOCK, VALUES_OF_THREAD};
+use lightmesh_layout::stages::Scan;
+
+use super::device::{Cuda, blocks_for};
+use crate::cuda::{Buffer, Kernel, Runtime};
+use crate::error::RenderError;
+
+/// Values that one block sums.
+const VALUES: usize = (BLOCK * VALUES_OF_THREAD) as usize;
+
+impl<R: Runtime> Cuda<R> {
+    /// Replaces each value by the sum of all before it.
+    pub(crate) fn scan(&self, values: &Buffer<R, u32>) -> Result<(), RenderError> {
+        let blocks = values.len().div_ceil(VALUES);
+        if blocks == 0 {
+            return Ok(());
+        }
+        let sums = self.pool.room("sums of a scan", blocks)?;
+        let arguments = Scan { values: values.output(), sums: sums.output(), count: values.len() as u64 };
+        let launch = blocks_for(&(0..blocks as u64), BLOCK);
+        self.launch(Kernel { module: "scan", name: "scan_blocks" }, launch, &arguments)?;
+        if blocks > 1 {
+            self.scan(&sums)?;
+            self.launch(Kernel { module: "scan", name: "add_offsets" }, launch, &arguments)?;
+        }
+        Ok(())
+    }
+
+    /// The same for values with one more place at their end, whose content does not matter: it receives the sum of all, which is
+    /// returned. Waits for the device.
+    pub(crate) fn scan_total(&self, values: &Buffer<R, u32>) -> Result<usize, RenderError> {
+        values.clear_last()?;
+        self.scan(values)?;
+        let mut total = [0];
+        values.read_into(values.len() - 1, &mut total)?;
+        Ok(total[0] as usize)
+    }
+}

@@ -1,0 +1,229 @@
+//! The copy of a scene that a device holds: geometry once, lights for each picture.
+
+use std::sync::Arc;
+
+use lightmesh_layout::constants::BVH_STACK;
+use lightmesh_layout::geometry::{Approach, BruteForce, Bvh, BvhNode, DVec3, Grid, Triangle, Vec3};
+use lightmesh_layout::scene::{Indices, Light, Scene};
+use lightmesh_layout::{DeviceType, In, Structure};
+use lightmesh_scene::{Falloff, LightKind, Lights};
+
+use super::device::Cuda;
+use super::held::{Buffers, DeviceGeometry};
+use crate::accel::{self, Form};
+use crate::cuda::Runtime;
+use crate::error::RenderError;
+use crate::job::Job;
+use crate::prepared::PreparedScene;
+use crate::shading::tint::is_tinted;
+use crate::shading::{DEFAULT_AMBIENT, LightTargets};
+use crate::stage::Stage;
+use crate::sync::locked;
+
+/// A scene on a device: the geometry's copy, which is kept for later pictures, and the lights of this one.
+pub struct DeviceScene<R: Runtime> {
+    pub(crate) record: Scene,
+    pub(crate) structure: Structure,
+    /// The scene on the host.
+    pub(crate) host: PreparedScene,
+    /// What the record points to.
+    _geometry: Arc<DeviceGeometry<R>>,
+    _lights: Buffers<R>,
+}
+
+impl<R: Runtime> Cuda<R> {
+    /// The scene on this device. Its geometry is brought there, if it is not there yet; with a BVH for the candidates of short tests on
+    /// request.
+    pub(crate) fn device_scene(
+        &self,
+        job: &Job,
+        scene: &PreparedScene,
+        with_bvh: bool,
+    ) -> Result<DeviceScene<R>, RenderError> {
+        let geometry = self.device_geometry(job, scene, with_bvh)?;
+        let mut upload = Upload { cuda: self, buffers: Vec::new() };
+        let record = upload.lights(&scene.scene.lights, geometry.record)?;
+        Ok(DeviceScene {
+            record,
+            structure: geometry.structure,
+            host: scene.clone(),
+            _geometry: geometry,
+            _lights: upload.buffers,
+        })
+    }
+
+    fn device_geometry(
+        &self,
+        job: &Job,
+        scene: &PreparedScene,
+        with_bvh: bool,
+    ) -> Result<Arc<DeviceGeometry<R>>, RenderError> {
+        let mut resident = locked(&self.resident);
+        if let Some(copy) = resident.find(&scene.geometry).filter(|copy| copy.has_bvh || !with_bvh) {
+            return Ok(copy);
+        }
+        job.work.begin(job.observer, Stage::Upload, 1, 0);
+        let upload = || Upload { cuda: self, buffers: Vec::new() }.geometry(scene, with_bvh);
+        let uploaded = job.wall_time(Stage::Upload, upload);
+        job.work.end(job.observer, Stage::Upload);
+        let copy = Arc::new(uploaded?);
+        resident.keep(&scene.geometry, Arc::clone(&copy));
+        Ok(copy)
+    }
+}
+
+/// An upload in progress.
+pub(super) struct Upload<'a, R: Runtime> {
+    cuda: &'a Cuda<R>,
+    buffers: Buffers<R>,
+}
+
+impl<R: Runtime> Upload<'_, R> {
+    pub(super) fn array<T: DeviceType>(&mut self, what: &'static str, values: &[T]) -> Result<In<T>, RenderError> {
+        if values.is_empty() {
+            return Ok(In::NULL);
+        }
+        let buffer = self.cuda.pool.upload(what, values)?;
+        let address = buffer.input();
+        self.buffers.push(Box::new(buffer));
+        Ok(address)
+    }
+
+    fn geometry(mut self, scene: &PreparedScene, with_bvh: bool) -> Result<DeviceGeometry<R>, RenderError> {
+        let (geometry, prepared) = (&*scene.scene.geometry, &*scene.geometry);
+        let mesh = &geometry.mesh;
+        let tinted = geometry.materials.iter().any(|material| is_tinted(geometry, material));
+        let indices: &[[u32; 3]] = if tinted || !mesh.normals.is_empty() { &mesh.triangles } else { &[] };
+        let (center, far) = prepared.reach_parameters();
+        let mut record = Scene {
+            triangles: self.triangles(&prepared.triangles)?,
+            indices: self.array::<Indices>("indices", bytemuck::cast_slice(indices))?,
+            normals: self.array::<Vec3>("normals", bytemuck::cast_slice(&mesh.normals))?,
+            center: vec3(center),
+            far,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        self.materials(geometry, &mut record)?;
+        let structure = match prepared.accelerator.form() {
+            Form::Bvh(bvh) => {
+                record.bvh = self.bvh(bvh)?;
+                Structure::Bvh
+            }
+            Form::Grid(grid) => {
+                record.grid = self.grid(grid)?;
+                Structure::Grid
+            }
+            Form::BruteForce(all) => {
+                record.brute_force = self.brute_force(all)?;
+                Structure::BruteForce
+            }
+        };
+        let has_bvh = with_bvh || structure == Structure::Bvh;
+        if with_bvh && structure != Structure::Bvh {
+            record.bvh = self.bvh(&accel::Bvh::new(&prepared.triangles))?;
+        }
+        Ok(DeviceGeometry { record, structure, has_bvh, buffers: self.buffers })
+    }
+
+    /// The record of a scene with these lights.
+    fn lights(&mut self, lights: &Lights, geometry: Scene) -> Result<Scene, RenderError> {
+        let records: Vec<Light> = lights.iter().map(light).collect();
+        let targets = LightTargets::new(lights).flat();
+        Ok(Scene {
+            lights: self.array("lights", &records)?,
+            light_targets: self.array::<Vec3>("points on lights", bytemuck::cast_slice(&targets))?,
+            light_count: records.len() as u32,
+            ambient: vec3(lights.ambient.unwrap_or(DEFAULT_AMBIENT)),
+            background: vec3(lights.background.unwrap_or_default()),
+            ..geometry
+        })
+    }
+
+    fn triangles(&mut self, triangles: &[accel::Triangle]) -> Result<In<Triangle>, RenderError> {
+        self.array("triangles", bytemuck::cast_slice(triangles))
+    }
+
+    fn bvh(&mut self, bvh: &accel::Bvh) -> Result<Bvh, RenderError> {
+        if bvh.depth() > BVH_STACK as usize {
+            return Err(RenderError::Device {
+                device: self.cuda.pool.runtime().name(),
+                reason: format!(
+                    "the scene's BVH has {} levels, its kernels take {BVH_STACK}: choose a grid, or the device cpu",
+                    bvh.depth()
+                ),
+            });
+        }
+        let nodes = bvh.nodes();
+        Ok(Bvh {
+            nodes: self.array::<BvhNode>("BVH", bytemuck::cast_slice(nodes))?,
+            triangles: self.triangles(bvh.triangles())?,
+            approach: approach(bvh.approach()),
+            node_count: nodes.len() as u32,
+            depth: bvh.depth() as u32,
+        })
+    }
+
+    fn grid(&mut self, grid: &accel::Grid) -> Result<Grid, RenderError> {
+        let (origin, size) = grid.geometry();
+        Ok(Grid {
+            cells: self.array("grid", grid.cells())?,
+            triangles: self.triangles(grid.triangles())?,
+            distances: self.array("distances of the grid", &grid.distances())?,
+            origin: DVec3::from(origin.to_array()),
+            size: vec3(size),
+            dims: grid.dims(),
+            approach: approach(grid.approach()),
+            triangle_count: grid.triangles().len() as u32,
+            spare: 0,
+        })
+    }
+
+    fn brute_force(&mut self, all: &accel::BruteForce) -> Result<BruteForce, RenderError> {
+        Ok(BruteForce {
+            triangles: self.triangles(all.triangles())?,
+            approach: approach(all.approach()),
+            count: all.triangles().len() as u32,
+            spare: 0,
+        })
+    }
+}
+
+pub(super) fn vec3(v: glam::Vec3) -> Vec3 {
+    Vec3::from(v.to_array())
+}
+
+fn approach((center, radius): (glam::Vec3, f32)) -> Approach {
+    Approach { center: vec3(center), radius }
+}
+
+fn light(light: &lightmesh_scene::Light) -> Light {
+    let mut record = Light {
+        position: vec3(light.position().unwrap_or_default()),
+        intensity: vec3(light.intensity),
+        inverse_square: u32::from(light.falloff == Falloff::InverseSquare),
+        size: crate::shadow::size(light),
+        ..bytemuck::Zeroable::zeroed()
+    };
+    match light.kind {
+        LightKind::Point { spread, .. } => (record.kind, record.radius) = (Light::POINT, spread),
+        LightKind::Sphere { radius, .. } => (record.kind, record.radius) = (Light::SPHERE, radius),
+        LightKind::Directional { direction } => {
+            (record.kind, record.direction) = (Light::DIRECTIONAL, vec3(direction));
+        }
+        LightKind::Spot { direction, inner, outer, .. } => {
+            (record.kind, record.direction) = (Light::SPOT, vec3(direction));
+            record.cos_outer = outer.cos();
+            record.cone_scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
+        }
+        LightKind::Disk { normal, radius, .. } => {
+            let (tangent, bitangent) = normal.any_orthonormal_pair();
+            (record.kind, record.direction, record.radius) = (Light::DISK, vec3(normal), radius);
+            (record.half_u, record.half_v) = (vec3(tangent), vec3(bitangent));
+        }
+        LightKind::Rectangle { half_u, half_v, .. } => {
+            record.kind = Light::RECTANGLE;
+            (record.half_u, record.half_v) = (vec3(half_u), vec3(half_v));
+        }
+    }
+    record
+}

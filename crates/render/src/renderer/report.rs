@@ -1,0 +1,87 @@
+//! What a render reports about itself.
+
+use lightmesh_scene::Projection;
+
+use super::resolve::Resolved;
+use crate::counters::Counts;
+use crate::job::Job;
+use crate::shading::DEFAULT_AMBIENT;
+use crate::stage::Seconds;
+use crate::stats::{CameraStats, DeviceStats, MemoryStats, SceneStats, SettingsStats, Stats};
+
+/// What a backend says of itself.
+pub(super) struct DeviceFacts {
+    pub(super) kind: &'static str,
+    pub(super) name: String,
+    pub(super) peak_memory: u64,
+}
+
+/// The statistics of a picture that was made in `seconds`, `rows` rows at once.
+pub(super) fn stats(job: &Job, resolved: &Resolved, device: DeviceFacts, rows: u32, seconds: f64) -> Stats {
+    let Resolved { scene, technique, plan, .. } = resolved;
+    let counts = Counts::new(plan.pixels(), technique.template(), &job.tally.snapshot());
+    if counts.overruns > 0 {
+        let rays = counts.overruns;
+        job.observer
+            .note(&format!("{rays} rays were given up in the grid: the picture may be wrong there; please report it"));
+    }
+    Stats {
+        version: 1,
+        scene: SceneStats {
+            name: scene.scene.name.clone(),
+            triangles: scene.geometry.triangles.len(),
+            lights: scene.scene.lights.len(),
+        },
+        settings: settings(resolved, device.kind, rows),
+        device: DeviceStats { kind: device.kind, name: device.name },
+        counts,
+        seconds: Seconds { build: scene.geometry.take_build_seconds(), render: seconds, ..job.seconds() },
+        memory: MemoryStats::now(device.peak_memory),
+    }
+}
+
+/// Every setting as it was used.
+fn settings(resolved: &Resolved, device: &'static str, rows_per_band: u32) -> SettingsStats {
+    let Resolved { scene, settings, technique, sampling, .. } = resolved;
+    let lights = &scene.scene.lights;
+    let mut stats = SettingsStats {
+        mode: settings.mode.name(),
+        bounces: settings.bounces,
+        size: settings.size,
+        device,
+        threads: rayon::current_num_threads(),
+        step: None,
+        step_auto: false,
+        radius: None,
+        weight: None,
+        lookup: None,
+        short_tests: None,
+        samples: sampling.samples,
+        accel: scene.geometry.accelerator.name(),
+        camera: camera(resolved),
+        ambient: lights.ambient.unwrap_or(DEFAULT_AMBIENT).to_array(),
+        background: lights.background.unwrap_or_default().to_array(),
+        seed: settings.seed,
+        memory_limit: settings.memory_limit,
+        rows_per_band,
+        lattice: None,
+    };
+    technique.describe(scene, settings, &mut stats);
+    stats
+}
+
+fn camera(resolved: &Resolved) -> CameraStats {
+    let Resolved { scene, settings, camera, .. } = resolved;
+    let aspect = settings.size[0] as f32 / settings.size[1] as f32;
+    let (vfov, height) = match camera.projection {
+        Projection::Perspective(fov) => (Some(fov.vertical(aspect)), None),
+        Projection::Orthographic { height } => (None, Some(height)),
+    };
+    CameraStats {
+        position: scene.scene.to_world(camera.position).to_array(),
+        direction: camera.direction.to_array(),
+        up: camera.up.to_array(),
+        vfov,
+        height,
+    }
+}

@@ -1,0 +1,92 @@
+//! Settings checked, and what they leave open chosen.
+
+use lightmesh_scene::Camera;
+
+use crate::error::RenderError;
+use crate::job::Sampling;
+use crate::observer::Observer;
+use crate::plan::Plan;
+use crate::prepared::PreparedScene;
+use crate::settings::{Setting, Settings};
+use crate::techniques::{Request, Technique};
+use crate::view::View;
+
+/// More threads than any machine has processors only wait for each other.
+const MAX_THREADS: usize = 1024;
+
+/// A picture of a scene with nothing left open.
+pub(super) struct Resolved<'a> {
+    pub(super) scene: &'a PreparedScene,
+    pub(super) settings: &'a Settings,
+    pub(super) camera: Camera,
+    pub(super) view: View,
+    pub(super) technique: Technique,
+    pub(super) plan: Plan,
+    pub(super) sampling: Sampling,
+}
+
+impl<'a> Resolved<'a> {
+    /// Chooses what the settings leave open.
+    pub(super) fn new(
+        scene: &'a PreparedScene,
+        settings: &'a Settings,
+        observer: &dyn Observer,
+    ) -> Result<Resolved<'a>, RenderError> {
+        check(settings)?;
+        scene.check(&settings.acceleration)?;
+        let camera = camera(scene, settings);
+        let view = View::new(&camera, settings.size);
+        let technique = Technique::resolve(&Request { scene, settings, view: &view, observer })?;
+        let lights = scene.scene.lights.len();
+        let plan = Plan {
+            size: settings.size,
+            bounces: settings.bounces,
+            layers: settings.layers.then_some(lights),
+            memory_limit: settings.memory_limit,
+            kept: 0,
+            footprint: technique.footprint(lights as u64),
+        };
+        let samples = Technique::samples(settings);
+        let sampling = Sampling { samples, seed: settings.seed, spread: technique.spreads_points() };
+        Ok(Resolved { scene, settings, camera, view, technique, plan, sampling })
+    }
+}
+
+/// A number of threads without sense is refused before any work.
+pub(super) fn check_threads(threads: Option<usize>) -> Result<(), RenderError> {
+    match threads {
+        Some(threads) if !(1..=MAX_THREADS).contains(&threads) => Err(RenderError::Setting {
+            setting: Setting::Threads,
+            value: threads.to_string(),
+            remedy: "choose 1 to 1024; the number of processors is best",
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Settings without sense are refused before any work.
+fn check(settings: &Settings) -> Result<(), RenderError> {
+    let [width, height] = settings.size;
+    // Rays are numbered in 32 bits.
+    if width == 0 || height == 0 || u64::from(width) * u64::from(height) >= u64::from(u32::MAX) {
+        return Err(RenderError::Setting {
+            setting: Setting::Size,
+            value: format!("{width}x{height}"),
+            remedy: "both sides must be at least 1, and all pixels fewer than 4294967295",
+        });
+    }
+    let samples = Technique::samples(settings);
+    if !(1..=u32::from(u16::MAX)).contains(&samples) {
+        return Err(RenderError::Setting {
+            setting: Setting::Samples,
+            value: samples.to_string(),
+            remedy: "choose 1 to 65535",
+        });
+    }
+    Ok(())
+}
+
+fn camera(scene: &PreparedScene, settings: &Settings) -> Camera {
+    let chosen = settings.camera.as_ref().or(scene.scene.cameras.first());
+    chosen.cloned().unwrap_or_else(|| scene.scene.default_camera(settings.up))
+}

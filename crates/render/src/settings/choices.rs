@@ -1,0 +1,181 @@
+//! What is chosen by name: mode, lookup, short tests; and the step.
+
+use std::fmt;
+use std::str::FromStr;
+
+use lightmesh_scene::parse_by_name;
+
+use crate::techniques::table::technique_table;
+
+macro_rules! words {
+    (
+        modes { $($(#[doc = $mode_help:literal])* $mode:ident = $mode_word:literal,)* }
+        lookups { $($(#[doc = $lookup_help:literal])* $lookup:ident = $lookup_word:literal,)* }
+        techniques $techniques:tt
+    ) => {
+        /// How visibility is found.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[non_exhaustive]
+        pub enum Mode {
+            #[default]
+            $($(#[doc = $mode_help])* $mode,)*
+        }
+
+        impl Mode {
+            /// All modes; the default comes first.
+            pub const ALL: &[Mode] = &[$(Mode::$mode),*];
+
+            /// The word on the command line and in statistics.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Mode::$mode => $mode_word,)*
+                }
+            }
+
+            /// What it does, in a few words.
+            pub fn help(self) -> &'static str {
+                match self {
+                    $(Mode::$mode => concat!($($mode_help),*).trim_ascii_start(),)*
+                }
+            }
+        }
+
+        /// How light-mesh mode finds the visibility of a light at a surface point.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[non_exhaustive]
+        pub enum Lookup {
+            /// The best there is.
+            #[default]
+            Auto,
+            $($(#[doc = $lookup_help])* $lookup,)*
+        }
+
+        impl Lookup {
+            /// All lookups; the default comes first.
+            pub const ALL: &[Lookup] = &[Lookup::Auto, $(Lookup::$lookup),*];
+
+            /// The word on the command line and in statistics.
+            pub fn name(self) -> &'static str {
+                match self {
+                    Lookup::Auto => "auto",
+                    $(Lookup::$lookup => $lookup_word,)*
+                }
+            }
+
+            /// What it does, in a few words.
+            pub fn help(self) -> &'static str {
+                match self {
+                    Lookup::Auto => "The best there is.",
+                    $(Lookup::$lookup => concat!($($lookup_help),*).trim_ascii_start(),)*
+                }
+            }
+        }
+    };
+}
+
+technique_table!(words);
+parse_by_name!(Mode, "mode");
+parse_by_name!(Lookup, "lookup");
+
+/// The light-mesh step h. As text: `auto`, or a number above 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Step {
+    /// Tied to the size of a pixel in the scene.
+    #[default]
+    Auto,
+    /// In scene units.
+    Fixed(f32),
+}
+
+impl From<f32> for Step {
+    /// This many scene units.
+    fn from(step: f32) -> Step {
+        Step::Fixed(step)
+    }
+}
+
+impl fmt::Display for Step {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Step::Auto => f.pad("auto"),
+            Step::Fixed(step) => step.fmt(f),
+        }
+    }
+}
+
+impl FromStr for Step {
+    type Err = UnknownStep;
+
+    fn from_str(text: &str) -> Result<Step, UnknownStep> {
+        if text == "auto" {
+            return Ok(Step::Auto);
+        }
+        let step = text.trim().parse().ok().filter(|step: &f32| *step > 0.0 && step.is_finite());
+        step.map(Step::Fixed).ok_or_else(|| UnknownStep(text.to_owned()))
+    }
+}
+
+/// A text that is no light-mesh step.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is no light-mesh step: write a number above 0, or auto")]
+pub struct UnknownStep(pub String);
+
+/// How the short tests are evaluated. The masks are the same in every bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ShortTests {
+    /// By light-mesh cell, with the cell's possible occluders found once.
+    #[default]
+    Cells,
+    /// One segment after the other through the acceleration structure: the oracle.
+    Plain,
+}
+
+impl ShortTests {
+    /// All of them.
+    pub const ALL: &'static [ShortTests] = &[ShortTests::Cells, ShortTests::Plain];
+
+    /// The word for it, in statistics too.
+    pub fn name(self) -> &'static str {
+        match self {
+            ShortTests::Cells => "cells",
+            ShortTests::Plain => "plain",
+        }
+    }
+
+    /// What it is, in a few words.
+    pub fn help(self) -> &'static str {
+        match self {
+            ShortTests::Cells => "By light-mesh cell, with the cell's possible occluders found once",
+            ShortTests::Plain => "One segment after the other: the oracle",
+        }
+    }
+}
+
+parse_by_name!(ShortTests, "way of short tests");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_and_written() {
+        Mode::ALL.iter().for_each(|mode| assert_eq!(mode.to_string().parse(), Ok(*mode)));
+        Lookup::ALL.iter().for_each(|lookup| assert_eq!(lookup.to_string().parse(), Ok(*lookup)));
+        ShortTests::ALL.iter().for_each(|tests| assert_eq!(tests.to_string().parse(), Ok(*tests)));
+        assert_eq!(
+            "soft".parse::<Mode>().unwrap_err().to_string(),
+            "there is no mode `soft`; known are light-mesh, ray-trace, area"
+        );
+    }
+
+    #[test]
+    fn steps_are_auto_or_a_number_above_0() {
+        for step in [Step::Auto, Step::Fixed(0.1), Step::Fixed(1e-7)] {
+            assert_eq!(step.to_string().parse(), Ok(step));
+        }
+        for text in ["", "0", "-1", "nan", "inf", "1e99", "1e-99", "Auto"] {
+            assert!(text.parse::<Step>().is_err(), "{text}");
+        }
+    }
+}

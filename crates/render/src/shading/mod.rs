@@ -1,0 +1,150 @@
+//! Formula (1), Whitted's model with Phong terms, for one surface point.
+//!
+//! ```text
+//! I(P) = I_a k_a + Σ_i V(L_i, P) · I_i · [ k_d (N·D_i) + k_s (R_i·View)^pow ] + k_s · I_r
+//! ```
+//!
+//! Both dot products are clamped at 0, channels are independent. Here are its terms, their coefficients ([`tint`]) and the points that stand
+//! for a light; the stages [`shade`](crate::stages::shade) and [`mirror_rays`](crate::stages::mirror_rays) put them together. Twins:
+//! `shading.cuh`, `tint.cuh`.
+
+#[cfg(test)]
+mod tests;
+pub(crate) mod tint;
+
+use std::f32::consts::FRAC_1_PI;
+
+use glam::Vec3;
+use lightmesh_layout::constants::LIGHT_TARGETS;
+use lightmesh_scene::{Falloff, Light, LightKind};
+
+use crate::data::wave::HostWave;
+use crate::sampling::{Pattern, light_center, light_point};
+use crate::surface::{SurfacePoint, shading_normal};
+use tint::Coefficients;
+
+/// I_a where neither the scene nor the user says.
+pub(crate) const DEFAULT_AMBIENT: Vec3 = Vec3::splat(0.1);
+
+/// A surface point with what formula (1) needs.
+pub(crate) struct Surface {
+    pub(crate) point: SurfacePoint,
+    normal: Vec3,
+    /// Unit vector to the viewer.
+    view: Vec3,
+    pub(crate) coefficients: Coefficients,
+    /// Phong's exponent.
+    shininess: f32,
+}
+
+impl Surface {
+    #[inline(always)]
+    pub(crate) fn new(wave: &HostWave, ray: usize) -> Surface {
+        let point = wave.surface_point(ray);
+        let (ray, hit) = (&wave.rays.rays[ray], &wave.hits[ray]);
+        let geometry = &wave.scene.scene.geometry;
+        let mesh = &geometry.mesh;
+        let material = &geometry.materials[mesh.materials[hit.triangle as usize] as usize];
+        Surface {
+            normal: shading_normal(mesh, hit, point.normal),
+            point,
+            view: -ray.direction,
+            coefficients: Coefficients::at(geometry, material, hit),
+            shininess: material.shininess,
+        }
+    }
+
+    /// Light of `light` that reaches the eye if all of it comes from `target`: one term of the sum without V.
+    #[inline(always)]
+    pub(crate) fn reflected(&self, light: &Light, target: Vec3) -> Vec3 {
+        let to_light = target - self.point.position;
+        let distance = to_light.length();
+        if distance == 0.0 {
+            return Vec3::ZERO;
+        }
+        let direction = to_light / distance;
+        let cosine = self.normal.dot(direction);
+        if cosine <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let mut answer = cosine * self.coefficients.kd;
+        if self.coefficients.ks != Vec3::ZERO {
+            let mirrored = 2.0 * cosine * self.normal - direction;
+            answer += mirrored.dot(self.view).max(0.0).powf(self.shininess) * self.coefficients.ks;
+        }
+        strength(light, direction, distance) * answer
+    }
+
+    /// The same for the whole light, averaged over `targets`.
+    #[inline(always)]
+    pub(crate) fn reflected_from_all(&self, light: &Light, targets: &[Vec3]) -> Vec3 {
+        let sum: Vec3 = targets.iter().map(|&target| self.reflected(light, target)).sum();
+        sum / targets.len() as f32
+    }
+
+    /// The direction in which a mirror at this point is seen. A smooth normal may mirror into the surface; then the geometric
+    /// one does it.
+    pub(crate) fn mirrored(&self) -> Vec3 {
+        let about = |normal: Vec3| 2.0 * normal.dot(self.view) * normal - self.view;
+        let direction = about(self.normal);
+        if direction.dot(self.point.normal) > 0.0 { direction } else { about(self.point.normal) }
+    }
+}
+
+/// Intensity of `light` at `distance` along `direction` (from the surface to the light), falloff and cone included.
+#[inline(always)]
+fn strength(light: &Light, direction: Vec3, distance: f32) -> Vec3 {
+    let falloff = match (light.falloff, &light.kind) {
+        (Falloff::None, _) => 1.0,
+        (Falloff::InverseSquare, LightKind::Directional { .. }) => FRAC_1_PI,
+        (Falloff::InverseSquare, _) => FRAC_1_PI / (distance * distance),
+    };
+    falloff * cone(light, direction) * light.intensity
+}
+
+/// The share of a spot's strength along `direction`, from the surface to the light; the curve that glTF recommends
+/// (KHR_lights_punctual, inner and outer cone angles).
+#[inline(always)]
+fn cone(light: &Light, direction: Vec3) -> f32 {
+    let LightKind::Spot { direction: axis, inner, outer, .. } = light.kind else { return 1.0 };
+    let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
+    let linear = ((-direction.dot(axis) - outer.cos()) * scale).clamp(0.0, 1.0);
+    linear * linear
+}
+
+/// The points of each light from which its unshadowed light is computed: its middle, or some spread over it.
+pub(crate) struct LightTargets {
+    points: Vec<Vec<Vec3>>,
+}
+
+impl LightTargets {
+    pub(crate) fn new(lights: &[Light]) -> LightTargets {
+        let pattern = Pattern::new(0, 0, 0);
+        // In pairs on either side of the middle: what falls off linearly over the light is averaged exactly.
+        let pair = |light: &Light, index: u32| {
+            let point = light_point(light, Vec3::ZERO, 0.0, pattern.point(index));
+            [point, 2.0 * light_center(light, Vec3::ZERO, 0.0) - point]
+        };
+        let spread = |light: &Light| (0..LIGHT_TARGETS / 2).flat_map(|index| pair(light, index)).collect();
+        LightTargets {
+            points: lights.iter().map(|light| if light.has_size() { spread(light) } else { Vec::new() }).collect(),
+        }
+    }
+
+    /// The points of all lights one after the other, [`LIGHT_TARGETS`] each; zeros for a light without a size.
+    pub(crate) fn flat(&self) -> Vec<Vec3> {
+        let padded = |points: &Vec<Vec3>| {
+            (0..LIGHT_TARGETS as usize).map(|i| points.get(i).copied().unwrap_or_default()).collect()
+        };
+        self.points.iter().flat_map(|points| -> Vec<Vec3> { padded(points) }).collect()
+    }
+
+    /// Unshadowed light of light number `index` at `surface`.
+    #[inline(always)]
+    pub(crate) fn unshadowed(&self, surface: &Surface, light: &Light, index: usize, reach: f32) -> Vec3 {
+        match self.points[index].as_slice() {
+            [] => surface.reflected(light, light_center(light, surface.point.origin, reach)),
+            points => surface.reflected_from_all(light, points),
+        }
+    }
+}

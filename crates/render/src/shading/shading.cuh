@@ -1,0 +1,79 @@
+// Formula (1) for one object point: twin of mod.rs.
+#pragma once
+
+#include "sampling.cuh"
+#include "shading/tint.cuh"
+#include "surface.cuh"
+
+// An object point with what formula (1) needs.
+struct Surface {
+    SurfacePoint point;
+    // The normal that shading uses, and the unit vector to the viewer.
+    Vec3 normal, view;
+    const Material *material;
+};
+
+// The object point that ray number `ray` sees; `own` is room for its material.
+DEVICE Surface surface_at(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray, Material &own) {
+    const Hit hit = load_hit(hits, ray);
+    const Ray seen_along = ray_at(rays, ray);
+    const SurfacePoint point = surface_point(seen_along, hit, load_corners(scene.triangles + hit.triangle));
+    const Material *material = material_at(scene, hit, own);
+    return Surface{point, shading_normal(scene, hit, point.normal), -seen_along.direction, material};
+}
+
+// The share of a spot's strength along `direction`, from the surface to the light.
+DEVICE float cone(const Light &light, Vec3 direction) {
+    if (light.kind != Light::SPOT)
+        return 1.0f;
+    const float linear = (-dot(direction, light.direction) - light.cos_outer) * light.cone_scale;
+    const float clamped = fminf(fmaxf(linear, 0.0f), 1.0f);
+    return clamped * clamped;
+}
+
+// Intensity of a light at `distance` along `direction` (from the surface to the light), falloff and cone included.
+DEVICE Vec3 strength(const Light &light, Vec3 direction, float distance) {
+    float falloff = 1.0f;
+    if (light.inverse_square)
+        falloff = light.kind == Light::DIRECTIONAL ? FRAC_1_PI : FRAC_1_PI / (distance * distance);
+    return falloff * cone(light, direction) * light.intensity;
+}
+
+// Light of a light that reaches the eye if all of it comes from `target`: one term of the sum without V.
+DEVICE Vec3 reflected(const Surface &surface, const Light &light, Vec3 target) {
+    const Vec3 to_light = target - surface.point.position;
+    const float distance = length(to_light);
+    if (distance == 0.0f)
+        return splat(0.0f);
+    const Vec3 direction = to_light / distance;
+    const float cosine = dot(surface.normal, direction);
+    if (cosine <= 0.0f)
+        return splat(0.0f);
+    Vec3 answer = cosine * surface.material->kd;
+    if (surface.material->ks != splat(0.0f)) {
+        const Vec3 mirrored = 2.0f * cosine * surface.normal - direction;
+        const float highlight = powf(fmaxf(dot(mirrored, surface.view), 0.0f), surface.material->shininess);
+        answer = answer + highlight * surface.material->ks;
+    }
+    return strength(light, direction, distance) * answer;
+}
+
+// Unshadowed light of light number `index`.
+DEVICE Vec3 unshadowed(const Surface &surface, const Scene &scene, unsigned index, float reach) {
+    const Light &light = scene.lights[index];
+    if (!has_size(light))
+        return reflected(surface, light, light_center(light, surface.point.origin, reach));
+    const Vec3 *targets = scene.light_targets + index * LIGHT_TARGETS;
+    Vec3 sum = splat(0.0f);
+    for (unsigned i = 0; i < LIGHT_TARGETS; ++i)
+        sum = sum + reflected(surface, light, targets[i]);
+    return sum / (float)LIGHT_TARGETS;
+}
+
+DEVICE Vec3 mirrored_about(Vec3 normal, Vec3 view) { return 2.0f * dot(normal, view) * normal - view; }
+
+// The direction in which a mirror at this point is seen.
+DEVICE Vec3 mirrored(const Surface &surface) {
+    const Vec3 direction = mirrored_about(surface.normal, surface.view);
+    return dot(direction, surface.point.normal) > 0.0f ? direction : mirrored_about(surface.point.normal, surface.view);
+}

@@ -1,0 +1,140 @@
+//! What all that casts shadow rays shares: where they end, whether anything hides a light, and χ of formula (3). Twin: `shadow.cuh`.
+
+#[cfg(test)]
+mod tests;
+
+use glam::Vec3;
+use lightmesh_layout::constants::HORIZON_SAMPLES;
+use lightmesh_scene::{Light, LightKind};
+
+use crate::accel::Ray;
+use crate::counters::Tally;
+use crate::data::wave::HostWave;
+use crate::job::Sampling;
+use crate::sampling::{Pattern, light_center, light_point};
+use crate::surface::{SurfacePoint, long_segment};
+
+/// Most segments that are handed over at once: they stay in a core's cache.
+pub(crate) const SEGMENTS: usize = 4 * 1024;
+
+/// Which points of a light shadow rays go to.
+#[derive(Clone, Copy, Debug)]
+pub enum Aim {
+    /// One ray to the middle.
+    Middle,
+    /// Points spread over a light that has an extent, by the sampling of the picture.
+    Extent(Sampling),
+}
+
+impl Aim {
+    /// Whether more than the middle of a light counts.
+    #[inline(always)]
+    fn is_spread_over(&self, light: &Light) -> bool {
+        match self {
+            Aim::Middle => false,
+            Aim::Extent(sampling) => {
+                let spread = matches!(light.kind, LightKind::Point { spread, .. } if spread > 0.0);
+                light.has_size() || (sampling.spread && spread && sampling.samples > 1)
+            }
+        }
+    }
+
+    /// Shadow rays from a point to a light.
+    pub(crate) fn samples(&self, light: &Light) -> u32 {
+        match self {
+            Aim::Extent(sampling) if self.is_spread_over(light) => sampling.samples,
+            _ => 1,
+        }
+    }
+}
+
+/// The points of one light that shadow rays from one point go to.
+pub(crate) struct Targets<'a> {
+    light: &'a Light,
+    from: Vec3,
+    /// How far away a directional light stands.
+    reach: f32,
+    /// `None`: its middle.
+    pattern: Option<Pattern>,
+}
+
+impl<'a> Targets<'a> {
+    /// Those of light number `index` from `from`, whose random pattern has the number `key`.
+    #[inline(always)]
+    pub(crate) fn new(aim: &Aim, (index, light): (usize, &'a Light), from: Vec3, reach: f32, key: u64) -> Targets<'a> {
+        let pattern = match aim {
+            Aim::Extent(sampling) if aim.is_spread_over(light) => Some(Pattern::new(sampling.seed, key, index)),
+            _ => None,
+        };
+        Targets { light, from, reach, pattern }
+    }
+
+    /// The point that sample number `sample` goes to.
+    #[inline(always)]
+    pub(crate) fn get(&self, sample: u32) -> Vec3 {
+        match &self.pattern {
+            Some(pattern) => light_point(self.light, self.from, self.reach, pattern.point(sample)),
+            None => light_center(self.light, self.from, self.reach),
+        }
+    }
+}
+
+/// Whether each of some segments is blocked. Whatever can hide a light decides here.
+pub(crate) fn hidden(wave: &HostWave, segments: &[Ray]) -> Vec<bool> {
+    let mut hidden = vec![false; segments.len()];
+    for (segments, hidden) in segments.chunks(SEGMENTS).zip(hidden.chunks_mut(SEGMENTS)) {
+        wave.scene.geometry.accelerator.occluded(segments, hidden);
+    }
+    hidden
+}
+
+/// The shadow rays from a surface point to a light. A sample behind the surface is dark without a ray.
+pub(crate) fn shadow_rays<'a>(
+    point: &'a SurfacePoint,
+    targets: &'a Targets,
+    samples: u32,
+) -> impl Iterator<Item = Ray> + use<'a> {
+    let targets = (0..samples).map(|sample| targets.get(sample));
+    let in_front = targets.filter(|&target| point.normal.dot(target - point.origin) > 0.0);
+    in_front.map(|target| long_segment(point.origin, target))
+}
+
+/// χ of formula (3) for a light: 1 where it is on the outer side of the surface at `point`, 0 where it is behind.
+///
+/// A light with a size may stand across the horizon. Then χ is the share of it above, and bounds the visibility: light points
+/// higher up see more of the light than the surface can.
+#[inline(always)]
+pub(crate) fn above_horizon(point: &SurfacePoint, light: &Light, reach: f32) -> f32 {
+    let height = point.normal.dot(light_center(light, point.origin, reach) - point.origin);
+    if height.abs() >= size(light) {
+        return if height > 0.0 { 1.0 } else { 0.0 };
+    }
+    let pattern = Pattern::new(0, 0, 0);
+    let above = (0..HORIZON_SAMPLES)
+        .map(|index| light_point(light, point.origin, reach, pattern.point(index)))
+        .filter(|target| point.normal.dot(target - point.origin) > 0.0)
+        .count();
+    above as f32 / HORIZON_SAMPLES as f32
+}
+
+/// The farthest that any point of `light` lies from its middle; 0 for all that have no size.
+#[inline(always)]
+pub(crate) fn size(light: &Light) -> f32 {
+    match light.kind {
+        LightKind::Sphere { radius, .. } | LightKind::Disk { radius, .. } => radius,
+        LightKind::Rectangle { half_u, half_v, .. } => (half_u.length_squared() + half_v.length_squared()).sqrt(),
+        LightKind::Point { .. } | LightKind::Directional { .. } | LightKind::Spot { .. } => 0.0,
+    }
+}
+
+/// The visible share of light number `index` from the surface point of `ray`, without χ: the fallback where no light point is used.
+pub(crate) fn fallback(wave: &HostWave, ray: usize, point: &SurfacePoint, index: usize) -> f32 {
+    let (aim, light) = (Aim::Extent(wave.job.sampling.of_light_points()), &wave.lights()[index]);
+    let reach = wave.scene.geometry.reach(point.origin);
+    let targets = Targets::new(&aim, (index, light), point.origin, reach, wave.rays.key(ray));
+    let samples = aim.samples(light);
+    let segments: Vec<Ray> = shadow_rays(point, &targets, samples).collect();
+    Tally::add(&wave.job.tally.shadow_rays, segments.len() as u64);
+    let seen = hidden(wave, &segments).into_iter().filter(|hidden| !hidden).count();
+    seen as f32 / samples as f32
+}

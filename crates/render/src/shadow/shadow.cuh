@@ -1,0 +1,94 @@
+// What all that casts shadow rays shares: where they end, whether anything hides a light, and χ of formula (3). Twin of mod.rs.
+#pragma once
+
+#include "accel/walk.cuh"
+#include "cuda/tally.cuh"
+#include "sampling.cuh"
+#include "surface.cuh"
+
+// χ of formula (3) for a light that stands across the horizon: the share of it above.
+COLD float share_above_horizon(SurfacePoint point, const Light *light, float reach) {
+    const Pattern pattern = pattern_of(0, 0, 0);
+    unsigned above = 0;
+    for (unsigned index = 0; index < HORIZON_SAMPLES; ++index) {
+        const Vec3 target = light_point(*light, point.origin, reach, pattern_point(pattern, index));
+        above += dot(point.normal, target - point.origin) > 0.0f;
+    }
+    return (float)above / (float)HORIZON_SAMPLES;
+}
+
+// χ of formula (3) for a light: 1 where it is on the outer side of the surface at `point`, 0 where it is behind.
+DEVICE float above_horizon(const SurfacePoint &point, const Light &light, float reach) {
+    const float height = dot(point.normal, light_center(light, point.origin, reach) - point.origin);
+    if (fabsf(height) >= light.size)
+        return height > 0.0f ? 1.0f : 0.0f;
+    return share_above_horizon(point, &light, reach);
+}
+
+// Whether more than the middle of a light counts.
+DEVICE bool is_spread_over(const Sampling &sampling, const Light &light) {
+    const bool spread = sampling.spread && light.kind == Light::POINT && light.radius > 0.0f && sampling.samples > 1;
+    return has_size(light) || spread;
+}
+
+// Shadow rays from a point to a light.
+DEVICE unsigned sample_count(const Sampling &sampling, const Light &light) {
+    return is_spread_over(sampling, light) ? sampling.samples : 1;
+}
+
+// The points of one light that shadow rays from one point go to.
+struct Targets {
+    const Light &light;
+    Vec3 from;
+    // How far away a directional light stands.
+    float reach;
+    // Whether they follow the pattern; else its middle.
+    bool spread;
+    Pattern pattern;
+};
+
+// Those of light number `index` from `from`, whose random pattern has the number `key`.
+DEVICE Targets targets_of(const Scene &scene, const Sampling &sampling, unsigned index, Vec3 from, unsigned long long key) {
+    const Light &light = scene.lights[index];
+    return Targets{light, from, scene_reach(scene, from), is_spread_over(sampling, light), pattern_of(sampling.seed, key, index)};
+}
+
+// The point that sample number `sample` goes to.
+DEVICE Vec3 target(const Targets &targets, unsigned sample) {
+    return targets.spread ? light_point(targets.light, targets.from, targets.reach, pattern_point(targets.pattern, sample))
+                          : light_center(targets.light, targets.from, targets.reach);
+}
+
+// Whether anything hides `target` from `from`. Whatever can hide a light decides here.
+template <class Structure>
+DEVICE bool hidden(const Structure &structure, const Tally &tally, Vec3 from, Vec3 target) {
+    return occluded(structure, tally, long_segment(from, target));
+}
+
+// Shadow rays from a surface point that arrive, of the samples from `first` to `end`. Adds those that are cast: a sample behind the
+// surface is dark without a ray.
+template <class Structure>
+DEVICE unsigned rays_that_arrive(const Structure &structure, const Tally &tally, const SurfacePoint &point, const Targets &targets,
+                                 unsigned first, unsigned end, unsigned &cast) {
+    unsigned seen = 0;
+    for (unsigned sample = first; sample < end; ++sample) {
+        const Vec3 to = target(targets, sample);
+        if (!(dot(point.normal, to - point.origin) > 0.0f))
+            continue;
+        ++cast;
+        seen += !hidden(structure, tally, point.origin, to);
+    }
+    return seen;
+}
+
+// The visible share of light number `index` from a surface point, without χ: the fallback where no light point is used.
+template <class Structure>
+DEVICE float fallback_share(const Structure &structure, const Scene &scene, const Sampling &sampling, const Tally &tally,
+                            const SurfacePoint &point, unsigned long long key, unsigned index) {
+    const Targets targets = targets_of(scene, sampling, index, point.origin, key);
+    const unsigned samples = sample_count(sampling, targets.light);
+    unsigned cast = 0;
+    const unsigned seen = rays_that_arrive(structure, tally, point, targets, 0, samples, cast);
+    atomicAdd(&tally_shard(tally).shadow_rays, (unsigned long long)cast);
+    return (float)seen / (float)samples;
+}

@@ -1,0 +1,61 @@
+//! Vectors of eight lanes, with the operations of `glam` in its order.
+
+use fearless_simd::{f32x8, prelude::*};
+use glam::Vec3;
+
+/// Lanes of a vector; four vectors make a word of a mask.
+pub(crate) const LANES: usize = 8;
+
+// No `map` over arrays and no iterators in vector code: where they are not inlined, vectors travel through memory.
+
+/// Three vectors, one for each axis.
+pub(crate) type Axes<S> = [f32x8<S>; 3];
+
+#[inline(always)]
+pub(crate) fn load<S: Simd>(simd: S, lanes: &[f32], first: usize) -> f32x8<S> {
+    f32x8::from_slice(simd, &lanes[first..first + LANES])
+}
+
+#[inline(always)]
+pub(crate) fn splat<S: Simd>(simd: S, v: Vec3) -> Axes<S> {
+    [f32x8::splat(simd, v.x), f32x8::splat(simd, v.y), f32x8::splat(simd, v.z)]
+}
+
+#[inline(always)]
+pub(crate) fn difference<S: Simd>(a: Axes<S>, b: Axes<S>) -> Axes<S> {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+pub(crate) fn scaled<S: Simd>(scale: f32x8<S>, a: Axes<S>) -> Axes<S> {
+    [scale * a[0], scale * a[1], scale * a[2]]
+}
+
+/// The same order of operations as [`Vec3::dot`].
+#[inline(always)]
+pub(crate) fn dot<S: Simd>(a: Axes<S>, b: Axes<S>) -> f32x8<S> {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The same order of operations as [`dot_along_x`](crate::accel::triangle::dot_along_x).
+#[inline(always)]
+pub(crate) fn dot_along_x<S: Simd>(a: Axes<S>, b: Axes<S>) -> f32x8<S> {
+    a[2] * b[2] + a[1] * b[1] + a[0] * b[0]
+}
+
+/// The same order of operations as [`Vec3::cross`].
+#[inline(always)]
+pub(crate) fn cross<S: Simd>(a: Axes<S>, b: Axes<S>) -> Axes<S> {
+    [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]]
+}
+
+/// The lanes added in ascending order.
+#[inline(always)]
+pub(crate) fn sum<S: Simd>(lanes: f32x8<S>) -> f32 {
+    let lanes: [f32; LANES] = lanes.into();
+    let mut total = 0.0;
+    for lane in lanes {
+        total += lane;
+    }
+    total
+}

@@ -1,0 +1,49 @@
+//! Surface points by cell on a CUDA device: a block sorts each tile of the picture.
+
+use bytemuck::Zeroable;
+use lightmesh_layout::constants::{TILE, TILE_SIDE};
+use lightmesh_layout::stages::GroupCells;
+
+use crate::cuda::{Kernel, Runtime};
+use crate::error::RenderError;
+use crate::gpu::cells::DeviceCells;
+use crate::gpu::rays::DeviceWave;
+use crate::gpu::{Cuda, Work, blocks_for};
+use crate::light_mesh::LightMesh;
+
+const GROUP: Kernel = Kernel { module: "cells", name: "group_points" };
+const GATHER: Kernel = Kernel { module: "cells", name: "gather_items" };
+/// Tiles of the first launch ever.
+const FIRST_TILES: u64 = 256;
+
+pub(crate) fn cells<R: Runtime>(
+    cuda: &Cuda<R>,
+    wave: &DeviceWave<R>,
+    mesh: &LightMesh,
+) -> Result<DeviceCells<R>, RenderError> {
+    let pool = cuda.pool();
+    let tiles = wave.rays.blocks(TILE_SIDE);
+    let members = pool.room("surface points by cell", tiles as usize * TILE as usize)?;
+    let tile_items = pool.room("items of tiles", tiles as usize * TILE as usize)?;
+    let counts = pool.room("number of items", tiles as usize + 1)?;
+    let record = GroupCells {
+        scene: wave.scene.record,
+        rays: wave.rays.record,
+        hits: wave.hits.hits.input(),
+        mesh: cuda.mesh(mesh)?,
+        members: members.output(),
+        tile_items: tile_items.output(),
+        counts: counts.output(),
+        ..GroupCells::zeroed()
+    };
+    // 1. to 3. Each tile sorts its surface points by cell and cuts them into items.
+    let progress = wave.rays.len() as u64;
+    cuda.in_pieces(wave.job, GROUP, Work { units: tiles, cost: 1, first: FIRST_TILES, progress }, |piece| {
+        cuda.launch(GROUP, blocks_for(&piece, TILE), &GroupCells { first_block: piece.start, ..record })
+    })?;
+    // 4. The items of all tiles in one list.
+    let count = cuda.scan_total(&counts)?;
+    let items = pool.room("items", count)?;
+    cuda.launch(GATHER, blocks_for(&(0..tiles), TILE), &GroupCells { items: items.output(), ..record })?;
+    Ok(DeviceCells { members, items, count })
+}

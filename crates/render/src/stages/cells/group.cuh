@@ -1,0 +1,135 @@
+// Object points by cell, tile by tile: a block of 1024 threads takes a tile of 32 x 32 pixels, or 1024 rays of a list.
+#pragma once
+
+#include "cuda/rays.cuh"
+#include "cuda/warp.cuh"
+#include "light_mesh/bricks.cuh"
+#include "light_mesh/lattice.cuh"
+#include "surface.cuh"
+
+// What sorts an object point: 16 bits of its cell's hash, 6 bits of its triangle's, 10 bits of its thread. Points of one triangle
+// come together, so that items have few normals and small boxes. Cells whose hashes are equal may come out mixed; then they are cut
+// into more items, and nothing else changes.
+#define NO_POINT 0xffffffffu
+
+DEVICE unsigned sort_word(unsigned long long cell, unsigned triangle, unsigned thread) {
+    const unsigned hash = (unsigned)((cell * GOLDEN_RATIO) >> 48);
+    // All ones is left to threads without an object point.
+    return (hash < 0xffff ? hash : 0xfffe) << 16 | triangle * (unsigned)(GOLDEN_RATIO >> 32) >> 26 << 10 | thread;
+}
+
+// Sorts one word a thread, ascending (bitonic sort: Batcher 1968). Partners within a warp exchange through registers.
+DEVICE unsigned sorted(unsigned word, unsigned *shared) {
+    const unsigned thread = threadIdx.x;
+    for (unsigned length = 2; length <= TILE; length *= 2) {
+        for (unsigned distance = length / 2; distance > 0; distance /= 2) {
+            unsigned other;
+            if (distance < WARP) {
+                other = __shfl_xor_sync(ALL_LANES, word, distance);
+            } else {
+                __syncthreads();
+                shared[thread] = word;
+                __syncthreads();
+                other = shared[thread ^ distance];
+            }
+            const bool ascending = (thread & length) == 0;
+            const bool lower = (thread & distance) == 0;
+            word = ascending == lower ? min(word, other) : max(word, other);
+        }
+    }
+    return word;
+}
+
+// The largest value of this thread and all before it. `shared` has a place for each warp.
+DEVICE unsigned largest_before(unsigned value, unsigned *shared) {
+    const unsigned lane = lane_of_thread(), warp = threadIdx.x / WARP;
+    for (unsigned step = 1; step < WARP; step *= 2) {
+        const unsigned other = __shfl_up_sync(ALL_LANES, value, step);
+        if (lane >= step)
+            value = max(value, other);
+    }
+    __syncthreads();
+    if (lane == WARP - 1)
+        shared[warp] = value;
+    __syncthreads();
+    for (unsigned before = 0; before < warp; before++)
+        value = max(value, shared[before]);
+    return value;
+}
+
+// How many threads before this one have a flag, and how many there are in all. `shared` has a place for each warp.
+DEVICE unsigned flags_before(bool flag, unsigned *shared, unsigned &all) {
+    const unsigned lane = lane_of_thread(), warp = threadIdx.x / WARP;
+    const unsigned flags = __ballot_sync(ALL_LANES, flag);
+    __syncthreads();
+    if (lane == 0)
+        shared[warp] = __popc(flags);
+    __syncthreads();
+    unsigned before = __popc(flags & lanes_below(lane));
+    all = 0;
+    for (unsigned other = 0; other < TILE / WARP; other++) {
+        before += other < warp ? shared[other] : 0;
+        all += shared[other];
+    }
+    return before;
+}
+
+DEVICE void group_points_of_tile(const GroupCells &args) {
+    SHARED(unsigned long long, cells, [TILE]);
+    SHARED(unsigned, rays, [TILE]);
+    SHARED(unsigned, words, [TILE]);
+    SHARED(unsigned, warps, [TILE / WARP]);
+    const unsigned thread = threadIdx.x;
+    const unsigned long long tile = args.first_block + blockIdx.x;
+
+    // 1. The cell of each object point.
+    unsigned ray = 0;
+    const bool in_picture = tile_ray_of_thread(args.rays, (unsigned)tile, thread, ray);
+    unsigned word = NO_POINT;
+    if (in_picture && args.hits[ray].triangle != Hit::NONE) {
+        const SurfacePoint point = object_point(args.scene, args.rays, args.hits, ray);
+        const unsigned long long cell = point_key(lattice_cell(args.mesh, point.position));
+        cells[thread] = cell;
+        rays[thread] = ray;
+        word = sort_word(cell, args.hits[ray].triangle, thread);
+    }
+    __syncthreads();
+
+    // 2. Sort by cell; within a cell by triangle, then by thread, so that neighbours stay neighbours.
+    word = sorted(word, words);
+    const bool is_point = word != NO_POINT;
+    const unsigned source = word & (TILE - 1);
+    const unsigned long long cell = is_point ? cells[source] : 0;
+    __syncthreads();
+    words[thread] = word;
+    __syncthreads();
+    const bool first_of_cell =
+        is_point && (thread == 0 || cells[words[thread - 1] & (TILE - 1)] != cell);
+
+    // 3. Every cell begins an item, and so does every 32nd point after its first.
+    const unsigned start = largest_before(first_of_cell ? thread : 0, warps);
+    const bool first_of_item = is_point && (thread - start) % WARP == 0;
+    unsigned items, points;
+    const unsigned item = flags_before(first_of_item, warps, items);
+    flags_before(is_point, warps, points);
+    const unsigned long long place = tile * TILE;
+    if (is_point)
+        args.members[place + thread] = rays[source];
+    __syncthreads();
+    if (first_of_item)
+        words[item] = thread;
+    __syncthreads();
+    if (first_of_item) {
+        const unsigned end = item + 1 < items ? words[item + 1] : points;
+        args.tile_items[place + item] = Item{cell, (unsigned)(place + thread), end - thread};
+    }
+    if (thread == 0)
+        args.counts[tile] = items;
+}
+
+// 4. Copies the items of a tile to their place among all.
+DEVICE void gather_items_of_tile(const GroupCells &args) {
+    const unsigned first = args.counts[blockIdx.x], count = args.counts[blockIdx.x + 1] - first;
+    if (threadIdx.x < count)
+        args.items[first + threadIdx.x] = args.tile_items[(unsigned long long)blockIdx.x * TILE + threadIdx.x];
+}

@@ -1,0 +1,22 @@
+// The object points of an item as a warp sees them, one a lane.
+#pragma once
+
+#include "cuda/warp.cuh"
+#include "surface.cuh"
+
+// The object point of a lane.
+struct ItemLane {
+    SurfacePoint point;
+    unsigned ray;
+    // Whether the lane has an object point. One without takes the item's first, and no part.
+    bool alive;
+};
+
+DEVICE ItemLane lane_of_item(const Scene &scene, const Rays &rays, const Hit *hits, const unsigned *members, const Item &item) {
+    const unsigned lane = lane_of_thread();
+    ItemLane own;
+    own.alive = lane < item.count;
+    own.ray = members[item.first + (own.alive ? lane : 0)];
+    own.point = object_point(scene, rays, hits, own.ray);
+    return own;
+}

@@ -1,0 +1,47 @@
+//! Area shadows: many shadow rays from each surface point to points spread over each light. The reference.
+
+use super::{Request, Visible};
+use crate::backend::run::Run;
+use crate::backend::{Backend, WaveOf};
+use crate::error::RenderError;
+use crate::plan::Footprint;
+use crate::prepared::PreparedScene;
+use crate::settings::Settings;
+use crate::shadow::Aim;
+use crate::stage::Stage;
+use crate::stats::SettingsStats;
+
+/// Many shadow rays per light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Area;
+
+impl Visible for Area {
+    const SAMPLES: u32 = 225;
+
+    fn resolve(_: &Request) -> Result<Area, RenderError> {
+        Ok(Area)
+    }
+
+    fn stages(&self) -> &'static [Stage] {
+        &[Stage::LongTests]
+    }
+
+    fn visibility<B: Backend>(&self, run: &Run<B>, wave: &WaveOf<B>) -> Result<B::Visibility, RenderError> {
+        let rays = run.backend.ray_count(wave.rays);
+        run.stage(Stage::LongTests, [rays; 2], |backend| backend.shadow_rays(wave, &Aim::Extent(wave.job.sampling)))
+    }
+
+    fn footprint(&self, _: u64) -> Footprint {
+        Footprint::default()
+    }
+
+    fn searches(&self, _: &Settings) -> bool {
+        false
+    }
+
+    fn spreads_points(&self) -> bool {
+        true
+    }
+
+    fn describe(&self, _: &PreparedScene, _: &Settings, _: &mut SettingsStats) {}
+}

@@ -1,0 +1,142 @@
+//! Techniques: the ways to find the visibility of lights. One file each: what it computes, what it needs, its bytes, its defaults, and what
+//! it says in the statistics. Rays, shading and mirrors are common to all.
+//!
+//! Nothing outside of this folder tells techniques apart. The enum below is made from the [`table`].
+
+pub(crate) mod table;
+
+use crate::backend::run::Run;
+use crate::backend::{Backend, WaveOf};
+use crate::error::RenderError;
+use crate::observer::Observer;
+use crate::plan::Footprint;
+use crate::prepared::PreparedScene;
+use crate::settings::{Lookup, Mode, Setting, Settings};
+use crate::stage::Stage;
+use crate::stats::SettingsStats;
+use crate::view::View;
+use table::technique_table;
+
+/// What a technique is resolved from: what is left open in the settings is chosen for this picture.
+pub(crate) struct Request<'a> {
+    pub(crate) scene: &'a PreparedScene,
+    pub(crate) settings: &'a Settings,
+    pub(crate) view: &'a View,
+    pub(crate) observer: &'a dyn Observer,
+}
+
+/// What every technique must be able to say and do.
+pub(crate) trait Visible: Sized {
+    /// Shadow rays for each light with a size, where the settings leave it open.
+    const SAMPLES: u32;
+
+    /// Resolves what the technique needs; says what was chosen where it was left open.
+    fn resolve(request: &Request) -> Result<Self, RenderError>;
+
+    /// The stages between primary rays and shading, in order.
+    fn stages(&self) -> &'static [Stage];
+
+    /// What each surface point of a wave sees of each light.
+    fn visibility<B: Backend>(&self, run: &Run<B>, wave: &WaveOf<B>) -> Result<B::Visibility, RenderError>;
+
+    /// Bytes that it adds for each ray, in a scene of `lights` lights.
+    fn footprint(&self, lights: u64) -> Footprint;
+
+    /// Whether it searches for all triangles in a region.
+    fn searches(&self, settings: &Settings) -> bool;
+
+    /// Whether point lights are distributed over their spread.
+    fn spreads_points(&self) -> bool {
+        false
+    }
+
+    /// Light points of the template; 0 where there is none.
+    fn template(&self) -> u64 {
+        0
+    }
+
+    /// Writes what was resolved into the statistics.
+    fn describe(&self, scene: &PreparedScene, settings: &Settings, stats: &mut SettingsStats);
+}
+
+macro_rules! techniques {
+    (modes $modes:tt lookups $lookups:tt techniques { $($file:ident :: $name:ident for $mode:ident by $lookup:ident,)* }) => {
+        $(pub(crate) mod $file;)*
+
+        /// How the visibility of lights is found, with what that needs.
+        #[derive(Clone, Debug)]
+        pub(crate) enum Technique {
+            $($name($file::$name),)*
+        }
+
+        impl Technique {
+            /// The technique that the settings ask for.
+            pub(crate) fn resolve(request: &Request) -> Result<Technique, RenderError> {
+                $(if chosen(request.settings, Mode::$mode, techniques!(@lookup $lookup)) {
+                    return $file::$name::resolve(request).map(Technique::$name);
+                })*
+                Err(no_technique(request.settings))
+            }
+
+            /// Shadow rays for each light with a size.
+            pub(crate) fn samples(settings: &Settings) -> u32 {
+                $(if chosen(settings, Mode::$mode, techniques!(@lookup $lookup)) {
+                    return settings.samples.unwrap_or($file::$name::SAMPLES);
+                })*
+                settings.samples.unwrap_or(1)
+            }
+
+            techniques!(@each $($name)*;
+                stages() -> &'static [Stage];
+                footprint(lights: u64) -> Footprint;
+                searches(settings: &Settings) -> bool;
+                spreads_points() -> bool;
+                template() -> u64;
+                describe(scene: &PreparedScene, settings: &Settings, stats: &mut SettingsStats) -> ();
+            );
+
+            pub(crate) fn visibility<B: Backend>(
+                &self,
+                run: &Run<B>,
+                wave: &WaveOf<B>,
+            ) -> Result<B::Visibility, RenderError> {
+                match self {
+                    $(Technique::$name(technique) => technique.visibility(run, wave),)*
+                }
+            }
+        }
+    };
+    (@lookup None) => { None };
+    (@lookup $lookup:ident) => { Some(Lookup::$lookup) };
+    // Methods that every technique answers for itself.
+    (@each $($name:ident)*; ) => {};
+    (@each $($name:ident)*; $method:ident($($argument:ident: $type:ty),*) -> $result:ty; $($rest:tt)*) => {
+        pub(crate) fn $method(&self, $($argument: $type),*) -> $result {
+            techniques!(@call self, $method($($argument),*), $($name)*)
+        }
+        techniques!(@each $($name)*; $($rest)*);
+    };
+    (@call $self:ident, $method:ident $arguments:tt, $($name:ident)*) => {
+        match $self {
+            $(Technique::$name(technique) => techniques!(@apply technique, $method $arguments),)*
+        }
+    };
+    (@apply $technique:ident, $method:ident ($($argument:ident),*)) => { $technique.$method($($argument),*) };
+}
+
+technique_table!(techniques);
+
+/// Whether the settings ask for the technique of `mode` and `lookup`. Where no lookup is chosen the first of the table is taken; a mode that
+/// looks nothing up has no use for one.
+fn chosen(settings: &Settings, mode: Mode, lookup: Option<Lookup>) -> bool {
+    let looked_up = |lookup| settings.lookup == Lookup::Auto || settings.lookup == lookup;
+    settings.mode == mode && lookup.is_none_or(looked_up)
+}
+
+fn no_technique(settings: &Settings) -> RenderError {
+    RenderError::Setting {
+        setting: Setting::Lookup,
+        value: settings.lookup.name().to_owned(),
+        remedy: "this mode has no such lookup: choose another one, or leave it to the mode",
+    }
+}

@@ -1,0 +1,43 @@
+//! Hard-shadow ray tracing: one shadow ray from each surface point to the middle of each light.
+
+use super::{Request, Visible};
+use crate::backend::run::Run;
+use crate::backend::{Backend, WaveOf};
+use crate::error::RenderError;
+use crate::plan::Footprint;
+use crate::prepared::PreparedScene;
+use crate::settings::Settings;
+use crate::shadow::Aim;
+use crate::stage::Stage;
+use crate::stats::SettingsStats;
+
+/// One hard shadow ray per light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RayTrace;
+
+impl Visible for RayTrace {
+    const SAMPLES: u32 = 4;
+
+    fn resolve(_: &Request) -> Result<RayTrace, RenderError> {
+        Ok(RayTrace)
+    }
+
+    fn stages(&self) -> &'static [Stage] {
+        &[Stage::LongTests]
+    }
+
+    fn visibility<B: Backend>(&self, run: &Run<B>, wave: &WaveOf<B>) -> Result<B::Visibility, RenderError> {
+        let rays = run.backend.ray_count(wave.rays);
+        run.stage(Stage::LongTests, [rays; 2], |backend| backend.shadow_rays(wave, &Aim::Middle))
+    }
+
+    fn footprint(&self, _: u64) -> Footprint {
+        Footprint::default()
+    }
+
+    fn searches(&self, _: &Settings) -> bool {
+        false
+    }
+
+    fn describe(&self, _: &PreparedScene, _: &Settings, _: &mut SettingsStats) {}
+}

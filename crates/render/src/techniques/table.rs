@@ -1,0 +1,30 @@
+//! The table of techniques. To add one, write its file beside this one and add its line here, with a mode or a lookup if it has a new
+//! word.
+
+/// Calls a macro with the table: the modes with their words, the lookups of light-mesh mode with theirs, and the techniques as
+/// `file::Type for Mode by Lookup`. Of the techniques of a mode the first is taken where no lookup is chosen.
+macro_rules! technique_table {
+    ($use:ident) => {
+        $use! {
+            modes {
+                /// The light mesh method.
+                LightMesh = "light-mesh",
+                /// One hard shadow ray per light and pixel.
+                RayTrace = "ray-trace",
+                /// Many shadow rays per light and pixel: the reference.
+                Area = "area",
+            }
+            lookups {
+                /// Formula (3): the mean over the light points of a half-ball.
+                HalfBall = "half-ball",
+            }
+            techniques {
+                half_ball::HalfBall for LightMesh by HalfBall,
+                ray_trace::RayTrace for RayTrace by None,
+                area::Area for Area by None,
+            }
+        }
+    };
+}
+
+pub(crate) use technique_table;

@@ -1,0 +1,163 @@
+//! A mesh cache: the same pictures with it as without, for fewer long tests.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::{DVec3, Vec3};
+use lightmesh_render::{
+    Device, Frame, MeshCache, Observer, PreparedScene, RenderError, Renderer, Settings, Step, Unobserved,
+};
+use lightmesh_scene::{Camera, LightKind, Lights, Scene};
+use lightmesh_testkit::{Picture, pile};
+
+use crate::light_mesh;
+
+const SIZE: [u32; 2] = [96, 96];
+const LAMP: LightKind = LightKind::Sphere { position: Vec3::new(-2.0, 4.0, 2.0), radius: 0.6 };
+const POINT: LightKind = LightKind::Point { position: Vec3::new(2.0, 4.0, 1.0), spread: 0.0 };
+
+fn renderer() -> Renderer {
+    Renderer::with_threads(Device::Cpu, Some(2)).unwrap()
+}
+
+fn prepared(scene: &Scene) -> PreparedScene {
+    renderer().prepare(scene, &Settings::default(), &Unobserved).unwrap()
+}
+
+fn small(samples: u32) -> Settings {
+    light_mesh([40, 40], 0.2, 2.1).with_samples(samples).with_bounces(1).with_layers(true)
+}
+
+/// The scene's first camera, a part of the way to its right.
+fn aside(scene: &PreparedScene, way: f32) -> Camera {
+    let camera = scene.scene.cameras[0].clone();
+    let (right, ..) = camera.basis();
+    let position = camera.position + way * right;
+    camera.with_position(position)
+}
+
+/// A picture with the cache, which is the same in every bit without. Returns the long tests that were made, and those that were saved.
+fn same(cache: &mut MeshCache, scene: &PreparedScene, settings: &Settings) -> (u64, u64) {
+    let with = renderer().render_with(cache, scene, settings, &Unobserved).unwrap();
+    let without = renderer().render_prepared(scene, settings, &Unobserved).unwrap();
+    assert!(Picture::new(&with).bits() == Picture::new(&without).bits(), "another picture");
+    let tests = |frame: &Frame| (frame.stats.counts.long_tests, frame.stats.counts.long_tests_saved);
+    let (made, saved) = tests(&with);
+    assert_eq!(tests(&without), (made + saved, 0), "each test is made or saved");
+    (made, saved)
+}
+
+#[test]
+fn a_camera_that_moves_finds_light_points_that_are_known() {
+    let scene = prepared(&Scene::open("builtin:childpark").unwrap());
+    let way = 0.01 * scene.geometry.bounds.diagonal();
+    let mut cache = MeshCache::new();
+    let mut known = 0;
+    for step in 0..8 {
+        let camera = aside(&scene, way * step as f32);
+        let settings = light_mesh(SIZE, 1.0, 2.1).with_camera(camera).with_bounces(1).with_layers(true);
+        let (made, saved) = same(&mut cache, &scene, &settings);
+        assert!(step == 0 || saved > made, "picture {step}: {made} made, {saved} saved");
+        assert!(cache.len() > known || made == 0);
+        known = cache.len();
+    }
+    assert!(cache.memory() > known / 8);
+    cache.clear();
+    assert!(cache.is_empty() && cache.memory() == 0);
+}
+
+#[test]
+fn the_same_picture_again_tests_nothing() {
+    let scene = prepared(&pile(DVec3::new(1e3, 0.0, -1e5), &[LAMP, POINT]));
+    let mut cache = MeshCache::new();
+    let (made, _) = same(&mut cache, &scene, &small(5));
+    assert!(made > 0);
+    assert_eq!(same(&mut cache, &scene, &small(5)).0, 0);
+    // Another radius uses other light points of the same lattice.
+    let (made, saved) = same(&mut cache, &scene, &small(5).with_radius(3.1));
+    assert!(made > 0 && saved > 0);
+}
+
+#[test]
+fn a_light_that_moves_or_changes_is_tested_anew_and_no_other() {
+    let scene = prepared(&pile(DVec3::ZERO, &[POINT, LAMP]));
+    let with = |kinds: [LightKind; 2]| {
+        let mut lights: Lights = scene.scene.lights.clone();
+        lights.iter_mut().zip(kinds).for_each(|(light, kind)| light.kind = kind);
+        lights
+    };
+    let moved = LightKind::Point { position: Vec3::new(2.0, 4.1, 1.0), spread: 0.0 };
+    let larger = LightKind::Sphere { position: Vec3::new(-2.0, 4.0, 2.0), radius: 0.7 };
+    let mut cache = MeshCache::new();
+    let (made, saved) = same(&mut cache, &scene, &small(4));
+    // One ray to the point light, four to the lamp.
+    let points = (made + saved) / 5;
+    let mut again = |lights: Lights| same(&mut cache, &scene.with_lights(lights), &small(4)).0;
+    let one = again(with([moved.clone(), LAMP]));
+    assert!(one > 0 && one <= points, "{one} of {points} light points");
+    assert_eq!(again(with([moved.clone(), larger.clone()])), 4 * one);
+    let mut brighter = with([moved.clone(), larger.clone()]);
+    brighter[0].intensity *= 2.0;
+    assert_eq!(again(brighter), 0, "how strong a light is does not matter");
+    assert_eq!(again(with([larger, moved])), 5 * one, "lights have changed places");
+    let mut fewer = scene.scene.lights.clone();
+    fewer.list.truncate(1);
+    assert_eq!(again(fewer), one, "one light, and not the one there was");
+}
+
+#[test]
+fn what_decides_an_answer_makes_it_new() {
+    let scene = prepared(&pile(DVec3::ZERO, &[POINT, LAMP]));
+    let mut cache = MeshCache::new();
+    // One ray to the point light, four to the lamp.
+    let points = same(&mut cache, &scene, &small(4)).0 / 5;
+    assert_eq!(same(&mut cache, &scene, &small(4).with_seed(1)).0, 4 * points, "the lamp alone");
+    assert_eq!(same(&mut cache, &scene, &small(5)).0, 5 * points, "the lamp alone");
+    let finer = small(5).with_step(Step::Fixed(0.15));
+    assert!(same(&mut cache, &scene, &finer).0 > 6 * points, "another step has other light points");
+    assert_eq!(same(&mut cache, &scene, &small(5)).0, 6 * points, "the first step's were forgotten");
+    let mut other = pile(DVec3::ZERO, &[POINT, LAMP]);
+    other.geometry_mut().mesh.positions[0] += Vec3::splat(0.5);
+    assert!(same(&mut cache, &prepared(&other), &small(5)).0 > points, "another geometry");
+}
+
+#[test]
+fn two_geometries_take_turns() {
+    let scenes = [pile(DVec3::ZERO, &[POINT, LAMP]), pile(DVec3::splat(0.3), &[POINT, LAMP])].map(|it| prepared(&it));
+    let mut cache = MeshCache::new();
+    let made: Vec<u64> = (0..4).map(|turn| same(&mut cache, &scenes[turn % 2], &small(4)).0).collect();
+    assert!(made[0] > 0 && made[1] > 0);
+    assert_eq!(made[2..], [0, 0]);
+    let known = cache.len();
+    let [first, second] = scenes;
+    drop(first);
+    same(&mut cache, &second, &small(4));
+    assert!(cache.len() < known, "geometry that is gone is forgotten");
+}
+
+/// Asks to stop at a question.
+struct Impatient {
+    left: AtomicU64,
+}
+
+impl Observer for Impatient {
+    fn cancelled(&self) -> bool {
+        let left = |left: u64| Some(left.saturating_sub(1));
+        self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, left) == Ok(1)
+    }
+}
+
+#[test]
+fn a_picture_that_was_stopped_leaves_nothing_wrong_behind() {
+    let scene = prepared(&pile(DVec3::ZERO, &[POINT, LAMP]));
+    let mut stopped = 0;
+    for patience in (1..400).step_by(13) {
+        let mut cache = MeshCache::new();
+        let observer = Impatient { left: AtomicU64::new(patience) };
+        match renderer().render_with(&mut cache, &scene, &small(4), &observer) {
+            Err(RenderError::Cancelled) => stopped += 1,
+            other => assert!(other.is_ok()),
+        }
+        same(&mut cache, &scene, &small(4));
+    }
+    assert!(stopped > 0);
+}

@@ -1,0 +1,37 @@
+//! Progress: every stage ends at its total, and so does the whole picture.
+
+use std::collections::BTreeSet;
+
+use lightmesh_render::backend::Cpu;
+use lightmesh_render::{Acceleration, Mode, PreparedScene, Settings, Stage, Step, Unobserved, render_on};
+use lightmesh_scene::{Geometry, Scene};
+use lightmesh_testkit::{Watch, half_plane};
+
+fn settings(mode: Mode) -> Settings {
+    Settings::default().with_size([60, 44]).with_mode(mode).with_bounces(1).with_samples(3).with_step(Step::Fixed(0.3))
+}
+
+/// The stages of a picture; each has ended at its total.
+fn stages(scene: &Scene, settings: &Settings) -> BTreeSet<&'static str> {
+    let prepared = PreparedScene::new(scene, &Acceleration::Bvh, &Unobserved).unwrap();
+    let watch = Watch::default();
+    render_on(&Cpu, &prepared, settings, &watch).unwrap();
+    watch.finished().iter().map(|watched| watched.stage.name()).collect()
+}
+
+#[test]
+fn every_stage_ends_at_its_total() {
+    for &mode in Mode::ALL {
+        let stages = stages(&half_plane(), &settings(mode));
+        let common = [Stage::CameraRays, Stage::PrimaryRays, Stage::LongTests, Stage::Shade, Stage::MirrorRays];
+        assert!(common.iter().all(|stage| stages.contains(stage.name())), "{mode:?}: {stages:?}");
+        assert_eq!(stages.contains("interpolate"), mode == Mode::LightMesh, "{stages:?}");
+    }
+}
+
+#[test]
+fn a_picture_of_nothing_ends_too() {
+    for &mode in Mode::ALL {
+        assert!(stages(&Scene::new("empty", Geometry::default()), &settings(mode)).contains("shade"));
+    }
+}

@@ -1,0 +1,31 @@
+//! What rays can hit: triangles with their materials and textures.
+
+use glam::{DVec3, Vec3};
+
+use crate::{Material, Mesh, Texture};
+
+/// The surfaces of a scene, in one local frame. [`Scene`](crate::Scene) shares it behind an `Arc`: whoever moves a light or a camera
+/// leaves it as it is, and what a renderer has built over it stays valid.
+#[derive(Clone, Debug, Default)]
+pub struct Geometry {
+    /// World position of the local frame's zero. All `f32` positions, those of lights and cameras too, are relative to it.
+    pub origin: DVec3,
+    /// The triangles.
+    pub mesh: Mesh,
+    /// Materials, at least one where there are triangles.
+    pub materials: Vec<Material>,
+    /// Textures of the materials.
+    pub textures: Vec<Texture>,
+}
+
+impl Geometry {
+    /// World coordinates of a local point.
+    pub fn to_world(&self, local: Vec3) -> DVec3 {
+        self.origin + local.as_dvec3()
+    }
+
+    /// Local coordinates of a world point.
+    pub fn to_local(&self, world: DVec3) -> Vec3 {
+        (world - self.origin).as_vec3()
+    }
+}

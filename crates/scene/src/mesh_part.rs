@@ -1,0 +1,49 @@
+//! What is added to a scene in one go.
+
+use glam::{DVec3, Vec2, Vec3};
+
+/// One mesh as a file holds it, before it is placed. Slices are as long as `positions` or empty.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshPart<'a, P = DVec3> {
+    /// Vertices in the part's own coordinates, `Vec3` or `DVec3`.
+    pub positions: &'a [P],
+    /// Normals by vertex; need not be unit length.
+    pub normals: &'a [Vec3],
+    /// Texture coordinates by vertex.
+    pub uvs: &'a [Vec2],
+    /// Linear colours by vertex.
+    pub colors: &'a [Vec3],
+    /// Three vertex indices a triangle, all in range.
+    pub triangles: &'a [[u32; 3]],
+}
+
+impl<P> Default for MeshPart<'_, P> {
+    fn default() -> Self {
+        MeshPart { positions: &[], normals: &[], uvs: &[], colors: &[], triangles: &[] }
+    }
+}
+
+/// How much room a scene needs, where that is known before it is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Room {
+    pub(crate) vertices: usize,
+    pub(crate) triangles: usize,
+    /// Whether any part has them.
+    pub(crate) normals: bool,
+    pub(crate) uvs: bool,
+    pub(crate) colors: bool,
+}
+
+impl Room {
+    /// Room for this, and for `count` times `more`.
+    pub(crate) fn and(&self, more: &Room, count: usize) -> Room {
+        let sum = |a: usize, b: usize| a.saturating_add(b.saturating_mul(count));
+        Room {
+            vertices: sum(self.vertices, more.vertices),
+            triangles: sum(self.triangles, more.triangles),
+            normals: self.normals || more.normals,
+            uvs: self.uvs || more.uvs,
+            colors: self.colors || more.colors,
+        }
+    }
+}

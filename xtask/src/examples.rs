@@ -1,0 +1,38 @@
+//! `cargo xtask readme` and `cargo xtask drawings`: generated parts of the documents.
+//!
+//! Examples of other crates do the work; they are built only for these commands, so that `cargo xtask` itself stays small.
+
+use std::env;
+use std::path::Path;
+use std::process::Command;
+
+use crate::{Outcome, Verdict};
+
+/// Writes the tables of README and METHOD from the results they name; with `check` only compares them.
+pub(crate) fn readme(root: &Path, check: bool) -> Outcome {
+    run(root, "lightmesh-bench", "readme", &["README.md", "METHOD.md"], check)
+}
+
+/// Writes the drawings of METHOD; with `check` only compares them.
+pub(crate) fn drawings(root: &Path, check: bool) -> Outcome {
+    run(root, "lightmesh-render", "drawings", &["docs/drawings"], check)
+}
+
+/// Runs an example in the repository's root. If it fails, each line on stderr is a problem.
+fn run(root: &Path, package: &str, example: &str, arguments: &[&str], check: bool) -> Outcome {
+    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.current_dir(root);
+    command.args(["run", "--quiet", "--package", package, "--example", example, "--"]).args(arguments);
+    if check {
+        command.arg("--check");
+    }
+    let output = command.output()?;
+    let lines = |bytes: &[u8]| String::from_utf8_lossy(bytes).lines().map(str::to_owned).collect::<Vec<_>>();
+    if output.status.success() {
+        return Ok(Verdict::Passed(lines(&output.stdout).join("; ")));
+    }
+    // The caller prefixes each line with the same word.
+    let problems = lines(&output.stderr).into_iter().map(|line| line.trim_start_matches("error: ").to_owned());
+    Ok(Verdict::Failed(problems.collect()))
+}
