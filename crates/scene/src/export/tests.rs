@@ -158,7 +158,7 @@ fn what_cannot_be_written_is_refused() {
     let message = scene.export(folder.path().join("scene.obj")).unwrap_err().to_string();
     assert!(message.contains("`.obj`") && message.contains(".toml or .glb"), "{message}");
     let message = scene.export(folder.path().join("no/such/folder/scene.glb")).unwrap_err().to_string();
-    assert!(message.contains("scene.glb") && message.contains("does not exist, create it first"), "{message}");
+    assert!(message.contains("scene.glb") && message.contains("does not exist; create it first"), "{message}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
