@@ -3,7 +3,10 @@
 use std::fmt;
 use std::path::Path;
 
-use crate::{bmp, jpg};
+#[cfg(feature = "bmp")]
+use crate::bmp;
+#[cfg(feature = "jpeg")]
+use crate::jpg;
 
 /// An image format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -41,13 +44,35 @@ impl Format {
             .find(|format| format.extensions().iter().any(|known| extension.eq_ignore_ascii_case(known)))
     }
 
+    /// The Cargo feature of this crate that the format needs.
+    pub fn feature(self) -> &'static str {
+        match self {
+            Self::Bmp => "bmp",
+            Self::Png => "png",
+            Self::Exr => "exr",
+            Self::Jpg => "jpeg",
+        }
+    }
+
+    /// Whether this crate was built with the format's feature.
+    pub fn is_built(self) -> bool {
+        match self {
+            Self::Bmp => cfg!(feature = "bmp"),
+            Self::Png => cfg!(feature = "png"),
+            Self::Exr => cfg!(feature = "exr"),
+            Self::Jpg => cfg!(feature = "jpeg"),
+        }
+    }
+
     /// The format's limit as text, if an image of this size exceeds it.
     pub(crate) fn exceeded_limit(self, width: u32, height: u32) -> Option<&'static str> {
         let longest = width.max(height);
         let (exceeded, limit) = match self {
+            #[cfg(feature = "bmp")]
             Self::Bmp => (!bmp::can_hold(width, height), bmp::LIMIT),
+            #[cfg(feature = "jpeg")]
             Self::Jpg => (longest > jpg::MAX_SIDE, "65535 pixels per side"),
-            Self::Png | Self::Exr => (longest > i32::MAX as u32, "2147483647 pixels per side"),
+            _ => (longest > i32::MAX as u32, "2147483647 pixels per side"),
         };
         exceeded.then_some(limit)
     }
@@ -66,9 +91,10 @@ impl Format {
         }
     }
 
-    /// All known extensions, for messages.
+    /// The extensions of all formats that the crate was built with, for messages.
     pub(crate) fn known() -> String {
-        let extensions: Vec<_> = Self::ALL.iter().flat_map(|format| format.extensions()).copied().collect();
+        let built = Self::ALL.into_iter().filter(|format| format.is_built());
+        let extensions: Vec<_> = built.flat_map(|format| format.extensions()).copied().collect();
         extensions.join(", ")
     }
 }
@@ -89,7 +115,9 @@ mod tests {
         assert_eq!(Format::from_path(Path::new("b.jpeg")), Some(Format::Jpg));
         assert_eq!(Format::from_path(Path::new("b.tga")), None);
         assert_eq!(Format::from_path(Path::new("png")), None);
-        assert_eq!(Format::known(), "bmp, png, exr, jpg, jpeg");
+        assert!(
+            Format::ALL.into_iter().all(|format| Format::known().contains(format.extensions()[0]) == format.is_built())
+        );
     }
 
     #[test]

@@ -8,7 +8,10 @@
 //!
 //! Transfer functions ([`Transfer`]) are only applied here; everything else in the workspace uses linear values.
 //!
+//! Each format has a Cargo feature (`bmp`, `exr`, `jpeg`, `png`), and so has the comparison (`flip`); all are on by default.
+//!
 //! ```
+//! # #[cfg(all(feature = "flip", feature = "png"))] {
 //! use lightmesh_image::{Frame, check_writable, compare};
 //!
 //! let folder = tempfile::tempdir()?;
@@ -21,21 +24,33 @@
 //! let comparison = compare(&frame, &Frame::load(&path)?)?;
 //! assert!(comparison.max_difference < 0.5 / 255.0); // only rounding to 8 bits
 //! assert_eq!(comparison.mean_flip, 0.0);
+//! # }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(
+    not(all(feature = "bmp", feature = "exr", feature = "flip", feature = "jpeg", feature = "png")),
+    allow(dead_code, unused_imports, unused_variables, reason = "what several formats share is not used by each")
+)]
+
+#[cfg(feature = "bmp")]
 mod bmp;
+#[cfg(feature = "flip")]
 mod compare;
 mod exposure;
+#[cfg(feature = "exr")]
 mod exr;
 mod format;
 mod frame;
+#[cfg(feature = "jpeg")]
 mod jpg;
 mod load;
+#[cfg(feature = "png")]
 mod png;
 mod save;
 mod transfer;
 
+#[cfg(feature = "flip")]
 pub use compare::{CompareError, Comparison, compare};
 pub use format::Format;
 pub use frame::{Frame, FrameError, FrameParts, Layers};

@@ -7,11 +7,20 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+#[cfg(any(feature = "bmp", feature = "jpeg"))]
 use image::{DynamicImage, ImageDecoder, ImageResult};
 use thiserror::Error;
 
+#[cfg(feature = "bmp")]
+use crate::bmp;
+#[cfg(feature = "exr")]
+use crate::exr;
 use crate::frame::pixel_count;
-use crate::{Format, Frame, Transfer, bmp, exr, jpg, png};
+#[cfg(feature = "jpeg")]
+use crate::jpg;
+#[cfg(feature = "png")]
+use crate::png;
+use crate::{Format, Frame, Transfer};
 
 /// Maximum number of pixels in a file: 16384 x 16384, 3 GiB of colours.
 const MAX_PIXELS: usize = 1 << 28;
@@ -48,6 +57,12 @@ pub enum DecodeError {
     /// The first bytes do not match a known format.
     #[error("not an image in a known format; convert it to one of these: {}", Format::known())]
     UnknownFormat,
+    /// This crate was built without the format.
+    #[error("this program was built without {format} files: build it with the feature {}", format.feature())]
+    NotBuilt {
+        /// The format.
+        format: Format,
+    },
     /// The header specifies too many pixels, or none.
     #[error(
         "the {format} header specifies {width}x{height} pixels, but only 1 to {MAX_PIXELS} pixels are supported: scale it down"
@@ -100,10 +115,16 @@ impl Frame {
     /// [`DecodeError`] for any invalid bytes.
     pub fn decode(bytes: &[u8]) -> Result<Self, DecodeError> {
         match Format::from_signature(bytes).ok_or(DecodeError::UnknownFormat)? {
+            #[cfg(feature = "bmp")]
             Format::Bmp => bmp::read(bytes),
+            #[cfg(feature = "png")]
             Format::Png => png::read(bytes),
+            #[cfg(feature = "exr")]
             Format::Exr => exr::read(bytes),
+            #[cfg(feature = "jpeg")]
             Format::Jpg => jpg::read(bytes),
+            #[allow(unreachable_patterns, reason = "unless all features are on")]
+            format => Err(DecodeError::NotBuilt { format }),
         }
     }
 }
@@ -125,6 +146,7 @@ pub(crate) fn checked_pixels(format: Format, width: u32, height: u32) -> Result<
     pixels.ok_or(DecodeError::TooLarge { format, width, height })
 }
 
+#[cfg(any(feature = "bmp", feature = "jpeg"))]
 /// Reads an 8-bit image with a decoder of the `image` crate, after checking its size.
 pub(crate) fn read_with(format: Format, decoder: ImageResult<impl ImageDecoder>) -> Result<Frame, DecodeError> {
     let decoder = decoder.map_err(|error| DecodeError::malformed(format, error))?;

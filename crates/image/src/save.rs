@@ -9,7 +9,15 @@ use std::path::{Path, PathBuf};
 use lightmesh_files::{Replacement, TargetError};
 use thiserror::Error;
 
-use crate::{Format, Frame, Transfer, bmp, exr, jpg, png};
+#[cfg(feature = "bmp")]
+use crate::bmp;
+#[cfg(feature = "exr")]
+use crate::exr;
+#[cfg(feature = "jpeg")]
+use crate::jpg;
+#[cfg(feature = "png")]
+use crate::png;
+use crate::{Format, Frame, Transfer};
 
 /// Why an image cannot be saved.
 #[derive(Debug, Error)]
@@ -20,6 +28,14 @@ pub enum SaveError {
     UnknownExtension {
         /// The target.
         path: PathBuf,
+    },
+    /// This crate was built without the format.
+    #[error("cannot save {}: this program was built without {format} files: build it with the feature {}", path.display(), format.feature())]
+    NotBuilt {
+        /// The target.
+        path: PathBuf,
+        /// The target's format.
+        format: Format,
     },
     /// Only exr files can store layers.
     #[error("cannot save layers to {}: only OpenEXR files can store them; use the extension exr", path.display())]
@@ -70,6 +86,14 @@ pub enum EncodeError {
         /// The limit.
         limit: &'static str,
     },
+    /// This crate was built without the format.
+    #[error("this program was built without {format} files: build it with the feature {feature}")]
+    NotBuilt {
+        /// The format.
+        format: Format,
+        /// The Cargo feature that it needs.
+        feature: &'static str,
+    },
     /// The bytes could not be written.
     #[error(transparent)]
     Io(#[from] io::Error),
@@ -100,13 +124,20 @@ impl Frame {
         let path = path.as_ref();
         let format = known_format(path)?;
         self.replace(path, format, |output| match format {
+            #[cfg(feature = "bmp")]
             Format::Bmp => bmp::write(self, transfer, output),
+            #[cfg(feature = "png")]
             Format::Png => png::write(self, transfer, output),
+            #[cfg(feature = "exr")]
             Format::Exr => exr::write(self, output),
+            #[cfg(feature = "jpeg")]
             Format::Jpg => jpg::write(self, transfer, output),
+            #[allow(unreachable_patterns, reason = "unless all features are on")]
+            other => Err(EncodeError::NotBuilt { format: other, feature: other.feature() }),
         })
     }
 
+    #[cfg(feature = "png")]
     /// A PNG file of the colours, with the sRGB curve.
     ///
     /// # Errors
@@ -117,6 +148,7 @@ impl Frame {
         Ok(bytes)
     }
 
+    #[cfg(feature = "png")]
     /// The same, but smaller: with a palette if 256 colours suffice, as in difference images.
     ///
     /// # Errors
@@ -126,6 +158,7 @@ impl Frame {
         if png::write_indexed(self, &mut bytes)? { Ok(bytes) } else { self.to_png() }
     }
 
+    #[cfg(feature = "exr")]
     /// Saves colours and layers as one multilayer exr of 32-bit floats with the channels `R G B` (linear), `Z` (distance
     /// along the ray), `N.X N.Y N.Z`, `P.X P.Y P.Z`, `V.0 V.1 …` (one per light) and `M` (light points used).
     ///
@@ -153,6 +186,7 @@ impl Frame {
                 let (width, height) = (self.width(), self.height());
                 SaveError::TooLarge { path: path.to_owned(), format, width, height, limit }
             }
+            EncodeError::NotBuilt { format, .. } => SaveError::NotBuilt { path: path.to_owned(), format },
             EncodeError::Io(reason) => SaveError::Write { path: path.to_owned(), reason },
         };
         let mut file = Replacement::of(path)?;
@@ -189,5 +223,6 @@ pub fn check_size(path: impl AsRef<Path>, width: u32, height: u32) -> Result<(),
 }
 
 fn known_format(path: &Path) -> Result<Format, SaveError> {
-    Format::from_path(path).ok_or_else(|| SaveError::UnknownExtension { path: path.to_owned() })
+    let format = Format::from_path(path).ok_or_else(|| SaveError::UnknownExtension { path: path.to_owned() })?;
+    if format.is_built() { Ok(format) } else { Err(SaveError::NotBuilt { path: path.to_owned(), format }) }
 }

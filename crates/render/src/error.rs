@@ -35,6 +35,30 @@ pub enum RenderError {
         /// What to give instead.
         remedy: &'static str,
     },
+    /// Given points and normals do not match, or are too many.
+    #[error(
+        "{points} points with {normals} normals cannot be used: give one normal per point, and at most {most} points at once"
+    )]
+    Points {
+        /// Number of points.
+        points: usize,
+        /// Number of normals.
+        normals: usize,
+        /// Most points.
+        most: usize,
+    },
+    /// A given point is none.
+    #[error(
+        "point {index} at {position:?} with normal {normal:?} cannot be used: coordinates must be finite, and the normal must not be zero"
+    )]
+    Point {
+        /// Its place among the points.
+        index: usize,
+        /// Its position, local frame.
+        position: [f32; 3],
+        /// Its normal.
+        normal: [f32; 3],
+    },
     /// The threads could not be started.
     #[error("cannot start {threads} threads ({reason}): ask for fewer")]
     Threads {
@@ -105,7 +129,10 @@ impl RenderError {
                 vec![Setting::Size, Setting::Step, Setting::Radius, Setting::Device]
             }
             RenderError::Device { .. } | RenderError::DeviceFault { .. } => vec![Setting::Device],
-            RenderError::Geometry(_) | RenderError::Cancelled => Vec::new(),
+            RenderError::Geometry(_)
+            | RenderError::Points { .. }
+            | RenderError::Point { .. }
+            | RenderError::Cancelled => Vec::new(),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! How the stages are put together: one picture, whatever the technique.
+//! How the stages are put together, whatever the technique: for a picture, and for points that the caller gives.
 //!
 //! A picture is made band by band, as many rows at once as memory allows; every band gives the pixels that the whole picture
 //! would. Within a band, mirrors are a loop over waves of rays.
@@ -7,12 +7,46 @@ use std::ops::Range;
 
 use crate::backend::run::Run;
 use crate::backend::{Backend, WaveOf};
+use crate::counters::Tally;
 use crate::data::picture::Picture;
+use crate::data::visibility::Visibility;
 use crate::error::RenderError;
 use crate::plan::Plan;
+use crate::probes::GivenPoints;
 use crate::stage::Stage;
 use crate::techniques::Technique;
 use crate::view::View;
+
+/// Visibility at given points, to be found.
+pub(crate) struct Baking<'a, B: Backend> {
+    pub(crate) run: Run<'a, B>,
+    pub(crate) scene: &'a B::Scene,
+    pub(crate) technique: &'a Technique,
+    pub(crate) plan: &'a Plan,
+}
+
+impl<B: Backend> Baking<'_, B> {
+    /// Finds what each probe sees of each light. Returns how many rows of probes were taken at once, too.
+    pub(crate) fn bake(&self, points: &GivenPoints) -> Result<(Visibility, u32), RenderError> {
+        let Baking { run, scene, technique, plan } = self;
+        run.job.work.expect(points.len() as u64 * technique.stages().len() as u64);
+        let at_once = run.or_forget(|backend| backend.rows_at_once(scene, plan))?;
+        let mut all = Visibility::dark(points.scene.scene.lights.len(), points.len());
+        let at_once = in_bands(run, points.rows(), at_once, |rows| {
+            let range = points.range(&rows);
+            let probes = points.part(&rows);
+            let (scene, rays, hits) = run.on_host(Stage::Upload, |backend| backend.probes(scene, &probes))?;
+            let wave = WaveOf::<B> { job: run.job, scene: &scene, rays: &rays, hits: &hits };
+            let visibility = technique.visibility(run, &wave)?;
+            run.backend.finish(run.job)?;
+            let part = run.on_host(Stage::Download, |backend| backend.visibility(visibility))?;
+            all.put(range, &part);
+            Tally::add(&run.job.tally.surface_points, part.rays as u64);
+            Ok(())
+        })?;
+        Ok((all, at_once))
+    }
+}
 
 /// A picture to be made.
 pub(crate) struct Passes<'a, B: Backend> {
@@ -25,32 +59,10 @@ pub(crate) struct Passes<'a, B: Backend> {
 
 impl<B: Backend> Passes<'_, B> {
     /// Renders all of the view into `picture`. Returns how many rows were made at once.
-    ///
-    /// Where memory ends in spite of the plan, the band is begun again: without what is kept of earlier pictures, then with half of its
-    /// rows. What a picture takes is known only when its light points are.
     pub(crate) fn render(&self, picture: &mut Picture) -> Result<u32, RenderError> {
-        let (job, height) = (self.run.job, self.view.size()[1]);
-        job.work.expect(self.pieces_of_wave(0, self.plan.pixels()));
-        let mut at_once = self.run.or_forget(|backend| backend.rows_at_once(self.scene, self.plan))?;
-        let mut first = 0;
-        while first < height {
-            let rows = first..height.min(first.saturating_add(at_once));
-            let (counted, done, total) = (job.tally.snapshot(), job.work.done(), job.work.total());
-            match self.band(rows.clone(), picture) {
-                Ok(()) => first = rows.end,
-                Err(RenderError::DeviceMemory { .. }) if rows.len() > 1 || self.run.keeps() => {
-                    job.tally.restore(&counted);
-                    job.work.rewind(done, total);
-                    if self.run.forget() {
-                        continue;
-                    }
-                    at_once = rows.len() as u32 / 2;
-                    job.observer.note(&format!("device memory is short: {at_once} rows at once"));
-                }
-                Err(error) => return Err(error),
-            }
-        }
-        Ok(at_once)
+        self.run.job.work.expect(self.pieces_of_wave(0, self.plan.pixels()));
+        let at_once = self.run.or_forget(|backend| backend.rows_at_once(self.scene, self.plan))?;
+        in_bands(&self.run, self.view.size()[1], at_once, |rows| self.band(rows, picture))
     }
 
     /// Renders some rows.
@@ -85,4 +97,36 @@ impl<B: Backend> Passes<'_, B> {
         // Camera rays, primary rays, the technique's stages, shading, mirror rays.
         rays * (from_camera + 1 + self.technique.stages().len() as u64 + 1 + to_mirrors)
     }
+}
+
+/// Does the work of `rows` rows band by band, `at_once` rows at first. Returns how many it were at last.
+///
+/// If memory ends in spite of the plan, the band is begun again: without what is kept of earlier images, then with half of its
+/// rows. What an image takes is known only when its light points are.
+pub(crate) fn in_bands<B: Backend>(
+    run: &Run<B>,
+    rows: u32,
+    mut at_once: u32,
+    mut band: impl FnMut(Range<u32>) -> Result<(), RenderError>,
+) -> Result<u32, RenderError> {
+    let job = run.job;
+    let mut first = 0;
+    while first < rows {
+        let rows = first..rows.min(first.saturating_add(at_once));
+        let (counted, done, total) = (job.tally.snapshot(), job.work.done(), job.work.total());
+        match band(rows.clone()) {
+            Ok(()) => first = rows.end,
+            Err(RenderError::DeviceMemory { .. }) if rows.len() > 1 || run.keeps() => {
+                job.tally.restore(&counted);
+                job.work.rewind(done, total);
+                if run.forget() {
+                    continue;
+                }
+                at_once = rows.len() as u32 / 2;
+                job.observer.note(&format!("device memory is short: {at_once} rows at once"));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(at_once)
 }

@@ -1,8 +1,13 @@
-//! Whole pictures in all modes, with mirrors and layers.
+//! Whole pictures in all modes, with mirrors and layers; and visibility at given points.
 
+use glam::Vec3;
 use lightmesh_image::{Layers, Transfer};
 use lightmesh_render::backend::{Cpu, Cuda};
-use lightmesh_render::{Frame, Mode, Settings, Step, Unobserved, render_on};
+use lightmesh_render::{
+    Counts, Frame, GivenPoints, Mode, PointVisibility, Settings, Step, Unobserved, render_on, visibility_on,
+};
+use lightmesh_scene::Bounds;
+use lightmesh_testkit::Random;
 
 use crate::scenes::{SUBJECTS, Subject, TEXTURED};
 use crate::stages::{SHARE_TOLERANCE, alike};
@@ -16,35 +21,59 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         for mode in [Mode::LightMesh, Mode::RayTrace, Mode::Area] {
             let name = format!("{}::picture::{}", subject.name, mode.name());
             cases.push(Case::new(name, move |cuda| same_picture(cuda, subject, mode)));
+            let name = format!("{}::points::{}", subject.name, mode.name());
+            cases.push(Case::new(name, move |cuda| same_at_points(cuda, subject, mode)));
         }
     }
     cases
 }
 
+fn settings(subject: &Subject, mode: Mode) -> Settings {
+    let settings = Settings::default().with_mode(mode).with_size(SIZE).with_bounces(2).with_layers(true);
+    settings.with_samples(4).with_step(Step::Fixed(subject.step)).with_radius(2.1)
+}
+
 fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, mode: Mode) {
     let scene = subject.prepared(0);
-    let settings = Settings::default()
-        .with_mode(mode)
-        .with_size(SIZE)
-        .with_bounces(2)
-        .with_layers(true)
-        .with_samples(4)
-        .with_step(Step::Fixed(subject.step))
-        .with_radius(2.1);
+    let settings = settings(subject, mode);
     let host = render_on(&Cpu, scene, &settings, &Unobserved).unwrap();
     let device = render_on(cuda, scene, &settings, &Unobserved).unwrap();
     same_colors::<R>(&host, &device);
     same_layers::<R>(host.image.layers().expect("asked for"), device.image.layers().expect("asked for"));
-    assert_eq!(counts(&host), counts(&device));
+    assert_eq!(counts(&host.stats.counts), counts(&device.stats.counts));
 
     let again = render_on(cuda, scene, &settings, &Unobserved).unwrap();
     let bits = |frame: &Frame| frame.image.color().iter().map(|color| color.map(f32::to_bits)).collect::<Vec<_>>();
     assert!(bits(&device) == bits(&again), "the same picture twice");
 }
 
+/// Given points, all over the scene and a little outside of it, see the same.
+fn same_at_points<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, mode: Mode) {
+    let scene = subject.prepared(0);
+    let unit = Bounds { min: Vec3::ZERO, max: Vec3::ONE };
+    let bounds = if scene.geometry.bounds.is_empty() { unit } else { scene.geometry.bounds };
+    let mut random = Random::new(7);
+    let mut signed = || Vec3::from([0; 3].map(|_| 2.0 * random.unit() as f32 - 1.0));
+    let points: Vec<Vec3> = (0..1500).map(|_| bounds.center() + 0.6 * signed() * bounds.extent()).collect();
+    let normals: Vec<Vec3> = points.iter().map(|_| signed()).collect();
+    let given = GivenPoints::new(scene, &points, &normals).unwrap();
+    let settings = settings(subject, mode);
+    let host = visibility_on(&Cpu, &given, &settings, &Unobserved).unwrap();
+    let device = visibility_on(cuda, &given, &settings, &Unobserved).unwrap();
+    let counted = |seen: &PointVisibility| counts(&seen.stats.counts);
+    assert_eq!(counted(&host), counted(&device));
+    assert_eq!(host.points(), points.len());
+    for light in 0..host.lights() {
+        let twins = host.of_light(light).iter().zip(device.of_light(light));
+        let differ = twins.filter(|&(&a, &b)| !alike(a, b, SHARE_TOLERANCE)).count();
+        assert!(differ <= R::allowed(points.len(), 100), "{differ} visibilities of light {light} differ");
+        assert!(host.of_light(light).iter().any(|&share| share > 0.0), "light {light} is seen");
+    }
+}
+
 /// All that is counted. How many short tests are decided without asking triangles is each device's own affair; their sum is not.
-fn counts(frame: &Frame) -> String {
-    let mut counts = frame.stats.counts.clone();
+fn counts(counts: &Counts) -> String {
+    let mut counts = counts.clone();
     counts.short_tests += std::mem::take(&mut counts.short_tests_culled);
     format!("{counts:?}")
 }

@@ -79,7 +79,7 @@ impl World {
         let list = RayList {
             rays: eyes.iter().map(down).collect(),
             pixels: (0..eyes.len() as u32).collect(),
-            weights: Vec::new(),
+            ..RayList::default()
         };
         let hits = Cpu.primary_rays(&job, &scene, &list)?;
         if !hits.iter().all(Hit::is_some) {

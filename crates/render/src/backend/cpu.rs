@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Backend, Needs, SeenOf, WaveOf};
+use super::{Backend, Needs, Probed, SeenOf, WaveOf};
 use crate::accel::Hit;
 use crate::bands;
 use crate::cache::{HostTable, Kept};
@@ -18,6 +18,7 @@ use crate::job::Job;
 use crate::light_mesh::{LightMesh, UsedPoints};
 use crate::plan::Plan;
 use crate::prepared::PreparedScene;
+use crate::probes::Probes;
 use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stages::{
@@ -86,6 +87,10 @@ impl Backend for Cpu {
         Ok(primary_rays::cpu::primary_rays(job, scene, rays))
     }
 
+    fn probes(&self, scene: &PreparedScene, probes: &Probes) -> Result<Probed<Cpu>, RenderError> {
+        Ok((scene.clone(), probes.rays.clone(), probes.hits.clone()))
+    }
+
     fn cells(&self, wave: &WaveOf<Cpu>, mesh: &LightMesh) -> Result<CellGroups, RenderError> {
         Ok(cells::cpu::cells(wave, &mesh.lattice))
     }
@@ -141,6 +146,10 @@ impl Backend for Cpu {
 
     fn finish(&self, _: &Job) -> Result<(), RenderError> {
         Ok(())
+    }
+
+    fn visibility(&self, visibility: Visibility) -> Result<Visibility, RenderError> {
+        Ok(visibility)
     }
 
     fn develop(&self, _: &PreparedScene, film: Picture, picture: &mut Picture) -> Result<(), RenderError> {

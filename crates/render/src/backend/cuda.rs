@@ -7,16 +7,18 @@ use lightmesh_layout::geometry::Rays;
 
 use super::{
     Backend, Cuda, DeviceCells, DeviceFilm, DeviceHits, DeviceLit, DeviceMasks, DevicePoints, DeviceRays, DeviceScene,
-    DeviceVisibility, Needs, SeenOf, WaveOf,
+    DeviceVisibility, Needs, Probed, SeenOf, WaveOf,
 };
 use crate::cache::{DeviceTable, Kept};
 use crate::cuda::Runtime;
 use crate::data::picture::Picture;
+use crate::data::visibility::Visibility;
 use crate::error::RenderError;
 use crate::job::Job;
 use crate::light_mesh::LightMesh;
 use crate::plan::Plan;
 use crate::prepared::PreparedScene;
+use crate::probes::Probes;
 use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stages::{
@@ -87,6 +89,11 @@ impl<R: Runtime> Backend for Cuda<R> {
         primary_rays::cuda::primary_rays(self, job, scene, rays)
     }
 
+    fn probes(&self, scene: &DeviceScene<R>, probes: &Probes) -> Result<Probed<Self>, RenderError> {
+        self.begin_band()?;
+        self.device_probes(scene, probes)
+    }
+
     fn cells(&self, wave: &WaveOf<Self>, mesh: &LightMesh) -> Result<DeviceCells<R>, RenderError> {
         cells::cuda::cells(self, wave, mesh)
     }
@@ -151,6 +158,10 @@ impl<R: Runtime> Backend for Cuda<R> {
 
     fn finish(&self, job: &Job) -> Result<(), RenderError> {
         self.end_band(job)
+    }
+
+    fn visibility(&self, visibility: DeviceVisibility<R>) -> Result<Visibility, RenderError> {
+        visibility.to_host()
     }
 
     fn develop(&self, scene: &DeviceScene<R>, film: DeviceFilm<R>, picture: &mut Picture) -> Result<(), RenderError> {

@@ -25,11 +25,13 @@ use run::Run;
 
 use crate::cache::{Kept, Table};
 use crate::data::picture::Picture;
+use crate::data::visibility::Visibility;
 use crate::error::RenderError;
 use crate::job::Job;
 use crate::light_mesh::LightMesh;
 use crate::plan::Plan;
 use crate::prepared::PreparedScene;
+use crate::probes::Probes;
 pub use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::view::View;
@@ -50,8 +52,11 @@ pub type WaveOf<'a, B> = Wave<'a, <B as Backend>::Scene, <B as Backend>::Rays, <
 pub type SeenOf<'a, B> =
     Seen<'a, <B as Backend>::Cells, <B as Backend>::Masks, <B as Backend>::Points, <B as Backend>::Lit>;
 
+/// Probes on a backend: the scene, rays and hits of a wave.
+pub type Probed<B> = (<B as Backend>::Scene, <B as Backend>::Rays, <B as Backend>::Hits);
+
 /// The stages, in the order in which a picture needs them.
-pub trait Backend {
+pub trait Backend: Sized {
     /// A scene where the device needs it.
     type Scene;
     /// Rays with the pixels they belong to.
@@ -108,6 +113,10 @@ pub trait Backend {
     /// What does each ray see?
     fn primary_rays(&self, job: &Job, scene: &Self::Scene, rays: &Self::Rays) -> Result<Self::Hits, RenderError>;
 
+    /// Given points as a wave that hits them, and the scene as that wave needs it. What was counted and timed since the last band ended is
+    /// forgotten.
+    fn probes(&self, scene: &Self::Scene, probes: &Probes) -> Result<Probed<Self>, RenderError>;
+
     /// Which surface points share a cell?
     fn cells(&self, wave: &WaveOf<Self>, mesh: &LightMesh) -> Result<Self::Cells, RenderError>;
 
@@ -162,6 +171,9 @@ pub trait Backend {
 
     /// Waits for all stages of some rows; what they counted and how long they took goes to the job.
     fn finish(&self, job: &Job) -> Result<(), RenderError>;
+
+    /// What was found out, on the host.
+    fn visibility(&self, visibility: Self::Visibility) -> Result<Visibility, RenderError>;
 
     /// Finished rows take their place in the picture.
     fn develop(&self, scene: &Self::Scene, film: Self::Film, picture: &mut Picture) -> Result<(), RenderError>;

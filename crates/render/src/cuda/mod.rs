@@ -3,11 +3,18 @@
 //! Everything above this module is the same for every [`Runtime`]: the driver is the real device, and the emulator that the tests
 //! use runs the same kernels, compiled as C++ for the host. So every launch, every buffer and every plan is tested without a GPU.
 
-mod buffer;
+#[cfg(not(feature = "cuda"))]
+#[path = "no_driver.rs"]
 mod driver;
+
+mod buffer;
+#[cfg(feature = "cuda")]
+mod driver;
+mod gpu;
 mod runtime;
 
 pub use buffer::{Buffer, Pool};
+pub(crate) use driver::Library;
 pub use driver::{DeviceMemory, Driver, Event, open_cuda};
-pub(crate) use driver::{Gpu, Library, Version, capability, visible_devices};
+pub(crate) use gpu::{Gpu, Version, capability, visible_devices};
 pub use runtime::{Fault, Kernel, Launch, Runtime, new_id};

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::accel::{Hit, Ray};
+use crate::accel::{Hit, Ray, Triangle};
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
 
@@ -15,6 +15,8 @@ pub struct RayList {
     pub pixels: Vec<u32>,
     /// The share of a ray's radiance that reaches its pixel. Empty: all of it, the rays come from the camera.
     pub weights: Vec<Vec3>,
+    /// The triangles that the rays hit in place of the scene's, if they come from given points; else empty.
+    pub probes: Vec<Triangle>,
 }
 
 impl RayList {
@@ -38,5 +40,6 @@ impl RayList {
 /// The surface point that ray number `ray` sees; the ray must have hit something.
 #[inline(always)]
 pub(crate) fn surface_point_of(scene: &PreparedScene, list: &RayList, hits: &[Hit], ray: usize) -> SurfacePoint {
-    SurfacePoint::new(&list.rays[ray], &hits[ray], &scene.geometry.triangles[hits[ray].triangle as usize])
+    let triangles = if list.probes.is_empty() { &scene.geometry.triangles } else { &list.probes };
+    SurfacePoint::new(&list.rays[ray], &hits[ray], &triangles[hits[ray].triangle as usize])
 }

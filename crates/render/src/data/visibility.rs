@@ -1,5 +1,7 @@
 //! What surface points see of lights.
 
+use std::ops::Range;
+
 /// What each surface point sees of each light, with χ: 0 where the light is behind the surface.
 ///
 /// The same on devices ([`DeviceVisibility`](crate::gpu::rays::DeviceVisibility)): a plane of shares for each light.
@@ -23,6 +25,14 @@ impl Visibility {
     #[inline(always)]
     pub fn of(&self, light: usize, ray: usize) -> f32 {
         self.share[light * self.rays + ray]
+    }
+
+    /// Takes over what `part` knows of the rays in `range`.
+    pub(crate) fn put(&mut self, range: Range<usize>, part: &Visibility) {
+        let planes = self.share.chunks_exact_mut(self.rays.max(1));
+        for (plane, part) in planes.zip(part.share.chunks_exact(part.rays.max(1))) {
+            plane[range.clone()].copy_from_slice(part);
+        }
     }
 
     /// The planes of all lights, cut into parts of `size` rays: for each part a slice of every plane.

@@ -16,6 +16,7 @@ mod mesh;
 mod per_structure;
 mod pieces;
 pub(crate) mod points;
+mod probes;
 mod rates;
 pub(crate) mod rays;
 mod scan;

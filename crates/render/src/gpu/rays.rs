@@ -25,6 +25,8 @@ pub struct DeviceHits<R: Runtime> {
 
 /// What surface points see of each light, on a device.
 pub struct DeviceVisibility<R: Runtime> {
+    /// Number of rays.
+    pub(crate) rays: usize,
     /// By light, then ray.
     pub(crate) share: Buffer<R, f32>,
     /// Light points used by each ray.

@@ -11,7 +11,7 @@ use lightmesh_scene::{Falloff, LightKind, Lights};
 use super::device::Cuda;
 use super::held::{Buffers, DeviceGeometry};
 use crate::accel::{self, Form};
-use crate::cuda::Runtime;
+use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::job::Job;
 use crate::prepared::PreparedScene;
@@ -28,7 +28,22 @@ pub struct DeviceScene<R: Runtime> {
     pub(crate) host: PreparedScene,
     /// What the record points to.
     _geometry: Arc<DeviceGeometry<R>>,
-    _lights: Buffers<R>,
+    _lights: Arc<Buffers<R>>,
+    _probes: Option<Arc<Buffer<R, Triangle>>>,
+}
+
+impl<R: Runtime> DeviceScene<R> {
+    /// The same with other triangles for rays to see; what hides lights stays.
+    pub(super) fn with_triangles(&self, triangles: Arc<Buffer<R, Triangle>>) -> DeviceScene<R> {
+        DeviceScene {
+            record: Scene { triangles: triangles.input(), ..self.record },
+            structure: self.structure,
+            host: self.host.clone(),
+            _geometry: Arc::clone(&self._geometry),
+            _lights: Arc::clone(&self._lights),
+            _probes: Some(triangles),
+        }
+    }
 }
 
 impl<R: Runtime> Cuda<R> {
@@ -48,7 +63,8 @@ impl<R: Runtime> Cuda<R> {
             structure: geometry.structure,
             host: scene.clone(),
             _geometry: geometry,
-            _lights: upload.buffers,
+            _lights: Arc::new(upload.buffers),
+            _probes: None,
         })
     }
 

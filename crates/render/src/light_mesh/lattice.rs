@@ -38,7 +38,15 @@ impl Lattice {
     /// # Errors
     /// [`LatticeError`] where the step is no positive number, or too small for the scene.
     pub fn around(scene: &PreparedScene, step: f32, reach: f32) -> Result<Lattice, LatticeError> {
-        Lattice::new(scene.scene.geometry.origin, &scene.geometry.bounds, step, reach)
+        Lattice::covering(scene, &scene.geometry.bounds, step, reach)
+    }
+
+    /// The same beyond `bounds` in place of the scene's triangles.
+    ///
+    /// # Errors
+    /// [`LatticeError`] if the step is no positive number, or too small for the bounds.
+    pub fn covering(scene: &PreparedScene, bounds: &Bounds, step: f32, reach: f32) -> Result<Lattice, LatticeError> {
+        Lattice::new(scene.scene.geometry.origin, bounds, step, reach)
     }
 
     /// The same for triangles within `bounds`, in a frame that lies at `origin` in the world.

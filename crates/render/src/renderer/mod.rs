@@ -10,21 +10,22 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
+use glam::Vec3;
 use lightmesh_image::{FrameParts, Layers, SaveError};
 use lightmesh_scene::Scene;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::backend::run::Run;
-use crate::backend::{Backend, Cpu, Cuda, Needs};
+use crate::backend::{Backend, Cpu, Cuda};
 use crate::cache::{Kept, MeshCache};
 use crate::cuda::{Driver, Runtime};
 use crate::data::picture::Picture;
 use crate::device::{Choice, Chosen, Device};
 use crate::error::RenderError;
-use crate::job::Job;
 use crate::observer::{Observer, Unobserved};
-use crate::passes::Passes;
+use crate::passes::{Baking, Passes};
 use crate::prepared::{Preparations, PreparedScene};
+use crate::probes::{GivenPoints, PointVisibility};
 use crate::settings::Settings;
 use crate::stats::Stats;
 use resolve::Resolved;
@@ -161,6 +162,32 @@ impl Renderer {
         })
     }
 
+    /// Finds what given points see of each light, whatever a camera sees: to bake vertex colours, lightmaps or irradiance probes.
+    ///
+    /// `points` are in the coordinates of the geometry's positions (scene units, local frame), `normals` have any length but zero. Mode,
+    /// lookup, step, radius, weight, samples and seed are those of `settings`; size and camera only matter if the step is automatic,
+    /// which is then the one that an image has. A point with its normal is a surface seen from that side: what lies behind is dark.
+    ///
+    /// # Errors
+    /// As [`Renderer::render_prepared`], and [`RenderError::Points`] or [`RenderError::Point`] if the points cannot be used.
+    pub fn visibility(
+        &self,
+        scene: &PreparedScene,
+        points: &[Vec3],
+        normals: &[Vec3],
+        settings: &Settings,
+        observer: &dyn Observer,
+    ) -> Result<PointVisibility, RenderError> {
+        let points = GivenPoints::new(scene, points, normals)?;
+        self.pool.install(|| match &self.engine {
+            Engine::Cpu => visibility_on(&Cpu, &points, settings, observer),
+            Engine::Cuda(cuda) => {
+                let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
+                visibility_on(&*cuda, &points, settings, observer)
+            }
+        })
+    }
+
     /// Renders one picture of a prepared scene with what earlier pictures have found out about its light points, and keeps what it finds
     /// out itself. The picture is the same in every bit; only long tests are saved (light-mesh mode).
     ///
@@ -182,6 +209,28 @@ impl Renderer {
             }
         })
     }
+}
+
+/// Finds the visibility of each light at given points on a backend of the caller's own, on the caller's threads.
+///
+/// # Errors
+/// As [`Renderer::visibility`].
+pub fn visibility_on<B: Backend>(
+    backend: &B,
+    points: &GivenPoints,
+    settings: &Settings,
+    observer: &dyn Observer,
+) -> Result<PointVisibility, RenderError> {
+    let start = Instant::now();
+    let scene = points.scene;
+    let resolved = Resolved::at_points(points, settings, observer)?;
+    let job = resolved.job(observer);
+    let run = Run::new(backend, &job, None);
+    let on_device = run.or_forget(|backend| backend.scene(&job, scene, &resolved.needs()))?;
+    let Resolved { technique, plan, .. } = &resolved;
+    let (visibility, rows) = Baking { run, scene: &on_device, technique, plan }.bake(points)?;
+    let stats = report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
+    Ok(PointVisibility { visibility, lights: scene.scene.lights.len(), stats })
 }
 
 /// Renders one picture of a prepared scene on a backend of the caller's own, on the caller's threads.
@@ -221,14 +270,12 @@ fn picture_on<B: Backend>(
     let start = Instant::now();
     let mut resolved = Resolved::new(scene, settings, observer)?;
     resolved.plan.kept = kept.as_ref().map_or(0, |kept| kept.memory());
-    let Resolved { technique, view, plan, sampling, .. } = &resolved;
-    let job = Job::new(observer, *sampling).with_short_tests(settings.short_tests);
+    let Resolved { technique, view, plan, .. } = &resolved;
+    let job = resolved.job(observer);
     let mut picture = Picture::new(settings.size, plan.layers);
-    let needs = Needs { search: technique.searches(settings), memory_limit: plan.memory_limit };
     let run = Run::new(backend, &job, kept);
-    let on_device = run.or_forget(|backend| backend.scene(&job, scene, &needs))?;
+    let on_device = run.or_forget(|backend| backend.scene(&job, scene, &resolved.needs()))?;
     let rows = Passes { run, scene: &on_device, technique, view, plan }.render(&mut picture)?;
-    let device = report::DeviceFacts { kind: backend.kind(), name: backend.name(), peak_memory: backend.peak_memory() };
-    let stats = report::stats(&job, &resolved, device, rows, start.elapsed().as_secs_f64());
+    let stats = report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
     Ok(Frame { image: picture.into_frame(), stats })
 }

@@ -3,6 +3,7 @@
 use lightmesh_scene::Projection;
 
 use super::resolve::Resolved;
+use crate::backend::Backend;
 use crate::counters::Counts;
 use crate::job::Job;
 use crate::shading::DEFAULT_AMBIENT;
@@ -16,10 +17,16 @@ pub(super) struct DeviceFacts {
     pub(super) peak_memory: u64,
 }
 
+impl DeviceFacts {
+    pub(super) fn of<B: Backend>(backend: &B) -> DeviceFacts {
+        DeviceFacts { kind: backend.kind(), name: backend.name(), peak_memory: backend.peak_memory() }
+    }
+}
+
 /// The statistics of a picture that was made in `seconds`, `rows` rows at once.
 pub(super) fn stats(job: &Job, resolved: &Resolved, device: DeviceFacts, rows: u32, seconds: f64) -> Stats {
-    let Resolved { scene, technique, plan, .. } = resolved;
-    let counts = Counts::new(plan.pixels(), technique.template(), &job.tally.snapshot());
+    let Resolved { scene, technique, .. } = resolved;
+    let counts = Counts::new(resolved.pixels, technique.template(), &job.tally.snapshot());
     if counts.overruns > 0 {
         let rays = counts.overruns;
         job.observer

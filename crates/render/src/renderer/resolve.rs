@@ -1,12 +1,14 @@
 //! Settings checked, and what they leave open chosen.
 
-use lightmesh_scene::Camera;
+use lightmesh_scene::{Bounds, Camera};
 
+use crate::backend::Needs;
 use crate::error::RenderError;
-use crate::job::Sampling;
+use crate::job::{Job, Sampling};
 use crate::observer::Observer;
-use crate::plan::Plan;
+use crate::plan::{Footprint, Plan};
 use crate::prepared::PreparedScene;
+use crate::probes::{GivenPoints, Probes, ROW};
 use crate::settings::{Setting, Settings};
 use crate::techniques::{Request, Technique};
 use crate::view::View;
@@ -23,6 +25,8 @@ pub(super) struct Resolved<'a> {
     pub(super) technique: Technique,
     pub(super) plan: Plan,
     pub(super) sampling: Sampling,
+    /// Pixels, or points that the caller gave.
+    pub(super) pixels: u64,
 }
 
 impl<'a> Resolved<'a> {
@@ -32,11 +36,35 @@ impl<'a> Resolved<'a> {
         settings: &'a Settings,
         observer: &dyn Observer,
     ) -> Result<Resolved<'a>, RenderError> {
+        Resolved::within(scene.geometry.bounds, scene, settings, observer)
+    }
+
+    /// The same for points that the caller gave, in place of those that the camera sees.
+    pub(super) fn at_points(
+        points: &GivenPoints<'a>,
+        settings: &'a Settings,
+        observer: &dyn Observer,
+    ) -> Result<Resolved<'a>, RenderError> {
+        let mut resolved = Resolved::within(points.bounds, points.scene, settings, observer)?;
+        let Footprint { host, device } = resolved.plan.footprint;
+        let footprint = Footprint { host: host + Probes::BYTES, device: device + Probes::BYTES };
+        resolved.plan = Plan { size: [ROW, points.rows()], bounces: 0, layers: None, footprint, ..resolved.plan };
+        resolved.pixels = points.len() as u64;
+        Ok(resolved)
+    }
+
+    /// Chooses what the settings leave open for surface points within `bounds`.
+    fn within(
+        bounds: Bounds,
+        scene: &'a PreparedScene,
+        settings: &'a Settings,
+        observer: &dyn Observer,
+    ) -> Result<Resolved<'a>, RenderError> {
         check(settings)?;
         scene.check(&settings.acceleration)?;
         let camera = camera(scene, settings);
         let view = View::new(&camera, settings.size);
-        let technique = Technique::resolve(&Request { scene, settings, view: &view, observer })?;
+        let technique = Technique::resolve(&Request { scene, settings, view: &view, observer, bounds })?;
         let lights = scene.scene.lights.len();
         let plan = Plan {
             size: settings.size,
@@ -48,7 +76,20 @@ impl<'a> Resolved<'a> {
         };
         let samples = Technique::samples(settings);
         let sampling = Sampling { samples, seed: settings.seed, spread: technique.spreads_points() };
-        Ok(Resolved { scene, settings, camera, view, technique, plan, sampling })
+        let pixels = plan.pixels();
+        Ok(Resolved { scene, settings, camera, view, technique, plan, sampling, pixels })
+    }
+}
+
+impl Resolved<'_> {
+    /// The job that an image or given points are.
+    pub(super) fn job<'b>(&self, observer: &'b dyn Observer) -> Job<'b> {
+        Job::new(observer, self.sampling).with_short_tests(self.settings.short_tests)
+    }
+
+    /// What that needs of the scene on a device.
+    pub(super) fn needs(&self) -> Needs {
+        Needs { search: self.technique.searches(self.settings), memory_limit: self.plan.memory_limit }
     }
 }
 

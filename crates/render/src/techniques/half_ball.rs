@@ -29,7 +29,7 @@ impl Visible for HalfBall {
     const SAMPLES: u32 = 4;
 
     fn resolve(request: &Request) -> Result<HalfBall, RenderError> {
-        let Request { scene, settings, view, observer } = *request;
+        let Request { scene, settings, view, observer, bounds } = *request;
         let defaults = scene.scene.light_mesh;
         let radius = settings.radius.or(defaults.radius).unwrap_or(Settings::DEFAULT_RADIUS);
         let template = Template::new(radius)?;
@@ -42,7 +42,7 @@ impl Visible for HalfBall {
                 step
             }
         };
-        let lattice = Lattice::around(scene, step, radius)?;
+        let lattice = Lattice::covering(scene, &bounds, step, radius)?;
         let weight = settings.weight.or(defaults.weight).unwrap_or(Weight::Smooth);
         let mesh = LightMesh { lattice, template, radius: radius * step, weight };
         Ok(HalfBall { mesh, step_auto: wanted == Step::Auto })

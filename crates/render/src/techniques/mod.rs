@@ -5,6 +5,8 @@
 
 pub(crate) mod table;
 
+use lightmesh_scene::Bounds;
+
 use crate::backend::run::Run;
 use crate::backend::{Backend, WaveOf};
 use crate::error::RenderError;
@@ -23,6 +25,8 @@ pub(crate) struct Request<'a> {
     pub(crate) settings: &'a Settings,
     pub(crate) view: &'a View,
     pub(crate) observer: &'a dyn Observer,
+    /// A box around the scene's triangles, and around all points that are not theirs.
+    pub(crate) bounds: Bounds,
 }
 
 /// What every technique must be able to say and do.

@@ -9,6 +9,7 @@ mod kept;
 mod lives;
 mod mirrors;
 mod placement;
+mod points;
 mod progress;
 mod shading;
 mod shadow_rays;

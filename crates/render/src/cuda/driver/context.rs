@@ -11,7 +11,7 @@ use cudarc::driver::sys::{
 use cudarc::driver::{DriverError, result::mem_pool};
 
 use super::fault::failed;
-use super::library::Gpu;
+use crate::cuda::gpu::Gpu;
 use crate::cuda::{Fault, Kernel};
 
 /// What all operations on a device need. Whatever lives on the device keeps this alive.

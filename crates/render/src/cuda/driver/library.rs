@@ -5,11 +5,12 @@
 //! is known to be new enough.
 
 use cudarc::driver::sys::CUdevice_attribute_enum as Attribute;
-use cudarc::driver::sys::{self, CUdevice, CUresult};
+use cudarc::driver::sys::{self, CUresult};
 use cudarc::driver::{DriverError, result};
 
 use super::fault::describe;
-use super::ptx::{Needs, Version, capability};
+use super::ptx::Needs;
+use crate::cuda::gpu::{Gpu, Version, capability, visible_devices};
 
 /// What is called before the version is known. All of it is in every driver since CUDA 6.0 (2014).
 const FIRST: [&str; 4] = ["cuInit", "cuDriverGetVersion", "cuGetErrorName", "cuGetErrorString"];
@@ -62,23 +63,6 @@ pub(crate) enum Unavailable {
     Failed(String),
 }
 
-/// A device as the driver describes it.
-#[derive(Clone, Debug)]
-pub(crate) struct Gpu {
-    /// N of `cuda:N`, among the visible ones.
-    pub(crate) number: u32,
-    /// What the maker calls it.
-    pub(crate) name: String,
-    /// Compute capability times ten.
-    pub(crate) capability: u32,
-    /// Bytes of memory.
-    pub(crate) memory: u64,
-    /// Whether it has stream-ordered memory.
-    pub(crate) pools: bool,
-    /// What the driver calls it.
-    pub(crate) handle: CUdevice,
-}
-
 /// The driver, started, with the devices that it shows.
 #[derive(Clone, Debug)]
 pub(crate) struct Library {
@@ -116,11 +100,6 @@ impl Gpu {
             format!("compute capability {has}, and {wants} is needed (GeForce RTX 20, Quadro RTX, T4 and whatever came later)")
         })
     }
-}
-
-/// What CUDA_VISIBLE_DEVICES is set to. The driver itself obeys it: the devices that it names are all there are, numbered anew.
-pub(crate) fn visible_devices() -> Option<String> {
-    std::env::var_os("CUDA_VISIBLE_DEVICES").map(|value| value.to_string_lossy().into_owned())
 }
 
 /// Whether the library is there and has what comes first.

@@ -22,15 +22,15 @@ use std::sync::Arc;
 
 use cudarc::driver::sys;
 
-pub(crate) use library::{Gpu, Library, visible_devices};
+pub(crate) use library::Library;
 pub use mark::Event;
 pub use memory::DeviceMemory;
 pub use open::open_cuda;
-pub(crate) use ptx::{Version, capability};
 
 use self::context::Context;
 use self::module::Modules;
 use self::transfer::Staging;
+use super::gpu::{Gpu, Version};
 use super::{Fault, Kernel, Launch, Runtime, new_id};
 
 /// A CUDA device.

@@ -12,7 +12,8 @@ use cudarc::driver::sys::{
 
 use super::context::Context;
 use super::fault::describe;
-use super::ptx::{MODULES, Version};
+use super::ptx::MODULES;
+use crate::cuda::gpu::Version;
 use crate::cuda::{Fault, Kernel};
 
 /// Room for what the driver's compiler has to say, in bytes.

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use super::library::{Gpu, Library, visible_devices};
+use super::library::Library;
 use super::ptx::Needs;
 use super::{Driver, Fault};
+use crate::cuda::gpu::{Gpu, visible_devices};
 use crate::{Device, RenderError};
 
 /// Makes a CUDA device ready: the one with this number, or the first that works. The driver lists the fastest first.

@@ -3,30 +3,7 @@
 //! PTX is text for a virtual machine. `cargo xtask kernels` writes it ahead of time; the driver compiles it for its device when a
 //! module is loaded, and keeps the result in a cache of its own (`~/.nv/ComputeCache`) for the next start.
 
-use std::fmt;
-
-/// A version of CUDA: what a driver was made for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Version {
-    /// 12 of 12.4.
-    pub(crate) major: u32,
-    /// 4 of 12.4.
-    pub(crate) minor: u32,
-}
-
-impl Version {
-    /// From the driver's number: 12040 is 12.4.
-    pub(super) fn from_code(code: i32) -> Version {
-        let code = u32::try_from(code).unwrap_or(0);
-        Version { major: code / 1000, minor: code % 1000 / 10 }
-    }
-}
-
-impl fmt::Display for Version {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{}.{}", self.major, self.minor)
-    }
-}
+use crate::cuda::gpu::Version;
 
 /// All modules by name.
 pub(super) const MODULES: [(&str, &str); 11] = [
@@ -98,22 +75,10 @@ fn directive<'a>(text: &'a str, name: &str) -> Option<&'a str> {
     rest.split([' ', '\t', ',']).find(|word| !word.is_empty())
 }
 
-/// A compute capability times ten in the usual form.
-pub(crate) fn capability(tenfold: u32) -> String {
-    format!("{}.{}", tenfold / 10, tenfold % 10)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_driver_tells_its_version_as_a_number() {
-        assert_eq!(Version::from_code(12040).to_string(), "12.4");
-        assert_eq!(Version::from_code(11080).to_string(), "11.8");
-        assert!(Version::from_code(9020) < Version::from_code(12000));
-        assert_eq!(Version::from_code(-1), Version { major: 0, minor: 0 });
-    }
+    use crate::cuda::gpu::capability;
 
     #[test]
     fn newer_ptx_needs_newer_drivers() {

@@ -73,5 +73,5 @@ pub(crate) fn interpolate<R: Runtime>(
         let count = piece.end - piece.start;
         cuda.launch(kernel, blocks_for(&piece, BLOCK), &Interpolate { first: piece.start, count, ..record })
     })?;
-    Ok(DeviceVisibility { share, used: Some(used) })
+    Ok(DeviceVisibility { rays: wave.rays.len(), share, used: Some(used) })
 }

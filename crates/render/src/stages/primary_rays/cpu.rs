@@ -17,7 +17,7 @@ const BATCH: usize = 2048;
 pub(crate) fn camera_rays(view: &View, rows: Range<u32>) -> RayList {
     let pixels = blocks_of_pixels(view.size()[0], rows);
     let rays: Vec<Ray> = pixels.par_iter().map(|&pixel| view.ray(pixel)).collect();
-    RayList { rays, pixels, weights: Vec::new() }
+    RayList { rays, pixels, ..RayList::default() }
 }
 
 /// The pixels of some rows in blocks of 4×2 within 8×8, so that consecutive rays stay together.

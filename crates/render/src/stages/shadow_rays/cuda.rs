@@ -43,5 +43,5 @@ pub(crate) fn shadow_rays<R: Runtime>(
             cuda.launch(kernel, blocks_for(&piece, BLOCK), &arguments)
         })?;
     }
-    Ok(DeviceVisibility { share, used: None })
+    Ok(DeviceVisibility { rays: wave.rays.len(), share, used: None })
 }

@@ -1,0 +1,113 @@
+//! What stands in for the driver if the crate is built without the feature `cuda`: there is no device, and messages say why.
+
+use std::sync::Arc;
+
+use super::gpu::{Gpu, Version};
+use super::{Fault, Kernel, Launch, Runtime};
+use crate::{Device, RenderError};
+
+const WHY: &str = "this program was built without CUDA: build it with the feature cuda";
+
+/// A CUDA device: there is none.
+#[derive(Debug)]
+pub enum Driver {}
+
+/// Memory of a CUDA device: there is none.
+#[derive(Debug)]
+pub enum DeviceMemory {}
+
+/// A moment on the clock of a CUDA device: there is none.
+#[derive(Debug)]
+pub enum Event {}
+
+/// NVIDIA's driver: it is not looked for.
+pub(crate) struct Library {
+    pub(crate) version: Version,
+    pub(crate) devices: Vec<Gpu>,
+}
+
+impl Library {
+    pub(crate) fn open() -> Result<Library, &'static str> {
+        Err(WHY)
+    }
+
+    pub(crate) fn ready(&self, _: &Gpu) -> Result<Driver, String> {
+        Err(WHY.to_owned())
+    }
+}
+
+/// Refuses, since the crate is built without the feature `cuda`.
+///
+/// # Errors
+/// [`RenderError::Device`], always.
+pub fn open_cuda(number: Option<u32>) -> Result<Arc<Driver>, RenderError> {
+    Err(RenderError::Device { device: Device::Cuda(number).to_string(), reason: WHY.to_owned() })
+}
+
+impl Driver {
+    /// N of `cuda:N`.
+    pub fn number(&self) -> u32 {
+        match *self {}
+    }
+
+    pub(crate) fn gpu(&self) -> &Gpu {
+        match *self {}
+    }
+
+    pub(crate) fn version(&self) -> Version {
+        match *self {}
+    }
+}
+
+impl Runtime for Driver {
+    type Memory = DeviceMemory;
+    type Mark = Event;
+
+    fn name(&self) -> String {
+        match *self {}
+    }
+
+    fn id(&self) -> u64 {
+        match *self {}
+    }
+
+    fn free_memory(&self) -> Option<u64> {
+        match *self {}
+    }
+
+    fn allocate(&self, _: u64) -> Result<DeviceMemory, Fault> {
+        match *self {}
+    }
+
+    fn address(&self, _: &DeviceMemory) -> u64 {
+        match *self {}
+    }
+
+    fn clear(&self, _: &DeviceMemory, _: u64, _: u64) -> Result<(), Fault> {
+        match *self {}
+    }
+
+    fn write(&self, _: &DeviceMemory, _: u64, _: &[u8]) -> Result<(), Fault> {
+        match *self {}
+    }
+
+    fn read(&self, _: &DeviceMemory, _: u64, _: &mut [u8]) -> Result<(), Fault> {
+        match *self {}
+    }
+
+    fn constant(&self, _: &'static str, _: &'static str, _: &[u8]) -> Result<(), Fault> {
+        match *self {}
+    }
+
+    fn launch(&self, _: Kernel, _: Launch, _: &[u8]) -> Result<(), Fault> {
+        match *self {}
+    }
+
+    fn mark(&self) -> Result<Event, Fault> {
+        match *self {}
+    }
+
+    fn seconds(&self, _: &Event, _: &Event) -> Result<f64, Fault> {
+        match *self {}
+    }
+}

@@ -1,0 +1,183 @@
+//! Visibility at points that the caller chooses, instead of those that a camera sees: for baking.
+//!
+//! A *probe* is a surface point in the form in which stages know surface points: a ray and the triangle that it hits. The triangle has no area
+//! and one corner at the point, so that the ray alone says what its normal is; stages need not know the difference.
+
+use std::ops::Range;
+
+use glam::Vec3;
+use lightmesh_layout::geometry::ListedRay;
+use lightmesh_scene::Bounds;
+
+use crate::accel::{Hit, Ray, Triangle};
+use crate::data::rays::RayList;
+use crate::data::visibility::Visibility;
+use crate::error::RenderError;
+use crate::prepared::PreparedScene;
+use crate::stats::Stats;
+
+/// Probes per row, since memory is planned by rows.
+pub(crate) const ROW: u32 = 1024;
+
+/// What given points see of each light.
+#[derive(Clone, Debug)]
+pub struct PointVisibility {
+    pub(crate) visibility: Visibility,
+    pub(crate) lights: usize,
+    /// Counts, seconds and settings. `counts.pixels` is the number of points.
+    pub stats: Stats,
+}
+
+impl PointVisibility {
+    /// Number of points.
+    pub fn points(&self) -> usize {
+        self.visibility.rays
+    }
+
+    /// Number of lights of the scene.
+    pub fn lights(&self) -> usize {
+        self.lights
+    }
+
+    /// The visible share of light number `light` at point number `point`, in [0, 1]: 0 if the light is hidden or behind the surface.
+    ///
+    /// # Panics
+    /// If there is no such light or point.
+    pub fn of(&self, light: usize, point: usize) -> f32 {
+        self.of_light(light)[point]
+    }
+
+    /// The visible share of light number `light` at each point, in the order of the points.
+    ///
+    /// # Panics
+    /// If there is no such light.
+    pub fn of_light(&self, light: usize) -> &[f32] {
+        let points = self.points();
+        &self.visibility.share[light * points..][..points]
+    }
+
+    /// All shares by light, then point; nothing is copied.
+    pub fn into_shares(self) -> Vec<f32> {
+        self.visibility.share
+    }
+}
+
+/// Points with normals on the surfaces of a scene, or anywhere in it.
+pub struct GivenPoints<'a> {
+    pub(crate) scene: &'a PreparedScene,
+    points: &'a [Vec3],
+    normals: &'a [Vec3],
+    /// A box around the points and the triangles of the scene.
+    pub(crate) bounds: Bounds,
+    /// Where the other two corners of a probe's triangle lie, see [`GivenPoints::part`].
+    far_corner: Vec3,
+}
+
+/// Probes as a wave of rays and their hits.
+#[derive(Clone, Debug)]
+pub struct Probes {
+    /// A ray to each, and its triangle.
+    pub rays: RayList,
+    /// The hit of each ray.
+    pub hits: Vec<Hit>,
+}
+
+impl Probes {
+    /// Bytes per probe beyond what a ray takes elsewhere, on the host and on a device: its triangle, and the ray in a list.
+    pub(crate) const BYTES: u64 = (size_of::<Triangle>() + size_of::<ListedRay>()) as u64;
+}
+
+impl<'a> GivenPoints<'a> {
+    /// `points` in the coordinates of the geometry's positions, each with its normal of any length.
+    ///
+    /// # Errors
+    /// [`RenderError::Points`] if there are not as many normals as points, or too many of both; [`RenderError::Point`] if a coordinate is not
+    /// finite or a normal has no direction.
+    pub fn new(
+        scene: &'a PreparedScene,
+        points: &'a [Vec3],
+        normals: &'a [Vec3],
+    ) -> Result<GivenPoints<'a>, RenderError> {
+        if points.len() != normals.len() || points.len() > MOST_PROBES {
+            return Err(RenderError::Points { points: points.len(), normals: normals.len(), most: MOST_PROBES });
+        }
+        let is_usable = |(point, normal): (&Vec3, &Vec3)| point.is_finite() && normal.try_normalize().is_some();
+        if let Some(index) = points.iter().zip(normals).position(|probe| !is_usable(probe)) {
+            return Err(RenderError::Point { index, position: points[index].into(), normal: normals[index].into() });
+        }
+        let geometry = scene.geometry.bounds;
+        let far = if geometry.is_empty() { 0.0 } else { geometry.min.abs().max(geometry.max.abs()).max_element() };
+        let bounds = points.iter().fold(geometry, |bounds, &point| bounds.including(point));
+        Ok(GivenPoints { scene, points, normals, bounds, far_corner: Vec3::splat(1.5 * far) })
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Rows of [`ROW`] probes, of which the last may be shorter.
+    pub(crate) fn rows(&self) -> u32 {
+        self.len().div_ceil(ROW as usize) as u32
+    }
+
+    /// The probes of some rows.
+    pub(crate) fn range(&self, rows: &Range<u32>) -> Range<usize> {
+        let start = |row: u32| (row as usize * ROW as usize).min(self.len());
+        start(rows.start)..start(rows.end)
+    }
+
+    /// The probes of some rows as a wave.
+    ///
+    /// A segment that leaves a surface starts some way off it, which follows from the size of the triangle's coordinates
+    /// ([`SurfacePoint`](crate::SurfacePoint)). Which triangle of the scene a probe lies on is not known, so its own has coordinates that sum
+    /// up to at least those of any.
+    pub(crate) fn part(&self, rows: &Range<u32>) -> Probes {
+        let range = self.range(rows);
+        let n = range.len();
+        let mut wave = Probes { rays: RayList::default(), hits: Vec::with_capacity(n) };
+        for (number, probe) in (0..).zip(range) {
+            let (point, normal) = (self.points[probe], self.normals[probe].normalize());
+            wave.rays.rays.push(Ray { origin: point + normal, direction: -normal, t_max: f32::INFINITY });
+            wave.rays.pixels.push(probe as u32);
+            wave.rays.weights.push(Vec3::ONE);
+            wave.rays.probes.push(Triangle::new([point, self.far_corner, self.far_corner], number));
+            wave.hits.push(Hit { t: 1.0, u: 0.0, v: 0.0, triangle: number });
+        }
+        wave
+    }
+}
+
+/// Rays are numbered in 32 bits.
+const MOST_PROBES: usize = u32::MAX as usize - 1;
+
+#[cfg(test)]
+mod tests {
+    use lightmesh_layout::constants::GAMMA_32;
+
+    use super::*;
+    use crate::observer::Unobserved;
+    use crate::settings::Acceleration;
+    use crate::surface::SurfacePoint;
+
+    #[test]
+    fn a_probe_is_the_point_with_its_normal() {
+        let scene = lightmesh_testkit::half_plane();
+        let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
+        let points: Vec<Vec3> = (0..3000).map(|i| Vec3::new(0.3, -0.7, 1.1) * i as f32 / 10.0).collect();
+        let normals: Vec<Vec3> = (0..3000).map(|i| Vec3::new(1.0, i as f32 - 7.0, -0.3)).collect();
+        let given = GivenPoints::new(&scene, &points, &normals).unwrap();
+        assert_eq!((given.rows(), given.range(&(2..3))), (3, 2048..3000));
+        let wave = given.part(&(1..3));
+        assert_eq!(wave.hits.len(), 3000 - 1024);
+        for (ray, hit) in wave.hits.iter().enumerate() {
+            let probe = ray + 1024;
+            let point = SurfacePoint::new(&wave.rays.rays[ray], hit, &wave.rays.probes[hit.triangle as usize]);
+            assert_eq!(point.position, points[probe]);
+            assert!(point.normal.abs_diff_eq(normals[probe].normalize(), 1e-6), "{}", point.normal);
+            let far = given.bounds.min.abs().max(given.bounds.max.abs()).max_element();
+            assert!((point.origin - point.position).dot(point.normal) >= GAMMA_32 * points[probe].abs().max_element());
+            assert!((point.origin - point.position).length() <= 5.0 * GAMMA_32 * far);
+            assert_eq!(wave.rays.pixels[ray] as usize, probe);
+        }
+    }
+}
