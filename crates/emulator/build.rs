@@ -51,7 +51,7 @@ fn compile(
     build.opt_level(2).flag("-ffp-contract=off").flag("-fno-strict-aliasing").flag("-fno-math-errno");
     // What is not set before it is read, shows.
     build.flag_if_supported("-ftrivial-auto-var-init=pattern");
-    // `longjmp` to another stack is what fibres do; a fortified one refuses.
+    // `longjmp` to another stack is what fibres do; a fortified one aborts.
     build.flag("-U_FORTIFY_SOURCE").warnings(true).extra_warnings(true);
     // Pragmas for the device's compiler; and a warning that guesses, where poison knows.
     build.flag_if_supported("-Wno-unknown-pragmas").flag_if_supported("-Wno-maybe-uninitialized");

@@ -1,4 +1,4 @@
-//! What becomes of a picture when a device's memory does not suffice, and what a second picture costs.
+//! What becomes of an image when a device's memory does not suffice, and what a second image costs.
 #![cfg(unix)]
 
 use std::sync::{Arc, Mutex};
@@ -24,7 +24,7 @@ fn settings() -> Settings {
     Settings::default().with_mode(Mode::LightMesh).with_size([50, ROWS]).with_step(Step::Fixed(0.2)).with_layers(true)
 }
 
-/// A picture on a device of the caller's own, with what went through its queue; the device's memory is free again afterwards.
+/// An image on a device of the caller's own, with what went through its queue; the device's memory is free again afterwards.
 fn render(scene: &Scene, emulator: Emulator, settings: &Settings) -> (Result<Frame, RenderError>, Traffic, u64) {
     let emulator = Arc::new(emulator);
     let cuda = Cuda::new(Arc::clone(&emulator));
@@ -78,7 +78,7 @@ fn too_little_memory_is_an_error_that_names_the_buffer() {
     }
 }
 
-/// Whatever allocation fails: the picture is made in smaller bands, or the error says which buffer it was.
+/// Whatever allocation fails: the image is made in smaller bands, or the error says which buffer it was.
 #[test]
 fn any_allocation_may_fail() {
     let scene = scene();
@@ -138,7 +138,7 @@ fn geometry_is_uploaded_once_and_freed_when_it_is_gone() {
     assert!(rest < taken, "{rest} of {taken} bytes are held by nobody");
 }
 
-/// Two pictures with a cache, the second of another camera and with an accident before it. Returns the second, what it took in
+/// Two images with a cache, the second of another camera and with an accident before it. Returns the second, what it took in
 /// allocations, and whether the cache was forgotten meanwhile.
 fn render_twice(scene: &PreparedScene, settings: &Settings, accident: impl Fn(&Emulator)) -> (Frame, Traffic, bool) {
     let emulator = Arc::new(Emulator::new());

@@ -85,7 +85,7 @@ constants! {
     WARP: u32 = 32;
     /// Edge of the square of pixels that a block takes, one a thread.
     BLOCK_SIDE: u32 = 16;
-    /// Threads of the blocks that take one ray, one light point or one slot a thread.
+    /// Threads of the blocks that take one ray, one light point or one slot per thread.
     BLOCK: u32 = BLOCK_SIDE * BLOCK_SIDE;
     /// Edge of the square of pixels whose surface points one block groups by cell.
     TILE_SIDE: u32 = 32;
@@ -166,7 +166,7 @@ constants! {
 
     /// Points of a light that decide how much of it stands above the horizon.
     HORIZON_SAMPLES: u32 = 64;
-    /// Points of a light with a size from which its unshadowed light is computed.
+    /// Points of an area light from which its unshadowed light is computed.
     LIGHT_TARGETS: u32 = 16;
     /// First factor of the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
     MIX_1: u64 = 0xbf58_476d_1ce4_e5b9;

@@ -11,7 +11,7 @@ records! {
     /// Three coordinates in double precision.
     DVec3 { x: f64, y: f64, z: f64, }
 
-    /// Where a ray meets a triangle; `triangle` is [`Hit::NONE`] where it meets none.
+    /// Where a ray meets a triangle; `triangle` is [`Hit::NONE`] if it meets none.
     Hit {
         /// Ray parameter.
         t: f32,
@@ -114,9 +114,9 @@ records! {
         spare: u32,
     }
 
-    /// A camera and a picture size, ready to make rays; see the renderer's `view.rs`.
+    /// A camera and an image size, ready to make rays; see the renderer's `view.rs`.
     View {
-        /// The eye, or the middle of an orthographic picture.
+        /// The eye, or the middle of an orthographic image.
         origin: Vec3,
         /// Where it looks.
         forward: Vec3,
@@ -148,7 +148,7 @@ records! {
         spare_too: u32,
     }
 
-    /// Rays: those of some rows of a camera's picture, made where they are needed, or a list.
+    /// Rays: those of some rows of a camera's image, made where they are needed, or a list.
     ///
     /// Ray number `y' · width + x` of a camera belongs to column x of the y'-th of these rows.
     Rays {

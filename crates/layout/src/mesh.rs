@@ -5,7 +5,7 @@ use crate::record::records;
 use crate::{In, Out};
 
 records! {
-    /// The light mesh of one picture.
+    /// The light mesh of one image.
     LightMesh {
         /// Position of light point (0, 0, 0).
         anchor: Vec3,
@@ -52,11 +52,11 @@ records! {
         z: i32,
     }
 
-    /// Up to 32 object points of one cell: the work of one warp.
+    /// Up to 32 surface points of one cell: the work of one warp.
     Item {
         /// Key of the cell.
         cell: u64,
-        /// Where its object points begin in the list of members.
+        /// Where its surface points begin in the list of members.
         first: u32,
         /// How many there are.
         count: u32,
@@ -75,19 +75,19 @@ records! {
 
     /// What the light points see of one light.
     LitBy {
-        /// Seen or not, a word a slot of the table; null for a light with a size.
+        /// Seen or not, a word a slot of the table; null for an area light.
         bits: Out<u64>,
-        /// Rays that reached a light with a size, by rank; null for one without.
+        /// Rays that reached an area light, by rank; null for one without.
         seen: Out<u16>,
     }
 
-    /// What is kept about one light from picture to picture, by slot of a table that outlives them.
+    /// What is kept about one light from image to image, by slot of a table that outlives them.
     KeptBy {
         /// Light points whose answer is known.
         known: Out<u64>,
-        /// Seen or not; null for a light with a size.
+        /// Seen or not; null for an area light.
         bits: Out<u64>,
-        /// Rays that reached a light with a size, 64 numbers a slot; null for one without.
+        /// Rays that reached an area light, 64 numbers a slot; null for one without.
         seen: Out<u16>,
     }
 

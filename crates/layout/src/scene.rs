@@ -42,7 +42,7 @@ records! {
     /// Texture coordinates of a vertex.
     Uv { u: f32, v: f32, }
 
-    /// A texture on a material: the picture, and how texture coordinates lead into it.
+    /// A texture on a material: the image, and how texture coordinates lead into it.
     Texture {
         /// Row by row, red in the lowest byte, encoded as sRGB.
         texels: In<u32>,
@@ -50,7 +50,7 @@ records! {
         size: [u32; 2],
         /// What it shows beyond its edge, horizontally and vertically: see [`Texture`]'s constants.
         wrap: [u32; 2],
-        /// Where a step in u leads in the picture.
+        /// Where a step in u leads in the image.
         u_axis: [f32; 2],
         /// Where a step in v leads.
         v_axis: [f32; 2],
@@ -131,11 +131,11 @@ records! {
         spare: u32,
     }
 
-    /// How lights with a size are sampled.
+    /// How area lights are sampled.
     Sampling {
         /// The user's seed.
         seed: u64,
-        /// Shadow rays per light with a size.
+        /// Shadow rays per area light.
         samples: u32,
         /// 1: point lights are strewn over their spread.
         spread: u32,

@@ -7,31 +7,31 @@ use crate::scene::{Sampling, Scene};
 use crate::{In, Out};
 
 records! {
-    /// `primary_rays`: one thread a ray.
+    /// `primary_rays`: one thread per ray.
     PrimaryRays {
         /// What is looked at.
         scene: Scene,
         /// What looks.
         rays: Rays,
-        /// One hit a ray.
+        /// One hit per ray.
         hits: Out<Hit>,
-        /// Counts object points.
+        /// Counts surface points.
         tally: Tally,
         /// The first block of this launch among all blocks.
         first_block: u64,
     }
 
-    /// `shadow_rays` and `area_shadows`: one thread a ray.
+    /// `shadow_rays` and `area_shadows`: one thread per ray.
     ShadowRays {
         /// The scene.
         scene: Scene,
-        /// Rays that saw the object points.
+        /// Rays that saw the surface points.
         rays: Rays,
         /// What they saw.
         hits: In<Hit>,
         /// Share of each light by light, then ray.
         share: Out<f32>,
-        /// How lights with a size are sampled.
+        /// How area lights are sampled.
         sampling: Sampling,
         /// Counts shadow rays.
         tally: Tally,
@@ -44,7 +44,7 @@ records! {
         sample_count: u64,
     }
 
-    /// `shade`: one thread a ray.
+    /// `shade`: one thread per ray.
     Shade {
         /// The scene.
         scene: Scene,
@@ -64,7 +64,7 @@ records! {
         depth: Out<f32>,
         /// Geometric normal by pixel.
         normal: Out<Vec3>,
-        /// Object point by pixel, local frame.
+        /// Surface point by pixel, local frame.
         position: Out<Vec3>,
         /// Share of each light by light, then pixel of the film.
         visibility: Out<f32>,
@@ -76,7 +76,7 @@ records! {
         first_block: u64,
     }
 
-    /// `mirror_rays_count` and `mirror_rays_emit`: one thread a ray.
+    /// `mirror_rays_count` and `mirror_rays_emit`: one thread per ray.
     MirrorRays {
         /// The scene.
         scene: Scene,
@@ -100,7 +100,7 @@ records! {
         hits: In<Hit>,
         /// The mesh whose cells group.
         mesh: LightMesh,
-        /// Object points by tile, then cell: ray numbers, 1024 places a tile.
+        /// Surface points by tile, then cell: ray numbers, 1024 places a tile.
         members: Out<u32>,
         /// Items by tile, 1024 places a tile.
         tile_items: Out<Item>,
@@ -124,7 +124,7 @@ records! {
         mesh: LightMesh,
         /// Ray numbers by slot.
         members: In<u32>,
-        /// Up to 32 object points of a cell each.
+        /// Up to 32 surface points of a cell each.
         items: In<Item>,
         /// Masks: 32 · words words an item; bit l of word k says whether the item's l-th surface point sees light point k.
         masks: Out<u32>,
@@ -136,8 +136,8 @@ records! {
         item_count: u64,
     }
 
-    /// `mark_items`: one warp an item; `insert_bricks` and `mark_points`: one thread a brick of an item's window; `count_points` and
-    /// `list_points`: one thread a slot.
+    /// `mark_items`: one warp an item; `insert_bricks` and `mark_points`: one thread per brick of an item's window; `count_points` and
+    /// `list_points`: one thread per slot.
     LightPoints {
         /// The light mesh.
         mesh: LightMesh,
@@ -165,7 +165,7 @@ records! {
         slots: Out<u32>,
     }
 
-    /// `long_tests`: one thread a light point.
+    /// `long_tests`: one thread per light point.
     LongTests {
         /// The scene.
         scene: Scene,
@@ -175,7 +175,7 @@ records! {
         points: UsedPoints,
         /// What is found out.
         lit: LitBy,
-        /// How lights with a size are sampled.
+        /// How area lights are sampled.
         sampling: Sampling,
         /// Counts overruns.
         tally: Tally,
@@ -191,10 +191,10 @@ records! {
         sample_count: u32,
     }
 
-    /// `admit_bricks`, `find_unknown`, `learn` and `recall`: one thread a slot of the picture's table; `move_bricks` and `move_answers`: one
+    /// `admit_bricks`, `find_unknown`, `learn` and `recall`: one thread per slot of the image's table; `move_bricks` and `move_answers`: one
     /// a slot of the smaller table.
     Cache {
-        /// Used light points of the picture, or some of them.
+        /// Used light points of the image, or some of them.
         points: UsedPoints,
         /// The bricks that are kept.
         table: BrickTable,
@@ -206,7 +206,7 @@ records! {
         kept: KeptBy,
         /// What the points see of the light.
         lit: LitBy,
-        /// The points whose answer is not known, by slot of the picture's table.
+        /// The points whose answer is not known, by slot of the image's table.
         unknown: Out<u64>,
         /// The table that became too small.
         from_table: BrickTable,
@@ -214,7 +214,7 @@ records! {
         from: KeptBy,
     }
 
-    /// `interpolate`: one warp an item; `fallback`: one thread a ray.
+    /// `interpolate`: one warp an item; `fallback`: one thread per ray.
     Interpolate {
         /// The scene.
         scene: Scene,
@@ -244,7 +244,7 @@ records! {
         fallback_rays: Out<u32>,
         /// How many they are.
         fallback_count: Out<u32>,
-        /// How lights with a size are sampled.
+        /// How area lights are sampled.
         sampling: Sampling,
         /// Counts.
         tally: Tally,

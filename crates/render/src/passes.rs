@@ -1,7 +1,7 @@
-//! How the stages are put together: one picture, whatever the technique.
+//! How the stages are combined: one image, whatever the technique.
 //!
-//! A picture is made band by band, as many rows at once as memory allows; every band gives the pixels that the whole picture
-//! would. Within a band, mirrors are a loop over waves of rays.
+//! An image is rendered band by band, with as many rows at once as memory allows; every band yields the pixels that rendering the
+//! whole image at once would. Within a band, mirrors are a loop over waves of rays.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ use crate::stage::Stage;
 use crate::techniques::Technique;
 use crate::view::View;
 
-/// A picture to be made.
+/// The passes over one image.
 pub(crate) struct Passes<'a, B: Backend> {
     pub(crate) run: Run<'a, B>,
     pub(crate) scene: &'a B::Scene,
@@ -24,10 +24,10 @@ pub(crate) struct Passes<'a, B: Backend> {
 }
 
 impl<B: Backend> Passes<'_, B> {
-    /// Renders all of the view into `picture`. Returns how many rows were made at once.
+    /// Renders the whole view into `picture`. Returns how many rows were rendered at once.
     ///
-    /// Where memory ends in spite of the plan, the band is begun again: without what is kept of earlier pictures, then with half of its
-    /// rows. What a picture takes is known only when its light points are.
+    /// If memory runs out in spite of the plan, the band is restarted: first without what is kept of earlier images, then with half
+    /// of its rows. How much an image needs is known only once its light points are.
     pub(crate) fn render(&self, picture: &mut Picture) -> Result<u32, RenderError> {
         let (job, height) = (self.run.job, self.view.size()[1]);
         job.work.expect(self.pieces_of_wave(0, self.plan.pixels()));
@@ -79,7 +79,7 @@ impl<B: Backend> Passes<'_, B> {
         run.on_host(Stage::Download, |backend| backend.develop(scene, film, picture))
     }
 
-    /// Pieces of work that a wave of `rays` rays has in all of its stages.
+    /// Pieces of work of a wave of `rays` rays in all of its stages.
     fn pieces_of_wave(&self, depth: u32, rays: u64) -> u64 {
         let (from_camera, to_mirrors) = (u64::from(depth == 0), u64::from(depth < self.plan.bounces));
         // Camera rays, primary rays, the technique's stages, shading, mirror rays.

@@ -49,7 +49,7 @@ impl SceneBuilder {
     ///
     /// # Errors
     ///
-    /// [`GeometryError`] where an index leads to no vertex or lengths do not fit; then nothing was added.
+    /// [`GeometryError`] if an index leads to no vertex or lengths do not fit; then nothing was added.
     pub fn add<P: Position>(
         &mut self,
         part: MeshPart<P>,

@@ -1,8 +1,8 @@
-//! Cameras: where the picture is taken from.
+//! Cameras: where the image is taken from.
 
 use glam::{DVec3, Vec3};
 
-/// The angle a perspective camera sees. The other angle follows from the picture's shape, because pixels are square.
+/// The angle a perspective camera sees. The other angle follows from the image's shape, because pixels are square.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fov {
     /// Full vertical angle, degrees.
@@ -12,7 +12,7 @@ pub enum Fov {
 }
 
 impl Fov {
-    /// The vertical angle in degrees in a picture that is `aspect` (width / height) times as wide as high.
+    /// The vertical angle in degrees in an image that is `aspect` (width / height) times as wide as high.
     pub fn vertical(self, aspect: f32) -> f32 {
         match self {
             Fov::Vertical(degrees) => degrees,
@@ -21,14 +21,14 @@ impl Fov {
     }
 }
 
-/// How a camera maps directions or points to the picture.
+/// How a camera maps directions or points to the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
     /// All rays leave the camera's position.
     Perspective(Fov),
     /// All rays are parallel to the view direction.
     Orthographic {
-        /// Height of the picture in scene units.
+        /// Height of the image in scene units.
         height: f32,
     },
 }
@@ -75,7 +75,7 @@ pub enum CameraError {
 
 impl Camera {
     /// A camera at `position` that looks at `target`, both in the local frame, with the full vertical angle `vfov` in degrees.
-    /// `up` shows upwards in the picture; it need not be at a right angle to the view. Where the view is parallel to it, the picture is
+    /// `up` shows upwards in the image; it need not be at a right angle to the view. Where the view is parallel to it, the image is
     /// a plan or a view from below, and its upper edge is the scene's back: −Z, or +Y where `up` is ±Z.
     ///
     /// ```
@@ -88,7 +88,7 @@ impl Camera {
     ///
     /// # Errors
     ///
-    /// [`CameraError`] where `target` is the position itself, `up` has no length, or the angle is not between 0 and 180 degrees.
+    /// [`CameraError`] if `target` is the position itself, `up` has no length, or the angle is not between 0 and 180 degrees.
     pub fn look_at(position: Vec3, target: Vec3, up: Vec3, vfov: f32) -> Result<Camera, CameraError> {
         Camera::look_to(position, target.as_dvec3() - position.as_dvec3(), up, vfov)
     }
@@ -97,7 +97,7 @@ impl Camera {
     ///
     /// # Errors
     ///
-    /// [`CameraError`] where `direction` or `up` has no length, or the angle is not between 0 and 180 degrees.
+    /// [`CameraError`] if `direction` or `up` has no length, or the angle is not between 0 and 180 degrees.
     pub fn look_to(
         position: Vec3,
         direction: impl Into<DVec3>,

@@ -82,7 +82,7 @@ impl Draft {
     ///
     /// # Errors
     ///
-    /// [`LoadError::TooLarge`] where that is more than indices can tell apart, [`LoadError::Memory`] where there is not so much.
+    /// [`LoadError::TooLarge`] if that is more than indices can tell apart, [`LoadError::Memory`] if there is not so much.
     pub(crate) fn reserve(&mut self, room: &Room) -> Result<(), LoadError> {
         let limit = u32::MAX as usize;
         let vertices = self.builder.vertex_count().saturating_add(room.vertices);
@@ -173,7 +173,7 @@ impl Draft {
     ///
     /// # Errors
     ///
-    /// [`LoadError::Outside`] where that is a URL or lies outside the folder of the file that was opened, unless the options
+    /// [`LoadError::Outside`] if that is a URL or lies outside the folder of the file that was opened, unless the options
     /// allow it.
     pub(crate) fn path_beside(&self, source: &Path, name: &str) -> Result<PathBuf, LoadError> {
         let outside = || LoadError::Outside { place: Place::file(source).into(), name: name.to_owned() };
@@ -217,7 +217,7 @@ impl Draft {
     ///
     /// # Errors
     ///
-    /// [`LoadError::Warnings`] where the options are strict and there is something to warn of.
+    /// [`LoadError::Warnings`] if the options are strict and there is something to warn of.
     pub(crate) fn finish(mut self) -> Result<Scene, LoadError> {
         if self.unusable_triangles > 0 {
             self.warnings.push(format!(

@@ -45,7 +45,7 @@ impl fmt::Display for Place {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// The file system refused.
+    /// The file system rejected.
     #[error("cannot read the file ({cause}), {}; check that it exists and may be read", path.display())]
     Read {
         /// The file.

@@ -23,7 +23,7 @@ pub struct UnknownCamera {
 /// Vertical angle of the camera that frames a scene, degrees.
 const VFOV: f32 = 40.0;
 
-/// Share of the picture's half height that the framed scene fills.
+/// Share of the image's half height that the framed scene fills.
 const FILL: f32 = 0.92;
 
 /// Where the framing camera stands, seen from the middle of the scene: to the right, above and in front.
@@ -46,7 +46,7 @@ pub struct Added {
 }
 
 impl Scene {
-    /// Makes the scene one that can be looked at: adds [`Scene::default_camera`] where it has no camera, and
+    /// Makes the scene one that can be looked at: adds [`Scene::default_camera`] if it has no camera, and
     /// [`Scene::default_lights`], placed about its first camera, where it has no light. Says what was added.
     pub fn complete(&mut self, up: Up) -> Added {
         let added = Added { camera: self.cameras.is_empty(), lights: self.lights.is_empty() };
@@ -60,7 +60,7 @@ impl Scene {
         added
     }
 
-    /// A camera that shows the whole scene from the front, the right and above, for square pictures and wider ones.
+    /// A camera that shows the whole scene from the front, the right and above, for square images and wider ones.
     pub fn default_camera(&self, up: Up) -> Camera {
         let bounds = framed(self.geometry.mesh.bounds());
         let (right, front) = sides(up);
@@ -112,7 +112,7 @@ fn sides(up: Up) -> (Vec3, Vec3) {
     }
 }
 
-/// How far from the box's middle the camera must stand so that all eight corners lie in a square picture.
+/// How far from the box's middle the camera must stand so that all eight corners lie in a square image.
 fn distance(bounds: &Bounds, camera: &Camera) -> f32 {
     let (right, up, forward) = camera.basis();
     let tangent = FILL * (0.5 * VFOV).to_radians().tan();
@@ -139,7 +139,7 @@ mod tests {
         scene
     }
 
-    /// Furthest corner from the picture's middle in half heights.
+    /// Furthest corner from the image's middle in half heights.
     fn extent_in_picture(bounds: &Bounds, camera: &Camera) -> f32 {
         let (right, up, forward) = camera.basis();
         let tangent = (0.5 * VFOV).to_radians().tan();

@@ -21,7 +21,7 @@ pub enum GeometryError {
         /// Number of vertices.
         vertices: usize,
     },
-    /// An attribute has not one value a vertex.
+    /// An attribute has not one value per vertex.
     #[error("there are {found} {attribute} for {vertices} vertices: give one a vertex, or none at all")]
     Attribute {
         /// `normals`, `uvs` or `colors`.

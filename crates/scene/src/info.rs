@@ -83,13 +83,13 @@ pub struct CameraInfo {
     pub direction: [f64; 3],
     /// Its upper side.
     pub up: [f64; 3],
-    /// Full vertical angle, degrees (of a camera with a horizontal angle: in a square picture); `None`, written as null, for an
+    /// Full vertical angle, degrees (of a camera with a horizontal angle: in a square image); `None`, written as null, for an
     /// orthographic one.
     pub vfov: Option<f64>,
     /// Full horizontal angle, degrees, where that is the one that is fixed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hfov: Option<f64>,
-    /// Height of an orthographic picture.
+    /// Height of an orthographic image.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub height: Option<f64>,
 }

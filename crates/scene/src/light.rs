@@ -108,7 +108,7 @@ pub struct Light {
     pub falloff: Falloff,
 }
 
-/// A light whose shape has no sense.
+/// A light whose shape is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("a {kind} light cannot have the {what} {value}: {remedy}")]
 #[non_exhaustive]
@@ -142,7 +142,7 @@ impl Light {
     ///
     /// # Errors
     ///
-    /// [`LightError`] where `direction` has no length.
+    /// [`LightError`] if `direction` has no length.
     pub fn directional(direction: Vec3) -> Result<Light, LightError> {
         let direction = unit("directional", "direction", direction)?;
         Ok(Light::new(LightKind::Directional { direction }))
@@ -153,7 +153,7 @@ impl Light {
     ///
     /// # Errors
     ///
-    /// [`LightError`] where `direction` has no length, or not 0 ≤ `inner` ≤ `outer` ≤ π/2 and `outer` > 0.
+    /// [`LightError`] if `direction` has no length, or not 0 ≤ `inner` ≤ `outer` ≤ π/2 and `outer` > 0.
     pub fn spot(position: Vec3, direction: Vec3, inner: f32, outer: f32) -> Result<Light, LightError> {
         let direction = unit("spot", "direction", direction)?;
         if !(0.0 <= inner && inner <= outer && 0.0 < outer && outer <= FRAC_PI_2) {
@@ -167,7 +167,7 @@ impl Light {
     ///
     /// # Errors
     ///
-    /// [`LightError`] where `radius` is not above 0.
+    /// [`LightError`] if `radius` is not above 0.
     pub fn sphere(position: Vec3, radius: f32) -> Result<Light, LightError> {
         let radius = size("sphere", radius)?;
         Ok(Light::new(LightKind::Sphere { position, radius }))
@@ -177,7 +177,7 @@ impl Light {
     ///
     /// # Errors
     ///
-    /// [`LightError`] where `normal` has no length, or `radius` is not above 0.
+    /// [`LightError`] if `normal` has no length, or `radius` is not above 0.
     pub fn disk(position: Vec3, normal: Vec3, radius: f32) -> Result<Light, LightError> {
         let (normal, radius) = (unit("disk", "normal", normal)?, size("disk", radius)?);
         Ok(Light::new(LightKind::Disk { position, normal, radius }))
@@ -187,7 +187,7 @@ impl Light {
     ///
     /// # Errors
     ///
-    /// [`LightError`] where they are not at a right angle, or span no area.
+    /// [`LightError`] if they are not at a right angle, or span no area.
     pub fn rectangle(position: Vec3, half_u: Vec3, half_v: Vec3) -> Result<Light, LightError> {
         /// Cosine of the angle between the sides, from which on they lean.
         const LEANING: f32 = 1e-4;

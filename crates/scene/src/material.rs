@@ -25,9 +25,9 @@ pub struct Material {
     pub shininess: f32,
     /// Radiance that the surface gives off by itself; it is seen but lights nothing.
     pub emission: Vec3,
-    /// The part of that radiance that takes on the tint: a surface that shows its picture unlit. It counts without a tint, too.
+    /// The part of that radiance that takes on the tint: a surface that shows its image unlit. It counts without a tint, too.
     pub emission_tinted: Vec3,
-    /// A picture that tints the surface.
+    /// An image that tints the surface.
     pub texture: Option<TextureUse>,
 }
 
@@ -103,7 +103,7 @@ impl Material {
         Material { emission_tinted: emission_tinted.into(), ..self }
     }
 
-    /// A picture that tints the surface.
+    /// An image that tints the surface.
     pub fn with_texture(self, texture: TextureUse) -> Material {
         Material { texture: Some(texture), ..self }
     }

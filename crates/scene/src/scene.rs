@@ -92,7 +92,7 @@ impl Scene {
         Scene { lights: lights.into(), ..self }
     }
 
-    /// The same geometry and lights seen by other cameras; pictures are taken by the first.
+    /// The same geometry and lights seen by other cameras; images are taken by the first.
     pub fn with_cameras(self, cameras: Vec<Camera>) -> Scene {
         Scene { cameras, ..self }
     }

@@ -3,7 +3,7 @@
 //! Boxes and rectangles are exact. Spheres and cylinders are inscribed: every vertex lies on the true surface and carries
 //! its true normal; with n segments the flats lie up to r (1 − cos(π/n)) inside it, 0.05 % of the radius for 96.
 //!
-//! A picture covers every face once, upright seen from outside: each side of a box, the mantle of a cylinder and each of its ends,
+//! An image covers every face once, upright seen from outside: each side of a box, the mantle of a cylinder and each of its ends,
 //! a sphere from its north pole (Y) to its south pole. Where it goes around, it begins and ends at +X.
 
 use std::collections::HashMap;
@@ -40,7 +40,7 @@ impl Shape {
         }
     }
 
-    /// With texture coordinates. Vertices where several places of the picture meet are doubled.
+    /// With texture coordinates. Vertices where several places of the image meet are doubled.
     pub(crate) fn textured(self) -> Shape {
         let mut shape = Shape { corners: self.corners, ..Shape::default() };
         let mut known: HashMap<(u32, [u32; 2]), u32> = HashMap::new();
@@ -164,7 +164,7 @@ impl Shape {
     }
 
     /// A fan around the middle of an end. It has vertices of its own, as its normals differ from the side's. `upright` is -1 where
-    /// the picture is seen from below.
+    /// the image is seen from below.
     fn add_cap(&mut self, center: DVec3, axis: DVec3, radius: f64, spokes: &[DVec3], upright: f64) {
         let middle = self.positions.len() as u32;
         self.positions.push(center);
@@ -272,7 +272,7 @@ mod tests {
         assert!(volume_and_closed(&Shape::cylinder(DVec3::Y, DVec3::NEG_Y, 1.0, 3, true)).1);
     }
 
-    /// Area in the picture, with a sign: positive where the picture is not mirrored seen from outside. v runs down.
+    /// Area in the image, with a sign: positive where the image is not mirrored seen from outside. v runs down.
     fn covered(shape: &Shape) -> Vec<f32> {
         shape.corners.iter().map(|[a, b, c]| -0.5 * (*b - *a).perp_dot(*c - *a)).collect()
     }
@@ -315,7 +315,7 @@ mod tests {
 
     #[test]
     fn pictures_stand_upright() {
-        // The middle of the upper edge of the picture on each side of a box that is 2 wide.
+        // The middle of the upper edge of the image on each side of a box that is 2 wide.
         let shape = Shape::cuboid(DVec3::splat(-1.0), DVec3::ONE).textured();
         for face in [0, 1, 4, 5] {
             for &vertex in shape.triangles[2 * face..][..2].iter().flatten() {

@@ -1,4 +1,4 @@
-//! Textures: pictures that colour surfaces.
+//! Textures: images that colour surfaces.
 
 mod decode;
 mod files;
@@ -10,7 +10,7 @@ pub(crate) use decode::decode;
 pub(crate) use files::TextureFiles;
 pub(crate) use missing_uvs::untextured;
 
-/// A picture in memory.
+/// An image in memory.
 ///
 /// Eight bits a channel, encoded as sRGB; row 0 is the top, texture coordinate (0, 0) its left upper corner, as in glTF.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,7 +42,7 @@ pub struct TextureUse {
     pub texture: u32,
     /// Beyond the edge, horizontally and vertically.
     pub wrap: [Wrap; 2],
-    /// From texture coordinates to those of the picture.
+    /// From texture coordinates to those of the image.
     pub transform: Affine2,
 }
 

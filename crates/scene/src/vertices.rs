@@ -68,7 +68,7 @@ impl Position for DVec3 {
 /// Placed vertices without a local frame.
 #[derive(Debug, Default)]
 pub(crate) struct Vertices {
-    /// One entry a vertex: of a single-precision run in its part's coordinates, of a double-precision run not yet set. Empty where all
+    /// One entry per vertex: of a single-precision run in its part's coordinates, of a double-precision run not yet set. Empty where all
     /// runs are of double precision.
     single: Vec<Vec3>,
     /// World positions of the double-precision runs, one after the other.

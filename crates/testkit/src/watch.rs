@@ -15,7 +15,7 @@ pub struct Watched {
     pub done: u64,
 }
 
-/// Records stages and the progress of the whole picture.
+/// Records stages and the progress of the whole image.
 #[derive(Debug, Default)]
 pub struct Watch {
     log: Mutex<Log>,
@@ -55,7 +55,7 @@ impl Observer for Watch {
 }
 
 impl Watch {
-    /// All stages in their order. Panics where one did not end at its total, or the whole picture not at its end.
+    /// All stages in their order. Panics where one did not end at its total, or the whole image not at its end.
     pub fn finished(&self) -> Vec<Watched> {
         let log = self.log();
         assert_eq!(log.current, None, "a stage is still under way");

@@ -39,7 +39,7 @@ pub(crate) struct RenderPlan {
     pub(crate) scene: SceneArg,
     /// Overrides for parts of it.
     pub(crate) choices: SceneChoices,
-    /// Everything else about the picture.
+    /// Everything else about the image.
     pub(crate) settings: Settings,
     /// The device.
     pub(crate) device: Device,

@@ -41,7 +41,7 @@ fn values_of_another_form_are_shown_the_form() {
         (&["--light", "1,2,3;1;-2"], "the radius must be 0 or more, but is -2"),
         (&["--exposure", "bright"], "`bright` is not a valid number"),
         (&["--ambient", "1,2"], "red,green,blue"),
-        (&["--step", "-1"], "`-1` is no light-mesh step: write a number above 0, or auto"),
+        (&["--step", "-1"], "invalid light-mesh step `-1`: use a number above 0, or auto"),
         (&["--radius", "-1"], "the number must be above 0, but is -1"),
         (&["--radius", "nan"], "`nan` is not a valid number"),
         (&["--samples", "0"], "0 is not in 1..=65535"),

@@ -1,4 +1,4 @@
-//! Twins: every stage and whole pictures, the CPU against a CUDA device.
+//! Twins: every stage and whole images, the CPU against a CUDA device.
 //!
 //! One list of cases runs on the emulator, always, and on each CUDA device. Where no device can be used its cases count as ignored;
 //! with `LIGHTMESH_REQUIRE_GPU=1` they fail. `cargo test -p lightmesh-emulator --test twins -- garden` runs the cases of one scene.

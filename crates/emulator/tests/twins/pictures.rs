@@ -1,4 +1,4 @@
-//! Whole pictures in all modes, with mirrors and layers.
+//! Whole images in all modes, with mirrors and layers.
 
 use lightmesh_image::{Layers, Transfer};
 use lightmesh_render::backend::{Cpu, Cuda};

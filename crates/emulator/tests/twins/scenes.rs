@@ -40,7 +40,7 @@ pub(crate) static SUBJECTS: [Subject; 8] = [
     subject("empty", 1.0, true, || SceneDraft::new().point_light([0.0; 3]).camera([1.0; 3], [0.0; 3]).finish("empty")),
 ];
 
-/// For pictures alone: what it adds matters to no other stage than shading.
+/// For images alone: what it adds matters to no other stage than shading.
 pub(crate) static TEXTURED: Subject = subject("textured", 0.25, true, crate::textured::textured);
 
 impl Subject {
@@ -69,7 +69,7 @@ fn builtin(name: &str) -> Scene {
     Scene::open(format!("builtin:{name}")).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Mirrors, normals at vertices, lights with a size. Found from the repository's root too, where the test was built elsewhere.
+/// Mirrors, normals at vertices, area lights. Found from the repository's root too, where the test was built elsewhere.
 fn still_life() -> Scene {
     let built_in = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/still_life.toml"));
     let path = if built_in.exists() { built_in } else { Path::new("scenes/still_life.toml") };

@@ -1,4 +1,4 @@
-//! Stage by stage: hits, masks, used light points, what they see, and the visibility at object points.
+//! Stage by stage: hits, masks, used light points, what they see, and the visibility at surface points.
 
 use std::collections::BTreeMap;
 
@@ -72,7 +72,7 @@ struct Twins<'a, R: Target> {
     device_scene: DeviceScene<R>,
     device_rays: DeviceRays<R>,
     device_hits: DeviceHits<R>,
-    /// Rays to each light with a size.
+    /// Rays to each area light.
     samples: u32,
 }
 
@@ -123,7 +123,7 @@ impl<'a, R: Target> Twins<'a, R> {
         Wave { job, scene: &self.device_scene, rays: &self.device_rays, hits: &self.device_hits }
     }
 
-    /// Shadow rays, one and many a light.
+    /// Shadow rays, one and many per light.
     fn shadow_rays(&self) {
         let job = self.job();
         let host = Cpu.shadow_rays(&self.on_host(&job), &Aim::Middle).unwrap();

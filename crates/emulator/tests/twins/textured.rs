@@ -1,4 +1,4 @@
-//! Surfaces with textures and vertex colours: a scene of them, and a picture that is the same in every bit.
+//! Surfaces with textures and vertex colours: a scene of them, and an image that is the same in every bit.
 
 use glam::{Affine2, DVec3, Vec2, Vec3};
 use lightmesh_render::backend::{Cpu, Cuda};

@@ -7,7 +7,7 @@
 #define WARP 32u
 // Edge of the square of pixels that a block takes, one a thread.
 #define BLOCK_SIDE 16u
-// Threads of the blocks that take one ray, one light point or one slot a thread.
+// Threads of the blocks that take one ray, one light point or one slot per thread.
 #define BLOCK 256u
 // Edge of the square of pixels whose surface points one block groups by cell.
 #define TILE_SIDE 32u
@@ -73,7 +73,7 @@
 #define TEMPLATE_LINES 1024
 // Points of a light that decide how much of it stands above the horizon.
 #define HORIZON_SAMPLES 64u
-// Points of a light with a size from which its unshadowed light is computed.
+// Points of an area light from which its unshadowed light is computed.
 #define LIGHT_TARGETS 16u
 // First factor of the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
 #define MIX_1 0xbf58476d1ce4e5b9ull

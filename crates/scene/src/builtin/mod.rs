@@ -7,7 +7,7 @@
 //! | `garden` | 234 000 | 1 | 20 × 6 × 28 | 0.1 |
 //!
 //! Triangle counts hold within 2 %, sizes within 10 %. Y is up, lights have no falloff, and every scene has one camera whose
-//! square picture is filled by geometry (in Childpark all but a few leaf gaps). The thesis prints no models: ours share its counts and sizes,
+//! square image is filled by geometry (in Childpark all but a few leaf gaps). The thesis prints no models: ours share its counts and sizes,
 //! not its shapes. Scenes are the same to the last bit on every machine.
 //!
 //! [`LightMeshDefaults::step`](crate::LightMeshDefaults) stays empty so that the step follows the pixels; give the thesis' step to

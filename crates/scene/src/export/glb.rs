@@ -335,7 +335,7 @@ fn light_entry(light: &Light) -> Value {
     entry
 }
 
-/// Lights with a direction have it in their node; the extras of lights with a size are in the frame of theirs.
+/// Lights with a direction have it in their node; the extras of area lights are in the frame of theirs.
 fn light_node(scene: &Scene, index: usize, light: &Light) -> Value {
     let world = light.position().map_or(DVec3::ZERO, |position| scene.to_world(position));
     let mut node = json!({"name": light.name, "extensions": {"KHR_lights_punctual": {"light": index}}});

@@ -1,4 +1,4 @@
-//! Writing a scene so that it reads back as the same picture.
+//! Writing a scene so that it reads back as the same image.
 //!
 //! - `.glb`: everything in one file. What glTF has no word for is kept in `extras`, see
 //!   [`formats::gltf::extras`](crate::formats::gltf::extras); other programs show the rest.

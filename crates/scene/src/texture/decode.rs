@@ -1,4 +1,4 @@
-//! Picture files to [`Texture`]s: PNG, JPEG, BMP and TGA, through the `image` crate.
+//! Image files to [`Texture`]s: PNG, JPEG, BMP and TGA, through the `image` crate.
 //!
 //! Files come from anywhere: sizes are checked before memory is taken for them. Grey, palettes and 16 bits a channel all become
 //! RGBA8. Not promised: colour profiles and EXIF orientation are left aside, as glTF wants it.
@@ -16,13 +16,13 @@ const MAX_SIDE: u32 = 16384;
 const MAX_TEXELS_PER_BYTE: u64 = 8 * 1032;
 /// Bytes of a texel with 16 bits a channel.
 const MAX_BYTES_PER_TEXEL: u64 = 8;
-/// What a decoder may take whatever the picture's size: tables, and metadata that nobody asks for.
+/// What a decoder may take whatever the image's size: tables, and metadata that nobody asks for.
 const DECODER_BYTES: u64 = 16 << 20;
 
 const START_OF_SCAN: [u8; 2] = [0xff, 0xda];
 const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
 
-/// The picture in `bytes`. What it is, the first bytes say; a TGA file, which has no signature, by the ending of `name`.
+/// The image in `bytes`. What it is, the first bytes say; a TGA file, which has no signature, by the ending of `name`.
 ///
 /// # Errors
 ///

@@ -61,7 +61,7 @@ impl Draft {
         index
     }
 
-    /// Index of the texture in `bytes`, a picture that `source` holds and calls `name`. Where it cannot be used, a warning will say
+    /// Index of the texture in `bytes`, an image that `source` holds and calls `name`. Where it cannot be used, a warning will say
     /// so.
     pub(crate) fn texture_bytes(&mut self, source: &Path, name: &str, bytes: &[u8]) -> Option<u32> {
         self.texture(&format!("{}: {name}", source.display()), decode(name, bytes))
@@ -88,7 +88,7 @@ mod tests {
     use super::*;
     use crate::LoadOptions;
 
-    /// A folder with a picture of one blue texel, and a draft of a scene in it.
+    /// A folder with an image of one blue texel, and a draft of a scene in it.
     fn folder() -> (tempfile::TempDir, PathBuf, Draft) {
         let folder = tempfile::tempdir().unwrap();
         let pixel = image::RgbImage::from_pixel(1, 1, image::Rgb([0, 0, 255]));

@@ -1,11 +1,11 @@
-//! The kernels as PTX, and what a driver must be to take them.
+//! The kernels as PTX, and the requirements on a driver.
 //!
-//! PTX is text for a virtual machine. `cargo xtask kernels` writes it ahead of time; the driver compiles it for its device when a
-//! module is loaded, and keeps the result in a cache of its own (`~/.nv/ComputeCache`) for the next start.
+//! PTX is text for a virtual machine. `cargo xtask kernels` generates it ahead of time; the driver compiles it for its device
+//! when a module is loaded, and keeps the result in its own cache (`~/.nv/ComputeCache`) for the next start.
 
 use std::fmt;
 
-/// A version of CUDA: what a driver was made for.
+/// A version of CUDA, as supported by a driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Version {
     /// 12 of 12.4.
@@ -15,7 +15,7 @@ pub(crate) struct Version {
 }
 
 impl Version {
-    /// From the driver's number: 12040 is 12.4.
+    /// Decodes the driver's number: 12040 is 12.4.
     pub(super) fn from_code(code: i32) -> Version {
         let code = u32::try_from(code).unwrap_or(0);
         Version { major: code / 1000, minor: code % 1000 / 10 }
@@ -43,8 +43,8 @@ pub(super) const MODULES: [(&str, &str); 11] = [
     ("scan", include_str!("../ptx/scan.ptx")),
 ];
 
-/// PTX version, the first CUDA version that takes it, and the first branch of NVIDIA's driver for that one ("Release History" in
-/// the PTX ISA document). Nothing older is listed: the bindings need a driver for CUDA 12.0 in any case.
+/// PTX version, the first CUDA version that supports it, and the first branch of NVIDIA's driver for that one ("Release History"
+/// in the PTX ISA document). Nothing older is listed: the bindings need a driver for CUDA 12.0 in any case.
 const VERSIONS: [(&str, Version, u32); 10] = [
     ("8.0", Version { major: 12, minor: 0 }, 525),
     ("8.1", Version { major: 12, minor: 1 }, 530),
@@ -58,10 +58,10 @@ const VERSIONS: [(&str, Version, u32); 10] = [
     ("9.0", Version { major: 13, minor: 0 }, 580),
 ];
 
-/// What PTX asks of a machine.
+/// What PTX requires of a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Needs {
-    /// CUDA version that the driver must be for.
+    /// CUDA version that the driver must support.
     pub(crate) cuda: Version,
     /// First branch of NVIDIA's driver for it.
     pub(crate) driver: u32,
@@ -70,12 +70,12 @@ pub(crate) struct Needs {
 }
 
 impl Needs {
-    /// What all modules together need.
+    /// The requirements of all modules together.
     pub(crate) fn of_kernels() -> Needs {
         MODULES.iter().fold(Needs::of(""), |needs, (_, text)| needs.and(Needs::of(text)))
     }
 
-    /// What one module needs. A version that is not in the table is left to the driver to judge.
+    /// The requirements of one module. A version that is not in the table is left to the driver.
     fn of(text: &str) -> Needs {
         let version = directive(text, ".version").and_then(|word| VERSIONS.iter().find(|row| row.0 == word));
         let (_, cuda, driver) = *version.unwrap_or(&VERSIONS[0]);
@@ -98,7 +98,7 @@ fn directive<'a>(text: &'a str, name: &str) -> Option<&'a str> {
     rest.split([' ', '\t', ',']).find(|word| !word.is_empty())
 }
 
-/// A compute capability times ten in the usual form.
+/// Formats a compute capability times ten in the usual way.
 pub(crate) fn capability(tenfold: u32) -> String {
     format!("{}.{}", tenfold / 10, tenfold % 10)
 }

@@ -45,7 +45,7 @@ const fn bed(x: f32, z: f32, rx: f32, rz: f32) -> Bed {
     Bed { center: Vec2::new(x, z), radii: Vec2::new(rx, rz) }
 }
 
-/// The first four lie in the picture.
+/// The first four lie in the image.
 const BEDS: [Bed; 8] = [
     bed(-2.0, -7.4, 1.1, 1.5),
     bed(2.5, -7.8, 1.1, 1.9),

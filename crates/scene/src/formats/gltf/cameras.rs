@@ -1,5 +1,5 @@
 //! Cameras. They look along −Z of their node, with +Y up; its scale does not change them. How wide they see follows from the
-//! picture's shape, and what they clip is not clipped: `aspectRatio`, `xmag`, `znear` and `zfar` are not looked at.
+//! image's shape, and what they clip is not clipped: `aspectRatio`, `xmag`, `znear` and `zfar` are not looked at.
 
 use std::{f64::consts::PI, path::Path};
 
@@ -38,7 +38,7 @@ pub(super) fn projection(path: &Path, index: u32, camera: &document::Camera) -> 
     let Some(orthographic) = &camera.orthographic else {
         return Err(malformed(path, format!("camera {index} says neither yfov nor ymag")));
     };
-    // Negative, it would mirror the picture; exporters write it for nothing.
+    // Negative, it would mirror the image; exporters write it for nothing.
     let height = (2.0 * orthographic.ymag.abs()) as f32;
     if height > 0.0 && height.is_finite() {
         Ok(Projection::Orthographic { height })

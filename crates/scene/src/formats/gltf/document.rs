@@ -359,7 +359,7 @@ pub(super) struct Perspective {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Orthographic {
-    /// Half the height of the picture.
+    /// Half the height of the image.
     pub(super) ymag: f64,
 }
 

@@ -17,7 +17,7 @@ const KNOWN: [&str; 8] = [
     "KHR_texture_transform",
 ];
 
-/// Refuses a file that requires what is not known, and warns of what it uses.
+/// Rejects a file that requires what is not known, and warns of what it uses.
 pub(super) fn check(path: &Path, document: &Document, draft: &mut Draft) -> Result<(), LoadError> {
     let is_known = |name: &&String| KNOWN.contains(&name.as_str());
     if let Some(extension) = document.extensions_required.iter().find(|name| !is_known(name)) {

@@ -22,7 +22,7 @@ pub(crate) struct MaterialExtras {
     pub(crate) ks_tinted: [f32; 3],
     #[serde(default, skip_serializing_if = "is_zero")]
     pub(crate) emission_tinted: [f32; 3],
-    /// From texture coordinates to the picture's, by columns, where an angle and factors would round it.
+    /// From texture coordinates to the image's, by columns, where an angle and factors would round it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) texture_transform: Option<[f32; 6]>,
 }

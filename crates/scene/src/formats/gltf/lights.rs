@@ -1,7 +1,7 @@
 //! `KHR_lights_punctual`: point, spot and directional lights, in candela and lux, with inverse-square falloff.
 //!
 //! They shine along −Z of their node; its scale does not change them. A light's `range` is not looked at: it is a hint for programs
-//! that sort lights, and cuts off what would still be seen. Lights with a size are ours, see
+//! that sort lights, and cuts off what would still be seen. Area lights are ours, see
 //! [`extras`](super::extras).
 
 use std::f32::consts::FRAC_PI_2;
@@ -66,7 +66,7 @@ fn cone(axes: &Axes, index: u32, spot: &Spot) -> Result<(f32, f32), LoadError> {
     }
 }
 
-/// A light with a size, whose extras are in the node's coordinates. Its node may turn it and scale it evenly. `None` where
+/// An area light, whose extras are in the node's coordinates. Its node may turn it and scale it evenly. `None` where
 /// nothing is left of it.
 fn shaped(shape: &ShapeExtras, transform: &DMat4) -> Option<LightKind> {
     let vector = |v: [f32; 3]| transform.transform_vector3(Vec3::from(v).as_dvec3());

@@ -1,7 +1,7 @@
 //! Meshes: primitives of all triangle modes, placed once for every node that uses them, or once for every instance.
 //!
 //! First a survey counts what is going to be added, and checks that its bytes are there; so a few small meshes in very many nodes
-//! are refused before they fill the memory.
+//! are rejected before they fill the memory.
 
 use std::borrow::Cow;
 

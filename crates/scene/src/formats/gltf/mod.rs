@@ -1,6 +1,6 @@
 //! glTF 2.0 and GLB: triangles of the node hierarchy, materials with their base colour textures, cameras and punctual lights.
 //!
-//! By hand, over `serde_json`, because the `gltf` crate keeps nodes as `f32`, refuses extensions that we read, copies the binary
+//! By hand, over `serde_json`, because the `gltf` crate keeps nodes as `f32`, rejects extensions that we read, copies the binary
 //! chunk, and reads accessors element by element.
 //!
 //! 1. [`container`]: the bytes are read once; JSON and binary chunk are parts of them.

@@ -27,7 +27,7 @@ impl<'a> Pictures<'a> {
         Pictures { path, document, buffers, decoded: vec![None; document.images.len()], missing: 0 }
     }
 
-    /// How a material uses its texture, with the set of texture coordinates. `None` where the picture cannot be had.
+    /// How a material uses its texture, with the set of texture coordinates. `None` where the image cannot be had.
     pub(super) fn find(&mut self, info: &TextureInfo, draft: &mut Draft) -> Option<(TextureUse, u32)> {
         let textures = &self.document.textures;
         let Some((texture, image)) =
@@ -98,7 +98,7 @@ mod tests {
 
     use super::*;
 
-    /// The example of the extension's text: the lower left quarter of the picture, turned clockwise by a right angle.
+    /// The example of the extension's text: the lower left quarter of the image, turned clockwise by a right angle.
     #[test]
     fn a_quarter_of_a_picture_is_shown_turned() {
         let transform = affine(Vec2::splat(0.5), FRAC_PI_2, Vec2::Y);

@@ -109,7 +109,7 @@ impl Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// The picture that a `comment TextureFile` names.
+    /// The image that a `comment TextureFile` names.
     pub(super) texture: Option<String>,
     /// Where the first row begins.
     pub(super) length: usize,

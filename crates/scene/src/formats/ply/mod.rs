@@ -7,7 +7,7 @@
 //!   taken as sRGB; `face` with vertex_indices or vertex_index; `tristrips`. Elements may come in any order; what else they hold is
 //!   passed over.
 //! - A face's colour goes to its corners, in place of those of the vertices: vertices are split where faces of several colours meet.
-//! - A picture named by `comment TextureFile` colours vertices with texture coordinates.
+//! - An image named by `comment TextureFile` colours vertices with texture coordinates.
 
 mod face;
 mod header;
@@ -175,7 +175,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Hands each row of an element to `take`, with its number counted from 1. What that refuses is an error at the row's line.
+    /// Hands each row of an element to `take`, with its number counted from 1. What that rejects is an error at the row's line.
     fn each_row(
         &mut self,
         element: &Element,

@@ -1,6 +1,6 @@
 //! STL (3D Systems 1988), as text or binary.
 //!
-//! Read by hand: stl_io takes for text what begins with `solid`, as many binary files do, and refuses text that differs from the
+//! Read by hand: stl_io takes for text what begins with `solid`, as many binary files do, and rejects text that differs from the
 //! specification in blanks or capitals.
 //!
 //! A file is binary if it is exactly as long as the count in its header says, whatever it begins with. Facets' normals are not used:

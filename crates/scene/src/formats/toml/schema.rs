@@ -53,7 +53,7 @@ pub(crate) struct CameraEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) name: Option<Text>,
     pub(crate) position: Vector,
-    /// The point in the middle of the picture; or `direction`.
+    /// The point in the middle of the image; or `direction`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) target: Option<Vector>,
     /// The way the camera looks; or `target`.
@@ -71,12 +71,12 @@ pub(crate) struct CameraEntry {
     /// Default: perspective.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) projection: Option<Spanned<ProjectionName>>,
-    /// Height of an orthographic picture, scene units.
+    /// Height of an orthographic image, scene units.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) height: Option<Number>,
 }
 
-/// How a camera maps space to the picture.
+/// How a camera maps space to the image.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum ProjectionName {
@@ -195,25 +195,25 @@ pub(crate) struct MaterialEntry {
     /// Default: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) emission: Option<Spanned<Color>>,
-    /// A picture that `ka` and `kd` are multiplied with: PNG, JPEG, BMP or TGA, relative to the scene file.
+    /// An image that `ka` and `kd` are multiplied with: PNG, JPEG, BMP or TGA, relative to the scene file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture: Option<Text>,
-    /// What the picture shows beyond its edge; one word, or one for each direction. Default: repeat.
+    /// What the image shows beyond its edge; one word, or one for each direction. Default: repeat.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture_wrap: Option<Spanned<TextureWrap>>,
-    /// How often the picture fits on a face, or into the unit of the mesh's texture coordinates; one number, or one for each
+    /// How often the image fits on a face, or into the unit of the mesh's texture coordinates; one number, or one for each
     /// direction. Default: 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture_scale: Option<Spanned<TextureScale>>,
     /// Turns texture coordinates from u towards v, degrees. Default: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture_rotate: Option<Number>,
-    /// Added to texture coordinates last, in widths and heights of the picture. Default: 0.
+    /// Added to texture coordinates last, in widths and heights of the image. Default: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture_offset: Option<Spanned<[f64; 2]>>,
 }
 
-/// What a picture shows beyond its edge.
+/// What an image shows beyond its edge.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum WrapName {
@@ -325,7 +325,7 @@ pub(crate) struct TriangleEntry {
     pub(crate) b: Option<Vector>,
     pub(crate) c: Option<Vector>,
     pub(crate) vertices: Option<Spanned<[[f64; 3]; 3]>>,
-    /// Where the corners lie in a picture: (0, 0) is its left upper corner. Default: left below, right below, left above.
+    /// Where the corners lie in an image: (0, 0) is its left upper corner. Default: left below, right below, left above.
     pub(crate) uvs: Option<Spanned<[[f64; 2]; 3]>>,
     pub(crate) material: Option<Text>,
 }

@@ -1,4 +1,4 @@
-//! The published schema is the one of the code, takes the scenes that come with the repository, and refuses slips.
+//! The published schema is the one of the code, takes the scenes that come with the repository, and rejects slips.
 
 use std::{fs, path::Path};
 

@@ -286,7 +286,7 @@ fn text_that_is_not_utf8_is_refused_with_its_line() {
     assert!(Scene::open(path).unwrap_err().to_string().contains("room.toml:2"));
 }
 
-/// A folder with a picture of one red and one blue texel and a scene file.
+/// A folder with an image of one red and one blue texel and a scene file.
 fn textured_folder(text: &str) -> (TempDir, PathBuf) {
     let (folder, path) = folder(text);
     let picture = image::RgbImage::from_fn(2, 1, |x, _| image::Rgb(if x == 0 { [255, 0, 0] } else { [0, 0, 255] }));

@@ -233,7 +233,7 @@ fn a_long_name_is_not_kept_in_every_node() {
     assert_eq!(scene.cameras[0].name.chars().count(), 200);
 }
 
-/// Nodes times primitives times vertices, from a small file: refused at once, and not when the memory is full.
+/// Nodes times primitives times vertices, from a small file: rejected at once, and not when the memory is full.
 #[test]
 fn a_few_triangles_in_very_many_places_are_refused() {
     let mut document = triangle();

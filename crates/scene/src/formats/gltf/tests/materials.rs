@@ -8,7 +8,7 @@ use image::{ImageFormat, Rgba, RgbaImage};
 use super::*;
 use crate::Wrap;
 
-/// A picture of one texel.
+/// An image of one texel.
 fn png() -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     RgbaImage::from_pixel(1, 1, Rgba([0, 128, 255, 255])).write_to(&mut bytes, ImageFormat::Png).unwrap();
