@@ -95,7 +95,9 @@ mod tests {
 
     #[test]
     fn constants_come_with_what_they_mean() {
-        assert!(header().contains("// Threads of a warp, and the maximum number of surface points of an item.\n#define WARP 32u\n"));
+        assert!(header().contains(
+            "// Threads of a warp, and the maximum number of surface points of an item.\n#define WARP 32u\n"
+        ));
         let mut text = String::new();
         print_record::<Hit>(&mut text);
         assert!(text.contains("no triangle\".\n        NONE = 0xffffffffu,\n    };\n    float t;\n"), "{text}");
