@@ -16,7 +16,7 @@ fn a_missing_scene_is_named() {
     assert!(message.ends_with(" (os error 2)), none.toml; check that it exists and may be read"), "{message}");
     assert_eq!(
         place.refused(&["info", "builtin:castle"]),
-        "error: there is no built-in scene `castle`, builtin:castle; known are gazebo, childpark, garden"
+        "error: there is no built-in scene `castle`, builtin:castle; available: gazebo, childpark, garden"
     );
 }
 
@@ -78,7 +78,7 @@ fn an_unknown_word_is_answered_with_the_known() {
         assert!(done.stderr.contains(&format!("[possible values: {known}]")), "{done:?}");
     }
     let camera = refused(&place, &["--camera-name", "side"]);
-    assert_eq!(camera, "error: there is no camera named `side`, scene room; known are front, top");
+    assert_eq!(camera, "error: there is no camera named `side`, scene room; available: front, top");
 }
 
 #[test]

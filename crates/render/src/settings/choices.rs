@@ -165,7 +165,7 @@ mod tests {
         ShortTests::ALL.iter().for_each(|tests| assert_eq!(tests.to_string().parse(), Ok(*tests)));
         assert_eq!(
             "soft".parse::<Mode>().unwrap_err().to_string(),
-            "there is no mode `soft`; known are light-mesh, ray-trace, area"
+            "there is no mode `soft`; available: light-mesh, ray-trace, area"
         );
     }
 

@@ -36,7 +36,7 @@ impl BuiltinOptions {
         let twice = match parameter {
             "lights" => self.lights.replace(parse_lights(value)?).is_some(),
             "spread" => self.spread.replace(parse_spread(value)?).is_some(),
-            _ => return refuse(format!("unknown parameter `{parameter}`"), "known are lights, spread"),
+            _ => return refuse(format!("unknown parameter `{parameter}`"), "available: lights, spread"),
         };
         if twice { refuse(format!("`{parameter}` is given twice"), "give it once") } else { Ok(()) }
     }

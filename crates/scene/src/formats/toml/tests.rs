@@ -235,7 +235,7 @@ fn a_mirrored_mesh_keeps_its_front() {
 /// Text with one mistake; what the message must say. Each names the line and a remedy after the semicolon.
 #[rustfmt::skip]
 const MISTAKES: [(&str, &str); 32] = [
-    ("[[sphere]]\ncenter = [0, 1, 0]\nradius = -1", "radius = -1 is not above 0, room.toml:3; give a radius above 0"),
+    ("[[sphere]]\ncenter = [0, 1, 0]\nradius = -1", "radius = -1 is not positive, room.toml:3; give a radius above 0"),
     ("[[sphere]]\ncenter = [0, 1, 0]\nradius = nan", "radius = nan is not finite, room.toml:3; "),
     ("[[sphere]]\ncenter = [0, inf, 0]\nradius = 1", "center = [0, inf, 0] is not finite, room.toml:2; "),
     ("[[sphere]]\ncenter = [0, 1e30, 0]\nradius = 1", "is too large, room.toml:2; stay below 1e18"),
@@ -386,7 +386,7 @@ fn wrong_texture_keys_name_line_and_key() {
         assert!(message.contains(place) && message.contains(remedy), "{message}");
     }
     let message = error("[[material]]\nname = \"oak\"\ntexture_scale = 3");
-    assert_eq!(message, "texture_scale = 3 says nothing without a texture, room.toml:3; add `texture = \"FILE\"`");
+    assert_eq!(message, "texture_scale = 3 has no effect without a texture, room.toml:3; add `texture = \"FILE\"`");
 }
 
 #[test]
@@ -394,6 +394,6 @@ fn a_mesh_outside_of_the_folder_names_its_line() {
     let message = error("[[mesh]]\nfile = \"../one.obj\"");
     assert_eq!(
         message,
-        "`../one.obj` lies outside the scene's folder, room.toml:2; move it there, or allow references to lead outside"
+        "`../one.obj` lies outside the scene's folder, room.toml:2; move it there, or allow references outside"
     );
 }

@@ -242,7 +242,7 @@ fn a_material_that_is_not_there_is_the_white_one() {
     document["meshes"][0]["primitives"][0]["material"] = json!(8);
     let scene = open(&document);
     assert_eq!((scene.geometry.materials.len(), scene.geometry.materials[0].kd), (1, Vec3::ONE));
-    assert!(warnings(&document).contains("1 primitive with a material that the file does not hold: shown white"));
+    assert!(warnings(&document).contains("1 primitive with a material that the file does not contain: shown white"));
 }
 
 #[test]
