@@ -16,7 +16,7 @@ pub(crate) struct PictureFiles {
     pub(crate) picture: PathBuf,
     /// Transfer function of 8-bit images.
     pub(crate) transfer: Transfer,
-    /// How much brighter 8-bit images are.
+    /// Exposure of 8-bit images.
     pub(crate) exposure: Exposure,
     /// The multilayer exr.
     pub(crate) layers: Option<PathBuf>,

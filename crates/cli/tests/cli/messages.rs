@@ -93,7 +93,7 @@ fn flags_that_contradict_each_other_are_refused() {
     }
     assert_eq!(
         refused(&place, &["--accel", "bvh", "--grid", "2x2x2"]),
-        "error: --grid describes a grid, but --accel bvh asks for something else; leave one of them out"
+        "error: --grid specifies a grid, but --accel bvh selects another structure; remove one of them"
     );
 }
 

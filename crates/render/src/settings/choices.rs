@@ -152,7 +152,7 @@ impl ShortTests {
     }
 }
 
-parse_by_name!(ShortTests, "way of short tests");
+parse_by_name!(ShortTests, "short-test method");
 
 #[cfg(test)]
 mod tests {

@@ -57,7 +57,7 @@ fn text_is_read_however_it_is_laid_out() {
         format!("solid a facet of glass\n{}endsolid\n\nsolid\n{}", facet(&CORNERS[..3]), facet(&CORNERS[3..])),
         format!("solid\n{nameless}"),
     ] {
-        // One word a line gives a name on a line of its own, which is no facet.
+        // With one word per line, a name is on a separate line, which is not a facet.
         let scene = try_open(text.replace("solid   \npart", "solid").as_bytes());
         assert!(scene.as_ref().is_ok_and(is_right), "{text}: {:?}", scene.map(|scene| scene.geometry.mesh.clone()));
     }

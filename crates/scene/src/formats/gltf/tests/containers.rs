@@ -1,4 +1,4 @@
-//! GLB and JSON as files: lengths, chunks, versions, encodings and files beside.
+//! GLB and JSON as files: lengths, chunks, versions, encodings and external files.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Files that contradict themselves, were cut off, or are meant to do harm.
+//! Files that are inconsistent, truncated, or malicious.
 
 use std::fs;
 
@@ -233,7 +233,7 @@ fn a_long_name_is_not_kept_in_every_node() {
     assert_eq!(scene.cameras[0].name.chars().count(), 200);
 }
 
-/// Nodes times primitives times vertices, from a small file: rejected at once, and not when the memory is full.
+/// Nodes times primitives times vertices, from a small file: rejected at once, and not only when memory is full.
 #[test]
 fn a_few_triangles_in_very_many_places_are_refused() {
     let mut document = triangle();
@@ -270,14 +270,14 @@ fn json_nested_without_end_is_refused() {
         let text = triangle().to_string().replacen("{", &format!("{{\"extras\":{},", nested.repeat(200_000)), 1);
         assert!(try_open(text.as_bytes()).unwrap_err().contains("the JSON cannot be read as glTF"));
     }
-    // Extras that are closed again are skipped without recursion, those of a material included.
+    // Deeply nested extras are skipped without recursion, including those of a material.
     let mut text = triangle().to_string();
     let deep = format!("{}{}", "[".repeat(200_000), "]".repeat(200_000));
     text = text.replacen('{', &format!("{{\"materials\":[{{\"extras\":{deep}}}],\"extras\":{deep},"), 1);
     assert_eq!(try_open(text.as_bytes()).unwrap().geometry.mesh.triangles.len(), 1);
 }
 
-/// Cut off everywhere: an error that names the file, never a panic.
+/// Truncated everywhere: an error that names the file, never a panic.
 #[test]
 fn files_cut_off_at_every_byte_are_refused() {
     let (json, bin) = separate();

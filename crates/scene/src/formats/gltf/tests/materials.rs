@@ -102,7 +102,7 @@ fn a_material_picks_its_set_of_coordinates() {
     let mut document = textured();
     info(&mut document)["texCoord"] = json!(1);
     assert_eq!(open(&document).geometry.mesh.uvs, [Vec2::splat(0.5); 3]);
-    // The transform's own set goes before.
+    // The transform's own set takes precedence.
     info(&mut document)["extensions"] =
         json!({"KHR_texture_transform": {"texCoord": 0, "scale": [2, 3], "offset": [1, 0]}});
     let scene = open(&document);
@@ -206,7 +206,7 @@ fn emission_has_its_strength() {
     assert_eq!(open(&document).geometry.materials[0].emission, Vec3::new(1.0, 0.5, 0.0));
     document["materials"][0]["extensions"] = json!({"KHR_materials_emissive_strength": {"emissiveStrength": 4}});
     assert_eq!(open(&document).geometry.materials[0].emission, Vec3::new(4.0, 2.0, 0.0));
-    // A texture that is black nearly everywhere must not make all of the surface glow.
+    // A texture that is black nearly everywhere must not make the whole surface glow.
     document["materials"][0]["emissiveTexture"] = json!({"index": 0});
     assert_eq!(open(&document).geometry.materials[0].emission, Vec3::ZERO);
 }
