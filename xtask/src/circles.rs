@@ -32,9 +32,9 @@ pub(crate) fn check(root: &Path) -> Outcome {
         let modules = modules_of(&root.join(folder))?;
         files += modules.len();
         let circles = circles(&edges(&modules));
-        problems.extend(circles.iter().map(|circle| format!("{folder}: a circle of imports: {}", circle.join(" -> "))));
+        problems.extend(circles.iter().map(|circle| format!("{folder}: circular imports: {}", circle.join(" -> "))));
     }
-    Ok(Verdict::new(problems, || format!("{files} modules import each other without a circle")))
+    Ok(Verdict::new(problems, || format!("{files} modules without circular imports")))
 }
 
 /// All modules of a crate except tests.
