@@ -193,7 +193,7 @@ mod tests {
         assert!(message(Vec3::NAN, Vec3::Y, 45.0).contains("view direction"));
         assert!(message(Vec3::X, Vec3::ZERO, 45.0).contains("up vector [0, 0, 0]"));
         for vfov in [0.0, -1.0, 180.0, f32::NAN] {
-            assert!(message(Vec3::X, Vec3::Y, vfov).contains(&format!("angle of {vfov} degrees")));
+            assert!(message(Vec3::X, Vec3::Y, vfov).contains(&format!("field of view of {vfov} degrees")));
         }
     }
 }

@@ -13,7 +13,7 @@ fn a_missing_scene_is_named() {
     // In parentheses stands what the system says, which differs from one to the other.
     let message = place.refused(&["render", "none.toml", "-o", "a.png"]);
     assert!(message.starts_with("error: cannot read the file ("), "{message}");
-    assert!(message.ends_with(" (os error 2)), none.toml; check that it exists and may be read"), "{message}");
+    assert!(message.ends_with(" (os error 2)), none.toml; check that it exists and is readable"), "{message}");
     assert_eq!(
         place.refused(&["info", "builtin:castle"]),
         "error: there is no built-in scene `castle`, builtin:castle; available: gazebo, childpark, garden"

@@ -78,7 +78,7 @@ impl MeshCache {
 }
 
 /// What a backend knows about the light points of one geometry.
-#[allow(clippy::len_without_is_empty, reason = "nobody asks")]
+#[allow(clippy::len_without_is_empty, reason = "not needed")]
 pub trait Table: Default {
     /// Number of cached values: light points times lights.
     fn len(&self) -> u64;
@@ -115,7 +115,7 @@ impl<T> Default for Kept<T> {
 
 impl<T: Table> Kept<T> {
     /// Number of cached values: light points times lights.
-    #[allow(clippy::len_without_is_empty, reason = "nobody asks")]
+    #[allow(clippy::len_without_is_empty, reason = "not needed")]
     pub fn len(&self) -> u64 {
         self.tables.iter().map(|known| known.table.len()).sum()
     }

@@ -107,7 +107,7 @@ fn fault_of<R: Runtime>(runtime: &R, fault: Fault) -> RenderError {
 
 impl<R: Runtime, T: Pod> Buffer<R, T> {
     /// Number of values.
-    #[allow(clippy::len_without_is_empty, reason = "nobody asks")]
+    #[allow(clippy::len_without_is_empty, reason = "not needed")]
     pub fn len(&self) -> usize {
         self.len
     }

@@ -6,7 +6,7 @@ use glam::Vec3;
 pub(super) fn linear(encoded: Vec3) -> Vec3 {
     let channel = |value: f32| {
         // In this order NaN becomes 0.
-        #[allow(clippy::manual_clamp, reason = "`clamp` would keep what is no number")]
+        #[allow(clippy::manual_clamp, reason = "`clamp` would keep NaN")]
         let value = value.max(0.0).min(1.0);
         if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
     };

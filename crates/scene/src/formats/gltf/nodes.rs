@@ -60,7 +60,7 @@ fn roots(path: &Path, document: &Document, draft: &mut Draft) -> Result<Vec<u32>
     if let Some(index) = scene_index(document) {
         let count = document.scenes.len();
         let scene = document.scenes.get(index);
-        let scene = scene.ok_or_else(|| malformed(path, format!("there is no scene {index}, only {count} scenes")))?;
+        let scene = scene.ok_or_else(|| malformed(path, format!("there is no scene {index}: the file has {count}")))?;
         if count > 1 {
             let path = path.display();
             draft.warnings.push(format!("{path}: of {count} scenes only scene {index} is loaded"));

@@ -73,7 +73,7 @@ fn the_length_tells_binary_from_text() {
     let mut longer = binary(b"solid", 2);
     longer.extend([7; 60]);
     let scene = open(&longer);
-    assert!(is_right(&scene) && scene.warnings[0].contains("60 bytes behind the 2 facets"), "{:?}", scene.warnings);
+    assert!(is_right(&scene) && scene.warnings[0].contains("60 bytes after the 2 facets"), "{:?}", scene.warnings);
 }
 
 #[test]

@@ -101,7 +101,7 @@ fn damaged_files_never_panic() {
 #[test]
 fn references_between_nodes_and_scenes_are_checked() {
     for (pointer, value, expected) in [
-        ("/scene", json!(5), "there is no scene 5 of 1"),
+        ("/scene", json!(5), "there is no scene 5: the file has 1"),
         ("/scenes/0/nodes", json!([4]), "there is no node 4"),
         ("/nodes", json!([{"children": [9]}]), "there is no node 9"),
         ("/nodes", json!([{"children": [1]}, {"children": [2]}, {"children": [0]}]), "is its own ancestor"),

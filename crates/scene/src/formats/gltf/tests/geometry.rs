@@ -273,7 +273,7 @@ fn of_several_scenes_the_named_one_is_read() {
     document["scenes"] = json!([{"nodes": []}, {"nodes": [0]}]);
     document["scene"] = json!(1);
     assert_eq!(open(&document).geometry.mesh.triangles.len(), 1);
-    assert!(warnings(&document).contains("of 2 scenes only number 1 is read"));
+    assert!(warnings(&document).contains("of 2 scenes only scene 1 is loaded"));
 }
 
 #[test]

@@ -141,7 +141,7 @@ fn textures_that_the_file_does_not_hold_are_counted() {
         document.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());
         let scene = open(&document);
         assert!(scene.geometry.materials[0].texture.is_none() && scene.geometry.mesh.triangles.len() == 1);
-        assert!(warnings(&document).contains("1 material with a texture that the file does not hold"), "{change}");
+        assert!(warnings(&document).contains("1 material with a texture that the file does not contain"), "{change}");
     }
 }
 
