@@ -154,10 +154,10 @@ fn render_twice(scene: &PreparedScene, settings: &Settings, accident: impl Fn(&E
     let notes = Notes::default();
     let frame = render_on_with(&cuda, &mut kept, scene, settings, &notes).unwrap();
     let traffic = emulator.take_traffic();
-    let dropped = notes.heard("dropped");
+    let forgotten = notes.heard("dropped");
     drop((cuda, kept));
     assert_eq!(emulator.taken(), 0, "all memory is given back");
-    (frame, traffic, dropped)
+    (frame, traffic, forgotten)
 }
 
 #[derive(Default)]
@@ -180,7 +180,7 @@ fn a_cache_gives_way_where_an_allocation_fails() {
     let settings = settings();
     let scene = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
     let whole = render_on(&Cuda::new(Arc::new(Emulator::new())), &scene, &settings, &Unobserved).unwrap();
-    let (frame, traffic, dropped) = render_twice(&scene, &settings, |_| ());
+    let (frame, traffic, forgotten) = render_twice(&scene, &settings, |_| ());
     assert!(bits(&frame) == bits(&whole) && !forgotten && frame.stats.counts.long_tests_saved > 0);
     for number in (1..=traffic.allocations).step_by(4) {
         let (frame, _, forgotten) = render_twice(&scene, &settings, |device| device.fail_allocation(number));
