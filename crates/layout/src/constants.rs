@@ -96,9 +96,9 @@ constants! {
 
     // Numbers from Rust's standard library; kernels have no headers for them.
 
-    /// The largest single-precision number.
+    /// The largest number of single precision.
     F32_MAX: f32 = f32::MAX;
-    /// The largest double-precision number.
+    /// The largest number of double precision.
     F64_MAX: f64 = f64::MAX;
     /// The bits of infinity in single precision.
     F32_INFINITY_BITS: u32 = f32::INFINITY.to_bits();
@@ -195,26 +195,26 @@ constants! {
 
     // Short tests.
 
-    /// Maximum number of tangent planes of an item's surface points that short tests distinguish.
+    /// Tangent planes of an item's surface points that short tests tell apart.
     TANGENT_PLANES: u32 = 4;
-    /// Words per candidate of the short tests by cell, a triangle that may be an occluder.
+    /// Words of a candidate of the short tests by cell, a triangle that can matter.
     CANDIDATE_WORDS: u32 = 24;
-    /// Candidates per round.
+    /// Candidates of one round.
     CANDIDATES: u32 = 32;
-    /// Pairs of a candidate and a light point that are tested at once.
+    /// Pairs of a candidate and a light point that are tested in one go.
     LISTED_TARGETS: u32 = 64;
-    /// Words per pair.
+    /// Words of such a pair.
     TARGET_WORDS: u32 = 4;
-    /// Triangles found and not yet examined: fewer than 32, plus at most 96 that one round of the search adds.
+    /// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of the search adds.
     FOUND_TRIANGLES: u32 = 128;
-    /// Number of entries on the search's stack up to which a round processes four nodes.
+    /// Entries of the search's stack up to which a round takes four nodes.
     STACK_OF_ROUNDS: u32 = 64;
-    /// Additional entries reserved for each level of the tree.
+    /// Entries kept beyond those for each level of the tree.
     STACK_PER_LEVEL: u32 = 7;
 
     // Interpolation.
 
-    /// Warps per block in kernels that mark light points or interpolate, one item each.
+    /// Warps of a block that marks light points or interpolates, an item each.
     ITEM_WARPS: u32 = 4;
     /// Maximum number of lights without an area that are interpolated at once.
     MOST_LIGHTS: u32 = 3;

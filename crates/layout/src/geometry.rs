@@ -96,13 +96,13 @@ records! {
         dims: [u32; 3],
         /// The sphere around its triangles.
         approach: Approach,
-        /// Number of entries of `triangles`.
+        /// Entries of `triangles`.
         triangle_count: u32,
-        /// Padding to a multiple of eight bytes.
+        /// For eight-byte size.
         spare: u32,
     }
 
-    /// A test of every triangle, always.
+    /// Every triangle, always.
     BruteForce {
         /// The usable triangles.
         triangles: In<Triangle>,

@@ -15,9 +15,9 @@
 #define TILE 1024u
 // Values per thread of a prefix sum.
 #define VALUES_OF_THREAD 4u
-// The largest single-precision number.
+// The largest number of single precision.
 #define F32_MAX 0x1.fffffep127f
-// The largest double-precision number.
+// The largest number of double precision.
 #define F64_MAX 0x1.fffffffffffffp1023
 // The bits of infinity in single precision.
 #define F32_INFINITY_BITS 0x7f800000u
@@ -99,23 +99,23 @@
 #define SAMPLE_DIGITS 24u
 // The value of the last of these digits.
 #define LAST_DIGIT 0x1p-24f
-// Maximum number of tangent planes of an item's surface points that short tests distinguish.
+// Tangent planes of an item's surface points that short tests tell apart.
 #define TANGENT_PLANES 4u
-// Words per candidate of the short tests by cell, a triangle that may be an occluder.
+// Words of a candidate of the short tests by cell, a triangle that can matter.
 #define CANDIDATE_WORDS 24u
-// Candidates per round.
+// Candidates of one round.
 #define CANDIDATES 32u
-// Pairs of a candidate and a light point that are tested at once.
+// Pairs of a candidate and a light point that are tested in one go.
 #define LISTED_TARGETS 64u
-// Words per pair.
+// Words of such a pair.
 #define TARGET_WORDS 4u
-// Triangles found and not yet examined: fewer than 32, plus at most 96 that one round of the search adds.
+// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of the search adds.
 #define FOUND_TRIANGLES 128u
-// Number of entries on the search's stack up to which a round processes four nodes.
+// Entries of the search's stack up to which a round takes four nodes.
 #define STACK_OF_ROUNDS 64u
-// Additional entries reserved for each level of the tree.
+// Entries kept beyond those for each level of the tree.
 #define STACK_PER_LEVEL 7u
-// Warps per block in kernels that mark light points or interpolate, one item each.
+// Warps of a block that marks light points or interpolates, an item each.
 #define ITEM_WARPS 4u
 // Maximum number of lights without an area that are interpolated at once.
 #define MOST_LIGHTS 3u
