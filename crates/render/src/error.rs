@@ -28,7 +28,7 @@ pub enum RenderError {
     /// A setting is invalid.
     #[error("{setting} = {value} cannot be used: {remedy}")]
     Setting {
-        /// Which setting.
+        /// The setting.
         setting: Setting,
         /// The value given.
         value: String,

@@ -13,7 +13,7 @@ macro_rules! words {
         lookups { $($(#[doc = $lookup_help:literal])* $lookup:ident = $lookup_word:literal,)* }
         techniques $techniques:tt
     ) => {
-        /// How visibility is found.
+        /// How visibility is computed.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #[non_exhaustive]
         pub enum Mode {

@@ -21,7 +21,7 @@ pub use setting::Setting;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Settings {
-    /// How visibility is found.
+    /// How visibility is computed.
     pub mode: Mode,
     /// Depth of mirror recursion.
     pub bounces: u32,
@@ -29,7 +29,7 @@ pub struct Settings {
     pub size: [u32; 2],
     /// The camera; `None`: the scene's first, else one that frames the scene.
     pub camera: Option<Camera>,
-    /// Which way is up for a camera that frames the scene.
+    /// The up axis for a camera that frames the scene.
     pub up: Up,
     /// Light-mesh step; `None`: the scene's, else auto.
     pub step: Option<Step>,
@@ -83,7 +83,7 @@ impl Settings {
 
 /// Settings in one expression: each method sets the field of its name; see the fields for details.
 impl Settings {
-    /// How visibility is found.
+    /// How visibility is computed.
     pub fn with_mode(self, mode: Mode) -> Settings {
         Settings { mode, ..self }
     }
@@ -103,7 +103,7 @@ impl Settings {
         Settings { camera: Some(camera), ..self }
     }
 
-    /// Which way is up for a camera that frames the scene.
+    /// The up axis for a camera that frames the scene.
     pub fn with_up(self, up: Up) -> Settings {
         Settings { up, ..self }
     }

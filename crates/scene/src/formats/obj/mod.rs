@@ -5,9 +5,9 @@
 //! - Every combination of position, texture coordinate and normal becomes one vertex. A corner without a normal makes its whole face
 //!   flat, one without a texture coordinate removes the texture from it.
 //! - Texture coordinates have v upwards in these files and are flipped.
-//! - Colours after a position's coordinates (`v x y z r g b`) are treated as sRGB in [0, 1], as Blender and MeshLab write them; if
-//!   one is above 1, their range is 0 to 255. A fourth coordinate w is the weight of free-form surfaces and has no meaning for
-//! faces.
+//! - Colours after a position's coordinates (`v x y z r g b`) are treated as sRGB in [0, 1], as Blender and MeshLab write
+//!   them; if one is above 1, their range is 0 to 255. A fourth coordinate w is the weight of free-form surfaces and has
+//!   no meaning for faces.
 //! - Points, lines and free-form surfaces are ignored with a warning; groups and smoothing groups have no effect.
 
 mod face;
