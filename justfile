@@ -1,6 +1,6 @@
 # Shortcuts; each line works without `just` as well.
 
-# List what there is
+# List all commands
 default:
     @just --list
 
@@ -12,7 +12,7 @@ render scene="builtin:childpark" *flags="-o childpark.png":
 test:
     cargo test --workspace
 
-# Most tests, in half a minute once they are built: needs cargo-nextest
+# Most tests, in half a minute once they are built; needs cargo-nextest
 fast *filter:
     cargo nextest run --workspace --profile fast {{filter}}
 
@@ -26,20 +26,20 @@ doc:
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
     cargo xtask check-docs
 
-# Licences, sources and versions of all dependencies: needs cargo-deny
+# Licences, sources and versions of all dependencies; needs cargo-deny
 deny:
     cargo deny --locked check --hide-inclusion-graph licenses bans sources
     cargo deny --locked --manifest-path fuzz/Cargo.toml --config deny.toml check --hide-inclusion-graph licenses bans sources
 
-# The layout header, the kernels' PTX and the report about them
+# Generate the layout header, the kernels' PTX and the report on them
 kernels:
     cargo xtask kernels
 
-# Tables of README and METHOD from the results they name
+# Generate the tables of README and METHOD from the results they name
 readme:
     cargo xtask readme
 
-# Drawings of METHOD
+# Generate the drawings of METHOD
 drawings:
     cargo xtask drawings
 

@@ -1,8 +1,8 @@
-"""Runs lightmesh and its peers on the same scenes, in turn, and keeps what it finds as `lightmesh bench --json` does.
+"""Runs lightmesh and its peers on the same scenes, alternately, and saves the results in the format of `lightmesh bench --json`.
 
     python bench/peers/peers.py builtin:childpark bunny.ply -o peers.json
 
-See README.md beside this file.
+See README.md next to this file.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""The programs that make pictures, each as `render(samples, seed)`, which gives seconds and linear colours, row 0 at the top.
+"""The programs that render images, each as `render(samples, seed)`, which returns seconds and linear colours, row 0 at the top.
 
 All look through the middle of each pixel: what differs is the shadows alone, not how edges are smoothed.
 """

@@ -1,7 +1,7 @@
 //! Compiles every kernel of the renderer as C++, together with the emulator's own.
 //!
-//! Kernel files are found by walking the folders. For each, a small file names the module and includes it. With
-//! `LIGHTMESH_EMULATE=primary_rays,scan` only these modules are built, which saves time while one of them is written.
+//! Kernel files are found by walking the folders. For each, a small generated file names the module and includes it. With
+//! `LIGHTMESH_EMULATE=primary_rays,scan` only these modules are built, which saves time while working on one of them.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -9,14 +9,14 @@ use std::{env, fs};
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-env-changed=LIGHTMESH_EMULATE");
-    // Fibres are made as POSIX systems make them; elsewhere this crate is empty.
+    // Fibres are implemented for POSIX systems; elsewhere this crate is empty.
     if env::var("CARGO_CFG_TARGET_FAMILY")? != "unix" {
         return Ok(());
     }
     let here = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(env::var("OUT_DIR")?);
     let renderer = here.join("../render/src").canonicalize()?;
-    // Folders are watched whole, so that new files are noticed.
+    // Folders are watched as a whole, so that new files are noticed.
     for folder in [&renderer, &here.join("shim"), &here.join("kernels")] {
         println!("cargo::rerun-if-changed={}", folder.display());
     }
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Compiles the modules into one library, unless that has been done with the same files.
+/// Compiles the modules into one library, unless this was already done with the same files.
 fn compile(
     sources: &[PathBuf],
     modules: &[(&str, &Path)],
@@ -47,13 +47,13 @@ fn compile(
     }
     let mut build = cc::Build::new();
     build.cargo_metadata(false).cpp(true).std("c++17").includes(include);
-    // The same bits as on a device: no operation is fused, none reordered.
+    // The same bits as on a device: no operations are fused or reordered.
     build.opt_level(2).flag("-ffp-contract=off").flag("-fno-strict-aliasing").flag("-fno-math-errno");
-    // What is not set before it is read, shows.
+    // Makes reads of uninitialised variables visible.
     build.flag_if_supported("-ftrivial-auto-var-init=pattern");
-    // `longjmp` to another stack is what fibres do; a fortified one refuses.
+    // Fibres use `longjmp` to switch to another stack, which a fortified one rejects.
     build.flag("-U_FORTIFY_SOURCE").warnings(true).extra_warnings(true);
-    // Pragmas for the device's compiler; and a warning that guesses, where poison knows.
+    // Unknown pragmas are for the device's compiler; the other warning only guesses, while poison detects real errors.
     build.flag_if_supported("-Wno-unknown-pragmas").flag_if_supported("-Wno-maybe-uninitialized");
 
     for (module, file) in modules {
@@ -70,7 +70,7 @@ fn compile(
     Ok(())
 }
 
-/// A file that refers to every module, without which the linker would leave them out.
+/// A file that refers to every module; without it the linker would drop them.
 fn table(modules: &[(&str, &Path)]) -> String {
     let mut text = "namespace emulator {\n".to_owned();
     modules.iter().for_each(|(module, _)| text += &format!("void link_{module}();\n"));
@@ -79,7 +79,7 @@ fn table(modules: &[(&str, &Path)]) -> String {
     text + "}\n}\n"
 }
 
-/// All that the library is made from.
+/// Everything that the library depends on.
 fn state(sources: &[PathBuf], modules: &[(&str, &Path)]) -> Result<Vec<u8>, Box<dyn Error>> {
     let mut state = format!("{modules:?}{:?}", env::var("CXX")).into_bytes();
     state.extend(fs::read(Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("build.rs"))?);

@@ -1,4 +1,4 @@
-//! Tells the tests whether the shared scenes lie beside the repository: without them their tests report "ignored".
+//! Tells the tests whether the shared scenes are available next to the repository: without them their tests are ignored.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ fn main() {
     println!("cargo::rustc-check-cfg=cfg(shared_scenes)");
     println!("cargo::rerun-if-changed=build.rs");
     if shared.is_dir() {
-        // Named only where it is there: a missing path would mean a new build every time.
+        // Only named if it exists: a missing path would cause a rebuild every time.
         println!("cargo::rerun-if-changed={}", shared.display());
         println!("cargo::rustc-cfg=shared_scenes");
     }

@@ -1,7 +1,7 @@
-//! No import circles: the modules of a crate depend on each other in one direction.
+//! Rejects circular imports: the modules of a crate must depend on each other in one direction.
 //!
-//! Every `use` of a module's own crate is followed to the file that defines what it names, through re-exports. Tests, and imports for
-//! documentation alone, may look in any direction. Re-exports, and paths that are written out in the code, do not count.
+//! Every `use` of a module's own crate is followed to the file that defines the imported name, through re-exports. Tests, and imports
+//! for documentation only, may point in any direction. Re-exports, and paths written out in the code, do not count.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
@@ -10,18 +10,18 @@ use std::path::{Path, PathBuf};
 
 use crate::{Outcome, Verdict};
 
-/// Crates that are checked.
+/// Crates to check.
 const CRATES: [&str; 1] = ["crates/render/src"];
 
-/// A module by its path from the crate's root, such as `["accel", "bvh"]`.
+/// A module, as its path from the crate's root, such as `["accel", "bvh"]`.
 type Module = Vec<String>;
 
-/// What a module imports.
+/// The imports of a module.
 #[derive(Debug, Default)]
 struct Imports {
-    /// Full paths of everything that is imported.
+    /// Full paths of all imports.
     uses: Vec<Module>,
-    /// Names that are re-exported, and where from.
+    /// Names that are re-exported, and their origins.
     exports: BTreeMap<String, Module>,
 }
 
@@ -32,12 +32,12 @@ pub(crate) fn check(root: &Path) -> Outcome {
         let modules = modules_of(&root.join(folder))?;
         files += modules.len();
         let circles = circles(&edges(&modules));
-        problems.extend(circles.iter().map(|circle| format!("{folder}: a circle of imports: {}", circle.join(" -> "))));
+        problems.extend(circles.iter().map(|circle| format!("{folder}: circular imports: {}", circle.join(" -> "))));
     }
-    Ok(Verdict::new(problems, || format!("{files} modules import each other without a circle")))
+    Ok(Verdict::new(problems, || format!("{files} modules without circular imports")))
 }
 
-/// All modules of a crate that are not tests.
+/// All modules of a crate except tests.
 fn modules_of(folder: &Path) -> Result<BTreeMap<Module, Imports>, Box<dyn Error>> {
     let mut modules = BTreeMap::new();
     let mut folders = vec![(folder.to_owned(), Module::new())];
@@ -64,7 +64,7 @@ fn modules_of(folder: &Path) -> Result<BTreeMap<Module, Imports>, Box<dyn Error>
     Ok(modules)
 }
 
-/// The imports of a module's own crate, without those of tests and documentation.
+/// The imports of a module from its own crate, without those of tests and documentation.
 fn imports(text: &str, module: &Module) -> Imports {
     let mut imports = Imports::default();
     // By convention tests come last.
@@ -112,7 +112,7 @@ fn expanded(tree: &str) -> Vec<String> {
     parts.flat_map(|part| expanded(part.trim())).map(|part| format!("{prefix}{part}")).collect()
 }
 
-/// A path of the crate itself from its root, and the name that it is imported by; `None` for other crates.
+/// A path within the crate from its root, and the name under which it is imported; `None` for other crates.
 fn absolute(path: &str, module: &Module) -> Option<(Module, String)> {
     let (path, alias) = match path.split_once(" as ") {
         Some((path, alias)) => (path, Some(alias)),
@@ -128,7 +128,7 @@ fn absolute(path: &str, module: &Module) -> Option<(Module, String)> {
         "crate" => base.clear(),
         "super" => drop(base.pop()),
         "self" => {}
-        // A child of the module, or another crate: only what exists as a module counts.
+        // A child of the module, or another crate: only existing modules count.
         _ => base.push(first),
     }
     let rest = parts.into_iter().skip(1);
@@ -142,7 +142,7 @@ fn absolute(path: &str, module: &Module) -> Option<(Module, String)> {
     Some((base, name))
 }
 
-/// Which module imports which, re-exports followed to where things are defined.
+/// Which module imports which, with re-exports followed to the defining module.
 fn edges(modules: &BTreeMap<Module, Imports>) -> BTreeMap<Module, BTreeSet<Module>> {
     let targets = |module: &Module, imports: &Imports| {
         let found = imports.uses.iter().filter_map(|path| defined_in(modules, path, 0));
@@ -151,7 +151,7 @@ fn edges(modules: &BTreeMap<Module, Imports>) -> BTreeMap<Module, BTreeSet<Modul
     modules.iter().map(|(module, imports)| (module.clone(), targets(module, imports))).collect()
 }
 
-/// The module that defines what a path names; `None` outside of the crate.
+/// The module that defines what a path names; `None` outside the crate.
 fn defined_in(modules: &BTreeMap<Module, Imports>, path: &Module, depth: usize) -> Option<Module> {
     let length = (0..=path.len()).rev().find(|&length| modules.contains_key(&path[..length]))?;
     let (module, rest) = (path[..length].to_vec(), &path[length..]);
@@ -161,18 +161,18 @@ fn defined_in(modules: &BTreeMap<Module, Imports>, path: &Module, depth: usize) 
             let source: Module = source.iter().chain(&rest[1..]).cloned().collect();
             defined_in(modules, &source, depth + 1).or(Some(module))
         }
-        // The root defines nothing: a path that ends there is one of another crate.
+        // The root defines nothing: a path that ends there belongs to another crate.
         _ if module.is_empty() => None,
         _ => Some(module),
     }
 }
 
-/// The circles there are: for each the modules on the way round.
+/// The circles: for each, the modules along it.
 fn circles(edges: &BTreeMap<Module, BTreeSet<Module>>) -> Vec<Vec<String>> {
     let mut found = BTreeSet::new();
     for start in edges.keys() {
         if let Some(circle) = way_back(edges, start) {
-            // The same circle is found from each of its modules: it is named from its first one.
+            // The same circle is found from each of its modules: it is reported from its first one.
             let least = circle.iter().enumerate().min_by_key(|(_, module)| *module).map_or(0, |(index, _)| index);
             let turned: Vec<String> =
                 (0..=circle.len()).map(|i| circle[(least + i) % circle.len()].join("::")).collect();
@@ -182,7 +182,7 @@ fn circles(edges: &BTreeMap<Module, BTreeSet<Module>>) -> Vec<Vec<String>> {
     found.into_iter().collect()
 }
 
-/// The shortest way from a module back to itself.
+/// The shortest path from a module back to itself.
 fn way_back(edges: &BTreeMap<Module, BTreeSet<Module>>, start: &Module) -> Option<Vec<Module>> {
     let mut before: BTreeMap<&Module, &Module> = BTreeMap::new();
     let mut queue = std::collections::VecDeque::from([start]);

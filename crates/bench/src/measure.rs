@@ -112,7 +112,7 @@ fn add_samples(samples: &mut BTreeMap<String, Samples>, seconds: &Seconds) {
     }
 }
 
-/// Resets this process' peak memory, if the system supports it: Linux does when 5 is written to this file. Elsewhere the peak is
+/// Resets this process's peak memory, if the system supports it: Linux does when 5 is written to this file. Elsewhere the peak is
 /// that of the whole run so far.
 fn reset_peak_memory() {
     // Without permission the value is an upper bound.

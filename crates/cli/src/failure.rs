@@ -54,7 +54,7 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Exceeded(String),
     /// There is no manual page of this name.
-    #[error("there is no subcommand `{name}`; the subcommands are {}", known.join(", "))]
+    #[error("unknown subcommand `{name}`; available: {}", known.join(", "))]
     UnknownPage {
         /// The requested name.
         name: String,

@@ -1,6 +1,6 @@
-//! What the command line calls what a message of the library speaks of.
+//! The command line's names for what the library's messages mention.
 //!
-//! The library's messages name settings in words; here each gets its flag, which the program adds in brackets.
+//! The library's messages name settings in words; the program adds the flag of each in brackets.
 
 use lightmesh::render::Setting;
 use lightmesh::{LoadError, RenderError};
@@ -9,7 +9,7 @@ use lightmesh_bench::report::ReportError;
 
 use crate::failure::Failure;
 
-/// The flag of a setting: named like it, but for the structure.
+/// The flag of a setting: it has the same name, except for the structure.
 pub(crate) fn of(setting: Setting) -> String {
     match setting {
         Setting::Acceleration => "--accel".to_owned(),
@@ -17,7 +17,7 @@ pub(crate) fn of(setting: Setting) -> String {
     }
 }
 
-/// The flags and commands that mend what a failure is about.
+/// The flags and commands that may solve the problem.
 pub(crate) fn that_mend(failure: &Failure) -> Vec<String> {
     const RESULTS: &str = "lightmesh bench SUITE --json FILE";
     let fixed: &[&str] = match failure {

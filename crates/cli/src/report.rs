@@ -24,7 +24,7 @@ struct AllSettings<'a> {
     transfer: &'static str,
     /// Stops, 0 for an exr.
     exposure: f32,
-    /// As `lightmesh info` describes them.
+    /// The camera as described by `lightmesh info`.
     lights: &'a [LightInfo],
 }
 

@@ -1,4 +1,4 @@
-// Kernels that test the emulator itself: each uses one thing that it must do, or does one thing that it must find.
+// Kernels that test the emulator itself: each uses one feature that it must support, or commits one error that it must detect.
 #include "shim.h"
 
 struct Own {
@@ -32,7 +32,7 @@ KERNEL(warp_words, Own, 1024, 1) {
     const unsigned long long wide = __shfl_sync(all, 0x100000001ull * lane, 7);
     out[8] = static_cast<unsigned>(wide >> 32) + static_cast<unsigned>(wide);
     out[9] = __float_as_uint(__shfl_sync(all, 0.5f * lane, 9));
-    // Halves of the warp may go separate ways, each with its own mask.
+    // Halves of the warp may diverge, each with its own mask.
     if (lane < 16) {
         out[10] = __ballot_sync(0x0000ffffu, lane % 2);
     } else {
@@ -42,7 +42,7 @@ KERNEL(warp_words, Own, 1024, 1) {
     out[11] = __popc(__ballot_sync(all, 1));
 }
 
-// The sum over a block by a tree in shared memory.
+// The sum over a block, by a tree in shared memory.
 KERNEL(block_sum, Own, 1024, 1) {
     SHARED(unsigned, sums, [1024]);
     sums[threadIdx.x] = number();
@@ -85,7 +85,7 @@ KERNEL(read_unset, Own, 1024, 1) {
     unset[threadIdx.x] = 0;
 }
 
-// ---- What must be found ----
+// ---- Errors to be detected ----
 
 KERNEL(wait_for_ended, Own, 1024, 1) {
     if (threadIdx.x == 37) return;
@@ -138,7 +138,7 @@ KERNEL(trap, Own, 1024, 1) {
 
 KERNEL(wild_address, Own, 1024, 1) {
     SHARED(unsigned long long, unset, [1]);
-    // What was never set is no address.
+    // A value that was never set is not a valid address.
     const unsigned *wild = reinterpret_cast<const unsigned *>(threadIdx.x == args.choice ? unset[0] : 0ull);
     if (threadIdx.x == args.choice) args.out[0] = *wild;
 }

@@ -1,6 +1,6 @@
 // Atomic operations on memory that blocks share: blocks run on several threads of the host.
 //
-// Relaxed, as CUDA's are; a fence orders what stands around it.
+// Relaxed, as in CUDA; fences order the operations around them.
 #pragma once
 
 #include "collectives.h"

@@ -1,10 +1,10 @@
-// A thread block as the emulator runs it: the functions behind the names that kernels use.
+// A thread block in the emulator: the functions behind the names that kernels use.
 //
-// The threads of a block are fibres of one thread of the host. A fibre runs until it must wait for others, at a collective of its
-// warp or a barrier of its block; then the next one runs. The last to arrive sets all of them free.
+// The threads of a block are fibres of one host thread. A fibre runs until it must wait for others, at a collective of its warp
+// or a barrier of its block; then the next one runs. The last to arrive releases all of them.
 #pragma once
 
-// CUDA's own; here, because threadIdx has this type. `__thread` needs no check at each use, as `thread_local` may.
+// As in CUDA; defined here because threadIdx has this type. `__thread` needs no check at each use, unlike `thread_local`.
 struct uint2 {
     unsigned x, y;
 } __attribute__((aligned(8)));
@@ -22,12 +22,12 @@ namespace emulator {
 
 typedef unsigned long long Bits;
 
-// A kernel that was compiled in. They form a list.
+// A compiled kernel. Kernels form a linked list.
 struct Kernel {
     const char *module, *name;
-    // Bytes of its one parameter.
+    // Size of its only parameter in bytes.
     unsigned arguments;
-    // Most threads of a block.
+    // Maximum number of threads per block.
     unsigned threads;
     void (*run)(const void *arguments);
     const Kernel *next;
@@ -39,11 +39,11 @@ struct Kernel {
     }
 };
 
-// A variable that the host sets.
+// A variable set by the host.
 struct Constant {
     const char *module, *name;
     unsigned long bytes;
-    // Where the calling thread of the host has it.
+    // Its address in the calling host thread.
     void *(*place)();
     const Constant *next;
 
@@ -54,17 +54,17 @@ struct Constant {
     }
 };
 
-// Where threads wait for others.
+// The points where threads wait for others.
 enum class Meeting : unsigned char { SyncWarp, Ballot, Shuffle, MatchAny, SyncThreads };
 
-// Waits until all lanes of `mask` have come here with the same mask. `value` is what this lane brings, `source` the lane whose
-// value a shuffle gives back.
+// Waits until all lanes of `mask` have arrived here with the same mask. `value` is this lane's contribution, `source` the lane
+// whose value a shuffle returns.
 Bits meet(Meeting what, unsigned mask, Bits value, unsigned source);
 
-// Waits until all threads of the block have come; gives back how many brought true.
+// Waits until all threads of the block have arrived; returns how many passed true.
 unsigned meet_block(bool value);
 
-// The variable of the block that belongs to a declaration.
+// The block's variable that belongs to a declaration.
 void *shared(const void *declaration, const char *name, unsigned long bytes);
 void *dynamic_shared();
 

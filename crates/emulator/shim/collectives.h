@@ -1,6 +1,6 @@
-// What the threads of a warp or a block do together.
+// Collective operations of the threads of a warp or a block.
 //
-// Stricter than CUDA: every lane of a mask, and every thread of a block at a barrier, must take part; none may have ended.
+// Stricter than CUDA: every lane of a mask, and every thread of a block at a barrier, must take part; none may have exited.
 #pragma once
 
 #include <cstring>
@@ -9,7 +9,7 @@
 
 namespace emulator {
 
-// Whatever is passed between lanes, as bits.
+// The bits of a value passed between lanes.
 template <class T>
 static inline Bits bits_of(T value) {
     static_assert(sizeof(T) == 4 || sizeof(T) == 8, "lanes exchange values of 4 or 8 bytes");
@@ -75,7 +75,8 @@ EMULATED unsigned __match_any_sync(unsigned mask, T value) {
     return static_cast<unsigned>(emulator::meet(emulator::Meeting::MatchAny, mask, emulator::bits_of(value), 0));
 }
 
-// Segments of `width` lanes, a power of two, exchange among themselves; what would come from outside is the lane's own value.
+// Segments of `width` lanes, a power of two, exchange values among themselves; instead of a value from outside, a lane gets its
+// own.
 template <class T>
 EMULATED T __shfl_sync(unsigned mask, T value, int source, int width = warpSize) {
     const unsigned segment = emulator::lane() & ~static_cast<unsigned>(width - 1);
@@ -97,7 +98,7 @@ EMULATED T __shfl_down_sync(unsigned mask, T value, unsigned distance, int width
 template <class T>
 EMULATED T __shfl_xor_sync(unsigned mask, T value, int lanes, int width = warpSize) {
     const unsigned lane = emulator::lane(), source = lane ^ static_cast<unsigned>(lanes);
-    // Lanes of segments before may be read, those of segments after may not: so says CUDA.
+    // As documented by CUDA, lanes of preceding segments may be read, those of later segments may not.
     const unsigned end = (lane & ~static_cast<unsigned>(width - 1)) + static_cast<unsigned>(width);
     return emulator::shuffle(mask, value, source < end ? source : lane);
 }

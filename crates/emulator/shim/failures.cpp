@@ -1,4 +1,4 @@
-// What becomes of a block that cannot go on.
+// Failures of a block that cannot continue.
 #if !defined(_XOPEN_SOURCE)
 #define _XOPEN_SOURCE 700
 #endif
@@ -28,7 +28,7 @@ const char *name_of(Meeting what) {
     }
 }
 
-// A thread that `waits`, thread number `thread`, waits for.
+// A thread that thread number `thread`, which `waits`, is waiting for.
 unsigned Machine::missing(unsigned thread, const Lane &waits) const {
     const bool whole_block = waits.meeting == Meeting::SyncThreads;
     const unsigned first = whole_block ? 0 : thread / warpSize * warpSize;
@@ -41,7 +41,7 @@ unsigned Machine::missing(unsigned thread, const Lane &waits) const {
     return thread;
 }
 
-// Nobody can go on.
+// No thread can continue.
 void Machine::dead_end() {
     unsigned thread = 0;
     while (lanes[thread].state != Lane::Waits) ++thread;
@@ -64,7 +64,7 @@ void Machine::fail(const char *format, ...) {
     abandon();
 }
 
-// Leaves all fibres where they are; they begin anew with the next block.
+// Abandons all fibres; they start from the beginning with the next block.
 void Machine::abandon() {
     failed = true;
     idle.clear();
@@ -78,12 +78,12 @@ void Machine::abandon() {
 static struct sigaction others[2];
 static const int signals[2] = {SIGSEGV, SIGBUS};
 
-// In a block, the launch fails; elsewhere, whoever was there before sees to it.
+// In a block, the launch fails; elsewhere, the previous handler takes over.
 static void on_bad_address(int signal, siginfo_t *info, void *) {
     if (current != nullptr && current->is_busy()) {
-        current->fail("thread %u reads or writes at %p, where nothing is", threadIdx.x, info->si_addr);
+        current->fail("thread %u reads or writes at %p, which is not mapped", threadIdx.x, info->si_addr);
     }
-    // The instruction is tried again.
+    // The instruction is retried.
     sigaction(signal, &others[signal == SIGBUS], nullptr);
 }
 
@@ -92,7 +92,7 @@ void watch_addresses() {
     std::call_once(once, [] {
         struct sigaction action = {};
         action.sa_sigaction = on_bad_address;
-        // The handler is left by a jump: the signal must not stay blocked.
+        // The handler exits by a jump: the signal must not stay blocked.
         action.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER;
         for (int k = 0; k < 2; ++k) sigaction(signals[k], &action, &others[k]);
     });

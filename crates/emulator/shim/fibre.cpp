@@ -10,7 +10,7 @@
 
 namespace emulator {
 
-// Stacks grow down: what lies at the low end is overwritten by a stack that is too small.
+// Stacks grow downwards: a stack overflow overwrites what is at the low end.
 static constexpr size_t GUARD = 256;
 static constexpr unsigned char GUARD_BYTE = 0xd7;
 

@@ -1,6 +1,6 @@
-// Fibres: stacks that one thread of the host switches between.
+// Fibres: stacks that one host thread switches between.
 //
-// `makecontext` begins a fibre; all further switches are `_setjmp` and `_longjmp`, which do not call the operating system.
+// `makecontext` starts a fibre; all further switches are `_setjmp` and `_longjmp`, which need no system call.
 #pragma once
 
 #include <csetjmp>
@@ -16,18 +16,19 @@ struct Fibre {
     Fibre(const Fibre &) = delete;
     Fibre &operator=(const Fibre &) = delete;
 
-    // The thread of the block that runs on it.
+    // The thread of the block that runs on this fibre.
     unsigned thread = 0;
 
-    // Leaves the running fibre, or the host's own stack, and goes on where `to` was left. Returns when somebody comes back.
+    // Leaves the running fibre, or the host's own stack, and continues where `to` was left. Returns when execution switches
+    // back.
     static void change(jmp_buf &from, Fibre &to);
     static void change(jmp_buf &from, jmp_buf &to);
     static void change(Fibre &from, Fibre &to) { change(from.place, to); }
 
-    // Forgets where it was: it begins anew.
+    // Discards its state: it starts from the beginning.
     void reset() { begun = false; }
 
-    // Whether it has stayed within its stack, as far as the stack's end tells.
+    // Whether it has stayed within its stack, judging by the guard at the stack's end.
     bool intact() const;
 
     jmp_buf place;

@@ -1,4 +1,4 @@
-// What the Rust side calls; `src/host.rs` declares the same.
+// The functions called by the Rust side; `src/host.rs` declares them too.
 #include "machine.h"
 
 namespace emulator {
@@ -34,7 +34,7 @@ void lightmesh_emulator_prepare(Machine *machine, const Launch *launch) {
     machine->prepare(*launch);
 }
 
-// Null: the block has run. Otherwise why not; to be read before the machine runs again.
+// Null if the block has run, otherwise the reason of the failure, valid until the machine runs again.
 const char *lightmesh_emulator_run(Machine *machine, const Launch *launch, unsigned block) {
     return machine->run(*launch, block) ? nullptr : machine->message;
 }

@@ -10,17 +10,17 @@ namespace emulator {
 const Kernel *Kernel::first = nullptr;
 const Constant *Constant::first = nullptr;
 
-// What unset memory holds, word by word: NaN as float and as double, far out of range as a number or an address.
+// Content of uninitialised memory, word by word: NaN as float and as double, far out of range as an index or an address.
 static constexpr unsigned POISON = 0xfffa5a5au;
-// What lies behind each shared variable, and at least how many bytes of it.
+// The guard bytes after each shared variable, and their minimum number.
 static constexpr unsigned char ZONE = 0xd7;
 static constexpr size_t ZONE_BYTES = 64;
-// What every device can give to a block: compute capability 7.5 has 64 KiB, of which declared variables may take 48.
+// Shared memory per block on every device: compute capability 7.5 has 64 KiB, of which declared variables may use 48.
 static constexpr size_t SHARED_BYTES = 64 * 1024;
 static constexpr size_t DECLARED_BYTES = 48 * 1024;
 static constexpr size_t MEMORY_WORDS = SHARED_BYTES / 4 + 2048;
 
-// The end of a variable's zone, and the begin of the next variable.
+// The end of a variable's zone, and the start of the next variable.
 static size_t zone_end(size_t end) {
     return (end + 15) / 16 * 16 + ZONE_BYTES;
 }
@@ -56,7 +56,7 @@ bool Machine::run(const Launch &launch, unsigned block) {
     variables.clear();
     std::fill_n(memory.get(), shared_used / 4, POISON);
     shared_used = declared = 0;
-    // The host has seen to it that it fits.
+    // The host has checked that it fits.
     place_shared(nullptr, "dynamic shared memory", launch.dynamic_shared);
 
     current = this;
@@ -110,13 +110,13 @@ void Machine::live() {
     }
 }
 
-// What the running thread sees of itself.
+// The built-in variables of the running thread.
 void Machine::enter(unsigned thread) {
     lanes[thread].state = Lane::Runs;
     threadIdx = {thread, 0, 0};
 }
 
-// Goes on with the first thread that is ready.
+// Continues with the first thread that is ready.
 void Machine::pass_on(Fibre &from) {
     running = lanes[ready[ready_first]].fibre;
     ready_first = (ready_first + 1) % ready.size();
@@ -124,7 +124,7 @@ void Machine::pass_on(Fibre &from) {
     if (running != &from) Fibre::change(from, *running);
 }
 
-// Lets others run until somebody has set the running thread free.
+// Lets other threads run until one has released the running thread.
 void Machine::wait() {
     Fibre &self = *running;
     if (ready_count > 0) {
@@ -144,7 +144,7 @@ void Machine::release(unsigned thread) {
     ++ready_count;
 }
 
-// ---- Meetings ----
+// ---- Collectives and barriers ----
 
 Bits Machine::meet(Meeting what, unsigned mask, Bits value, unsigned source) {
     const unsigned thread = running->thread, warp = thread / warpSize, bit = 1u << thread % warpSize;
@@ -173,7 +173,7 @@ bool Machine::complete(unsigned warp, Meeting what, unsigned mask) const {
     return true;
 }
 
-// Gives each lane of the mask its result and sets it free.
+// Gives each lane of the mask its result and releases it.
 void Machine::settle(unsigned warp, Meeting what, unsigned mask) {
     Lane *const first = &lanes[warp * warpSize];
     Bits ballot = 0;
@@ -248,7 +248,7 @@ void *Machine::dynamic_shared() {
     return &memory[variables[0].begin / 4];
 }
 
-// The first variable whose zone is not as it was.
+// The first variable whose zone was overwritten.
 const Machine::Shared *Machine::overrun() const {
     const unsigned char *const all = reinterpret_cast<const unsigned char *>(memory.get());
     for (const Shared &variable : variables) {
@@ -259,7 +259,7 @@ const Machine::Shared *Machine::overrun() const {
     return nullptr;
 }
 
-// ---- What kernels call ----
+// ---- Functions called by kernels ----
 
 Bits meet(Meeting what, unsigned mask, Bits value, unsigned source) {
     return current->meet(what, mask, value, source);

@@ -1,4 +1,4 @@
-// What runs blocks: one machine for each thread of the host that takes part in a launch.
+// The machines that run blocks: one for each host thread that takes part in a launch.
 #pragma once
 
 #include <csetjmp>
@@ -17,7 +17,7 @@ struct ConstantImage {
     const void *bytes;
 };
 
-// What all blocks of a launch have in common. The host fills it.
+// The data shared by all blocks of a launch. Filled in by the host.
 struct Launch {
     const Kernel *kernel;
     const void *arguments;
@@ -40,24 +40,24 @@ class Machine {
   public:
     Machine();
 
-    // Gives the constants of the launch to the calling thread.
+    // Copies the constants of the launch to the calling thread.
     void prepare(const Launch &launch);
 
-    // Runs one block. False: it failed, and `message` says why.
+    // Runs one block. Returns false if it failed; `message` then says why.
     bool run(const Launch &launch, unsigned block);
     char message[512];
 
-    // What kernels call.
+    // Called by kernels.
     Bits meet(Meeting what, unsigned mask, Bits value, unsigned source);
     unsigned meet_block(bool value);
     void *shared(const void *declaration, const char *name, size_t bytes);
     void *dynamic_shared();
     [[noreturn]] __attribute__((format(printf, 2, 3))) void fail(const char *format, ...);
 
-    // The life of a fibre: one thread of the block after the other.
+    // The main loop of a fibre: one thread of the block after another.
     [[noreturn]] void live();
 
-    // Whether what happens on the calling thread happens in a block.
+    // Whether the calling thread is running a block.
     bool is_busy() const { return busy; }
 
   private:
@@ -84,14 +84,14 @@ class Machine {
 
     const Launch *launch;
     unsigned block;
-    // Blocks of odd number run their threads backwards: what depends on the order, shows.
+    // Blocks with odd numbers run their threads in reverse order, which exposes results that depend on the order.
     bool reversed;
 
     std::vector<Lane> lanes;
-    // Lanes of each warp that wait for others of it.
+    // Lanes of each warp that wait for others of the same warp.
     std::vector<unsigned> waiting;
     unsigned at_barrier, barrier_sum, begun, ended;
-    // Threads that may run, a ring.
+    // Threads that are ready to run, as a ring buffer.
     std::vector<unsigned> ready;
     size_t ready_first, ready_count;
 
@@ -100,12 +100,12 @@ class Machine {
     Fibre *running;
     jmp_buf host;
     bool failed;
-    // Whether a block runs.
+    // Whether a block is running.
     bool busy;
 
     std::unique_ptr<unsigned[]> memory;
     std::vector<Shared> variables;
-    // Bytes in use with all zones, and without.
+    // Bytes in use with and without the guard zones.
     size_t shared_used, declared;
 };
 
@@ -114,7 +114,7 @@ extern __thread Machine *current;
 
 const char *name_of(Meeting what);
 
-// Makes reading and writing at wild addresses a failure of the block that does it.
+// Turns accesses to invalid addresses into a failure of the block.
 void watch_addresses();
 
 } // namespace emulator

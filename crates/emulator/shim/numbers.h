@@ -1,7 +1,7 @@
-// Bits, conversions and functions of numbers, with the results that CUDA documents.
+// Bit operations, conversions and numeric functions, with the results that CUDA documents.
 //
-// A plain conversion from a float that the integer cannot hold is undefined in C++ and differs between host and device: kernels
-// use __float2int_rz and its like, which stop at the ends of the range and turn NaN into 0 on both.
+// A plain conversion from a float that the integer cannot represent is undefined in C++ and differs between host and device:
+// kernels use __float2int_rz and similar functions, which saturate and turn NaN into 0 on both.
 #pragma once
 
 #include <limits>
@@ -18,7 +18,7 @@ EMULATED T __ldg(const T *address) {
     emulator::fault("__trap() was called");
 }
 
-// Bits.
+// Bit operations.
 EMULATED int __popc(unsigned x) { return __builtin_popcount(x); }
 EMULATED int __popcll(unsigned long long x) { return __builtin_popcountll(x); }
 EMULATED int __ffs(int x) { return __builtin_ffs(x); }
@@ -55,7 +55,7 @@ EMULATED unsigned __funnelshift_r(unsigned low, unsigned high, unsigned shift) {
     return static_cast<unsigned>(both >> (shift & 31u));
 }
 
-// Byte k of the result is the byte of y:x that the low three bits of the selector's nibble k name.
+// Byte k of the result is the byte of y:x selected by the low three bits of the selector's nibble k.
 EMULATED unsigned __byte_perm(unsigned x, unsigned y, unsigned selector) {
     const unsigned long long both = static_cast<unsigned long long>(y) << 32 | x;
     unsigned result = 0;
@@ -65,13 +65,13 @@ EMULATED unsigned __byte_perm(unsigned x, unsigned y, unsigned selector) {
     return result;
 }
 
-// The inner product of the words' bytes, added to a sum.
+// The dot product of the words' bytes, added to a sum.
 EMULATED unsigned __dp4a(unsigned x, unsigned y, unsigned sum) {
     for (int byte = 0; byte < 4; ++byte) sum += (x >> 8 * byte & 0xffu) * (y >> 8 * byte & 0xffu);
     return sum;
 }
 
-// Bits of floats.
+// Bit patterns of floats.
 EMULATED unsigned __float_as_uint(float x) { return emulator::value_of<unsigned>(emulator::bits_of(x)); }
 EMULATED int __float_as_int(float x) { return emulator::value_of<int>(emulator::bits_of(x)); }
 EMULATED float __uint_as_float(unsigned x) { return emulator::value_of<float>(emulator::bits_of(x)); }
@@ -81,17 +81,17 @@ EMULATED double __longlong_as_double(long long x) { return emulator::value_of<do
 
 namespace emulator {
 
-// `x` is whole, infinite or NaN.
+// `x` is an integer, infinite or NaN.
 template <class Int, class Float>
 static inline Int saturated(Float x) {
     if (x != x) return 0;
     if (x <= static_cast<Float>(std::numeric_limits<Int>::min())) return std::numeric_limits<Int>::min();
-    // The maximum itself may not be a float; the next power of two is.
+    // The maximum itself may not be representable as a float; the next power of two is.
     if (x >= static_cast<Float>(std::numeric_limits<Int>::max())) return std::numeric_limits<Int>::max();
     return static_cast<Int>(x);
 }
 
-// As the device orders them: -0 before +0, and NaN only where both are.
+// As ordered on the device: -0 before +0, and NaN only if both are.
 template <class T>
 static inline T least(T a, T b) {
     if constexpr (std::is_floating_point_v<T>) {
@@ -132,7 +132,7 @@ EMULATED float __double2float_rn(double x) { return static_cast<float>(x); }
 EMULATED float __int2float_rn(int x) { return static_cast<float>(x); }
 EMULATED float __uint2float_rn(unsigned x) { return static_cast<float>(x); }
 
-// Least and greatest. Signed and unsigned mixed give unsigned, as in C.
+// Minimum and maximum. Mixing signed and unsigned gives unsigned, as in C.
 template <class A, class B>
 EMULATED std::common_type_t<A, B> min(A a, B b) { return emulator::least<std::common_type_t<A, B>>(a, b); }
 template <class A, class B>
@@ -145,7 +145,7 @@ EMULATED double fmin(double a, double b) { return emulator::least(a, b); }
 EMULATED double fmax(double a, double b) { return emulator::greatest(a, b); }
 EMULATED float __saturatef(float x) { return fminf(fmaxf(x, 0.0f), 1.0f); }
 
-// Functions of floats: those that are rounded rightly on both sides, then those that may differ in the last bits.
+// Functions of floats: first those that are correctly rounded on both sides, then those that may differ in the last bits.
 EMULATED float sqrtf(float x) { return __builtin_sqrtf(x); }
 EMULATED float fabsf(float x) { return __builtin_fabsf(x); }
 EMULATED float floorf(float x) { return __builtin_floorf(x); }

@@ -12,7 +12,7 @@ pub(crate) struct Kernel {
     name: *const c_char,
     /// Bytes of its parameter.
     pub(crate) arguments: u32,
-    /// Most threads of a block.
+    /// Maximum number of threads per block.
     pub(crate) threads: u32,
     run: *const c_void,
     next: *const Kernel,
@@ -48,11 +48,11 @@ pub(crate) struct Launch {
     pub(crate) dynamic_shared: u32,
 }
 
-// SAFETY: C++ globals that never change once the program runs.
+// SAFETY: C++ globals that never change while the program runs.
 unsafe impl Sync for Kernel {}
-// SAFETY: as above; the host's copies are reached through `place`, by the thread that they belong to.
+// SAFETY: as above; the host's copies are accessed through `place`, by the thread that they belong to.
 unsafe impl Sync for Constant {}
-// SAFETY: what it points to outlives the launch and is not changed during it.
+// SAFETY: the data it points to outlives the launch and is not changed during it.
 unsafe impl Sync for Launch {}
 
 unsafe extern "C" {
@@ -66,7 +66,7 @@ unsafe extern "C" {
 
 type Names = (&'static str, &'static str);
 
-/// What was compiled in, by module and name.
+/// The compiled kernels and constants, by module and name.
 pub(crate) struct Modules {
     pub(crate) kernels: HashMap<Names, &'static Kernel>,
     pub(crate) constants: HashMap<Names, &'static Constant>,
@@ -88,17 +88,17 @@ pub(crate) fn modules() -> &'static Modules {
 /// A C++ list as a map.
 ///
 /// # Safety
-/// `first` and all `next` are null or valid for ever, as are the strings.
+/// `first` and all `next` are null or valid forever, as are the strings.
 unsafe fn list<T>(
     first: *const T,
     parts: impl Fn(&T) -> (*const c_char, *const c_char, *const T),
 ) -> HashMap<Names, &'static T> {
     let mut map = HashMap::new();
     let mut next = first;
-    // SAFETY: the caller's promise.
+    // SAFETY: guaranteed by the caller.
     while let Some(entry) = unsafe { next.as_ref::<'static>() } {
         let (module, name, following) = parts(entry);
-        // SAFETY: the caller's promise.
+        // SAFETY: guaranteed by the caller.
         let text = |string| unsafe { CStr::from_ptr::<'static>(string) }.to_str().unwrap_or_default();
         map.insert((text(module), text(name)), entry);
         next = following;
@@ -106,42 +106,43 @@ unsafe fn list<T>(
     map
 }
 
-/// What runs blocks, with its fibres and shared memory. Kept for the next launch when dropped.
+/// Runs blocks, with its fibres and shared memory. Kept for later launches when returned.
 pub(crate) struct Machine(NonNull<c_void>);
 
-// SAFETY: its fibres are left between blocks, and none of them is bound to a thread of the host.
+// SAFETY: all fibres are suspended between blocks, and none of them is bound to a host thread.
 unsafe impl Send for Machine {}
 
 static SPARE: Mutex<Vec<Machine>> = Mutex::new(Vec::new());
 
 impl Machine {
-    /// One that is not in use.
+    /// A machine that is not in use.
     pub(crate) fn take() -> Option<Machine> {
         let spare = SPARE.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        // SAFETY: takes nothing.
+        // SAFETY: the function has no arguments.
         spare.or_else(|| NonNull::new(unsafe { lightmesh_emulator_machine() }).map(Machine))
     }
 
-    /// Keeps it for a later launch.
+    /// Keeps the machine for a later launch.
     pub(crate) fn give_back(self) {
         SPARE.lock().unwrap_or_else(PoisonError::into_inner).push(self);
     }
 
-    /// Readies the calling thread for the blocks of a launch.
+    /// Prepares the calling thread for the blocks of a launch.
     ///
     /// # Safety
-    /// All pointers of `launch` are valid, the arguments are as long as the kernel says, and each image as its constant.
+    /// All pointers of `launch` are valid, the arguments have the size that the kernel declares, and each image that of its
+    /// constant.
     pub(crate) unsafe fn prepare(&mut self, launch: &Launch) {
-        // SAFETY: the caller's promise.
+        // SAFETY: guaranteed by the caller.
         unsafe { lightmesh_emulator_prepare(self.0.as_ptr(), launch) }
     }
 
-    /// Runs one block on the calling thread; an error says what went wrong.
+    /// Runs one block on the calling thread; the error describes what went wrong.
     ///
     /// # Safety
-    /// As for [`prepare`](Self::prepare), which this thread has called; and what the kernel reads and writes is there.
+    /// As for [`prepare`](Self::prepare), which this thread has called; and all memory that the kernel accesses exists.
     pub(crate) unsafe fn run(&mut self, launch: &Launch, block: u32) -> Result<(), String> {
-        // SAFETY: the caller's promise; a message is a string that stays until the machine runs again.
+        // SAFETY: guaranteed by the caller; a message is a string that stays valid until the machine runs again.
         unsafe {
             let message = lightmesh_emulator_run(self.0.as_ptr(), launch, block);
             if message.is_null() { Ok(()) } else { Err(CStr::from_ptr(message).to_string_lossy().into_owned()) }
@@ -151,7 +152,7 @@ impl Machine {
 
 impl Drop for Machine {
     fn drop(&mut self) {
-        // SAFETY: it is not running, and nobody else has it.
+        // SAFETY: it is not running, and nobody else has access to it.
         unsafe { lightmesh_emulator_drop(self.0.as_ptr()) }
     }
 }

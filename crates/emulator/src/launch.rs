@@ -1,4 +1,4 @@
-//! One launch: its blocks on the threads of the host.
+//! One launch: its blocks on the host's threads.
 
 use std::collections::HashMap;
 use std::sync::Mutex;
@@ -9,12 +9,12 @@ use lightmesh_render::cuda::{Fault, Kernel, Launch};
 use crate::host::{self, ConstantImage, Machine};
 use crate::memory::POISON;
 
-/// Shared memory that a block may have on any device.
+/// Shared memory per block that every device provides.
 const SHARED_BYTES: u32 = 64 * 1024;
-/// Emulated threads that are worth a thread of the host.
+/// Number of emulated threads that justify another host thread.
 const WORTH_A_THREAD: u64 = 2048;
 
-/// Runs all blocks. Fails as the first block that fails, in order of their numbers.
+/// Runs all blocks. Fails with the first block that fails, in order of block number.
 pub(crate) fn run(
     kernel: Kernel,
     launch: Launch,
@@ -39,7 +39,7 @@ pub(crate) fn run(
     }
     // Records are aligned to 16 bytes at most.
     let mut aligned = vec![0u128; arguments.len().div_ceil(16)];
-    // SAFETY: there is room for all bytes.
+    // SAFETY: the buffer is large enough.
     unsafe { aligned.as_mut_ptr().cast::<u8>().copy_from_nonoverlapping(arguments.as_ptr(), arguments.len()) };
 
     let of_module = modules.constants.iter().filter(|((module, _), _)| *module == kernel.module);
@@ -60,22 +60,22 @@ pub(crate) fn run(
     .map_err(failed)
 }
 
-/// Blocks are taken in order by as many threads as there is work for. A block that fails is the last of its thread and keeps others
-/// from beginning; all with smaller numbers have begun by then, so the smallest that fails is always found.
+/// Blocks are taken in order by as many threads as there is work for. A thread stops after a block that fails, and no thread starts
+/// another block; all blocks with smaller numbers have started by then, so the smallest one that fails is always found.
 fn run_blocks(launch: &host::Launch) -> Result<(), String> {
     let next = AtomicU32::new(0);
     let stop = AtomicBool::new(false);
     let failure: Mutex<Option<(u32, String)>> = Mutex::new(None);
     let work = || {
         let Some(mut machine) = Machine::take() else { return };
-        // SAFETY: `run` has put the launch together.
+        // SAFETY: the launch was assembled by `run`.
         unsafe { machine.prepare(launch) };
         while !stop.load(Ordering::Relaxed) {
             let block = next.fetch_add(1, Ordering::Relaxed);
             if block >= launch.blocks {
                 break;
             }
-            // SAFETY: as above; addresses among the arguments are the concern of the test.
+            // SAFETY: as above; addresses among the arguments are the responsibility of the test.
             if let Err(message) = unsafe { machine.run(launch, block) } {
                 stop.store(true, Ordering::Relaxed);
                 let mut failure = failure.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -100,12 +100,12 @@ fn run_blocks(launch: &host::Launch) -> Result<(), String> {
     }
 }
 
-/// Bytes that nobody has set.
+/// Uninitialised bytes.
 pub(crate) fn poisoned(bytes: usize) -> Vec<u8> {
     POISON.to_ne_bytes().into_iter().cycle().take(bytes).collect()
 }
 
-/// Says which kernel failed.
+/// Adds to a fault which kernel failed.
 pub(crate) fn during(kernel: Kernel, fault: Fault) -> Fault {
     match fault {
         Fault::Failed(why) => Fault::Failed(format!("{kernel}: {why}")),

@@ -2,7 +2,7 @@
 //!
 //! # Use
 //!
-//! [`Emulator`] is a [`Runtime`]: whatever is generic over that trait runs on it as on a device.
+//! [`Emulator`] is a [`Runtime`]: code that is generic over that trait runs on it as on a device.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -16,33 +16,33 @@
 //! ```
 //!
 //! A kernel file is any `.cu` under `crates/render/src`; `build.rs` finds it, and compiles it with `shim/shim.h` in place of CUDA. The
-//! module is called after the folder of a `kernel.cu`, and after the file for any other name. `LIGHTMESH_EMULATE=primary_rays,scan
-//! cargo test -p lightmesh-emulator` builds only these modules; then launches of others fail. A CUDA name that the shim lacks does
-//! not compile: add it to `shim/numbers.h`, `shim/atomics.h` or `shim/collectives.h`.
+//! module is named after the folder of a `kernel.cu`, and after the file otherwise. `LIGHTMESH_EMULATE=primary_rays,scan cargo test -p
+//! lightmesh-emulator` builds only these modules; then launches of others fail. A CUDA name that the shim lacks does not compile: add
+//! it to `shim/numbers.h`, `shim/atomics.h` or `shim/collectives.h`.
 //!
-//! # What it finds
+//! # Detected errors
 //!
-//! A launch gives back [`Fault::Failed`] with kernel, block and thread where
+//! A launch returns [`Fault::Failed`] with kernel, block and thread if
 //! - a thread waits at a collective or barrier that another does not reach (stricter than CUDA: all lanes of a mask, and all threads
-//!   of a block at a barrier, must come; those that have ended do not);
-//! - a lane is not in its own mask, or shuffles from a lane outside of it;
-//! - something was written up to 4 KiB before or behind an allocation, or behind a shared variable;
-//! - a thread reads or writes where the process has no memory, as at an address that was never set;
+//!   of a block at a barrier, must arrive; those that have exited do not);
+//! - a lane is not in its own mask, or shuffles from a lane outside it;
+//! - something was written up to 4 KiB before or after an allocation, or after a shared variable;
+//! - a thread reads or writes unmapped memory, such as an address that was never set;
 //! - a block needs more than 64 KiB of shared memory, or 48 KiB of declared variables, or a thread more than 128 KiB of stack;
-//! - the launch does not fit the kernel: bytes of arguments, threads of a block.
+//! - the launch does not match the kernel: size of the arguments, number of threads per block.
 //!
-//! Memory, shared memory, local variables and constants that nobody has set hold poison: NaN as a float, far out of range as an
-//! index, so that results show it. Blocks of odd number run their threads in reverse order, and blocks run on all processors: results
+//! Uninitialised memory, shared memory, local variables and constants contain poison: NaN as a float, far out of range as an index, so
+//! that it shows in the results. Blocks with odd numbers run their threads in reverse order, and blocks run on all CPU cores: results
 //! that depend on an order differ from the twin's.
 //!
-//! It does not find races that all these orders hide, nor reads past an allocation: they give poison, or what belongs to others. A
-//! loop that spins until another thread of the block has written something never ends.
+//! It does not detect races that all these orders hide, nor reads past an allocation: they return poison, or other data. A loop that
+//! spins until another thread of the block has written something never ends.
 //!
 //! # Numbers
 //!
-//! `f32` operations, division and root included, give the bits of a device: nothing is fused or reordered. `sinf`, `cosf`, `powf`
-//! and `cbrtf` are the host's and may differ in the last bits. Convert floats that may be out of range by `__float2int_rz` and
-//! its like; a cast of such a float means something else on the host.
+//! `f32` operations, including division and square root, give the bits of a device: nothing is fused or reordered. `sinf`, `cosf`,
+//! `powf` and `cbrtf` are the host's and may differ in the last bits. Convert floats that may be out of range by `__float2int_rz` and
+//! similar functions; a cast of such a float has a different result on the host.
 #![cfg(unix)]
 
 mod host;
@@ -59,29 +59,29 @@ use lightmesh_render::cuda::{Fault, Kernel, Launch, Runtime, new_id};
 use crate::memory::Ledger;
 pub use crate::memory::Memory;
 
-/// A CUDA device that is not there.
+/// An emulated CUDA device.
 pub struct Emulator {
     id: u64,
     ledger: Arc<Ledger>,
-    /// Work is done when it is queued, one piece at a time.
+    /// Work is done when it is queued, one operation at a time.
     queue: Mutex<Queue>,
 }
 
 #[derive(Default)]
 struct Queue {
-    /// The constants that were set, by module and name.
+    /// The values of the constants that were set, by module and name.
     constants: HashMap<(&'static str, &'static str), Vec<u8>>,
     traffic: Traffic,
 }
 
-/// What has gone through the queue.
+/// The operations that went through the queue.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {
-    /// Bytes written by the host, constants included.
+    /// Bytes written by the host, including constants.
     pub written: u64,
     /// Bytes read by the host.
     pub read: u64,
-    /// Allocations that were tried.
+    /// Number of attempted allocations.
     pub allocations: u64,
     /// Launches by kernel, in the order of the names.
     pub launches: BTreeMap<String, u64>,
@@ -94,7 +94,7 @@ impl Default for Emulator {
 }
 
 impl Emulator {
-    /// A device with as much memory as the host has; it does not tell how much.
+    /// A device with as much memory as the host has; it does not report how much.
     pub fn new() -> Emulator {
         Emulator::with_ledger(Ledger::default())
     }
@@ -108,22 +108,22 @@ impl Emulator {
         Emulator { id: new_id(), ledger: Arc::new(ledger), queue: Mutex::default() }
     }
 
-    /// Lets the `number`-th allocation from now on fail, 1 being the next; those after it succeed.
+    /// Makes the `number`-th allocation from now on fail, where 1 is the next; those after it succeed.
     pub fn fail_allocation(&self, number: u64) {
         self.ledger.fail_allocation(number);
     }
 
-    /// Bytes that are allocated.
+    /// Bytes in use.
     pub fn taken(&self) -> u64 {
         self.ledger.taken()
     }
 
-    /// What has gone through the queue since the last call.
+    /// The operations since the last call.
     pub fn take_traffic(&self) -> Traffic {
         std::mem::take(&mut self.queue().traffic)
     }
 
-    /// Whether a kernel was compiled in.
+    /// Whether a kernel was compiled.
     pub fn has(kernel: Kernel) -> bool {
         host::modules().kernels.contains_key(&(kernel.module, kernel.name))
     }
@@ -151,7 +151,7 @@ impl Runtime for Emulator {
 
     fn allocate(&self, bytes: u64) -> Result<Memory, Fault> {
         if bytes == 0 {
-            return Err(Fault::Failed("an allocation of no bytes".to_owned()));
+            return Err(Fault::Failed("an allocation of zero bytes".to_owned()));
         }
         self.queue().traffic.allocations += 1;
         Memory::new(&self.ledger, bytes)
@@ -173,7 +173,7 @@ impl Runtime for Emulator {
     fn write(&self, memory: &Memory, offset: u64, bytes: &[u8]) -> Result<(), Fault> {
         let mut queue = self.queue();
         let start = memory.range(offset, bytes.len())?;
-        // SAFETY: as above; the host's bytes lie elsewhere.
+        // SAFETY: as above; the host's bytes are elsewhere.
         unsafe { start.copy_from_nonoverlapping(std::ptr::NonNull::from(bytes).cast(), bytes.len()) };
         queue.traffic.written += bytes.len() as u64;
         Ok(())

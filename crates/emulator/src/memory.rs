@@ -1,4 +1,4 @@
-//! Memory that looks like a device's: poisoned, fenced, and as small as a test wants it.
+//! Memory that behaves like a device's: poisoned, guarded, and as small as a test requires.
 
 use std::alloc::Layout;
 use std::collections::BTreeMap;
@@ -8,14 +8,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use lightmesh_render::cuda::Fault;
 
-/// What fresh memory holds, word by word: NaN as `f32` and `f64`, far out of range as an index or an address.
+/// Content of fresh memory, word by word: NaN as `f32` and `f64`, far out of range as an index or an address.
 pub(crate) const POISON: u32 = 0xfffa_5a5a;
 
-/// Bytes before and behind every allocation that nobody may write to. A multiple of the alignment.
+/// Bytes before and after every allocation that nobody may write to. A multiple of the alignment.
 const ZONE: usize = 4096;
-/// What they hold.
+/// Their content.
 const ZONE_BYTE: u8 = 0xd7;
-/// As of `cuMemAlloc`.
+/// As for `cuMemAlloc`.
 const ALIGNMENT: usize = 256;
 
 /// All memory of an emulated device.
@@ -28,13 +28,13 @@ struct State {
     live: BTreeMap<usize, usize>,
     taken: u64,
     limit: Option<u64>,
-    /// Allocations until one fails; 0: none is to fail.
+    /// Number of allocations until one fails; 0 if none is to fail.
     countdown: u64,
 }
 
 /// An allocation of an emulated device; freed when dropped.
 pub struct Memory {
-    /// The first of its own bytes.
+    /// The first byte of the allocation proper.
     start: NonNull<u8>,
     bytes: usize,
     ledger: Arc<Ledger>,
@@ -54,23 +54,23 @@ impl Ledger {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Bytes that are left, where there is a limit.
+    /// Bytes that are free, if there is a limit.
     pub(crate) fn free(&self) -> Option<u64> {
         let state = self.state();
         state.limit.map(|limit| limit.saturating_sub(state.taken))
     }
 
-    /// Bytes that are taken.
+    /// Bytes in use.
     pub(crate) fn taken(&self) -> u64 {
         self.state().taken
     }
 
-    /// Lets the `number`-th allocation from now on fail: 1 is the next.
+    /// Makes the `number`-th allocation from now on fail: 1 is the next.
     pub(crate) fn fail_allocation(&self, number: u64) {
         self.state().countdown = number;
     }
 
-    /// Says which allocation was written outside of, if any was.
+    /// Fails if memory outside an allocation was overwritten, and names the allocation.
     pub(crate) fn check(&self) -> Result<(), Fault> {
         for (&address, &bytes) in &self.state().live {
             // SAFETY: the allocation is live, since it leaves the ledger before it is freed, and the ledger is locked.
@@ -99,12 +99,12 @@ impl Ledger {
     }
 }
 
-/// Bytes behind an allocation: a zone, and what it lacks to a multiple of the alignment.
+/// Bytes after an allocation: a zone, and padding to a multiple of the alignment.
 fn zone_behind(bytes: usize) -> usize {
     ZONE + bytes.next_multiple_of(ALIGNMENT) - bytes
 }
 
-/// What the host must allocate for it, if it can.
+/// The layout of the host allocation, if it is possible.
 fn layout(bytes: u64) -> Option<Layout> {
     let bytes = usize::try_from(bytes).ok()?.checked_next_multiple_of(ALIGNMENT)?;
     Layout::from_size_align(bytes.checked_add(2 * ZONE)?, ALIGNMENT).ok()
@@ -121,7 +121,7 @@ impl Memory {
             return Err(out_of_memory());
         }
         let layout = layout(bytes).ok_or_else(out_of_memory)?;
-        // SAFETY: the layout has a size, the zones at least.
+        // SAFETY: the layout is not empty; it contains at least the zones.
         let base = NonNull::new(unsafe { std::alloc::alloc(layout) }).ok_or_else(out_of_memory)?;
         // SAFETY: all of it lies within the allocation.
         let start = unsafe {
@@ -140,7 +140,7 @@ impl Memory {
         self.start.as_ptr() as u64
     }
 
-    /// A range of bytes, or the error where it is not within the memory.
+    /// A range of bytes, or an error if it is not within the memory.
     pub(crate) fn range(&self, offset: u64, bytes: usize) -> Result<NonNull<u8>, Fault> {
         let end = usize::try_from(offset).ok().and_then(|offset| offset.checked_add(bytes));
         if end.is_none_or(|end| end > self.bytes) {
@@ -149,12 +149,12 @@ impl Memory {
                 "{bytes} bytes from byte {offset} on are not within {all} bytes of memory"
             )));
         }
-        // SAFETY: within the allocation, as just found.
+        // SAFETY: within the allocation, as checked above.
         Ok(unsafe { self.start.add(offset as usize) })
     }
 
     fn poison(&self) {
-        // SAFETY: whole words within the allocation, which is aligned; nobody else has it now.
+        // SAFETY: whole words within the allocation, which is aligned; nobody else accesses it now.
         let words =
             unsafe { std::slice::from_raw_parts_mut(self.start.as_ptr().cast::<MaybeUninit<u32>>(), self.bytes / 4) };
         words.fill(MaybeUninit::new(POISON));
@@ -170,7 +170,7 @@ impl Drop for Memory {
         let mut state = self.ledger.state();
         state.live.remove(&(self.address() as usize));
         state.taken -= self.bytes as u64;
-        // Whoever still reads it, reads nonsense.
+        // Anyone who still reads it gets poison.
         self.poison();
         if let Some(layout) = layout(self.bytes as u64) {
             // SAFETY: allocated with this layout, a zone before `start`.

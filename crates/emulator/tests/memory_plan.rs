@@ -1,4 +1,4 @@
-//! What becomes of a picture when a device's memory does not suffice, and what a second picture costs.
+//! What happens to an image when a device's memory does not suffice, and what a second image costs.
 #![cfg(unix)]
 
 use std::sync::{Arc, Mutex};
@@ -24,7 +24,8 @@ fn settings() -> Settings {
     Settings::default().with_mode(Mode::LightMesh).with_size([50, ROWS]).with_step(Step::Fixed(0.2)).with_layers(true)
 }
 
-/// A picture on a device of the caller's own, with what went through its queue; the device's memory is free again afterwards.
+/// Renders an image on the caller's device, and returns it with the traffic of its queue; the device's memory is free again
+/// afterwards.
 fn render(scene: &Scene, emulator: Emulator, settings: &Settings) -> (Result<Frame, RenderError>, Traffic, u64) {
     let emulator = Arc::new(emulator);
     let cuda = Cuda::new(Arc::clone(&emulator));
@@ -55,7 +56,7 @@ fn a_picture_in_bands_is_the_same_picture() {
         for (device, settings) in [(Emulator::with_memory(bytes), settings()), (Emulator::new(), limited)] {
             let (frame, _, used) = render(&scene, device, &settings);
             let Ok(frame) = frame else { continue };
-            assert!(bits(&frame) == bits(&whole), "{percent} %: another picture");
+            assert!(bits(&frame) == bits(&whole), "{percent} %: another image");
             assert!(used <= bytes, "{used} bytes were used of {bytes}");
             bands.push(frame.stats.settings.rows_per_band);
         }
@@ -78,7 +79,7 @@ fn too_little_memory_is_an_error_that_names_the_buffer() {
     }
 }
 
-/// Whatever allocation fails: the picture is made in smaller bands, or the error says which buffer it was.
+/// Whichever allocation fails: the image is rendered in smaller bands, or the error names the buffer.
 #[test]
 fn any_allocation_may_fail() {
     let scene = scene();
@@ -90,7 +91,7 @@ fn any_allocation_may_fail() {
         device.fail_allocation(number);
         match render(&scene, device, &settings()).0 {
             Ok(frame) => {
-                assert!(bits(&frame) == bits(&whole), "allocation {number}: another picture");
+                assert!(bits(&frame) == bits(&whole), "allocation {number}: another image");
                 assert!(frame.stats.settings.rows_per_band < ROWS, "allocation {number}");
                 recovered += 1;
             }
@@ -138,8 +139,8 @@ fn geometry_is_uploaded_once_and_freed_when_it_is_gone() {
     assert!(rest < taken, "{rest} of {taken} bytes are held by nobody");
 }
 
-/// Two pictures with a cache, the second of another camera and with an accident before it. Returns the second, what it took in
-/// allocations, and whether the cache was forgotten meanwhile.
+/// Renders two images with a cache, the second with another camera and an injected failure before it. Returns the second, its
+/// allocations, and whether the cache was dropped in between.
 fn render_twice(scene: &PreparedScene, settings: &Settings, accident: impl Fn(&Emulator)) -> (Frame, Traffic, bool) {
     let emulator = Arc::new(Emulator::new());
     let cuda = Cuda::new(Arc::clone(&emulator));
@@ -153,7 +154,7 @@ fn render_twice(scene: &PreparedScene, settings: &Settings, accident: impl Fn(&E
     let notes = Notes::default();
     let frame = render_on_with(&cuda, &mut kept, scene, settings, &notes).unwrap();
     let traffic = emulator.take_traffic();
-    let forgotten = notes.heard("forgotten");
+    let forgotten = notes.heard("dropped");
     drop((cuda, kept));
     assert_eq!(emulator.taken(), 0, "all memory is given back");
     (frame, traffic, forgotten)
@@ -183,9 +184,9 @@ fn a_cache_gives_way_where_an_allocation_fails() {
     assert!(bits(&frame) == bits(&whole) && !forgotten && frame.stats.counts.long_tests_saved > 0);
     for number in (1..=traffic.allocations).step_by(4) {
         let (frame, _, forgotten) = render_twice(&scene, &settings, |device| device.fail_allocation(number));
-        assert!(bits(&frame) == bits(&whole), "allocation {number}: another picture");
+        assert!(bits(&frame) == bits(&whole), "allocation {number}: another image");
         assert!(forgotten, "allocation {number}");
-        assert_eq!(frame.stats.settings.rows_per_band, ROWS, "allocation {number}: the picture keeps its bands");
+        assert_eq!(frame.stats.settings.rows_per_band, ROWS, "allocation {number}: the image keeps its bands");
     }
 }
 
@@ -197,7 +198,7 @@ fn a_cache_gives_way_to_a_limit() {
     for percent in [100, 80, 60] {
         let limited = settings().with_memory_limit(peak * percent / 100);
         let (frame, _, _) = render_twice(&scene, &limited, |_| ());
-        assert!(bits(&frame) == bits(&whole), "{percent} %: another picture");
+        assert!(bits(&frame) == bits(&whole), "{percent} %: another image");
     }
 }
 

@@ -16,7 +16,7 @@ const INFO_HEADER: u32 = 40;
 const HEADERS: u32 = FILE_HEADER + INFO_HEADER;
 
 /// Largest values of the header fields.
-pub(crate) const LIMIT: &str = "4 GiB a file";
+pub(crate) const LIMIT: &str = "4 GiB per file";
 
 /// 72 dots per inch, in dots per metre.
 const RESOLUTION: i32 = 2835;

@@ -32,15 +32,15 @@ pub struct Layers {
     pub used: Vec<u32>,
 }
 
-/// What a [`Frame`] is made of, see [`Frame::into_parts`].
+/// The parts of a [`Frame`], see [`Frame::into_parts`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FrameParts {
-    /// Pixels a row, and rows.
+    /// Width and height in pixels.
     pub size: [u32; 2],
     /// Linear colours, row-major, row 0 at the top.
     pub color: Vec<[f32; 3]>,
-    /// The layers, where the frame was made with them.
+    /// The layers, if the frame has any.
     pub layers: Option<Layers>,
 }
 
@@ -120,7 +120,7 @@ impl Frame {
         &mut self.color
     }
 
-    /// Takes the frame apart; nothing is copied. [`Frame::new`] and [`Frame::with_layers`] put it together again.
+    /// Splits the frame into its parts without copying. [`Frame::new`] and [`Frame::with_layers`] reassemble it.
     ///
     /// ```
     /// let frame = lightmesh_image::Frame::new(2, 1, vec![[0.0; 3], [0.5; 3]])?;

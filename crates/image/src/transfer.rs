@@ -27,16 +27,16 @@ static SRGB_DECODED: LazyLock<[f32; 256]> =
 static SRGB_THRESHOLDS: LazyLock<[f32; 255]> =
     LazyLock::new(|| std::array::from_fn(|code| srgb_to_linear((code as f64 + 0.5) / 255.0) as f32));
 
-/// A word that names no transfer function.
+/// A word that is not the name of a transfer function.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no transfer function `{0}`; known are srgb, linear")]
+#[error("unknown transfer function `{0}`; available: srgb, linear")]
 pub struct UnknownTransfer(pub String);
 
 impl Transfer {
-    /// All of them.
+    /// All transfer functions.
     pub const ALL: &'static [Transfer] = &[Transfer::Srgb, Transfer::Linear];
 
-    /// The word for it.
+    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Srgb => "srgb",
@@ -44,7 +44,7 @@ impl Transfer {
         }
     }
 
-    /// What it is for, in a few words.
+    /// A short description of its purpose.
     pub fn help(self) -> &'static str {
         match self {
             Self::Srgb => "For screens",

@@ -1,7 +1,7 @@
 //! Numbers that host and device must agree on, each declared once: a constant here, a `#define` in the header. Those that belong to
-//! a record are its associated constants on both sides: `Hit::NONE` is written alike in Rust and in C++.
+//! a record are its associated constants on both sides: `Hit::NONE` is written the same in Rust and in C++.
 //!
-//! What only one side knows is not here, but where it is used.
+//! Numbers used on one side only are declared where they are used.
 
 use crate::geometry::{Hit, Tally};
 use crate::literal::Constant;
@@ -12,7 +12,7 @@ macro_rules! constants {
     ($($(#[doc = $doc:literal])* $name:ident: $type:ty = $value:expr;)*) => {
         $($(#[doc = $doc])* pub const $name: $type = $value;)*
 
-        /// All that belong to no record.
+        /// All constants that belong to no record.
         pub(crate) fn all() -> Vec<Constant> {
             vec![$(Constant::new(stringify!($name), &[$($doc),*], $name)),*]
         }
@@ -23,7 +23,7 @@ macro_rules! constants_of_records {
     ($($record:ident { $($(#[doc = $doc:literal])* $name:ident = $value:expr;)* })*) => {
         $(impl $record { $($(#[doc = $doc])* pub const $name: u32 = $value;)* })*
 
-        /// Those of a record.
+        /// The constants of a record.
         pub(crate) fn of_record(record: &str) -> Vec<Constant> {
             match record {
                 $(stringify!($record) => vec![$(Constant::new(stringify!($name), &[$($doc),*], $record::$name)),*],)*
@@ -35,7 +35,7 @@ macro_rules! constants_of_records {
 
 constants_of_records! {
     Hit {
-        /// The triangle index that stands for "no triangle".
+        /// The triangle index that means "no triangle".
         NONE = u32::MAX;
     }
     Tally {
@@ -49,7 +49,7 @@ constants_of_records! {
         DIRECTIONAL = 1;
         /// A spot.
         SPOT = 2;
-        /// A ball. This kind and all that follow have a size.
+        /// A ball. This kind and all that follow are area lights.
         SPHERE = 3;
         /// A disk.
         DISK = 4;
@@ -81,20 +81,20 @@ constants_of_records! {
 constants! {
     // Launches.
 
-    /// Threads of a warp, and surface points of an item at most.
+    /// Threads of a warp, and the maximum number of surface points of an item.
     WARP: u32 = 32;
-    /// Edge of the square of pixels that a block takes, one a thread.
+    /// Edge of the square of pixels that a block processes, one per thread.
     BLOCK_SIDE: u32 = 16;
-    /// Threads of the blocks that take one ray, one light point or one slot a thread.
+    /// Threads per block in kernels with one ray, one light point or one slot per thread.
     BLOCK: u32 = BLOCK_SIDE * BLOCK_SIDE;
     /// Edge of the square of pixels whose surface points one block groups by cell.
     TILE_SIDE: u32 = 32;
     /// Rays of such a tile, or of a list, that one block groups.
     TILE: u32 = TILE_SIDE * TILE_SIDE;
-    /// Values that a thread of a prefix sum takes.
+    /// Values per thread of a prefix sum.
     VALUES_OF_THREAD: u32 = 4;
 
-    // Numbers of Rust's standard library; kernels have no headers for them.
+    // Numbers from Rust's standard library; kernels have no headers for them.
 
     /// The largest number of single precision.
     F32_MAX: f32 = f32::MAX;
@@ -111,62 +111,62 @@ constants! {
 
     // Rays and acceleration structures.
 
-    /// Ray origins farther than this many radii from the middle of the triangles are moved.
+    /// Ray origins farther than this many radii from the centre of the triangles are moved closer.
     REACH: f32 = 8.0;
-    /// Directions whose largest component is larger, 2^40, or smaller than the reciprocal are scaled.
+    /// Directions whose largest component exceeds this value, 2^40, or is below its reciprocal are scaled.
     LARGEST_DIRECTION: f32 = (1u64 << 40) as f32;
     /// Direction components below this share of the largest, 2^-30, count as such a share or as zero.
     LEAST_COMPONENT: f32 = 1.0 / (1u32 << 30) as f32;
     /// Relative margin of tests against the boxes of a BVH, 2^-19; derived in bvh/walk.rs.
     BVH_MARGIN: f32 = 1.0 / (1u32 << 19) as f32;
-    /// What tests of a box against a region are given for rounding, 2^-20 or 16 units of roundoff; derived in accel/region/.
+    /// Rounding margin of tests of a box against a region, 2^-20 or 16 units of roundoff; derived in accel/region/.
     REGION_ROUNDING: f32 = 16.0 * UNIT_ROUNDOFF;
-    /// Entries of the stack of a walk through the BVH: the most levels that it may have.
+    /// Stack entries of a traversal of the BVH: the maximum number of its levels.
     BVH_STACK: u32 = 64;
-    /// In the word of a walk's hits in a node the first bit of a child that is a node.
+    /// In the word of a traversal's hits in a node, the first bit of a child that is a node.
     FIRST_INNER: u32 = 24;
     /// All bits of children that are nodes.
     INNER_HITS: u32 = u32::MAX << FIRST_INNER;
     /// All bits of triangles in children that are leaves.
     TRIANGLE_HITS: u32 = !INNER_HITS;
-    /// The hits with which a walk begins: the root as the only child, in the slot entered first.
+    /// The hits with which a traversal begins: the root as the only child, in the slot that is entered first.
     ROOT_HIT: u32 = 1 << 31;
 
     // Surfaces.
 
     /// Bound on the relative error of a chain of 32 operations (Higham's gamma).
     GAMMA_32: f32 = 32.0 * UNIT_ROUNDOFF / (1.0 - 32.0 * UNIT_ROUNDOFF);
-    /// Below this square of twice its area a triangle's normal has lost its bits to underflow.
+    /// If the square of twice its area is below this, a triangle's normal has lost its bits to underflow.
     LEAST_SQUARE: f32 = 1e-30;
-    /// Below this square of its length an interpolated normal has cancelled out.
+    /// If the square of its length is below this, an interpolated normal has cancelled out.
     LEAST_SMOOTH_SQUARE: f32 = 1e-12;
 
     // Light points.
 
     /// Bits of a brick's key for each axis.
     AXIS_BITS: u32 = 19;
-    /// Bits of a light point's index on an axis that say where in its brick it lies: bricks have 4 x 4 x 4 points.
+    /// Bits of a light point's index along an axis that give its position in its brick: bricks have 4 x 4 x 4 points.
     BRICK_BITS: u32 = 2;
-    /// Bits of a light point's index on an axis.
+    /// Bits of a light point's index along an axis.
     INDEX_BITS: u32 = AXIS_BITS + BRICK_BITS;
-    /// Added to indices, so that keys have no sign.
+    /// Added to indices, so that keys are unsigned.
     INDEX_BIAS: i32 = 1 << (INDEX_BITS - 1);
     /// Bits of a light point's number within its brick.
     POINT_BITS: u32 = 3 * BRICK_BITS;
-    /// What stands for the place of a brick that is not there.
+    /// The slot of a brick that is not in the table.
     NO_SLOT: u32 = u32::MAX;
-    /// 2^64 over the golden ratio: multiplied with it, numbers that follow each other lie far apart (Fibonacci hashing, SplitMix64).
+    /// 2^64 over the golden ratio: multiplication by it spreads consecutive numbers far apart (Fibonacci hashing, SplitMix64).
     GOLDEN_RATIO: u64 = 0x9e37_79b9_7f4a_7c15;
-    /// The farthest that the template of the largest radius reaches, in steps; added to offsets before they are packed.
+    /// The reach of the template with the largest radius, in steps; added to offsets before they are packed.
     MOST_REACH: i32 = 16;
     /// Lines along x of that template.
     TEMPLATE_LINES: i32 = (2 * MOST_REACH) * (2 * MOST_REACH);
 
     // Lights.
 
-    /// Points of a light that decide how much of it stands above the horizon.
+    /// Sample points of a light that determine its share above the horizon.
     HORIZON_SAMPLES: u32 = 64;
-    /// Points of a light with a size from which its unshadowed light is computed.
+    /// Points of an area light from which its unshadowed light is computed.
     LIGHT_TARGETS: u32 = 16;
     /// First factor of the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
     MIX_1: u64 = 0xbf58_476d_1ce4_e5b9;
@@ -188,9 +188,9 @@ constants! {
     OWEN_3: u32 = 0xc7af_e638;
     /// Last factor.
     OWEN_4: u32 = 0x8d22_f6e6;
-    /// Binary digits of a sample's coordinate: as many as a float has.
+    /// Binary digits of a sample's coordinate: those of a float's mantissa.
     SAMPLE_DIGITS: u32 = f32::MANTISSA_DIGITS;
-    /// What the last of them is worth.
+    /// The value of the last of these digits.
     LAST_DIGIT: f32 = 1.0 / (1u32 << SAMPLE_DIGITS) as f32;
 
     // Short tests.
@@ -216,6 +216,6 @@ constants! {
 
     /// Warps of a block that marks light points or interpolates, an item each.
     ITEM_WARPS: u32 = 4;
-    /// Lights without a size that are interpolated at once, at most.
+    /// Maximum number of lights without an area that are interpolated at once.
     MOST_LIGHTS: u32 = 3;
 }

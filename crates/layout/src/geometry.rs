@@ -1,4 +1,4 @@
-//! Rays, what they hit, and the structures that find it.
+//! Rays, hits, and acceleration structures.
 
 use crate::counters::Counters;
 use crate::record::records;
@@ -11,7 +11,7 @@ records! {
     /// Three coordinates in double precision.
     DVec3 { x: f64, y: f64, z: f64, }
 
-    /// Where a ray meets a triangle; `triangle` is [`Hit::NONE`] where it meets none.
+    /// Where a ray meets a triangle; `triangle` is [`Hit::NONE`] if it meets none.
     Hit {
         /// Ray parameter.
         t: f32,
@@ -23,7 +23,7 @@ records! {
         triangle: u32,
     }
 
-    /// Three corners as `float4`; the index in the mesh is the bits of the first `w`.
+    /// Three corners as `float4`; the bits of the first `w` are the index in the mesh.
     Triangle {
         /// Corners.
         corners: [[f32; 4]; 3],
@@ -42,7 +42,7 @@ records! {
         child_base: u32,
         /// Index of the first triangle.
         triangle_base: u32,
-        /// What each slot holds.
+        /// Content of each slot.
         meta: [u8; 8],
         /// Lower x planes of the slots.
         min_x: [u8; 8],
@@ -58,7 +58,7 @@ records! {
         max_z: [u8; 8],
     }
 
-    /// The sphere of interest around the triangles: where rays that start far away are brought to.
+    /// The sphere of interest around the triangles: rays that start far away are moved to it.
     Approach {
         /// Middle of the box around the triangles.
         center: Vec3,
@@ -72,11 +72,11 @@ records! {
         nodes: In<BvhNode>,
         /// In leaf order.
         triangles: In<Triangle>,
-        /// Where its triangles are.
+        /// The sphere around its triangles.
         approach: Approach,
-        /// 0: there are no triangles.
+        /// Number of nodes; 0 if there are no triangles.
         node_count: u32,
-        /// Levels.
+        /// Number of levels.
         depth: u32,
     }
 
@@ -84,17 +84,17 @@ records! {
     Grid {
         /// `nx ny nz <offset>…`, cells, nested grids.
         cells: In<i32>,
-        /// The triangles of all cells, one cell after the other.
+        /// The triangles of all cells, one cell after another.
         triangles: In<Triangle>,
-        /// For each cell of the outer grid the distance to the nearest one that holds something, in cells; at most 255.
+        /// For each cell of the outer grid, the distance to the nearest non-empty one, in cells; at most 255.
         distances: In<u8>,
         /// Lowest corner.
         origin: DVec3,
         /// Edges of a cell.
         size: Vec3,
-        /// Cells on each axis.
+        /// Number of cells along each axis.
         dims: [u32; 3],
-        /// Where its triangles are.
+        /// The sphere around its triangles.
         approach: Approach,
         /// Entries of `triangles`.
         triangle_count: u32,
@@ -106,19 +106,19 @@ records! {
     BruteForce {
         /// The usable triangles.
         triangles: In<Triangle>,
-        /// Where they are.
+        /// The sphere around them.
         approach: Approach,
-        /// How many.
+        /// Their number.
         count: u32,
-        /// For eight-byte size.
+        /// Padding to a multiple of eight bytes.
         spare: u32,
     }
 
-    /// A camera and a picture size, ready to make rays; see the renderer's `view.rs`.
+    /// A camera and an image size, ready to generate rays; see the renderer's `view.rs`.
     View {
-        /// The eye, or the middle of an orthographic picture.
+        /// The eye, or the centre of an orthographic image.
         origin: Vec3,
-        /// Where it looks.
+        /// Viewing direction.
         forward: Vec3,
         /// One pixel to the right.
         right: Vec3,
@@ -128,33 +128,33 @@ records! {
         size: [u32; 2],
         /// 1 for perspective, 0 for orthographic.
         perspective: u32,
-        /// For eight-byte size.
+        /// Padding to a multiple of eight bytes.
         spare: u32,
     }
 
     /// A ray from a mirror.
     ListedRay {
-        /// Where it starts.
+        /// Origin.
         origin: Vec3,
-        /// The pixel that it brings light to, y · width + x.
+        /// The pixel that it contributes to, y · width + x.
         pixel: u32,
-        /// Where it goes; unit length.
+        /// Direction; unit length.
         direction: Vec3,
-        /// For sixteen-byte steps.
+        /// Padding to a multiple of sixteen bytes.
         spare: u32,
         /// The share of its radiance that reaches the pixel.
         weight: Vec3,
-        /// For sixteen-byte steps.
+        /// Padding to a multiple of sixteen bytes.
         spare_too: u32,
     }
 
-    /// Rays: those of some rows of a camera's picture, made where they are needed, or a list.
+    /// Rays: those of some rows of a camera's image, generated where they are needed, or a list.
     ///
     /// Ray number `y' · width + x` of a camera belongs to column x of the y'-th of these rows.
     Rays {
         /// The camera.
         view: View,
-        /// The rays of mirrors; null for a camera.
+        /// The mirror rays; null for a camera.
         list: In<ListedRay>,
         /// The first pixel of a camera's rows.
         first_pixel: u32,
@@ -162,9 +162,9 @@ records! {
         count: u32,
     }
 
-    /// Where kernels count.
+    /// The counters that kernels add to.
     Tally {
-        /// [`Tally::SHARDS`] of them.
+        /// [`Tally::SHARDS`] shards.
         shards: Out<Counters>,
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use crate::literal::Constant;
 use crate::{Record, constants, counters, geometry, mesh, scene, stages, structure};
 
-/// How the two compilers of kernels say `offsetof`: NVRTC has no `<stddef.h>`, and no builtin of that name.
+/// How the two compilers of kernels express `offsetof`: NVRTC has no `<stddef.h>`, and no builtin of that name.
 const PLACE_OF: &str = "
 #if defined(__CUDACC_RTC__)
 #define PLACE_OF(record, field) __INTADDR__(&(((record *)0)->field))
@@ -56,7 +56,7 @@ pub(crate) fn print_record<T: Record>(text: &mut String) {
     }
 }
 
-/// The constants of a record. An enumeration: the compiler would give a variable memory in every module.
+/// The constants of a record. An enumeration: for a variable the compiler would allocate memory in every module.
 fn print_codes(text: &mut String, codes: &[Constant]) {
     if codes.is_empty() {
         return;
@@ -95,7 +95,9 @@ mod tests {
 
     #[test]
     fn constants_come_with_what_they_mean() {
-        assert!(header().contains("// Threads of a warp, and surface points of an item at most.\n#define WARP 32u\n"));
+        assert!(header().contains(
+            "// Threads of a warp, and the maximum number of surface points of an item.\n#define WARP 32u\n"
+        ));
         let mut text = String::new();
         print_record::<Hit>(&mut text);
         assert!(text.contains("no triangle\".\n        NONE = 0xffffffffu,\n    };\n    float t;\n"), "{text}");

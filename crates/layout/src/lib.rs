@@ -1,17 +1,17 @@
-//! What host and device must lay out alike: written once, here.
+//! The data layouts shared by host and device, declared once.
 //!
 //! Each record is a Rust struct; [`header`] prints all of them as C++ with assertions about every size and offset. Kernels include
-//! that header, so a field that moves on one side alone does not compile.
+//! that header, so a field that moves on one side only does not compile.
 //!
 //! * [`geometry`]: rays, hits, triangles, acceleration structures.
 //! * [`scene`]: lights, materials, and the whole scene as a device holds it.
-//! * [`mesh`]: the light mesh and what is computed about it.
+//! * [`mesh`]: the light mesh and the results computed on it.
 //! * [`stages`]: the arguments of every kernel.
-//! * [`Structure`]: the acceleration structures, for each of which there is a kernel where rays are traced.
+//! * [`Structure`]: the acceleration structures; every kernel that traces rays exists once for each.
 //! * [`constants`]: numbers that both sides must agree on; those of a record are its own.
-//! * [`counters`]: everything that is counted.
+//! * [`counters`]: all counters.
 //!
-//! A crate of its own, because the tool that makes the header and the kernels needs nothing else of the renderer.
+//! This is a separate crate because the tool that generates the header and the kernels needs nothing else of the renderer.
 
 pub mod constants;
 pub mod counters;

@@ -1,9 +1,9 @@
-//! Constants as the header has them.
+//! Constants as they appear in the header.
 
-/// A constant as the header has it.
+/// A constant as it appears in the header.
 pub(crate) struct Constant {
     pub(crate) name: &'static str,
-    /// What it is, line by line.
+    /// Its documentation, line by line.
     pub(crate) docs: &'static [&'static str],
     /// Its value in C++.
     pub(crate) literal: String,
@@ -22,7 +22,7 @@ pub(crate) trait Literal {
 
 impl Literal for u32 {
     fn literal(self) -> String {
-        // Bit patterns are read by their digits.
+        // Bit patterns are easier to read in hexadecimal.
         if self < 1 << 16 { format!("{self}u") } else { format!("{self:#010x}u") }
     }
 }

@@ -1,11 +1,11 @@
-//! The light mesh, and what is computed about it.
+//! The light mesh, and the results computed on it.
 
 use crate::geometry::Vec3;
 use crate::record::records;
 use crate::{In, Out};
 
 records! {
-    /// The light mesh of one picture.
+    /// The light mesh of one image.
     LightMesh {
         /// Position of light point (0, 0, 0).
         anchor: Vec3,
@@ -13,11 +13,11 @@ records! {
         step: f32,
         /// r, scene units.
         radius: f32,
-        /// What (n, x − P) must exceed.
+        /// The minimum of (n, x − P).
         least_height: f32,
-        /// How near a triangle's plane may pass before it is edge-on.
+        /// How close a triangle's plane may pass before it counts as edge-on.
         edge_on: f32,
-        /// How much boxes grow before triangles are looked up.
+        /// How much boxes are enlarged before triangles are looked up.
         slack: f32,
         /// w of formula (3): one of [`LightMesh`]'s constants.
         weight: u32,
@@ -27,14 +27,14 @@ records! {
         words: u32,
         /// Largest component of an offset.
         reach: i32,
-        /// What it is numbered by on each axis: formula (7).
+        /// The number of its first point on each axis: formula (7).
         number: [u32; 3],
         /// Lines of the template that have points.
         lines: u32,
-        /// Offset of each template point from the cell: x, y and z, each plus [`MOST_REACH`](crate::constants::MOST_REACH), a byte
-        /// each. For lanes that take a point each; a warp that takes them one by one has the rows in constant memory.
+        /// Offset of each template point from the cell: x, y and z, each plus [`MOST_REACH`](crate::constants::MOST_REACH), one
+        /// byte each. For lanes that take one point each; a warp that takes points one by one uses the rows in constant memory.
         offsets: In<u32>,
-        /// The template's rows, packed: first bit, and number of points in the upper half. For lanes that take a row each.
+        /// The template's rows, packed: first bit, and number of points in the upper half. For lanes that take one row each.
         rows: In<u32>,
     }
 
@@ -44,7 +44,7 @@ records! {
         bit: u16,
         /// Number of points.
         count: u16,
-        /// Offsets of the first one.
+        /// The x offset of the first point.
         x: i32,
         /// The line's y.
         y: i32,
@@ -52,52 +52,52 @@ records! {
         z: i32,
     }
 
-    /// Up to 32 object points of one cell: the work of one warp.
+    /// Up to 32 surface points of one cell: the work of one warp.
     Item {
         /// Key of the cell.
         cell: u64,
-        /// Where its object points begin in the list of members.
+        /// The index of its first surface point in the list of members.
         first: u32,
-        /// How many there are.
+        /// Their number.
         count: u32,
     }
 
-    /// The set of bricks: open addressing with linear probing. The place of a brick's key is the brick's slot, which is the
-    /// address of whatever is kept about the brick.
+    /// The set of bricks: open addressing with linear probing. The position of a brick's key is the brick's slot, which is the
+    /// index of all data about the brick.
     BrickTable {
-        /// Key + 1 of the brick in each slot; 0: none.
+        /// Key + 1 of the brick in each slot; 0 if the slot is empty.
         keys: Out<u64>,
         /// Number of slots, a power of two.
         capacity: u32,
-        /// For eight-byte size.
+        /// Padding to a multiple of eight bytes.
         spare: u32,
     }
 
-    /// What the light points see of one light.
+    /// The visibility of one light at the light points.
     LitBy {
-        /// Seen or not, a word a slot of the table; null for a light with a size.
+        /// Lit or not, one word per slot of the table; null for an area light.
         bits: Out<u64>,
-        /// Rays that reached a light with a size, by rank; null for one without.
+        /// Rays that reached an area light, by rank; null for a light without an area.
         seen: Out<u16>,
     }
 
-    /// What is kept about one light from picture to picture, by slot of a table that outlives them.
+    /// The cached values for one light, by slot of a table that outlives images.
     KeptBy {
-        /// Light points whose answer is known.
+        /// Light points whose value is known.
         known: Out<u64>,
-        /// Seen or not; null for a light with a size.
+        /// Lit or not; null for an area light.
         bits: Out<u64>,
-        /// Rays that reached a light with a size, 64 numbers a slot; null for one without.
+        /// Rays that reached an area light, 64 counts per slot; null for a light without an area.
         seen: Out<u16>,
     }
 
-    /// All that is known about the used light points.
+    /// Everything about the used light points.
     UsedPoints {
-        /// The bricks that hold them.
+        /// The bricks that contain them.
         table: BrickTable,
         /// The used points of each slot.
         used: In<u64>,
-        /// Number of used points in all slots before.
+        /// Number of used points in all preceding slots.
         rank: In<u32>,
         /// Every used point by rank: its slot · 64 + its bit.
         points: In<u64>,

@@ -1,4 +1,4 @@
-//! Records, and the types that their fields may have.
+//! Records, and the types of their fields.
 
 use std::marker::PhantomData;
 
@@ -10,7 +10,7 @@ pub trait DeviceType: Pod {
     fn declare(name: &str) -> String;
 }
 
-/// A struct that means the same on both sides. Implemented by the macro `records!`.
+/// A struct with the same layout on both sides. Implemented by the macro `records!`.
 pub trait Record: DeviceType {
     /// Its name on both sides.
     const NAME: &'static str;
@@ -26,7 +26,7 @@ pub struct Field {
     pub name: &'static str,
     /// Its declaration in C++.
     pub declaration: String,
-    /// Bytes from the record's start.
+    /// Offset from the record's start in bytes.
     pub offset: usize,
 }
 
@@ -65,10 +65,10 @@ macro_rules! pointer {
         }
 
         impl<T> $name<T> {
-            /// The null pointer: "there is none".
+            /// The null pointer, for absent data.
             pub const NULL: $name<T> = $name { address: 0, target: PhantomData };
 
-            /// Points to a device address.
+            /// A pointer to a device address.
             pub fn to(address: u64) -> $name<T> {
                 $name { address, target: PhantomData }
             }
@@ -87,7 +87,7 @@ macro_rules! pointer {
 
         impl<T> Copy for $name<T> {}
 
-        // SAFETY: an integer beside a zero-sized marker, and transparent.
+        // SAFETY: an integer and a zero-sized marker, with transparent representation.
         unsafe impl<T: 'static> Zeroable for $name<T> {}
         // SAFETY: as above.
         unsafe impl<T: 'static> Pod for $name<T> {}

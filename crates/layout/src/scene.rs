@@ -1,23 +1,23 @@
-//! The scene as a device holds it.
+//! The scene in a device's memory.
 
 use crate::In;
 use crate::geometry::{BruteForce, Bvh, Grid, Triangle, Vec3};
 use crate::record::records;
 
 records! {
-    /// A light; what a kind does not need is zero.
+    /// A light; fields that its kind does not use are zero.
     Light {
-        /// Middle of the light.
+        /// Centre of the light.
         position: Vec3,
         /// Kind of light: one of [`Light`]'s constants.
         kind: u32,
-        /// Where a directional light or a spot shines, or the normal of a disk.
+        /// Direction of a directional light or a spot, or the normal of a disk.
         direction: Vec3,
         /// Radius of a sphere or disk, spread of a point light.
         radius: f32,
         /// Half edge of a rectangle, or a tangent of a disk.
         half_u: Vec3,
-        /// The largest distance of a point of the light from its middle; 0 for all that have no size.
+        /// The largest distance of a point of the light from its centre; 0 for lights without an area.
         size: f32,
         /// The other half edge or tangent.
         half_v: Vec3,
@@ -29,7 +29,7 @@ records! {
         cos_outer: f32,
         /// 1 / (cos inner − cos outer) of a spot.
         cone_scale: f32,
-        /// For sixteen-byte steps.
+        /// Padding to a multiple of sixteen bytes.
         spare: [u32; 3],
     }
 
@@ -42,19 +42,19 @@ records! {
     /// Texture coordinates of a vertex.
     Uv { u: f32, v: f32, }
 
-    /// A texture on a material: the picture, and how texture coordinates lead into it.
+    /// A texture on a material: the image, and how texture coordinates are mapped to it.
     Texture {
         /// Row by row, red in the lowest byte, encoded as sRGB.
         texels: In<u32>,
         /// Width and height; at least 1.
         size: [u32; 2],
-        /// What it shows beyond its edge, horizontally and vertically: see [`Texture`]'s constants.
+        /// Wrapping beyond its edges, horizontally and vertically: see [`Texture`]'s constants.
         wrap: [u32; 2],
-        /// Where a step in u leads in the picture.
+        /// The step in the image for a step in u.
         u_axis: [f32; 2],
-        /// Where a step in v leads.
+        /// The step in the image for a step in v.
         v_axis: [f32; 2],
-        /// Where texture coordinates (0, 0) lie.
+        /// The position of texture coordinates (0, 0).
         translation: [f32; 2],
     }
 
@@ -62,42 +62,42 @@ records! {
     Material {
         /// Ambient.
         ka: Vec3,
-        /// Phong's exponent.
+        /// Phong exponent.
         shininess: f32,
         /// Diffuse.
         kd: Vec3,
-        /// 1: surface points have a tint; 0: the coefficients are what they are, and those to be tinted are added to the others.
+        /// 1: surface points have a tint; 0: the coefficients apply everywhere, and those to be tinted are added to the others.
         tinted: u32,
         /// Specular.
         ks: Vec3,
         /// Index of its texture, or [`Material::NO_TEXTURE`].
         texture: u32,
-        /// Light of its own.
+        /// Emitted light.
         emission: Vec3,
-        /// For sixteen-byte steps.
+        /// Padding to a multiple of sixteen bytes.
         spare_a: u32,
-        /// The specular part that takes on the tint.
+        /// The specular part that is tinted.
         ks_tinted: Vec3,
-        /// For sixteen-byte steps.
+        /// Padding to a multiple of sixteen bytes.
         spare_b: u32,
-        /// The light of its own that takes on the tint.
+        /// The emitted light that is tinted.
         emission_tinted: Vec3,
-        /// For sixteen-byte steps.
+        /// Padding to a multiple of sixteen bytes.
         spare_c: u32,
     }
 
-    /// Everything about a scene that kernels ask for. Of the three structures that one is there which rays walk; and the BVH, where
+    /// Everything about a scene that kernels need. Of the three structures, the one that rays traverse is present; and the BVH, if
     /// short tests go by cell.
     Scene {
         /// By index in the mesh.
         triangles: In<Triangle>,
-        /// Three vertices a triangle; null where vertices have nothing.
+        /// Three vertices per triangle; null if vertices have no attributes.
         indices: In<Indices>,
-        /// By vertex; null where there are none.
+        /// By vertex; null if there are none.
         normals: In<Vec3>,
-        /// Texture coordinates by vertex; null where no texture needs them.
+        /// Texture coordinates by vertex; null if no texture needs them.
         uvs: In<Uv>,
-        /// Colours by vertex; null where there are none.
+        /// Colours by vertex; null if there are none.
         colors: In<Vec3>,
         /// Textures, by material.
         textures: In<Texture>,
@@ -115,29 +115,29 @@ records! {
         grid: Grid,
         /// The wide BVH.
         bvh: Bvh,
-        /// The oracle.
+        /// The test of all triangles, for reference.
         brute_force: BruteForce,
         /// Number of lights.
         light_count: u32,
         /// I_a of formula (1).
         ambient: Vec3,
-        /// What rays see that miss everything.
+        /// Radiance of rays that miss everything.
         background: Vec3,
-        /// Middle of the scene.
+        /// Centre of the scene.
         center: Vec3,
-        /// How far a directional light stands away, at least.
+        /// Minimum distance of a directional light.
         far: f32,
-        /// For eight-byte size.
+        /// Padding to a multiple of eight bytes.
         spare: u32,
     }
 
-    /// How lights with a size are sampled.
+    /// How area lights are sampled.
     Sampling {
         /// The user's seed.
         seed: u64,
-        /// Shadow rays per light with a size.
+        /// Shadow rays per area light.
         samples: u32,
-        /// 1: point lights are strewn over their spread.
+        /// 1: point lights are distributed over their spread.
         spread: u32,
     }
 }

@@ -7,137 +7,137 @@ use crate::scene::{Sampling, Scene};
 use crate::{In, Out};
 
 records! {
-    /// `primary_rays`: one thread a ray.
+    /// `primary_rays`: one thread per ray.
     PrimaryRays {
-        /// What is looked at.
+        /// The scene.
         scene: Scene,
-        /// What looks.
+        /// The rays.
         rays: Rays,
-        /// One hit a ray.
+        /// One hit per ray.
         hits: Out<Hit>,
-        /// Counts object points.
+        /// Counts surface points.
         tally: Tally,
         /// The first block of this launch among all blocks.
         first_block: u64,
     }
 
-    /// `shadow_rays` and `area_shadows`: one thread a ray.
+    /// `shadow_rays` and `area_shadows`: one thread per ray.
     ShadowRays {
         /// The scene.
         scene: Scene,
-        /// Rays that saw the object points.
+        /// Rays that found the surface points.
         rays: Rays,
-        /// What they saw.
+        /// Their hits.
         hits: In<Hit>,
         /// Share of each light by light, then ray.
         share: Out<f32>,
-        /// How lights with a size are sampled.
+        /// How area lights are sampled.
         sampling: Sampling,
         /// Counts shadow rays.
         tally: Tally,
         /// The first block of this launch among all blocks.
         first_block: u64,
-        /// The first shadow ray of each thread in this launch, counted light by light as if all had `sampling.samples`, or one where
-        /// shadows are hard. A later launch adds to what earlier ones found.
+        /// The first shadow ray of each thread in this launch, counted light by light as if all had `sampling.samples`, or one each for
+        /// hard shadows. A later launch adds to the results of earlier ones.
         first_sample: u64,
-        /// Shadow rays of each thread in this launch.
+        /// Number of shadow rays of each thread in this launch.
         sample_count: u64,
     }
 
-    /// `shade`: one thread a ray.
+    /// `shade`: one thread per ray.
     Shade {
         /// The scene.
         scene: Scene,
         /// Rays.
         rays: Rays,
-        /// What they saw.
+        /// Their hits.
         hits: In<Hit>,
         /// Share of each light by light, then ray.
         share: In<f32>,
-        /// Light points used, by ray; null where none are.
+        /// Number of light points used, by ray; null if the technique uses none.
         used: In<u32>,
         /// The first pixel of the film.
         film_pixel: u64,
-        /// Radiance by pixel of the film: added to.
+        /// Radiance by pixel of the film, which is added to.
         color: Out<Vec3>,
-        /// Distance by pixel; null where no layers are kept, as all that follow.
+        /// Distance by pixel; null if no layers are kept, like all fields that follow.
         depth: Out<f32>,
         /// Geometric normal by pixel.
         normal: Out<Vec3>,
-        /// Object point by pixel, local frame.
+        /// Surface point by pixel, local frame.
         position: Out<Vec3>,
         /// Share of each light by light, then pixel of the film.
         visibility: Out<f32>,
-        /// Light points used by pixel.
+        /// Number of light points used, by pixel.
         light_points: Out<u32>,
-        /// Pixels of the film.
+        /// Number of pixels of the film.
         film_pixels: u64,
         /// The first block of this launch among all blocks.
         first_block: u64,
     }
 
-    /// `mirror_rays_count` and `mirror_rays_emit`: one thread a ray.
+    /// `mirror_rays_count` and `mirror_rays_emit`: one thread per ray.
     MirrorRays {
         /// The scene.
         scene: Scene,
         /// Rays.
         rays: Rays,
-        /// What they saw.
+        /// Their hits.
         hits: In<Hit>,
-        /// Mirror rays of each block of 256 rays; after the scan, of all blocks before it.
+        /// Number of mirror rays of each block of 256 rays; after the scan, of all blocks before it.
         counts: Out<u32>,
         /// The mirror rays, in the order of the rays.
         mirrored: Out<ListedRay>,
     }
 
-    /// `group_points` and `gather_items`: one block a tile of 1024 rays.
+    /// `group_points` and `gather_items`: one block per tile of 1024 rays.
     GroupCells {
         /// The scene.
         scene: Scene,
         /// Rays.
         rays: Rays,
-        /// What they saw.
+        /// Their hits.
         hits: In<Hit>,
-        /// The mesh whose cells group.
+        /// The mesh whose cells define the groups.
         mesh: LightMesh,
-        /// Object points by tile, then cell: ray numbers, 1024 places a tile.
+        /// Surface points by tile, then cell: ray numbers, 1024 entries per tile.
         members: Out<u32>,
-        /// Items by tile, 1024 places a tile.
+        /// Items by tile, 1024 entries per tile.
         tile_items: Out<Item>,
-        /// Items of each tile; after the scan, of all tiles before it.
+        /// Number of items of each tile; after the scan, of all tiles before it.
         counts: Out<u32>,
-        /// All items, one after the other.
+        /// All items, one tile after another.
         items: Out<Item>,
         /// The first block of this launch among all blocks.
         first_block: u64,
     }
 
-    /// `short_tests`: one warp an item.
+    /// `short_tests`: one warp per item.
     ShortTests {
         /// The scene.
         scene: Scene,
         /// Rays.
         rays: Rays,
-        /// What they saw.
+        /// Their hits.
         hits: In<Hit>,
         /// The light mesh.
         mesh: LightMesh,
         /// Ray numbers by slot.
         members: In<u32>,
-        /// Up to 32 object points of a cell each.
+        /// Up to 32 surface points of a cell each.
         items: In<Item>,
-        /// Masks: 32 · words words an item; bit l of word k says whether the item's l-th surface point sees light point k.
+        /// Masks: 32 · words words per item; bit l of word k says whether the item's l-th surface point sees light point k.
         masks: Out<u32>,
-        /// Counts.
+        /// Counters.
         tally: Tally,
         /// The first item of this launch.
         first_item: u64,
-        /// Items of this launch.
+        /// Number of items in this launch.
         item_count: u64,
     }
 
-    /// `mark_items`: one warp an item; `insert_bricks` and `mark_points`: one thread a brick of an item's window; `count_points` and
-    /// `list_points`: one thread a slot.
+    /// `mark_items`: one warp per item; `insert_bricks` and `mark_points`: one thread per brick of an item's window; `count_points` and
+    /// `list_points`: one thread per slot.
     LightPoints {
         /// The light mesh.
         mesh: LightMesh,
@@ -149,13 +149,13 @@ records! {
         marks: Out<u64>,
         /// The first item of this launch.
         first_item: u64,
-        /// Items of this launch.
+        /// Number of items in this launch.
         item_count: u64,
-        /// The bricks that hold used points.
+        /// The bricks that contain used points.
         table: BrickTable,
         /// Used points of each slot.
         used: Out<u64>,
-        /// Used points of each slot; after the scan, of all slots before it.
+        /// Number of used points of each slot; after the scan, of all slots before it.
         rank: Out<u32>,
         /// Every used point by rank.
         points: Out<u64>,
@@ -165,7 +165,7 @@ records! {
         slots: Out<u32>,
     }
 
-    /// `long_tests`: one thread a light point.
+    /// `long_tests`: one thread per light point.
     LongTests {
         /// The scene.
         scene: Scene,
@@ -173,54 +173,54 @@ records! {
         mesh: LightMesh,
         /// The used light points.
         points: UsedPoints,
-        /// What is found out.
+        /// The results.
         lit: LitBy,
-        /// How lights with a size are sampled.
+        /// How area lights are sampled.
         sampling: Sampling,
         /// Counts overruns.
         tally: Tally,
         /// The light.
         light: u32,
-        /// Light points of this launch.
+        /// Number of light points in this launch.
         point_count: u32,
         /// The first light point of this launch.
         first_point: u64,
-        /// The first ray from each light point in this launch. A later launch adds to what earlier ones found.
+        /// The first ray from each light point in this launch. A later launch adds to the results of earlier ones.
         first_sample: u32,
-        /// Rays from each light point in this launch.
+        /// Number of rays from each light point in this launch.
         sample_count: u32,
     }
 
-    /// `admit_bricks`, `find_unknown`, `learn` and `recall`: one thread a slot of the picture's table; `move_bricks` and `move_answers`: one
-    /// a slot of the smaller table.
+    /// `admit_bricks`, `find_unknown`, `learn` and `recall`: one thread per slot of the image's table; `move_bricks` and `move_answers`:
+    /// one thread per slot of the smaller table.
     Cache {
-        /// Used light points of the picture, or some of them.
+        /// Used light points of the image, or some of them.
         points: UsedPoints,
-        /// The bricks that are kept.
+        /// The cached bricks.
         table: BrickTable,
-        /// How many they are.
+        /// Their number.
         bricks: Out<u32>,
-        /// For each slot that a thread takes the slot in the table that is kept.
+        /// For each slot that a thread processes, the slot in the cached table.
         rows: Out<u32>,
-        /// What is kept about the light.
+        /// The cached values for the light.
         kept: KeptBy,
-        /// What the points see of the light.
+        /// The visibility of the light at the points.
         lit: LitBy,
-        /// The points whose answer is not known, by slot of the picture's table.
+        /// The points whose value is unknown, by slot of the image's table.
         unknown: Out<u64>,
         /// The table that became too small.
         from_table: BrickTable,
-        /// What it knows of the light.
+        /// Its values for the light.
         from: KeptBy,
     }
 
-    /// `interpolate`: one warp an item; `fallback`: one thread a ray.
+    /// `interpolate`: one warp per item; `fallback`: one thread per ray.
     Interpolate {
         /// The scene.
         scene: Scene,
         /// Rays.
         rays: Rays,
-        /// What they saw.
+        /// Their hits.
         hits: In<Hit>,
         /// The light mesh.
         mesh: LightMesh,
@@ -234,31 +234,31 @@ records! {
         points: UsedPoints,
         /// The slot of each brick of the window around each item's cell that has used points.
         slots: In<u32>,
-        /// What they see, by light.
+        /// The visibility at these points, by light.
         lit: In<LitBy>,
-        /// Share of each light by light, then ray; negative where the fallback must find it.
+        /// Share of each light by light, then ray; negative if the fallback must compute it.
         share: Out<f32>,
-        /// Light points used by ray.
+        /// Number of light points used, by ray.
         used: Out<u32>,
         /// The rays that have a negative share.
         fallback_rays: Out<u32>,
-        /// How many they are.
+        /// Their number.
         fallback_count: Out<u32>,
-        /// How lights with a size are sampled.
+        /// How area lights are sampled.
         sampling: Sampling,
-        /// Counts.
+        /// Counters.
         tally: Tally,
         /// The first item, or block of rays that fall back, of this launch.
         first: u64,
-        /// Items of this launch.
+        /// Number of items in this launch.
         count: u64,
     }
 
     /// `scan_blocks` and `add_offsets`: exclusive prefix sums of `u32`, in place.
     Scan {
-        /// What is summed.
+        /// The values to sum.
         values: Out<u32>,
-        /// The sum of each block of 1024 values; after their own scan, of all blocks before it.
+        /// The sum of each block of 1024 values; after their own scan, of all preceding blocks.
         sums: Out<u32>,
         /// Number of values.
         count: u64,

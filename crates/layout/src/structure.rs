@@ -1,10 +1,10 @@
-//! The acceleration structures: one table for the kernels' names and for the field of the scene that a kernel walks.
+//! The acceleration structures: one table for the kernels' names and for the field of the scene that a kernel traverses.
 
 use std::fmt::Write;
 
 use crate::scene::Scene;
 
-/// Makes the structures and what names them. The first token is `$` itself, for the macro within.
+/// Defines the structures and their names. The first token is `$` itself, for the macro within.
 macro_rules! structures {
     ($dollar:tt $($(#[$doc:meta])* $structure:ident = $field:ident;)*) => {
         /// An acceleration structure.
@@ -13,14 +13,14 @@ macro_rules! structures {
             $($(#[$doc])* $structure,)*
         }
 
-        /// Each by the name that it has in kernels, which is that of its field in [`Scene`].
+        /// The name of each in kernels, which is that of its field in [`Scene`].
         const FIELDS: &[&str] = &[$({
             // There must be such a field.
             let _ = std::mem::offset_of!(Scene, $field);
             stringify!($field)
         }),*];
 
-        /// The names of a kernel that there is for each [`Structure`], in their order: `KERNEL_PER_STRUCTURE` makes them.
+        /// The names of a kernel that exists once per [`Structure`], in their order: `KERNEL_PER_STRUCTURE` generates them.
         #[macro_export]
         macro_rules! names_per_structure {
             ($dollar name:literal) => {
@@ -35,11 +35,11 @@ structures! { $
     Bvh = bvh;
     /// A regular grid.
     Grid = grid;
-    /// Every triangle, always.
+    /// A test of every triangle, always.
     BruteForce = brute_force;
 }
 
-/// Prints the macro that does something for each structure.
+/// Prints the macro that expands to something for each structure.
 pub(crate) fn print(text: &mut String) {
     text.push_str("\n// DO(structure, …) for each acceleration structure, by the name of its field in `Scene`.\n");
     let each: Vec<String> = FIELDS.iter().map(|field| format!("DO({field}, __VA_ARGS__)")).collect();

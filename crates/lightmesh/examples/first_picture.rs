@@ -1,6 +1,7 @@
-//! The first picture: a scene file, or a built-in scene, to a picture file. A scene without camera or lights gets some.
+//! The first image: renders a scene file, or a built-in scene, to an image file. A scene without camera or lights gets default
+//! ones.
 //!
-//! `cargo run --release -p lightmesh --example first_picture [SCENE [PICTURE]]`
+//! `cargo run --release -p lightmesh --example first_picture [SCENE [IMAGE]]`
 #![allow(clippy::print_stdout, reason = "an example says what it did")]
 
 use std::error::Error;

@@ -1,7 +1,7 @@
-//! A flight through a scene: what light points see is kept from picture to picture, and only new ones are tested.
+//! A flight through a scene: what light points see is cached from image to image, and only new ones are tested.
 //!
-//! `cargo run --release -p lightmesh --example fly_through [SCENE [STEPS [SIZE [STEP]]]]`: the built-in Childpark, 30 pictures of 512 by
-//! 512 pixels, a light-mesh step of 1. Every tenth picture is rendered again without the cache, and must be the same in every byte.
+//! `cargo run --release -p lightmesh --example fly_through [SCENE [STEPS [SIZE [STEP]]]]`: the built-in Childpark, 30 images of 512 by
+//! 512 pixels, a light-mesh step of 1. Every tenth image is rendered again without the cache, and must be byte-identical.
 #![allow(clippy::print_stdout, reason = "an example says what it did")]
 
 use std::error::Error;
@@ -10,7 +10,7 @@ use lightmesh::render::{Step, Unobserved};
 use lightmesh::scene::Camera;
 use lightmesh::{Device, Frame, MeshCache, Renderer, Scene, Settings};
 
-/// Pictures between two that are checked.
+/// Number of images from one check to the next.
 const CHECK: u16 = 10;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let frame = renderer.render_with(&mut cache, &prepared, &settings, &Unobserved)?;
         let (counts, seconds) = (&frame.stats.counts, &frame.stats.seconds);
         println!(
-            "picture {picture:2}: {:8} long tests made, {:8} saved, {:.3} s; {:.1} MB kept",
+            "image {picture:2}: {:8} long tests, {:8} saved, {:.3} s; {:.1} MB cached",
             counts.long_tests,
             counts.long_tests_saved,
             seconds.render,
@@ -41,15 +41,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         if picture % CHECK == 0 {
             let fresh = renderer.render_prepared(&prepared, &settings, &Unobserved)?;
             if bytes(&fresh) != bytes(&frame) {
-                return Err(format!("picture {picture} is another one without the cache").into());
+                return Err(format!("image {picture} differs without the cache").into());
             }
-            println!("picture {picture:2}: the same without the cache, in {:.3} s", fresh.stats.seconds.render);
+            println!("image {picture:2}: identical without the cache, in {:.3} s", fresh.stats.seconds.render);
         }
     }
     Ok(())
 }
 
-/// The scene's camera after some way forward, on its height.
+/// The scene's camera, moved forward at constant height.
 fn on_the_way(scene: &Scene, way: f32) -> Camera {
     let camera = scene.cameras.first().cloned().unwrap_or_else(|| scene.default_camera(Default::default()));
     let ahead = camera.direction - camera.direction.dot(camera.up) * camera.up;

@@ -1,4 +1,4 @@
-//! Layers: what each pixel saw, as one OpenEXR file for compositing, and depth and the visibility of each light as pictures.
+//! Layers: what each pixel sees, as one OpenEXR file for compositing, and depth and the visibility of each light as images.
 //!
 //! `cargo run --release -p lightmesh --example layers [SCENE [FOLDER]]`
 #![allow(clippy::print_stdout, reason = "an example says what it wrote")]
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let save = |name: &str, values: Vec<f32>| -> Result<(), Box<dyn Error>> {
         let color = values.into_iter().map(|value| [value; 3]).collect();
         let path = folder.join(name);
-        // As numbers, not as light: 8 bits are proportional to the value.
+        // As numbers, not as light: 8-bit codes proportional to the value.
         image::Frame::new(width, height, color)?.save_with(&path, Transfer::Linear)?;
         println!("{}", path.display());
         Ok(())

@@ -1,6 +1,6 @@
-//! A camera that moves round a scene with many lights. The scene is prepared once; each picture costs its own time alone.
+//! A camera that moves around a scene with many lights. The scene is prepared once; each image costs only its own render time.
 //!
-//! `cargo run --release -p lightmesh --example moving_camera [LIGHTS [PICTURES [FOLDER]]]`, 24 lights and 6 pictures unless said otherwise.
+//! `cargo run --release -p lightmesh --example moving_camera [LIGHTS [IMAGES [FOLDER]]]`, by default 24 lights and 6 images.
 #![allow(clippy::print_stdout, reason = "an example says what it wrote")]
 
 use std::error::Error;
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The scene's first camera, `turn` of a whole turn further round the middle of the scene.
+/// The scene's first camera, moved by `turn` full turns around the centre of the scene.
 fn orbit(scene: &Scene, turn: f32) -> Result<Camera, CameraError> {
     let center = scene.geometry.mesh.bounds().center();
     let start = scene.cameras.first().map_or(Vec3::new(0.0, 5.0, 15.0), |camera| camera.position);

@@ -1,6 +1,6 @@
-//! Own geometry: arrays of vertices, normals, colours and triangles become a scene. Here they are a hill and boxes on it.
+//! Custom geometry: arrays of vertices, normals, colours and triangles become a scene. Here they are a hill with boxes on it.
 //!
-//! `cargo run --release -p lightmesh --example own_geometry [PICTURE]`
+//! `cargo run --release -p lightmesh --example own_geometry [IMAGE]`
 #![allow(clippy::print_stdout, reason = "an example says what it wrote")]
 
 use std::error::Error;
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let part =
         MeshPart { positions: &hill.positions, normals: &hill.normals, colors: &hill.colors, ..Default::default() };
     builder.add(MeshPart { triangles: &hill.triangles, ..part }, &DMat4::IDENTITY, |_| grass)?;
-    // One mesh may be added as often as it is needed, each time placed by another transform.
+    // A mesh may be added any number of times, each time with another transform.
     for turn in 0..12 {
         let place = DVec3::new(2.6, 0.0, 0.0);
         let around = DMat4::from_rotation_y(f64::from(turn) * std::f64::consts::TAU / 12.0);
@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A mesh as many programs hold one.
+/// A mesh as many programs store it.
 struct Hill {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
@@ -49,7 +49,7 @@ struct Hill {
     triangles: Vec<[u32; 3]>,
 }
 
-/// How high the hill is; the distance from its top is all that counts.
+/// The height of the hill; it depends only on the distance from its top.
 fn height(x: f32, z: f32) -> f32 {
     1.5 * (-0.15 * (x * x + z * z)).exp()
 }
@@ -71,7 +71,7 @@ impl Hill {
     }
 }
 
-/// A cube of edge 1 that stands on the ground. Without normals it is shaded flat.
+/// A cube of edge 1 on the ground. Without normals it is shaded flat.
 fn cube() -> MeshPart<'static, Vec3> {
     const CORNERS: [Vec3; 8] = [
         Vec3::new(-0.5, 0.0, -0.5),

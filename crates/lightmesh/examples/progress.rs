@@ -1,6 +1,6 @@
-//! Progress and cancel: an observer tells of the work and ends it when its time is over.
+//! Progress and cancellation: an observer reports progress and stops the work after a deadline.
 //!
-//! `cargo run --release -p lightmesh --example progress [SECONDS [PICTURE]]`, 3 seconds unless said otherwise.
+//! `cargo run --release -p lightmesh --example progress [SECONDS [IMAGE]]`, 3 seconds by default.
 #![allow(clippy::print_stdout, reason = "an example says what it does")]
 
 use std::error::Error;
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use lightmesh::render::Progress;
 use lightmesh::{Device, Mode, Observer, RenderError, Renderer, Scene, Settings, Stage};
 
-/// Prints each tenth of the work, and stops it at the deadline. It is called from many threads.
+/// Prints each tenth of the work, and stops it at the deadline. Called from many threads.
 struct Watcher {
     deadline: Instant,
     tenths: AtomicU32,
@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             frame.save(&picture)?;
             println!("{picture} is done");
         }
-        Err(RenderError::Cancelled) => println!("cancelled after {seconds} s: there is no picture"),
+        Err(RenderError::Cancelled) => println!("cancelled after {seconds} s: no image was written"),
         Err(error) => return Err(error.into()),
     }
     Ok(())

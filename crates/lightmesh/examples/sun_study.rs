@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A sun that rises at 6 in the east (+X), stands in the south (+Z) at noon and sets at 18 in the west.
+/// A sun that rises at 6 in the east (+X), is in the south (+Z) at noon and sets at 18 in the west.
 fn sun(hour: f32) -> Result<Light, LightError> {
     let angle = (hour - 6.0) / 12.0 * std::f32::consts::PI;
     let to_sun = Vec3::new(angle.cos(), angle.sin(), 0.6);

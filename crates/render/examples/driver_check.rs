@@ -1,4 +1,5 @@
-//! Checks a CUDA device below the renderer: memory comes back as it was sent, kernels start, clocks agree; and how fast all that is.
+//! Checks a CUDA device below the renderer: memory is read back as it was written, kernels run, clocks agree; and measures the speed
+//! of all that.
 //!
 //! `cargo run --release -p lightmesh-render --example driver_check [cuda:N]`
 #![allow(clippy::print_stdout, reason = "an example says what it found")]
@@ -11,11 +12,11 @@ use lightmesh_layout::stages::Scan;
 use lightmesh_render::Device;
 use lightmesh_render::cuda::{Driver, Fault, Kernel, Launch, Runtime, open_cuda};
 
-/// Bytes of the large copies: not a multiple of anything, and longer than any buffer in between.
+/// Size of the large copies: not a multiple of anything, and longer than any intermediate buffer.
 const LARGE: usize = (96 << 20) + 12_345;
 /// Values of the prefix sum: one block.
 const VALUES: usize = 1000;
-/// How often what is quick is repeated.
+/// Number of repetitions of fast operations.
 const TIMES: u32 = 1000;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -33,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Allocation, and what is said when there is not enough.
+/// Allocation, and the message if memory does not suffice.
 fn memory(driver: &Driver) -> Result<(), Fault> {
     for round in ["the first time", "again"] {
         let start = Instant::now();
@@ -47,13 +48,13 @@ fn memory(driver: &Driver) -> Result<(), Fault> {
     }
 }
 
-/// Copies there and back, with the time that they take once everything is warm.
+/// Copies in both directions, with their times after warm-up.
 fn copies(driver: &Driver) -> Result<(), Fault> {
     let sent: Vec<u8> = (0..LARGE).map(|index| (index * 7 + index / 251) as u8).collect();
     let mut back = vec![0_u8; LARGE];
     let memory = driver.allocate(LARGE as u64)?;
     for round in ["cold", "warm"] {
-        // What was sent may be changed at once.
+        // The source may be changed immediately.
         let mut changing = sent.clone();
         let start = Instant::now();
         driver.write(&memory, 0, &changing)?;
@@ -73,7 +74,7 @@ fn copies(driver: &Driver) -> Result<(), Fault> {
     check(driver.read(&memory, 1, &mut back).is_err(), "reading past the end was allowed")
 }
 
-/// A prefix sum with a known answer, and what a launch costs.
+/// A prefix sum with a known answer, and the cost of a launch.
 fn kernels(driver: &Driver) -> Result<(), Fault> {
     let values = driver.allocate(4 * VALUES as u64)?;
     let sums = driver.allocate(4)?;
@@ -107,7 +108,7 @@ fn milliseconds(since: Instant) -> f64 {
     since.elapsed().as_secs_f64() * 1e3
 }
 
-/// Gigabytes a second.
+/// Gigabytes per second.
 fn rate(since: Instant) -> f64 {
     LARGE as f64 / since.elapsed().as_secs_f64() / 1e9
 }

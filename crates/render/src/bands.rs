@@ -1,4 +1,4 @@
-//! How many rows of a picture fit into the host's memory at once.
+//! How many rows of an image fit into the host's memory at once.
 
 use crate::accel::{Hit, Ray};
 use crate::error::RenderError;
@@ -6,21 +6,21 @@ use crate::memory;
 use crate::plan::Plan;
 use crate::prepared::PreparedScene;
 
-/// What is kept free for everything that is not counted below: stacks, the segments in flight, the allocator's waste.
+/// Memory reserved for everything that is not counted below: stacks, the segments in flight, allocator overhead.
 const RESERVE: u64 = 64 << 20;
 
-/// Rows that can be made at once on the host.
+/// Number of rows that can be rendered at once on the host.
 pub(crate) fn rows_on_host(scene: &PreparedScene, plan: &Plan) -> Result<u32, RenderError> {
     let lights = scene.scene.lights.len() as u64;
     let picture = plan.pixels() * plan.film_bytes();
     match plan.memory_limit {
-        // The limit is on the process: what it already holds counts.
+        // The limit applies to the process: what it already holds counts.
         Some(limit) => rows_per_band(plan, lights, scene.geometry.memory() as u64 + plan.kept + picture, Some(limit)),
         None => rows_per_band(plan, lights, picture, memory::available().map(|bytes| bytes - bytes / 8)),
     }
 }
 
-/// Rows that fit under `limit` bytes beside the `resident` bytes of scene and picture.
+/// Number of rows that fit under `limit` bytes in addition to the `resident` bytes of scene and image.
 ///
 /// The estimate is an upper bound per pixel, taken at the stage that holds most; see the sum.
 fn rows_per_band(plan: &Plan, lights: u64, resident: u64, limit: Option<u64>) -> Result<u32, RenderError> {
@@ -30,7 +30,7 @@ fn rows_per_band(plan: &Plan, lights: u64, resident: u64, limit: Option<u64>) ->
     let free = limit.saturating_sub(resident).saturating_sub(RESERVE);
     match free / row {
         0 => Err(RenderError::Memory {
-            buffer: "masks and visibility, beside the scene",
+            buffer: "masks and visibility, in addition to the scene",
             needed: row + resident + RESERVE,
             limit,
         }),

@@ -1,4 +1,4 @@
-//! Everything that is counted. The table is that of [`lightmesh_layout::counters`], which kernels count by too.
+//! Everything that is counted. The table is that of [`lightmesh_layout::counters`], which kernels use as well.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -14,34 +14,34 @@ macro_rules! tally {
         }
 
         impl Tally {
-            /// What has been counted so far.
+            /// The counts so far.
             pub fn snapshot(&self) -> Counters {
                 Counters { $($name: self.$name.load(Ordering::Relaxed),)* }
             }
 
-            /// Goes back to an earlier state: what was counted since belongs to work that is done again.
+            /// Returns to an earlier state: what was counted since belongs to work that is repeated.
             pub(crate) fn restore(&self, counters: &Counters) {
                 $(self.$name.store(counters.$name, Ordering::Relaxed);)*
             }
 
-            /// Adds what a device has counted.
+            /// Adds the counts of a device.
             pub(crate) fn add_all(&self, counters: &Counters) {
                 $(Tally::add(&self.$name, counters.$name);)*
             }
         }
 
-        /// How often what happened. Means are over the surface points, those in mirrors included.
+        /// How often each event happened. Means are taken over the surface points, including those seen in mirrors.
         #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
         pub struct Counts {
-            /// Pixels of the picture.
+            /// Pixels of the image.
             pub pixels: u64,
-            /// Light points of the template; 0 where there is none.
+            /// Light points of the template; 0 if there is none.
             pub template: u64,
             $($(#[$doc])* pub $report: tally!(@type $kind),)*
         }
 
         impl Counts {
-            /// The report on what was counted.
+            /// The report on the counts.
             pub(crate) fn new(pixels: u64, template: u64, counters: &Counters) -> Counts {
                 let points = (counters.surface_points as f64).max(1.0);
                 Counts { pixels, template, $($report: tally!(@report $kind, counters.$name, points),)* }

@@ -1,4 +1,4 @@
-//! What can go wrong in a render.
+//! Errors of a render.
 
 use lightmesh_scene::GeometryError;
 
@@ -6,17 +6,17 @@ use crate::accel::{GridError, GridFileError};
 use crate::light_mesh::{LatticeError, TemplateError};
 use crate::settings::Setting;
 
-/// Why there is no picture.
+/// Why an image could not be rendered.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// The light mesh cannot be numbered.
+    /// The light points cannot be numbered.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
     /// There is no template for the radius.
     #[error(transparent)]
     Template(#[from] TemplateError),
-    /// The geometry does not hold together.
+    /// The geometry is inconsistent.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
     /// The grid cannot be built.
@@ -25,14 +25,14 @@ pub enum RenderError {
     /// The grid file cannot be used.
     #[error(transparent)]
     GridFile(#[from] GridFileError),
-    /// A setting has no sense.
+    /// A setting is invalid.
     #[error("{setting} = {value} cannot be used: {remedy}")]
     Setting {
-        /// Which one.
+        /// The setting.
         setting: Setting,
-        /// What was given.
+        /// The value given.
         value: String,
-        /// What to give instead.
+        /// What to use instead.
         remedy: &'static str,
     },
     /// Given points and normals do not match, or are too many.
@@ -60,21 +60,21 @@ pub enum RenderError {
         normal: [f32; 3],
     },
     /// The threads could not be started.
-    #[error("cannot start {threads} threads ({reason}): ask for fewer")]
+    #[error("cannot start {threads} threads ({reason}): choose a smaller number")]
     Threads {
-        /// How many were asked for.
+        /// The number requested.
         threads: usize,
-        /// What the system said.
+        /// The system's error message.
         reason: String,
     },
-    /// Not even one row of the picture fits.
+    /// Not even one row of the image fits.
     #[error(
-        "one row of the picture needs {needed} bytes for {buffer}, more than the limit of {limit}: raise the limit, or choose a smaller picture, a larger step or a smaller radius"
+        "one row of the image needs {needed} bytes for {buffer}, more than the limit of {limit}: raise the limit, or choose a smaller image, a larger step or a smaller radius"
     )]
     Memory {
         /// The largest buffer.
         buffer: &'static str,
-        /// Bytes a row.
+        /// Bytes per row.
         needed: u64,
         /// Bytes allowed.
         limit: u64,
@@ -82,41 +82,41 @@ pub enum RenderError {
     /// The device does not exist or cannot be used.
     #[error("device {device} cannot be used: {reason}")]
     Device {
-        /// What was asked for.
+        /// The requested device.
         device: String,
         /// Why not, and what to do.
         reason: String,
     },
-    /// A device has not enough memory, however few rows are taken at once.
+    /// A device does not have enough memory, however few rows are rendered at once.
     #[error(
-        "{device} cannot hold {buffer}: {needed} bytes are needed, {} are free; choose a smaller picture, a larger step or a smaller radius, or the device cpu",
+        "{device} cannot hold {buffer}: {needed} bytes are needed, {} are free; choose a smaller image, a larger step or a smaller radius, or the device cpu",
         free.map_or_else(|| "fewer".to_owned(), |free| free.to_string())
     )]
     DeviceMemory {
-        /// What the maker calls the device.
+        /// The vendor's name for the device.
         device: String,
         /// The buffer that did not fit.
         buffer: &'static str,
         /// Its bytes.
         needed: u64,
-        /// Bytes that were free, where the device tells.
+        /// Bytes that were free, if the device reports them.
         free: Option<u64>,
     },
     /// A device failed.
     #[error("{device} failed: {reason}; the device cpu renders without it")]
     DeviceFault {
-        /// What the maker calls the device.
+        /// The vendor's name for the device.
         device: String,
-        /// What the driver said.
+        /// The driver's error message.
         reason: String,
     },
-    /// The observer asked to stop.
+    /// The observer requested cancellation.
     #[error("cancelled")]
     Cancelled,
 }
 
 impl RenderError {
-    /// The settings that the message speaks of and that may mend it; none where the cause lies elsewhere.
+    /// The settings that the message mentions and that may solve the problem; empty if the cause lies elsewhere.
     pub fn settings(&self) -> Vec<Setting> {
         match self {
             RenderError::Lattice(_) => vec![Setting::Step],

@@ -1,4 +1,4 @@
-//! What all stages of one picture share: choices, counts, clocks, progress and the observer.
+//! What all stages of one image share: settings, counts, clocks, progress and the observer.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,42 +13,42 @@ use crate::progress::Work;
 use crate::settings::ShortTests;
 use crate::stage::{Seconds, Stage};
 
-/// How lights with a size are sampled.
+/// How area lights are sampled.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampling {
-    /// Shadow rays per light with a size.
+    /// Shadow rays per area light.
     pub samples: u32,
     /// Random pattern.
     pub seed: u64,
-    /// Point lights are distributed over their spread (area mode).
+    /// Whether point lights are distributed over their spread (area mode).
     pub spread: bool,
 }
 
 impl Sampling {
-    /// The same where light points, or surface points in their stead, look at the lights: point lights are points there.
+    /// The same for rays from light points, or from surface points in their place: point lights are treated as points.
     pub(crate) fn of_light_points(self) -> Sampling {
         Sampling { spread: false, ..self }
     }
 
-    /// Long tests from one light point to all lights.
+    /// Number of long tests from one light point to all lights.
     pub(crate) fn rays_to(&self, lights: &Lights) -> usize {
         lights.iter().map(|light| if light.has_size() { self.samples as usize } else { 1 }).sum()
     }
 }
 
-/// One picture in the making.
+/// One image being rendered.
 pub struct Job<'a> {
-    /// Who watches.
+    /// The observer of this render.
     pub observer: &'a dyn Observer,
-    /// How lights with a size are sampled.
+    /// How area lights are sampled.
     pub sampling: Sampling,
     /// How short tests are evaluated.
     pub short_tests: ShortTests,
-    /// What has been counted.
+    /// The counts so far.
     pub tally: Tally,
     pub(crate) work: Work,
     seconds: Mutex<Seconds>,
-    /// Some work was left out, since the observer had asked to stop.
+    /// Set when some work was skipped because the observer requested cancellation.
     stopped: AtomicBool,
 }
 
@@ -60,12 +60,13 @@ impl<'a> Job<'a> {
         Job { observer, sampling, short_tests, tally, work, seconds: Mutex::default(), stopped: AtomicBool::new(false) }
     }
 
-    /// The same with short tests evaluated in another way.
+    /// The same with another evaluation of short tests.
     pub fn with_short_tests(self, short_tests: ShortTests) -> Job<'a> {
         Job { short_tests, ..self }
     }
 
-    /// Does a piece of the current stage's work, and tells that `pieces` more are done. Does nothing where the observer has asked to stop.
+    /// Does a piece of the current stage's work, and reports that `pieces` more are done. Does nothing if the observer has requested
+    /// cancellation.
     #[inline(always)]
     pub(crate) fn piece<T: Default>(&self, pieces: usize, work: impl FnOnce() -> T) -> T {
         if self.observer.cancelled() {
@@ -77,12 +78,12 @@ impl<'a> Job<'a> {
         result
     }
 
-    /// Tells that `pieces` more pieces of the current stage's work are done.
+    /// Reports that `pieces` more pieces of the current stage's work are done.
     pub(crate) fn advance(&self, pieces: u64) {
         self.work.advance(self.observer, pieces);
     }
 
-    /// Takes the wall time of `work` for `stage`.
+    /// Adds the wall time of `work` to `stage`.
     pub(crate) fn wall_time<T>(&self, stage: Stage, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let result = work();
@@ -100,7 +101,7 @@ impl<'a> Job<'a> {
         self.locked().clone()
     }
 
-    /// Fails if the observer has asked to stop.
+    /// Fails if the observer has requested cancellation.
     pub(crate) fn check(&self) -> Result<(), RenderError> {
         let stopped = self.stopped.load(Ordering::Relaxed) || self.observer.cancelled();
         if stopped { Err(RenderError::Cancelled) } else { Ok(()) }

@@ -1,9 +1,9 @@
 //! Soft shadows by the light mesh method.
 //!
-//! `techniques/half_ball.rs` is the file to read first: the whole method as a handful of calls. Each call is a stage with a folder of its own
-//! under `stages`, each device implements all of them behind [`backend::Backend`], and [`Renderer`] puts a picture together.
+//! Start reading at `techniques/half_ball.rs`: the whole method as a handful of calls. Each call is a stage with its own folder under
+//! `stages`, each device implements all of them behind [`backend::Backend`], and [`Renderer`] assembles an image.
 //!
-//! Devices: [`backend::Cpu`] is the host's processor, [`backend::Cuda`] any CUDA device behind [`cuda::Runtime`]. [`devices`] lists
+//! Devices: [`backend::Cpu`] is the CPU, [`backend::Cuda`] any CUDA device behind [`cuda::Runtime`]. [`devices`] lists
 //! them, [`Device`] names one.
 //!
 //! Data flows one way: [`Scene`](lightmesh_scene::Scene) ▶ [`PreparedScene`] ▶ hits ▶ cells ▶ masks ▶ light points ▶ visibility ▶

@@ -1,16 +1,16 @@
-//! What the system says about memory. Unknown where it does not say.
+//! Memory figures of the operating system; `None` if it does not provide them.
 
-/// Bytes that programs can still take without swapping.
+/// Bytes that programs can still allocate without swapping.
 pub(crate) fn available() -> Option<u64> {
     field("/proc/meminfo", "MemAvailable:")
 }
 
-/// The most bytes that this process has had resident.
+/// The largest resident size of this process so far, in bytes.
 pub(crate) fn peak() -> Option<u64> {
     field("/proc/self/status", "VmHWM:")
 }
 
-/// A line `name  number kB` of one of Linux' files.
+/// The value of a line `name  number kB` in one of Linux's /proc files.
 fn field(path: &str, name: &str) -> Option<u64> {
     let text = std::fs::read_to_string(path).ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;

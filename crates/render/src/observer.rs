@@ -1,22 +1,23 @@
-//! Watching a render: progress, timing, choices made, and a way to stop it.
+//! Observing a render: progress, timing, automatic choices, and cancellation.
 
 use crate::settings::Setting;
 use crate::stage::Stage;
 
-/// How far a picture is, over all of its stages.
+/// How far the render of an image has progressed, over all of its stages.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
-    /// The part of the work that is done, 0 to 1. Mirrors may send it back a little: how many rays they add is known only when they do.
+    /// The part of the work that is done, 0 to 1. Mirrors may reduce it a little: how many rays they add is known only once they are
+    /// traced.
     pub done: f64,
-    /// Seconds since the picture was begun.
+    /// Seconds since the render was started.
     pub seconds: f64,
-    /// Seconds to go, if the rest takes as long as what was done; unknown at the very beginning.
+    /// Estimated seconds remaining, if the rest takes as long in proportion; unknown at the very beginning.
     pub left: Option<f64>,
 }
 
-/// Somebody who watches a render. Called from many threads.
+/// An observer of a render. Called from many threads.
 pub trait Observer: Sync {
-    /// A stage begins that has `total` pieces of work. Before it ends, [`advance`](Observer::advance) has told of as many.
+    /// A stage begins that has `total` pieces of work. Before it ends, [`advance`](Observer::advance) has reported as many.
     fn begin(&self, stage: Stage, total: u64) {
         let _ = (stage, total);
     }
@@ -26,34 +27,34 @@ pub trait Observer: Sync {
         let _ = pieces;
     }
 
-    /// The whole picture has come so far. Called now and then, after pieces of work.
+    /// The progress of the whole image. Called now and then, after pieces of work.
     fn progress(&self, progress: Progress) {
         let _ = progress;
     }
 
-    /// The stage is over.
+    /// The stage has ended.
     fn end(&self, stage: Stage) {
         let _ = stage;
     }
 
-    /// The renderer chose a setting by itself; a sentence for people. Unless this is overridden it is a note like others.
+    /// The renderer chose a setting automatically; a sentence for people. Treated as a note unless overridden.
     fn chose(&self, setting: Setting, text: &str) {
         let _ = setting;
         self.note(text);
     }
 
-    /// There is something to know about the picture; a sentence for people.
+    /// Information about the image; a sentence for people.
     fn note(&self, text: &str) {
         let _ = text;
     }
 
-    /// Asked between pieces of work: `true` ends the render with [`RenderError::Cancelled`](crate::RenderError::Cancelled).
+    /// Queried between pieces of work: `true` ends the render with [`RenderError::Cancelled`](crate::RenderError::Cancelled).
     fn cancelled(&self) -> bool {
         false
     }
 }
 
-/// Nobody watches.
+/// An observer that ignores everything.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Unobserved;
 

@@ -1,7 +1,7 @@
-//! How the stages are put together, whatever the technique: for a picture, and for points that the caller gives.
+//! How the stages are combined, whatever the technique: for an image, and for points given by the caller.
 //!
-//! A picture is made band by band, as many rows at once as memory allows; every band gives the pixels that the whole picture
-//! would. Within a band, mirrors are a loop over waves of rays.
+//! An image is rendered band by band, with as many rows at once as memory allows; every band yields the pixels that rendering the
+//! whole image at once would. Within a band, mirrors are a loop over waves of rays.
 
 use std::ops::Range;
 
@@ -48,7 +48,7 @@ impl<B: Backend> Baking<'_, B> {
     }
 }
 
-/// A picture to be made.
+/// The passes over one image.
 pub(crate) struct Passes<'a, B: Backend> {
     pub(crate) run: Run<'a, B>,
     pub(crate) scene: &'a B::Scene,
@@ -58,7 +58,7 @@ pub(crate) struct Passes<'a, B: Backend> {
 }
 
 impl<B: Backend> Passes<'_, B> {
-    /// Renders all of the view into `picture`. Returns how many rows were made at once.
+    /// Renders the whole view into `picture`. Returns how many rows were rendered at once.
     pub(crate) fn render(&self, picture: &mut Picture) -> Result<u32, RenderError> {
         self.run.job.work.expect(self.pieces_of_wave(0, self.plan.pixels()));
         let at_once = self.run.or_forget(|backend| backend.rows_at_once(self.scene, self.plan))?;
@@ -91,7 +91,7 @@ impl<B: Backend> Passes<'_, B> {
         run.on_host(Stage::Download, |backend| backend.develop(scene, film, picture))
     }
 
-    /// Pieces of work that a wave of `rays` rays has in all of its stages.
+    /// Pieces of work of a wave of `rays` rays in all of its stages.
     fn pieces_of_wave(&self, depth: u32, rays: u64) -> u64 {
         let (from_camera, to_mirrors) = (u64::from(depth == 0), u64::from(depth < self.plan.bounces));
         // Camera rays, primary rays, the technique's stages, shading, mirror rays.
@@ -99,10 +99,10 @@ impl<B: Backend> Passes<'_, B> {
     }
 }
 
-/// Does the work of `rows` rows band by band, `at_once` rows at first. Returns how many it were at last.
+/// Does the work of `rows` rows band by band, initially `at_once` rows at a time. Returns the final number of rows at a time.
 ///
-/// If memory ends in spite of the plan, the band is begun again: without what is kept of earlier images, then with half of its
-/// rows. What an image takes is known only when its light points are.
+/// If memory runs out in spite of the plan, the band is restarted: first without what is kept of earlier images, then with half
+/// of its rows. How much an image needs is known only once its light points are.
 pub(crate) fn in_bands<B: Backend>(
     run: &Run<B>,
     rows: u32,

@@ -1,7 +1,7 @@
-//! A scene made ready for rays.
+//! A scene prepared for ray tracing.
 //!
 //! What is built over the triangles ([`PreparedGeometry`]) lives as long as they do: lights, cameras, sizes and settings may change from
-//! picture to picture, and nothing is built or uploaded again.
+//! image to image without rebuilding or uploading anything.
 
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
@@ -14,21 +14,21 @@ use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
 use crate::stage::Stage;
 
-/// Triangles with the acceleration structure over them. Shared behind an [`Arc`] by all pictures of a geometry, and the key of the copies
+/// Triangles with the acceleration structure over them. Shared behind an [`Arc`] by all images of a geometry, and the key of the copies
 /// that devices keep.
 pub struct PreparedGeometry {
     /// The triangles by index.
     pub triangles: Vec<Triangle>,
-    /// What finds triangles.
+    /// The acceleration structure.
     pub accelerator: Box<dyn Accelerator>,
     /// The box around all triangles that can be hit.
     pub bounds: Bounds,
     /// The setting that chose the structure.
     acceleration: Acceleration,
-    /// Seconds that building took, until the first picture reports them.
+    /// Build time in seconds, until the first image reports it.
     unreported: Mutex<f64>,
     center: Vec3,
-    /// A little more than the diagonal of the bounds; 1 where there are none.
+    /// Slightly more than the diagonal of the bounds; 1 if they are empty.
     far: f32,
 }
 
@@ -36,8 +36,8 @@ impl PreparedGeometry {
     /// Builds the acceleration structure over `geometry`.
     ///
     /// # Errors
-    /// [`RenderError::Geometry`] where the geometry does not hold together, [`RenderError::Grid`] or [`RenderError::GridFile`] where a
-    /// grid was asked for and cannot be built or read.
+    /// [`RenderError::Geometry`] if the geometry is inconsistent, [`RenderError::Grid`] or [`RenderError::GridFile`] if a grid was
+    /// requested and cannot be built or read.
     pub fn new(
         geometry: &Geometry,
         acceleration: &Acceleration,
@@ -60,7 +60,7 @@ impl PreparedGeometry {
         let unreported = Mutex::new(start.elapsed().as_secs_f64());
         observer.advance(mesh.triangles.len() as u64);
         observer.end(Stage::Build);
-        // Triangles that cannot be hit take no part.
+        // Triangles that cannot be hit do not count.
         let usable = triangles.iter().filter(|triangle| triangle.is_usable());
         let bounds = Bounds::around(usable.flat_map(Triangle::corners));
         let (center, far) =
@@ -81,29 +81,29 @@ impl PreparedGeometry {
         &self.acceleration
     }
 
-    /// How far a directional light stands from `from`: farther than any triangle. Needed for every segment, so without a root.
+    /// The distance of a directional light from `from`: beyond every triangle. Needed for every segment, so computed without a square root.
     #[inline(always)]
     pub fn reach(&self, from: Vec3) -> f32 {
         self.far + 2.0 * (from - self.center).abs().element_sum()
     }
 
-    /// What [`reach`](PreparedGeometry::reach) is computed from, for devices.
+    /// The parameters of [`reach`](PreparedGeometry::reach), for devices.
     pub(crate) fn reach_parameters(&self) -> (Vec3, f32) {
         (self.center, self.far)
     }
 
-    /// Bytes that the geometry takes on the host, acceleration structure included.
+    /// Bytes that the geometry occupies on the host, including the acceleration structure.
     pub fn memory(&self) -> usize {
         size_of_val(self.triangles.as_slice()) + self.accelerator.memory()
     }
 
-    /// Seconds that building took, at the first call; 0 at all later ones. So they count for the first picture alone.
+    /// The build time in seconds at the first call; 0 at all later ones. So it counts for the first image alone.
     pub(crate) fn take_build_seconds(&self) -> f64 {
         std::mem::take(&mut *self.unreported.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-/// A scene whose geometry is prepared. Any number of pictures can be taken of it, on any device; clones share the geometry.
+/// A scene whose geometry is prepared. Any number of images can be rendered of it, on any device; clones share the geometry.
 #[derive(Clone)]
 pub struct PreparedScene {
     /// The scene itself.
@@ -136,7 +136,7 @@ impl PreparedScene {
         PreparedScene { scene: self.scene.clone().with_cameras(cameras), ..self.clone() }
     }
 
-    /// Fails where pictures are to be made with another structure than the geometry was prepared with.
+    /// Fails if an image is to be rendered with another structure than the geometry was prepared with.
     pub(crate) fn check(&self, acceleration: &Acceleration) -> Result<(), RenderError> {
         let resolved = |acceleration: &Acceleration| match acceleration {
             Acceleration::Auto => Acceleration::Bvh,
@@ -154,20 +154,20 @@ impl PreparedScene {
     }
 }
 
-/// Geometry that was prepared for earlier scenes, as long as the scenes' geometry lives.
+/// Geometry that was prepared for earlier scenes, for as long as the scenes' geometry is alive.
 #[derive(Default)]
 pub(crate) struct Preparations {
     known: Mutex<Vec<Preparation>>,
 }
 
 struct Preparation {
-    /// The geometry itself is not kept alive. While this is here no other geometry can have its address, and nobody can change it in place.
+    /// The geometry itself is not kept alive. While this exists, no other geometry can have its address, and nobody can change it in place.
     geometry: Weak<Geometry>,
     prepared: Arc<PreparedGeometry>,
 }
 
 impl Preparations {
-    /// The scene with its geometry prepared: what is known is reused.
+    /// The scene with its geometry prepared; already prepared geometry is reused.
     pub(crate) fn prepare(
         &self,
         scene: &Scene,
@@ -177,7 +177,7 @@ impl Preparations {
         if let Some(geometry) = self.find(scene, acceleration) {
             return Ok(PreparedScene { scene: scene.clone(), geometry });
         }
-        // Not under the lock: others may prepare other geometry meanwhile.
+        // Not under the lock: others may prepare other geometry in the meantime.
         let prepared = PreparedScene::new(scene, acceleration, observer)?;
         let geometry = Arc::downgrade(&scene.geometry);
         self.locked().push(Preparation { geometry, prepared: Arc::clone(&prepared.geometry) });

@@ -1,4 +1,4 @@
-//! How far a picture is, over all of its stages: one total, counted in pieces.
+//! Progress over all stages of an image: one total, counted in pieces.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -7,21 +7,21 @@ use std::time::Instant;
 use crate::observer::{Observer, Progress};
 use crate::stage::Stage;
 
-/// Least time between two reports on the whole picture, seconds.
+/// Minimum time between two progress reports on the whole image, seconds.
 const INTERVAL: f64 = 0.05;
 
-/// The work of a picture: done, and in all.
+/// The work of an image: done, and in total.
 ///
-/// A wave of n rays has n pieces in each of its stages. How many rays the camera sends is known from the beginning, how many mirrors add
-/// when they do.
+/// A wave of n rays counts as n pieces in each of its stages. The number of camera rays is known from the beginning, the number of
+/// mirror rays only once they are traced.
 #[derive(Debug)]
 pub(crate) struct Work {
     start: Instant,
     total: AtomicU64,
     done: AtomicU64,
-    /// The stage that is worked on.
+    /// The stage in progress.
     current: Mutex<Option<Current>>,
-    /// Milliseconds after the start when the whole picture was reported on last.
+    /// Milliseconds between the start and the latest progress report on the whole image.
     reported: AtomicU64,
 }
 
@@ -31,7 +31,7 @@ struct Current {
     stage: Stage,
     total: u64,
     done: u64,
-    /// Pieces of the whole picture that the stage stands for.
+    /// Pieces of the whole image that the stage counts as.
     share: u64,
 }
 
@@ -46,28 +46,28 @@ impl Work {
         }
     }
 
-    /// More pieces are to be done for the picture.
+    /// Adds pieces to the image's total.
     pub(crate) fn expect(&self, pieces: u64) {
         self.total.fetch_add(pieces, Ordering::Relaxed);
     }
 
-    /// Pieces of the picture that are done: to go back to by [`rewind`](Work::rewind).
+    /// Pieces of the image that are done, for [`rewind`](Work::rewind).
     pub(crate) fn done(&self) -> u64 {
         self.done.load(Ordering::Relaxed)
     }
 
-    /// What was done since is to be done again; `added` pieces were expected since.
+    /// Work done since then will be repeated; `added` pieces were expected since.
     pub(crate) fn rewind(&self, done: u64, total: u64) {
         self.done.store(done, Ordering::Relaxed);
         self.total.store(total, Ordering::Relaxed);
     }
 
-    /// Pieces of the picture in all, as far as is known.
+    /// Total pieces of the image, as far as known.
     pub(crate) fn total(&self) -> u64 {
         self.total.load(Ordering::Relaxed)
     }
 
-    /// A stage begins that has `total` pieces of its own and stands for `share` pieces of the picture.
+    /// A stage begins that has `total` pieces of its own and counts as `share` pieces of the image.
     pub(crate) fn begin(&self, observer: &dyn Observer, stage: Stage, total: u64, share: u64) {
         *self.current() = Some(Current { stage, total, done: 0, share });
         observer.begin(stage, total);
@@ -85,7 +85,7 @@ impl Work {
         self.report(observer, false);
     }
 
-    /// The stage is over. What it had no occasion to tell of is done as well.
+    /// The stage has ended. Pieces that it did not report are done as well.
     pub(crate) fn end(&self, observer: &dyn Observer, stage: Stage) {
         let rest = self.current().map_or(0, |current| current.total - current.done);
         if rest > 0 {
@@ -120,7 +120,7 @@ impl Work {
 }
 
 impl Current {
-    /// Pieces of the picture that are done with this stage's.
+    /// Pieces of the image that this stage has completed.
     fn of_picture(&self) -> u64 {
         let share = u128::from(self.share) * u128::from(self.done) / u128::from(self.total.max(1));
         share as u64

@@ -1,4 +1,4 @@
-// Where the shadow rays towards a light with a size end: twin of sampling.rs.
+// End points of the shadow rays towards an area light: twin of sampling.rs.
 #pragma once
 
 #include "cuda/prelude.cuh"
@@ -44,8 +44,8 @@ DEVICE unsigned sobol_1(unsigned index) {
     return digits;
 }
 
-// Third dimension of Sobol's sequence. The loop runs over all bits, so that its numbers are known to the compiler; lanes would have
-// to wait for a table.
+// Third dimension of Sobol's sequence. The loop runs over all bits, so that the compiler knows its constants; lanes would have to
+// wait for a table.
 DEVICE unsigned sobol_2(unsigned index) {
     unsigned direction = 1, next = 3, result = 0;
     UNROLL
@@ -69,7 +69,7 @@ DEVICE Vec3 pattern_point(const Pattern &pattern, unsigned index) {
                 unit_interval(sobol_2(index), pattern.seeds[3])};
 }
 
-// An even map from the cube to the unit ball.
+// A volume-preserving map from the cube to the unit ball.
 DEVICE Vec3 in_ball(Vec3 u) {
     const float z = 2.0f * u.x - 1.0f;
     float sine, cosine;
@@ -78,10 +78,10 @@ DEVICE Vec3 in_ball(Vec3 u) {
     return cbrtf(u.z) * Vec3{ring * cosine, ring * sine, z};
 }
 
-// Whether the light has a size of its own.
+// Whether the light is an area light.
 DEVICE bool has_size(const Light &light) { return light.kind >= Light::SPHERE; }
 
-// The point of a light that the numbers `u` in [0, 1)³ stand for; a directional light lies `reach` away from `from`.
+// The point of a light that the numbers `u` in [0, 1)³ select; a directional light lies `reach` away from `from`.
 DEVICE Vec3 light_point(const Light &light, Vec3 from, float reach, Vec3 u) {
     if (light.kind == Light::DIRECTIONAL)
         return from - reach * light.direction;
@@ -97,12 +97,12 @@ DEVICE Vec3 light_point(const Light &light, Vec3 from, float reach, Vec3 u) {
     return light.position;
 }
 
-// The middle of a light; a directional light lies `reach` away from `from`.
+// The centre of a light; a directional light lies `reach` away from `from`.
 DEVICE Vec3 light_center(const Light &light, Vec3 from, float reach) {
     return light.kind == Light::DIRECTIONAL ? from - reach * light.direction : light.position;
 }
 
-// How far a directional light stands from `from`: twin of prepared.rs.
+// The distance of a directional light from `from`: twin of prepared.rs.
 DEVICE float scene_reach(const Scene &scene, Vec3 from) {
     return scene.far + 2.0f * element_sum(abs(from - scene.center));
 }

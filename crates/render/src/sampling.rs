@@ -1,8 +1,8 @@
-//! Where the shadow rays towards a light with a size end: stratified points on or in the light.
+//! End points of the shadow rays towards an area light: stratified points on or in the light.
 //!
-//! Points are an Owen-scrambled Sobol sequence (Burley: *Practical Hash-based Owen Scrambling*, JCGT 2020): any first N of
-//! them are well spread, and each surface point or light point gets a scrambling of its own from a hash, so that errors do
-//! not form patterns and the result depends on the seed alone.
+//! Points are an Owen-scrambled Sobol sequence (Burley: *Practical Hash-based Owen Scrambling*, JCGT 2020): any first N of them
+//! are well distributed, and each surface point or light point gets its own scrambling from a hash, so that errors do not form
+//! patterns and the result depends on the seed alone.
 
 use glam::Vec3;
 use lightmesh_layout::constants::{
@@ -102,9 +102,10 @@ const fn sobol_2_by_bytes() -> [[u32; 256]; 4] {
     table
 }
 
-/// The point of `light` that the numbers `u` in [0, 1)³ stand for; a directional light lies `reach` away from `from`.
+/// The point of `light` that the numbers `u` in [0, 1)³ select; a directional light lies `reach` away from `from`.
 ///
-/// A ball is filled evenly, as the thesis strews its point lights; disks and rectangles are covered evenly.
+/// A ball is sampled uniformly in its volume, as the thesis distributes its point lights; disks and rectangles are sampled
+/// uniformly.
 #[inline(always)]
 pub fn light_point(light: &Light, from: Vec3, reach: f32, u: Vec3) -> Vec3 {
     match light.kind {
@@ -123,7 +124,7 @@ pub fn light_point(light: &Light, from: Vec3, reach: f32, u: Vec3) -> Vec3 {
     }
 }
 
-/// The middle of `light`; a directional light lies `reach` away from `from`.
+/// The centre of `light`; a directional light lies `reach` away from `from`.
 #[inline(always)]
 pub fn light_center(light: &Light, from: Vec3, reach: f32) -> Vec3 {
     match light.kind {
@@ -132,7 +133,7 @@ pub fn light_center(light: &Light, from: Vec3, reach: f32) -> Vec3 {
     }
 }
 
-/// An even map from the cube to the unit ball.
+/// A volume-preserving map from the cube to the unit ball.
 #[inline(always)]
 fn in_ball(u: Vec3) -> Vec3 {
     let z = 2.0 * u.x - 1.0;

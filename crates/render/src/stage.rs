@@ -13,7 +13,7 @@ macro_rules! stages {
             /// All of them, in order.
             pub const ALL: [Stage; [$(stringify!($name)),*].len()] = [$(Stage::$variant),*];
 
-            /// The word in statistics.
+            /// The name in statistics.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Stage::$variant => stringify!($name),)*
@@ -21,16 +21,17 @@ macro_rules! stages {
             }
         }
 
-        /// How long what took. `load`, `build` and `write` are no part of `render`. On a device the stages between `upload` and
-        /// `download` are the device's own time. Geometry that was built or uploaded for an earlier picture takes no time again.
+        /// Time spent in each stage. `load`, `build` and `write` are not part of `render`. On a device the stages between
+        /// `upload` and `download` are measured on the device. Geometry that was built or uploaded for an earlier image takes
+        /// no time again.
         #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
         pub struct Seconds {
-            /// Reading the scene.
+            /// Loading the scene.
             pub load: f64,
             $($(#[$doc])* pub $name: f64,)*
-            /// The whole picture, from prepared scene to frame.
+            /// The whole image, from prepared scene to frame.
             pub render: f64,
-            /// Writing the picture.
+            /// Writing the image.
             pub write: f64,
         }
 
@@ -42,7 +43,7 @@ macro_rules! stages {
                 }
             }
 
-            /// The seconds of one stage, to set them.
+            /// The seconds of one stage, mutable.
             pub(crate) fn of_mut(&mut self, stage: Stage) -> &mut f64 {
                 match stage {
                     $(Stage::$variant => &mut self.$name,)*
@@ -55,29 +56,29 @@ macro_rules! stages {
 stages! {
     /// Building the acceleration structure.
     Build = build,
-    /// Copying geometry to a device that has memory of its own.
+    /// Copying geometry to a device that has its own memory.
     Upload = upload,
     /// The rays through the pixels.
     CameraRays = camera_rays,
-    /// What does each ray see?
+    /// What each ray sees.
     PrimaryRays = primary_rays,
     /// Surface points by cell of the light mesh.
     Cells = cells,
-    /// Which light points does each surface point see?
+    /// Which light points each surface point sees.
     ShortTests = short_tests,
-    /// Each used light point once.
+    /// Collecting each used light point once.
     Collect = collect,
-    /// Which lights does each light point (or, in the other modes, surface point) see?
+    /// Which lights each light point (or, in the other modes, surface point) sees.
     LongTests = long_tests,
     /// Formula (3).
     Interpolate = interpolate,
     /// Formula (1).
     Shade = shade,
-    /// The rays that mirrors send on.
+    /// The rays reflected by mirrors.
     MirrorRays = mirror_rays,
-    /// Room for rows of the picture.
+    /// Allocating rows of the image.
     Film = film,
-    /// Finished rows take their place in the picture; from a device they are copied.
+    /// Copying finished rows to their place in the image, from a device if there is one.
     Download = download,
 }
 

@@ -1,4 +1,4 @@
-//! What a render reports: the JSON of `--stats`.
+//! The statistics of a render: the JSON of `--stats`.
 
 use serde::Serialize;
 
@@ -8,33 +8,33 @@ use crate::memory;
 use crate::prepared::PreparedScene;
 use crate::stage::Seconds;
 
-/// Counts, seconds and every resolved setting of a picture. Seconds are wall time.
+/// Counts, seconds and every resolved setting of an image. Seconds are wall time.
 #[derive(Clone, Debug, Serialize)]
 pub struct Stats {
     /// Version of this format.
     pub version: u32,
     /// What was rendered.
     pub scene: SceneStats,
-    /// What rendered it.
+    /// The device that rendered it.
     pub device: DeviceStats,
-    /// Every setting as it was used.
+    /// Every setting as used.
     pub settings: SettingsStats,
-    /// How often what happened.
+    /// How often each event happened.
     pub counts: Counts,
-    /// How long what took.
+    /// Time spent in each stage.
     pub seconds: Seconds,
-    /// How much memory it took.
+    /// Memory use.
     pub memory: MemoryStats,
 }
 
 /// The scene in numbers.
 #[derive(Clone, Debug, Serialize)]
 pub struct SceneStats {
-    /// Its name.
+    /// The scene's name.
     pub name: String,
-    /// Its triangles.
+    /// Number of triangles.
     pub triangles: usize,
-    /// Its lights.
+    /// Number of lights.
     pub lights: usize,
 }
 
@@ -43,7 +43,7 @@ pub struct SceneStats {
 pub struct DeviceStats {
     /// `cpu` or `cuda`.
     pub kind: &'static str,
-    /// What the maker calls it.
+    /// The vendor's name for the device.
     pub name: String,
 }
 
@@ -52,28 +52,28 @@ pub struct DeviceStats {
 pub struct LatticeStats {
     /// World position of light point (0, 0, 0).
     pub origin: [f64; 3],
-    /// h, scene units.
+    /// h in scene units.
     pub step: f32,
-    /// Light points along each axis.
+    /// Number of light points along each axis.
     pub dims: [u32; 3],
 }
 
 /// The camera in world coordinates.
 #[derive(Clone, Debug, Serialize)]
 pub struct CameraStats {
-    /// Where it stands.
+    /// Position of the eye.
     pub position: [f64; 3],
-    /// Where it looks; unit length.
+    /// Viewing direction; unit length.
     pub direction: [f32; 3],
-    /// Which way is up; unit length.
+    /// Up vector; unit length.
     pub up: [f32; 3],
-    /// Vertical angle in degrees; none for an orthographic camera.
+    /// Vertical field of view in degrees; none for an orthographic camera.
     pub vfov: Option<f32>,
-    /// Height of the picture in scene units; none for a perspective camera.
+    /// Height of the image in scene units; none for a perspective camera.
     pub height: Option<f32>,
 }
 
-/// Every setting as it was used.
+/// Every setting as used.
 #[derive(Clone, Debug, Serialize)]
 #[allow(missing_docs, reason = "named as the flags are")]
 pub struct SettingsStats {
@@ -99,7 +99,7 @@ pub struct SettingsStats {
     pub lattice: Option<LatticeStats>,
 }
 
-/// Peak memory in bytes; 0 where the system does not tell.
+/// Peak memory in bytes; 0 if the system does not report it.
 #[derive(Clone, Debug, Default, Serialize)]
 #[allow(missing_docs, reason = "the names say all")]
 pub struct MemoryStats {

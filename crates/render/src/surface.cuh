@@ -1,22 +1,22 @@
-// From a hit to the object point that everything else starts from: twin of surface.rs.
+// From a hit to the surface point that all further steps start from: twin of surface.rs.
 #pragma once
 
 #include "accel/triangle.cuh"
 #include "cuda/rays.cuh"
 
-// An object point P.
+// A surface point P.
 struct SurfacePoint {
     Vec3 position, origin, normal;
 };
 
-// The unit normal of a tiny or very narrow triangle; the direction to the viewer where double precision sees no area either.
+// The unit normal of a tiny or very narrow triangle; the direction to the viewer if double precision sees no area either.
 COLD Vec3 needle_normal(Corners corners, Vec3 direction) {
     const DVec3 a = to_double(corners.a), b = to_double(corners.b), c = to_double(corners.c);
     const Vec3 normal = to_single(normalize_or_zero(cross(b - a, c - a)));
     return normal == splat(0.0f) ? -normalize_or_zero(direction) : normal;
 }
 
-// The object point that `ray` sees at `hit` on the triangle with these corners.
+// The surface point that `ray` sees at `hit` on the triangle with these corners.
 DEVICE SurfacePoint surface_point(const Ray &ray, const Hit &hit, const Corners &corners) {
     const Vec3 a = corners.a, b = corners.b, c = corners.c;
     const Vec3 position = (1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c;
@@ -28,7 +28,7 @@ DEVICE SurfacePoint surface_point(const Ray &ray, const Hit &hit, const Corners 
     return SurfacePoint{position, position + error * normal, normal};
 }
 
-// The object point that ray number `ray` sees; the ray must have hit something.
+// The surface point that ray number `ray` sees; the ray must have hit something.
 DEVICE SurfacePoint object_point(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray) {
     const Hit hit = load_hit(hits, ray);
     return surface_point(ray_at(rays, ray), hit, load_corners(scene.triangles + hit.triangle));
@@ -56,7 +56,7 @@ DEVICE Vec3 shading_normal(const Scene &scene, const Hit &hit, Vec3 facing) {
     return dot(normal, facing) < 0.0f ? -normal : normal;
 }
 
-// The segment from `origin` to `target` for a long test, its far end spared.
+// The segment from `origin` to `target` for a long test, shortened at its far end.
 DEVICE Ray long_segment(Vec3 origin, Vec3 target) {
     const Vec3 direction = target - origin;
     const float length = max_element(abs(direction));

@@ -1,4 +1,4 @@
-//! From a hit to the object point that everything else starts from.
+//! From a hit to the surface point that all further steps start from.
 
 use glam::Vec3;
 use lightmesh_layout::constants::{GAMMA_32, LEAST_SMOOTH_SQUARE, LEAST_SQUARE};
@@ -6,19 +6,19 @@ use lightmesh_scene::Mesh;
 
 use crate::accel::{Hit, Ray, Triangle};
 
-/// An object point P.
+/// A surface point P.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePoint {
-    /// P itself, interpolated from the triangle's corners: more exact than `origin + t · direction`.
+    /// P itself, interpolated from the triangle's corners: more accurate than `origin + t · direction`.
     pub position: Vec3,
-    /// Where segments that leave P start: moved off the surface along the normal by a bound on all rounding.
+    /// Where segments that leave P start: offset from the surface along the normal by a bound on all rounding.
     pub origin: Vec3,
     /// Geometric normal n, unit length, on the viewer's side.
     pub normal: Vec3,
 }
 
-/// The unit normal of a tiny triangle, or of one so narrow that single precision sees no area; where double precision sees
-/// none either, the direction to the viewer.
+/// The unit normal of a tiny triangle, or of one so narrow that single precision sees no area; if double precision sees none
+/// either, the direction to the viewer.
 #[cold]
 #[inline(never)]
 fn needle_normal(triangle: &Triangle, ray: &Ray) -> Vec3 {
@@ -29,7 +29,7 @@ fn needle_normal(triangle: &Triangle, ray: &Ray) -> Vec3 {
 }
 
 impl SurfacePoint {
-    /// The object point that `ray` sees at `hit` on `triangle`.
+    /// The surface point that `ray` sees at `hit` on `triangle`.
     #[inline(always)]
     pub fn new(ray: &Ray, hit: &Hit, triangle: &Triangle) -> SurfacePoint {
         let [a, b, c] = triangle.corners();
@@ -49,8 +49,8 @@ impl SurfacePoint {
     }
 }
 
-/// The unit normal that shading uses: interpolated where the mesh has normals, else geometric; always on the side of the
-/// geometric normal `facing`.
+/// The unit normal that shading uses: interpolated if the mesh has normals, else geometric; always on the side of the geometric
+/// normal `facing`.
 #[inline(always)]
 pub(crate) fn shading_normal(mesh: &Mesh, hit: &Hit, facing: Vec3) -> Vec3 {
     if mesh.normals.is_empty() {
@@ -67,10 +67,10 @@ pub(crate) fn shading_normal(mesh: &Mesh, hit: &Hit, facing: Vec3) -> Vec3 {
     if normal.dot(facing) < 0.0 { -normal } else { normal }
 }
 
-/// The segment from `origin` to `target` for a long test, its far end spared.
+/// The segment from `origin` to `target` for a long test, shortened at its far end.
 ///
-/// A light may lie exactly in a surface (a lamp in a ceiling). The hit on that surface comes out at `t` = 1 give or take the
-/// rounding of both ends; the segment stops that much earlier.
+/// A light may lie exactly in a surface (a lamp in a ceiling). The hit on that surface has `t` = 1 give or take the rounding of
+/// both ends; the segment stops that much earlier.
 #[inline(always)]
 pub(crate) fn long_segment(origin: Vec3, target: Vec3) -> Ray {
     let direction = target - origin;

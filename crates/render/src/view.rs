@@ -1,4 +1,4 @@
-//! Which ray belongs to which pixel.
+//! The mapping from pixels to rays.
 
 use glam::Vec3;
 use lightmesh_layout::geometry as layout;
@@ -6,7 +6,7 @@ use lightmesh_scene::{Camera, Projection};
 
 use crate::accel::Ray;
 
-/// A camera and a picture size, ready to make rays.
+/// A camera and an image size, ready to generate rays.
 ///
 /// A pixel's ray goes through its centre, pixels are square, row 0 is the top.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +14,7 @@ pub struct View {
     size: [u32; 2],
     origin: Vec3,
     forward: Vec3,
-    /// From one pixel's centre to the next one's to the right, on the plane one unit away (perspective) or in scene units.
+    /// From one pixel's centre to the next one on the right, on the plane one unit away (perspective) or in scene units.
     right: Vec3,
     /// The same downwards.
     down: Vec3,
@@ -22,7 +22,7 @@ pub struct View {
 }
 
 impl View {
-    /// The view of `camera` in a picture of `size` pixels.
+    /// The view of `camera` in an image of `size` pixels.
     pub fn new(camera: &Camera, size: [u32; 2]) -> View {
         let (right, up, forward) = camera.basis();
         let [width, height] = size.map(|pixels| pixels as f32);
@@ -39,7 +39,7 @@ impl View {
         self.size
     }
 
-    /// The view as kernels know it.
+    /// The view as a record for kernels.
     pub(crate) fn record(&self) -> layout::View {
         layout::View {
             origin: layout::Vec3::from(self.origin.to_array()),

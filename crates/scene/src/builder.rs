@@ -7,7 +7,7 @@ use crate::{
     loaded_mesh::LoadedMesh, mesh_part::Room, vertices::Vertices,
 };
 
-/// Gathers placed meshes and their materials; [`SceneBuilder::finish_scene`] makes them a scene in a local frame.
+/// Collects placed meshes and their materials; [`SceneBuilder::finish_scene`] turns them into a scene in a local frame.
 ///
 /// ```
 /// use lightmesh_scene::{MeshPart, SceneBuilder, glam::{DMat4, Vec3}};
@@ -38,18 +38,18 @@ impl SceneBuilder {
         SceneBuilder::default()
     }
 
-    /// Adds a material; its index is for [`SceneBuilder::add`].
+    /// Adds a material and returns its index for [`SceneBuilder::add`].
     pub fn add_material(&mut self, material: Material) -> u32 {
         self.palette.push(material);
         self.palette.len() as u32 - 1
     }
 
-    /// Adds `part` placed by `transform`; `material` gives the material of each of its triangles. A transform that mirrors
-    /// turns the triangles' order round, so that front faces stay front faces.
+    /// Adds `part`, placed by `transform`; `material` returns the material of each of its triangles. If the transform mirrors,
+    /// the triangles' vertex order is reversed, so that front faces stay front faces.
     ///
     /// # Errors
     ///
-    /// [`GeometryError`] where an index leads to no vertex or lengths do not fit; then nothing was added.
+    /// [`GeometryError`] if an index is out of range or lengths do not match; then nothing was added.
     pub fn add<P: Position>(
         &mut self,
         part: MeshPart<P>,
@@ -62,7 +62,7 @@ impl SceneBuilder {
         Ok(())
     }
 
-    /// [`SceneBuilder::add`] of a part that is known to hold together, as loaders make them.
+    /// [`SceneBuilder::add`] for a part that is known to be consistent, such as those from loaders.
     pub(crate) fn append<P: Position>(
         &mut self,
         part: MeshPart<P>,
@@ -88,7 +88,7 @@ impl SceneBuilder {
         self.materials.extend((0..part.triangles.len()).map(material));
     }
 
-    /// [`SceneBuilder::append`] of a mesh that is handed over: the first one is placed where it lies in memory.
+    /// [`SceneBuilder::append`] for a mesh passed by value: the first one is placed without copying.
     pub(crate) fn take<P: Position>(&mut self, mut mesh: LoadedMesh<P>, transform: &DMat4) {
         if self.vertex_count() > 0 || self.triangle_count() > 0 {
             let materials = std::mem::take(&mut mesh.materials);
@@ -108,7 +108,7 @@ impl SceneBuilder {
         self.materials = mesh.materials;
     }
 
-    /// Makes room for what is to come; `false` where there is not enough memory.
+    /// Reserves memory; `false` if there is not enough.
     pub(crate) fn reserve(&mut self, room: &Room) -> bool {
         let of = |used: bool| if used { room.vertices } else { 0 };
         self.vertices.reserve(room.vertices)
@@ -129,20 +129,21 @@ impl SceneBuilder {
         self.vertices.len()
     }
 
-    /// Lowest and highest corner of the box around all finite vertices so far; `None` without any.
+    /// Lowest and highest corner of the bounding box of all finite vertices so far; `None` if there are none.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         self.vertices.bounds()
     }
 
-    /// Takes this origin instead of choosing one. For scenes that were written with an origin: they are read to the same `f32`.
+    /// Uses this origin instead of choosing one. For scenes that were written with an origin: they are read back to the same
+    /// `f32`.
     pub fn prefer_origin(&mut self, origin: DVec3) {
         self.origin = Some(origin);
     }
 
     /// Chooses the origin of the local frame and returns it with the finished mesh.
     ///
-    /// The origin is zero unless the geometry lies so far from the world's origin that `f32` would lose detail: then it is a
-    /// point near the middle, rounded to a power of two of the scene's size so that the subtraction loses nothing.
+    /// The origin is zero unless the geometry is so far from the world's origin that `f32` would lose detail: then it is a point
+    /// near the centre, rounded to a power of two of the scene's size so that the subtraction is exact.
     pub fn finish(mut self) -> (DVec3, Mesh) {
         let origin = self.origin.unwrap_or_else(|| self.bounds().map_or(DVec3::ZERO, local_origin));
         let vertices = self.vertices.len() as u32;
@@ -160,8 +161,8 @@ impl SceneBuilder {
         (origin, mesh)
     }
 
-    /// A scene of the meshes and materials alone, in its local frame: place cameras and lights with [`Scene::to_local`]. Where no
-    /// material was added there is one, the default.
+    /// A scene with only the meshes and materials, in its local frame: place cameras and lights with [`Scene::to_local`]. If no
+    /// material was added, there is one, the default.
     pub fn finish_scene(mut self, name: impl Into<String>) -> Scene {
         let mut materials = std::mem::take(&mut self.palette);
         if materials.is_empty() && self.triangle_count() > 0 {
@@ -172,13 +173,13 @@ impl SceneBuilder {
     }
 }
 
-/// Makes room for `more` elements, and for no others in what is the first file of a scene and may be the only one.
+/// Reserves memory for exactly `more` elements in the first file of a scene, which may be the only one.
 pub(crate) fn reserve<T>(elements: &mut Vec<T>, more: usize) -> bool {
     let reserved = if elements.is_empty() { elements.try_reserve_exact(more) } else { elements.try_reserve(more) };
     reserved.is_ok()
 }
 
-/// Normals are turned by the inverse transpose of what places positions.
+/// Normals are transformed by the inverse transpose of the transform of positions.
 fn normal_placement(transform: &DMat4) -> impl Fn(Vec3) -> Vec3 + use<> {
     let matrix = transform.inverse().transpose();
     move |normal| matrix.transform_vector3(normal.as_dvec3()).normalize_or_zero().as_vec3()
@@ -188,15 +189,14 @@ fn mirrors(transform: &DMat4) -> bool {
     transform.determinant() < 0.0
 }
 
-/// Lengthens an attribute with `none` up to `count` vertices, where the attribute is used at all.
+/// Extends an attribute with `none` to `count` vertices, if the attribute is used at all.
 fn fill_to<T: Clone>(attribute: &mut Vec<T>, count: u32, none: T, used: bool) {
     if used || !attribute.is_empty() {
         attribute.resize(count as usize, none);
     }
 }
 
-/// How many radii a scene may lie from the world's origin before it gets an origin of its own: there `f32` has lost 3 of its
-/// 24 bits.
+/// How many radii a scene may be from the world's origin before it gets its own origin: there `f32` has lost 3 of its 24 bits.
 const FAR: f64 = 8.0;
 
 fn local_origin((min, max): (DVec3, DVec3)) -> DVec3 {
@@ -259,7 +259,7 @@ mod tests {
                 materials: vec![7],
             };
             let (mut added, mut taken) = (SceneBuilder::new(), SceneBuilder::new());
-            // The first is moved in, the second copied behind it.
+            // The first is moved in, the second is appended as a copy.
             for _ in 0..2 {
                 added.add(loaded().part(), &placement, |_| 7).unwrap();
                 taken.take(loaded(), &placement);

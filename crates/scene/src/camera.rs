@@ -1,18 +1,18 @@
-//! Cameras: where the picture is taken from.
+//! Cameras: the viewpoints of images.
 
 use glam::{DVec3, Vec3};
 
-/// The angle a perspective camera sees. The other angle follows from the picture's shape, because pixels are square.
+/// The field of view of a perspective camera. The other angle follows from the image's aspect ratio, because pixels are square.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fov {
-    /// Full vertical angle, degrees.
+    /// Full vertical field of view, degrees.
     Vertical(f32),
-    /// Full horizontal angle, degrees.
+    /// Full horizontal field of view, degrees.
     Horizontal(f32),
 }
 
 impl Fov {
-    /// The vertical angle in degrees in a picture that is `aspect` (width / height) times as wide as high.
+    /// The vertical field of view in degrees for an image with the aspect ratio `aspect` (width / height).
     pub fn vertical(self, aspect: f32) -> f32 {
         match self {
             Fov::Vertical(degrees) => degrees,
@@ -21,14 +21,14 @@ impl Fov {
     }
 }
 
-/// How a camera maps directions or points to the picture.
+/// How a camera maps directions or points to the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
     /// All rays leave the camera's position.
     Perspective(Fov),
     /// All rays are parallel to the view direction.
     Orthographic {
-        /// Height of the picture in scene units.
+        /// Height of the image in scene units.
         height: f32,
     },
 }
@@ -37,46 +37,46 @@ pub enum Projection {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Camera {
-    /// Name in the file; empty where it has none.
+    /// Name in the file; empty if it has none.
     pub name: String,
     /// The eye, local frame, scene units.
     pub position: Vec3,
     /// The view direction; unit length.
     pub direction: Vec3,
-    /// Which way is up; unit length, not parallel to `direction`, not necessarily at a right angle to it.
+    /// Up vector; unit length, not parallel to `direction`, not necessarily perpendicular to it.
     pub up: Vec3,
     /// Perspective or orthographic.
     pub projection: Projection,
 }
 
-/// A camera that would show nothing.
+/// A camera with invalid parameters.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CameraError {
-    /// The view has no direction.
-    #[error("the camera's view direction {direction} has no length: look at a point other than the camera's own")]
+    /// The view direction is zero.
+    #[error("the camera's view direction {direction} has no length: choose a target other than the camera's position")]
     Direction {
-        /// What was given, or target less position.
+        /// The given direction, or target minus position.
         direction: DVec3,
     },
-    /// No side is up.
-    #[error("the camera's up vector {up} has no length: give one such as +Y, [0, 1, 0]")]
+    /// The up vector is zero.
+    #[error("the camera's up vector {up} has no length: choose one such as +Y, [0, 1, 0]")]
     Up {
-        /// What was given.
+        /// The given vector.
         up: DVec3,
     },
-    /// The angle is not that of a perspective view.
-    #[error("the camera's vertical angle of {vfov} degrees is not between 0 and 180: 40 to 60 is usual")]
+    /// The field of view is not valid for a perspective view.
+    #[error("the camera's vertical field of view of {vfov} degrees is not between 0 and 180: 40 to 60 is usual")]
     Angle {
-        /// What was given, degrees.
+        /// The given angle, degrees.
         vfov: f32,
     },
 }
 
 impl Camera {
-    /// A camera at `position` that looks at `target`, both in the local frame, with the full vertical angle `vfov` in degrees.
-    /// `up` shows upwards in the picture; it need not be at a right angle to the view. Where the view is parallel to it, the picture is
-    /// a plan or a view from below, and its upper edge is the scene's back: −Z, or +Y where `up` is ±Z.
+    /// A camera at `position` that looks at `target`, both in the local frame, with the full vertical field of view `vfov` in
+    /// degrees. `up` points upwards in the image; it need not be perpendicular to the view. If the view is parallel to it, the image
+    /// is a plan or a view from below, and its upper edge is the scene's back: −Z, or +Y if `up` is ±Z.
     ///
     /// ```
     /// use lightmesh_scene::{Camera, glam::Vec3};
@@ -88,16 +88,17 @@ impl Camera {
     ///
     /// # Errors
     ///
-    /// [`CameraError`] where `target` is the position itself, `up` has no length, or the angle is not between 0 and 180 degrees.
+    /// [`CameraError`] if `target` is the position itself, `up` has no length, or the field of view is not between 0 and 180
+    /// degrees.
     pub fn look_at(position: Vec3, target: Vec3, up: Vec3, vfov: f32) -> Result<Camera, CameraError> {
         Camera::look_to(position, target.as_dvec3() - position.as_dvec3(), up, vfov)
     }
 
-    /// [`Camera::look_at`] by the view direction, of any length, in single or double precision.
+    /// [`Camera::look_at`] with a view direction, of any length, in single or double precision.
     ///
     /// # Errors
     ///
-    /// [`CameraError`] where `direction` or `up` has no length, or the angle is not between 0 and 180 degrees.
+    /// [`CameraError`] if `direction` or `up` has no length, or the field of view is not between 0 and 180 degrees.
     pub fn look_to(
         position: Vec3,
         direction: impl Into<DVec3>,
@@ -119,17 +120,17 @@ impl Camera {
         })
     }
 
-    /// The same camera under a name.
+    /// The same camera with a name.
     pub fn named(self, name: impl Into<String>) -> Camera {
         Camera { name: name.into(), ..self }
     }
 
-    /// The same place and direction with another projection.
+    /// The same position and direction with another projection.
     pub fn with_projection(self, projection: Projection) -> Camera {
         Camera { projection, ..self }
     }
 
-    /// The same direction and projection from another place, in the local frame.
+    /// The same direction and projection from another position, in the local frame.
     pub fn with_position(self, position: Vec3) -> Camera {
         Camera { position, ..self }
     }
@@ -142,7 +143,8 @@ impl Camera {
     }
 }
 
-/// `up` at a right angle to the view; where they are parallel, the direction to the back of what stands upright. All of unit length.
+/// `up` made perpendicular to the view; if they are parallel, the direction towards the back of an upright scene. All of unit
+/// length.
 fn upper_edge(forward: DVec3, up: DVec3) -> DVec3 {
     const PARALLEL: f64 = 1e-6;
     let upright = |up: DVec3| {
@@ -191,7 +193,7 @@ mod tests {
         assert!(message(Vec3::NAN, Vec3::Y, 45.0).contains("view direction"));
         assert!(message(Vec3::X, Vec3::ZERO, 45.0).contains("up vector [0, 0, 0]"));
         for vfov in [0.0, -1.0, 180.0, f32::NAN] {
-            assert!(message(Vec3::X, Vec3::Y, vfov).contains(&format!("angle of {vfov} degrees")));
+            assert!(message(Vec3::X, Vec3::Y, vfov).contains(&format!("field of view of {vfov} degrees")));
         }
     }
 }

@@ -1,5 +1,5 @@
-//! A scene while it is read: everything in world coordinates and double precision, until the last triangle is known and the
-//! local frame can be chosen.
+//! A scene while it is being read: everything in world coordinates and double precision, until the last triangle is known and
+//! the local frame can be chosen.
 
 use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
@@ -15,14 +15,14 @@ use crate::{
     usable::{is_place, keep_finite, keep_placed},
 };
 
-/// Where a model goes in the scene, and what of it.
+/// The placement of a model in the scene, and which parts of it to use.
 #[derive(Clone, Debug)]
 pub(crate) struct Placement {
     /// From the model's coordinates to the world's.
     pub(crate) transform: DMat4,
     /// Replaces the model's own materials.
     pub(crate) material: Option<u32>,
-    /// Take the triangles alone: the scene around has lights and cameras of its own.
+    /// Use only the triangles: the surrounding scene has its own lights and cameras.
     pub(crate) part: bool,
 }
 
@@ -32,10 +32,10 @@ impl Default for Placement {
     }
 }
 
-/// Coordinates above this are taken for damage, like infinite ones: their squares must fit into `f32`.
+/// Coordinates above this are treated as damaged, like infinite ones: their squares must fit into `f32`.
 pub(crate) const LARGEST_COORDINATE: f64 = 1e18;
 
-/// Collects what a file holds; [`Draft::finish`] makes it a [`Scene`].
+/// Collects the content of a file; [`Draft::finish`] turns it into a [`Scene`].
 #[derive(Debug)]
 pub(crate) struct Draft {
     path: PathBuf,
@@ -44,9 +44,9 @@ pub(crate) struct Draft {
     unusable_triangles: usize,
     /// Triangles of parts without texture coordinates.
     without_uvs: Vec<Range<usize>>,
-    /// World position of each camera beside it; the camera's own is not looked at.
+    /// Each camera with its world position; the camera's own position is not used.
     pub(crate) cameras: Vec<(Camera, DVec3)>,
-    /// World position of each light beside it; the light's own is not looked at.
+    /// Each light with its world position; the light's own position is not used.
     pub(crate) lights: Vec<(Light, DVec3)>,
     pub(crate) materials: Vec<Material>,
     pub(crate) textures: Vec<Texture>,
@@ -78,11 +78,11 @@ impl Draft {
         }
     }
 
-    /// Makes room for what a file is going to add.
+    /// Reserves memory for what a file is going to add.
     ///
     /// # Errors
     ///
-    /// [`LoadError::TooLarge`] where that is more than indices can tell apart, [`LoadError::Memory`] where there is not so much.
+    /// [`LoadError::TooLarge`] if it exceeds 32-bit indices, [`LoadError::Memory`] if there is not enough memory.
     pub(crate) fn reserve(&mut self, room: &Room) -> Result<(), LoadError> {
         let limit = u32::MAX as usize;
         let vertices = self.builder.vertex_count().saturating_add(room.vertices);
@@ -97,8 +97,8 @@ impl Draft {
         }
     }
 
-    /// Adds placed triangles. Triangles with a vertex that is no number, or too far away to compute with, are left out and
-    /// counted in a warning.
+    /// Adds placed triangles. Triangles with a NaN vertex, or one too far away to compute with, are ignored and counted in a
+    /// warning.
     pub(crate) fn add<P: Position>(
         &mut self,
         part: MeshPart<P>,
@@ -116,7 +116,7 @@ impl Draft {
         Ok(())
     }
 
-    /// [`Draft::add`] of a mesh that is handed over.
+    /// [`Draft::add`] for a mesh passed by value.
     pub(crate) fn take<P: Position>(&mut self, mesh: LoadedMesh<P>, transform: &DMat4) -> Result<(), LoadError> {
         self.check_room(mesh.positions.len())?;
         let usable = usable_in(transform);
@@ -137,7 +137,7 @@ impl Draft {
         Ok(())
     }
 
-    /// [`Draft::add`] without the triangles that use a vertex that is not usable.
+    /// [`Draft::add`] without the triangles that use an unusable vertex.
     fn add_usable<P: Position>(
         &mut self,
         part: MeshPart<P>,
@@ -145,7 +145,7 @@ impl Draft {
         material: impl Fn(usize) -> u32,
         usable: impl Fn(&P) -> bool,
     ) {
-        // The vertices stay, so that indices stay, but as copies of a good one: they must not move the local frame.
+        // The vertices stay, so that indices stay valid, but as copies of a usable one: they must not move the local frame.
         let Some(&good) = part.positions.iter().find(|position| usable(position)) else {
             self.unusable_triangles += part.triangles.len();
             return;
@@ -161,7 +161,7 @@ impl Draft {
         self.note_uvs(part.triangles.len(), !part.uvs.is_empty());
     }
 
-    /// Remembers the triangles that were added last, where they have no texture coordinates.
+    /// Records the triangles that were added last, if they have no texture coordinates.
     fn note_uvs(&mut self, triangles: usize, has_uvs: bool) {
         if !has_uvs {
             let end = self.builder.triangle_count();
@@ -169,12 +169,12 @@ impl Draft {
         }
     }
 
-    /// The path of what `source`, one of the scene's files, calls `name`: relative to its own folder, with either kind of slash.
+    /// The path that `source`, one of the scene's files, refers to as `name`: relative to the file's own folder, with either
+    /// kind of slash.
     ///
     /// # Errors
     ///
-    /// [`LoadError::Outside`] where that is a URL or lies outside the folder of the file that was opened, unless the options
-    /// allow it.
+    /// [`LoadError::Outside`] if that is a URL or outside the folder of the file that was opened, unless the options allow it.
     pub(crate) fn path_beside(&self, source: &Path, name: &str) -> Result<PathBuf, LoadError> {
         let outside = || LoadError::Outside { place: Place::file(source).into(), name: name.to_owned() };
         let is_url =
@@ -193,17 +193,17 @@ impl Draft {
         if self.options.allow_outside || in_folder { Ok(path) } else { Err(outside()) }
     }
 
-    /// The local frame that the scene was written from, where its file says so: then it is read to the same `f32`.
+    /// Sets the local frame that the scene was written with, if its file records it: then it is read back to the same `f32`.
     pub(crate) fn prefer_origin(&mut self, origin: DVec3) {
         self.builder.prefer_origin(origin);
     }
 
-    /// World bounds of the vertices so far; `None` without any.
+    /// World bounds of the vertices so far; `None` if there are none.
     pub(crate) fn bounds(&self) -> Option<(DVec3, DVec3)> {
         self.builder.bounds()
     }
 
-    /// The material that triangles without one get: a matt grey one, added when first asked for.
+    /// The material for triangles without one: matt grey, added on first use.
     pub(crate) fn default_material(&mut self) -> u32 {
         let default = Material::default();
         let index = self.materials.iter().position(|material| *material == default).unwrap_or_else(|| {
@@ -213,15 +213,15 @@ impl Draft {
         index as u32
     }
 
-    /// Chooses the local frame and moves everything there.
+    /// Chooses the local frame and transforms everything to it.
     ///
     /// # Errors
     ///
-    /// [`LoadError::Warnings`] where the options are strict and there is something to warn of.
+    /// [`LoadError::Warnings`] if the options are strict and there are warnings.
     pub(crate) fn finish(mut self) -> Result<Scene, LoadError> {
         if self.unusable_triangles > 0 {
             self.warnings.push(format!(
-                "{} triangles with infinite, undefined or far too large coordinates were left out",
+                "{} triangles with infinite, undefined or far too large coordinates were ignored",
                 self.unusable_triangles
             ));
         }
@@ -254,7 +254,7 @@ impl Draft {
     }
 }
 
-/// Whether a vertex has a place once it is placed.
+/// Whether a vertex has usable coordinates after placement.
 fn usable_in<P: Position>(transform: &DMat4) -> impl Fn(&P) -> bool + use<'_, P> {
     |position| is_place(transform.transform_point3(position.to_double()))
 }
@@ -274,7 +274,7 @@ fn tidy(path: &Path) -> PathBuf {
     tidy
 }
 
-/// The light at another place.
+/// The light at another position.
 fn moved(mut light: Light, to: Vec3) -> Light {
     match &mut light.kind {
         LightKind::Point { position, .. }
@@ -327,6 +327,6 @@ mod tests {
     fn strict_reading_ends_at_a_warning() {
         let strict = LoadOptions { strict: true, ..Default::default() };
         let message = Draft::new(Path::new("a.obj"), &strict).finish().unwrap_err().to_string();
-        assert_eq!(message, "the scene has no triangles, a.obj; mend it, or read the scene less strictly");
+        assert_eq!(message, "the scene has no triangles, a.obj; fix this, or load the scene without strict checks");
     }
 }

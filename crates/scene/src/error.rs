@@ -1,11 +1,11 @@
-//! What can be wrong with a scene file, said so that its author can mend it.
+//! Errors in scene files, worded so that the author can fix them.
 
 use std::{fmt, io, path::Path, path::PathBuf};
 
-/// Where in a file something is wrong.
+/// The location of an error in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// The file, as it was named by the caller or by the file that refers to it.
+    /// The file, as named by the caller or by the file that refers to it.
     pub path: PathBuf,
     /// Line and column, both counted from 1; `None` in binary files.
     pub line: Option<(usize, usize)>,
@@ -22,7 +22,7 @@ impl Place {
         Place { path: path.to_owned(), line: Some((line, 1)) }
     }
 
-    /// The place of a byte in the text of a file.
+    /// The location of a byte in the text of a file.
     pub fn byte(path: &Path, text: &str, byte: usize) -> Place {
         let before = text.get(..byte).unwrap_or(text);
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -31,7 +31,7 @@ impl Place {
     }
 }
 
-/// `file:line`, or the file alone.
+/// `file:line`, or only the file.
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self.line {
@@ -41,43 +41,43 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why a scene could not be read. One line each: what is wrong, where, and what to do. Places are boxed to keep results small.
+/// Why a scene could not be read. One line each: the problem, the location, and the remedy. Places are boxed to keep results small.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// The file system refused.
-    #[error("cannot read the file ({cause}), {}; check that it exists and may be read", path.display())]
+    /// The file system returned an error.
+    #[error("cannot read the file ({cause}), {}; check that it exists and is readable", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// The system's reason.
+        /// The system's error.
         cause: io::Error,
     },
-    /// A folder, a pipe or a device.
-    #[error("this is not a regular file, {}; name a file", path.display())]
+    /// The path names a folder, a pipe or a device.
+    #[error("this is not a regular file, {}; specify a file", path.display())]
     NoFile {
-        /// What was named.
+        /// The path.
         path: PathBuf,
     },
-    /// The name's ending is not that of a known format.
-    #[error("`.{extension}` is not a format that can be read, {}; known are {}, and builtin:NAME", path.display(), known.join(", "))]
+    /// The file extension is not that of a supported format.
+    #[error("`.{extension}` is not a supported scene format, {}; supported: {}, and builtin:NAME", path.display(), known.join(", "))]
     UnknownFormat {
         /// The file.
         path: PathBuf,
-        /// Its ending without the dot; may be empty.
+        /// The extension without the dot; may be empty.
         extension: String,
-        /// Endings that can be read.
+        /// Supported extensions.
         known: Vec<String>,
     },
     /// No built-in scene has this name.
-    #[error("there is no built-in scene `{name}`, builtin:{name}; known are {}", known.join(", "))]
+    #[error("there is no built-in scene `{name}`, builtin:{name}; available: {}", known.join(", "))]
     UnknownBuiltin {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// All names.
         known: Vec<String>,
     },
-    /// A built-in scene does not take this parameter or this value.
+    /// A built-in scene does not accept this parameter or this value.
     #[error("{problem}, builtin:{name}?{parameter}={value}; {remedy}")]
     BuiltinParameter {
         /// Name of the scene.
@@ -86,61 +86,61 @@ pub enum LoadError {
         parameter: String,
         /// Text after the `=`.
         value: String,
-        /// What is wrong.
+        /// The problem.
         problem: String,
-        /// What to write instead.
+        /// The remedy.
         remedy: String,
     },
     /// The text does not follow the format's grammar or types.
     #[error("{problem}, {place}; {remedy}")]
     Syntax {
-        /// Where.
+        /// The location.
         place: Box<Place>,
-        /// What is wrong.
+        /// The problem.
         problem: String,
-        /// What to do.
+        /// The remedy.
         remedy: String,
     },
-    /// A key that the table does not have.
+    /// A key that does not exist in the table.
     #[error("unknown key `{key}`, {place}; {}", suggestion(key, known))]
     UnknownKey {
-        /// Where.
+        /// The location.
         place: Box<Place>,
         /// The key.
         key: String,
         /// All keys of the table.
         known: Vec<String>,
     },
-    /// A key that must be there is not.
+    /// A required key is missing.
     #[error("key `{key}` is missing, {place}; {remedy}")]
     MissingKey {
-        /// The table that lacks it.
+        /// The table without the key.
         place: Box<Place>,
-        /// The key, or keys, that would do.
+        /// The key, or the alternative keys.
         key: String,
-        /// What to write.
+        /// The remedy.
         remedy: String,
     },
-    /// A value that cannot be used.
+    /// An invalid value.
     #[error("{key} = {value} {problem}, {place}; {remedy}")]
     Value {
-        /// Where.
+        /// The location.
         place: Box<Place>,
         /// The key.
         key: String,
         /// The value, as text.
         value: String,
-        /// What is wrong with it, as a predicate: "is not above 0".
+        /// The problem as a predicate: "is not positive".
         problem: String,
-        /// What to write instead.
+        /// The remedy.
         remedy: String,
     },
-    /// A reference to something that is not there.
+    /// A reference to something that does not exist.
     #[error("there is no {kind} named `{name}`, {place}; {}", suggestion(name, known))]
     UnknownName {
-        /// Where.
+        /// The location.
         place: Box<Place>,
-        /// What is referred to: "material", "camera".
+        /// The kind of object referred to: "material", "camera".
         kind: &'static str,
         /// The name.
         name: String,
@@ -150,64 +150,64 @@ pub enum LoadError {
     /// A file that contradicts itself or its format.
     #[error("{problem}, {place}; {remedy}")]
     Malformed {
-        /// Where.
+        /// The location.
         place: Box<Place>,
-        /// What is wrong.
+        /// The problem.
         problem: String,
-        /// What to do.
+        /// The remedy.
         remedy: String,
     },
-    /// The file cannot be shown without an extension of its format that is not known here.
-    #[error("the file requires the extension {extension}, {}; export it again without (known: {})", path.display(), known.join(", "))]
+    /// The file requires an extension of its format that is not supported.
+    #[error("the file requires the extension {extension}, {}; export it again without it (supported: {})", path.display(), known.join(", "))]
     UnsupportedExtension {
         /// The file.
         path: PathBuf,
         /// Name of the extension.
         extension: String,
-        /// Extensions that are known.
+        /// Supported extensions.
         known: Vec<String>,
     },
-    /// A reference that leads out of the scene's folder.
-    #[error("`{name}` lies outside the scene's folder, {place}; move it there, or allow references to lead outside")]
+    /// A reference to a file outside the scene's folder.
+    #[error("`{name}` lies outside the scene's folder, {place}; move it there, or allow references outside")]
     Outside {
-        /// The file that refers to it.
+        /// The file that contains the reference.
         place: Box<Place>,
         /// The reference.
         name: String,
     },
-    /// Something to warn of, where warnings count as errors.
-    #[error("{}, {}; mend it, or read the scene less strictly", warnings.join("; "), path.display())]
+    /// There were warnings, and warnings are treated as errors.
+    #[error("{}, {}; fix this, or load the scene without strict checks", warnings.join("; "), path.display())]
     Warnings {
         /// The file.
         path: PathBuf,
         /// All warnings.
         warnings: Vec<String>,
     },
-    /// More than there is memory for.
-    #[error("there is no memory for {vertices} vertices and {triangles} triangles, {}; split the scene or thin it out", path.display())]
+    /// Not enough memory.
+    #[error("there is not enough memory for {vertices} vertices and {triangles} triangles, {}; split or simplify the scene", path.display())]
     Memory {
-        /// The file that is opened.
+        /// The file being opened.
         path: PathBuf,
-        /// Vertices, every use of a mesh counted.
+        /// Number of vertices, counting every use of a mesh.
         vertices: usize,
-        /// Triangles, every use of a mesh counted.
+        /// Number of triangles, counting every use of a mesh.
         triangles: usize,
     },
-    /// More vertices or triangles than 32-bit indices can tell apart.
-    #[error("the scene has more than {} vertices or triangles, {}; split it or thin it out", u32::MAX, path.display())]
+    /// More vertices or triangles than 32-bit indices can address.
+    #[error("the scene has more than {} vertices or triangles, {}; split or simplify it", u32::MAX, path.display())]
     TooLarge {
-        /// The file that went over the limit.
+        /// The file that exceeded the limit.
         path: PathBuf,
     },
 }
 
-/// The nearest known name, or all of them: the remedy for a misspelt one.
+/// The nearest known name, or all of them: the remedy for a misspelt name.
 fn suggestion(name: &str, known: &[String]) -> String {
     let similarity = |candidate: &&String| (1e6 * strsim::jaro_winkler(name, candidate)) as u32;
     match known.iter().max_by_key(similarity).filter(|best| similarity(best) > 800_000) {
-        _ if known.is_empty() => "there are none: define it first, or leave the reference out".to_owned(),
-        Some(best) => format!("did you mean `{best}`? Known are {}", known.join(", ")),
-        None => format!("known are {}", known.join(", ")),
+        _ if known.is_empty() => "there are none: define it first, or remove the reference".to_owned(),
+        Some(best) => format!("did you mean `{best}`? Available: {}", known.join(", ")),
+        None => format!("available: {}", known.join(", ")),
     }
 }
 
@@ -229,13 +229,13 @@ mod tests {
     fn a_misspelt_key_is_answered_with_the_nearest() {
         let place = Place::line(Path::new("room.toml"), 7);
         let error = LoadError::UnknownKey { place: place.into(), key: "raduis".into(), known: known() };
-        let message = "unknown key `raduis`, room.toml:7; did you mean `radius`? Known are center, material, radius";
+        let message = "unknown key `raduis`, room.toml:7; did you mean `radius`? Available: center, material, radius";
         assert_eq!(error.to_string(), message);
     }
 
     #[test]
     fn a_far_fetched_name_is_answered_with_all() {
-        assert_eq!(suggestion("xyz", &known()), "known are center, material, radius");
+        assert_eq!(suggestion("xyz", &known()), "available: center, material, radius");
         assert!(suggestion("xyz", &[]).contains("define it"));
     }
 }

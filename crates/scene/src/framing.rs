@@ -1,4 +1,4 @@
-//! Cameras and lights for scenes that bring none, and cameras by name.
+//! Cameras and lights for scenes without any, and cameras by name.
 
 use glam::Vec3;
 
@@ -8,11 +8,11 @@ use crate::{Bounds, Camera, Fov, Light, Projection, Scene, Up};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no camera named `{name}`, scene {scene}; {}", match known.is_empty() {
     true => "it has no named cameras: give a position and a target instead".to_owned(),
-    false => format!("known are {}", known.join(", ")),
+    false => format!("available: {}", known.join(", ")),
 })]
 #[non_exhaustive]
 pub struct UnknownCamera {
-    /// The name asked for.
+    /// The requested name.
     pub name: String,
     /// The scene.
     pub scene: String,
@@ -20,16 +20,16 @@ pub struct UnknownCamera {
     pub known: Vec<String>,
 }
 
-/// Vertical angle of the camera that frames a scene, degrees.
+/// Vertical field of view of the camera that frames a scene, degrees.
 const VFOV: f32 = 40.0;
 
-/// Share of the picture's half height that the framed scene fills.
+/// Share of the image's half height that the framed scene fills.
 const FILL: f32 = 0.92;
 
-/// Where the framing camera stands, seen from the middle of the scene: to the right, above and in front.
+/// Position of the framing camera relative to the scene's centre: to the right, above and in front.
 const VIEW: [f32; 3] = [0.55, 0.45, 1.0];
 
-/// Radius over which area mode strews these lights, as a share of the scene's diagonal.
+/// Radius over which area mode distributes these lights, as a share of the scene's diagonal.
 const DEFAULT_LIGHT_SPREAD: f32 = 0.02;
 
 /// Strength of the fill light; that of the key light is 1.
@@ -46,8 +46,8 @@ pub struct Added {
 }
 
 impl Scene {
-    /// Makes the scene one that can be looked at: adds [`Scene::default_camera`] where it has no camera, and
-    /// [`Scene::default_lights`], placed about its first camera, where it has no light. Says what was added.
+    /// Completes the scene so that it can be rendered: adds [`Scene::default_camera`] if it has no camera, and
+    /// [`Scene::default_lights`], placed relative to its first camera, if it has no light. Returns what was added.
     pub fn complete(&mut self, up: Up) -> Added {
         let added = Added { camera: self.cameras.is_empty(), lights: self.lights.is_empty() };
         if added.camera {
@@ -60,7 +60,7 @@ impl Scene {
         added
     }
 
-    /// A camera that shows the whole scene from the front, the right and above, for square pictures and wider ones.
+    /// A camera that shows the whole scene from the front, the right and above, for square images and wider ones.
     pub fn default_camera(&self, up: Up) -> Camera {
         let bounds = framed(self.geometry.mesh.bounds());
         let (right, front) = sides(up);
@@ -76,8 +76,8 @@ impl Scene {
         camera
     }
 
-    /// Two white point lights without falloff. The key light stands above and beside the camera's eye, so that shadows fall away from
-    /// the viewer and to the side; the fill light, weaker and lower, on its other side, so that they are not black.
+    /// Two white point lights without falloff. The key light is above and to the side of the camera's eye, so that shadows fall away
+    /// from the viewer and to the side; the fill light, weaker and lower, is on the other side, so that they are not black.
     pub fn default_lights(&self, camera: &Camera) -> [Light; 2] {
         let bounds = framed(self.geometry.mesh.bounds());
         let (right, up, _) = camera.basis();
@@ -94,7 +94,7 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`UnknownCamera`] lists the names that there are.
+    /// [`UnknownCamera`] lists the available names.
     pub fn camera(&self, name: &str) -> Result<&Camera, UnknownCamera> {
         self.cameras.iter().find(|camera| camera.name == name).ok_or_else(|| UnknownCamera {
             name: name.to_owned(),
@@ -104,7 +104,7 @@ impl Scene {
     }
 }
 
-/// Right and towards the viewer, for someone who looks at the front of a model.
+/// The directions right and towards the viewer, for a viewer in front of a model.
 fn sides(up: Up) -> (Vec3, Vec3) {
     match up {
         Up::Y => (Vec3::X, Vec3::Z),
@@ -112,7 +112,7 @@ fn sides(up: Up) -> (Vec3, Vec3) {
     }
 }
 
-/// How far from the box's middle the camera must stand so that all eight corners lie in a square picture.
+/// The distance from the box's centre at which all eight corners fit in a square image.
 fn distance(bounds: &Bounds, camera: &Camera) -> f32 {
     let (right, up, forward) = camera.basis();
     let tangent = FILL * (0.5 * VFOV).to_radians().tan();
@@ -121,7 +121,7 @@ fn distance(bounds: &Bounds, camera: &Camera) -> f32 {
     (0..8).map(corner).map(|p| p.dot(right).abs().max(p.dot(up).abs()) / tangent - p.dot(forward)).fold(0.0, f32::max)
 }
 
-/// The box to frame: a unit cube where the scene is empty or a single point.
+/// The box to frame: a unit cube if the scene is empty or a single point.
 fn framed(bounds: Bounds) -> Bounds {
     let center = if bounds.is_empty() { Vec3::ZERO } else { bounds.center() };
     if bounds.diagonal() > 0.0 { bounds } else { Bounds { min: center - 0.5, max: center + 0.5 } }
@@ -139,7 +139,7 @@ mod tests {
         scene
     }
 
-    /// Furthest corner from the picture's middle in half heights.
+    /// Furthest corner from the image's centre in half heights.
     fn extent_in_picture(bounds: &Bounds, camera: &Camera) -> f32 {
         let (right, up, forward) = camera.basis();
         let tangent = (0.5 * VFOV).to_radians().tan();
@@ -197,7 +197,7 @@ mod tests {
         assert_eq!(bare.complete(Up::Z), Added { camera: true, lights: true });
         assert_eq!((bare.cameras.as_slice(), bare.lights.as_slice()), (&[bare.default_camera(Up::Z)][..], &lit[..]));
         assert_eq!(bare.complete(Up::Y), Added::default());
-        // What is there stays, and lights stand about the first camera.
+        // Existing content stays, and lights are placed relative to the first camera.
         let camera = Camera::look_at(Vec3::new(0.0, 0.0, 9.0), Vec3::ZERO, Vec3::Y, 30.0).unwrap();
         bare.cameras = vec![camera.clone(), bare.default_camera(Up::Y)];
         bare.lights.clear();
@@ -211,7 +211,7 @@ mod tests {
         let message = |scene: &Scene| scene.camera("top").unwrap_err().to_string();
         assert!(message(&scene).contains("no named cameras"));
         scene.cameras.push(Camera { name: "front".into(), ..scene.default_camera(Up::Y) });
-        assert_eq!(message(&scene), "there is no camera named `top`, scene test; known are front");
+        assert_eq!(message(&scene), "there is no camera named `top`, scene test; available: front");
         assert_eq!(scene.camera("front").unwrap().name, "front");
     }
 }

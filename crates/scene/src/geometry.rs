@@ -1,18 +1,18 @@
-//! What rays can hit: triangles with their materials and textures.
+//! The surfaces that rays can hit: triangles with their materials and textures.
 
 use glam::{DVec3, Vec3};
 
 use crate::{Material, Mesh, Texture};
 
-/// The surfaces of a scene, in one local frame. [`Scene`](crate::Scene) shares it behind an `Arc`: whoever moves a light or a camera
-/// leaves it as it is, and what a renderer has built over it stays valid.
+/// The surfaces of a scene, in one local frame. [`Scene`](crate::Scene) shares them behind an `Arc`: moving a light or a camera does
+/// not change them, and what a renderer has built over them stays valid.
 #[derive(Clone, Debug, Default)]
 pub struct Geometry {
-    /// World position of the local frame's zero. All `f32` positions, those of lights and cameras too, are relative to it.
+    /// World position of the local frame's origin. All `f32` positions, including those of lights and cameras, are relative to it.
     pub origin: DVec3,
     /// The triangles.
     pub mesh: Mesh,
-    /// Materials, at least one where there are triangles.
+    /// Materials, at least one if there are triangles.
     pub materials: Vec<Material>,
     /// Textures of the materials.
     pub textures: Vec<Texture>,

@@ -1,15 +1,15 @@
-//! Whether geometry holds together: every index leads somewhere, and lists that belong together have one length. Loaders see to it;
-//! geometry put together by hand is checked here, when it is added and when it is prepared for rays.
+//! Consistency checks of geometry: every index is in range, and lists that belong together have the same length. Loaders guarantee
+//! this; geometry built by hand is checked here, when it is added and when it is prepared for ray tracing.
 
 use rayon::prelude::*;
 
 use crate::{Geometry, MeshPart};
 
-/// Geometry that does not hold together.
+/// Inconsistent geometry.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GeometryError {
-    /// A triangle has a corner that is not there.
+    /// A triangle refers to a vertex that does not exist.
     #[error(
         "triangle {triangle} has the vertex index {index}, but there are {vertices} vertices: indices count from 0"
     )]
@@ -21,25 +21,25 @@ pub enum GeometryError {
         /// Number of vertices.
         vertices: usize,
     },
-    /// An attribute has not one value a vertex.
-    #[error("there are {found} {attribute} for {vertices} vertices: give one a vertex, or none at all")]
+    /// An attribute does not have one value per vertex.
+    #[error("there are {found} {attribute} for {vertices} vertices: give one per vertex, or none at all")]
     Attribute {
         /// `normals`, `uvs` or `colors`.
         attribute: &'static str,
-        /// How many there are.
+        /// Number of values.
         found: usize,
         /// Number of vertices.
         vertices: usize,
     },
-    /// The list of materials by triangle has another length than that of triangles.
-    #[error("there are {found} material indices for {triangles} triangles: give one a triangle")]
+    /// The list of materials by triangle does not have one entry per triangle.
+    #[error("there are {found} material indices for {triangles} triangles: give one per triangle")]
     MaterialCount {
-        /// How many there are.
+        /// Number of entries.
         found: usize,
         /// Number of triangles.
         triangles: usize,
     },
-    /// A triangle has a material that is not there.
+    /// A triangle refers to a material that does not exist.
     #[error("triangle {triangle} has the material {index}, but there are {materials} materials: indices count from 0")]
     Material {
         /// Number of the triangle.
@@ -49,8 +49,8 @@ pub enum GeometryError {
         /// Number of materials.
         materials: usize,
     },
-    /// More than 32-bit indices can tell apart.
-    #[error("{vertices} vertices and {triangles} triangles are more than 32-bit indices tell apart: split the scene")]
+    /// More vertices or triangles than 32-bit indices can address.
+    #[error("{vertices} vertices and {triangles} triangles are too many for 32-bit indices: split the scene")]
     TooLarge {
         /// Number of vertices.
         vertices: usize,
@@ -60,12 +60,12 @@ pub enum GeometryError {
 }
 
 impl Geometry {
-    /// Checks that every index of a vertex or material leads somewhere and all lengths fit. A texture that is not there, or not whole,
-    /// is no error: it counts as none. In parallel, and short beside anything that is done with geometry.
+    /// Checks that every vertex and material index is in range and all lengths match. A missing or incomplete texture is not an error:
+    /// it counts as none. Runs in parallel, and takes little time compared with anything that is done with geometry.
     ///
     /// # Errors
     ///
-    /// The first [`GeometryError`] that there is.
+    /// The first [`GeometryError`].
     pub fn check(&self) -> Result<(), GeometryError> {
         let mesh = &self.mesh;
         let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
@@ -84,7 +84,7 @@ impl Geometry {
 }
 
 impl<P> MeshPart<'_, P> {
-    /// Checks that every index leads somewhere and all lengths fit.
+    /// Checks that every index is in range and all lengths match.
     pub(crate) fn check(&self) -> Result<(), GeometryError> {
         let vertices = self.positions.len();
         check_attributes(vertices, self.normals.len(), self.uvs.len(), self.colors.len())?;
@@ -92,7 +92,7 @@ impl<P> MeshPart<'_, P> {
     }
 }
 
-/// Fails where numbers of vertices or triangles do not fit 32 bits.
+/// Fails if the numbers of vertices or triangles do not fit in 32 bits.
 pub(crate) fn check_room(vertices: usize, triangles: usize) -> Result<(), GeometryError> {
     let limit = u32::MAX as usize;
     if vertices > limit || triangles > limit {
@@ -118,9 +118,9 @@ fn check_triangles(triangles: &[[u32; 3]], vertices: usize) -> Result<(), Geomet
     }
 }
 
-/// The place of the first index that is not below `count`.
+/// The position of the first index that is not below `count`.
 fn first_beyond(indices: &[u32], count: usize) -> Option<usize> {
-    /// Indices that a thread looks at in one go, without a branch among them.
+    /// Number of indices that a thread checks at once, without branching between them.
     const RUN: usize = 1 << 14;
     let beyond = |index: u32| index as usize >= count;
     let runs = indices.par_chunks(RUN).enumerate();
@@ -166,7 +166,7 @@ mod tests {
     #[test]
     fn lengths_that_do_not_fit_are_named() {
         let normals = message(|geometry| geometry.mesh.normals = vec![Vec3::X; 3]);
-        assert_eq!(normals, "there are 3 normals for 4 vertices: give one a vertex, or none at all");
+        assert_eq!(normals, "there are 3 normals for 4 vertices: give one per vertex, or none at all");
         assert!(message(|geometry| geometry.mesh.uvs = vec![Vec2::X; 5]).contains("5 uvs for 4"));
         assert!(message(|geometry| geometry.mesh.colors = vec![Vec3::X]).contains("1 colors for 4"));
         assert!(message(|geometry| geometry.mesh.materials.truncate(1)).contains("1 material indices for 2"));

@@ -1,4 +1,4 @@
-//! What is in a scene: the answer to `lightmesh info`, for people and, through serde, for programs.
+//! The content of a scene: the output of `lightmesh info`, for people and, through serde, for programs.
 
 use std::fmt;
 
@@ -6,13 +6,13 @@ use serde::Serialize;
 
 use crate::{Camera, Fov, Light, LightKind, Projection, Scene, UpInfo};
 
-/// A scene in figures. World coordinates, scene units and degrees.
+/// A summary of a scene. World coordinates, scene units and degrees.
 #[derive(Clone, Debug, Serialize, PartialEq)]
 #[non_exhaustive]
 pub struct SceneInfo {
     /// Number of triangles.
     pub triangles: usize,
-    /// Box around all triangles; `None` without any.
+    /// Box around all triangles; `None` if there are none.
     pub bounds: Option<BoundsInfo>,
     /// Lights in the file's order.
     pub lights: Vec<LightInfo>,
@@ -22,9 +22,9 @@ pub struct SceneInfo {
     pub materials: usize,
     /// Number of textures.
     pub textures: usize,
-    /// Which way is up; `None` where neither cameras nor shape tell.
+    /// The up axis; `None` if neither cameras nor shape indicate it.
     pub up: Option<UpInfo>,
-    /// What was mended, left out or guessed.
+    /// What was corrected, ignored or guessed.
     pub warnings: Vec<String>,
 }
 
@@ -37,7 +37,7 @@ pub struct BoundsInfo {
     pub max: [f64; 3],
 }
 
-/// A light. Fields that its kind does not have are `None`; of those only `position` and `direction` are written then.
+/// A light. Fields that its kind does not have are `None`; of those only `position` and `direction` are then serialised.
 #[derive(Clone, Debug, Serialize, PartialEq)]
 #[non_exhaustive]
 pub struct LightInfo {
@@ -46,9 +46,9 @@ pub struct LightInfo {
     /// Name in the file.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub name: String,
-    /// Its middle; `None` for a directional light.
+    /// Its centre; `None` for a directional light.
     pub position: Option<[f64; 3]>,
-    /// The way it shines, or the axis of a disk or rectangle; `None` for a point or sphere.
+    /// The direction in which it shines, or the axis of a disk or rectangle; `None` for a point or sphere.
     pub direction: Option<[f64; 3]>,
     /// Red, green and blue.
     pub intensity: [f64; 3],
@@ -57,7 +57,7 @@ pub struct LightInfo {
     /// Of a sphere or disk.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
-    /// Of a point light that area mode strews over a ball: its radius.
+    /// Of a point light that area mode distributes over a ball: its radius.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spread: Option<f64>,
     /// Of a rectangle: its edges.
@@ -79,23 +79,23 @@ pub struct CameraInfo {
     pub name: String,
     /// The eye.
     pub position: [f64; 3],
-    /// The way it looks.
+    /// Viewing direction.
     pub direction: [f64; 3],
-    /// Its upper side.
+    /// Up vector.
     pub up: [f64; 3],
-    /// Full vertical angle, degrees (of a camera with a horizontal angle: in a square picture); `None`, written as null, for an
-    /// orthographic one.
+    /// Full vertical field of view, degrees (for a camera with a horizontal field of view: in a square image); `None`, written
+    /// as null, for an orthographic camera.
     pub vfov: Option<f64>,
-    /// Full horizontal angle, degrees, where that is the one that is fixed.
+    /// Full horizontal field of view, degrees, if that is the one that is fixed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hfov: Option<f64>,
-    /// Height of an orthographic picture.
+    /// Height of an orthographic image.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub height: Option<f64>,
 }
 
 impl Scene {
-    /// The scene in figures.
+    /// The summary of the scene.
     pub fn info(&self) -> SceneInfo {
         let bounds = self.geometry.mesh.bounds();
         let world = |local| self.to_world(local).to_array();
@@ -164,7 +164,7 @@ fn camera_info(scene: &Scene, camera: &Camera) -> CameraInfo {
     }
 }
 
-/// The `f64` with the fewest digits that is this `f32`: 0.1 stays 0.1.
+/// The `f64` with the fewest digits that rounds to this `f32`: 0.1 stays 0.1.
 pub(crate) fn shortest(number: f32) -> f64 {
     number.to_string().parse().unwrap_or(f64::from(number))
 }
@@ -230,7 +230,7 @@ fn triple(vector: &[f64; 3]) -> String {
     vector.map(|number| rounded(number).to_string()).join(" ")
 }
 
-/// Six significant digits after the point at most, enough to recognise a value.
+/// At most six decimals, enough to recognise a value.
 fn rounded(number: f64) -> f64 {
     (number * 1e6).round() / 1e6
 }
@@ -281,7 +281,7 @@ mod tests {
             ],
             "materials": 0,
             "textures": 0,
-            "up": {"axis": "y", "reason": "its cameras stand that way"},
+            "up": {"axis": "y", "reason": "its cameras are oriented that way"},
             "warnings": [],
         });
         assert_eq!(json, expected);
@@ -292,7 +292,10 @@ mod tests {
         let text = scene().info().to_string();
         assert!(text.contains("light   point, at 1000 0 1, intensity 0.1 0.1 0.1, falloff none"), "{text}");
         assert!(text.contains("camera  `main` at 1000 0 1, along 0 0 -1, vfov 50°"), "{text}");
-        assert!(text.contains("0 materials\n") && text.contains("up      y: its cameras stand that way"), "{text}");
+        assert!(
+            text.contains("0 materials\n") && text.contains("up      y: its cameras are oriented that way"),
+            "{text}"
+        );
     }
 
     #[test]

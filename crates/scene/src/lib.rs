@@ -1,13 +1,12 @@
-//! What a scene is, and how one is read. No rendering happens here.
+//! The scene model, and how scenes are read. No rendering happens here.
 //!
 //! A [`Scene`] is what every loader and generator returns: [`Geometry`] (opaque triangles with materials and textures), [`Lights`] and
-//! cameras, all in one coordinate frame. One file format lives in one module under `formats`, and
-//! each ends in `-> Scene`.
+//! cameras, all in one coordinate frame. Each file format is one module under `formats`, and each ends in `-> Scene`.
 //!
 //! # Coordinates
 //!
-//! Right-handed. Files are read in double precision and stored as `f32` relative to [`Geometry::origin`], a point near the
-//! geometry: a scene that lies a hundred kilometres from the world's origin keeps the precision that it has at home.
+//! Right-handed. Files are read in double precision and stored as `f32` relative to [`Geometry::origin`], a point near the geometry: a
+//! scene a hundred kilometres from the world's origin keeps the precision that it would have at the origin.
 #![warn(missing_docs)]
 
 mod builder;
@@ -36,7 +35,7 @@ mod up;
 mod usable;
 mod vertices;
 
-/// The vectors and matrices of this crate's types.
+/// The vector and matrix types of this crate's API.
 pub use glam;
 
 pub use builder::SceneBuilder;

@@ -1,4 +1,4 @@
-//! Lights: where they are, how large they are, and how their strength is meant.
+//! Lights: their position, their size, and the unit of their strength.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -6,10 +6,10 @@ use glam::Vec3;
 
 use crate::parse_by_name;
 
-/// What distance does to a light, and with it the unit of [`Light::intensity`].
+/// How distance attenuates a light, and with it the unit of [`Light::intensity`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Falloff {
-    /// The thesis' lights: intensity 1 lights a white surface that faces it fully, at any distance.
+    /// The thesis's lights: intensity 1 fully lights a white surface that faces it, at any distance.
     #[default]
     None,
     /// Photometric: candela (lux for a directional light), so that a white diffuse surface facing it at distance d shows
@@ -18,10 +18,10 @@ pub enum Falloff {
 }
 
 impl Falloff {
-    /// All of them.
+    /// All falloffs.
     pub const ALL: &'static [Falloff] = &[Falloff::None, Falloff::InverseSquare];
 
-    /// The word for it.
+    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Falloff::None => "none",
@@ -29,7 +29,7 @@ impl Falloff {
         }
     }
 
-    /// What distance does, in a few words.
+    /// A short description.
     pub fn help(self) -> &'static str {
         match self {
             Falloff::None => "Nothing, as in the thesis",
@@ -45,10 +45,10 @@ parse_by_name!(Falloff, "falloff");
 pub enum LightKind {
     /// Light from one point.
     Point {
-        /// Where it is.
+        /// Its position.
         position: Vec3,
-        /// The thesis' area shadows replace each point light by many near it: they are strewn in a sphere of this radius.
-        /// Every other mode takes the point alone. 0: a point in every mode.
+        /// For area shadows the thesis replaces each point light by many near it: they are distributed in a sphere of this radius.
+        /// Every other mode uses the point alone. 0: a point in every mode.
         spread: f32,
     },
     /// Parallel light from infinity.
@@ -56,9 +56,9 @@ pub enum LightKind {
         /// The way the light travels; unit length.
         direction: Vec3,
     },
-    /// A point light with a cone; between the two angles it fades to nothing.
+    /// A point light with a cone; between the two angles it fades to zero.
     Spot {
-        /// Where it is.
+        /// Its position.
         position: Vec3,
         /// The axis of the cone, away from the light; unit length.
         direction: Vec3,
@@ -74,7 +74,7 @@ pub enum LightKind {
         /// Its radius, above 0.
         radius: f32,
     },
-    /// A flat round light. It shines to both sides, alike in all directions, as the many point lights would that it stands for.
+    /// A flat round light. It emits to both sides, equally in all directions, like the many point lights that it represents.
     Disk {
         /// Its centre.
         position: Vec3,
@@ -83,7 +83,7 @@ pub enum LightKind {
         /// Its radius, above 0.
         radius: f32,
     },
-    /// A flat rectangular light, shining as [`LightKind::Disk`] does.
+    /// A flat rectangular light that emits like [`LightKind::Disk`].
     Rectangle {
         /// Its centre.
         position: Vec3,
@@ -98,28 +98,28 @@ pub enum LightKind {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Light {
-    /// Name in the file; empty where it has none.
+    /// Name in the file; empty if it has none.
     pub name: String,
-    /// Shape and place.
+    /// Shape and position.
     pub kind: LightKind,
-    /// Red, green and blue strength in the unit that `falloff` says; the total of the whole light, whatever its size.
+    /// Red, green and blue strength in the unit defined by `falloff`; the total of the whole light, whatever its size.
     pub intensity: Vec3,
-    /// What distance does to it.
+    /// How distance attenuates it.
     pub falloff: Falloff,
 }
 
-/// A light whose shape has no sense.
+/// A light with an invalid shape.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("a {kind} light cannot have the {what} {value}: {remedy}")]
 #[non_exhaustive]
 pub struct LightError {
-    /// The word for the light's shape.
+    /// The name of the light's shape.
     pub kind: &'static str,
-    /// The part of it that is wrong.
+    /// The invalid part.
     pub what: &'static str,
-    /// What was given.
+    /// The given value.
     pub value: String,
-    /// What to give instead.
+    /// What to use instead.
     pub remedy: &'static str,
 }
 
@@ -142,18 +142,18 @@ impl Light {
     ///
     /// # Errors
     ///
-    /// [`LightError`] where `direction` has no length.
+    /// [`LightError`] if `direction` has no length.
     pub fn directional(direction: Vec3) -> Result<Light, LightError> {
         let direction = unit("directional", "direction", direction)?;
         Ok(Light::new(LightKind::Directional { direction }))
     }
 
-    /// A point light with a cone around `direction`, of any length: full strength up to the half-angle `inner`, nothing beyond `outer`,
+    /// A point light with a cone around `direction`, of any length: full strength up to the half-angle `inner`, zero beyond `outer`,
     /// radians.
     ///
     /// # Errors
     ///
-    /// [`LightError`] where `direction` has no length, or not 0 ≤ `inner` ≤ `outer` ≤ π/2 and `outer` > 0.
+    /// [`LightError`] if `direction` has no length, or not 0 ≤ `inner` ≤ `outer` ≤ π/2 and `outer` > 0.
     pub fn spot(position: Vec3, direction: Vec3, inner: f32, outer: f32) -> Result<Light, LightError> {
         let direction = unit("spot", "direction", direction)?;
         if !(0.0 <= inner && inner <= outer && 0.0 < outer && outer <= FRAC_PI_2) {
@@ -167,7 +167,7 @@ impl Light {
     ///
     /// # Errors
     ///
-    /// [`LightError`] where `radius` is not above 0.
+    /// [`LightError`] if `radius` is not above 0.
     pub fn sphere(position: Vec3, radius: f32) -> Result<Light, LightError> {
         let radius = size("sphere", radius)?;
         Ok(Light::new(LightKind::Sphere { position, radius }))
@@ -177,19 +177,19 @@ impl Light {
     ///
     /// # Errors
     ///
-    /// [`LightError`] where `normal` has no length, or `radius` is not above 0.
+    /// [`LightError`] if `normal` has no length, or `radius` is not above 0.
     pub fn disk(position: Vec3, normal: Vec3, radius: f32) -> Result<Light, LightError> {
         let (normal, radius) = (unit("disk", "normal", normal)?, size("disk", radius)?);
         Ok(Light::new(LightKind::Disk { position, normal, radius }))
     }
 
-    /// A flat rectangular light: `half_u` and `half_v` lead from its centre to the middles of two neighbouring sides.
+    /// A flat rectangular light: `half_u` and `half_v` point from its centre to the middles of two adjacent sides.
     ///
     /// # Errors
     ///
-    /// [`LightError`] where they are not at a right angle, or span no area.
+    /// [`LightError`] if they are not perpendicular, or span no area.
     pub fn rectangle(position: Vec3, half_u: Vec3, half_v: Vec3) -> Result<Light, LightError> {
-        /// Cosine of the angle between the sides, from which on they lean.
+        /// Cosine of the angle between the sides, above which they are not perpendicular.
         const LEANING: f32 = 1e-4;
         let refuse = |remedy| LightError {
             kind: "rectangle",
@@ -202,12 +202,12 @@ impl Light {
             return Err(refuse("give two finite vectors that span an area"));
         }
         if half_u.dot(half_v).abs() > LEANING * half_u.length() * half_v.length() {
-            return Err(refuse("turn one of them, so that they are at a right angle"));
+            return Err(refuse("rotate one of them, so that they are at a right angle"));
         }
         Ok(Light::new(LightKind::Rectangle { position, half_u, half_v }))
     }
 
-    /// A light of a shape that is taken as it is.
+    /// A light with a shape that is used unchecked.
     pub fn new(kind: LightKind) -> Light {
         Light { name: String::new(), kind, intensity: Vec3::ONE, falloff: Falloff::None }
     }
@@ -217,17 +217,18 @@ impl Light {
         Light { intensity: intensity.into(), ..self }
     }
 
-    /// The same light, its strength meant in another way.
+    /// The same light with another falloff.
     pub fn with_falloff(self, falloff: Falloff) -> Light {
         Light { falloff, ..self }
     }
 
-    /// The same light under a name.
+    /// The same light with a name.
     pub fn named(self, name: impl Into<String>) -> Light {
         Light { name: name.into(), ..self }
     }
 
-    /// The same point light, strewn by area mode over a ball of this radius. Lights of other kinds have no spread and stay as they are.
+    /// The same point light, distributed by area mode over a ball of this radius. Lights of other kinds have no spread and stay
+    /// unchanged.
     pub fn with_spread(self, spread: f32) -> Light {
         match self.kind {
             LightKind::Point { position, .. } => Light { kind: LightKind::Point { position, spread }, ..self },
@@ -235,7 +236,7 @@ impl Light {
         }
     }
 
-    /// The middle of the light; `None` for a directional one.
+    /// The centre of the light; `None` for a directional light.
     pub fn position(&self) -> Option<Vec3> {
         match self.kind {
             LightKind::Point { position, .. }
@@ -247,7 +248,7 @@ impl Light {
         }
     }
 
-    /// The word for the shape in scene files and in `info`.
+    /// The name of the shape in scene files and in `info`.
     pub fn kind_name(&self) -> &'static str {
         match self.kind {
             LightKind::Point { .. } => "point",
@@ -259,7 +260,7 @@ impl Light {
         }
     }
 
-    /// Whether the light has a size of its own, so that a point can see a share of it.
+    /// Whether the light is an area light, so that a point can see a share of it.
     pub fn has_size(&self) -> bool {
         matches!(self.kind, LightKind::Sphere { .. } | LightKind::Disk { .. } | LightKind::Rectangle { .. })
     }

@@ -1,4 +1,4 @@
-//! All light of a scene.
+//! The lights of a scene.
 
 use std::ops::{Deref, DerefMut};
 
@@ -6,20 +6,20 @@ use glam::Vec3;
 
 use crate::Light;
 
-/// The lights of a scene, and what stands for the light that comes from everywhere. Dereferences to the list of lights.
+/// The lights of a scene, and the ambient light. Dereferences to the list of lights.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Lights {
     /// The lights; may be empty.
     pub list: Vec<Light>,
-    /// I_a of formula (1), per channel; `None` where the file is silent.
+    /// I_a of formula (1), per channel; `None` if the file does not set it.
     pub ambient: Option<Vec3>,
-    /// Radiance of rays that hit nothing; `None` where the file is silent.
+    /// Radiance of rays that hit nothing; `None` if the file does not set it.
     pub background: Option<Vec3>,
 }
 
 impl Lights {
-    /// Other lights under the same ambient intensity and background.
+    /// Other lights with the same ambient intensity and background.
     pub fn with_list(self, list: Vec<Light>) -> Lights {
         Lights { list, ..self }
     }
@@ -50,7 +50,7 @@ impl DerefMut for Lights {
 }
 
 impl From<Vec<Light>> for Lights {
-    /// These lights, with the defaults of everything else.
+    /// These lights, with the defaults for everything else.
     fn from(list: Vec<Light>) -> Lights {
         Lights { list, ..Lights::default() }
     }

@@ -1,10 +1,10 @@
-//! A mesh on its way from a loader to the scene.
+//! A mesh passed from a loader to the scene.
 
 use glam::{Vec2, Vec3};
 
 use crate::{MeshPart, Position};
 
-/// One mesh as a loader has put it together. It is handed over: of a large file nothing is held twice.
+/// One mesh as assembled by a loader. It is passed by value: no part of a large file is held twice.
 #[derive(Debug)]
 pub(crate) struct LoadedMesh<P> {
     /// Vertices in the file's coordinates, `Vec3` or `DVec3`.
@@ -15,7 +15,7 @@ pub(crate) struct LoadedMesh<P> {
     pub(crate) uvs: Vec<Vec2>,
     /// Linear colours by vertex, or none.
     pub(crate) colors: Vec<Vec3>,
-    /// Three vertex indices a triangle, all in range.
+    /// Three vertex indices per triangle, all in range.
     pub(crate) triangles: Vec<[u32; 3]>,
     /// Material by triangle.
     pub(crate) materials: Vec<u32>,
@@ -28,7 +28,7 @@ impl<P: Position> LoadedMesh<P> {
         MeshPart { positions, normals, uvs, colors, triangles }
     }
 
-    /// Makes the vertices those that `chosen` names, in that order. Triangles are left as they are.
+    /// Replaces the vertices by those that `chosen` lists, in that order. Triangles stay unchanged.
     pub(crate) fn choose_vertices(&mut self, chosen: impl Iterator<Item = u32> + Clone) {
         fn choose<T: Copy>(values: &mut Vec<T>, chosen: impl Iterator<Item = u32>) {
             if !values.is_empty() {
@@ -41,7 +41,7 @@ impl<P: Position> LoadedMesh<P> {
         choose(&mut self.colors, chosen);
     }
 
-    /// Drops vertices that no triangle uses: one that lies far away would move the local frame.
+    /// Drops vertices that no triangle uses: one that is far away would move the local frame.
     pub(crate) fn drop_unused_vertices(&mut self) {
         let mut used = vec![false; self.positions.len()];
         self.triangles.iter().flatten().for_each(|&vertex| used[vertex as usize] = true);

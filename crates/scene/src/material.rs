@@ -4,14 +4,14 @@ use glam::Vec3;
 
 use crate::TextureUse;
 
-/// How a surface answers light: ambient, diffuse and Phong terms (Whitted 1980, Phong 1975).
+/// How a surface reflects light: ambient, diffuse and Phong terms (Whitted 1980, Phong 1975).
 ///
-/// Where a texture or vertex colours give a surface point a tint t — their product, white where there are neither — its
-/// coefficients are `ka` t, `kd` t and `ks` + `ks_tinted` t, and it gives off `emission` + `emission_tinted` t.
+/// If a texture or vertex colours give a surface point a tint t — their product, white if there are neither — its coefficients
+/// are `ka` t, `kd` t and `ks` + `ks_tinted` t, and it emits `emission` + `emission_tinted` t.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Material {
-    /// Name in the file; empty where it has none.
+    /// Name in the file; empty if it has none.
     pub name: String,
     /// Share of the ambient intensity, per channel.
     pub ka: Vec3,
@@ -19,15 +19,15 @@ pub struct Material {
     pub kd: Vec3,
     /// Specular coefficient k_s, per channel: the Phong lobe and, with `--bounces`, the mirror.
     pub ks: Vec3,
-    /// The part of the specular coefficient that takes on the tint: the reflection of a metal. It counts without a tint, too.
+    /// The part of the specular coefficient that is tinted: the reflection of a metal. It also counts without a tint.
     pub ks_tinted: Vec3,
     /// Phong exponent `pow`.
     pub shininess: f32,
-    /// Radiance that the surface gives off by itself; it is seen but lights nothing.
+    /// Emitted radiance; it is visible but lights nothing.
     pub emission: Vec3,
-    /// The part of that radiance that takes on the tint: a surface that shows its picture unlit. It counts without a tint, too.
+    /// The part of the emitted radiance that is tinted: a surface that shows its image unlit. It also counts without a tint.
     pub emission_tinted: Vec3,
-    /// A picture that tints the surface.
+    /// An image that tints the surface.
     pub texture: Option<TextureUse>,
 }
 
@@ -57,13 +57,13 @@ impl Default for Material {
 /// assert_eq!(brass.ka, brass.kd);
 /// ```
 impl Material {
-    /// A matt surface of this colour, in ambient light too.
+    /// A matt surface of this colour, also in ambient light.
     pub fn matt(color: impl Into<Vec3>) -> Material {
         let color = color.into();
         Material { ka: color, kd: color, ..Material::default() }
     }
 
-    /// The same material under a name.
+    /// The same material with a name.
     pub fn named(self, name: impl Into<String>) -> Material {
         Material { name: name.into(), ..self }
     }
@@ -83,7 +83,7 @@ impl Material {
         Material { ks: ks.into(), ..self }
     }
 
-    /// The part of the specular coefficient that takes on the tint.
+    /// The part of the specular coefficient that is tinted.
     pub fn with_ks_tinted(self, ks_tinted: impl Into<Vec3>) -> Material {
         Material { ks_tinted: ks_tinted.into(), ..self }
     }
@@ -93,17 +93,17 @@ impl Material {
         Material { shininess, ..self }
     }
 
-    /// Radiance that the surface gives off by itself.
+    /// Emitted radiance.
     pub fn with_emission(self, emission: impl Into<Vec3>) -> Material {
         Material { emission: emission.into(), ..self }
     }
 
-    /// The part of that radiance that takes on the tint.
+    /// The part of the emitted radiance that is tinted.
     pub fn with_emission_tinted(self, emission_tinted: impl Into<Vec3>) -> Material {
         Material { emission_tinted: emission_tinted.into(), ..self }
     }
 
-    /// A picture that tints the surface.
+    /// An image that tints the surface.
     pub fn with_texture(self, texture: TextureUse) -> Material {
         Material { texture: Some(texture), ..self }
     }

@@ -12,7 +12,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box that holds nothing: any point enlarges it.
+    /// The empty box: any point enlarges it.
     pub const EMPTY: Bounds = Bounds { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
     /// The smallest box around `points`.
@@ -21,25 +21,25 @@ impl Bounds {
         points.into_iter().fold(Bounds::EMPTY, Bounds::including)
     }
 
-    /// This box enlarged to hold `point`.
+    /// This box enlarged to contain `point`.
     #[inline]
     pub fn including(self, point: Vec3) -> Bounds {
         Bounds { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// Whether no point lies inside.
+    /// Whether the box is empty.
     #[inline]
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }
 
-    /// The middle.
+    /// The centre.
     #[inline]
     pub fn center(&self) -> Vec3 {
         0.5 * (self.min + self.max)
     }
 
-    /// Edge lengths; zero where the box is empty.
+    /// Edge lengths; zero if the box is empty.
     #[inline]
     pub fn extent(&self) -> Vec3 {
         (self.max - self.min).max(Vec3::ZERO)
@@ -66,7 +66,7 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// Colours by vertex, linear: they tint the material, see [`Material`](crate::Material).
     pub colors: Vec<Vec3>,
-    /// Three vertex indices a triangle, counter-clockwise seen from outside (both sides are rendered).
+    /// Three vertex indices per triangle, counter-clockwise seen from outside (both sides are rendered).
     pub triangles: Vec<[u32; 3]>,
     /// Material index by triangle.
     pub materials: Vec<u32>,

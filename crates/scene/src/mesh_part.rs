@@ -1,8 +1,8 @@
-//! What is added to a scene in one go.
+//! The unit in which geometry is added to a scene.
 
 use glam::{DVec3, Vec2, Vec3};
 
-/// One mesh as a file holds it, before it is placed. Slices are as long as `positions` or empty.
+/// One mesh as stored in a file, before it is placed. Slices are as long as `positions` or empty.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshPart<'a, P = DVec3> {
     /// Vertices in the part's own coordinates, `Vec3` or `DVec3`.
@@ -13,7 +13,7 @@ pub struct MeshPart<'a, P = DVec3> {
     pub uvs: &'a [Vec2],
     /// Linear colours by vertex.
     pub colors: &'a [Vec3],
-    /// Three vertex indices a triangle, all in range.
+    /// Three vertex indices per triangle, all in range.
     pub triangles: &'a [[u32; 3]],
 }
 
@@ -23,19 +23,19 @@ impl<P> Default for MeshPart<'_, P> {
     }
 }
 
-/// How much room a scene needs, where that is known before it is read.
+/// The memory that a scene needs, if it is known before reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Room {
     pub(crate) vertices: usize,
     pub(crate) triangles: usize,
-    /// Whether any part has them.
+    /// Whether any part has normals.
     pub(crate) normals: bool,
     pub(crate) uvs: bool,
     pub(crate) colors: bool,
 }
 
 impl Room {
-    /// Room for this, and for `count` times `more`.
+    /// The memory for this, and for `count` times `more`.
     pub(crate) fn and(&self, more: &Room, count: usize) -> Room {
         let sum = |a: usize, b: usize| a.saturating_add(b.saturating_mul(count));
         Room {

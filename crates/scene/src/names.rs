@@ -1,13 +1,13 @@
-//! Choices that have names: what a file, a command line or a person writes for them.
+//! Choices with names: the words that stand for them in a file, on a command line or in print.
 //!
-//! Such an enum has a table `ALL`, and for each of its values a `name()` and, in a few words, `help()`;
+//! Such an enum has a table `ALL`, and for each of its values a `name()` and a short description `help()`;
 //! [`parse_by_name!`](crate::parse_by_name) adds `Display` and `FromStr`.
 
-/// A word that names nothing there is.
+/// An unknown name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no {what} `{name}`; known are {}", known.join(", "))]
+#[error("there is no {what} `{name}`; available: {}", known.join(", "))]
 pub struct UnknownName {
-    /// What was looked for: "mode", "weight".
+    /// What was looked up: "mode", "weight".
     pub what: &'static str,
     /// The word.
     pub name: String,
@@ -56,7 +56,7 @@ mod tests {
     #[test]
     fn an_unknown_name_is_answered_with_the_known() {
         let message = "soft".parse::<Weight>().unwrap_err().to_string();
-        assert_eq!(message, "there is no weight `soft`; known are constant, quadratic, smooth");
+        assert_eq!(message, "there is no weight `soft`; available: constant, quadratic, smooth");
         assert!("Smooth".parse::<Weight>().is_err() && "".parse::<Falloff>().is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! Opening a scene by its name: the ending of the file's name chooses the format.
+//! Opening a scene by its name: the file extension determines the format.
 
 use std::{fs, path::Path};
 
@@ -10,21 +10,21 @@ use crate::{
     formats,
 };
 
-/// Endings of scene files that can be read.
+/// Supported extensions of scene files.
 const SCENE_FORMATS: [&str; 6] = ["toml", "obj", "gltf", "glb", "ply", "stl"];
 
-/// How strictly a scene is read, and what it may refer to.
+/// How strictly a scene is read, and which files it may refer to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LoadOptions {
-    /// Follow references out of the folder of the opened file. Not by default: a scene from elsewhere must not look around.
+    /// Follow references outside the folder of the opened file. Off by default: an untrusted scene must not read other files.
     pub allow_outside: bool,
-    /// Whatever would be a warning is an error.
+    /// Treat warnings as errors.
     pub strict: bool,
 }
 
 impl LoadOptions {
-    /// Whether to follow references out of the folder of the opened file.
+    /// Whether to follow references outside the folder of the opened file.
     pub fn with_allow_outside(self, allow_outside: bool) -> LoadOptions {
         LoadOptions { allow_outside, ..self }
     }
@@ -39,11 +39,11 @@ impl Scene {
     /// Reads a scene: `.toml`, `.obj`, `.gltf`, `.glb`, `.ply` or `.stl`, or a built-in one named `builtin:NAME` or
     /// `builtin:NAME?key=value&…`.
     ///
-    /// What a file holds beyond the scene's model is left out, with a sentence in [`Scene::warnings`].
+    /// Content of a file that the scene model cannot represent is ignored, with a sentence in [`Scene::warnings`].
     ///
     /// # Errors
     ///
-    /// [`LoadError`] names the file, where possible the line, and the remedy.
+    /// [`LoadError`] names the file, the line if possible, and the remedy.
     pub fn open(path: impl AsRef<Path>) -> Result<Scene, LoadError> {
         Scene::open_with(path, &LoadOptions::default())
     }
@@ -52,7 +52,7 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`LoadError`] names the file, where possible the line, and the remedy.
+    /// [`LoadError`] names the file, the line if possible, and the remedy.
     pub fn open_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Scene, LoadError> {
         let path = path.as_ref();
         if let Some(query) = path.to_str().and_then(|name| name.strip_prefix("builtin:")) {
@@ -68,7 +68,7 @@ impl Scene {
     }
 }
 
-/// Reads a model as a scene of its own: its triangles, materials, lights and cameras.
+/// Reads a model as a separate scene: its triangles, materials, lights and cameras.
 fn read_model(path: &Path, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
     match extension(path).as_str() {
         "obj" => formats::obj::read(path, placement, draft),
@@ -93,7 +93,7 @@ pub(crate) fn read_part(
     read_model(path, &Placement { transform, material, part: true }, draft)
 }
 
-/// The whole file. Only of a regular one: a pipe or a device might never end.
+/// Reads the whole file. Only regular files: a pipe or a device might never end.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, LoadError> {
     let failed = |cause| LoadError::Read { path: path.to_owned(), cause };
     if !fs::metadata(path).map_err(failed)?.is_file() {
@@ -102,7 +102,7 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, LoadError> {
     fs::read(path).map_err(failed)
 }
 
-/// The ending of the file's name in lower case, without the dot.
+/// The file extension in lower case, without the dot.
 fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
@@ -117,8 +117,8 @@ mod tests {
 
     #[test]
     fn a_format_that_cannot_be_read_is_answered_with_those_that_can() {
-        let known = "known are .toml, .obj, .gltf, .glb, .ply, .stl, and builtin:NAME";
-        assert_eq!(error("bunny.fbx"), format!("`.fbx` is not a format that can be read, bunny.fbx; {known}"));
+        let known = "supported: .toml, .obj, .gltf, .glb, .ply, .stl, and builtin:NAME";
+        assert_eq!(error("bunny.fbx"), format!("`.fbx` is not a supported scene format, bunny.fbx; {known}"));
         assert!(error("bunny").contains(known));
     }
 
@@ -141,6 +141,6 @@ mod tests {
     #[test]
     fn built_in_scenes_go_by_name() {
         assert_eq!(Scene::open("builtin:gazebo").unwrap().name, "gazebo");
-        assert!(error("builtin:gazibo").contains("known are gazebo"));
+        assert!(error("builtin:gazibo").contains("available: gazebo"));
     }
 }

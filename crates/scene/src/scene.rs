@@ -19,10 +19,10 @@ pub enum Weight {
 }
 
 impl Weight {
-    /// All of them.
+    /// All weights.
     pub const ALL: &'static [Weight] = &[Weight::Constant, Weight::Quadratic, Weight::Smooth];
 
-    /// The word for it.
+    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Weight::Constant => "constant",
@@ -31,7 +31,7 @@ impl Weight {
         }
     }
 
-    /// What it is, in a few words.
+    /// A short description.
     pub fn help(self) -> &'static str {
         match self {
             Weight::Constant => "w = 1, as in the thesis",
@@ -43,7 +43,7 @@ impl Weight {
 
 parse_by_name!(Weight, "weight");
 
-/// What a scene proposes for the light mesh; what a render is told wins over it.
+/// The settings of the light mesh that a scene proposes; explicit render settings take precedence.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct LightMeshDefaults {
@@ -55,22 +55,22 @@ pub struct LightMeshDefaults {
     pub weight: Option<Weight>,
 }
 
-/// Everything there is to render: geometry, lights and cameras, which change independently of each other. Cloning is cheap: the geometry
-/// is shared.
+/// Everything needed for rendering: geometry, lights and cameras, which change independently of each other. Cloning is cheap: the
+/// geometry is shared.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Scene {
-    /// For people: the file's stem or the built-in's name.
+    /// For display: the file's stem or the built-in's name.
     pub name: String,
-    /// What rays can hit.
+    /// The surfaces that rays can hit.
     pub geometry: Arc<Geometry>,
-    /// What shines.
+    /// The lights.
     pub lights: Lights,
     /// Cameras; may be empty.
     pub cameras: Vec<Camera>,
     /// Proposed settings of the light mesh.
     pub light_mesh: LightMeshDefaults,
-    /// What a loader mended, left out or guessed; a sentence each.
+    /// What a loader corrected, ignored or guessed; one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -87,17 +87,17 @@ impl Scene {
         }
     }
 
-    /// The same geometry and cameras under other lights, in the geometry's local frame.
+    /// The same geometry and cameras with other lights, in the geometry's local frame.
     pub fn with_lights(self, lights: impl Into<Lights>) -> Scene {
         Scene { lights: lights.into(), ..self }
     }
 
-    /// The same geometry and lights seen by other cameras; pictures are taken by the first.
+    /// The same geometry and lights with other cameras; images are rendered from the first.
     pub fn with_cameras(self, cameras: Vec<Camera>) -> Scene {
         Scene { cameras, ..self }
     }
 
-    /// The geometry, to change it. A copy is made first where somebody else shares it, such as a renderer that has prepared it.
+    /// Mutable access to the geometry. It is copied first if it is shared, for example with a renderer that has prepared it.
     pub fn geometry_mut(&mut self) -> &mut Geometry {
         Arc::make_mut(&mut self.geometry)
     }

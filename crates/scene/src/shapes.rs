@@ -1,10 +1,10 @@
 //! Solids as triangles, in double precision.
 //!
-//! Boxes and rectangles are exact. Spheres and cylinders are inscribed: every vertex lies on the true surface and carries
-//! its true normal; with n segments the flats lie up to r (1 − cos(π/n)) inside it, 0.05 % of the radius for 96.
+//! Boxes and rectangles are exact. Spheres and cylinders are inscribed: every vertex lies on the true surface and has its true
+//! normal; with n segments the facets lie up to r (1 − cos(π/n)) inside it, 0.05 % of the radius for 96.
 //!
-//! A picture covers every face once, upright seen from outside: each side of a box, the mantle of a cylinder and each of its ends,
-//! a sphere from its north pole (Y) to its south pole. Where it goes around, it begins and ends at +X.
+//! A texture image covers every face once, upright seen from outside: each side of a box, the lateral surface of a cylinder and
+//! each of its ends, a sphere from its north pole (Y) to its south pole. Where it wraps around, it begins and ends at +X.
 
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -13,7 +13,7 @@ use glam::{DQuat, DVec2, DVec3, Vec2, Vec3};
 
 use crate::MeshPart;
 
-/// Segments around a sphere or cylinder where nothing is said.
+/// Default number of segments around a sphere or cylinder.
 pub(crate) const DEFAULT_SEGMENTS: u32 = 96;
 
 /// Triangles of one solid, counter-clockwise seen from outside.
@@ -24,12 +24,12 @@ pub(crate) struct Shape {
     triangles: Vec<[u32; 3]>,
     /// Texture coordinates of the corners of each triangle.
     corners: Vec<[Vec2; 3]>,
-    /// Texture coordinates by vertex, where they are asked for.
+    /// Texture coordinates by vertex, if requested.
     uvs: Vec<Vec2>,
 }
 
 impl Shape {
-    /// For [`SceneBuilder::add`](crate::SceneBuilder::add).
+    /// The mesh part for [`SceneBuilder::add`](crate::SceneBuilder::add).
     pub(crate) fn part(&self) -> MeshPart<'_> {
         MeshPart {
             positions: &self.positions,
@@ -40,7 +40,7 @@ impl Shape {
         }
     }
 
-    /// With texture coordinates. Vertices where several places of the picture meet are doubled.
+    /// The shape with texture coordinates. Vertices with several positions in the image are duplicated.
     pub(crate) fn textured(self) -> Shape {
         let mut shape = Shape { corners: self.corners, ..Shape::default() };
         let mut known: HashMap<(u32, [u32; 2]), u32> = HashMap::new();
@@ -63,7 +63,7 @@ impl Shape {
         self.corners.push(corners);
     }
 
-    /// Two triangles; `corners` in order round the border.
+    /// Two triangles; `corners` in order around the border.
     fn add_quad(&mut self, [a, b, c, d]: [u32; 4], [ta, tb, tc, td]: [Vec2; 4]) {
         self.add([a, b, c], [ta, tb, tc]);
         self.add([a, c, d], [ta, tc, td]);
@@ -88,7 +88,7 @@ impl Shape {
         let pick = |bit: usize, low: f64, high: f64| if bit == 0 { low } else { high };
         let corner =
             |i: usize| DVec3::new(pick(i & 1, min.x, max.x), pick(i & 2, min.y, max.y), pick(i & 4, min.z, max.z));
-        // Corner i has its x, y and z at max where bit 0, 1 and 2 of i are set.
+        // Corner i has its x, y and z at max if bit 0, 1 and 2 of i are set.
         const FACES: [[u32; 4]; 6] =
             [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
         let mut shape = Shape { positions: (0..8).map(corner).collect(), ..Shape::default() };
@@ -101,7 +101,7 @@ impl Shape {
         shape
     }
 
-    /// A sphere with `segments` triangles around and half as many rings from pole to pole, poles up and down (Y).
+    /// A sphere with `segments` triangles around and half as many rings from pole to pole, with poles at the top and bottom (Y).
     pub(crate) fn sphere(center: DVec3, radius: f64, segments: u32) -> Shape {
         let rings = (segments / 2).max(2);
         let mut directions = vec![DVec3::Y];
@@ -134,8 +134,7 @@ impl Shape {
         shape
     }
 
-    /// A cylinder from the middle of one end to the middle of the other, which must not coincide; with `caps` its ends are
-    /// closed.
+    /// A cylinder from the centre of one end to the centre of the other, which must not coincide; with `caps` its ends are closed.
     pub(crate) fn cylinder(base: DVec3, top: DVec3, radius: f64, segments: u32, caps: bool) -> Shape {
         let axis = (top - base).normalize();
         let turn = DQuat::from_rotation_arc(DVec3::Y, axis);
@@ -163,8 +162,8 @@ impl Shape {
         self.normals.extend(spokes.iter().map(|&spoke| normal(spoke).as_vec3()));
     }
 
-    /// A fan around the middle of an end. It has vertices of its own, as its normals differ from the side's. `upright` is -1 where
-    /// the picture is seen from below.
+    /// A fan around the centre of an end. It has its own vertices, as its normals differ from the side's. `upright` is -1 if the
+    /// image is seen from below.
     fn add_cap(&mut self, center: DVec3, axis: DVec3, radius: f64, spokes: &[DVec3], upright: f64) {
         let middle = self.positions.len() as u32;
         self.positions.push(center);
@@ -188,7 +187,7 @@ impl Shape {
     }
 }
 
-/// Texture coordinates of a box's corner, which lies at max where x, y or z are 1, on one of its faces: -X, +X, -Y, +Y, -Z, +Z.
+/// Texture coordinates of a box's corner, which is at max where x, y or z is 1, on one of its faces: -X, +X, -Y, +Y, -Z, +Z.
 fn uv_of_box(face: usize, (x, y, z): (usize, usize, usize)) -> Vec2 {
     let (u, v) = match face {
         0 => (z, 1 - y),
@@ -223,7 +222,7 @@ mod tests {
     /// Six times the signed volume, and whether every directed edge meets its opposite exactly once.
     fn volume_and_closed(shape: &Shape) -> (f64, bool) {
         use std::collections::HashSet;
-        // Vertices are told apart by place, as caps have their own.
+        // Vertices are distinguished by position, as caps have their own.
         let key = |v: u32| shape.positions[v as usize].to_array().map(|x| (x * 1e9).round() as i64);
         let mut edges = HashSet::new();
         let mut volume = 0.0;
@@ -272,7 +271,7 @@ mod tests {
         assert!(volume_and_closed(&Shape::cylinder(DVec3::Y, DVec3::NEG_Y, 1.0, 3, true)).1);
     }
 
-    /// Area in the picture, with a sign: positive where the picture is not mirrored seen from outside. v runs down.
+    /// Signed area in the image: positive if the image is not mirrored seen from outside. v points downwards.
     fn covered(shape: &Shape) -> Vec<f32> {
         shape.corners.iter().map(|[a, b, c]| -0.5 * (*b - *a).perp_dot(*c - *a)).collect()
     }
@@ -315,7 +314,7 @@ mod tests {
 
     #[test]
     fn pictures_stand_upright() {
-        // The middle of the upper edge of the picture on each side of a box that is 2 wide.
+        // The middle of the upper edge of the image on each side of a box that is 2 wide.
         let shape = Shape::cuboid(DVec3::splat(-1.0), DVec3::ONE).textured();
         for face in [0, 1, 4, 5] {
             for &vertex in shape.triangles[2 * face..][..2].iter().flatten() {

@@ -1,4 +1,4 @@
-//! Textures: pictures that colour surfaces.
+//! Textures: images that colour surfaces.
 
 mod decode;
 mod files;
@@ -10,28 +10,28 @@ pub(crate) use decode::decode;
 pub(crate) use files::TextureFiles;
 pub(crate) use missing_uvs::untextured;
 
-/// A picture in memory.
+/// An image in memory.
 ///
-/// Eight bits a channel, encoded as sRGB; row 0 is the top, texture coordinate (0, 0) its left upper corner, as in glTF.
+/// Eight bits per channel, encoded as sRGB; row 0 is the top, texture coordinate (0, 0) its upper left corner, as in glTF.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
-    /// For people: the file's name, or its number in the file that holds it.
+    /// For display: the file's name, or its index in the file that contains it.
     pub name: String,
     /// Width and height in texels, at least 1.
     pub size: [u32; 2],
-    /// Red, green, blue and coverage, row by row. Coverage is kept for export; surfaces are opaque.
+    /// Red, green, blue and alpha, row by row. Alpha is kept for export; surfaces are opaque.
     pub texels: Vec<[u8; 4]>,
 }
 
-/// What a texture shows beyond its edge, on one axis.
+/// How a texture continues beyond its edge, along one axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
-    /// The same again.
+    /// Repeated.
     #[default]
     Repeat,
-    /// The same again, every other time mirrored.
+    /// Repeated, mirrored every other time.
     Mirror,
-    /// Its outermost texels.
+    /// The outermost texels.
     Clamp,
 }
 
@@ -40,14 +40,14 @@ pub enum Wrap {
 pub struct TextureUse {
     /// Index of the texture in the scene.
     pub texture: u32,
-    /// Beyond the edge, horizontally and vertically.
+    /// Wrapping beyond the edge, horizontally and vertically.
     pub wrap: [Wrap; 2],
-    /// From texture coordinates to those of the picture.
+    /// The transform from texture coordinates to those of the image.
     pub transform: Affine2,
 }
 
 impl TextureUse {
-    /// The texture as it is, repeated.
+    /// The texture without a transform, repeated.
     pub fn new(texture: u32) -> TextureUse {
         TextureUse { texture, wrap: [Wrap::Repeat; 2], transform: Affine2::IDENTITY }
     }

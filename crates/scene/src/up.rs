@@ -1,4 +1,4 @@
-//! Which way is up, where a scene does not say it by a camera.
+//! The up axis, if the scene does not define it by a camera.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::{Scene, parse_by_name};
 
-/// Which axis points up.
+/// The axis that points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Up {
     /// +Y: glTF, most OBJ.
@@ -17,24 +17,25 @@ pub enum Up {
     Z,
 }
 
-/// Which way is up, and what tells.
+/// The up axis, and what indicates it.
 #[derive(Clone, Debug, Serialize, PartialEq, Eq)]
 pub struct UpInfo {
     /// y or z.
     pub axis: &'static str,
-    /// What it is taken from.
+    /// What indicates it.
     pub reason: String,
 }
 
-/// How thick a ground may be, as a share of the scene's height.
+/// Maximum thickness of a ground, as a share of the scene's height.
 const GROUND: f32 = 1e-3;
-/// How much of the box's base a ground covers at least.
+/// Minimum share of the box's base that a ground covers.
 const LEAST_GROUND: f32 = 0.01;
-/// How much larger it is than the flat bottom along the other axis.
+/// How much larger it must be than the flat bottom along the other axis.
 const CLEARLY: f32 = 2.0;
 
 impl Up {
-    /// What scenes of this kind of file have: Z for STL, Y for all others. Only glTF says so; of the others it is what is usual.
+    /// The usual up axis for this kind of file: Z for STL, Y for all others. Only glTF defines it; for the others it is a
+    /// convention.
     pub fn of_file(path: &Path) -> Up {
         match path.extension() {
             Some(extension) if extension.eq_ignore_ascii_case("stl") => Up::Z,
@@ -42,10 +43,10 @@ impl Up {
         }
     }
 
-    /// All of them.
+    /// Both axes.
     pub const ALL: &'static [Up] = &[Up::Y, Up::Z];
 
-    /// The word for it.
+    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Up::Y => "y",
@@ -65,22 +66,22 @@ impl Up {
 parse_by_name!(Up, "axis");
 
 impl Scene {
-    /// Which way is up by the scene's cameras, or by the ground that it stands on; `None` where neither tells.
+    /// The up axis according to the scene's cameras, or to the ground that it stands on; `None` if neither indicates it.
     pub fn suggested_up(&self) -> Option<UpInfo> {
         let by = |up: Up, reason: &str| Some(UpInfo { axis: up.name(), reason: reason.to_owned() });
         let upper: Vec3 = self.cameras.iter().map(|camera| camera.up).sum();
         if !self.cameras.is_empty() && upper.y.abs() != upper.z.abs() {
-            return by(if upper.y > upper.z { Up::Y } else { Up::Z }, "its cameras stand that way");
+            return by(if upper.y > upper.z { Up::Y } else { Up::Z }, "its cameras are oriented that way");
         }
         let [y, z] = [Up::Y, Up::Z].map(|up| self.ground(up));
         match (y.max(z) >= LEAST_GROUND, y > CLEARLY * z, z > CLEARLY * y) {
-            (true, true, _) => by(Up::Y, "it stands on a flat ground at its lowest y"),
-            (true, _, true) => by(Up::Z, "it stands on a flat ground at its lowest z"),
+            (true, true, _) => by(Up::Y, "it has a flat ground at its lowest y"),
+            (true, _, true) => by(Up::Z, "it has a flat ground at its lowest z"),
             _ => None,
         }
     }
 
-    /// Area of the triangles that lie at the very bottom, as a share of the box's base.
+    /// Area of the triangles at the very bottom, as a share of the box's base.
     fn ground(&self, up: Up) -> f32 {
         let (bounds, axis) = (self.geometry.mesh.bounds(), up.axis());
         let extent = bounds.extent();
@@ -106,7 +107,7 @@ mod tests {
     use super::*;
     use crate::SceneBuilder;
 
-    /// A square of edge 2 at height 0 and a tip above its middle.
+    /// A square of edge 2 at height 0 and an apex above its centre.
     fn tent(up: Up, ground: bool) -> Scene {
         let place = |x: f32, side: f32, height: f32| match up {
             Up::Y => Vec3::new(x, height, side),
@@ -142,7 +143,7 @@ mod tests {
         let mut scene = tent(Up::Y, true);
         scene.cameras.push(scene.default_camera(Up::Z));
         let info = scene.suggested_up().unwrap();
-        assert_eq!((info.axis, info.reason.as_str()), ("z", "its cameras stand that way"));
+        assert_eq!((info.axis, info.reason.as_str()), ("z", "its cameras are oriented that way"));
     }
 
     #[test]

@@ -1,24 +1,24 @@
-//! What cannot be computed with, looked for once a whole scene is read: cameras and lights without a place, coefficients without a
-//! value. Of each kind one warning says how many there are.
+//! Unusable values, checked once a whole scene is read: cameras and lights without a valid position, coefficients without a finite
+//! value. One warning for each kind gives their number.
 
 use glam::{DVec3, Vec3};
 
 use crate::{Material, draft::LARGEST_COORDINATE};
 
-/// Whether a place in the world can be computed with.
+/// Whether a world position is usable.
 pub(crate) fn is_place(world: DVec3) -> bool {
     world.abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all()
 }
 
-/// Leaves out the cameras or lights that stand at no such place.
+/// Removes the cameras or lights at unusable positions.
 pub(crate) fn keep_placed<T>(items: &mut Vec<(T, DVec3)>, kind: &str) -> Option<String> {
     let before = items.len();
     items.retain(|&(_, world)| is_place(world));
     let count = before - items.len();
-    (count > 0).then(|| format!("{count} {kind} with infinite, undefined or far too large coordinates were left out"))
+    (count > 0).then(|| format!("{count} {kind} with infinite, undefined or far too large coordinates were ignored"))
 }
 
-/// Puts 0 for coefficients that are infinite or no number.
+/// Replaces infinite and NaN coefficients by 0.
 pub(crate) fn keep_finite(materials: &mut [Material]) -> Option<String> {
     let mut count = 0;
     for Material { ka, kd, ks, ks_tinted, emission, emission_tinted, .. } in materials {
@@ -44,7 +44,7 @@ mod tests {
         assert_eq!(items, [(1, DVec3::ONE)]);
         assert_eq!(
             warning.as_deref(),
-            Some("3 lights with infinite, undefined or far too large coordinates were left out")
+            Some("3 lights with infinite, undefined or far too large coordinates were ignored")
         );
         assert_eq!(keep_placed(&mut items, "lights"), None);
     }

@@ -1,15 +1,15 @@
-//! Vertices of all parts, each in the precision that its file has, until the local frame is known.
+//! Vertices of all parts, each in the precision of its file, until the local frame is known.
 //!
-//! Most files hold `f32`. Those vertices stay where they will end, in their part's own coordinates, with the part's transform
-//! beside them; they are placed in double precision in one pass at the end. So a large model is held once, not twice.
+//! Most files contain `f32`. Those vertices stay where they will end up, in their part's own coordinates, together with the part's
+//! transform; they are placed in double precision in one pass at the end. So a large model is held once, not twice.
 
 use glam::{DMat4, DVec3, Vec3};
 
 use crate::builder::reserve;
 
-/// A vertex as a loader has it, in single or double precision.
+/// A vertex as provided by a loader, in single or double precision.
 pub trait Position: Copy {
-    /// The same place in double precision.
+    /// The same position in double precision.
     fn to_double(self) -> DVec3;
 
     /// The slice, by its precision.
@@ -22,18 +22,18 @@ pub trait Position: Copy {
 /// A slice of vertices in either precision.
 #[derive(Clone, Copy, Debug)]
 pub enum Positions<'a> {
-    /// As most binary files hold them.
+    /// Single precision, as in most binary files.
     Single(&'a [Vec3]),
-    /// As texts may hold them.
+    /// Double precision, as in ASCII files.
     Double(&'a [DVec3]),
 }
 
-/// Vertices in either precision that are handed over.
+/// Owned vertices in either precision.
 #[derive(Clone, Debug)]
 pub enum OwnedPositions {
-    /// As most binary files hold them.
+    /// Single precision, as in most binary files.
     Single(Vec<Vec3>),
-    /// As texts may hold them.
+    /// Double precision, as in ASCII files.
     Double(Vec<DVec3>),
 }
 
@@ -68,20 +68,20 @@ impl Position for DVec3 {
 /// Placed vertices without a local frame.
 #[derive(Debug, Default)]
 pub(crate) struct Vertices {
-    /// One entry a vertex: of a single-precision run in its part's coordinates, of a double-precision run not yet set. Empty where all
+    /// One entry per vertex: of a single-precision run in its part's coordinates, of a double-precision run not yet set. Empty if all
     /// runs are of double precision.
     single: Vec<Vec3>,
-    /// World positions of the double-precision runs, one after the other.
+    /// World positions of the double-precision runs, one after another.
     double: Vec<DVec3>,
     runs: Vec<Run>,
     count: usize,
     bounds: Option<(DVec3, DVec3)>,
 }
 
-/// Vertices in a row that are kept alike.
+/// A run of consecutive vertices that are stored in the same way.
 #[derive(Debug)]
 enum Run {
-    /// This many, yet to be placed.
+    /// This many, yet to be placed, with their transform.
     Single(usize, Box<DMat4>),
     /// This many, placed.
     Double(usize),
@@ -106,7 +106,7 @@ impl Vertices {
         }
     }
 
-    /// [`Vertices::add`] of vertices that are handed over: the first ones are placed where they lie in memory.
+    /// [`Vertices::add`] for owned vertices: the first ones are placed without copying.
     pub(crate) fn take(&mut self, positions: OwnedPositions, transform: &DMat4) {
         match positions {
             OwnedPositions::Single(positions) if self.count == 0 => {
@@ -139,12 +139,12 @@ impl Vertices {
         self.count
     }
 
-    /// Lowest and highest corner of the box around all finite vertices; `None` without any.
+    /// Lowest and highest corner of the bounding box of all finite vertices; `None` if there are none.
     pub(crate) fn bounds(&self) -> Option<(DVec3, DVec3)> {
         self.bounds
     }
 
-    /// Makes room for `more` vertices; `false` where there is not enough memory.
+    /// Reserves memory for `more` vertices; `false` if there is not enough.
     pub(crate) fn reserve(&mut self, more: usize) -> bool {
         let missing = self.count - self.single.len();
         reserve(&mut self.single, missing + more)

@@ -28,7 +28,7 @@ fn a_built_in_scene_survives_being_written_and_read() {
                 (scene.lights.ambient, scene.lights.background),
                 "{builtin}, {name}"
             );
-            // The copy's `up` stands at a right angle to the view; the picture's axes are the same.
+            // The copy's `up` stands at a right angle to the view; the image's axes are the same.
             for (copy, camera) in copy.cameras.iter().zip(&scene.cameras) {
                 assert_eq!(
                     (copy.position, copy.direction, copy.projection),

@@ -196,7 +196,7 @@ fn warnings_say_what_is_not_shown_and_nothing_else() {
         ("balloon/scene.gltf", &[][..]),
         ("camera_light/geometry-camera-light.glb", &[]),
         ("chess/chess-board.glb", &["KHR_materials_clearcoat"]),
-        ("complete/complete.glb", &["primitives of points or lines: left out", "(alphaMode): shown opaque"]),
+        ("complete/complete.glb", &["primitives of points or lines: ignored", "(alphaMode): shown opaque"]),
         ("cornell_gltf/cornellBox.gltf", &["NV_materials_mdl", "(alphaMode): shown opaque"]),
         ("cubes/Cubes.glb", &[]),
         ("duck/Duck.glb", &[]),

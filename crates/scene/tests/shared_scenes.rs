@@ -1,4 +1,4 @@
-//! Every shared model loads with the triangles, box, lights and cameras that the table beside it lists.
+//! Every shared model loads with the triangles, box, lights and cameras listed in the table next to it.
 
 use std::path::PathBuf;
 
@@ -55,7 +55,7 @@ fn models_have_their_triangles_and_boxes() {
         assert_eq!(scene.geometry.mesh.triangles.len(), triangles, "{file}");
         assert_eq!(scene.geometry.mesh.materials.len(), triangles, "{file}");
         let bounds = scene.geometry.mesh.bounds();
-        // The table has three decimals; the local frame of these is the world's.
+        // The table has three decimals; the local frame of these models is the world's.
         assert_eq!(scene.geometry.origin, DVec3::ZERO, "{file}");
         assert_near(file, bounds.min, min, 0.00051);
         assert_near(file, bounds.max, max, 0.00051);

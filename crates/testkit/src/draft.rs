@@ -144,7 +144,7 @@ impl SceneDraft {
 }
 
 fn camera(position: Vec3, eye: DVec3, target: DVec3, projection: Projection) -> Camera {
-    // Seen from above, the picture's top is -z, so that x runs to the right.
+    // Seen from above, the image's top is -z, so that x runs to the right.
     let camera = Camera::look_to(position, target - eye, Vec3::Y, 50.0);
     camera.unwrap_or_else(|error| panic!("{error}")).with_projection(projection)
 }

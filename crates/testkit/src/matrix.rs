@@ -28,7 +28,7 @@ pub fn each_device(test: impl Fn(&Renderer)) {
 
 /// Renders with layers on the CPU.
 pub fn render(scene: &Scene, settings: &Settings) -> Frame {
-    let renderer = Renderer::new(Device::Cpu).expect("the host's processor can always be used");
+    let renderer = Renderer::new(Device::Cpu).expect("the CPU can always be used");
     let settings = settings.clone().with_layers(true);
     renderer.render(scene, &settings).unwrap_or_else(|error| panic!("{}: {error}", scene.name))
 }

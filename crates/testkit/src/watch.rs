@@ -1,4 +1,4 @@
-//! An observer that holds a renderer to what it promises about progress.
+//! An observer that checks a renderer's guarantees about progress.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -15,7 +15,7 @@ pub struct Watched {
     pub done: u64,
 }
 
-/// Records stages and the progress of the whole picture.
+/// Records stages and the progress of the whole image.
 #[derive(Debug, Default)]
 pub struct Watch {
     log: Mutex<Log>,
@@ -55,7 +55,7 @@ impl Observer for Watch {
 }
 
 impl Watch {
-    /// All stages in their order. Panics where one did not end at its total, or the whole picture not at its end.
+    /// All stages in order. Panics if one did not end at its total, or the whole image did not reach its end.
     pub fn finished(&self) -> Vec<Watched> {
         let log = self.log();
         assert_eq!(log.current, None, "a stage is still under way");

@@ -8,7 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use lightmesh::scene::{Falloff, Weight};
 use lightmesh::{Acceleration, Lookup, Mode, Transfer, render::ShortTests, scene};
 
-/// Reads one of these names, each of which comes with its help text.
+/// Parses one of these names, each of which has a help text.
 fn one_of<T>(names: impl Iterator<Item = (&'static str, &'static str)>) -> impl TypedValueParser<Value = T>
 where
     T: FromStr<Err: std::error::Error + Send + Sync + 'static> + Clone + Send + Sync + 'static,
@@ -33,7 +33,7 @@ pub(super) fn short_tests() -> impl TypedValueParser<Value = ShortTests> {
     one_of(ShortTests::ALL.iter().map(|tests| (tests.name(), tests.help())))
 }
 
-/// See `plan::settings` for what becomes of it.
+/// See `plan::settings` for how it is resolved.
 pub(super) fn acceleration() -> impl TypedValueParser<Value = Acceleration> {
     one_of(Acceleration::ALL.iter().map(|structure| (structure.name(), structure.help())))
 }
@@ -46,7 +46,7 @@ pub(super) fn transfer() -> impl TypedValueParser<Value = Transfer> {
     one_of(Transfer::ALL.iter().map(|transfer| (transfer.name(), transfer.help())))
 }
 
-/// Which axis points up.
+/// The up axis.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Up {
     /// By file format: z for STL, else y
@@ -58,7 +58,7 @@ pub(crate) enum Up {
 }
 
 impl Up {
-    /// The axis, for the scene in this file.
+    /// The up axis of the scene in this file.
     pub(crate) fn of(self, scene: &Path) -> scene::Up {
         match self {
             Up::Auto => scene::Up::of_file(scene),

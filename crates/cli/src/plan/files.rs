@@ -14,9 +14,9 @@ use crate::value::Exposure;
 pub(crate) struct PictureFiles {
     /// The image.
     pub(crate) picture: PathBuf,
-    /// Transfer function of 8-bit pictures.
+    /// Transfer function of 8-bit images.
     pub(crate) transfer: Transfer,
-    /// How much brighter 8-bit pictures are.
+    /// Exposure of 8-bit images.
     pub(crate) exposure: Exposure,
     /// The multilayer exr.
     pub(crate) layers: Option<PathBuf>,

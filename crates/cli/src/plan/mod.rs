@@ -23,12 +23,12 @@ pub(crate) enum PlanError {
     Output(#[from] OutputError),
     #[error(transparent)]
     Camera(#[from] CameraError),
-    /// A grid was described and something else chosen.
-    #[error("{flag} describes a grid, but --accel {chosen} asks for something else; leave one of them out")]
+    /// A flag specifies a grid, but another structure is selected.
+    #[error("{flag} specifies a grid, but --accel {chosen} selects another structure; remove one of them")]
     NoGrid {
         /// The flag that specifies the grid.
         flag: &'static str,
-        /// The structure that was asked for.
+        /// The structure that was selected.
         chosen: &'static str,
     },
 }
@@ -39,7 +39,7 @@ pub(crate) struct RenderPlan {
     pub(crate) scene: SceneArg,
     /// Overrides for parts of it.
     pub(crate) choices: SceneChoices,
-    /// Everything else about the picture.
+    /// Everything else about the image.
     pub(crate) settings: Settings,
     /// The device.
     pub(crate) device: Device,

@@ -9,7 +9,7 @@ use crate::value::{Color, LightSpec};
 
 /// Camera, lights and ambient term as typed.
 pub(crate) struct SceneChoices {
-    /// At the local frame's zero, and its place in the world.
+    /// At the local frame's origin, together with its world position.
     camera: Option<(Camera, DVec3)>,
     camera_name: Option<String>,
     up: Up,
@@ -35,7 +35,7 @@ impl SceneChoices {
         })
     }
 
-    /// Puts camera, lights and ambient term into the scene; says what had to be made up.
+    /// Applies camera, lights and ambient term to the scene; reports which defaults had to be added.
     pub(crate) fn apply(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<(), UnknownCamera> {
         if let Some(camera) = self.camera(scene)? {
             scene.cameras = vec![camera];
@@ -55,14 +55,14 @@ impl SceneChoices {
         }
         if added.lights {
             observer.note(
-                "the scene has no light: taking a key light above the camera and a weaker fill light on its other side (--light \
-                 places others)",
+                "the scene has no lights: using a key light above the camera and a weaker fill light on the other side \
+                 (--light replaces them)",
             );
         }
         Ok(())
     }
 
-    /// The camera that was asked for.
+    /// The requested camera.
     fn camera(&self, scene: &Scene) -> Result<Option<Camera>, UnknownCamera> {
         if let Some(name) = &self.camera_name {
             return scene.camera(name).cloned().map(Some);

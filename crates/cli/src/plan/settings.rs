@@ -5,7 +5,7 @@ use lightmesh::{Acceleration, Settings};
 use super::PlanError;
 use crate::args::RenderArgs;
 
-/// All settings but the camera, which is put into the scene.
+/// All settings except the camera, which is part of the scene.
 pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
     let mut settings = Settings::default()
         .with_mode(args.mode)
@@ -17,7 +17,7 @@ pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
         .with_acceleration(acceleration(args)?)
         .with_seed(args.seed)
         .with_layers(args.layers.is_some());
-    // What is left out is left open.
+    // Omitted flags leave their settings open.
     settings.step = args.step;
     settings.radius = args.radius.map(|radius| radius.0);
     settings.weight = args.weight;

@@ -1,4 +1,4 @@
-//! A progress bar for one stage after the other, with the whole image beside it.
+//! A progress bar for one stage after another, with the progress of the whole image next to it.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmesh::Stage;
@@ -30,7 +30,7 @@ impl Bar {
         self.0.inc(pieces);
     }
 
-    /// Shows how far the whole image is, and how long it will take.
+    /// Shows the progress of the whole image, and the estimated remaining time.
     pub(super) fn whole(&self, progress: Progress) {
         let percent = (100.0 * progress.done).floor();
         let left = progress.left.map_or_else(String::new, |left| format!(", {left:.0} s left"));

@@ -8,9 +8,9 @@
 //! {"event":"note","text":"…"}
 //! ```
 //!
-//! `image` is about the whole image: the part that is done, seconds since it was begun, and seconds to go (null at the very beginning).
-//! Elsewhere seconds count from the beginning of the stage. A stage repeats for each band of an image that is split to fit into memory, and
-//! for each bounce. The texts of `note`, `warning` and `summary` are for humans.
+//! `image` refers to the whole image: the part that is done, seconds since it was started, and seconds remaining (null at the very
+//! beginning). In the other events, seconds count from the start of the stage. A stage repeats for each band of an image that is split to
+//! fit into memory, and for each bounce. The texts of `note`, `warning` and `summary` are for humans.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -11,7 +11,7 @@ use super::number::number_and_unit;
 pub(crate) struct Budget(pub(crate) Duration);
 
 const FORM: ValueError = ValueError::Form { form: "a number of seconds, or one with s, m or h", example: "15m" };
-/// More than anybody would wait.
+/// More than anybody would wait for.
 const MAX_SECONDS: f64 = 1e7;
 
 impl FromStr for Budget {

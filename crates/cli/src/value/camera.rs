@@ -12,7 +12,7 @@ use super::number::{number, triple};
 pub(crate) struct CameraView {
     /// The eye, world coordinates.
     pub(crate) position: DVec3,
-    /// Where it looks; of a length that can be made 1.
+    /// The target; its distance is long enough to be normalised.
     pub(crate) direction: DVec3,
     /// Vertical field of view, degrees.
     pub(crate) vfov: f32,

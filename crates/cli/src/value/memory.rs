@@ -1,4 +1,4 @@
-//! Sizes of memory.
+//! Memory sizes.
 
 use std::str::FromStr;
 

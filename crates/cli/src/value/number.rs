@@ -66,7 +66,7 @@ impl FromStr for Bound {
     }
 }
 
-/// How much brighter a picture is shown.
+/// Exposure of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Exposure {
     /// Chosen for the image.

@@ -13,10 +13,10 @@ fn a_missing_scene_is_named() {
     // In parentheses stands what the system says, which differs from one to the other.
     let message = place.refused(&["render", "none.toml", "-o", "a.png"]);
     assert!(message.starts_with("error: cannot read the file ("), "{message}");
-    assert!(message.ends_with(" (os error 2)), none.toml; check that it exists and may be read"), "{message}");
+    assert!(message.ends_with(" (os error 2)), none.toml; check that it exists and is readable"), "{message}");
     assert_eq!(
         place.refused(&["info", "builtin:castle"]),
-        "error: there is no built-in scene `castle`, builtin:castle; known are gazebo, childpark, garden"
+        "error: there is no built-in scene `castle`, builtin:castle; available: gazebo, childpark, garden"
     );
 }
 
@@ -41,7 +41,7 @@ fn values_of_another_form_are_shown_the_form() {
         (&["--light", "1,2,3;1;-2"], "the radius must be 0 or more, but is -2"),
         (&["--exposure", "bright"], "`bright` is not a valid number"),
         (&["--ambient", "1,2"], "red,green,blue"),
-        (&["--step", "-1"], "`-1` is no light-mesh step: write a number above 0, or auto"),
+        (&["--step", "-1"], "invalid light-mesh step `-1`: use a number above 0, or auto"),
         (&["--radius", "-1"], "the number must be above 0, but is -1"),
         (&["--radius", "nan"], "`nan` is not a valid number"),
         (&["--samples", "0"], "0 is not in 1..=65535"),
@@ -78,7 +78,7 @@ fn an_unknown_word_is_answered_with_the_known() {
         assert!(done.stderr.contains(&format!("[possible values: {known}]")), "{done:?}");
     }
     let camera = refused(&place, &["--camera-name", "side"]);
-    assert_eq!(camera, "error: there is no camera named `side`, scene room; known are front, top");
+    assert_eq!(camera, "error: there is no camera named `side`, scene room; available: front, top");
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn flags_that_contradict_each_other_are_refused() {
     }
     assert_eq!(
         refused(&place, &["--accel", "bvh", "--grid", "2x2x2"]),
-        "error: --grid describes a grid, but --accel bvh asks for something else; leave one of them out"
+        "error: --grid specifies a grid, but --accel bvh selects another structure; remove one of them"
     );
 }
 

@@ -24,7 +24,7 @@ fn choices_made_for_the_user_are_said_and_quiet_is_quiet() {
     let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16"]);
     assert!(done.stderr.contains("device auto: using "), "{done:?}");
     assert!(
-        done.stderr.contains("the scene has no light: taking a key light above the camera and a weaker fill light"),
+        done.stderr.contains("the scene has no lights: using a key light above the camera and a weaker fill light"),
         "{done:?}"
     );
     assert!(done.stderr.contains("chosen for this picture (--step sets another)"), "{done:?}");

@@ -58,11 +58,8 @@ fn info_says_which_way_is_up() {
         "{}",
         up("sheet.obj")
     );
-    assert_eq!(
-        up("table.obj"),
-        serde_json::json!({"axis": "z", "reason": "it stands on a flat ground at its lowest z"})
-    );
-    assert!(place.good(&["info", "room.toml"]).stdout.contains("up      y: its cameras stand that way"));
+    assert_eq!(up("table.obj"), serde_json::json!({"axis": "z", "reason": "it has a flat ground at its lowest z"}));
+    assert!(place.good(&["info", "room.toml"]).stdout.contains("up      y: its cameras are oriented that way"));
 }
 
 #[test]

@@ -31,7 +31,7 @@ pub(crate) fn inputs() -> Vec<Input> {
         Input::new("glb", "an empty JSON chunk", glb(b"", Some(&bytes())), Refused),
         Input::new("glb", "bytes behind the last chunk", [&whole[..], &[0xff; 5]].concat(), Opens),
         Input::new("glb", "an index beyond the end", patched(&whole, bin + 8 + CORNERS, &[4, 0]), Refused),
-        Input::new("glb", "a coordinate that is no number", patched(&whole, bin + 8, &f32::NAN.to_le_bytes()), Opens),
+        Input::new("glb", "a NaN coordinate", patched(&whole, bin + 8, &f32::NAN.to_le_bytes()), Opens),
         Input::new("glb", "an infinite coordinate", patched(&whole, bin + 8, &f32::INFINITY.to_le_bytes()), Opens),
         Input::new("glb", "a huge coordinate", patched(&whole, bin + 8, &f32::MAX.to_le_bytes()), Opens),
     ]);

@@ -79,7 +79,7 @@ pub(crate) fn inputs() -> Vec<Input> {
         let text =
             text.replacen("ply\n", &comment, 1).replace("float x", "float x\nproperty float u\nproperty float v");
         let text = ROWS.lines().fold(text, |text, row| text.replacen(row, &format!("0 0 {row}"), 1));
-        Input::new("ply", format!("picture `{}`", name.escape_debug()), text, Opens)
+        Input::new("ply", format!("image `{}`", name.escape_debug()), text, Opens)
     }));
     all.extend(binaries());
     all.extend(texts(&text));
@@ -121,7 +121,7 @@ fn binaries() -> [Input; 8] {
         Input::new("ply", "binary index below 0", binary(BIG, BIG, i32::MIN), Refused),
         Input::new("ply", "a list of 2^32 - 1", many("uint"), Refused),
         Input::new("ply", "a list of -1", many("int"), Refused),
-        Input::new("ply", "a list of as many as no number", many("float"), Refused),
+        Input::new("ply", "a list with a NaN count", many("float"), Refused),
         Input::new("ply", "carriage returns before binary numbers", carriage_returns, Either),
     ]
 }

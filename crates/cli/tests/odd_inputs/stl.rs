@@ -61,7 +61,7 @@ fn binaries() -> Vec<Input> {
         Input::new("stl", "bytes behind the facets", [&one[..], b"more"].concat(), Opens),
         Input::new("stl", "a big-endian count", binary(1_u32.swap_bytes(), 1), Refused),
         Input::new("stl", "a header alone", &one[..COUNT], Refused),
-        Input::new("stl", "a coordinate that is no number", number(f32::NAN), Opens),
+        Input::new("stl", "a NaN coordinate", number(f32::NAN), Opens),
         Input::new("stl", "an infinite coordinate", number(f32::NEG_INFINITY), Opens),
         Input::new("stl", "a huge coordinate", number(f32::MAX), Opens),
         Input::new("stl", "a tiny coordinate", number(f32::from_bits(1)), Opens),

@@ -1,4 +1,4 @@
-//! What threads do together has the results that CUDA documents.
+//! Collective operations have the results that CUDA documents.
 
 use crate::Bench;
 

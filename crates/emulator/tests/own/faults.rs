@@ -1,4 +1,4 @@
-//! What must be found, is; and what comes after it is not disturbed.
+//! Errors are detected, and do not affect later launches.
 
 use lightmesh_render::cuda::{Fault, Kernel, Launch, Runtime};
 

@@ -1,5 +1,5 @@
-//! Tests of the emulator itself, with the kernels of `kernels/own.cu`: that it computes what a device would, and that it finds what
-//! it promises to find.
+//! Tests of the emulator itself, with the kernels of `kernels/own.cu`: that it computes what a device would, and that it detects
+//! the errors it promises to detect.
 #![cfg(unix)]
 
 mod collectives;
@@ -44,13 +44,13 @@ impl Bench {
         self.pool.runtime().launch(Kernel { module: "own", name }, launch, bytemuck::bytes_of(&arguments))
     }
 
-    /// Launches what must run, and reads what it has written.
+    /// Launches a kernel that must succeed, and reads its output.
     fn run(&self, name: &'static str, blocks: u32, threads: u32) -> Vec<u32> {
         self.launch(name, blocks, threads, 0).unwrap();
         self.out.read().unwrap()
     }
 
-    /// Launches what must fail, and gives the message.
+    /// Launches a kernel that must fail, and returns the message.
     fn fault(&self, name: &'static str, blocks: u32, threads: u32, choice: u32) -> String {
         match self.launch(name, blocks, threads, choice) {
             Err(Fault::Failed(message)) => message,

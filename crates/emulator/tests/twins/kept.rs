@@ -1,4 +1,4 @@
-//! Pictures with what is known of light points: the same bits as without, and the same long tests saved as on the CPU.
+//! Images with cached light points: the same bits as without, and the same long tests saved as on the CPU.
 
 use glam::Vec3;
 use lightmesh_render::backend::{Cpu, Cuda};
@@ -56,7 +56,7 @@ fn move_light(light: &mut Light) {
     }
 }
 
-/// A camera that goes to its right; lights with a size, mirrors.
+/// A camera that moves to its right; area lights, mirrors.
 fn settings(subject: &'static Subject, step: usize) -> Settings {
     let scene = subject.scene();
     let camera = scene.cameras.first().cloned().unwrap_or_else(|| scene.default_camera(Default::default()));
@@ -75,7 +75,7 @@ fn bits(frame: &Frame) -> Vec<[u32; 3]> {
     frame.image.color().iter().map(|color| color.map(f32::to_bits)).collect()
 }
 
-/// Long tests made and saved.
+/// Long tests performed and saved.
 fn tests(frame: &Frame) -> [u64; 2] {
     [frame.stats.counts.long_tests, frame.stats.counts.long_tests_saved]
 }

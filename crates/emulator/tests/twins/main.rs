@@ -1,6 +1,6 @@
-//! Twins: every stage and whole pictures, the CPU against a CUDA device.
+//! Twins: every stage and whole images, the CPU against a CUDA device.
 //!
-//! One list of cases runs on the emulator, always, and on each CUDA device. Where no device can be used its cases count as ignored;
+//! One list of cases always runs on the emulator, and on each CUDA device. If no device can be used, its cases count as ignored;
 //! with `LIGHTMESH_REQUIRE_GPU=1` they fail. `cargo test -p lightmesh-emulator --test twins -- garden` runs the cases of one scene.
 
 #[cfg(unix)]
@@ -20,7 +20,7 @@ fn main() -> std::process::ExitCode {
     let arguments = libtest_mimic::Arguments::from_args();
     #[cfg(unix)]
     let trials = trials::all();
-    // The emulator has no fibres elsewhere.
+    // On other systems the emulator has no fibres.
     #[cfg(not(unix))]
     let trials = Vec::new();
     libtest_mimic::run(&arguments, trials).exit_code()

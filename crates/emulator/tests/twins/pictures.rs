@@ -1,4 +1,4 @@
-//! Whole pictures in all modes, with mirrors and layers; and visibility at given points.
+//! Whole images in all modes, with mirrors and layers; and visibility at given points.
 
 use glam::Vec3;
 use lightmesh_image::{Layers, Transfer};
@@ -44,7 +44,7 @@ fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, mode: Mode
 
     let again = render_on(cuda, scene, &settings, &Unobserved).unwrap();
     let bits = |frame: &Frame| frame.image.color().iter().map(|color| color.map(f32::to_bits)).collect::<Vec<_>>();
-    assert!(bits(&device) == bits(&again), "the same picture twice");
+    assert!(bits(&device) == bits(&again), "the same image twice");
 }
 
 /// Given points, all over the scene and a little outside of it, see the same.
@@ -71,7 +71,7 @@ fn same_at_points<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, mode: Mo
     }
 }
 
-/// All that is counted. How many short tests are decided without asking triangles is each device's own affair; their sum is not.
+/// All counts. How many short tests are decided without intersecting triangles differs between devices; their sum does not.
 fn counts(counts: &Counts) -> String {
     let mut counts = counts.clone();
     counts.short_tests += std::mem::take(&mut counts.short_tests_culled);
@@ -87,7 +87,7 @@ fn same_colors<R: Target>(host: &Frame, device: &Frame) {
     assert!(differ().count() <= allowed, "pixels, on the CPU and on the device: {:?}", differ().collect::<Vec<_>>());
 }
 
-/// What was seen is the same in every bit; visibility within what a sum's order changes.
+/// What pixels see is bit-identical; visibility differs by no more than the order of a sum can change.
 fn same_layers<R: Target>(host: &Layers, device: &Layers) {
     let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert!(bits(&host.depth) == bits(&device.depth), "depth");

@@ -1,4 +1,4 @@
-//! Scenes that devices are held against the CPU with.
+//! Scenes on which devices are compared with the CPU.
 
 use std::path::Path;
 use std::sync::OnceLock;
@@ -12,12 +12,12 @@ use lightmesh_testkit::{SceneDraft, half_plane, pile, soup};
 pub(crate) const ACCELERATIONS: [Acceleration; 3] =
     [Acceleration::Bvh, Acceleration::Grid(None), Acceleration::BruteForce];
 
-/// A scene that is built and prepared when it is first needed.
+/// A scene that is built and prepared on first use.
 pub(crate) struct Subject {
     pub(crate) name: &'static str,
     /// Light-mesh step for tests.
     pub(crate) step: f32,
-    /// Few triangles: every stage may ask all of them.
+    /// Few triangles: every stage may test all of them.
     pub(crate) small: bool,
     build: fn() -> Scene,
     scene: OnceLock<Scene>,
@@ -40,7 +40,7 @@ pub(crate) static SUBJECTS: [Subject; 8] = [
     subject("empty", 1.0, true, || SceneDraft::new().point_light([0.0; 3]).camera([1.0; 3], [0.0; 3]).finish("empty")),
 ];
 
-/// For pictures alone: what it adds matters to no other stage than shading.
+/// For images only: what it adds affects no other stage than shading.
 pub(crate) static TEXTURED: Subject = subject("textured", 0.25, true, crate::textured::textured);
 
 impl Subject {
@@ -49,7 +49,7 @@ impl Subject {
         self.scene.get_or_init(self.build)
     }
 
-    /// With one of [`ACCELERATIONS`].
+    /// The scene prepared with one of [`ACCELERATIONS`].
     pub(crate) fn prepared(&'static self, acceleration: usize) -> &'static PreparedScene {
         self.prepared[acceleration].get_or_init(|| {
             PreparedScene::new(self.scene(), &ACCELERATIONS[acceleration], &Unobserved)
@@ -69,7 +69,7 @@ fn builtin(name: &str) -> Scene {
     Scene::open(format!("builtin:{name}")).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Mirrors, normals at vertices, lights with a size. Found from the repository's root too, where the test was built elsewhere.
+/// Mirrors, vertex normals, area lights. Also found from the repository's root, if the test was built elsewhere.
 fn still_life() -> Scene {
     let built_in = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/still_life.toml"));
     let path = if built_in.exists() { built_in } else { Path::new("scenes/still_life.toml") };

@@ -1,4 +1,4 @@
-//! Stage by stage: hits, masks, used light points, what they see, and the visibility at object points.
+//! Stage by stage: hits, masks, used light points, their visibility, and the visibility at surface points.
 
 use std::collections::BTreeMap;
 
@@ -13,16 +13,16 @@ use lightmesh_scene::Weight;
 use crate::scenes::{SUBJECTS, Subject};
 use crate::trials::{Case, Target};
 
-/// Pixels of the cases that hold hits against each other.
+/// Image size of the cases that compare hits.
 const HITS: [u32; 2] = [64, 64];
-/// Pixels of all others: no multiple of any tile.
+/// Image size of all others: no multiple of any tile.
 const SIZE: [u32; 2] = [45, 37];
-/// Pixels of those with large templates.
+/// Image size of those with large templates.
 const SMALL: [u32; 2] = [18, 13];
-/// Pixels and samples of those where threads have more rays than one launch casts.
+/// Image size of those in which threads have more rays than one launch casts.
 const TINY: [u32; 2] = [7, 5];
 const MANY_SAMPLES: u32 = 300;
-/// Shares may differ by what the order of a sum and roots of weights change.
+/// Shares may differ by what the order of a sum and square roots of weights change.
 pub(crate) const SHARE_TOLERANCE: f32 = 1e-5;
 
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
@@ -49,7 +49,7 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
                     twins.shadow_rays();
                     twins.light_mesh(0.5, Weight::Constant);
                 });
-                // Templates of one brick and of many, masks in shared memory and out of it, kernels unrolled and not.
+                // Templates of one brick and of many, masks inside and outside shared memory, kernels unrolled and not.
                 add("light_mesh_other", |cuda, subject, index| {
                     let twins = Twins::new(cuda, subject, index, SMALL);
                     for radius in [0.5, 1.5, 4.1, 5.1, 9.0, 16.0] {
@@ -72,7 +72,7 @@ struct Twins<'a, R: Target> {
     device_scene: DeviceScene<R>,
     device_rays: DeviceRays<R>,
     device_hits: DeviceHits<R>,
-    /// Rays to each light with a size.
+    /// Rays to each area light.
     samples: u32,
 }
 
@@ -81,7 +81,7 @@ fn job(samples: u32) -> Job<'static> {
 }
 
 impl<'a, R: Target> Twins<'a, R> {
-    /// Step 1. The hits are the same in every bit.
+    /// Step 1. The hits are bit-identical.
     fn new(cuda: &'a Cuda<R>, subject: &'static Subject, acceleration: usize, size: [u32; 2]) -> Twins<'a, R> {
         let scene = subject.prepared(acceleration);
         let view = subject.view(size);
@@ -123,7 +123,7 @@ impl<'a, R: Target> Twins<'a, R> {
         Wave { job, scene: &self.device_scene, rays: &self.device_rays, hits: &self.device_hits }
     }
 
-    /// Shadow rays, one and many a light.
+    /// Shadow rays, one and many per light.
     fn shadow_rays(&self) {
         let job = self.job();
         let host = Cpu.shadow_rays(&self.on_host(&job), &Aim::Middle).unwrap();
@@ -182,7 +182,7 @@ impl<'a, R: Target> Twins<'a, R> {
         self.same_shares("interpolated", &host, &device.read().unwrap(), SHARE_TOLERANCE, allowed);
     }
 
-    /// Both have shares by light; then the CPU by its order of rays, the device by pixel.
+    /// Both have shares by light; within a light, the CPU's are in the order of its rays, the device's by pixel.
     fn same_shares(&self, what: &str, host: &Visibility, device: &[f32], tolerance: f32, allowed: usize) {
         assert_eq!(host.share.len(), device.len(), "{what}");
         let rays = self.rays.pixels.len();
@@ -199,7 +199,7 @@ impl<'a, R: Target> Twins<'a, R> {
     }
 }
 
-/// Whether two shares differ by `tolerance` at most; a NaN is like nothing.
+/// Whether two shares differ by at most `tolerance`; NaN equals nothing.
 pub(crate) fn alike(a: f32, b: f32, tolerance: f32) -> bool {
     (a - b).abs() <= tolerance
 }
@@ -216,8 +216,8 @@ fn same_points<R: Target>(host: &UsedPoints, device: &DevicePoints<R>) {
     assert_eq!(found, expected, "used light points by brick");
 }
 
-/// Step 4: every light point sees the same of every light. The device has a word a slot of its table for each light without a size,
-/// then a number a light point, by rank, for each with one.
+/// Step 4: every light point sees the same of every light. The device has one word per slot of its table for each light without an
+/// area, then one number per light point, by rank, for each area light.
 fn same_light<R: Target>(points: &UsedPoints, lit: &Lit, device_points: &DevicePoints<R>, device_lit: &DeviceLit<R>) {
     let (bricks, ranks) = (device_points.read_bricks().unwrap(), device_points.read_ranks().unwrap());
     let (bits, counts) = device_lit.read().unwrap();

@@ -1,4 +1,4 @@
-//! Surfaces with textures and vertex colours: a scene of them, and a picture that is the same in every bit.
+//! Surfaces with textures and vertex colours: a scene with both, and a bit-identical image.
 
 use glam::{Affine2, DVec3, Vec2, Vec3};
 use lightmesh_render::backend::{Cpu, Cuda};
@@ -12,7 +12,7 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     vec![Case::new("textured::bits".to_owned(), same_bits)]
 }
 
-/// A pile whose triangles take turns with all kinds of materials, two textures, and colours at some vertices.
+/// A pile whose triangles alternate between all kinds of materials, two textures, and colours at some vertices.
 pub(crate) fn textured() -> Scene {
     let light = LightKind::Point { position: Vec3::new(2.0, 3.0, 3.0), spread: 0.0 };
     let mut scene = pile(DVec3::ZERO, &[light]);
@@ -39,13 +39,13 @@ pub(crate) fn textured() -> Scene {
     scene
 }
 
-/// A texture without two texels alike side by side.
+/// A texture without two adjacent texels of the same colour.
 fn checks(name: &str, size: [u32; 2]) -> Texture {
     let texel = |index: u32| [(37 * index) as u8, (91 * index + 5) as u8, (200 - 13 * index % 200) as u8, 255];
     Texture { name: name.to_owned(), size, texels: (0..size[0] * size[1]).map(texel).collect() }
 }
 
-/// Without highlights, whose powers a device may round otherwise, nothing differs.
+/// Without highlights, whose powers a device may round differently, nothing differs.
 fn same_bits<R: Target>(cuda: &Cuda<R>) {
     let colored = textured();
     let mut plain = colored.clone();

@@ -10,13 +10,13 @@ use lightmesh_render::{Device, devices};
 
 use crate::{kept, pictures, stages, textured};
 
-/// What cases run on.
+/// Where cases run.
 pub(crate) trait Target: Runtime {
-    /// Its sines, cosines and powers are the host's, so that nothing may differ. Those of a device may be rounded otherwise, so that
-    /// a ray to a sampled point of a light may just pass an edge, or just not.
+    /// Whether its sines, cosines and powers are the host's, so that nothing may differ. Those of a device may be rounded
+    /// differently, so that a ray to a sampled point of a light may just pass an edge, or just miss it.
     const EXACT: bool;
 
-    /// How many of `all` values that depend on sampled rays may differ, where a target that is not exact may have one in `one_in`.
+    /// How many of `all` values that depend on sampled rays may differ, if a target that is not exact may have one in `one_in`.
     fn allowed(all: usize, one_in: usize) -> usize {
         if Self::EXACT { 0 } else { all.div_ceil(one_in) }
     }
@@ -30,7 +30,7 @@ impl Target for Driver {
     const EXACT: bool = false;
 }
 
-/// Something that must be the same on the CPU and on a device. Panics where it is not.
+/// Something that must be the same on the CPU and on a device. Panics if it is not.
 pub(crate) struct Case<R: Target> {
     /// Scene, structure and what is compared.
     name: String,
@@ -59,7 +59,7 @@ pub(crate) fn all() -> Vec<Trial> {
         all.extend(on_device(&format!("cuda:{number}"), Some(number)));
     }
     if numbers.is_empty() {
-        // Where they must run, they fail and say why there is no device.
+        // If they are required, they fail and say why there is no device.
         let required = std::env::var_os("LIGHTMESH_REQUIRE_GPU").is_some_and(|value| value == "1");
         all.extend(on_device("cuda", None).into_iter().map(|trial| trial.with_ignored_flag(!required)));
     }
@@ -74,7 +74,7 @@ fn number(device: &str) -> Option<u32> {
     }
 }
 
-/// Each trial has an emulator of its own.
+/// Each trial has its own emulator.
 fn on_emulator() -> Vec<Trial> {
     let trial = |case: Case<Emulator>| {
         Trial::test(format!("emulator::{}", case.name), || {

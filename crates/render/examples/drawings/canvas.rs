@@ -1,12 +1,12 @@
-//! A page to draw on: shapes in world coordinates, y up, and text. Classes of `style.css` say how they look.
+//! A page to draw on: shapes in world coordinates, y up, and text. Their style is defined by classes of `style.css`.
 //!
-//! Elements are written by hand: the `svg` crate puts white space between the parts of a label, which shows.
+//! Elements are written as text: the `svg` crate puts visible white space between the parts of a label.
 
 use std::fmt::Write;
 
 use glam::{Vec2, vec2};
 
-/// Which part of a label its position is.
+/// The part of a label that its position refers to.
 #[derive(Clone, Copy)]
 pub(crate) enum Anchor {
     Start,
@@ -14,7 +14,7 @@ pub(crate) enum Anchor {
     End,
 }
 
-/// A drawing in the making.
+/// A drawing under construction.
 pub(crate) struct Canvas {
     svg: String,
     /// Pixels per world unit.
@@ -24,7 +24,7 @@ pub(crate) struct Canvas {
 }
 
 impl Canvas {
-    /// An empty page of `size` pixels. `title` is what a screen reader says.
+    /// An empty page of `size` pixels. `title` is the text for screen readers.
     pub(crate) fn new(title: &str, [width, height]: [u32; 2]) -> Canvas {
         let view = format!(r#"viewBox="0 0 {width} {height}" width="{width}" height="{height}""#);
         let page = format!(r#"<rect class="page" width="{width}" height="{height}"/>"#);
@@ -36,7 +36,7 @@ impl Canvas {
         Canvas { svg, scale: 1.0, origin: Vec2::ZERO }
     }
 
-    /// What follows is in a world of `scale` pixels a unit, whose origin is at the pixel `origin`.
+    /// Subsequent shapes are in a world of `scale` pixels per unit, whose origin is at the pixel `origin`.
     pub(crate) fn place(&mut self, scale: f32, origin: Vec2) {
         (self.scale, self.origin) = (scale, origin);
     }
@@ -75,14 +75,14 @@ impl Canvas {
         self.element(class, &format!(r#"path d="M{} {}A{radius} {radius} 0 0 1 {} {}Z""#, a.x, a.y, b.x, b.y));
     }
 
-    /// A line with a head at its end.
+    /// A line with an arrowhead at its end.
     pub(crate) fn arrow(&mut self, from: Vec2, to: Vec2) {
         let back = (from - to).normalize() / self.scale;
         self.line("arrow", from, to + 8.0 * back);
         self.polygon("head", &[to, to + 10.0 * back + 4.0 * back.perp(), to + 10.0 * back - 4.0 * back.perp()]);
     }
 
-    /// A label at a world point, moved by some pixels. What stands between asterisks is set as mathematics; there `_` begins an
+    /// A label at a world point, offset by some pixels. Text between asterisks is set as mathematics, where `_` begins an
     /// index.
     pub(crate) fn label(&mut self, at: Vec2, offset: [f32; 2], anchor: Anchor, text: &str) {
         let anchor = match anchor {
@@ -125,7 +125,7 @@ fn spans(mathematics: bool, text: &str) -> String {
     }
     let (base, index) = text.split_once('_').unwrap_or((&text, ""));
     let base = format!(r#"<tspan class="math">{base}</tspan>"#);
-    // The second span takes the baseline back up.
+    // The second span returns to the baseline.
     let index = if index.is_empty() {
         String::new()
     } else {
@@ -138,7 +138,7 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// To a tenth, without a negative zero.
+/// Rounded to a tenth, without a negative zero.
 fn rounded(pixels: f32) -> f32 {
     (10.0 * pixels).round() / 10.0 + 0.0
 }

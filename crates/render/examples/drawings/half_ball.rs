@@ -9,7 +9,7 @@ use crate::canvas::{Anchor, Canvas};
 use crate::world::{Extrude, HalfBall, World, light_mesh, nodes};
 
 const RADIUS: f32 = 3.1;
-/// The surface from left to right: convex, so that it falls away from the tangent plane.
+/// The surface from left to right: convex, so that it curves away from the tangent plane.
 const SURFACE: [Vec2; 4] = [vec2(-6.0, -3.0), vec2(-1.4, -0.28), vec2(1.9, 0.38), vec2(12.0, -0.25)];
 const WALL: [Vec2; 2] = [vec2(1.5, 0.2), vec2(1.68, 1.55)];
 
@@ -37,7 +37,7 @@ fn short_tests(canvas: &mut Canvas, world: &World, half_ball: &HalfBall) {
         canvas.line("short", half_ball.position, node);
     }
     for &node in &half_ball.hidden {
-        // Short tests start a little above the surface.
+        // Short tests start slightly above the surface.
         let end = world.first_hit(half_ball.position + 1e-3 * half_ball.normal, node).unwrap_or(node);
         canvas.line("blocked", half_ball.position, end);
     }

@@ -1,4 +1,4 @@
-//! Which triangles can shadow the surface points of a cell from an emitter: those that meet the shaft between them.
+//! Which triangles can shadow the surface points of a cell from an emitter: those that intersect the shaft between them.
 
 use std::error::Error;
 
@@ -8,7 +8,7 @@ use lightmesh_testkit::SceneDraft;
 use crate::canvas::{Anchor, Canvas};
 use crate::world::{Extrude, World, blocks_any, light_mesh};
 
-/// The surface from left to right, and where above it the surface points of the cell are looked for.
+/// The surface from left to right, and the region above it from which the surface points of the cell are found.
 const SURFACE: [Vec2; 6] =
     [vec2(-6.0, -0.8), vec2(-2.0, -0.2), vec2(-0.9, 0.25), vec2(0.2, 0.42), vec2(1.2, 0.2), vec2(12.0, -1.0)];
 const EYES: [f32; 8] = [-1.25, -0.9, -0.55, -0.2, 0.15, 0.5, 0.85, 1.2];
@@ -78,7 +78,7 @@ fn corners(points: &[Vec2]) -> [Vec2; 4] {
     [low, vec2(high.x, low.y), high, vec2(low.x, high.y)]
 }
 
-/// Points spread evenly over a box.
+/// Points distributed evenly over a box.
 fn grid(low: Vec2, high: Vec2) -> impl Iterator<Item = Vec2> {
     let part = |index: i32| index as f32 / 15.0;
     (0..256).map(move |index| low + (high - low) * vec2(part(index % 16), part(index / 16)))

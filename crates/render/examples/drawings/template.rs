@@ -55,7 +55,7 @@ fn axes(canvas: &mut Canvas, low: i32, high: i32) {
     canvas.label(vec2(first, high as f32), [-28.0, -24.0], Anchor::End, "*j*");
 }
 
-/// The outline of all points nearer than R to the cell.
+/// The outline of all points closer than R to the cell.
 fn reach() -> Vec<Vec2> {
     let corners = [Vec2::ONE, Vec2::Y, Vec2::ZERO, Vec2::X].into_iter().zip([0.0, 0.5, 1.0, 1.5]);
     let arc = |(corner, first): (Vec2, f32)| {

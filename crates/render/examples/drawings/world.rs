@@ -1,5 +1,5 @@
-//! Worlds for drawings: the same in every plane z = const, so that a drawing of the plane z = 0 shows all there is. What is drawn of
-//! them is computed by the stages of the renderer.
+//! Worlds for drawings: the same in every plane z = const, so that a drawing of the plane z = 0 shows everything. What is drawn is
+//! computed by the stages of the renderer.
 
 use std::error::Error;
 
@@ -13,10 +13,10 @@ use lightmesh_render::{
 use lightmesh_scene::{Scene, Weight};
 use lightmesh_testkit::SceneDraft;
 
-/// Half the length of everything along z: more than any distance in a drawing.
+/// Half the extent of everything along z: more than any distance in a drawing.
 const HALF: f64 = 50.0;
 
-/// Something in the making of a world.
+/// An object of a world.
 pub(crate) trait Extrude: Sized {
     /// A sheet over the line between two points.
     fn sheet(self, from: Vec2, to: Vec2) -> Self;
@@ -66,7 +66,7 @@ pub(crate) struct HalfBall {
     pub(crate) normal: Vec2,
     /// Light points that satisfy (2).
     pub(crate) used: Vec<Vec2>,
-    /// Light points that satisfy (2) but for its last condition.
+    /// Light points that satisfy (2) except for its last condition.
     pub(crate) hidden: Vec<Vec2>,
 }
 
@@ -135,7 +135,7 @@ impl World {
         Ok(seen)
     }
 
-    /// Where the segment between two points first meets something.
+    /// The point where the segment between two points first hits something.
     pub(crate) fn first_hit(&self, from: Vec2, to: Vec2) -> Option<Vec2> {
         let ray = Ray { origin: from.extend(0.0), direction: (to - from).extend(0.0), t_max: 1.0 };
         let mut hits = [Hit::MISS];

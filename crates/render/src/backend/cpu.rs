@@ -26,7 +26,7 @@ use crate::stages::{
 };
 use crate::view::View;
 
-/// The host's processor. Results do not depend on the number of threads.
+/// The CPU. Results do not depend on the number of threads.
 #[derive(Clone, Copy, Debug)]
 pub struct Cpu;
 

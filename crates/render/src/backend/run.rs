@@ -1,4 +1,4 @@
-//! The one place where stages are run: clocks, progress and cancelling wrap each of them here.
+//! The one place where stages are run: timing, progress and cancellation are handled here for all of them.
 
 use std::cell::{Cell, RefCell};
 
@@ -8,24 +8,24 @@ use crate::error::RenderError;
 use crate::job::Job;
 use crate::stage::Stage;
 
-/// A picture in the making on a backend.
+/// An image being rendered on a backend.
 pub(crate) struct Run<'a, B: Backend> {
     pub(crate) backend: &'a B,
     pub(crate) job: &'a Job<'a>,
-    /// What the caller keeps from picture to picture.
+    /// What the caller keeps from image to image.
     kept: Option<RefCell<&'a mut Kept<B::Table>>>,
-    /// Memory was short: the rest of the picture does without.
+    /// Memory ran short: the rest of the image is rendered without what is kept.
     is_short: Cell<bool>,
 }
 
 impl<'a, B: Backend> Run<'a, B> {
-    /// Nothing is done yet.
+    /// A run that has done nothing yet.
     pub(crate) fn new(backend: &'a B, job: &'a Job<'a>, kept: Option<&'a mut Kept<B::Table>>) -> Run<'a, B> {
         Run { backend, job, kept: kept.map(RefCell::new), is_short: Cell::new(false) }
     }
 
-    /// Runs one stage over a wave of `rays` rays, which has `pieces` pieces of work: tells the observer, lets the backend take the time,
-    /// and fails if the observer has asked to stop.
+    /// Runs one stage over a wave of `rays` rays, which counts as `pieces` pieces of work: informs the observer, lets the backend
+    /// measure the time, and fails if the observer has requested cancellation.
     pub(crate) fn stage<T>(
         &self,
         stage: Stage,
@@ -42,7 +42,7 @@ impl<'a, B: Backend> Run<'a, B> {
         Ok(result)
     }
 
-    /// Does something with what the caller keeps.
+    /// Runs `work` on what the caller keeps.
     pub(crate) fn with_kept<T>(&self, work: impl FnOnce(Option<&mut Kept<B::Table>>) -> T) -> T {
         match &self.kept {
             Some(kept) if !self.is_short.get() => work(Some(&mut kept.borrow_mut())),
@@ -55,18 +55,18 @@ impl<'a, B: Backend> Run<'a, B> {
         self.with_kept(|kept| kept.is_some())
     }
 
-    /// Frees what the caller keeps, and says so: the rest of the picture does without. `false` where it does already.
+    /// Frees what the caller keeps and reports it: the rest of the image is rendered without. Returns `false` if it already is.
     pub(crate) fn forget(&self) -> bool {
         let kept = self.keeps();
         if kept {
             self.with_kept(|kept| kept.map(Kept::clear));
             self.is_short.set(true);
-            self.job.observer.note("device memory is short: what was known of light points is forgotten");
+            self.job.observer.note("device memory is short: cached light points are dropped");
         }
         kept
     }
 
-    /// Does something that may find the device's memory taken by what is kept.
+    /// Runs work that may fail because kept data occupies the device's memory.
     pub(crate) fn or_forget<T>(&self, work: impl Fn(&'a B) -> Result<T, RenderError>) -> Result<T, RenderError> {
         match work(self.backend) {
             Err(RenderError::DeviceMemory { .. }) if self.forget() => work(self.backend),
@@ -74,7 +74,7 @@ impl<'a, B: Backend> Run<'a, B> {
         }
     }
 
-    /// Runs a stage that takes time on the host alone, such as a copy.
+    /// Runs a stage that takes time on the host only, such as a copy.
     pub(crate) fn on_host<T>(
         &self,
         stage: Stage,

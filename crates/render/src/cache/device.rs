@@ -1,4 +1,5 @@
-//! What light points see, kept on a CUDA device: a table of bricks that only grows, and for each light what is known, by slot.
+//! Visibility of light points, cached on a CUDA device: a table of bricks that only grows and, for each light, the known values by
+//! slot.
 
 use bytemuck::{Pod, Zeroable};
 use lightmesh_layout::Out;
@@ -19,32 +20,32 @@ const RECALL: Kernel = Kernel { module: "cache", name: "recall" };
 const MOVE_BRICKS: Kernel = Kernel { module: "cache", name: "move_bricks" };
 const MOVE_ANSWERS: Kernel = Kernel { module: "cache", name: "move_answers" };
 
-/// Bricks with what their light points see. Where an error leaves it half done it must be dropped.
+/// Bricks with the visibility of their light points. After an error in the middle of an update, the table must be dropped.
 pub struct DeviceTable<R: Runtime> {
     bricks: Option<Bricks<R>>,
     columns: Vec<Column<R>>,
 }
 
-/// The bricks that are known: at most half of the slots.
+/// The known bricks: at most half of the slots.
 struct Bricks<R: Runtime> {
     keys: Buffer<R, u64>,
-    /// How many they are.
+    /// Their number.
     count: Buffer<R, u32>,
 }
 
-/// What is known of one light, by slot.
+/// The known values for one light, by slot.
 struct Column<R: Runtime> {
     seen: Seen,
     known: Buffer<R, u64>,
     answers: Answers<R>,
-    /// Light points whose answer is known.
+    /// Number of light points whose value is known.
     count: u64,
 }
 
 enum Answers<R: Runtime> {
-    /// Seen or not, a word a slot.
+    /// Lit or not, one word per slot.
     Bits(Buffer<R, u64>),
-    /// Rays that got through, 64 numbers a slot.
+    /// Rays that reached the light, 64 counts per slot.
     Shares(Buffer<R, u16>),
 }
 
@@ -70,8 +71,8 @@ fn bytes<R: Runtime, T: Pod>(buffer: &Buffer<R, T>) -> u64 {
 }
 
 impl<R: Runtime> DeviceTable<R> {
-    /// The slots of a picture's bricks, by slot of its own table, and a column for each light. What was known of another light, or of
-    /// other samples, is forgotten.
+    /// The slots of an image's bricks, by slot of its own table, and a column for each light. Values for another light, or for other
+    /// samples, are discarded.
     pub(crate) fn admit(
         &mut self,
         cuda: &Cuda<R>,
@@ -96,7 +97,7 @@ impl<R: Runtime> DeviceTable<R> {
         }
     }
 
-    /// A column for each light.
+    /// Provides a column for each light.
     fn hold(&mut self, cuda: &Cuda<R>, lights: Vec<Seen>) -> Result<(), RenderError> {
         let capacity = self.capacity();
         self.columns.truncate(lights.len());
@@ -114,7 +115,7 @@ impl<R: Runtime> DeviceTable<R> {
         Ok(())
     }
 
-    /// Takes everything over into a table of twice as many slots.
+    /// Moves everything into a table of twice as many slots.
     fn grow(&mut self, cuda: &Cuda<R>) -> Result<(), RenderError> {
         let Some(old) = &self.bricks else { return Ok(()) };
         let new = Bricks::new(cuda, 2 * old.keys.len())?;
@@ -135,12 +136,12 @@ impl<R: Runtime> DeviceTable<R> {
         self.bricks.as_ref().map_or(0, |bricks| bricks.keys.len())
     }
 
-    /// Rays from each light point to a light.
+    /// Number of rays from each light point to a light.
     pub(crate) fn samples(&self, light: usize) -> u32 {
         self.columns[light].seen.samples()
     }
 
-    /// The used points whose answer for a light is not known, by slot of the picture's table.
+    /// The used points whose value for a light is unknown, by slot of the image's table.
     pub(crate) fn unknown(
         &self,
         cuda: &Cuda<R>,
@@ -154,7 +155,7 @@ impl<R: Runtime> DeviceTable<R> {
         Ok(unknown)
     }
 
-    /// Takes over what was found about some light points, `unknown`.
+    /// Stores the results for some light points, `unknown`.
     pub(crate) fn learn(
         &mut self,
         cuda: &Cuda<R>,
@@ -169,7 +170,7 @@ impl<R: Runtime> DeviceTable<R> {
         Ok(())
     }
 
-    /// What all points of a picture see of a light.
+    /// What all points of an image see of a light.
     pub(crate) fn recall(
         &self,
         cuda: &Cuda<R>,
@@ -182,7 +183,7 @@ impl<R: Runtime> DeviceTable<R> {
     }
 }
 
-/// A launch of one thread a slot.
+/// A launch of one thread per slot.
 fn slots(capacity: usize) -> crate::cuda::Launch {
     blocks_for(&(0..capacity.div_ceil(BLOCK as usize) as u64), BLOCK)
 }
@@ -197,7 +198,7 @@ impl<R: Runtime> Bricks<R> {
         BrickTable { keys: self.keys.output(), capacity: self.keys.len() as u32, spare: 0 }
     }
 
-    /// Writes where the bricks are into a kernel's arguments.
+    /// Writes the addresses of the bricks into a kernel's arguments.
     fn write(&self, record: Cache) -> Cache {
         Cache { table: self.record(), bricks: self.count.output(), ..record }
     }
@@ -222,7 +223,7 @@ impl<R: Runtime> Column<R> {
         KeptBy { known: self.known.output(), bits, seen }
     }
 
-    /// The arguments of a kernel about some of a picture's points.
+    /// The arguments of a kernel about some of an image's points.
     fn of(&self, points: &DevicePoints<R>, rows: &Buffer<R, u32>) -> Cache {
         Cache { points: points.record(), rows: rows.output(), kept: self.record(), ..Cache::zeroed() }
     }

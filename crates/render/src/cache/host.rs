@@ -1,4 +1,4 @@
-//! What light points see, kept on the host.
+//! Visibility of light points, cached on the host.
 
 use std::collections::HashMap;
 
@@ -8,28 +8,28 @@ use super::{Seen, Table};
 use crate::data::lit::LitBy;
 use crate::light_mesh::{BrickKey, bits};
 
-/// Light points of a brick.
+/// Number of light points in a brick.
 const POINTS: usize = 1 << POINT_BITS;
 
-/// Rows of bricks, columns of lights. What is known does not move when bricks come or lights change.
+/// Rows of bricks, columns of lights. Known values do not move when bricks are added or lights change.
 #[derive(Default)]
 pub struct HostTable {
     rows: HashMap<BrickKey, usize>,
     columns: Vec<Column>,
 }
 
-/// What is known of one light, by row.
+/// The known values for one light, by row.
 struct Column {
     seen: Seen,
-    /// The light points whose answer is known.
+    /// The light points whose value is known.
     known: Vec<u64>,
     answers: Answers,
 }
 
 enum Answers {
-    /// Seen or not.
+    /// Lit or not.
     Bits(Vec<u64>),
-    /// Rays that got through.
+    /// Rays that reached the light.
     Shares(Vec<[u16; POINTS]>),
 }
 
@@ -45,8 +45,8 @@ impl Table for HostTable {
 }
 
 impl HostTable {
-    /// The rows of some bricks, new ones where they have none, and a column for each light. What was known of another light, or of
-    /// other samples, is forgotten.
+    /// The rows of some bricks, which are added where they are new, and a column for each light. Values for another light, or for
+    /// other samples, are discarded.
     pub(crate) fn admit(&mut self, bricks: &[BrickKey], lights: Vec<Seen>) -> Vec<usize> {
         let mut rows = Vec::with_capacity(bricks.len());
         for &brick in bricks {
@@ -67,18 +67,18 @@ impl HostTable {
         rows
     }
 
-    /// Rays from each light point to a light.
+    /// Number of rays from each light point to a light.
     pub(crate) fn samples(&self, light: usize) -> u32 {
         self.columns[light].seen.samples()
     }
 
-    /// The points of `used`, by brick, whose answer for a light is not known.
+    /// The points of `used`, by brick, whose value for a light is unknown.
     pub(crate) fn unknown(&self, light: usize, rows: &[usize], used: &[u64]) -> Vec<u64> {
         let known = &self.columns[light].known;
         rows.iter().zip(used).map(|(&row, used)| used & !known[row]).collect()
     }
 
-    /// Takes over what was found about the points of `asked`, by brick.
+    /// Stores the results for the points of `asked`, by brick.
     pub(crate) fn learn(&mut self, light: usize, rows: &[usize], asked: &[u64], found: &LitBy) {
         let column = &mut self.columns[light];
         match (&mut column.answers, found) {
@@ -89,7 +89,7 @@ impl HostTable {
                 let points = rows.iter().zip(asked).flat_map(|(&row, &asked)| bits(asked).map(move |bit| (row, bit)));
                 points.zip(seen).for_each(|((row, bit), &share)| kept[row][bit as usize] = share);
             }
-            // A column has the form of its light.
+            // A column has the same form as its light.
             _ => return,
         }
         rows.iter().zip(asked).for_each(|(&row, asked)| column.known[row] |= asked);

@@ -1,17 +1,17 @@
-// What light points see, kept on a CUDA device from picture to picture: twin of host.rs.
+// Visibility of light points, cached on a CUDA device from image to image: twin of host.rs.
 //
-// 1. `admit_bricks`: where the picture's bricks lie in the table that is kept, new ones included.
-// 2. `find_unknown`: the points that no answer is known of, of one light; they are listed and tested as all are without a cache.
-// 3. `learn`: what was found about them.
-// 4. `recall`: what all points of the picture see.
+// 1. `admit_bricks`: finds the image's bricks in the cached table, and inserts new ones.
+// 2. `find_unknown`: the points whose value for one light is unknown; they are listed and tested as all points are without a cache.
+// 3. `learn`: stores the results for these points.
+// 4. `recall`: what all points of the image see.
 //
-// A brick stays at its slot as long as the table is large enough, so that answers never move; which of two bricks came first to a slot
-// may differ from run to run, but no answer does. `move_bricks` and `move_answers` take a table over into a larger one.
+// A brick stays in its slot as long as the table is large enough, so values never move; which of two bricks gets a slot first may
+// differ from run to run, but the values do not. `move_bricks` and `move_answers` copy a table into a larger one.
 #include "cuda/prelude.cuh"
 
 #include "light_mesh/bricks.cuh"
 
-// The slot of a brick, which is inserted where it is new. Counts more than there can be where the table is full.
+// The slot of a brick, which is inserted if it is new. If the table is full, the count exceeds its capacity.
 DEVICE unsigned slot_for(const Cache &args, unsigned long long value) {
     const unsigned mask = args.table.capacity - 1;
     unsigned slot = brick_hash(value - 1) & mask;
@@ -27,7 +27,7 @@ DEVICE unsigned slot_for(const Cache &args, unsigned long long value) {
     return NO_SLOT;
 }
 
-// The slot of a thread in the picture's table; `false` where there is none, or no point of it is used.
+// The slot of a thread in the image's table; `false` if there is none, or none of its points is used.
 DEVICE bool slot_of_thread(const Cache &args, unsigned &slot) {
     slot = blockIdx.x * blockDim.x + threadIdx.x;
     return slot < args.points.table.capacity && args.points.used[slot] != 0;
@@ -35,7 +35,7 @@ DEVICE bool slot_of_thread(const Cache &args, unsigned &slot) {
 
 KERNEL(admit_bricks, Cache, BLOCK, 4) {
     unsigned slot;
-    // A table that is more than half full is given up: the host makes a larger one.
+    // A table that is more than half full is abandoned: the host allocates a larger one.
     if (slot_of_thread(args, slot) && *(volatile unsigned *)args.bricks <= args.table.capacity / 2)
         args.rows[slot] = slot_for(args, args.points.table.keys[slot]);
 }
@@ -46,7 +46,7 @@ KERNEL(find_unknown, Cache, BLOCK, 4) {
         args.unknown[slot] = args.points.used[slot] & ~args.kept.known[args.rows[slot]];
 }
 
-// Here the points are those that were not known.
+// Here the points are those that were unknown.
 KERNEL(learn, Cache, BLOCK, 4) {
     unsigned slot;
     if (!slot_of_thread(args, slot))

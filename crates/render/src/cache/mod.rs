@@ -1,8 +1,8 @@
-//! What light points see, kept from picture to picture by whoever renders them.
+//! Visibility of light points, cached from image to image by the caller.
 //!
-//! A light point's place depends on the step alone, and what it sees of a light on nothing but the geometry, its place, the light and, for
-//! a light with a size, how that is sampled. As long as these stay the same no long test has to be made twice. A [`MeshCache`] belongs to
-//! the caller; a picture has the same bits with it and without.
+//! The position of a light point depends only on the step, and what it sees of a light only on the geometry, its position, the light and,
+//! for an area light, the sampling. As long as these stay the same, no long test has to be repeated. A [`MeshCache`] belongs to the
+//! caller; an image is bit-identical with and without it.
 //!
 //! A backend keeps a [`Table`] for each geometry: a row for each brick, a column for each light.
 
@@ -22,51 +22,51 @@ use crate::job::Sampling;
 use crate::light_mesh::Lattice;
 use crate::prepared::{PreparedGeometry, PreparedScene};
 
-/// What light points see of lights, for pictures to come: of a camera that moves, of lights of which some move. Give it to
+/// The visibility of light points, cached for later images: for a moving camera, or for lights of which only some move. Pass it to
 /// [`Renderer::render_with`](crate::Renderer::render_with).
 ///
-/// It holds the light points of each geometry that lives, as long as the step of the light mesh stays the same: with `--step auto` it
+/// It holds the light points of every geometry that is alive, as long as the step of the light mesh stays the same: with `--step auto` it
 /// may change with the camera.
 #[derive(Default)]
 pub struct MeshCache {
     host: Kept<HostTable>,
-    /// What stays in the memory of CUDA devices, by the number of the device.
+    /// What is kept in the memory of CUDA devices, by the device's id.
     devices: Vec<(u64, Kept<DeviceTable<Driver>>)>,
 }
 
 impl MeshCache {
-    /// A cache that knows nothing yet.
+    /// An empty cache.
     pub fn new() -> MeshCache {
         MeshCache::default()
     }
 
-    /// Number of answers: light points times lights.
+    /// Number of cached values: light points times lights.
     pub fn len(&self) -> u64 {
         self.host.len() + self.devices.iter().map(|(_, kept)| kept.len()).sum::<u64>()
     }
 
-    /// Whether nothing is known.
+    /// Whether the cache is empty.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Bytes that it takes, on the host and on devices.
+    /// Bytes used, on the host and on devices.
     pub fn memory(&self) -> u64 {
         self.host.memory() + self.devices.iter().map(|(_, kept)| kept.memory()).sum::<u64>()
     }
 
-    /// Forgets everything and frees its memory.
+    /// Empties the cache and frees its memory.
     pub fn clear(&mut self) {
         self.host.clear();
         self.devices.clear();
     }
 
-    /// What the host knows.
+    /// The part that is kept on the host.
     pub(crate) fn host(&mut self) -> &mut Kept<HostTable> {
         &mut self.host
     }
 
-    /// What a device knows.
+    /// The part that is kept on a device.
     pub(crate) fn device(&mut self, id: u64) -> &mut Kept<DeviceTable<Driver>> {
         let known = self.devices.iter().position(|(device, _)| *device == id);
         let index = known.unwrap_or_else(|| {
@@ -77,29 +77,29 @@ impl MeshCache {
     }
 }
 
-/// What a backend knows of the light points of one geometry.
-#[allow(clippy::len_without_is_empty, reason = "nobody asks")]
+/// What a backend knows about the light points of one geometry.
+#[allow(clippy::len_without_is_empty, reason = "not needed")]
 pub trait Table: Default {
-    /// Number of answers: light points times lights.
+    /// Number of cached values: light points times lights.
     fn len(&self) -> u64;
 
-    /// Bytes that it takes where the backend computes.
+    /// Bytes used in the backend's memory.
     fn memory(&self) -> u64;
 }
 
-/// The tables of a backend: one for each geometry that lives, for the lattice that it was last seen with.
+/// The tables of a backend: one for each geometry that is alive, for the lattice that it was last used with.
 pub struct Kept<T> {
     tables: Vec<Known<T>>,
 }
 
 struct Known<T> {
-    /// The geometry itself is not kept alive. While this is here no other geometry can have its address.
+    /// The geometry itself is not kept alive. While this exists, no other geometry can have its address.
     geometry: Weak<PreparedGeometry>,
     places: Places,
     table: T,
 }
 
-/// What decides where light points lie.
+/// What determines the positions of light points.
 #[derive(Clone, Copy, PartialEq)]
 struct Places {
     anchor: Vec3,
@@ -114,23 +114,24 @@ impl<T> Default for Kept<T> {
 }
 
 impl<T: Table> Kept<T> {
-    /// Number of answers: light points times lights.
-    #[allow(clippy::len_without_is_empty, reason = "nobody asks")]
+    /// Number of cached values: light points times lights.
+    #[allow(clippy::len_without_is_empty, reason = "not needed")]
     pub fn len(&self) -> u64 {
         self.tables.iter().map(|known| known.table.len()).sum()
     }
 
-    /// Bytes that the tables take.
+    /// Bytes used by the tables.
     pub fn memory(&self) -> u64 {
         self.tables.iter().map(|known| known.table.memory()).sum()
     }
 
-    /// Forgets everything.
+    /// Removes everything.
     pub(crate) fn clear(&mut self) {
         self.tables.clear();
     }
 
-    /// The table of a scene's geometry, empty where it is new or its light points lie elsewhere now. Forgets geometry that is gone.
+    /// The table of a scene's geometry, empty if it is new or its light points have moved. Removes tables of geometry that no longer
+    /// exists.
     pub(crate) fn table(&mut self, scene: &PreparedScene, lattice: &Lattice) -> &mut T {
         let Lattice { anchor, step, number, .. } = *lattice;
         let places = Places { anchor, step, number };
@@ -145,11 +146,11 @@ impl<T: Table> Kept<T> {
     }
 }
 
-/// What decides the values of a column, besides the light's number, which is the column's.
+/// What determines the values of a column, apart from the light's index, which is the column's.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Seen {
     kind: LightKind,
-    /// Samples and seed, for a light with a size.
+    /// Samples and seed, for an area light.
     sampling: Option<(u32, u64)>,
 }
 
@@ -159,12 +160,12 @@ impl Seen {
         Seen { kind: light.kind.clone(), sampling }
     }
 
-    /// Rays from each light point.
+    /// Number of rays from each light point.
     pub(crate) fn samples(&self) -> u32 {
         self.sampling.map_or(1, |(samples, _)| samples)
     }
 
-    /// Whether shares are seen, not bits.
+    /// Whether values are shares rather than bits.
     pub(crate) fn is_share(&self) -> bool {
         self.sampling.is_some()
     }

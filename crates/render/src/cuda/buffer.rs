@@ -1,4 +1,4 @@
-//! Typed arrays in device memory, and the account of how much is taken.
+//! Typed arrays in device memory, and accounting of the memory in use.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -9,14 +9,14 @@ use lightmesh_layout::{In, Out};
 use super::{Fault, Runtime};
 use crate::error::RenderError;
 
-/// A device's memory, with an account of what is taken.
+/// A device's memory, with accounting of the memory in use.
 pub struct Pool<R: Runtime> {
     runtime: Arc<R>,
-    /// Bytes taken now.
+    /// Bytes in use.
     taken: Arc<AtomicU64>,
-    /// Most bytes ever taken at once.
+    /// The largest number of bytes ever in use at once.
     peak: AtomicU64,
-    /// Most bytes that may be taken at once.
+    /// The largest number of bytes that may be in use at once.
     limit: AtomicU64,
 }
 
@@ -31,7 +31,7 @@ pub struct Buffer<R: Runtime, T> {
 }
 
 impl<R: Runtime> Pool<R> {
-    /// Nothing is taken yet.
+    /// A pool with nothing allocated.
     pub fn new(runtime: Arc<R>) -> Pool<R> {
         Pool { runtime, taken: Arc::default(), peak: AtomicU64::new(0), limit: AtomicU64::new(u64::MAX) }
     }
@@ -41,25 +41,25 @@ impl<R: Runtime> Pool<R> {
         &self.runtime
     }
 
-    /// Allows at most `limit` bytes to be taken at once from now on.
+    /// Sets the limit on the bytes in use at once.
     pub fn set_limit(&self, limit: Option<u64>) {
         self.limit.store(limit.unwrap_or(u64::MAX), Ordering::Relaxed);
     }
 
-    /// Bytes taken now.
+    /// Bytes in use.
     pub fn taken(&self) -> u64 {
         self.taken.load(Ordering::Relaxed)
     }
 
-    /// Most bytes taken at once.
+    /// The largest number of bytes in use at once.
     pub fn peak(&self) -> u64 {
         self.peak.load(Ordering::Relaxed)
     }
 
-    /// Room for `len` values, content undefined. `what` names it where there is not enough.
+    /// Allocates `len` values, content undefined. `what` names the buffer in the error if memory does not suffice.
     ///
     /// # Errors
-    /// [`RenderError::DeviceMemory`] where it does not fit, [`RenderError::DeviceFault`] where the device fails.
+    /// [`RenderError::DeviceMemory`] if it does not fit, [`RenderError::DeviceFault`] if the device fails.
     pub fn room<T: Pod>(&self, what: &'static str, len: usize) -> Result<Buffer<R, T>, RenderError> {
         let bytes = (size_of::<T>() as u64 * len as u64).max(1);
         let short = |free| RenderError::DeviceMemory { device: self.runtime.name(), buffer: what, needed: bytes, free };
@@ -77,7 +77,7 @@ impl<R: Runtime> Pool<R> {
         Ok(Buffer { runtime, memory, len, bytes, taken, content: std::marker::PhantomData })
     }
 
-    /// Room for `len` values that are all zero bits.
+    /// Allocates `len` values with all bits zero.
     pub fn zeros<T: Pod>(&self, what: &'static str, len: usize) -> Result<Buffer<R, T>, RenderError> {
         let buffer = self.room(what, len)?;
         buffer.clear()?;
@@ -91,7 +91,7 @@ impl<R: Runtime> Pool<R> {
         Ok(buffer)
     }
 
-    /// The error for what the device could not do.
+    /// Converts a fault of the device into an error.
     pub fn fault(&self, fault: Fault) -> RenderError {
         fault_of(&*self.runtime, fault)
     }
@@ -107,17 +107,17 @@ fn fault_of<R: Runtime>(runtime: &R, fault: Fault) -> RenderError {
 
 impl<R: Runtime, T: Pod> Buffer<R, T> {
     /// Number of values.
-    #[allow(clippy::len_without_is_empty, reason = "nobody asks")]
+    #[allow(clippy::len_without_is_empty, reason = "not needed")]
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Its address, to read from.
+    /// Its address, for reading.
     pub fn input(&self) -> In<T> {
         In::to(self.runtime.address(&self.memory))
     }
 
-    /// Its address, to write to.
+    /// Its address, for writing.
     pub fn output(&self) -> Out<T> {
         Out::to(self.runtime.address(&self.memory))
     }
@@ -147,7 +147,7 @@ impl<R: Runtime, T: Pod> Buffer<R, T> {
         self.runtime.write(&self.memory, 0, bytes).map_err(|fault| fault_of(&*self.runtime, fault))
     }
 
-    /// Reads values from `first` on. Waits for all work queued before.
+    /// Reads values starting at `first`. Waits for all work queued before.
     pub fn read_into(&self, first: usize, values: &mut [T]) -> Result<(), RenderError> {
         debug_assert!(first + values.len() <= self.len);
         if values.is_empty() {

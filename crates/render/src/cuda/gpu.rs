@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A version of CUDA: what a driver was made for.
+/// A version of CUDA, as supported by a driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Version {
     /// 12 of 12.4.
@@ -13,7 +13,7 @@ pub(crate) struct Version {
 
 impl Version {
     #[cfg_attr(not(feature = "cuda"), allow(dead_code, reason = "only the driver has one"))]
-    /// From the driver's number: 12040 is 12.4.
+    /// Decodes the driver's number: 12040 is 12.4.
     pub(crate) fn from_code(code: i32) -> Version {
         let code = u32::try_from(code).unwrap_or(0);
         Version { major: code / 1000, minor: code % 1000 / 10 }
@@ -26,13 +26,13 @@ impl fmt::Display for Version {
     }
 }
 
-/// A device as the driver describes it.
+/// A device as described by the driver.
 #[derive(Clone, Debug)]
 #[cfg_attr(not(feature = "cuda"), expect(dead_code, reason = "only the driver makes one"))]
 pub(crate) struct Gpu {
-    /// N of `cuda:N`, among the visible ones.
+    /// N of `cuda:N`, among the visible devices.
     pub(crate) number: u32,
-    /// What the maker calls it.
+    /// The vendor's name for the device.
     pub(crate) name: String,
     /// Compute capability times ten.
     pub(crate) capability: u32,
@@ -40,16 +40,16 @@ pub(crate) struct Gpu {
     pub(crate) memory: u64,
     /// Whether it has stream-ordered memory.
     pub(crate) pools: bool,
-    /// What the driver calls it.
+    /// The driver's handle.
     pub(crate) handle: i32,
 }
 
-/// What CUDA_VISIBLE_DEVICES is set to. The driver itself obeys it: the devices that it names are all there are, numbered anew.
+/// The value of CUDA_VISIBLE_DEVICES. The driver itself obeys it: only the listed devices exist, and they are renumbered.
 pub(crate) fn visible_devices() -> Option<String> {
     std::env::var_os("CUDA_VISIBLE_DEVICES").map(|value| value.to_string_lossy().into_owned())
 }
 
-/// A compute capability times ten in the usual form.
+/// Formats a compute capability times ten in the usual way.
 pub(crate) fn capability(tenfold: u32) -> String {
     format!("{}.{}", tenfold / 10, tenfold % 10)
 }

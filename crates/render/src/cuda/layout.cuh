@@ -3,17 +3,17 @@
 // What host and device share: constants and records.
 #pragma once
 
-// Threads of a warp, and surface points of an item at most.
+// Threads of a warp, and the maximum number of surface points of an item.
 #define WARP 32u
-// Edge of the square of pixels that a block takes, one a thread.
+// Edge of the square of pixels that a block processes, one per thread.
 #define BLOCK_SIDE 16u
-// Threads of the blocks that take one ray, one light point or one slot a thread.
+// Threads per block in kernels with one ray, one light point or one slot per thread.
 #define BLOCK 256u
 // Edge of the square of pixels whose surface points one block groups by cell.
 #define TILE_SIDE 32u
 // Rays of such a tile, or of a list, that one block groups.
 #define TILE 1024u
-// Values that a thread of a prefix sum takes.
+// Values per thread of a prefix sum.
 #define VALUES_OF_THREAD 4u
 // The largest number of single precision.
 #define F32_MAX 0x1.fffffep127f
@@ -27,53 +27,53 @@
 #define FRAC_1_PI 0x1.45f306p-2f
 // The largest relative error of one operation in single precision, 2^-24.
 #define UNIT_ROUNDOFF 0x1p-24f
-// Ray origins farther than this many radii from the middle of the triangles are moved.
+// Ray origins farther than this many radii from the centre of the triangles are moved closer.
 #define REACH 0x1p3f
-// Directions whose largest component is larger, 2^40, or smaller than the reciprocal are scaled.
+// Directions whose largest component exceeds this value, 2^40, or is below its reciprocal are scaled.
 #define LARGEST_DIRECTION 0x1p40f
 // Direction components below this share of the largest, 2^-30, count as such a share or as zero.
 #define LEAST_COMPONENT 0x1p-30f
 // Relative margin of tests against the boxes of a BVH, 2^-19; derived in bvh/walk.rs.
 #define BVH_MARGIN 0x1p-19f
-// What tests of a box against a region are given for rounding, 2^-20 or 16 units of roundoff; derived in accel/region/.
+// Rounding margin of tests of a box against a region, 2^-20 or 16 units of roundoff; derived in accel/region/.
 #define REGION_ROUNDING 0x1p-20f
-// Entries of the stack of a walk through the BVH: the most levels that it may have.
+// Stack entries of a traversal of the BVH: the maximum number of its levels.
 #define BVH_STACK 64u
-// In the word of a walk's hits in a node the first bit of a child that is a node.
+// In the word of a traversal's hits in a node, the first bit of a child that is a node.
 #define FIRST_INNER 24u
 // All bits of children that are nodes.
 #define INNER_HITS 0xff000000u
 // All bits of triangles in children that are leaves.
 #define TRIANGLE_HITS 0x00ffffffu
-// The hits with which a walk begins: the root as the only child, in the slot entered first.
+// The hits with which a traversal begins: the root as the only child, in the slot that is entered first.
 #define ROOT_HIT 0x80000000u
 // Bound on the relative error of a chain of 32 operations (Higham's gamma).
 #define GAMMA_32 0x1.00002p-19f
-// Below this square of twice its area a triangle's normal has lost its bits to underflow.
+// If the square of twice its area is below this, a triangle's normal has lost its bits to underflow.
 #define LEAST_SQUARE 0x1.4484cp-100f
-// Below this square of its length an interpolated normal has cancelled out.
+// If the square of its length is below this, an interpolated normal has cancelled out.
 #define LEAST_SMOOTH_SQUARE 0x1.197998p-40f
 // Bits of a brick's key for each axis.
 #define AXIS_BITS 19u
-// Bits of a light point's index on an axis that say where in its brick it lies: bricks have 4 x 4 x 4 points.
+// Bits of a light point's index along an axis that give its position in its brick: bricks have 4 x 4 x 4 points.
 #define BRICK_BITS 2u
-// Bits of a light point's index on an axis.
+// Bits of a light point's index along an axis.
 #define INDEX_BITS 21u
-// Added to indices, so that keys have no sign.
+// Added to indices, so that keys are unsigned.
 #define INDEX_BIAS 1048576
 // Bits of a light point's number within its brick.
 #define POINT_BITS 6u
-// What stands for the place of a brick that is not there.
+// The slot of a brick that is not in the table.
 #define NO_SLOT 0xffffffffu
-// 2^64 over the golden ratio: multiplied with it, numbers that follow each other lie far apart (Fibonacci hashing, SplitMix64).
+// 2^64 over the golden ratio: multiplication by it spreads consecutive numbers far apart (Fibonacci hashing, SplitMix64).
 #define GOLDEN_RATIO 0x9e3779b97f4a7c15ull
-// The farthest that the template of the largest radius reaches, in steps; added to offsets before they are packed.
+// The reach of the template with the largest radius, in steps; added to offsets before they are packed.
 #define MOST_REACH 16
 // Lines along x of that template.
 #define TEMPLATE_LINES 1024
-// Points of a light that decide how much of it stands above the horizon.
+// Sample points of a light that determine its share above the horizon.
 #define HORIZON_SAMPLES 64u
-// Points of a light with a size from which its unshadowed light is computed.
+// Points of an area light from which its unshadowed light is computed.
 #define LIGHT_TARGETS 16u
 // First factor of the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
 #define MIX_1 0xbf58476d1ce4e5b9ull
@@ -95,9 +95,9 @@
 #define OWEN_3 0xc7afe638u
 // Last factor.
 #define OWEN_4 0x8d22f6e6u
-// Binary digits of a sample's coordinate: as many as a float has.
+// Binary digits of a sample's coordinate: those of a float's mantissa.
 #define SAMPLE_DIGITS 24u
-// What the last of them is worth.
+// The value of the last of these digits.
 #define LAST_DIGIT 0x1p-24f
 // Tangent planes of an item's surface points that short tests tell apart.
 #define TANGENT_PLANES 4u
@@ -117,7 +117,7 @@
 #define STACK_PER_LEVEL 7u
 // Warps of a block that marks light points or interpolates, an item each.
 #define ITEM_WARPS 4u
-// Lights without a size that are interpolated at once, at most.
+// Maximum number of lights without an area that are interpolated at once.
 #define MOST_LIGHTS 3u
 
 #if defined(__CUDACC_RTC__)
@@ -178,7 +178,7 @@ static_assert(PLACE_OF(DVec3, z) == 16, "place of DVec3::z");
 
 struct alignas(4) Hit {
     enum : unsigned {
-        // The triangle index that stands for "no triangle".
+        // The triangle index that means "no triangle".
         NONE = 0xffffffffu,
     };
     float t;
@@ -346,7 +346,7 @@ struct alignas(4) Light {
         DIRECTIONAL = 1u,
         // A spot.
         SPOT = 2u,
-        // A ball. This kind and all that follow have a size.
+        // A ball. This kind and all that follow are area lights.
         SPHERE = 3u,
         // A disk.
         DISK = 4u,

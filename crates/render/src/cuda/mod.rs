@@ -1,4 +1,4 @@
-//! What a CUDA device, or something that stands in for one, must be able to do; and typed memory on it.
+//! What a CUDA device, or a substitute for one, must provide; and typed memory on it.
 //!
 //! Everything above this module is the same for every [`Runtime`]: the driver is the real device, and the emulator that the tests
 //! use runs the same kernels, compiled as C++ for the host. So every launch, every buffer and every plan is tested without a GPU.

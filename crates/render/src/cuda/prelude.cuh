@@ -1,19 +1,19 @@
-// What every kernel file begins with. On a device these are CUDA's own words; for the host, the emulator's shim gives CUDA's names
-// (threadIdx, __ballot_sync, atomicOr and so on) to plain C++.
+// Included first by every kernel file. On a device these are CUDA's own keywords; for the host, the emulator's shim implements
+// CUDA's names (threadIdx, __ballot_sync, atomicOr and so on) in plain C++.
 //
-// A kernel has one parameter, a record of layout.cuh by value:
+// A kernel has one parameter, a record of layout.cuh passed by value:
 //
 //     KERNEL(name, Record, THREADS, BLOCKS) { … args.hits … }
 //
-// THREADS is the size of its blocks, BLOCKS how many of them must fit on a multiprocessor (it bounds the registers).
+// THREADS is the block size, BLOCKS how many blocks must fit on a multiprocessor (it bounds the number of registers).
 //
-// A kernel that walks an acceleration structure is a template function of its record and the structure. From it
+// A kernel that walks an acceleration structure is a function template over its record and the structure. From it
 //
 //     KERNEL_PER_STRUCTURE(name, Record, THREADS, BLOCKS)
 //
-// makes a kernel for each: name_bvh, name_grid, name_brute_force. The host names them with `per_structure!`.
+// generates a kernel for each: name_bvh, name_grid, name_brute_force. The host names them with `per_structure!`.
 //
-// Variables of a block, declared inside functions, and variables that the host sets, declared outside:
+// Variables of a block, declared inside functions, and variables set by the host, declared outside:
 //
 //     SHARED(float, tile, [8][32]);      SHARED(unsigned, total, );
 //     DYNAMIC_SHARED(unsigned, list);
@@ -28,7 +28,7 @@
 #define SHARED(type, name, dims) __shared__ type name dims
 #define DYNAMIC_SHARED(type, name) extern __shared__ type name[]
 #define CONSTANT(type, name, dims) extern "C" { __constant__ type name dims; }
-// Before a loop whose bounds are constants: every passage is written out.
+// Before a loop with constant bounds: it is fully unrolled.
 #define UNROLL _Pragma("unroll")
 #else
 #define UNROLL

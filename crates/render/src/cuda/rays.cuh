@@ -1,13 +1,13 @@
-// Rays as kernels number them: those of some rows of a camera's picture, or a list. Twin of view.rs and of the ray lists of
+// Rays as kernels number them: those of some rows of a camera's image, or a list. Twin of view.rs and of the ray lists of
 // primary_rays.
 //
-// A ray of a camera is computed where it is needed. Threads take a camera's pixels by square tiles, left to right, top to bottom; a
-// warp takes 8 × 4 pixels, so that its rays stay together. The rays of a list are taken in their order.
+// A camera ray is computed where it is needed. Threads take a camera's pixels by square tiles, left to right, top to bottom; a warp
+// takes 8 × 4 pixels, so that its rays are coherent. The rays of a list are taken in order.
 #pragma once
 
 #include "accel/ray.cuh"
 
-// The ray of a thread whose block takes SIDE × SIDE pixels; false where there is none.
+// The ray of a thread whose block covers SIDE × SIDE pixels; false if there is none.
 template <unsigned SIDE>
 DEVICE bool ray_in_tile(const Rays &rays, unsigned tile, unsigned thread, unsigned &ray) {
     if (rays.list != nullptr) {
@@ -19,11 +19,11 @@ DEVICE bool ray_in_tile(const Rays &rays, unsigned tile, unsigned thread, unsign
     const unsigned x = tile % across * SIDE + warp % (SIDE / 8) * 8 + lane % 8;
     const unsigned y = tile / across * SIDE + warp / (SIDE / 8) * 4 + lane / 8;
     ray = y * width + x;
-    // In 64 bits: the last tile may reach beyond the last row that 32 bits can number.
+    // In 64 bits: the last tile may extend beyond the last row that 32 bits can number.
     return x < width && (unsigned long long)y * width + x < rays.count;
 }
 
-// The ray of a thread of a block of BLOCK.
+// The ray of a thread in a block of BLOCK threads.
 DEVICE bool ray_of_thread(const Rays &rays, unsigned block, unsigned thread, unsigned &ray) {
     return ray_in_tile<BLOCK_SIDE>(rays, block, thread, ray);
 }
@@ -33,12 +33,12 @@ DEVICE bool tile_ray_of_thread(const Rays &rays, unsigned block, unsigned thread
     return ray_in_tile<TILE_SIDE>(rays, block, thread, ray);
 }
 
-// The pixel of a ray, y · width + x of the whole picture.
+// The pixel of a ray, y · width + x of the whole image.
 DEVICE unsigned pixel_of(const Rays &rays, unsigned ray) {
     return rays.list != nullptr ? __ldg(&rays.list[ray].pixel) : rays.first_pixel + ray;
 }
 
-// The ray of a camera through the centre of a pixel.
+// The camera ray through the centre of a pixel.
 DEVICE Ray view_ray(const View &view, unsigned pixel) {
     const unsigned width = view.size[0], height = view.size[1];
     const float x = (float)(pixel % width) + 0.5f - 0.5f * (float)width;
@@ -69,7 +69,7 @@ DEVICE Vec3 weight_of(const Rays &rays, unsigned ray) {
     return rays.list == nullptr ? Vec3{1.0f, 1.0f, 1.0f} : load_listed(rays.list + ray, 2);
 }
 
-// What tells the random patterns of two object points apart: the pixel, and whether it is seen in a mirror.
+// The key that distinguishes the random patterns of two surface points: the pixel, and whether it is seen in a mirror.
 DEVICE unsigned long long ray_key(const Rays &rays, unsigned ray) {
     return (unsigned long long)pixel_of(rays, ray) << 1 | (rays.list != nullptr ? 1 : 0);
 }

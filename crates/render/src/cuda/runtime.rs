@@ -1,15 +1,15 @@
-//! The boundary between the backend and a device.
+//! The interface between the backend and a device.
 
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A number that no other device of this process has.
+/// A number that is unique in this process.
 pub fn new_id() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
-/// A kernel: the module that holds it (the stage's folder) and its name there.
+/// A kernel: the module that contains it (the stage's folder) and its name there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kernel {
     /// Module, `short_tests` for instance: its PTX is one file.
@@ -24,54 +24,54 @@ impl fmt::Display for Kernel {
     }
 }
 
-/// How many threads a launch has.
+/// The dimensions of a launch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Launch {
     /// Thread blocks.
     pub blocks: u32,
-    /// Threads of a block.
+    /// Threads per block.
     pub threads: u32,
-    /// Bytes of dynamic shared memory of a block.
+    /// Bytes of dynamic shared memory per block.
     pub shared: u32,
 }
 
-/// What a device could not do.
+/// Why an operation on a device failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Memory is used up.
+    /// Out of memory.
     OutOfMemory {
-        /// Bytes that are free, where the device tells.
+        /// Bytes that are free, if the device reports them.
         free: Option<u64>,
     },
-    /// Anything else, in the words of the driver, with what was being done.
+    /// Any other error, as described by the driver, with the operation that failed.
     Failed(String),
 }
 
-/// A device: memory, kernels, a queue that they run in, and a clock.
+/// A device: memory, kernels, a queue (stream) that they run in, and a clock.
 ///
 /// All work is queued in the order of the calls. Only [`read`](Runtime::read) and [`seconds`](Runtime::seconds) wait for it.
 pub trait Runtime: Send + Sync + 'static {
     /// Device memory; freed when dropped, after the work queued before.
     type Memory: Send + Sync;
-    /// A moment in the queue.
+    /// A point in the queue.
     type Mark: Send;
 
-    /// What the maker calls the device.
+    /// The vendor's name for the device.
     fn name(&self) -> String;
 
-    /// Tells devices apart that hold their own copies of a scene: a [`new_id`].
+    /// Distinguishes devices that hold their own copies of a scene: a [`new_id`].
     fn id(&self) -> u64;
 
     /// Bytes that can still be allocated.
     fn free_memory(&self) -> Option<u64>;
 
-    /// Takes `bytes` of memory, at least one; aligned to 256 bytes, content undefined.
+    /// Allocates `bytes` bytes, at least one; aligned to 256 bytes, content undefined.
     fn allocate(&self, bytes: u64) -> Result<Self::Memory, Fault>;
 
     /// Its device address.
     fn address(&self, memory: &Self::Memory) -> u64;
 
-    /// Sets `bytes` bytes from `offset` on to zero.
+    /// Sets `bytes` bytes at `offset` to zero.
     fn clear(&self, memory: &Self::Memory, offset: u64, bytes: u64) -> Result<(), Fault>;
 
     /// Copies `bytes` to the device. `bytes` may be changed as soon as this returns.
@@ -83,12 +83,12 @@ pub trait Runtime: Send + Sync + 'static {
     /// Sets the beginning of a `__constant__` variable of a module.
     fn constant(&self, module: &'static str, name: &'static str, bytes: &[u8]) -> Result<(), Fault>;
 
-    /// Queues a kernel whose one parameter is a record with these bytes.
+    /// Queues a kernel whose only parameter is a record with these bytes.
     fn launch(&self, kernel: Kernel, launch: Launch, arguments: &[u8]) -> Result<(), Fault>;
 
-    /// Marks the present moment of the queue.
+    /// Marks the current end of the queue.
     fn mark(&self) -> Result<Self::Mark, Fault>;
 
-    /// Waits for `to` and gives the seconds between two marks.
+    /// Waits for `to` and returns the seconds between two marks.
     fn seconds(&self, from: &Self::Mark, to: &Self::Mark) -> Result<f64, Fault>;
 }

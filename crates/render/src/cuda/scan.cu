@@ -1,5 +1,5 @@
-// Exclusive prefix sums of unsigned numbers, in place: a block of 256 threads sums 1024 values; the sums of blocks are summed by
-// another scan, then added.
+// Exclusive prefix sums of unsigned numbers, in place: a block of 256 threads scans 1024 values; the sums of the blocks are
+// scanned in turn, then added.
 #include "cuda/prelude.cuh"
 
 #include "cuda/warp.cuh"
@@ -15,7 +15,7 @@ KERNEL(scan_blocks, Scan, BLOCK, 4) {
         values[i] = first + i < args.count ? args.values[first + i] : 0;
         sum += values[i];
     }
-    // 2. The sums of the threads before: in the warp, then of the warps before.
+    // 2. The sums of the preceding threads: in the warp, then of the preceding warps.
     unsigned until = sum;
     for (unsigned step = 1; step < WARP; step *= 2) {
         const unsigned other = __shfl_up_sync(ALL_LANES, until, step);

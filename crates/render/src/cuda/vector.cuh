@@ -1,4 +1,4 @@
-// Three coordinates, with the operations of Rust's glam in glam's order: the same bits on both sides.
+// Vectors of three floats, with the operations of Rust's glam in glam's order: the results are bit-identical.
 #pragma once
 
 struct IVec3 {
@@ -29,7 +29,7 @@ DEVICE float length_squared(Vec3 a) { return dot(a, a); }
 DEVICE float length(Vec3 a) { return sqrtf(dot(a, a)); }
 DEVICE Vec3 normalize(Vec3 a) { return (1.0f / length(a)) * a; }
 
-// As glam compares: the second where one is not a number.
+// As in glam: the second if either is NaN.
 DEVICE float larger(float a, float b) { return a > b ? a : b; }
 DEVICE Vec3 max(Vec3 a, Vec3 b) { return Vec3{larger(a.x, b.x), larger(a.y, b.y), larger(a.z, b.z)}; }
 DEVICE Vec3 abs(Vec3 a) { return Vec3{fabsf(a.x), fabsf(a.y), fabsf(a.z)}; }
@@ -40,7 +40,7 @@ DEVICE float element_sum(Vec3 a) { return a.x + a.y + a.z; }
 DEVICE bool is_finite(float a) { return fabsf(a) <= F32_MAX; }
 DEVICE bool is_finite(Vec3 a) { return is_finite(a.x) && is_finite(a.y) && is_finite(a.z); }
 
-// The unit vector along `a`; zero where that has no length.
+// The unit vector along `a`; zero if `a` has no length.
 DEVICE Vec3 normalize_or_zero(Vec3 a) {
     const float reciprocal = 1.0f / length(a);
     return is_finite(reciprocal) && reciprocal > 0.0f ? reciprocal * a : splat(0.0f);

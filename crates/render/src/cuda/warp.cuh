@@ -1,4 +1,4 @@
-// What the 32 threads of a warp do together.
+// Cooperative operations of the 32 threads of a warp.
 #pragma once
 
 #include "cuda/prelude.cuh"
@@ -27,7 +27,7 @@ DEVICE unsigned warp_sum(unsigned value) {
     return value;
 }
 
-// The sum of this lane's value and those of all lanes before.
+// The inclusive prefix sum: this lane's value and those of all lanes before.
 DEVICE unsigned warp_running_sum(unsigned value) {
     const unsigned lane = lane_of_thread();
     for (unsigned step = 1; step < WARP; step *= 2) {
@@ -55,14 +55,14 @@ DEVICE float warp_max(float value) {
     return value;
 }
 
-// The 32 x 32 bit matrix whose rows the lanes hold, mirrored at its diagonal: bit j of lane i goes to bit i of lane j (Warren:
-// Hacker's Delight, 7-3).
+// The transpose of the 32 x 32 bit matrix whose rows the lanes hold: bit j of lane i goes to bit i of lane j (Warren: Hacker's
+// Delight, 7-3).
 DEVICE unsigned warp_transposed(unsigned row) {
     const unsigned lane = lane_of_thread();
     unsigned keep = 0xffff0000u;
     for (int step = WARP / 2; step > 0; step /= 2) {
         const unsigned other = __shfl_xor_sync(ALL_LANES, row, step);
-        // `keep` has the upper half of each pair of groups of `step` bits.
+        // `keep` selects the upper half of each pair of groups of `step` bits.
         row = (lane & step) ? (row & keep) | ((other & keep) >> step) : (row & ~keep) | ((other & ~keep) << step);
         keep ^= keep >> (step / 2);
     }

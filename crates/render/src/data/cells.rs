@@ -1,20 +1,20 @@
-//! Surface points by the light-mesh cell that holds them.
+//! Surface points grouped by light-mesh cell.
 
 use std::ops::Range;
 
 use crate::light_mesh::PointKey;
 
-/// The cells that hold surface points, in ascending order of key, and the surface points of each.
+/// The cells that contain surface points, in ascending order of key, and the surface points of each.
 #[derive(Clone, Debug, Default)]
 pub struct CellGroups {
     cells: Vec<PointKey>,
-    /// Where each cell's members begin, and their total number at the end.
+    /// The start of each cell's members, and their total number at the end.
     starts: Vec<u32>,
     members: Vec<u32>,
 }
 
 impl CellGroups {
-    /// The groups of rays that are sorted by the cell of their surface point.
+    /// The groups of rays sorted by the cell of their surface point.
     pub(crate) fn of_sorted(keyed: &[(PointKey, u32)]) -> CellGroups {
         let mut groups = CellGroups { members: keyed.iter().map(|&(_, ray)| ray).collect(), ..CellGroups::default() };
         for (slot, &(cell, _)) in keyed.iter().enumerate() {
@@ -32,7 +32,7 @@ impl CellGroups {
         self.cells.len()
     }
 
-    /// Whether there is no surface point at all.
+    /// Whether there are no surface points.
     pub fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }
@@ -57,7 +57,7 @@ impl CellGroups {
         &self.members
     }
 
-    /// Cuts the cells into runs of about `size` surface points, for threads to share: ranges of groups.
+    /// Splits the cells into runs of about `size` surface points, to distribute among threads: ranges of groups.
     pub(crate) fn runs(&self, size: usize) -> Vec<Range<usize>> {
         let mut runs = Vec::new();
         let mut first = 0;

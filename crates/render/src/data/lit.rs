@@ -1,20 +1,20 @@
 //! What light points see.
 
-/// What every used light point sees of every light.
+/// The visibility of every light at every used light point.
 #[derive(Clone, Debug, Default)]
 pub struct Lit {
-    /// One entry a light.
+    /// One entry per light.
     pub lights: Vec<LitBy>,
 }
 
-/// What the used light points see of one light.
+/// The visibility of one light at the used light points.
 #[derive(Clone, Debug)]
 pub enum LitBy {
-    /// Seen or not: one word a brick, addressed as the used-bitmap is, so that no rank is needed.
+    /// Lit or not: one word per brick, addressed like the used-bitmap, so that no rank is needed.
     Bits(Vec<u64>),
     /// Shadow rays out of `samples` that reached the light, by rank.
     Share {
-        /// Rays that got through.
+        /// Rays that reached the light.
         seen: Vec<u16>,
         /// Rays cast.
         samples: u32,

@@ -1,9 +1,9 @@
-//! Which light points surface points see: formula (2).
+//! Which light points each surface point sees: formula (2).
 
 /// The masks of all surface points, in the order of [`CellGroups::members`](super::cells::CellGroups::members).
 #[derive(Clone, Debug)]
 pub struct Masks {
-    /// 32-bit words of a mask.
+    /// 32-bit words per mask.
     pub words: usize,
     /// `words` words for each surface point; bit k of a mask is bit k % 32 of word k / 32.
     pub bits: Vec<u32>,

@@ -1,7 +1,7 @@
-//! What stages hand to each other on the host. The types of CUDA devices lie in [`gpu`](crate::gpu).
+//! The data that stages pass to each other on the host. The types for CUDA devices are in [`gpu`](crate::gpu).
 //!
-//! One file a type: rays and the surface points that they see, surface points by cell, masks, what light points see, visibility, and
-//! pictures in the making. [`Wave`] is what every stage works on.
+//! One file per type: rays and the surface points that they see, surface points by cell, masks, visibility at light points, visibility
+//! at surface points, and images being rendered. [`Wave`] is what every stage works on.
 
 pub(crate) mod cells;
 pub(crate) mod lit;

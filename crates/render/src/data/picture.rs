@@ -1,29 +1,29 @@
-//! A picture in the making: colours that radiance is added to, and the layers of what each pixel saw.
+//! An image being rendered: colours that radiance is added to, and the layers of what each pixel sees.
 
 use std::ops::Range;
 
 use lightmesh_image::{Frame, Layers};
 
-/// Linear colours and, on request, layers of some rows of a picture; row 0 is the top.
+/// Linear colours and, on request, layers of some rows of an image; row 0 is the top.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// Width and height of the whole picture in pixels.
+    /// Width and height of the whole image in pixels.
     pub size: [u32; 2],
-    /// The rows that are here.
+    /// The rows that are stored here.
     pub rows: Range<u32>,
     /// Linear radiance by pixel of these rows.
     pub color: Vec<[f32; 3]>,
-    /// What each of these pixels saw.
+    /// What each of these pixels sees.
     pub layers: Option<Layers>,
 }
 
 impl Picture {
-    /// A black picture of `size` pixels; with layers for `lights` lights on request.
+    /// A black image of `size` pixels; with layers for `lights` lights on request.
     pub fn new(size: [u32; 2], lights: Option<usize>) -> Picture {
         Picture::band(size, 0..size[1], lights)
     }
 
-    /// The black rows `rows` of a picture of `size` pixels.
+    /// The black rows `rows` of an image of `size` pixels.
     pub fn band(size: [u32; 2], rows: Range<u32>, lights: Option<usize>) -> Picture {
         let pixels = size[0] as usize * rows.len();
         let layers = lights.map(|lights| Layers {
@@ -36,25 +36,25 @@ impl Picture {
         Picture { size, rows, color: vec![[0.0; 3]; pixels], layers }
     }
 
-    /// Where pixel y · width + x of the whole picture lies in the planes.
+    /// The index of pixel y · width + x of the whole image in the planes.
     #[inline(always)]
     pub fn index(&self, pixel: u32) -> usize {
         pixel as usize - self.rows.start as usize * self.size[0] as usize
     }
 
-    /// The places of some rows in the planes.
+    /// The index range of some rows in the planes.
     pub fn places(&self, rows: &Range<u32>) -> Range<usize> {
         self.index(rows.start * self.size[0])..self.index(rows.end * self.size[0])
     }
 
-    /// Adds radiance to a pixel of the whole picture.
+    /// Adds radiance to a pixel of the whole image.
     pub fn add(&mut self, pixel: u32, radiance: glam::Vec3) {
         let index = self.index(pixel);
         let color = &mut self.color[index];
         *color = (glam::Vec3::from_array(*color) + radiance).to_array();
     }
 
-    /// Takes over the rows of a band, with its layers where both have them.
+    /// Copies the rows of a band into this image, with its layers if both have them.
     pub fn take(&mut self, band: Picture) {
         if band.rows == self.rows {
             *self = band;
@@ -76,9 +76,9 @@ impl Picture {
     /// The finished frame.
     pub fn into_frame(self) -> Frame {
         let frame = Frame::new(self.size[0], self.size[1], self.color);
-        let frame = frame.expect("a picture has as many colours as pixels, and its size was checked");
+        let frame = frame.expect("an image has as many colours as pixels, and its size was checked");
         match self.layers {
-            Some(layers) => frame.with_layers(layers).expect("layers were made with the picture"),
+            Some(layers) => frame.with_layers(layers).expect("layers were created with the image"),
             None => frame,
         }
     }

@@ -6,14 +6,14 @@ use crate::accel::{Hit, Ray, Triangle};
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
 
-/// Rays with the pixels that they bring light to. Each pixel has at most one ray in a list.
+/// Rays with the pixels that they contribute to. Each pixel has at most one ray in a list.
 #[derive(Clone, Debug, Default)]
 pub struct RayList {
     /// The rays; directions have unit length.
     pub rays: Vec<Ray>,
     /// The pixel of each ray, y · width + x.
     pub pixels: Vec<u32>,
-    /// The share of a ray's radiance that reaches its pixel. Empty: all of it, the rays come from the camera.
+    /// The share of a ray's radiance that reaches its pixel. Empty for camera rays, which contribute all of it.
     pub weights: Vec<Vec3>,
     /// The triangles that the rays hit in place of the scene's, if they come from given points; else empty.
     pub probes: Vec<Triangle>,
@@ -31,7 +31,7 @@ impl RayList {
         self.weights.is_empty()
     }
 
-    /// What tells the random patterns of two surface points apart: the pixel, and whether it is seen in a mirror.
+    /// The key that distinguishes the random patterns of two surface points: the pixel, and whether it is seen in a mirror.
     pub(crate) fn key(&self, ray: usize) -> u64 {
         u64::from(self.pixels[ray]) << 1 | u64::from(!self.from_camera())
     }

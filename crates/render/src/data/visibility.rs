@@ -1,22 +1,22 @@
-//! What surface points see of lights.
+//! The visibility of lights at surface points.
 
 use std::ops::Range;
 
-/// What each surface point sees of each light, with χ: 0 where the light is behind the surface.
+/// The visibility of each light at each surface point, including χ: 0 if the light is behind the surface.
 ///
-/// The same on devices ([`DeviceVisibility`](crate::gpu::rays::DeviceVisibility)): a plane of shares for each light.
+/// On devices, [`DeviceVisibility`](crate::gpu::rays::DeviceVisibility) has the same form: a plane of shares for each light.
 #[derive(Clone, Debug, Default)]
 pub struct Visibility {
     /// Number of rays.
     pub rays: usize,
     /// Shares in [0, 1] by light, then ray; 0 for rays that missed.
     pub share: Vec<f32>,
-    /// Light points that each ray's surface point used; empty where none are used at all.
+    /// Number of light points that each ray's surface point used; empty if the technique uses none.
     pub used: Vec<u32>,
 }
 
 impl Visibility {
-    /// Nothing is seen of `lights` lights by `rays` rays.
+    /// No visibility of `lights` lights from `rays` rays.
     pub(crate) fn dark(lights: usize, rays: usize) -> Visibility {
         Visibility { rays, share: vec![0.0; lights * rays], used: Vec::new() }
     }
@@ -35,7 +35,7 @@ impl Visibility {
         }
     }
 
-    /// The planes of all lights, cut into parts of `size` rays: for each part a slice of every plane.
+    /// The planes of all lights, split into parts of `size` rays: for each part a slice of every plane.
     pub(crate) fn parts(&mut self, size: usize) -> Vec<Vec<&mut [f32]>> {
         let mut parts: Vec<Vec<&mut [f32]>> = (0..self.rays.div_ceil(size)).map(|_| Vec::new()).collect();
         for plane in self.share.chunks_exact_mut(self.rays.max(1)) {

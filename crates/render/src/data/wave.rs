@@ -1,4 +1,4 @@
-//! The bundles that the stages of a picture work on.
+//! The data that the stages of an image work on.
 
 use lightmesh_scene::Lights;
 
@@ -12,11 +12,11 @@ use crate::light_mesh::{LightMesh, UsedPoints};
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
 
-/// A wave of rays, those of the camera or of one bounce, with what they hit and what all stages need to go on from there.
+/// A wave of rays, those of the camera or of one bounce, with their hits and everything that all stages need.
 pub struct Wave<'a, Scene, Rays, Hits> {
-    /// Choices, counts and progress of the picture.
+    /// Settings, counts and progress of the image.
     pub job: &'a Job<'a>,
-    /// The scene where the device needs it.
+    /// The scene, in the device's memory.
     pub scene: &'a Scene,
     /// The rays.
     pub rays: &'a Rays,
@@ -32,7 +32,7 @@ impl<Scene, Rays, Hits> Clone for Wave<'_, Scene, Rays, Hits> {
 
 impl<Scene, Rays, Hits> Copy for Wave<'_, Scene, Rays, Hits> {}
 
-/// What the light mesh method has found out about a wave when it comes to formula (3).
+/// The results of the light mesh method for a wave, as formula (3) needs them.
 pub struct Seen<'a, Cells, Masks, Points, Lit> {
     /// The light mesh.
     pub mesh: &'a LightMesh,
@@ -40,7 +40,7 @@ pub struct Seen<'a, Cells, Masks, Points, Lit> {
     pub cells: &'a Cells,
     /// Which light points each of them sees.
     pub masks: &'a Masks,
-    /// Each light point that is used.
+    /// Each used light point.
     pub points: &'a Points,
     /// Which lights each of these sees.
     pub lit: &'a Lit,

@@ -1,4 +1,4 @@
-//! From what was asked for to one device that is ready.
+//! From the requested device to one that is ready for use.
 
 use std::sync::Arc;
 
@@ -7,29 +7,29 @@ use super::report::{cpu, ready};
 use crate::cuda::{Driver, open_cuda};
 use crate::error::RenderError;
 
-/// What became of a [`Device`] that was asked for.
+/// The result of choosing a [`Device`].
 pub struct Choice {
     /// [`Device::Cpu`], or [`Device::Cuda`] with a number.
     pub device: Device,
-    /// Which device it is and, where that was left open, why it is no other.
+    /// Which device it is and, if the choice was left open, why it is no other.
     pub reason: String,
     pub(crate) chosen: Chosen,
 }
 
-/// A device that is ready.
+/// A device that is ready for use.
 pub(crate) enum Chosen {
-    /// The host's processor.
+    /// The CPU.
     Cpu,
     /// A CUDA device.
     Cuda(Arc<Driver>),
 }
 
 impl Choice {
-    /// Makes the device ready that is asked for. For [`Device::Auto`] that is the first CUDA device that works, or else the host's
-    /// processor. [`Renderer::on`](crate::Renderer::on) takes it.
+    /// Prepares the requested device. For [`Device::Auto`] that is the first CUDA device that works, or else the CPU. Pass the
+    /// result to [`Renderer::on`](crate::Renderer::on).
     ///
     /// # Errors
-    /// [`RenderError::Device`] where a CUDA device is asked for and cannot be used.
+    /// [`RenderError::Device`] if a CUDA device is requested and cannot be used.
     pub fn of(device: Device) -> Result<Choice, RenderError> {
         match device {
             Device::Cpu => Ok(Choice::cpu("")),

@@ -1,4 +1,4 @@
-//! Where a picture is computed.
+//! Where an image is computed.
 
 mod choice;
 mod report;
@@ -11,23 +11,23 @@ pub(crate) use choice::Chosen;
 pub(crate) use report::cpu_name;
 pub use report::{DeviceReport, devices};
 
-/// A device that can be asked for.
+/// A device that can be requested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Device {
-    /// The fastest that works: a CUDA device before the host's processor.
+    /// The fastest that works: a CUDA device if possible, else the CPU.
     #[default]
     Auto,
-    /// The host's processor.
+    /// The CPU.
     Cpu,
-    /// A CUDA device: the first that works, or the one with this number. The driver lists the fastest first, and only those that
-    /// CUDA_VISIBLE_DEVICES names where that is set.
+    /// A CUDA device: the first that works, or the one with this number. The driver lists the fastest first and, if
+    /// CUDA_VISIBLE_DEVICES is set, only the devices it names.
     Cuda(Option<u32>),
 }
 
-/// A word that names no device.
+/// A word that is not the name of a device.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("there is no device '{0}': choose auto, cpu, cuda or cuda:N")]
+#[error("unknown device '{0}': choose auto, cpu, cuda or cuda:N")]
 pub struct UnknownDevice(pub String);
 
 impl FromStr for Device {

@@ -1,34 +1,34 @@
-//! Which devices there are, and why some of them cannot be used.
+//! The devices of this machine, and why some of them cannot be used.
 
 use serde::Serialize;
 
 use super::Device;
 use crate::cuda::{Driver, Gpu, Library, Runtime, Version, capability, visible_devices};
 
-/// A device that was looked for, and whether it can be used.
+/// A device that was detected or searched for, and whether it can be used.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct DeviceReport {
     /// `cpu`, `cuda` or `cuda:N`.
     pub device: String,
-    /// What the maker calls it, as far as the system tells.
+    /// The vendor's name for it, if the system reports one.
     pub name: String,
-    /// Whether pictures can be computed on it.
+    /// Whether images can be rendered on it.
     pub usable: bool,
-    /// Why not, and what to do; or what there is to know about it.
+    /// If not usable, why not and what to do; otherwise further information.
     pub remark: String,
     /// Memory of a CUDA device in bytes.
     pub memory_bytes: Option<u64>,
-    /// How much of it is free; known where the device can be used.
+    /// How much of it is free; known if the device can be used.
     pub free_bytes: Option<u64>,
     /// Compute capability of a CUDA device, such as `9.0`.
     pub compute_capability: Option<String>,
-    /// The CUDA version that the driver is for, such as `12.4`.
+    /// The CUDA version that the driver supports, such as `12.4`.
     pub driver_cuda_version: Option<String>,
 }
 
-/// All devices that were looked for: the host's processor, then every CUDA device that the driver shows, or one entry `cuda` that
-/// says why there is none. Each CUDA device is made ready for a moment, to see that it works and what is free.
+/// All devices: the CPU, then every CUDA device that the driver reports, or one entry `cuda` that says why there is none. Each
+/// CUDA device is initialised briefly, to check that it works and how much memory is free.
 pub fn devices() -> Vec<DeviceReport> {
     let cuda = match Library::open() {
         Ok(library) => library.devices.iter().map(|gpu| report(&library, gpu)).collect(),
@@ -39,7 +39,7 @@ pub fn devices() -> Vec<DeviceReport> {
     std::iter::once(cpu()).chain(cuda).collect()
 }
 
-/// The host's processor.
+/// The CPU.
 pub(super) fn cpu() -> DeviceReport {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     DeviceReport {
@@ -65,7 +65,7 @@ fn report(library: &Library, gpu: &Gpu) -> DeviceReport {
     }
 }
 
-/// What is known of a CUDA device whether it can be used or not.
+/// What is known about a CUDA device whether it can be used or not.
 fn described(gpu: &Gpu, version: Version) -> DeviceReport {
     DeviceReport {
         device: Device::Cuda(Some(gpu.number)).to_string(),
@@ -77,7 +77,7 @@ fn described(gpu: &Gpu, version: Version) -> DeviceReport {
     }
 }
 
-/// What there is to know about a CUDA device, in one line.
+/// The properties of a CUDA device, in one line.
 fn facts(gpu: &Gpu, free: Option<u64>, version: Version, visible: Option<&str>) -> String {
     let gibibytes = |bytes: u64| format!("{:.1} GiB", bytes as f64 / f64::from(1 << 30));
     let (memory, capability) = (gibibytes(gpu.memory), capability(gpu.capability));
@@ -86,7 +86,7 @@ fn facts(gpu: &Gpu, free: Option<u64>, version: Version, visible: Option<&str>) 
     format!("{memory}{free}, compute capability {capability}, driver for CUDA {version}{visible}")
 }
 
-/// Which of the two versions of SIMD code runs here.
+/// Which of the two versions of the SIMD code runs on this machine.
 fn simd_name() -> &'static str {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     if fearless_simd::Level::new().as_avx2().is_some() {
@@ -95,7 +95,7 @@ fn simd_name() -> &'static str {
     "baseline SIMD"
 }
 
-/// The processor's name, or its architecture where the system does not tell.
+/// The CPU's name, or its architecture if the system does not report one.
 pub(crate) fn cpu_name() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));

@@ -1,10 +1,11 @@
-//! Surface points by cell on a device.
+//! Surface points grouped by cell, on a device.
 
 use lightmesh_layout::mesh::Item;
 
 use crate::cuda::{Buffer, Runtime};
 
-/// The surface points of a wave by cell, cut into items: up to 32 surface points of one cell, the work of one warp.
+/// The surface points of a wave grouped by cell and split into items: up to 32 surface points of one cell, the work of one
+/// warp.
 pub struct DeviceCells<R: Runtime> {
     /// Ray numbers by slot.
     pub(crate) members: Buffer<R, u32>,

@@ -16,31 +16,32 @@ use crate::job::Job;
 use crate::stage::Stage;
 use crate::sync::locked;
 
-/// A launch of one block of `threads` threads for each unit of a piece of work.
+/// A launch with one block of `threads` threads for each unit of a piece of work.
 pub(crate) fn blocks_for(piece: &Range<u64>, threads: u32) -> Launch {
     Launch { blocks: (piece.end - piece.start) as u32, threads, shared: 0 }
 }
 
-/// A launch of one warp for each unit of a piece of work, `warps` to a block, with `words` 32-bit words of shared memory a warp.
+/// A launch with one warp for each unit of a piece of work, `warps` per block, with `words` 32-bit words of shared memory per
+/// warp.
 pub(crate) fn warps_for(piece: &Range<u64>, warps: u32, words: u32) -> Launch {
     let blocks = ((piece.end - piece.start) as u32).div_ceil(warps);
     Launch { blocks, threads: warps * WARP, shared: warps * 4 * words }
 }
 
-/// A CUDA device, or what stands in for one.
+/// A CUDA device, or a substitute for one.
 pub struct Cuda<R: Runtime> {
     pub(super) pool: Pool<R>,
     pub(super) rates: Rates<R>,
-    /// Stages whose time is not read yet.
+    /// Stages whose time has not been read yet.
     spans: Mutex<Vec<Span<R>>>,
     counters: Mutex<Option<Arc<Buffer<R, Counters>>>>,
-    /// The template that the device holds.
+    /// The template that the device currently holds.
     pub(super) template: Mutex<Option<DeviceTemplate<R>>>,
-    /// Geometry that the device holds.
+    /// The geometry that the device currently holds.
     pub(super) resident: Mutex<Resident<R>>,
 }
 
-/// A stage, and the moments of the queue between which it ran.
+/// A stage, and the points in the queue between which it ran.
 type Span<R> = (Stage, <R as Runtime>::Mark, <R as Runtime>::Mark);
 
 impl<R: Runtime> Cuda<R> {
@@ -56,7 +57,7 @@ impl<R: Runtime> Cuda<R> {
         }
     }
 
-    /// Memory.
+    /// The memory pool.
     pub(crate) fn pool(&self) -> &Pool<R> {
         &self.pool
     }
@@ -67,12 +68,12 @@ impl<R: Runtime> Cuda<R> {
         result.map_err(|fault| self.pool.fault(fault))
     }
 
-    /// A moment in the device's queue.
+    /// A point in the device's queue.
     pub(super) fn mark(&self) -> Result<R::Mark, RenderError> {
         self.pool.runtime().mark().map_err(|fault| self.pool.fault(fault))
     }
 
-    /// Where kernels count.
+    /// The counters that kernels add to.
     pub(crate) fn tally(&self) -> Result<Tally, RenderError> {
         Ok(Tally { shards: self.counters()?.output() })
     }
@@ -86,14 +87,14 @@ impl<R: Runtime> Cuda<R> {
         Ok(Arc::clone(counters.insert(fresh)))
     }
 
-    /// Sets the counters to zero and forgets times that were not read: a band begins.
+    /// Clears the counters and discards times that were not read, at the start of a band.
     pub(crate) fn begin_band(&self) -> Result<(), RenderError> {
         locked(&self.spans).clear();
         self.rates.forget_pending();
         self.counters()?.clear()
     }
 
-    /// Runs a stage between two marks of the device's clock; the time is read when the band is done.
+    /// Runs a stage between two marks of the device's clock; the time is read when the band is finished.
     pub(crate) fn on_device_clock<T>(
         &self,
         stage: Stage,
@@ -106,10 +107,10 @@ impl<R: Runtime> Cuda<R> {
         Ok(result)
     }
 
-    /// Reads counters and clocks: a band is done.
+    /// Reads counters and clocks at the end of a band.
     pub(crate) fn end_band(&self, job: &Job) -> Result<(), RenderError> {
         let counted = sum_of(&self.counters()?.read()?);
-        // Kernels count the tests that they make; the rest was decided without.
+        // Kernels count the tests that they perform; the rest was decided without a test.
         let short_tests_culled = counted.half_ball - counted.short_tests;
         job.tally.add_all(&Counters { short_tests_culled, ..counted });
         for (stage, from, to) in locked(&self.spans).drain(..) {
@@ -120,7 +121,7 @@ impl<R: Runtime> Cuda<R> {
     }
 }
 
-/// What all shards counted.
+/// The sum over all shards.
 fn sum_of(shards: &[Counters]) -> Counters {
     let mut sums: Counters = bytemuck::Zeroable::zeroed();
     let words = bytemuck::cast_slice_mut::<Counters, u64>(std::slice::from_mut(&mut sums));

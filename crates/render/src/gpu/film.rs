@@ -1,4 +1,4 @@
-//! Rows of a picture in a device's memory.
+//! Rows of an image in a device's memory.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use crate::data::picture::Picture;
 use crate::error::RenderError;
 use crate::plan::Plan;
 
-/// Radiance and, on request, layers of some rows.
+/// Radiance and, if requested, layers of some rows.
 pub struct DeviceFilm<R: Runtime> {
     rows: Range<u32>,
     width: u32,
@@ -47,7 +47,7 @@ impl<R: Runtime> DeviceFilm<R> {
         Ok(DeviceFilm { rows, width: plan.size[0], color: pool.zeros("radiance", pixels)?, layers })
     }
 
-    /// Writes where the film is into the arguments of `shade`. Layers are of what the camera sees.
+    /// Writes the film's addresses into the arguments of `shade`. Layers contain what the camera sees.
     pub(crate) fn expose(&self, from_camera: bool, arguments: &mut Shade) {
         arguments.film_pixel = u64::from(self.rows.start) * u64::from(self.width);
         arguments.film_pixels = self.color.len() as u64;
@@ -60,7 +60,7 @@ impl<R: Runtime> DeviceFilm<R> {
         arguments.light_points = layers.map_or(Out::NULL, |layers| layers.used.output());
     }
 
-    /// Copies the rows to their place in the picture.
+    /// Copies the rows to their place in the image.
     pub(crate) fn develop(&self, geometry: &Geometry, picture: &mut Picture) -> Result<(), RenderError> {
         let places = picture.places(&self.rows);
         self.color.read_into(0, bytemuck::cast_slice_mut(&mut picture.color[places.clone()]))?;
@@ -72,7 +72,7 @@ impl<R: Runtime> DeviceFilm<R> {
         for (light, plane) in to.visibility.iter_mut().enumerate() {
             from.visibility.read_into(light * places.len(), &mut plane[places.clone()])?;
         }
-        // The device knows the local frame, and no infinity for a miss: its depth is 0 there.
+        // The device uses the local frame, and 0 instead of infinity as the depth of a miss.
         for index in places {
             if to.depth[index] == 0.0 {
                 to.depth[index] = f32::INFINITY;

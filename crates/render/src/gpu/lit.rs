@@ -1,4 +1,4 @@
-//! What light points see, on a device.
+//! The visibility of lights at light points, on a device.
 
 use lightmesh_layout::Out;
 use lightmesh_layout::mesh::LitBy;
@@ -9,11 +9,11 @@ use super::points::DevicePoints;
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 
-/// What every used light point sees of every light, on a device.
+/// The visibility of every light at every used light point, on a device.
 pub struct DeviceLit<R: Runtime> {
-    /// One a light.
+    /// One record per light.
     pub(crate) lit: Buffer<R, LitBy>,
-    /// The same.
+    /// The same records on the host.
     pub(crate) records: Vec<LitBy>,
     bits: Buffer<R, u64>,
     seen: Buffer<R, u16>,
@@ -41,7 +41,7 @@ impl<R: Runtime> DeviceLit<R> {
         Ok(DeviceLit { lit: cuda.pool().upload("lights' tables", &records)?, records, bits, seen })
     }
 
-    /// Reads back what the light points see, in the form of the CPU's twin but in the order of the device's slots.
+    /// Reads the visibility, in the form of the CPU twin but in the order of the device's slots.
     pub fn read(&self) -> Result<(Vec<u64>, Vec<u16>), RenderError> {
         Ok((self.bits.read()?, self.seen.read()?))
     }

@@ -4,17 +4,17 @@ use super::cells::DeviceCells;
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 
-/// The masks of all surface points on a device, transposed: a block of 32 · words words for each item.
+/// The masks of all surface points on a device, transposed: 32 · words words for each item.
 pub struct DeviceMasks<R: Runtime> {
     pub(crate) masks: Buffer<R, u32>,
     pub(crate) words: usize,
 }
 
 impl<R: Runtime> DeviceMasks<R> {
-    /// Reads the masks: for each ray that has a surface point its cell and its mask, ordered by ray.
+    /// Reads the masks: the cell and the mask of each ray that has a surface point, ordered by ray.
     ///
     /// # Errors
-    /// [`RenderError::DeviceFault`] where the device fails.
+    /// [`RenderError::DeviceFault`] if the device fails.
     pub fn read(&self, cells: &DeviceCells<R>) -> Result<Vec<(u32, u64, Vec<u32>)>, RenderError> {
         let (members, items, masks) = (cells.members.read()?, cells.items.read()?, self.masks.read()?);
         let mut found = Vec::new();

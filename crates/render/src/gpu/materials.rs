@@ -1,4 +1,4 @@
-//! Materials and their textures as a device holds them.
+//! Materials and their textures in a device's memory.
 
 use std::collections::HashMap;
 
@@ -15,7 +15,8 @@ use crate::error::RenderError;
 use crate::shading::tint::{Coefficients, is_tinted, texture_of};
 
 impl<R: Runtime> Upload<'_, R> {
-    /// What decides about the colours of surfaces. Texture coordinates and the table of sRGB only where a texture needs them.
+    /// What determines the colours of surfaces. Texture coordinates and the sRGB table are uploaded only if a texture needs
+    /// them.
     pub(super) fn materials(&mut self, geometry: &Geometry, record: &mut Record) -> Result<(), RenderError> {
         record.triangle_materials = self.array("materials of triangles", &geometry.mesh.materials)?;
         record.colors = self.array::<Vec3>("colours", bytemuck::cast_slice(&geometry.mesh.colors))?;
@@ -39,7 +40,7 @@ impl<R: Runtime> Upload<'_, R> {
         Ok(())
     }
 
-    /// The textures of the materials that have one, in their order. A picture is uploaded once.
+    /// The textures of the materials that have one, in their order. Each texture is uploaded once.
     fn textures(&mut self, geometry: &Geometry) -> Result<Vec<Texture>, RenderError> {
         let mut uploaded: HashMap<u32, In<u32>> = HashMap::new();
         let mut records = Vec::new();
@@ -75,7 +76,7 @@ fn wrap(wrap: Wrap) -> u32 {
     }
 }
 
-/// A material that has no tint is uploaded as the sum that it is everywhere, so that kernels ask for nothing more.
+/// A material without tint is uploaded as the sum that applies everywhere, so that kernels need no further lookups.
 fn material_record(geometry: &Geometry, material: &lightmesh_scene::Material, texture: u32) -> Material {
     let mut record = Material { shininess: material.shininess, texture, ..bytemuck::Zeroable::zeroed() };
     let mut own = Coefficients::untinted(material);

@@ -1,4 +1,4 @@
-//! The plan of memory: what each buffer will take, before the first is allocated.
+//! The memory plan: the size of every buffer, before the first is allocated.
 
 use lightmesh_layout::geometry::{Hit, ListedRay};
 use lightmesh_layout::mesh::Item;
@@ -9,16 +9,16 @@ use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::plan::Plan;
 
-/// Surface points that an item is expected to have: a cell's points fill warps of 32, and cells are cut at the borders of tiles.
+/// Expected number of surface points per item: a cell's points fill warps of 32, and cells are cut at the borders of tiles.
 const POINTS_PER_ITEM: u64 = 8;
-/// Share of free memory that is left to others.
+/// One part in this many of the free memory is left to others.
 const RESERVE: u64 = 16;
 
 impl<R: Runtime> Cuda<R> {
-    /// Rows that fit into what is free, or under the limit, beside the scene.
+    /// Number of rows that fit into free memory, or under the limit, in addition to the scene.
     ///
-    /// The estimate of light points and items is an expectation. Where a picture has more, allocation fails and the band is
-    /// begun again with half of its rows.
+    /// The estimate of light points and items is an expectation. If an image has more, allocation fails and the band is
+    /// restarted with half of its rows.
     pub(crate) fn rows_that_fit(&self, scene: &DeviceScene<R>, plan: &Plan) -> Result<u32, RenderError> {
         let free = self.pool.runtime().free_memory().map(|free| free - free / RESERVE);
         let free = match plan.memory_limit {
@@ -33,7 +33,7 @@ impl<R: Runtime> Cuda<R> {
         match free / row {
             0 => Err(RenderError::DeviceMemory {
                 device: self.pool.runtime().name(),
-                buffer: "one row of the picture",
+                buffer: "one row of the image",
                 needed: row,
                 free: Some(free),
             }),
@@ -42,18 +42,18 @@ impl<R: Runtime> Cuda<R> {
     }
 }
 
-/// Bytes per ray when most is held.
+/// Bytes per ray when memory use is highest.
 fn bytes_per_ray(plan: &Plan, lights: u64) -> u64 {
     let listed = if plan.bounces > 0 { 2 * size_of::<ListedRay>() as u64 } else { 0 };
     plan.film_bytes() + listed + size_of::<Hit>() as u64 + 4 * lights + plan.footprint.device
 }
 
-/// What the light mesh method adds per ray, for a template of `words` words of masks and `bricks` bricks around a cell.
+/// What the light mesh method adds per ray, for a template with masks of `words` words and `bricks` bricks around a cell.
 pub(crate) fn bytes_of_light_mesh(words: usize, bricks: usize, lights: u64) -> u64 {
     // Members and items of tiles; items with their masks, and the used points and slots of the bricks around them.
     let grouping = 4 + size_of::<Item>() as u64;
     let items = (size_of::<Item>() + 32 * 4 * words + (8 + 4) * bricks) as u64 / POINTS_PER_ITEM;
-    // Half a light point a pixel: its entry and share, and its part of a brick that is a quarter full.
+    // Half a light point per pixel: its entry and share, and its part of a brick that is a quarter full.
     let points = (8 + 2 * lights + 2 * (8 + 8 + 4 + 8 * lights) / 16) / 2;
     // Light points used, and the list of rays that fall back.
     grouping + items + points + 4 + 4

@@ -1,4 +1,4 @@
-//! What kernels know of the light mesh and of sampling.
+//! The records that describe the light mesh and sampling to kernels.
 
 use glam::IVec3;
 use lightmesh_layout::constants::MOST_REACH;
@@ -13,11 +13,11 @@ use crate::error::RenderError;
 use crate::light_mesh::LightMesh;
 use crate::sync::locked;
 
-/// Modules that have the template in constant memory.
+/// Modules with a copy of the template in constant memory.
 const USERS: [&str; 3] = ["short_tests", "light_points", "interpolate"];
 
 impl<R: Runtime> Cuda<R> {
-    /// The light mesh as kernels know it. Brings the template to the device, if another one is there.
+    /// The light mesh as a record for kernels. Uploads the template if the device holds another one.
     pub(crate) fn mesh(&self, mesh: &LightMesh) -> Result<Record, RenderError> {
         let mut held = locked(&self.template);
         let template = match held.take().filter(|held| held.radius == mesh.template.radius()) {
@@ -51,7 +51,7 @@ fn packed_offset(offset: IVec3) -> u32 {
     x | y << 8 | z << 16
 }
 
-/// The lines of the template along x, by z and y from 1 − reach on.
+/// The lines of the template along x, by z and y starting at 1 − reach.
 fn template_rows(mesh: &LightMesh) -> Vec<TemplateRow> {
     let template = &mesh.template;
     let side = 1 - template.reach()..=template.reach();
@@ -88,7 +88,7 @@ fn record<R: Runtime>(mesh: &LightMesh, template: &DeviceTemplate<R>) -> Record 
     }
 }
 
-/// How lights with a size are sampled, as kernels know it.
+/// The sampling of area lights, as a record for kernels.
 pub(crate) fn sampling(sampling: crate::job::Sampling) -> Sampling {
     Sampling { seed: sampling.seed, samples: sampling.samples, spread: u32::from(sampling.spread) }
 }

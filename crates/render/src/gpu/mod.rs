@@ -1,8 +1,9 @@
-//! What the stages on a CUDA device share: the scene's copy, data between stages, memory, launches, counters and clocks.
+//! What the stages on a CUDA device share: the copy of the scene, data passed between stages, memory, launches, counters and clocks.
 //!
-//! The stages' launches lie beside their CPU twins (`stages/<stage>/cuda.rs` and `kernel.cu`); [`backend`](crate::backend) puts them
-//! together. Here are the device itself ([`device`]), the copy of the scene ([`scene`]), what stages hand to each other ([`rays`], [`cells`], [`masks`], [`points`],
-//! [`lit`], [`film`]), launches cut into pieces that no watchdog minds ([`pieces`]), and the plan of memory ([`memory`]).
+//! The launches of each stage are next to its CPU twin (`stages/<stage>/cuda.rs` and `kernel.cu`); [`backend`](crate::backend) combines
+//! them. This module contains the device itself ([`device`]), the copy of the scene ([`scene`]), the data that stages pass to each other
+//! ([`rays`], [`cells`], [`masks`], [`points`], [`lit`], [`film`]), launches split into pieces short enough for any watchdog ([`pieces`]),
+//! and the memory plan ([`memory`]).
 
 pub(crate) mod cells;
 mod device;

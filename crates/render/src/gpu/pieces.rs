@@ -1,4 +1,4 @@
-//! Launches in pieces: short enough for a desktop's watchdog, with a chance to stop in between.
+//! Launches in pieces: short enough for a desktop's watchdog, with an opportunity to cancel in between.
 
 use std::ops::Range;
 
@@ -10,9 +10,9 @@ use crate::job::Job;
 
 impl<R: Runtime> Cuda<R> {
     /// Calls `launch` with consecutive ranges of the units of work, each to be queued as one launch of `kernel` and as large as the
-    /// kernel's speed allows. Tells the observer, and fails where it asks to stop.
+    /// kernel's speed allows. Informs the observer, and fails if it requests cancellation.
     ///
-    /// A unit must not take long: pieces of fewer units than run side by side are no faster, however small they are.
+    /// A unit must not take long: pieces of fewer units than run concurrently are no faster, however small they are.
     pub(crate) fn in_pieces(
         &self,
         job: &Job,

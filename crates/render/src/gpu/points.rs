@@ -1,4 +1,4 @@
-//! The used light points of a picture on a device.
+//! The used light points of an image on a device.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::light_mesh::BrickKey;
 
-/// The used light points of a picture on a device.
+/// The used light points of an image on a device.
 pub struct DevicePoints<R: Runtime> {
     pub(crate) keys: Arc<Buffer<R, u64>>,
     pub(crate) used: Buffer<R, u64>,
@@ -21,12 +21,12 @@ pub struct DevicePoints<R: Runtime> {
 }
 
 impl<R: Runtime> DevicePoints<R> {
-    /// Slots of the table.
+    /// Number of slots of the table.
     pub(crate) fn capacity(&self) -> usize {
         self.keys.len()
     }
 
-    /// Where everything is.
+    /// The record with all addresses.
     pub(crate) fn record(&self) -> UsedPoints {
         UsedPoints {
             table: BrickTable { keys: self.keys.output(), capacity: self.keys.len() as u32, spare: 0 },
@@ -36,7 +36,7 @@ impl<R: Runtime> DevicePoints<R> {
         }
     }
 
-    /// Reads the bricks that hold used points: slot, key and used points of each.
+    /// Reads the bricks that contain used points: slot, key and used points of each.
     pub fn read_bricks(&self) -> Result<Vec<(usize, BrickKey, u64)>, RenderError> {
         let (keys, used) = (self.keys.read()?, self.used.read()?);
         let slots = keys.into_iter().zip(used).enumerate();

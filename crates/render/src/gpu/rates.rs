@@ -1,4 +1,4 @@
-//! How fast kernels are, and how much work one launch may have.
+//! The speed of kernels, and how much work one launch may contain.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -10,48 +10,48 @@ use crate::cuda::{Kernel, Pool, Runtime};
 use crate::error::RenderError;
 use crate::sync::locked;
 
-/// How long one launch should take, seconds. A watchdog ends a context after about two seconds; parts of a picture differ in cost
-/// by less than the factor between.
+/// Target duration of a launch, seconds. A watchdog kills a context after about two seconds; parts of an image differ in cost by less
+/// than the factor between the two.
 const LAUNCH_SECONDS: f64 = 0.05;
-/// A piece is at most this many times larger than the largest that was measured.
+/// A piece is at most this many times larger than the largest measured so far.
 const GROWTH: f64 = 8.0;
 
-/// Work of a kernel that can be cut into launches.
+/// Work of a kernel that can be split into launches.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Work {
-    /// What is cut: blocks, or items.
+    /// What is split: blocks, or items.
     pub(crate) units: u64,
-    /// What a unit costs, in whatever makes launches of this kernel comparable: rays or lights of each thread.
+    /// Cost of a unit, in any measure that makes launches of this kernel comparable: rays or lights per thread.
     pub(crate) cost: u64,
-    /// Units of the kernel's first launch ever, whose speed is not known.
+    /// Units of the kernel's first launch, whose speed is unknown.
     pub(crate) first: u64,
-    /// How much the observer is told about in all.
+    /// Total progress to report to the observer.
     pub(crate) progress: u64,
 }
 
-/// Rays of the first launch ever of a kernel that casts many for each thread.
+/// Rays in the first launch of a kernel that casts many per thread.
 const FIRST_RAYS: u64 = 1 << 18;
-/// Most rays of a thread in one launch: a launch is never shorter than what one thread does.
+/// Most rays per thread in one launch: a launch is never shorter than the work of one thread.
 const RAYS_OF_THREAD: u64 = 256;
 
-/// Cuts the rays of a thread, which are all that there are for it, into what it casts in each launch. Without any there is one launch.
+/// Splits the rays of a thread into the slices that it casts in each launch. Without any rays there is one launch.
 pub(crate) fn slices_of_rays(rays: u64) -> Vec<Range<u64>> {
     let slices = rays.div_ceil(RAYS_OF_THREAD).max(1);
     (0..slices).map(|slice| slice * RAYS_OF_THREAD..rays.min((slice + 1) * RAYS_OF_THREAD)).collect()
 }
 
 impl Work {
-    /// Blocks of which each thread casts the rays of `slice`.
+    /// Blocks whose threads each cast the rays of `slice`.
     pub(crate) fn of_rays(blocks: u64, slice: &Range<u64>, progress: u64) -> Work {
         let cost = (slice.end - slice.start).max(1);
         Work { units: blocks, cost, first: FIRST_RAYS / (u64::from(BLOCK) * cost), progress }
     }
 }
 
-/// How fast each kernel was when it ran last.
+/// The speed of each kernel in its latest launch.
 pub(crate) struct Rates<R: Runtime> {
     measured: Mutex<HashMap<Kernel, Measured>>,
-    /// Launches whose time is not read yet.
+    /// Launches whose time has not been read yet.
     pending: Mutex<Vec<Timing<R>>>,
 }
 
@@ -61,7 +61,7 @@ struct Measured {
     seconds: f64,
 }
 
-/// A launch, and the moments of the queue between which it ran.
+/// A launch, and the points in the queue between which it ran.
 pub(super) struct Timing<R: Runtime> {
     pub(super) kernel: Kernel,
     pub(super) cost: u64,
@@ -76,7 +76,7 @@ impl<R: Runtime> Default for Rates<R> {
 }
 
 impl<R: Runtime> Rates<R> {
-    /// Units of work that `kernel` may be given at once.
+    /// Number of units that one launch of `kernel` may contain.
     pub(super) fn piece(&self, kernel: Kernel, work: &Work) -> u64 {
         let units = locked(&self.measured).get(&kernel).map_or(work.first, |measured| {
             let factor = (LAUNCH_SECONDS / measured.seconds.max(1e-9)).min(GROWTH);
@@ -93,7 +93,7 @@ impl<R: Runtime> Rates<R> {
         locked(&self.pending).clear();
     }
 
-    /// Reads the clocks of all launches so far; waits for them. Of several of one kernel the slowest counts.
+    /// Reads the clocks of all launches so far, and waits for them. Of several launches of one kernel the slowest counts.
     pub(super) fn settle(&self, pool: &Pool<R>) -> Result<(), RenderError> {
         let pending: Vec<Timing<R>> = locked(&self.pending).drain(..).collect();
         let mut slowest: HashMap<Kernel, Measured> = HashMap::new();

@@ -14,22 +14,22 @@ pub(crate) type DeviceWave<'a, R> = Wave<'a, DeviceScene<R>, DeviceRays<R>, Devi
 /// Rays on a device.
 pub struct DeviceRays<R: Runtime> {
     pub(crate) record: Rays,
-    /// Holds the list that the record points to.
+    /// Keeps the list alive that the record points to.
     pub(crate) list: Option<Buffer<R, ListedRay>>,
 }
 
-/// Hits on a device, one a ray.
+/// Hits on a device, one per ray.
 pub struct DeviceHits<R: Runtime> {
     pub(crate) hits: Buffer<R, Hit>,
 }
 
-/// What surface points see of each light, on a device.
+/// The visibility of each light at surface points, on a device.
 pub struct DeviceVisibility<R: Runtime> {
     /// Number of rays.
     pub(crate) rays: usize,
     /// By light, then ray.
     pub(crate) share: Buffer<R, f32>,
-    /// Light points used by each ray.
+    /// Number of light points used by each ray.
     pub(crate) used: Option<Buffer<R, u32>>,
 }
 
@@ -37,7 +37,7 @@ impl<R: Runtime> DeviceHits<R> {
     /// Reads the hits in the order of the rays: for a camera, y · width + x of the band.
     ///
     /// # Errors
-    /// [`RenderError::DeviceFault`] where the device fails.
+    /// [`RenderError::DeviceFault`] if the device fails.
     pub fn read(&self) -> Result<Vec<accel::Hit>, RenderError> {
         Ok(bytemuck::cast_vec(self.hits.read()?))
     }
@@ -47,14 +47,14 @@ impl<R: Runtime> DeviceVisibility<R> {
     /// Reads the shares, by light, then ray.
     ///
     /// # Errors
-    /// [`RenderError::DeviceFault`] where the device fails.
+    /// [`RenderError::DeviceFault`] if the device fails.
     pub fn read(&self) -> Result<Vec<f32>, RenderError> {
         self.share.read()
     }
 }
 
 impl<R: Runtime> DeviceRays<R> {
-    /// Rays from the camera, not from mirrors.
+    /// Whether the rays come from the camera rather than from mirrors.
     pub(crate) fn is_from_camera(&self) -> bool {
         self.list.is_none()
     }
@@ -64,7 +64,7 @@ impl<R: Runtime> DeviceRays<R> {
         self.record.count as usize
     }
 
-    /// Blocks of `edge`² threads that take one ray a thread: tiles of a camera's rows, runs of a list.
+    /// Number of blocks of `edge`² threads with one ray per thread: tiles of a camera's rows, runs of a list.
     pub(crate) fn blocks(&self, edge: u32) -> u64 {
         if !self.is_from_camera() {
             return u64::from(self.record.count.div_ceil(edge * edge));

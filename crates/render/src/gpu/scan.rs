@@ -7,7 +7,7 @@ use super::device::{Cuda, blocks_for};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 
-/// Values that one block sums.
+/// Number of values that one block scans.
 const VALUES: usize = (BLOCK * VALUES_OF_THREAD) as usize;
 
 impl<R: Runtime> Cuda<R> {
@@ -28,7 +28,7 @@ impl<R: Runtime> Cuda<R> {
         Ok(())
     }
 
-    /// The same for values with one more place at their end, whose content does not matter: it receives the sum of all, which is
+    /// The same for values with one extra element at the end, whose content is ignored: it receives the sum of all, which is
     /// returned. Waits for the device.
     pub(crate) fn scan_total(&self, values: &Buffer<R, u32>) -> Result<usize, RenderError> {
         values.clear_last()?;

@@ -1,8 +1,8 @@
 //! `--step auto`: a light-mesh step that follows the size of a pixel in the scene.
 //!
-//! Two bounds. A cell should be about four pixels wide, so that interpolation smooths what a picture can show and no more. And
-//! light points must pay: they should be fewer than a quarter of the pixels, or the method casts more long rays than plain
-//! tracing does.
+//! There are two bounds. A cell should be about four pixels wide, so that interpolation smooths no more than an image can show.
+//! And light points must pay: there should be fewer than a quarter as many as pixels, or the method casts more long rays than
+//! plain ray tracing.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -17,20 +17,20 @@ use crate::view::View;
 const PIXELS_PER_STEP: f32 = 4.0;
 /// Most light points per pixel.
 const POINTS_PER_PIXEL: f64 = 0.25;
-/// How much a step grows that leaves too many.
+/// Factor by which a step grows if it leaves too many light points.
 const GROWTH: f32 = 1.05;
-/// Pixels that are looked at, along the longer side of a picture.
+/// Number of sampled pixels along the longer side of an image.
 const PROBES: u32 = 128;
 
-/// A pixel that was looked at.
+/// A sampled pixel.
 struct Probe {
-    /// Distance to the next pixel's object point, scene units.
+    /// Distance to the next pixel's surface point, scene units.
     spacing: f32,
     /// Area of surface that the pixel covers, square scene units.
     area: f64,
 }
 
-/// The step for a picture of `scene` in `view` with interpolation radius `radius` (in steps). It depends on the picture alone,
+/// The step for an image of `scene` in `view` with interpolation radius `radius` (in steps). It depends on the image alone,
 /// not on how it is tiled.
 pub(crate) fn auto_step(scene: &PreparedScene, view: &View, radius: f32) -> f32 {
     // The least step that keeps the lattice's numbers and rounding in bounds.

@@ -1,9 +1,9 @@
-// Bricks of 4 x 4 x 4 lattice points: twin of bricks.rs, and the table that finds them on a device.
+// Bricks of 4 x 4 x 4 lattice points: twin of bricks.rs, and the table to look them up on a device.
 #pragma once
 
 #include "light_mesh/lattice.cuh"
 
-// The bits of a lattice point's index that say where in its brick it lies.
+// The bits of a lattice point's index that give its position in its brick.
 #define WITHIN_BRICK ((1 << BRICK_BITS) - 1)
 
 // One axis of a brick's key.
@@ -35,8 +35,8 @@ DEVICE IVec3 point_of(unsigned long long key) {
 // Fibonacci hashing: the golden ratio spreads neighbouring keys.
 DEVICE unsigned brick_hash(unsigned long long key) { return (unsigned)(key * GOLDEN_RATIO >> 32); }
 
-// The slot of a brick, by linear probing. Keys of a run of slots do not ascend from where their probing began, so a smaller one ends
-// the search as an empty slot does.
+// The slot of a brick, by linear probing. From where their probing began, the keys of a run of slots never ascend, so a smaller one
+// ends the search, as an empty slot does.
 DEVICE unsigned find_slot(const BrickTable &table, unsigned long long key) {
     const unsigned mask = table.capacity - 1;
     const unsigned long long value = key + 1;

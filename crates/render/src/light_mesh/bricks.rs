@@ -1,9 +1,9 @@
 //! The sparse store of cells and light points.
 //!
-//! Space is cut into bricks of 4×4×4 lattice points. What a picture touches lies on surfaces, so a picture needs only few
-//! bricks, and a brick's 64 points are one machine word: the used-bitmap is one `u64` a brick, and a light point's rank among
+//! Space is divided into bricks of 4×4×4 lattice points. What an image touches lies on surfaces, so an image needs only few
+//! bricks, and a brick's 64 points are one machine word: the used-bitmap is one `u64` per brick, and a light point's rank among
 //! all used ones is a brick's base plus a population count. Bricks are found through a hash table and kept in ascending order
-//! of their keys, so that nothing depends on the order in which threads met them.
+//! of their keys, so that nothing depends on the order in which threads encountered them.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ pub type BrickKey = u64;
 /// A lattice point (or the cell above it): its brick's key, then its bit within the brick, in 63 bits.
 pub type PointKey = u64;
 
-/// The bits of a lattice point's index that say where in its brick it lies.
+/// The bits of a lattice point's index that give its position in its brick.
 const WITHIN_BRICK: i32 = (1 << BRICK_BITS) - 1;
 
 /// The brick that holds the lattice point `index`.
@@ -47,7 +47,7 @@ pub fn point_of(key: PointKey) -> IVec3 {
     (IVec3::new(axis(0), axis(AXIS_BITS), axis(2 * AXIS_BITS)) << BRICK_BITS) + place_of_bit(bit) - INDEX_BIAS
 }
 
-/// Where in its brick the lattice point of a bit lies: the inverse of [`point_bit`].
+/// The position in its brick of the lattice point of a bit: the inverse of [`point_bit`].
 #[inline(always)]
 pub(super) fn place_of_bit(bit: u32) -> IVec3 {
     let bit = bit as i32;
@@ -63,7 +63,7 @@ pub struct BrickMap {
 }
 
 impl BrickMap {
-    /// The set of `keys`, which must ascend without repetition.
+    /// The set of `keys`, which must ascend without duplicates.
     pub fn new(keys: Vec<BrickKey>) -> BrickMap {
         debug_assert!(keys.is_sorted_by(|a, b| a < b));
         let mut table = vec![NO_SLOT; (2 * keys.len()).next_power_of_two()];
@@ -78,7 +78,7 @@ impl BrickMap {
         BrickMap { keys, table }
     }
 
-    /// All keys, ascending.
+    /// All keys, in ascending order.
     pub fn keys(&self) -> &[BrickKey] {
         &self.keys
     }
@@ -107,7 +107,7 @@ fn hash(key: BrickKey) -> usize {
     (key.wrapping_mul(GOLDEN_RATIO) >> 32) as usize
 }
 
-/// The used light points of a picture: a bitmap over bricks with a rank directory.
+/// The used light points of an image: a bitmap over bricks with a rank directory.
 #[derive(Clone, Debug)]
 pub struct UsedPoints {
     bricks: Arc<BrickMap>,
@@ -117,12 +117,12 @@ pub struct UsedPoints {
 }
 
 impl UsedPoints {
-    /// Counts the used points of every brick; `used` is as long as the bricks.
+    /// Counts the used points of every brick; `used` has one word per brick.
     pub fn new(bricks: BrickMap, used: Vec<u64>) -> UsedPoints {
         UsedPoints::within(Arc::new(bricks), used)
     }
 
-    /// Some of the points: `used`, by brick. Bricks of which none is left stay.
+    /// A subset of the points: `used`, by brick. Bricks without remaining points stay.
     pub(crate) fn only(&self, used: Vec<u64>) -> UsedPoints {
         UsedPoints::within(Arc::clone(&self.bricks), used)
     }
@@ -160,21 +160,21 @@ impl UsedPoints {
         self.rank[brick] as usize
     }
 
-    /// The rank of a used point: its place among all used points in ascending order of brick, then bit.
+    /// The rank of a used point: its position among all used points in ascending order of brick, then bit.
     #[inline(always)]
     pub fn rank(&self, brick: usize, bit: u32) -> usize {
         let below = self.used[brick] & ((1 << bit) - 1);
         self.rank[brick] as usize + below.count_ones() as usize
     }
 
-    /// The used points of brick `brick` in ascending order.
+    /// The used points of brick `brick`, in ascending order.
     pub fn points(&self, brick: usize) -> impl Iterator<Item = IVec3> + '_ {
         let key = self.bricks.keys()[brick];
         bits(self.used[brick]).map(move |bit| point_of(key << POINT_BITS | u64::from(bit)))
     }
 }
 
-/// The positions of the set bits of `word`, ascending.
+/// The positions of the set bits of `word`, in ascending order.
 #[inline(always)]
 pub(crate) fn bits(mut word: u64) -> impl Iterator<Item = u32> {
     std::iter::from_fn(move || {

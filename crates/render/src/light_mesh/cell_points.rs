@@ -1,4 +1,4 @@
-//! The template placed at one cell, one lane a point, and the weights of formula (3).
+//! The template placed at one cell, one lane per point, and the weights of formula (3).
 
 use fearless_simd::{f32x8, mask32x8, prelude::*};
 use glam::{IVec3, Vec3};
@@ -7,7 +7,7 @@ use lightmesh_scene::Weight;
 use super::mesh::LightMesh;
 use crate::simd::{LANES, dot, load, sum};
 
-/// Positions of a cell's template points, one lane a point, padded with points at infinity to whole mask words.
+/// Positions of a cell's template points, one lane per point, padded with points at infinity to whole mask words.
 #[derive(Clone, Debug)]
 pub(crate) struct CellPoints {
     x: Vec<f32>,
@@ -17,7 +17,7 @@ pub(crate) struct CellPoints {
 }
 
 impl CellPoints {
-    /// Room for the template of `mesh`.
+    /// Allocates for the template of `mesh`.
     pub(crate) fn new(mesh: &LightMesh) -> CellPoints {
         let far = || vec![f32::INFINITY; mesh.template.words() * 32];
         CellPoints { x: far(), y: far(), z: far(), count: mesh.template.len() }
@@ -40,8 +40,8 @@ impl CellPoints {
         Vec3::new(self.x[index], self.y[index], self.z[index])
     }
 
-    /// w of formula (3) for the points of `mask`, and 0 for all others, into `weights`, which has a place for every lane. Returns
-    /// their sum.
+    /// Writes w of formula (3) for the points of `mask`, and 0 for all others, to `weights`, which has an entry for every lane.
+    /// Returns their sum.
     #[inline(always)]
     pub(crate) fn weights<S: Simd>(
         &self,
@@ -95,7 +95,7 @@ pub(crate) fn sum_in_both<S: Simd>(simd: S, weights: &[f32], mask: &[u32], lit: 
     sum(total)
 }
 
-/// The sum of products of `weights` with `values`, lane by lane; weights outside of the mask are 0, and not asked for.
+/// The sum of products of `weights` with `values`, lane by lane; weights outside the mask are 0, and not read.
 #[inline(always)]
 pub(crate) fn sum_of_products<S: Simd>(simd: S, weights: &[f32], mask: &[u32], values: &[f32]) -> f32 {
     let mut total = f32x8::splat(simd, 0.0);

@@ -1,7 +1,7 @@
-//! The lattice: where light points lie, and the numbering of formula (7).
+//! The lattice: the positions of light points, and the numbering of formula (7).
 //!
-//! Light point i lies at (i + offset)·h in the world, whatever else there is: neither the scene's extent nor the camera moves it. Indices
-//! count from the light point nearest to the origin of the local frame, so that they are small and exact in `f32`.
+//! Light point i lies at (i + offset)·h in the world, whatever the scene contains: neither the scene's extent nor the camera moves it.
+//! Indices count from the light point nearest to the origin of the local frame, so that they are small and exact in `f32`.
 
 use glam::{DVec3, IVec3, UVec3, Vec3};
 use lightmesh_layout::constants::{INDEX_BIAS, INDEX_BITS};
@@ -17,7 +17,7 @@ pub struct Lattice {
     pub anchor: Vec3,
     /// Distance h between neighbours, scene units.
     pub step: f32,
-    /// The index in the world of light point (0, 0, 0), of which the lowest 21 bits are kept.
+    /// The world index of light point (0, 0, 0), of which the lowest 21 bits are kept.
     pub number: UVec3,
     /// The lowest light point that covers the scene.
     pub first: IVec3,
@@ -26,17 +26,17 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// Lattice planes are moved off the multiples of h by this part of a step. Floors and walls tend to lie on round coordinates; a light
-    /// point must not lie in one.
+    /// Lattice planes are offset from the multiples of h by this fraction of a step. Floors and walls tend to lie on round coordinates;
+    /// no light point may lie in one of them.
     const OFFSET: DVec3 = DVec3::new(0.137, 0.241, 0.319);
 
-    /// Multiples of h beyond which double precision does not tell light points of the world apart.
+    /// Multiples of h beyond which double precision cannot distinguish the light points of the world.
     const MOST_IN_WORLD: f64 = (1u64 << 50) as f64;
 
     /// The lattice of step `step` that reaches `reach` steps beyond the scene's triangles on every side.
     ///
     /// # Errors
-    /// [`LatticeError`] where the step is no positive number, or too small for the scene.
+    /// [`LatticeError`] if the step is not a positive number, or too small for the scene.
     pub fn around(scene: &PreparedScene, step: f32, reach: f32) -> Result<Lattice, LatticeError> {
         Lattice::covering(scene, &scene.geometry.bounds, step, reach)
     }
@@ -49,7 +49,7 @@ impl Lattice {
         Lattice::new(scene.scene.geometry.origin, bounds, step, reach)
     }
 
-    /// The same for triangles within `bounds`, in a frame that lies at `origin` in the world.
+    /// The same for triangles within `bounds`, in a frame whose origin is at `origin` in the world.
     fn new(origin: DVec3, bounds: &Bounds, step: f32, reach: f32) -> Result<Lattice, LatticeError> {
         if !(step > 0.0 && step.is_finite()) {
             return Err(LatticeError::Step { step });
@@ -83,13 +83,13 @@ impl Lattice {
         self.anchor + self.step * index.as_vec3()
     }
 
-    /// The cell that holds `position`.
+    /// The cell that contains `position`.
     #[inline(always)]
     pub fn cell(&self, position: Vec3) -> IVec3 {
         ((position - self.anchor) / self.step).floor().as_ivec3()
     }
 
-    /// Formula (7): the number of light point `index` in row-major order, of a lattice of 2²¹ points on each axis. It repeats beyond.
+    /// Formula (7): the number of light point `index` in row-major order, in a lattice of 2²¹ points along each axis. It repeats beyond.
     #[inline(always)]
     pub fn packed(&self, index: IVec3) -> u64 {
         let world = |number: u32, index: i32| u64::from(number.wrapping_add(index as u32) & ((1 << INDEX_BITS) - 1));
@@ -98,7 +98,8 @@ impl Lattice {
     }
 }
 
-/// The least step for which no index has more bits than keys have room for: they are exact in `f32`, and three of them fit into 63 bits.
+/// The smallest step for which no index has more bits than keys have room for: they are exact in `f32`, and three of them fit into 63
+/// bits.
 fn least_step(origin: DVec3, bounds: &Bounds, reach: f32) -> f64 {
     let here = f64::from(farthest(bounds)) / (f64::from(INDEX_BIAS) - margin(reach) - 2.0);
     here.max(origin.abs().max_element() / Lattice::MOST_IN_WORLD)
@@ -109,7 +110,7 @@ fn farthest(bounds: &Bounds) -> f32 {
     bounds.min.abs().max(bounds.max.abs()).max_element()
 }
 
-/// Light points beyond those around the scene: those that its surface points may use, and some for rounding.
+/// Light points beyond those around the scene: those that its surface points may use, and a margin for rounding.
 fn margin(reach: f32) -> f64 {
     f64::from(reach).ceil() + 2.0
 }
@@ -192,7 +193,7 @@ mod tests {
     fn a_step_that_cannot_be_numbered_is_refused_with_one_that_can() {
         for origin in [DVec3::ZERO, DVec3::splat(1e14)] {
             let Err(LatticeError::TooFine { least, .. }) = Lattice::new(origin, &cube(100.0), 1e-6, 2.1) else {
-                panic!("must be refused");
+                panic!("must be rejected");
             };
             assert!(Lattice::new(origin, &cube(100.0), least, 2.1).is_ok());
         }

@@ -1,25 +1,25 @@
-//! Why there is no lattice.
+//! Why a lattice is impossible.
 
-/// A lattice that cannot be numbered.
+/// A lattice whose points cannot be numbered.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LatticeError {
     /// The step is zero, negative, infinite or NaN.
-    #[error("light-mesh step {step} is not a positive number: choose one above 0, or auto")]
+    #[error("light-mesh step must be a positive number or auto, but is {step}")]
     Step {
-        /// What was asked for.
+        /// The requested step.
         step: f32,
     },
-    /// More points on an axis than can be told apart.
+    /// More points along an axis than can be distinguished.
     #[error(
-        "light-mesh step h = {step} is too fine for a scene that reaches {reach} far from its origin: choose {least} or more"
+        "light-mesh step h = {step} is too fine for a scene that extends {reach} from its origin: choose {least} or more"
     )]
     TooFine {
-        /// What was asked for.
+        /// The requested step.
         step: f32,
         /// Largest coordinate of the scene.
         reach: f64,
-        /// A step that would do.
+        /// A step that is large enough.
         least: f32,
     },
 }

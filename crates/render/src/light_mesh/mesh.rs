@@ -1,12 +1,12 @@
-//! The light mesh of one picture.
+//! The light mesh of one image.
 
 use super::lattice::Lattice;
 use super::template::Template;
 
-/// Everything that stages need to know about the light mesh of one picture.
+/// Everything that stages need to know about the light mesh of one image.
 #[derive(Clone, Debug)]
 pub struct LightMesh {
-    /// Where the light points lie.
+    /// Positions of the light points.
     pub lattice: Lattice,
     /// Formula (6) for the chosen radius.
     pub template: Template,
@@ -17,21 +17,22 @@ pub struct LightMesh {
 }
 
 impl LightMesh {
-    /// The smallest `(n, x − P)` that a light point must exceed to be used, in scene units. A thousandth part of a step
-    /// keeps lattice planes that coincide with a surface from flickering in and out of its half-ball.
+    /// The smallest `(n, x − P)` that a light point must exceed to be used, in scene units. A thousandth of a step keeps
+    /// lattice planes that coincide with a surface from flickering in and out of its half-ball.
     pub fn least_height(&self) -> f32 {
         1e-3 * self.lattice.step
     }
 
-    /// How near a triangle's plane may pass to a segment's origin before it counts as edge-on, in scene units. Below that,
-    /// rounding would decide: the distance to the plane of a triangle within reach, R steps away, errs by a few ε R h. What is
-    /// ignored leaks light into pixels that lie this near to the foot of a wall without thickness, so it must not be more.
+    /// How close a triangle's plane may pass to a segment's origin before the triangle counts as edge-on, in scene units. Below
+    /// that, rounding would decide: the distance to the plane of a triangle within reach, R steps away, errs by a few ε R h.
+    /// What is ignored leaks light into pixels this close to the foot of a wall without thickness, so the value must not be
+    /// larger.
     pub fn edge_on(&self) -> f32 {
         2e-6 * self.lattice.step
     }
 
-    /// How much boxes grow before triangles are looked up for short tests, in scene units: far above rounding, far below a
-    /// step.
+    /// How much boxes are enlarged before triangles are looked up for short tests, in scene units: far above rounding, far
+    /// below a step.
     pub fn slack(&self) -> f32 {
         1e-3 * self.lattice.step
     }

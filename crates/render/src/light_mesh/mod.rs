@@ -1,5 +1,5 @@
-//! The light mesh: a lattice of light points in space, the template that says which of them a surface point may use, and the
-//! sparse store that holds only what a picture touches.
+//! The light mesh: a lattice of light points in space, the template that lists which of them a surface point may use, and the
+//! sparse store that contains only what an image touches.
 //!
 //! A *cell* (i, j, k) is the cube whose lowest corner is *light point* (i, j, k): cells and points share one numbering.
 

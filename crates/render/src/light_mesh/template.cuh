@@ -1,6 +1,6 @@
-// Twin of template.rs: formula (6) as rows along x, and what a warp does with the points of a cell.
+// Twin of template.rs: formula (6) as rows along x, and operations of a warp on the points of a cell.
 //
-// Lanes are object points of one cell, up to 32. A template point's word has a bit for each lane: whether its object point uses
+// Lanes are surface points of one cell, up to 32. A template point's word has a bit for each lane: whether its surface point uses
 // the light point.
 #pragma once
 
@@ -15,8 +15,8 @@ DEVICE IVec3 template_offset(const LightMesh &mesh, unsigned k) {
     return IVec3{(int)(packed & 255) - MOST_REACH, (int)(packed >> 8 & 255) - MOST_REACH, (int)(packed >> 16) - MOST_REACH};
 }
 
-// A line as lanes see it that take one each: first bit, number of points and offset of the first. The template is symmetric about
-// the cell's middle, so the number says where the line begins.
+// A line as lanes see it that take one line each: first bit, number of points and offset of the first. The template is symmetric
+// about the cell's middle, so the number of points determines where the line begins.
 DEVICE void template_row(const LightMesh &mesh, int row, unsigned &bit, int &count, int &x) {
     const unsigned packed = __ldg(&mesh.rows[row]);
     bit = packed & 0xffff;
@@ -24,7 +24,7 @@ DEVICE void template_row(const LightMesh &mesh, int row, unsigned &bit, int &cou
     x = 1 - count / 2;
 }
 
-// The line of some y and z.
+// The line at the given y and z.
 DEVICE int row_of(const LightMesh &mesh, int y, int z) {
     return (z - 1 + mesh.reach) * 2 * mesh.reach + y - 1 + mesh.reach;
 }

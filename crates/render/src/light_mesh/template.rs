@@ -1,30 +1,30 @@
-//! Formula (6): which light points can lie in the interpolation half-ball of some point of a cell.
+//! Formula (6): the light points that can lie in the interpolation half-ball of some point of a cell.
 
 use std::ops::Range;
 
 use glam::IVec3;
 use lightmesh_layout::constants::MOST_REACH;
 
-/// The light points that lie within r of *some* point of a cell, as offsets from the cell. Bit k of an object point's mask
-/// speaks of `offsets()[k]`.
+/// The light points that lie within r of *some* point of a cell, as offsets from the cell. Bit k of a surface point's mask
+/// refers to `offsets()[k]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Template {
     radius: f32,
     reach: i32,
     offsets: Vec<IVec3>,
-    /// The points of each line along x, by z and y from `1 − reach` on: (first bit, its x, number of points).
+    /// The points of each line along x, by z and y starting at `1 − reach`: (first bit, its x, number of points).
     rows: Vec<(u16, i16, u16)>,
 }
 
 /// A radius for which there is no template.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
-    "interpolation radius R = {radius} is not between {least} and {most} steps: below, half-balls are empty; above, masks take kilobytes a pixel. 2.1 is a good choice",
+    "interpolation radius R = {radius} is not between {least} and {most} steps: below, half-balls are empty; above, masks take kilobytes per pixel. 2.1 is a good choice",
     least = Template::MIN_RADIUS,
     most = Template::MAX_RADIUS
 )]
 pub struct TemplateError {
-    /// What was asked for.
+    /// The requested radius.
     pub radius: f32,
 }
 
@@ -76,7 +76,7 @@ impl Template {
         let (side, least) = (2 * self.reach, 1 - self.reach);
         let (first, x, count) = self.rows[((z - least) * side + y - least) as usize];
         let (x, count) = (i32::from(x), i32::from(count));
-        // Where the row is empty or the range misses it, so is the result.
+        // If the row is empty or the range misses it, the result is empty.
         let from = (low - x).max(0);
         let to = (high + 1 - x).clamp(from, count.max(from));
         usize::from(first) + from as usize..usize::from(first) + to as usize

@@ -29,14 +29,14 @@ DEVICE int window_size(const Window &window) {
     return window.side * window.side * window.side;
 }
 
-// The place in the window of the brick that holds a light point.
+// The position in the window of the brick that contains a light point.
 DEVICE int window_place(const Window &window, IVec3 point) {
     const int x = (point.x >> BRICK_BITS) - window.low.x, y = (point.y >> BRICK_BITS) - window.low.y,
               z = (point.z >> BRICK_BITS) - window.low.z;
     return (z * window.side + y) * window.side + x;
 }
 
-// The key of the brick at a place.
+// The key of the brick at a position.
 DEVICE unsigned long long window_key(const Window &window, int place) {
     const int x = place % window.side, y = place / window.side % window.side, z = place / (window.side * window.side);
     const int side = 1 << BRICK_BITS;

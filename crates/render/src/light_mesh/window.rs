@@ -1,4 +1,4 @@
-//! The bricks around a cell: where the template's points lie in the sparse store.
+//! The bricks around a cell: the positions of the template's points in the sparse store.
 
 use glam::IVec3;
 
@@ -9,8 +9,8 @@ use super::template::Template;
 
 /// The blocks of bricks that the template reaches into: at most `side`³ around each cell.
 ///
-/// Where template point k lies in the block depends only on the place of the cell in its own brick, so it is known
-/// beforehand for all 64 places.
+/// The position of template point k in the block depends only on the position of the cell in its own brick, so it is precomputed
+/// for all 64 positions.
 #[derive(Clone, Debug)]
 pub(crate) struct Windows {
     reach: i32,
@@ -18,18 +18,18 @@ pub(crate) struct Windows {
     spans: Vec<Vec<Span>>,
 }
 
-/// Template points that follow each other along x, in a mask as in a brick.
+/// Consecutive template points along x, adjacent both in a mask and in a brick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Span {
-    /// Which brick of the window.
+    /// Index of the brick in the window.
     pub(crate) slot: u16,
-    /// Which bit of it the first point is.
+    /// The bit of the first point in that brick.
     pub(crate) bit: u8,
-    /// How many there are: 1 to 4.
+    /// Number of points: 1 to 4.
     pub(crate) count: u8,
-    /// Which word of a mask.
+    /// Index of the word in the mask.
     pub(crate) word: u16,
-    /// Which bit of it the first point is.
+    /// The bit of the first point in that word.
     pub(crate) shift: u8,
 }
 
@@ -38,16 +38,17 @@ pub(crate) struct Span {
 pub(crate) struct Window<'a> {
     low: IVec3,
     side: i32,
-    /// Where the template points lie, in their order.
+    /// Positions of the template points, in their order.
     pub(crate) spans: &'a [Span],
 }
 
-/// Bricks of the window around a cell.
+/// Number of bricks of the window around a cell.
 pub(crate) fn window_bricks(reach: i32) -> u32 {
     window_side(reach).pow(3) as u32
 }
 
-/// Bricks of a window along each axis. Offsets run from 1 − reach to reach; a run of n points meets at most (n + 2) / 4 + 1 bricks.
+/// Number of bricks of a window along each axis. Offsets run from 1 − reach to reach; a run of n points meets at most (n + 2) / 4 +
+/// 1 bricks.
 fn window_side(reach: i32) -> i32 {
     (2 * reach + 2) / (1 << BRICK_BITS) + 1
 }
@@ -95,7 +96,7 @@ impl Windows {
 }
 
 impl Span {
-    /// Whether `point` is the next one, in the same row of the same brick and in the same word.
+    /// Whether `point` is the next one in the same row of the same brick and in the same word.
     fn goes_on_with(&self, point: &Span) -> bool {
         let (slot, bit, word) = (self.slot, self.bit + self.count, self.word);
         bit % (1 << BRICK_BITS) != 0 && (slot, bit, word) == (point.slot, point.bit, point.word)

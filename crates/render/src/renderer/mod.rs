@@ -1,6 +1,6 @@
 //! The renderer: from a scene and settings to a frame.
 //!
-//! [`resolve`] checks the settings and chooses what they leave open, [`crate::passes`] puts the stages together, [`report`] says what was
+//! [`resolve`] checks the settings and chooses what they leave open, [`crate::passes`] combines the stages, [`report`] describes what was
 //! done.
 
 mod report;
@@ -30,20 +30,20 @@ use crate::settings::Settings;
 use crate::stats::Stats;
 use resolve::Resolved;
 
-/// A finished picture and what is to be said about it.
+/// A finished image and its statistics.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Linear colours, and layers where they were asked for.
+    /// Linear colours, and layers if requested.
     pub image: lightmesh_image::Frame,
     /// Counts, seconds and settings.
     pub stats: Stats,
 }
 
 impl Frame {
-    /// Writes the picture as bmp, png, exr or jpg, by the extension; 8-bit formats in sRGB.
+    /// Writes the image as bmp, png, exr or jpg, by the file extension; 8-bit formats in sRGB.
     ///
     /// # Errors
-    /// [`SaveError`] where the extension is unknown or the file cannot be written; no file is left half-written.
+    /// [`SaveError`] if the extension is unknown or the file cannot be written; no partial file is left behind.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
         self.image.save(path)
     }
@@ -58,12 +58,12 @@ impl Frame {
         self.image.color()
     }
 
-    /// What each pixel saw, where [`Settings::layers`] asked for it.
+    /// What each pixel sees, if [`Settings::layers`] requested it.
     pub fn layers(&self) -> Option<&Layers> {
         self.image.layers()
     }
 
-    /// The picture's vectors; nothing is copied.
+    /// The image's vectors; nothing is copied.
     pub fn into_parts(self) -> FrameParts {
         self.image.into_parts()
     }
@@ -76,36 +76,36 @@ pub struct Renderer {
     preparations: Preparations,
 }
 
-/// What computes.
+/// The backend in use.
 enum Engine {
     Cpu,
-    /// Pictures take turns: a device has one template in constant memory, and one set of counters.
+    /// Images take turns: a device has one template in constant memory, and one set of counters.
     Cuda(Box<Mutex<Cuda<Driver>>>),
 }
 
 impl Renderer {
-    /// A renderer on `device` with a thread for each processor.
+    /// A renderer on `device` with one thread per logical CPU.
     ///
     /// # Errors
-    /// [`RenderError::Device`] where the device cannot be used.
+    /// [`RenderError::Device`] if the device cannot be used.
     pub fn new(device: Device) -> Result<Renderer, RenderError> {
         Renderer::with_threads(device, None)
     }
 
-    /// A renderer on `device` with a number of threads of its own.
+    /// A renderer on `device` with its own pool of `threads` threads.
     ///
     /// # Errors
-    /// [`RenderError::Device`] where the device cannot be used, [`RenderError::Setting`] where the number of threads has no sense,
-    /// [`RenderError::Threads`] where the threads cannot be started.
+    /// [`RenderError::Device`] if the device cannot be used, [`RenderError::Setting`] if the number of threads is invalid,
+    /// [`RenderError::Threads`] if the threads cannot be started.
     pub fn with_threads(device: Device, threads: Option<usize>) -> Result<Renderer, RenderError> {
         resolve::check_threads(threads)?;
         Renderer::on(Choice::of(device)?, threads)
     }
 
-    /// A renderer on a device that was made ready, with a number of threads of its own; `None`: one for each processor.
+    /// A renderer on a prepared device with its own pool of `threads` threads; `None`: one per logical CPU.
     ///
     /// # Errors
-    /// [`RenderError::Setting`] where the number of threads has no sense, [`RenderError::Threads`] where the threads cannot be
+    /// [`RenderError::Setting`] if the number of threads is invalid, [`RenderError::Threads`] if the threads cannot be
     /// started.
     pub fn on(choice: Choice, threads: Option<usize>) -> Result<Renderer, RenderError> {
         resolve::check_threads(threads)?;
@@ -119,21 +119,21 @@ impl Renderer {
         Ok(Renderer { pool, engine, preparations: Preparations::default() })
     }
 
-    /// Renders one picture of `scene`.
+    /// Renders one image of `scene`.
     ///
     /// # Errors
-    /// [`RenderError`] where the settings have no sense for this scene, or memory does not suffice.
+    /// [`RenderError`] if the settings are invalid for this scene, or memory does not suffice.
     pub fn render(&self, scene: &Scene, settings: &Settings) -> Result<Frame, RenderError> {
         let prepared = self.prepare(scene, settings, &Unobserved)?;
         self.render_prepared(&prepared, settings, &Unobserved)
     }
 
-    /// Builds the acceleration structure, for any number of pictures. Geometry that this renderer has prepared before is not built again
-    /// while it lives, whatever lights and cameras are around it.
+    /// Builds the acceleration structure, for any number of images. Geometry that this renderer has prepared before is not rebuilt while
+    /// it is alive, whatever lights and cameras surround it.
     ///
     /// # Errors
-    /// [`RenderError::Geometry`] where the geometry does not hold together, [`RenderError::Grid`] or [`RenderError::GridFile`] where a
-    /// grid was asked for and cannot be had.
+    /// [`RenderError::Geometry`] if the geometry is inconsistent, [`RenderError::Grid`] or [`RenderError::GridFile`] if a grid was
+    /// requested and cannot be built or read.
     pub fn prepare(
         &self,
         scene: &Scene,
@@ -143,10 +143,10 @@ impl Renderer {
         self.pool.install(|| self.preparations.prepare(scene, &settings.acceleration, observer))
     }
 
-    /// Renders one picture of a prepared scene.
+    /// Renders one image of a prepared scene.
     ///
     /// # Errors
-    /// As [`Renderer::render`], and [`RenderError::Cancelled`] where the observer asked to stop.
+    /// As [`Renderer::render`], and [`RenderError::Cancelled`] if the observer requested cancellation.
     pub fn render_prepared(
         &self,
         scene: &PreparedScene,
@@ -188,8 +188,8 @@ impl Renderer {
         })
     }
 
-    /// Renders one picture of a prepared scene with what earlier pictures have found out about its light points, and keeps what it finds
-    /// out itself. The picture is the same in every bit; only long tests are saved (light-mesh mode).
+    /// Renders one image of a prepared scene with the cached visibility of its light points, and adds what it finds to the cache. The
+    /// image is bit-identical to one without a cache; only long tests are saved (light-mesh mode).
     ///
     /// # Errors
     /// As [`Renderer::render_prepared`].
@@ -211,7 +211,7 @@ impl Renderer {
     }
 }
 
-/// Finds the visibility of each light at given points on a backend of the caller's own, on the caller's threads.
+/// Finds the visibility of each light at given points on the caller's own backend, on the caller's threads.
 ///
 /// # Errors
 /// As [`Renderer::visibility`].
@@ -233,7 +233,7 @@ pub fn visibility_on<B: Backend>(
     Ok(PointVisibility { visibility, lights: scene.scene.lights.len(), stats })
 }
 
-/// Renders one picture of a prepared scene on a backend of the caller's own, on the caller's threads.
+/// Renders one image of a prepared scene on the caller's own backend, on the caller's threads.
 ///
 /// # Errors
 /// As [`Renderer::render_prepared`].
@@ -246,7 +246,7 @@ pub fn render_on<B: Backend>(
     picture_on(backend, None, scene, settings, observer)
 }
 
-/// The same with what is kept from picture to picture on this backend, and on no other.
+/// The same with what is kept from image to image on this backend, and on no other.
 ///
 /// # Errors
 /// As [`Renderer::render_prepared`].

@@ -1,4 +1,4 @@
-//! What a render reports about itself.
+//! The statistics of a render.
 
 use lightmesh_scene::Projection;
 
@@ -10,7 +10,7 @@ use crate::shading::DEFAULT_AMBIENT;
 use crate::stage::Seconds;
 use crate::stats::{CameraStats, DeviceStats, MemoryStats, SceneStats, SettingsStats, Stats};
 
-/// What a backend says of itself.
+/// What a backend reports about itself.
 pub(super) struct DeviceFacts {
     pub(super) kind: &'static str,
     pub(super) name: String,
@@ -23,14 +23,14 @@ impl DeviceFacts {
     }
 }
 
-/// The statistics of a picture that was made in `seconds`, `rows` rows at once.
+/// The statistics of an image that was rendered in `seconds`, `rows` rows at once.
 pub(super) fn stats(job: &Job, resolved: &Resolved, device: DeviceFacts, rows: u32, seconds: f64) -> Stats {
     let Resolved { scene, technique, .. } = resolved;
     let counts = Counts::new(resolved.pixels, technique.template(), &job.tally.snapshot());
     if counts.overruns > 0 {
         let rays = counts.overruns;
         job.observer
-            .note(&format!("{rays} rays were given up in the grid: the picture may be wrong there; please report it"));
+            .note(&format!("{rays} rays were abandoned in the grid: the image may be wrong there; please report this"));
     }
     Stats {
         version: 1,
@@ -47,7 +47,7 @@ pub(super) fn stats(job: &Job, resolved: &Resolved, device: DeviceFacts, rows: u
     }
 }
 
-/// Every setting as it was used.
+/// Every setting as used.
 fn settings(resolved: &Resolved, device: &'static str, rows_per_band: u32) -> SettingsStats {
     let Resolved { scene, settings, technique, sampling, .. } = resolved;
     let lights = &scene.scene.lights;

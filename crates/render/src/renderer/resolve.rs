@@ -1,4 +1,4 @@
-//! Settings checked, and what they leave open chosen.
+//! Checks the settings, and chooses what they leave open.
 
 use lightmesh_scene::{Bounds, Camera};
 
@@ -13,10 +13,10 @@ use crate::settings::{Setting, Settings};
 use crate::techniques::{Request, Technique};
 use crate::view::View;
 
-/// More threads than any machine has processors only wait for each other.
+/// More threads than any machine has logical CPUs would only wait for each other.
 const MAX_THREADS: usize = 1024;
 
-/// A picture of a scene with nothing left open.
+/// An image of a scene with all settings resolved.
 pub(super) struct Resolved<'a> {
     pub(super) scene: &'a PreparedScene,
     pub(super) settings: &'a Settings,
@@ -93,19 +93,19 @@ impl Resolved<'_> {
     }
 }
 
-/// A number of threads without sense is refused before any work.
+/// Rejects an invalid number of threads before any work.
 pub(super) fn check_threads(threads: Option<usize>) -> Result<(), RenderError> {
     match threads {
         Some(threads) if !(1..=MAX_THREADS).contains(&threads) => Err(RenderError::Setting {
             setting: Setting::Threads,
             value: threads.to_string(),
-            remedy: "choose 1 to 1024; the number of processors is best",
+            remedy: "choose 1 to 1024; the number of logical CPUs is best",
         }),
         _ => Ok(()),
     }
 }
 
-/// Settings without sense are refused before any work.
+/// Rejects invalid settings before any work.
 fn check(settings: &Settings) -> Result<(), RenderError> {
     let [width, height] = settings.size;
     // Rays are numbered in 32 bits.
@@ -113,7 +113,7 @@ fn check(settings: &Settings) -> Result<(), RenderError> {
         return Err(RenderError::Setting {
             setting: Setting::Size,
             value: format!("{width}x{height}"),
-            remedy: "both sides must be at least 1, and all pixels fewer than 4294967295",
+            remedy: "both sides must be at least 1, and the number of pixels below 4294967295",
         });
     }
     let samples = Technique::samples(settings);

@@ -1,4 +1,4 @@
-//! Which acceleration structure is asked for.
+//! The choice of acceleration structure.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -13,21 +13,21 @@ pub enum Acceleration {
     /// The fastest on this device: the BVH.
     #[default]
     Auto,
-    /// The regular grid of the thesis, built with cells along each axis as given or chosen.
+    /// The regular grid of the thesis, with the given number of cells along each axis, or a chosen one.
     Grid(Option<[u32; 3]>),
-    /// The regular grid kept in a file by [`Grid::save`](crate::accel::Grid::save).
+    /// The regular grid stored in a file by [`Grid::save`](crate::accel::Grid::save).
     GridFile(PathBuf),
     /// A wide BVH.
     Bvh,
-    /// Every triangle, always: the oracle.
+    /// A test of every triangle, always: the reference.
     BruteForce,
 }
 
 impl Acceleration {
-    /// Those that can be chosen by name alone and are of use; [`Acceleration::BruteForce`] is for tests.
+    /// Those that can be chosen by name and are useful; [`Acceleration::BruteForce`] is for tests.
     pub const ALL: &'static [Acceleration] = &[Acceleration::Auto, Acceleration::Grid(None), Acceleration::Bvh];
 
-    /// The word for it; alike for all grids.
+    /// Its name; the same for all grids.
     pub fn name(&self) -> &'static str {
         match self {
             Acceleration::Auto => "auto",
@@ -38,14 +38,14 @@ impl Acceleration {
         }
     }
 
-    /// What it is, in a few words.
+    /// A short description.
     pub fn help(&self) -> &'static str {
         match self {
             Acceleration::Auto => "The fastest on the device",
             Acceleration::Grid(_) => "The regular grid of the thesis",
-            Acceleration::GridFile(_) => "A regular grid kept in a file",
+            Acceleration::GridFile(_) => "A regular grid stored in a file",
             Acceleration::Bvh => "A wide bounding volume hierarchy",
-            Acceleration::BruteForce => "Every triangle, always: the oracle",
+            Acceleration::BruteForce => "A test of every triangle, always: the reference",
         }
     }
 }

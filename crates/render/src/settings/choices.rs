@@ -1,4 +1,4 @@
-//! What is chosen by name: mode, lookup, short tests; and the step.
+//! Settings chosen by name: mode, lookup, short tests; and the step.
 
 use std::fmt;
 use std::str::FromStr;
@@ -13,7 +13,7 @@ macro_rules! words {
         lookups { $($(#[doc = $lookup_help:literal])* $lookup:ident = $lookup_word:literal,)* }
         techniques $techniques:tt
     ) => {
-        /// How visibility is found.
+        /// How visibility is computed.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #[non_exhaustive]
         pub enum Mode {
@@ -25,14 +25,14 @@ macro_rules! words {
             /// All modes; the default comes first.
             pub const ALL: &[Mode] = &[$(Mode::$mode),*];
 
-            /// The word on the command line and in statistics.
+            /// The name on the command line and in statistics.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Mode::$mode => $mode_word,)*
                 }
             }
 
-            /// What it does, in a few words.
+            /// A short description.
             pub fn help(self) -> &'static str {
                 match self {
                     $(Mode::$mode => concat!($($mode_help),*).trim_ascii_start(),)*
@@ -40,11 +40,11 @@ macro_rules! words {
             }
         }
 
-        /// How light-mesh mode finds the visibility of a light at a surface point.
+        /// How light-mesh mode determines the visibility of a light at a surface point.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #[non_exhaustive]
         pub enum Lookup {
-            /// The best there is.
+            /// The best available.
             #[default]
             Auto,
             $($(#[doc = $lookup_help])* $lookup,)*
@@ -54,7 +54,7 @@ macro_rules! words {
             /// All lookups; the default comes first.
             pub const ALL: &[Lookup] = &[Lookup::Auto, $(Lookup::$lookup),*];
 
-            /// The word on the command line and in statistics.
+            /// The name on the command line and in statistics.
             pub fn name(self) -> &'static str {
                 match self {
                     Lookup::Auto => "auto",
@@ -62,10 +62,10 @@ macro_rules! words {
                 }
             }
 
-            /// What it does, in a few words.
+            /// A short description.
             pub fn help(self) -> &'static str {
                 match self {
-                    Lookup::Auto => "The best there is.",
+                    Lookup::Auto => "The best available.",
                     $(Lookup::$lookup => concat!($($lookup_help),*).trim_ascii_start(),)*
                 }
             }
@@ -80,7 +80,7 @@ parse_by_name!(Lookup, "lookup");
 /// The light-mesh step h. As text: `auto`, or a number above 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Step {
-    /// Tied to the size of a pixel in the scene.
+    /// Derived from the size of a pixel in the scene.
     #[default]
     Auto,
     /// In scene units.
@@ -115,19 +115,19 @@ impl FromStr for Step {
     }
 }
 
-/// A text that is no light-mesh step.
+/// A text that is not a light-mesh step.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` is no light-mesh step: write a number above 0, or auto")]
+#[error("invalid light-mesh step `{0}`: use a number above 0, or auto")]
 pub struct UnknownStep(pub String);
 
-/// How the short tests are evaluated. The masks are the same in every bit.
+/// How the short tests are evaluated. The masks are bit-identical.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ShortTests {
-    /// By light-mesh cell, with the cell's possible occluders found once.
+    /// By light-mesh cell: the possible occluders of a cell are found once.
     #[default]
     Cells,
-    /// One segment after the other through the acceleration structure: the oracle.
+    /// One segment after another through the acceleration structure: the reference.
     Plain,
 }
 
@@ -135,7 +135,7 @@ impl ShortTests {
     /// All of them.
     pub const ALL: &'static [ShortTests] = &[ShortTests::Cells, ShortTests::Plain];
 
-    /// The word for it, in statistics too.
+    /// Its name, also in statistics.
     pub fn name(self) -> &'static str {
         match self {
             ShortTests::Cells => "cells",
@@ -143,16 +143,16 @@ impl ShortTests {
         }
     }
 
-    /// What it is, in a few words.
+    /// A short description.
     pub fn help(self) -> &'static str {
         match self {
-            ShortTests::Cells => "By light-mesh cell, with the cell's possible occluders found once",
-            ShortTests::Plain => "One segment after the other: the oracle",
+            ShortTests::Cells => "By light-mesh cell: the possible occluders of a cell are found once",
+            ShortTests::Plain => "One segment after another: the reference",
         }
     }
 }
 
-parse_by_name!(ShortTests, "way of short tests");
+parse_by_name!(ShortTests, "short-test method");
 
 #[cfg(test)]
 mod tests {
@@ -165,7 +165,7 @@ mod tests {
         ShortTests::ALL.iter().for_each(|tests| assert_eq!(tests.to_string().parse(), Ok(*tests)));
         assert_eq!(
             "soft".parse::<Mode>().unwrap_err().to_string(),
-            "there is no mode `soft`; known are light-mesh, ray-trace, area"
+            "there is no mode `soft`; available: light-mesh, ray-trace, area"
         );
     }
 

@@ -1,4 +1,4 @@
-//! What the user may choose, and what becomes of "auto".
+//! The settings that a user can choose, and how "auto" is resolved.
 
 mod acceleration;
 mod choices;
@@ -10,7 +10,7 @@ pub use acceleration::Acceleration;
 pub use choices::{Lookup, Mode, ShortTests, Step, UnknownStep};
 pub use setting::Setting;
 
-/// Everything that can be chosen about a picture, apart from the scene. Fields can be set, or methods chained; further ones may come.
+/// All settings of an image, apart from the scene. Fields can be set, or methods chained; more may be added.
 ///
 /// ```
 /// use lightmesh_render::{Mode, Settings};
@@ -21,7 +21,7 @@ pub use setting::Setting;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Settings {
-    /// How visibility is found.
+    /// How visibility is computed.
     pub mode: Mode,
     /// Depth of mirror recursion.
     pub bounces: u32,
@@ -29,7 +29,7 @@ pub struct Settings {
     pub size: [u32; 2],
     /// The camera; `None`: the scene's first, else one that frames the scene.
     pub camera: Option<Camera>,
-    /// Which way is up for a camera that frames the scene.
+    /// The up axis for a camera that frames the scene.
     pub up: Up,
     /// Light-mesh step; `None`: the scene's, else auto.
     pub step: Option<Step>,
@@ -37,19 +37,19 @@ pub struct Settings {
     pub radius: Option<f32>,
     /// Weight of formula (3); `None`: the scene's, else smooth.
     pub weight: Option<Weight>,
-    /// How light-mesh mode looks visibility up.
+    /// How light-mesh mode looks up visibility.
     pub lookup: Lookup,
     /// How short tests are evaluated.
     pub short_tests: ShortTests,
-    /// Shadow rays per light with a size; `None`: 225 in area mode, 4 per light point in light-mesh mode.
+    /// Shadow rays per area light; `None`: 225 in area mode, 4 per light point in light-mesh mode.
     pub samples: Option<u32>,
     /// The acceleration structure.
     pub acceleration: Acceleration,
     /// Random pattern of sampled lights.
     pub seed: u64,
-    /// Keep depth, normals, positions and visibility of every pixel beside its colour.
+    /// Whether to keep depth, normals, positions and visibility of every pixel in addition to its colour.
     pub layers: bool,
-    /// Bytes to stay under: of the process on the CPU, of the device's own memory on a GPU; `None`: what is free, less a reserve.
+    /// Memory limit in bytes: of the process on the CPU, of the device's own memory on a GPU; `None`: what is free, less a reserve.
     pub memory_limit: Option<u64>,
 }
 
@@ -76,14 +76,14 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Default interpolation radius in steps: with a weight that falls to the rim it beats R = 3.1 with w = 1 at a third of the
-    /// short tests.
+    /// Default interpolation radius in steps: with a weight that falls to zero at the rim it beats R = 3.1 with w = 1 at a third of
+    /// the short tests.
     pub const DEFAULT_RADIUS: f32 = 2.1;
 }
 
-/// Settings in one expression: each method sets the field of its name, which says more.
+/// Settings in one expression: each method sets the field of its name; see the fields for details.
 impl Settings {
-    /// How visibility is found.
+    /// How visibility is computed.
     pub fn with_mode(self, mode: Mode) -> Settings {
         Settings { mode, ..self }
     }
@@ -98,12 +98,12 @@ impl Settings {
         Settings { size, ..self }
     }
 
-    /// This camera rather than the scene's.
+    /// This camera instead of the scene's.
     pub fn with_camera(self, camera: Camera) -> Settings {
         Settings { camera: Some(camera), ..self }
     }
 
-    /// Which way is up for a camera that frames the scene.
+    /// The up axis for a camera that frames the scene.
     pub fn with_up(self, up: Up) -> Settings {
         Settings { up, ..self }
     }
@@ -123,7 +123,7 @@ impl Settings {
         Settings { weight: Some(weight), ..self }
     }
 
-    /// How light-mesh mode looks visibility up.
+    /// How light-mesh mode looks up visibility.
     pub fn with_lookup(self, lookup: Lookup) -> Settings {
         Settings { lookup, ..self }
     }
@@ -133,7 +133,7 @@ impl Settings {
         Settings { short_tests, ..self }
     }
 
-    /// Shadow rays per light with a size.
+    /// Shadow rays per area light.
     pub fn with_samples(self, samples: u32) -> Settings {
         Settings { samples: Some(samples), ..self }
     }
@@ -148,12 +148,12 @@ impl Settings {
         Settings { seed, ..self }
     }
 
-    /// Whether to keep depth, normals, positions and visibility of every pixel beside its colour.
+    /// Whether to keep depth, normals, positions and visibility of every pixel in addition to its colour.
     pub fn with_layers(self, layers: bool) -> Settings {
         Settings { layers, ..self }
     }
 
-    /// Bytes to stay under, of the process on the CPU, of the device's own memory on a GPU.
+    /// Memory limit in bytes, of the process on the CPU, of the device's own memory on a GPU.
     pub fn with_memory_limit(self, memory_limit: u64) -> Settings {
         Settings { memory_limit: Some(memory_limit), ..self }
     }

@@ -1,8 +1,9 @@
-//! Which setting an error or a note is about: messages name it in words, and who has another name for it, such as a flag, adds that.
+//! Which setting an error or a note refers to: messages name it in words, and a program that has another name for it, such as a
+//! flag, adds that.
 
 use std::fmt;
 
-/// Something that can be chosen about a picture or its renderer.
+/// A setting of an image or its renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Setting {
@@ -29,7 +30,7 @@ pub enum Setting {
 }
 
 impl Setting {
-    /// All of them.
+    /// All settings.
     pub const ALL: &[Setting] = &[
         Setting::Size,
         Setting::Step,

@@ -4,8 +4,8 @@
 //! I(P) = I_a k_a + Σ_i V(L_i, P) · I_i · [ k_d (N·D_i) + k_s (R_i·View)^pow ] + k_s · I_r
 //! ```
 //!
-//! Both dot products are clamped at 0, channels are independent. Here are its terms, their coefficients ([`tint`]) and the points that stand
-//! for a light; the stages [`shade`](crate::stages::shade) and [`mirror_rays`](crate::stages::mirror_rays) put them together. Twins:
+//! Both dot products are clamped at 0, channels are independent. This module has the terms, their coefficients ([`tint`]) and the points
+//! that represent a light; the stages [`shade`](crate::stages::shade) and [`mirror_rays`](crate::stages::mirror_rays) combine them. Twins:
 //! `shading.cuh`, `tint.cuh`.
 
 #[cfg(test)]
@@ -23,7 +23,7 @@ use crate::sampling::{Pattern, light_center, light_point};
 use crate::surface::{SurfacePoint, shading_normal};
 use tint::Coefficients;
 
-/// I_a where neither the scene nor the user says.
+/// I_a if neither the scene nor the user sets it.
 pub(crate) const DEFAULT_AMBIENT: Vec3 = Vec3::splat(0.1);
 
 /// A surface point with what formula (1) needs.
@@ -33,7 +33,7 @@ pub(crate) struct Surface {
     /// Unit vector to the viewer.
     view: Vec3,
     pub(crate) coefficients: Coefficients,
-    /// Phong's exponent.
+    /// Phong exponent.
     shininess: f32,
 }
 
@@ -82,8 +82,7 @@ impl Surface {
         sum / targets.len() as f32
     }
 
-    /// The direction in which a mirror at this point is seen. A smooth normal may mirror into the surface; then the geometric
-    /// one does it.
+    /// The reflection direction of the view. A smooth normal may reflect into the surface; then the geometric normal is used.
     pub(crate) fn mirrored(&self) -> Vec3 {
         let about = |normal: Vec3| 2.0 * normal.dot(self.view) * normal - self.view;
         let direction = about(self.normal);
@@ -102,7 +101,7 @@ fn strength(light: &Light, direction: Vec3, distance: f32) -> Vec3 {
     falloff * cone(light, direction) * light.intensity
 }
 
-/// The share of a spot's strength along `direction`, from the surface to the light; the curve that glTF recommends
+/// The share of a spot's strength along `direction`, from the surface to the light; the falloff curve recommended by glTF
 /// (KHR_lights_punctual, inner and outer cone angles).
 #[inline(always)]
 fn cone(light: &Light, direction: Vec3) -> f32 {
@@ -112,7 +111,7 @@ fn cone(light: &Light, direction: Vec3) -> f32 {
     linear * linear
 }
 
-/// The points of each light from which its unshadowed light is computed: its middle, or some spread over it.
+/// The points of each light from which its unshadowed light is computed: its centre, or several distributed over it.
 pub(crate) struct LightTargets {
     points: Vec<Vec<Vec3>>,
 }
@@ -120,7 +119,7 @@ pub(crate) struct LightTargets {
 impl LightTargets {
     pub(crate) fn new(lights: &[Light]) -> LightTargets {
         let pattern = Pattern::new(0, 0, 0);
-        // In pairs on either side of the middle: what falls off linearly over the light is averaged exactly.
+        // In pairs on either side of the centre: what falls off linearly over the light is averaged exactly.
         let pair = |light: &Light, index: u32| {
             let point = light_point(light, Vec3::ZERO, 0.0, pattern.point(index));
             [point, 2.0 * light_center(light, Vec3::ZERO, 0.0) - point]
@@ -131,7 +130,7 @@ impl LightTargets {
         }
     }
 
-    /// The points of all lights one after the other, [`LIGHT_TARGETS`] each; zeros for a light without a size.
+    /// The points of all lights in sequence, [`LIGHT_TARGETS`] each; zeros for a light without an area.
     pub(crate) fn flat(&self) -> Vec<Vec3> {
         let padded = |points: &Vec<Vec3>| {
             (0..LIGHT_TARGETS as usize).map(|i| points.get(i).copied().unwrap_or_default()).collect()

@@ -1,11 +1,11 @@
-// Formula (1) for one object point: twin of mod.rs.
+// Formula (1) for one surface point: twin of mod.rs.
 #pragma once
 
 #include "sampling.cuh"
 #include "shading/tint.cuh"
 #include "surface.cuh"
 
-// An object point with what formula (1) needs.
+// A surface point with what formula (1) needs.
 struct Surface {
     SurfacePoint point;
     // The normal that shading uses, and the unit vector to the viewer.
@@ -13,7 +13,7 @@ struct Surface {
     const Material *material;
 };
 
-// The object point that ray number `ray` sees; `own` is room for its material.
+// The surface point that ray number `ray` sees; `own` provides memory for its material.
 DEVICE Surface surface_at(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray, Material &own) {
     const Hit hit = load_hit(hits, ray);
     const Ray seen_along = ray_at(rays, ray);
@@ -72,7 +72,7 @@ DEVICE Vec3 unshadowed(const Surface &surface, const Scene &scene, unsigned inde
 
 DEVICE Vec3 mirrored_about(Vec3 normal, Vec3 view) { return 2.0f * dot(normal, view) * normal - view; }
 
-// The direction in which a mirror at this point is seen.
+// The reflection direction of the view.
 DEVICE Vec3 mirrored(const Surface &surface) {
     const Vec3 direction = mirrored_about(surface.normal, surface.view);
     return dot(direction, surface.point.normal) > 0.0f ? direction : mirrored_about(surface.point.normal, surface.view);

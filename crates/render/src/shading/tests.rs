@@ -1,4 +1,4 @@
-//! Strengths of lights and the points that stand for a light with a size. Whole pictures are judged in `tests/render`.
+//! Strengths of lights and the points that represent an area light. Whole images are tested in `tests/render`.
 
 use std::f32::consts::{FRAC_1_PI, PI};
 

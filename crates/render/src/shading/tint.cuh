@@ -1,9 +1,9 @@
-// Textures and vertex colours, the coefficients of formula (1) at an object point: twin of tint.rs.
+// Textures and vertex colours, which give the coefficients of formula (1) at a surface point: twin of tint.rs.
 #pragma once
 
 #include "cuda/rays.cuh"
 
-// What tints come from. By value: the address of a kernel's argument would make all its loads slow.
+// The inputs of tints. By value: taking the address of a kernel's argument would make all its loads slow.
 struct TintSources {
     const Indices *indices;
     const Uv *uvs;
@@ -12,7 +12,7 @@ struct TintSources {
     const float *srgb;
 };
 
-// The two texels on either side of a place, and how far it is to the second.
+// The two texels on either side of a position, and the fraction of the way to the second.
 struct Neighbours {
     int first, second;
     float share;
@@ -24,9 +24,9 @@ DEVICE int texel_at(int index, int last, unsigned wrap) {
     return index < 0 ? 0 : index > last ? last : index;
 }
 
-// The two texels of a row or column of `size` whose middles are on either side of `place`.
+// The two texels of a row or column of `size` whose centres are on either side of `place`.
 DEVICE Neighbours neighbours(float place, unsigned size, unsigned wrap) {
-    // 1. Into the picture.
+    // 1. Into the image.
     float inside = place;
     if (wrap == Texture::REPEAT) {
         inside = place - floorf(place);
@@ -34,12 +34,12 @@ DEVICE Neighbours neighbours(float place, unsigned size, unsigned wrap) {
         const float twice = place - 2.0f * floorf(0.5f * place);
         inside = twice > 1.0f ? 2.0f - twice : twice;
     }
-    // Also where the place is infinite, or no number.
+    // Also if the position is infinite or NaN.
     inside = inside > 0.0f ? inside < 1.0f ? inside : 1.0f : 0.0f;
-    // 2. In texels, counted from the middle of the first.
+    // 2. In texels, counted from the centre of the first.
     const float middle = inside * (float)size - 0.5f;
     const int first = __float2int_rd(middle), last = (int)size - 1;
-    // 3. Beyond the border the picture goes on: with its other side, or with itself.
+    // 3. Beyond the border the image continues with its opposite side, or with itself.
     return Neighbours{texel_at(first, last, wrap), texel_at(first + 1, last, wrap), middle - (float)first};
 }
 
@@ -51,7 +51,7 @@ DEVICE Vec3 texel(const float *srgb, const Texture &texture, int column, int row
     return Vec3{__ldg(srgb + (rgba & 255)), __ldg(srgb + (rgba >> 8 & 255)), __ldg(srgb + (rgba >> 16 & 255))};
 }
 
-// The picture's colour at (u, v): (0, 0) is its left upper corner, (1, 1) its right lower one.
+// The image's colour at (u, v): (0, 0) is its upper left corner, (1, 1) its lower right one.
 DEVICE Vec3 sampled(const float *srgb, const Texture &texture, float u, float v) {
     const Neighbours x = neighbours(u, texture.size[0], texture.wrap[0]), y = neighbours(v, texture.size[1], texture.wrap[1]);
     const Vec3 upper = between(texel(srgb, texture, x.first, y.first), texel(srgb, texture, x.second, y.first), x.share);
@@ -59,7 +59,7 @@ DEVICE Vec3 sampled(const float *srgb, const Texture &texture, float u, float v)
     return between(upper, lower, y.share);
 }
 
-// A value of the vertices of the triangle at `hit`.
+// The interpolated value of the vertices of the triangle at `hit`.
 DEVICE float interpolated(const Hit &hit, float a, float b, float c) { return (1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c; }
 
 // The product of texture and vertex colour at `hit`.
@@ -79,7 +79,7 @@ DEVICE Vec3 tint_at(const TintSources &sources, const Material &material, const 
     return tint * ((1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c);
 }
 
-// Makes `own` the material with its coefficients at `hit`.
+// Sets `own` to the material with its coefficients at `hit`.
 COLD void tint_material(TintSources sources, const Material *material, Hit hit, Material *own) {
     const Vec3 tint = tint_at(sources, *material, hit);
     own->ka = material->ka * tint;
@@ -89,7 +89,7 @@ COLD void tint_material(TintSources sources, const Material *material, Hit hit, 
     own->shininess = material->shininess;
 }
 
-// The material at `hit`: that of its triangle, or `own` where that has a tint. So a material without one takes no registers for
+// The material at `hit`: that of its triangle, or `own` if it has a tint. So a material without one takes no registers for
 // coefficients.
 DEVICE const Material *material_at(const Scene &scene, const Hit &hit, Material &own) {
     const Material *material = scene.materials + __ldg(scene.triangle_materials + hit.triangle);

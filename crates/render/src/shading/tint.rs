@@ -1,11 +1,11 @@
-//! Textures and vertex colours: the coefficients of formula (1) at an object point.
+//! Textures and vertex colours: the coefficients of formula (1) at a surface point.
 //!
 //! ```text
 //! t = texel(A · uv) · colour      k_a t      k_d t      k_s + k_s' t
 //! ```
 //!
-//! Texture coordinates and colours are interpolated barycentrically. Texels are decoded from sRGB and the four nearest weighted
-//! bilinearly. Not promised: textures seen from far away are not filtered, and flicker.
+//! Texture coordinates and colours are interpolated barycentrically. Texels are decoded from sRGB and the four nearest are
+//! interpolated bilinearly. Limitation: minified textures are not filtered, and flicker.
 
 use glam::{Vec2, Vec3};
 use lightmesh_image::Transfer;
@@ -13,7 +13,7 @@ use lightmesh_scene::{Geometry, Material, Mesh, Texture, TextureUse, Wrap};
 
 use crate::accel::Hit;
 
-/// What formula (1) multiplies with, at an object point.
+/// The coefficients of formula (1) at a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Coefficients {
     pub(crate) ka: Vec3,
@@ -53,13 +53,13 @@ impl Coefficients {
     }
 }
 
-/// Whether object points of `material` may differ in colour.
+/// Whether surface points of `material` may differ in colour.
 #[inline(always)]
 pub(crate) fn is_tinted(geometry: &Geometry, material: &Material) -> bool {
     !geometry.mesh.colors.is_empty() || (material.texture.is_some() && texture_of(geometry, material).is_some())
 }
 
-/// The texture of `material`, where it has one that can be looked up.
+/// The texture of `material`, if it has one that can be looked up.
 pub(crate) fn texture_of<'s>(geometry: &'s Geometry, material: &Material) -> Option<(TextureUse, &'s Texture)> {
     let uses = material.texture.filter(|_| !geometry.mesh.uvs.is_empty())?;
     let texture = geometry.textures.get(uses.texture as usize)?;
@@ -87,7 +87,7 @@ fn color_at(mesh: &Mesh, hit: &Hit) -> Vec3 {
     (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c
 }
 
-/// The picture's colour at `place`: (0, 0) is its left upper corner, (1, 1) its right lower one.
+/// The image's colour at `place`: (0, 0) is its upper left corner, (1, 1) its lower right one.
 fn sampled(texture: &Texture, wrap: [Wrap; 2], place: Vec2) -> Vec3 {
     let (columns, x) = neighbours(place.x, texture.size[0], wrap[0]);
     let (rows, y) = neighbours(place.y, texture.size[1], wrap[1]);
@@ -107,9 +107,10 @@ fn linear(texel: [u8; 4]) -> Vec3 {
     Vec3::new(Transfer::Srgb.decode(r), Transfer::Srgb.decode(g), Transfer::Srgb.decode(b))
 }
 
-/// The two texels of a row or column of `size` whose middles are on either side of `place`, and how far it is to the second.
+/// The two texels of a row or column of `size` whose centres are on either side of `place`, and the fraction of the way to the
+/// second.
 fn neighbours(place: f32, size: u32, wrap: Wrap) -> ([u32; 2], f32) {
-    // 1. Into the picture.
+    // 1. Into the image.
     let inside = match wrap {
         Wrap::Repeat => place - place.floor(),
         Wrap::Mirror => {
@@ -118,12 +119,12 @@ fn neighbours(place: f32, size: u32, wrap: Wrap) -> ([u32; 2], f32) {
         }
         Wrap::Clamp => place,
     };
-    // Also where the place is infinite, or no number.
+    // Also if the position is infinite or NaN.
     let inside = if inside > 0.0 { if inside < 1.0 { inside } else { 1.0 } } else { 0.0 };
-    // 2. In texels, counted from the middle of the first.
+    // 2. In texels, counted from the centre of the first.
     let middle = inside * size as f32 - 0.5;
     let first = middle.floor();
-    // 3. Beyond the border the picture goes on: with its other side, or with itself. From -1 to the size.
+    // 3. Beyond the border the image continues with its opposite side, or with itself. From -1 to the size.
     let last = size as i32 - 1;
     let (first_texel, second_texel) = (first as i32, first as i32 + 1);
     let texel = |index: i32| match wrap {

@@ -1,4 +1,5 @@
-//! What all that casts shadow rays shares: where they end, whether anything hides a light, and χ of formula (3). Twin: `shadow.cuh`.
+//! What all stages that cast shadow rays share: where the rays end, whether anything hides a light, and χ of formula (3). Twin:
+//! `shadow.cuh`.
 
 #[cfg(test)]
 mod tests;
@@ -14,20 +15,20 @@ use crate::job::Sampling;
 use crate::sampling::{Pattern, light_center, light_point};
 use crate::surface::{SurfacePoint, long_segment};
 
-/// Most segments that are handed over at once: they stay in a core's cache.
+/// Maximum number of segments passed on at once: they stay in a core's cache.
 pub(crate) const SEGMENTS: usize = 4 * 1024;
 
-/// Which points of a light shadow rays go to.
+/// Which points of a light shadow rays are cast to.
 #[derive(Clone, Copy, Debug)]
 pub enum Aim {
-    /// One ray to the middle.
+    /// One ray to the centre.
     Middle,
-    /// Points spread over a light that has an extent, by the sampling of the picture.
+    /// Points distributed over a light that has an extent, with the sampling of the image.
     Extent(Sampling),
 }
 
 impl Aim {
-    /// Whether more than the middle of a light counts.
+    /// Whether more than the centre of a light counts.
     #[inline(always)]
     fn is_spread_over(&self, light: &Light) -> bool {
         match self {
@@ -39,7 +40,7 @@ impl Aim {
         }
     }
 
-    /// Shadow rays from a point to a light.
+    /// Number of shadow rays from a point to a light.
     pub(crate) fn samples(&self, light: &Light) -> u32 {
         match self {
             Aim::Extent(sampling) if self.is_spread_over(light) => sampling.samples,
@@ -48,18 +49,18 @@ impl Aim {
     }
 }
 
-/// The points of one light that shadow rays from one point go to.
+/// The points of one light that shadow rays from one point are cast to.
 pub(crate) struct Targets<'a> {
     light: &'a Light,
     from: Vec3,
-    /// How far away a directional light stands.
+    /// The distance of a directional light.
     reach: f32,
-    /// `None`: its middle.
+    /// `None`: its centre.
     pattern: Option<Pattern>,
 }
 
 impl<'a> Targets<'a> {
-    /// Those of light number `index` from `from`, whose random pattern has the number `key`.
+    /// Those of light number `index` from `from`; `key` selects the random pattern.
     #[inline(always)]
     pub(crate) fn new(aim: &Aim, (index, light): (usize, &'a Light), from: Vec3, reach: f32, key: u64) -> Targets<'a> {
         let pattern = match aim {
@@ -69,7 +70,7 @@ impl<'a> Targets<'a> {
         Targets { light, from, reach, pattern }
     }
 
-    /// The point that sample number `sample` goes to.
+    /// The target of sample number `sample`.
     #[inline(always)]
     pub(crate) fn get(&self, sample: u32) -> Vec3 {
         match &self.pattern {
@@ -79,7 +80,7 @@ impl<'a> Targets<'a> {
     }
 }
 
-/// Whether each of some segments is blocked. Whatever can hide a light decides here.
+/// Whether each of some segments is blocked. Everything that can hide a light is decided here.
 pub(crate) fn hidden(wave: &HostWave, segments: &[Ray]) -> Vec<bool> {
     let mut hidden = vec![false; segments.len()];
     for (segments, hidden) in segments.chunks(SEGMENTS).zip(hidden.chunks_mut(SEGMENTS)) {
@@ -99,10 +100,10 @@ pub(crate) fn shadow_rays<'a>(
     in_front.map(|target| long_segment(point.origin, target))
 }
 
-/// χ of formula (3) for a light: 1 where it is on the outer side of the surface at `point`, 0 where it is behind.
+/// χ of formula (3) for a light: 1 if it is in front of the surface at `point`, 0 if it is behind.
 ///
-/// A light with a size may stand across the horizon. Then χ is the share of it above, and bounds the visibility: light points
-/// higher up see more of the light than the surface can.
+/// An area light may straddle the horizon. Then χ is its share above the horizon, and bounds the visibility: light points higher up
+/// see more of the light than the surface can.
 #[inline(always)]
 pub(crate) fn above_horizon(point: &SurfacePoint, light: &Light, reach: f32) -> f32 {
     let height = point.normal.dot(light_center(light, point.origin, reach) - point.origin);
@@ -117,7 +118,7 @@ pub(crate) fn above_horizon(point: &SurfacePoint, light: &Light, reach: f32) -> 
     above as f32 / HORIZON_SAMPLES as f32
 }
 
-/// The farthest that any point of `light` lies from its middle; 0 for all that have no size.
+/// The largest distance of any point of `light` from its centre; 0 for lights without an area.
 #[inline(always)]
 pub(crate) fn size(light: &Light) -> f32 {
     match light.kind {

@@ -1,4 +1,5 @@
-// What all that casts shadow rays shares: where they end, whether anything hides a light, and χ of formula (3). Twin of mod.rs.
+// What all stages that cast shadow rays share: where the rays end, whether anything hides a light, and χ of formula (3). Twin of
+// mod.rs.
 #pragma once
 
 #include "accel/walk.cuh"
@@ -6,7 +7,7 @@
 #include "sampling.cuh"
 #include "surface.cuh"
 
-// χ of formula (3) for a light that stands across the horizon: the share of it above.
+// χ of formula (3) for a light that straddles the horizon: its share above the horizon.
 COLD float share_above_horizon(SurfacePoint point, const Light *light, float reach) {
     const Pattern pattern = pattern_of(0, 0, 0);
     unsigned above = 0;
@@ -17,7 +18,7 @@ COLD float share_above_horizon(SurfacePoint point, const Light *light, float rea
     return (float)above / (float)HORIZON_SAMPLES;
 }
 
-// χ of formula (3) for a light: 1 where it is on the outer side of the surface at `point`, 0 where it is behind.
+// χ of formula (3) for a light: 1 if it is in front of the surface at `point`, 0 if it is behind.
 DEVICE float above_horizon(const SurfacePoint &point, const Light &light, float reach) {
     const float height = dot(point.normal, light_center(light, point.origin, reach) - point.origin);
     if (fabsf(height) >= light.size)
@@ -25,48 +26,48 @@ DEVICE float above_horizon(const SurfacePoint &point, const Light &light, float 
     return share_above_horizon(point, &light, reach);
 }
 
-// Whether more than the middle of a light counts.
+// Whether more than the centre of a light counts.
 DEVICE bool is_spread_over(const Sampling &sampling, const Light &light) {
     const bool spread = sampling.spread && light.kind == Light::POINT && light.radius > 0.0f && sampling.samples > 1;
     return has_size(light) || spread;
 }
 
-// Shadow rays from a point to a light.
+// Number of shadow rays from a point to a light.
 DEVICE unsigned sample_count(const Sampling &sampling, const Light &light) {
     return is_spread_over(sampling, light) ? sampling.samples : 1;
 }
 
-// The points of one light that shadow rays from one point go to.
+// The points of one light that shadow rays from one point are cast to.
 struct Targets {
     const Light &light;
     Vec3 from;
-    // How far away a directional light stands.
+    // The distance of a directional light.
     float reach;
-    // Whether they follow the pattern; else its middle.
+    // Whether they follow the pattern; otherwise the centre is used.
     bool spread;
     Pattern pattern;
 };
 
-// Those of light number `index` from `from`, whose random pattern has the number `key`.
+// Those of light number `index` from `from`; `key` selects the random pattern.
 DEVICE Targets targets_of(const Scene &scene, const Sampling &sampling, unsigned index, Vec3 from, unsigned long long key) {
     const Light &light = scene.lights[index];
     return Targets{light, from, scene_reach(scene, from), is_spread_over(sampling, light), pattern_of(sampling.seed, key, index)};
 }
 
-// The point that sample number `sample` goes to.
+// The target of sample number `sample`.
 DEVICE Vec3 target(const Targets &targets, unsigned sample) {
     return targets.spread ? light_point(targets.light, targets.from, targets.reach, pattern_point(targets.pattern, sample))
                           : light_center(targets.light, targets.from, targets.reach);
 }
 
-// Whether anything hides `target` from `from`. Whatever can hide a light decides here.
+// Whether anything hides `target` from `from`. Everything that can hide a light is decided here.
 template <class Structure>
 DEVICE bool hidden(const Structure &structure, const Tally &tally, Vec3 from, Vec3 target) {
     return occluded(structure, tally, long_segment(from, target));
 }
 
-// Shadow rays from a surface point that arrive, of the samples from `first` to `end`. Adds those that are cast: a sample behind the
-// surface is dark without a ray.
+// The number of shadow rays from a surface point that reach the light, of the samples from `first` to `end`. Counts those that are
+// cast: a sample behind the surface is dark without a ray.
 template <class Structure>
 DEVICE unsigned rays_that_arrive(const Structure &structure, const Tally &tally, const SurfacePoint &point, const Targets &targets,
                                  unsigned first, unsigned end, unsigned &cast) {

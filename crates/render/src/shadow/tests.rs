@@ -1,4 +1,4 @@
-//! χ of lights with and without a size. Whole pictures are judged in `tests/render`.
+//! χ of area lights and of lights without an area. Whole images are tested in `tests/render`.
 
 use glam::Vec3;
 use lightmesh_scene::Light;

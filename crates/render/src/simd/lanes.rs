@@ -3,10 +3,10 @@
 use fearless_simd::{f32x8, prelude::*};
 use glam::Vec3;
 
-/// Lanes of a vector; four vectors make a word of a mask.
+/// Lanes of a vector; four vectors make one word of a mask.
 pub(crate) const LANES: usize = 8;
 
-// No `map` over arrays and no iterators in vector code: where they are not inlined, vectors travel through memory.
+// No `map` over arrays and no iterators in vector code: unless they are inlined, vectors are passed through memory.
 
 /// Three vectors, one for each axis.
 pub(crate) type Axes<S> = [f32x8<S>; 3];

@@ -1,8 +1,8 @@
-//! SIMD chosen at run time, in two versions: AVX2 where the processor has it, and the target's baseline.
+//! SIMD chosen at run time, in two versions: AVX2 if the CPU has it, and the target's baseline.
 //!
 //! `fearless_simd::dispatch!` compiles every kernel for five levels of x86. Kernels here work on eight lanes: levels between
-//! these two are rare, AVX-512 hardly helps, and each costs a minute of building. All versions give the same bits, because
-//! nothing is fused.
+//! these two are rare, AVX-512 hardly helps, and each costs a minute of compile time. All versions give the same bits, because
+//! no operations are fused.
 
 mod lanes;
 

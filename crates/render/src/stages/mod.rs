@@ -1,4 +1,4 @@
-//! The stages of a picture: one folder each, with its contract in `mod.rs` and a file for each kind of device beside it:
+//! The stages of an image: one folder each, with its contract in `mod.rs` and a file for each kind of device next to it:
 //! `cpu.rs`, and `cuda.rs` with the kernels in `kernel.cu`. All have the same numbered steps.
 
 pub(crate) mod cells;

@@ -1,4 +1,4 @@
-//! The method against closed forms and against the area reference, as its step and radius shrink.
+//! The method compared with closed forms and with the area reference, as its step and radius shrink.
 
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Mode, Settings};
@@ -7,10 +7,10 @@ use lightmesh_testkit::{Picture, half_plane, pile, render, rms_difference};
 
 use crate::{light_mesh, mode};
 
-/// No pixel's border of light meets a border of strata: 1/30 against powers of two.
+/// No pixel's light boundary coincides with a boundary of strata: 1/30 against powers of two.
 const STRIP: [u32; 2] = [120, 30];
 
-/// V of the half-plane scene at each pixel, rendered and by its closed form.
+/// V of the half-plane scene at each pixel, rendered and in closed form.
 fn half_plane_shares(settings: &Settings) -> (Vec<f32>, Vec<f32>) {
     let frame = render(&half_plane(), settings);
     let picture = Picture::new(&frame);
@@ -20,7 +20,7 @@ fn half_plane_shares(settings: &Settings) -> (Vec<f32>, Vec<f32>) {
 
 #[test]
 fn area_mode_meets_the_closed_form_of_a_half_plane() {
-    // The edge parts the light along one axis. 2^k samples put one into each of 2^k strata, so that the count errs by less
+    // The edge divides the light along one axis. 2^k samples put one into each of 2^k strata, so that the count errs by less
     // than one; 225 = 128 + 64 + 32 + 1 are four such sets. One thousandth of a sample is for the rounding of positions.
     for (samples, sets) in [(256, 1.0), (225, 4.0), (64, 1.0)] {
         let settings = mode(Mode::Area, STRIP).with_samples(samples);
@@ -35,7 +35,7 @@ fn area_mode_meets_the_closed_form_of_a_half_plane() {
 
 #[test]
 fn the_method_tends_to_the_closed_form_of_a_half_plane() {
-    // 16 samples a light point: their noise, 1/16 of a stratum averaged over some twenty points, stays below the bound.
+    // 16 samples per light point: their noise, 1/16 of a stratum averaged over some twenty points, stays below the bound.
     let error = |step| {
         let settings = light_mesh(STRIP, step, 2.1).with_samples(16);
         let (shares, expected) = half_plane_shares(&settings);

@@ -1,4 +1,4 @@
-//! Input without much sense: no panic, no NaN, and what can be said about the picture holds.
+//! Degenerate input: no panic, no NaN, and whatever can be stated about the image holds.
 
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Device, Frame, Mode, RenderError, Renderer, Settings, Step};
@@ -7,7 +7,7 @@ use lightmesh_testkit::{MODES, Picture, Random, SceneDraft, pile, render};
 
 const SIZE: [u32; 2] = [24, 18];
 
-/// Renders in all modes, with fixed and automatic steps, and lets `judge` look at each picture.
+/// Renders in all modes, with fixed and automatic steps, and passes each image to `judge`.
 fn in_all_modes(scene: &Scene, size: [u32; 2], judge: impl Fn(&Frame)) {
     let extent = scene.geometry.mesh.bounds().diagonal();
     let fixed = if extent > 0.0 && extent.is_finite() { extent / 40.0 } else { 1.0 };
@@ -82,7 +82,7 @@ fn triangles_without_area_do_no_harm() {
 
 #[test]
 fn a_needle_met_at_its_corner_has_a_normal() {
-    // In exact arithmetic these triangles have an area; that of the third is below what a product of `f32` can show.
+    // In exact arithmetic these triangles have an area; that of the third is below what a product of `f32` can represent.
     let needles = [
         [[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [3.0, 0.3, 0.0]],
         [[0.0, 0.0, 0.0], [1.0, 0.7, 0.0], [3.0, 2.1, 0.0]],
@@ -153,7 +153,7 @@ fn a_light_may_be_a_light_point() {
     in_all_modes(&scene, SIZE, |_| ());
     let frame = render(&scene, &settings);
     let picture = Picture::new(&frame);
-    // Nothing shadows the floor, the light point that coincides with the light least of all.
+    // Nothing shadows the floor, least of all the light point that coincides with the light.
     assert!(picture.visibilities(0).iter().all(|&share| share == 1.0));
 }
 
@@ -175,7 +175,7 @@ fn scenes_may_be_tiny_or_huge() {
     };
     let usual = plain(1.0);
     for scale in [1e-6, 1e6] {
-        // Only light points within rounding of a border may differ.
+        // Only light points within rounding of a boundary may differ.
         let difference = lightmesh_testkit::mean_difference(&plain(scale), &usual);
         assert!(difference < 1e-3, "scale {scale}: {difference}");
     }

@@ -1,4 +1,4 @@
-//! The same picture, whatever the threads and bands; another one for another seed.
+//! The same image, whatever the threads and bands; a different one for another seed.
 
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Device, Frame, Mode, RenderError, Renderer, Settings};

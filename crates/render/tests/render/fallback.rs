@@ -1,4 +1,4 @@
-//! Object points that find no light point take their own shadow rays.
+//! Surface points without a light point cast their own shadow rays.
 
 use glam::{DVec3, Vec3};
 use lightmesh_render::Mode;
@@ -9,7 +9,7 @@ use crate::light_mesh;
 
 const LIGHT: LightKind = LightKind::Point { position: Vec3::new(2.0, 4.0, 1.0), spread: 0.0 };
 
-/// The scene's pictures by the method with hardly any light points, and by ray tracing.
+/// The scene's images by the method with hardly any light points, and by ray tracing.
 fn with_few_light_points(scene: &Scene, radius: f32) {
     let settings = light_mesh([48, 48], 1.3, radius);
     let sparse = render(scene, &settings);

@@ -1,4 +1,4 @@
-//! Counts near those of the thesis and of formula (6).
+//! Counts close to those of the thesis and of formula (6).
 
 use lightmesh_render::{Frame, Settings};
 use lightmesh_scene::Scene;
@@ -14,7 +14,7 @@ fn built_in(name: &str) -> Scene {
 
 #[test]
 fn half_balls_of_the_built_in_scenes_hold_62_points() {
-    // Half of the ball's 4πR³/3 = 124.8 points. Between surfaces and lattice planes there is some play.
+    // Half of the ball's 4πR³/3 = 124.8 points. Surfaces and lattice planes are not aligned, which leaves some tolerance.
     for (name, step) in [("gazebo", 2.0), ("childpark", 1.0), ("garden", 0.1)] {
         let Frame { stats, .. } = render(&built_in(name), &light_mesh(SIZE, step, 3.1));
         let counts = &stats.counts;
@@ -49,7 +49,7 @@ fn an_automatic_step_needs_fewer_light_points_than_pixels() {
         let frame = render(&built_in(name), &Settings::default().with_size(SIZE));
         let (counts, settings) = (&frame.stats.counts, &frame.stats.settings);
         assert!(settings.step_auto && settings.step.is_some_and(|step| step > 0.0));
-        // A quarter is what it aims at; it knows the surfaces by samples only.
+        // The target is a quarter; the surfaces are only known by samples.
         assert!(counts.light_points < counts.pixels / 2, "{name}: {} light points", counts.light_points);
     }
 }

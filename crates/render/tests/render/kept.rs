@@ -1,4 +1,4 @@
-//! A mesh cache: the same pictures with it as without, for fewer long tests.
+//! A mesh cache: the same images as without it, with fewer long tests.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -27,7 +27,7 @@ fn small(samples: u32) -> Settings {
     light_mesh([40, 40], 0.2, 2.1).with_samples(samples).with_bounces(1).with_layers(true)
 }
 
-/// The scene's first camera, a part of the way to its right.
+/// The scene's first camera, moved to its right.
 fn aside(scene: &PreparedScene, way: f32) -> Camera {
     let camera = scene.scene.cameras[0].clone();
     let (right, ..) = camera.basis();
@@ -35,7 +35,7 @@ fn aside(scene: &PreparedScene, way: f32) -> Camera {
     camera.with_position(position)
 }
 
-/// A picture with the cache, which is the same in every bit without. Returns the long tests that were made, and those that were saved.
+/// An image with the cache, which is bit-identical to one without. Returns the number of long tests performed and saved.
 fn same(cache: &mut MeshCache, scene: &PreparedScene, settings: &Settings) -> (u64, u64) {
     let with = renderer().render_with(cache, scene, settings, &Unobserved).unwrap();
     let without = renderer().render_prepared(scene, settings, &Unobserved).unwrap();
@@ -134,7 +134,7 @@ fn two_geometries_take_turns() {
     assert!(cache.len() < known, "geometry that is gone is forgotten");
 }
 
-/// Asks to stop at a question.
+/// Requests cancellation at a given poll.
 struct Impatient {
     left: AtomicU64,
 }

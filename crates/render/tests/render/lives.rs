@@ -1,4 +1,4 @@
-//! What outlives a picture: geometry is prepared once, whatever lights, cameras and settings change.
+//! What outlives an image: geometry is prepared once, whatever lights, cameras and settings change.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ fn renderer() -> Renderer {
     Renderer::with_threads(Device::Cpu, Some(2)).unwrap()
 }
 
-/// The scene under another lamp.
+/// The scene with another lamp.
 fn moved(scene: &Scene, offset: Vec3) -> Scene {
     let mut moved = scene.clone();
     let position = scene.lights[0].position().unwrap_or_default() + offset;

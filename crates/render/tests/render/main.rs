@@ -1,4 +1,4 @@
-//! Whole pictures with known answers.
+//! Whole images with known answers.
 
 mod convergence;
 mod degenerate;

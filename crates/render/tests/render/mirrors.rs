@@ -9,7 +9,7 @@ fn mirror(ks: f32, emission: f32) -> Material {
     Material::matt(Vec3::ZERO).with_ks([ks; 3]).with_emission([emission; 3])
 }
 
-/// What the camera sees along its axis, in all modes alike.
+/// What the camera sees along its axis, the same in all modes.
 fn seen(scene: &Scene, bounces: u32) -> Vec3 {
     let colors = MODES.map(|mode| {
         let frame = render(scene, &Settings::default().with_mode(mode).with_size([1, 1]).with_bounces(bounces));
@@ -19,7 +19,7 @@ fn seen(scene: &Scene, bounces: u32) -> Vec3 {
     colors[0]
 }
 
-/// A mirror floor; the mirrored axis of the camera meets a wall that glows red.
+/// A mirror floor; the reflected axis of the camera meets a wall that glows red.
 fn mirror_floor() -> Scene {
     SceneDraft::new()
         .painted(mirror(0.75, 0.0))
@@ -36,7 +36,7 @@ fn a_mirror_shows_what_it_faces() {
     let scene = mirror_floor();
     assert_eq!(seen(&scene, 0), Vec3::ZERO);
     assert_eq!(seen(&scene, 1), Vec3::new(0.375, 0.0, 0.0));
-    // What it shows does not mirror: a further bounce changes nothing.
+    // The visible surface does not reflect: a further bounce changes nothing.
     assert_eq!(seen(&scene, 2), seen(&scene, 1));
 }
 

@@ -1,4 +1,4 @@
-//! Where a scene lies in the world does not matter.
+//! The position of a scene in the world does not matter.
 
 use glam::{DVec3, Vec3};
 use lightmesh_render::Mode;
@@ -14,7 +14,7 @@ const LIGHTS: [LightKind; 2] = [
 
 const STEP: f32 = 0.15;
 
-/// What a picture may differ by. Light points that lie elsewhere in the world look at other samples of lights with a size.
+/// Tolerance between images. Light points at other positions in the world sample area lights differently.
 fn most(mode: Mode, light: usize) -> f64 {
     if mode == Mode::LightMesh && light == 1 { 3e-3 } else { 1e-3 }
 }
@@ -28,9 +28,9 @@ fn a_moved_scene_has_the_same_visibility() {
         let settings = settings.with_samples(16);
         let at_home = render(&pile(DVec3::ZERO, &LIGHTS), &settings);
         let at_home = Picture::new(&at_home);
-        // 30 is too near for a frame of its own, the others get one; the scene is 10 wide.
+        // 30 is too near for a separate frame, the others get one; the scene is 10 wide.
         for distance in [30.0, 1e3, 1e5, 1e6] {
-            // Whole steps, so that light points come along.
+            // Whole steps, so that light points move along.
             let steps = (distance * DVec3::new(1.0, -0.7, 0.31) / f64::from(STEP)).round();
             let offset = steps * f64::from(STEP);
             let moved = render(&pile(offset, &LIGHTS), &settings);

@@ -1,4 +1,4 @@
-//! Progress: every stage ends at its total, and so does the whole picture.
+//! Progress: every stage ends at its total, and so does the whole image.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ fn settings(mode: Mode) -> Settings {
     Settings::default().with_size([60, 44]).with_mode(mode).with_bounces(1).with_samples(3).with_step(Step::Fixed(0.3))
 }
 
-/// The stages of a picture; each has ended at its total.
+/// The stages of an image; each has ended at its total.
 fn stages(scene: &Scene, settings: &Settings) -> BTreeSet<&'static str> {
     let prepared = PreparedScene::new(scene, &Acceleration::Bvh, &Unobserved).unwrap();
     let watch = Watch::default();

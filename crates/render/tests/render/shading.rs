@@ -1,4 +1,4 @@
-//! Formula (1) with known answers: one pixel, the camera's axis.
+//! Formula (1) with known answers: one pixel, on the camera's axis.
 
 use std::f32::consts::{FRAC_1_PI, PI};
 
@@ -7,7 +7,7 @@ use lightmesh_render::{Frame, Mode, Settings};
 use lightmesh_scene::{Falloff, LightKind, Material};
 use lightmesh_testkit::{MODES, Picture, SceneDraft, render};
 
-/// A dozen operations in `f32`, and positions that are right to 1e-6.
+/// A dozen operations in `f32`, and positions accurate to 1e-6.
 const ROUNDING: f32 = 2e-6;
 
 fn matt(kd: f32) -> Material {
@@ -60,11 +60,11 @@ fn a_light_behind_the_surface_gives_nothing() {
 #[test]
 fn the_specular_term_is_the_phong_lobe() {
     let shiny = matt(0.0).with_ks([0.25; 3]).with_shininess(10.0);
-    // The mirror direction of the light at 45 degrees meets the viewer at 45 degrees.
+    // The reflection direction of the light at 45 degrees meets the viewer at 45 degrees.
     assert_near(grey(|| floor(shiny.clone()).point_light([3.0, 3.0, 0.0])), 0.25);
-    // From straight above, the mirror direction is 45 degrees off the viewer.
+    // From straight above, the reflection direction is 45 degrees off the viewer.
     assert_near(grey(|| floor(shiny.clone()).point_light([0.0, 3.0, 0.0])), 0.25 * 0.5f32.sqrt().powi(10));
-    // From the viewer's own side the lobe is turned away at a right angle.
+    // From the viewer's own side the lobe is turned away by a right angle.
     assert_near(grey(|| floor(shiny.clone()).point_light([-3.0, 3.0, 0.0])), 0.0);
 }
 
@@ -81,7 +81,7 @@ fn falloff_is_photometric_or_none() {
 
 #[test]
 fn a_spot_fades_between_its_two_angles() {
-    // The spot hangs over the pixel and is turned by `angle`.
+    // The spot is above the pixel and rotated by `angle`.
     let lit = |angle: f32| {
         let direction = Vec3::new(angle.sin(), -angle.cos(), 0.0);
         let position = Vec3::new(0.0, 4.0, 0.0);
@@ -153,7 +153,7 @@ fn smooth_normals_shade_and_flat_ones_decide_sides() {
 
 #[test]
 fn an_unshadowed_area_light_is_as_bright_in_every_mode() {
-    // Modes differ by visibility alone: the same points of the light stand for all of it.
+    // Modes differ only in visibility: the same points of the light represent all of it.
     let ball = LightKind::Sphere { position: Vec3::new(0.0, 3.0, 0.0), radius: 1.0 };
     for falloff in [Falloff::None, Falloff::InverseSquare] {
         let draft = SceneDraft::new().floor(0.0, 3.0).light_of(ball.clone(), 1.0, falloff);

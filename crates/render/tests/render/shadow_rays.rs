@@ -1,4 +1,4 @@
-//! Shadow rays from object points where geometry says what they see.
+//! Shadow rays from surface points whose visibility follows from the geometry.
 
 use glam::{DVec3, Vec3};
 use lightmesh_render::Mode;
@@ -11,7 +11,7 @@ const SIZE: [u32; 2] = [48, 48];
 
 #[test]
 fn a_small_area_light_casts_hard_shadows() {
-    // A ball of 1e-4 differs from its middle only where its penumbra, some 1e-4 wide, meets a pixel's centre.
+    // A ball of 1e-4 differs from its centre only where its penumbra, some 1e-4 wide, meets a pixel's centre.
     let position = Vec3::new(2.0, 4.0, 1.0);
     let hard =
         render(&pile(DVec3::ZERO, &[LightKind::Point { position, spread: 0.0 }]), &settings(Mode::RayTrace, SIZE));

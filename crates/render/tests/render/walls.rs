@@ -1,4 +1,4 @@
-//! Where all or no light comes through, visibility is exactly 1 or 0.
+//! Where all or none of the light gets through, visibility is exactly 1 or 0.
 
 use glam::Vec3;
 use lightmesh_render::{Mode, Settings};
@@ -9,7 +9,7 @@ use crate::{light_mesh, mode};
 
 const POINT: LightKind = LightKind::Point { position: Vec3::new(-2.0, 3.0, 0.7), spread: 0.0 };
 
-/// Rendered with these settings, every pixel shows geometry that faces the light, and V is `expected` to the last bit.
+/// Renders with these settings: every pixel shows geometry that faces the light, and V is `expected` to the last bit.
 fn assert_all(scene: &Scene, settings: &Settings, expected: f32) {
     each_device(|renderer| {
         let frame = renderer.render(scene, &settings.clone().with_layers(true)).unwrap();
@@ -25,7 +25,7 @@ fn assert_all(scene: &Scene, settings: &Settings, expected: f32) {
     });
 }
 
-/// A box around the camera, with the light outside. Its six sheets stick into each other.
+/// A box around the camera, with the light outside. Its six sheets intersect each other.
 fn dark_room(light: LightKind) -> Scene {
     SceneDraft::new()
         .quad([[-1.2, -1.0, -1.2], [-1.2, -1.0, 1.2], [1.2, -1.0, 1.2], [1.2, -1.0, -1.2]])
@@ -39,7 +39,7 @@ fn dark_room(light: LightKind) -> Scene {
         .finish("dark room")
 }
 
-/// The same with walls that share their corners, as models have them.
+/// The same with walls that share their corners, as in models.
 fn dark_box(light: LightKind) -> Scene {
     SceneDraft::new()
         .cuboid([-1.0; 3], [1.0; 3])
@@ -111,7 +111,8 @@ fn a_thin_wall_leaks_nothing() {
 #[test]
 fn the_foot_of_a_thin_wall_leaks_nothing() {
     for light in [POINT, BALL_LIGHT] {
-        // Down from just inside: a strip of floor 0.04 wide along the wall's foot, pixels 0.0005 wide; then 1e-6 wide ones.
+        // Down from just inside: a strip of floor 0.04 wide along the base of the wall, with pixels 0.0005 wide; then 1e-6 wide
+        // ones.
         for (middle, height) in [(0.04, 0.04), (0.020_03, 0.000_1)] {
             let scene = thin_wall(0.02, light.clone());
             let scene = scene.orthographic([middle, 1.0, 0.3], [middle, 0.0, 0.3], height).finish("foot");
@@ -134,7 +135,7 @@ fn the_yard_of_a_thin_wall_is_lit() {
 
 #[test]
 fn the_foot_of_a_single_sheet_leaks_nothing_beyond_a_hundred_thousandth_of_a_step() {
-    // Nearer than that a sheet counts as edge-on and hides nothing (`LightMesh::edge_on`).
+    // A sheet closer than that counts as edge-on and hides nothing (`LightMesh::edge_on`).
     let light = LightKind::Point { position: Vec3::new(3.0, 2.0, 0.3), spread: 0.0 };
     for step in [0.1, 0.4] {
         let near = 1.0 - 3e-5 * f64::from(step);

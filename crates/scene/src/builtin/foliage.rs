@@ -1,4 +1,4 @@
-//! Leaves, blades of grass, and what is made of many of them.
+//! Leaves, blades of grass, and objects made of many of them.
 
 use glam::{Vec2, Vec3};
 
@@ -9,9 +9,9 @@ use super::parts::{Paint, Parts};
 pub(super) struct Leaves<'a> {
     /// From stalk to tip.
     pub(super) length: f32,
-    /// Across the middle.
+    /// Width at the middle.
     pub(super) width: f32,
-    /// Every leaf takes one of these.
+    /// Each leaf has one of these materials.
     pub(super) paints: &'a [Paint],
 }
 

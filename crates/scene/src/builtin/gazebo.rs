@@ -26,10 +26,10 @@ const SIDES: u32 = 6;
 /// Height of the floor above the lawn.
 const FLOOR: f32 = 1.8;
 
-/// Distance of the posts from the middle.
+/// Distance of the posts from the centre.
 const POSTS: f32 = 7.2;
 
-/// The scene *Gazebo*: 300 triangles, 3 lights, 30 × 20 × 40 units. The thesis steps its light mesh by h = 2.
+/// The scene *Gazebo*: 300 triangles, 3 lights, 30 × 20 × 40 units. The thesis uses the light-mesh step h = 2.
 pub fn gazebo(options: &BuiltinOptions) -> Scene {
     let mut palette = Palette::default();
     let paints = paints(&mut palette);
@@ -73,7 +73,7 @@ fn paints(palette: &mut Palette) -> Paints {
     }
 }
 
-/// Lawn, path, hedges and two shrubs beside the entrance.
+/// Lawn, path, hedges and two shrubs next to the entrance.
 fn grounds(parts: &mut Parts, paints: &Paints) {
     let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
     parts.polygon(&[corner(-15.0, 20.0), corner(15.0, 20.0), corner(15.0, -20.0), corner(-15.0, -20.0)], paints.lawn);
@@ -113,7 +113,7 @@ fn hedge(parts: &mut Parts, paint: Paint) {
     }
 }
 
-/// The pavilion about its own middle, the entrance towards +X.
+/// The pavilion around its own centre, with the entrance towards +Z.
 fn pavilion(parts: &mut Parts, paints: &Paints) {
     let prism = |radius: f32, low: f32, high: f32| [Vec2::new(radius, low), Vec2::new(radius, high)];
     parts.lathe(&prism(10.0, 0.0, 0.9), SIDES, false, paints.stone);
@@ -130,7 +130,7 @@ fn pavilion(parts: &mut Parts, paints: &Paints) {
     roof(parts, paints);
 }
 
-/// Corner `side` at `radius`; the entrance lies between the last corner and the first.
+/// Corner `side` at `radius`; the entrance is between the last corner and the first.
 fn corner(side: u32, radius: f32) -> Vec3 {
     let circle = around((side as f32 + 0.5) / SIDES as f32) * radius;
     Vec3::new(circle.x, 0.0, circle.y)

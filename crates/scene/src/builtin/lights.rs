@@ -1,4 +1,4 @@
-//! The lights of a built-in scene for any number asked for.
+//! The lights of a built-in scene, for any requested number.
 
 use glam::Vec3;
 
@@ -8,7 +8,7 @@ use crate::Light;
 /// A light as its scene designs it: the first is the key light, the others fill.
 pub(super) struct Lamp {
     pub(super) position: Vec3,
-    /// Share of the sum of all lamps' intensity.
+    /// Share of the total intensity of all lamps.
     pub(super) share: f32,
     /// Colour; 1 for the brightest channel.
     pub(super) tint: Vec3,
@@ -17,11 +17,11 @@ pub(super) struct Lamp {
 /// The golden angle in turns: directions at its multiples never cluster.
 const GOLDEN_TURN: f32 = 0.381_966;
 
-/// Share of the sum that a light beyond the designed ones takes, before all shares are scaled to 1.
+/// Share of the total for a light beyond the designed ones, before all shares are scaled to 1.
 const FURTHER_SHARE: f32 = 0.2;
 
-/// The first `count` of `lamps` as point lights; where there are fewer, further ones stand on a circle through the key light
-/// about the vertical axis through `center`. Intensities always sum to `total`.
+/// The first `count` of `lamps` as point lights; if there are fewer, further ones are placed on a circle through the key light
+/// around the vertical axis through `center`. Intensities always sum to `total`.
 pub(super) fn place(lamps: &[Lamp], center: Vec3, total: f32, count: usize, spread: f32) -> Vec<Light> {
     let key = &lamps[0];
     let arm = key.position - center;

@@ -1,11 +1,11 @@
-//! Arithmetic that gives the same bits on every machine: a generator of random numbers, angles and colours.
+//! Arithmetic that gives the same bits on every machine: a random number generator, angles and colours.
 //!
-//! Only IEEE 754 basic operations and square roots are used, because the library functions of platforms (`sin`, `powf`)
-//! differ in the last bit and a generated scene must not.
+//! Only IEEE 754 basic operations and square roots are used, because the library functions of platforms (`sin`, `powf`) differ
+//! in the last bits, and a generated scene must not.
 
 use glam::{Vec2, Vec3};
 
-/// SplitMix64 (Steele, Lea and Flood 2014): small, fast, good enough to strew leaves.
+/// SplitMix64 (Steele, Lea and Flood 2014): small, fast, good enough to scatter leaves.
 pub(super) struct Random(u64);
 
 impl Random {
@@ -66,7 +66,7 @@ pub(super) fn around(turns: f32) -> Vec2 {
     Vec2::new(cos as f32, sin as f32)
 }
 
-/// Linear reflectance of an sRGB colour written 0xRRGGBB, by a cubic that stays within 0.002 of the standard's curve.
+/// Linear reflectance of an sRGB colour written as 0xRRGGBB, by a cubic that stays within 0.002 of the standard's curve.
 pub(super) fn srgb(hex: u32) -> Vec3 {
     let channel = |shift: u32| {
         let value = ((hex >> shift) & 0xff) as f32 / 255.0;
@@ -75,7 +75,7 @@ pub(super) fn srgb(hex: u32) -> Vec3 {
     Vec3::new(channel(16), channel(8), channel(0))
 }
 
-/// Smooth step: 0 up to `low`, 1 from `high` on.
+/// Smooth step: 0 up to `low`, 1 from `high`.
 pub(super) fn ease(low: f32, high: f32, value: f32) -> f32 {
     let t = ((value - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)

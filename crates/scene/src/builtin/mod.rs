@@ -6,12 +6,12 @@
 //! | `childpark` | 27 000 | 2 | 160 × 120 × 140 | 1 |
 //! | `garden` | 234 000 | 1 | 20 × 6 × 28 | 0.1 |
 //!
-//! Triangle counts hold within 2 %, sizes within 10 %. Y is up, lights have no falloff, and every scene has one camera whose
-//! square picture is filled by geometry (in Childpark all but a few leaf gaps). The thesis prints no models: ours share its counts and sizes,
-//! not its shapes. Scenes are the same to the last bit on every machine.
+//! Triangle counts hold within 2 %, sizes within 10 %. Y is up, lights have no falloff, and every scene has one camera whose square image
+//! is filled by geometry (in Childpark all but a few gaps between leaves). The thesis publishes no models: ours have its counts and sizes,
+//! but not its shapes. Scenes are bit-identical on every machine.
 //!
-//! [`LightMeshDefaults::step`](crate::LightMeshDefaults) stays empty so that the step follows the pixels; give the thesis' step to
-//! repeat its experiments.
+//! [`LightMeshDefaults::step`](crate::LightMeshDefaults) stays empty so that the step follows the pixels; use the thesis's step to repeat
+//! its experiments.
 
 mod childpark;
 mod foliage;
@@ -41,12 +41,11 @@ type Generator = fn(&BuiltinOptions) -> Scene;
 
 const SCENES: [(&str, Generator); 3] = [("gazebo", gazebo), ("childpark", childpark), ("garden", garden)];
 
-/// Generates the scene that `query` names: `NAME` or `NAME?lights=N&spread=S`, what follows `builtin:`.
+/// Generates the scene specified by `query`: `NAME` or `NAME?lights=N&spread=S`, the text after `builtin:`.
 ///
 /// # Errors
 ///
-/// [`LoadError::UnknownBuiltin`] for a name that is not known, [`LoadError::BuiltinParameter`] for an option or a value that
-/// is not.
+/// [`LoadError::UnknownBuiltin`] for an unknown name, [`LoadError::BuiltinParameter`] for an unknown option or an invalid value.
 pub(crate) fn open(query: &str) -> Result<Scene, LoadError> {
     let (name, options) = query.split_once('?').unwrap_or((query, ""));
     let generate = SCENES.iter().find(|(known, _)| *known == name).map(|(_, generate)| generate);
@@ -57,7 +56,7 @@ pub(crate) fn open(query: &str) -> Result<Scene, LoadError> {
     Ok(generate(&BuiltinOptions::parse(name, options)?))
 }
 
-/// What the scenes set alike.
+/// Settings common to all scenes.
 struct Composition {
     name: &'static str,
     mesh: Mesh,

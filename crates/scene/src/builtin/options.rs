@@ -1,22 +1,22 @@
-//! What can be asked of a built-in scene.
+//! Options of a built-in scene.
 
 use crate::LoadError;
 
-/// Options of the built-in scenes; `None` leaves what the scene's own design says.
+/// Options of the built-in scenes; `None` uses the value of the scene's own design.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct BuiltinOptions {
-    /// Number of point lights, 1 to 64; values outside are moved to the nearer end. The sum of intensities does not change.
+    /// Number of point lights, 1 to 64; values outside are clamped. The sum of intensities does not change.
     pub lights: Option<usize>,
-    /// Radius in scene units that area shadows strew each point light over; a negative one counts as 0.
+    /// Radius in scene units over which area shadows distribute each point light; a negative one counts as 0.
     pub spread: Option<f32>,
 }
 
-/// The most lights that can be asked for.
+/// The maximum number of lights.
 const MAX_LIGHTS: usize = 64;
 
 impl BuiltinOptions {
-    /// Reads `lights=N&spread=S` after the name of a scene, in any order, each at most once; the text may be empty.
+    /// Parses `lights=N&spread=S` after the name of a scene, in any order, each at most once; the text may be empty.
     pub(super) fn parse(scene: &str, text: &str) -> Result<BuiltinOptions, LoadError> {
         let mut options = BuiltinOptions::default();
         for option in text.split('&').filter(|option| !option.is_empty()) {
@@ -36,7 +36,7 @@ impl BuiltinOptions {
         let twice = match parameter {
             "lights" => self.lights.replace(parse_lights(value)?).is_some(),
             "spread" => self.spread.replace(parse_spread(value)?).is_some(),
-            _ => return refuse(format!("unknown parameter `{parameter}`"), "known are lights, spread"),
+            _ => return refuse(format!("unknown parameter `{parameter}`"), "available: lights, spread"),
         };
         if twice { refuse(format!("`{parameter}` is given twice"), "give it once") } else { Ok(()) }
     }

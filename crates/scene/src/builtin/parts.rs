@@ -1,7 +1,7 @@
 //! Building blocks of the built-in scenes: boxes, prisms, tubes, balls, and the list that they are added to.
 //!
-//! Every object is built around its own zero, Y up, and put in place by [`Parts::put`]. Faces are wound counter-clockwise
-//! seen from outside.
+//! Every object is built around its own origin, Y up, and placed by [`Parts::put`]. Faces are wound counter-clockwise seen from
+//! outside.
 
 use glam::{Vec2, Vec3};
 
@@ -35,7 +35,7 @@ impl Palette {
     }
 }
 
-/// Where an object goes: scaled, turned about Y, moved.
+/// The placement of an object: scaled, rotated about Y, translated.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     position: Vec3,
@@ -48,7 +48,7 @@ impl Place {
         Place { position: Vec3::new(x, y, z), turn: Vec2::X, scale: 1.0 }
     }
 
-    /// Turned by `degrees` about Y, from +Z towards +X.
+    /// Rotated by `degrees` about Y, from +Z towards +X.
     pub(super) fn turned(self, degrees: f32) -> Place {
         Place { turn: around(degrees / 360.0), ..self }
     }
@@ -67,7 +67,7 @@ impl Place {
     }
 }
 
-/// Faces of a box that [`Parts::cuboid`] leaves out, because nobody can see them.
+/// Faces of a box that [`Parts::cuboid`] omits, because nobody can see them.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Open {
     Nothing,
@@ -75,7 +75,7 @@ pub(super) enum Open {
     TopAndBottom,
 }
 
-/// The triangles of a scene while it grows.
+/// The triangles of a scene while it is built.
 #[derive(Default)]
 pub(super) struct Parts {
     mesh: Mesh,
@@ -91,7 +91,7 @@ impl Parts {
         self.mesh.triangles.len()
     }
 
-    /// Puts what `build` adds at `place`.
+    /// Places what `build` adds at `place`.
     pub(super) fn put(&mut self, place: Place, build: impl FnOnce(&mut Parts)) {
         let first = self.mesh.positions.len();
         build(self);
@@ -99,7 +99,7 @@ impl Parts {
         self.mesh.normals[first..].iter_mut().for_each(|normal| *normal = place.direction(*normal));
     }
 
-    /// Adds a vertex that its triangles share; a zero `normal` shades them flat.
+    /// Adds a vertex shared by triangles; a zero `normal` means flat shading.
     pub(super) fn vertex(&mut self, position: Vec3, normal: Vec3) -> u32 {
         self.mesh.positions.push(position);
         self.mesh.normals.push(normal.normalize_or_zero());
@@ -111,7 +111,7 @@ impl Parts {
         self.mesh.materials.push(paint);
     }
 
-    /// A flat convex polygon as a fan about its first corner.
+    /// A flat convex polygon as a fan around its first corner.
     pub(super) fn polygon(&mut self, corners: &[Vec3], paint: Paint) {
         let ids: Vec<u32> = corners.iter().map(|&corner| self.vertex(corner, Vec3::ZERO)).collect();
         for pair in ids[1..].windows(2) {
@@ -125,7 +125,7 @@ impl Parts {
         self.hexahedron(center, 0.5 * (max - min), [Vec3::X, Vec3::Y, Vec3::Z], open, paint);
     }
 
-    /// A square bar from `from` to `to`, `width` across and `height` along the direction nearest to up.
+    /// A square bar from `from` to `to`, with the given `width`, and `height` along the direction closest to up.
     pub(super) fn beam(&mut self, from: Vec3, to: Vec3, width: f32, height: f32, paint: Paint) {
         let along = (to - from).normalize();
         let (side, up) = normal_plane(along);
@@ -166,8 +166,8 @@ impl Parts {
     }
 }
 
-/// Two unit vectors that span the plane at right angles to the unit vector `along`: one to the side, one nearest to up, such
-/// that side × up = along.
+/// Two unit vectors that span the plane perpendicular to the unit vector `along`: one to the side, one closest to up, such that
+/// side × up = along.
 pub(super) fn normal_plane(along: Vec3) -> (Vec3, Vec3) {
     let helper = if along.y.abs() > 0.99 { Vec3::Z } else { Vec3::Y };
     let side = helper.cross(along).normalize();

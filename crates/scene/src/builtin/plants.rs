@@ -1,4 +1,4 @@
-//! Trees and bushes: a bent trunk, lumps that close the crown, and leaves all over them.
+//! Trees and bushes: a bent trunk, lumps that fill the crown, and leaves all over them.
 
 use glam::{Vec2, Vec3};
 
@@ -7,19 +7,19 @@ use super::math::{Random, around};
 use super::parts::{Paint, Parts};
 use super::surfaces::bezier;
 
-/// The plan of a broad-leaved tree that stands at its own zero.
+/// The design of a broad-leaved tree, placed at its own origin.
 pub(super) struct Tree<'a> {
     /// From the ground to the top of the crown.
     pub(super) height: f32,
-    /// Where the crown begins, as a share of the height.
+    /// Start of the crown, as a share of the height.
     pub(super) crown_from: f32,
     /// Half the width of the crown as a share of the height.
     pub(super) crown_radius: f32,
-    /// How many lumps make up the crown; 0 for a crown of leaves alone.
+    /// Number of lumps that make up the crown; 0 for a crown of leaves alone.
     pub(super) lumps: usize,
-    /// How many leaves there are.
+    /// Number of leaves.
     pub(super) leaf_count: usize,
-    /// What a leaf looks like.
+    /// Appearance of a leaf.
     pub(super) leaves: &'a Leaves<'a>,
     /// Colour of trunk and branches.
     pub(super) bark: Paint,
@@ -65,7 +65,7 @@ impl Tree<'_> {
     }
 }
 
-/// Balls that fill the ellipsoid `outer` about `center`: one in the middle, the others on a spiral around it.
+/// Balls that fill the ellipsoid `outer` around `center`: one in the centre, the others on a spiral around it.
 fn crown_lumps(random: &mut Random, center: Vec3, outer: Vec3, count: usize) -> Vec<(Vec3, Vec3)> {
     let lump = |index: usize| {
         if index == 0 {

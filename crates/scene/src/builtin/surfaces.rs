@@ -16,7 +16,7 @@ impl Parts {
         }
     }
 
-    /// A faceted [lathe](Parts::lathe) that stands at `foot`.
+    /// A faceted [lathe](Parts::lathe) that is placed at `foot`.
     pub(super) fn lathe_at(&mut self, foot: Vec3, profile: &[Vec2], sides: u32, paint: Paint) {
         self.put(Place::at(foot.x, foot.y, foot.z), |parts| parts.lathe(profile, sides, false, paint));
     }
@@ -107,12 +107,13 @@ impl Parts {
         }
     }
 
-    /// A lump: an ellipsoid with poles on Y, its flat facets pushed in or out by the factor that `bulge` returns for each vertex.
+    /// A lump: an ellipsoid with poles on Y, its flat facets displaced in or out by the factor that `bulge` returns for each
+    /// vertex.
     pub(super) fn lump(&mut self, center: Vec3, radii: Vec3, rings: u32, mut bulge: impl FnMut() -> f32, paint: Paint) {
         self.globe(rings, |d| (center + radii * d * bulge(), Vec3::ZERO), paint);
     }
 
-    /// Spans a sphere of unit directions by `rings` bands of `2 rings` sides and takes the vertex of each from `vertex`.
+    /// Tessellates a sphere of unit directions into `rings` bands of `2 rings` sides and takes the vertex of each from `vertex`.
     fn globe(&mut self, rings: u32, mut vertex: impl FnMut(Vec3) -> (Vec3, Vec3), paint: Paint) {
         let mut previous: Option<Vec<u32>> = None;
         for ring in 0..=rings {

@@ -1,4 +1,4 @@
-//! What every built-in scene promises.
+//! What every built-in scene guarantees.
 
 use super::*;
 use crate::LightKind;
@@ -75,7 +75,7 @@ fn triangles_are_sound() {
     }
 }
 
-/// A smooth normal on the far side of its face would light the face from behind.
+/// A smooth normal on the back of its face would light the face from behind.
 #[test]
 fn smooth_normals_point_out_of_their_faces() {
     for ((name, ..), scene) in scenes() {

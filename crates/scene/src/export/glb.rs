@@ -1,7 +1,7 @@
 //! A scene as binary glTF 2.0.
 //!
-//! Triangles keep their order: each run of triangles of one material becomes a primitive. Vertices are stored in the local
-//! frame, below a node that is moved to the frame's origin.
+//! Triangles keep their order: each run of triangles with the same material becomes a primitive. Vertices are stored in the
+//! local frame, below a node that is translated to the frame's origin.
 
 use std::{collections::HashMap, path::Path};
 
@@ -18,12 +18,12 @@ use crate::{
     shapes::tangents,
 };
 
-/// What of the scene is written.
+/// Which content is written.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Content {
     /// Triangles and their materials.
     Triangles,
-    /// Cameras, lights and the rest too.
+    /// Also cameras, lights and all other content.
     Everything,
 }
 
@@ -65,7 +65,7 @@ pub(super) fn encode(scene: &Scene, content: Content, path: &Path) -> Result<Vec
         root["extensionsUsed"] = json!(extensions);
     }
     let mut entry = json!({"name": scene.name});
-    // glTF forbids empty arrays and objects without need.
+    // glTF forbids empty arrays and unnecessary empty objects.
     if !nodes.is_empty() {
         entry["nodes"] = (0..nodes.len()).collect();
         root["nodes"] = Value::Array(nodes);
@@ -102,7 +102,7 @@ fn container(root: &Value, mut bin: Vec<u8>, path: &Path) -> Result<Vec<u8>, Exp
     Ok(glb)
 }
 
-/// A run of triangles of one material, as ranges of the common arrays.
+/// A run of triangles with the same material, as ranges of the shared arrays.
 struct Primitive {
     material: u32,
     first_vertex: usize,
@@ -112,7 +112,7 @@ struct Primitive {
     has_normals: bool,
 }
 
-/// Numbers of the buffer views, in the order of the bytes.
+/// Indices of the buffer views, in the order of the bytes.
 #[derive(Default)]
 struct Views {
     normals: usize,
@@ -120,7 +120,7 @@ struct Views {
     colors: usize,
 }
 
-/// The vertex and index arrays of all primitives, one after the other.
+/// The vertex and index arrays of all primitives, one after another.
 #[derive(Default)]
 struct Arrays {
     primitives: Vec<Primitive>,
@@ -212,7 +212,7 @@ impl Arrays {
         Views { normals, uvs, colors: uvs + usize::from(!self.uvs.is_empty()) }
     }
 
-    /// Positions, indices, and normals, texture coordinates and colours where there are any: the order of the bytes.
+    /// Positions, indices, and any normals, texture coordinates and colours: the order of the bytes.
     fn views(&self) -> Value {
         let mut offset = 0;
         let arrays = [
@@ -246,7 +246,8 @@ fn bounds_of(positions: &[[f32; 3]]) -> [[f32; 3]; 2] {
     [bounds.min.to_array(), bounds.max.to_array()]
 }
 
-/// Metallic-roughness for others (the lobe of `formats::gltf::material`, backwards), our coefficients in the extras.
+/// Metallic-roughness for other programs (the inverse of the lobe in `formats::gltf::material`), our coefficients in the
+/// extras.
 fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
     let clamped = |color: Vec3| color.clamp(Vec3::ZERO, Vec3::ONE).to_array();
     let [r, g, b] = clamped(material.kd);
@@ -276,7 +277,7 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
 }
 
 fn camera_entry(scene: &Scene, camera: &Camera) -> Value {
-    // Other programs need planes to clip at: wide enough to hold the scene from anywhere near it.
+    // Other programs need clipping planes: wide enough to contain the scene from anywhere near it.
     let size = f64::from(scene.geometry.mesh.bounds().diagonal()).max(1.0);
     match camera.projection {
         Projection::Perspective(fov) => {
@@ -335,7 +336,7 @@ fn light_entry(light: &Light) -> Value {
     entry
 }
 
-/// Lights with a direction have it in their node; the extras of lights with a size are in the frame of theirs.
+/// Directional lights store their direction in the node; the extras of area lights are in the node's frame.
 fn light_node(scene: &Scene, index: usize, light: &Light) -> Value {
     let world = light.position().map_or(DVec3::ZERO, |position| scene.to_world(position));
     let mut node = json!({"name": light.name, "extensions": {"KHR_lights_punctual": {"light": index}}});

@@ -1,12 +1,12 @@
-//! Writing a scene so that it reads back as the same picture.
+//! Writing a scene so that it reads back to the same image.
 //!
-//! - `.glb`: everything in one file. What glTF has no word for is kept in `extras`, see
+//! - `.glb`: everything in one file. What glTF cannot represent is kept in `extras`, see
 //!   [`formats::gltf::extras`](crate::formats::gltf::extras); other programs show the rest.
-//! - `.toml`: cameras, lights and the ambient term as text to be edited, and beside it `NAME.mesh.glb` with the triangles and
+//! - `.toml`: cameras, lights and the ambient term as editable text, and next to it `NAME.mesh.glb` with the triangles and
 //!   their materials.
 //!
-//! Coordinates are written so that every `f32` of the local frame is read back as it was; only a scene far from the world's
-//! origin may round its smallest ones. Files are written beside their place and renamed: never half-written.
+//! Coordinates are written so that every `f32` of the local frame is read back exactly; only a scene far from the world's
+//! origin may round its smallest ones. Files are written next to their target and renamed: never half-written.
 
 mod glb;
 mod pictures;
@@ -27,23 +27,23 @@ use crate::Scene;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// There could be no such file.
+    /// The target file cannot exist.
     #[error(transparent)]
     Target(#[from] TargetError),
-    /// Writing failed, most often for want of space; nothing is left behind.
-    #[error("cannot write {}: {cause}; nothing was written, check the space left on the disk", path.display())]
+    /// Writing failed, most often because the disk is full; nothing is left behind.
+    #[error("cannot write {}: {cause}; nothing was written, check the free disk space", path.display())]
     Write {
         /// The file.
         path: PathBuf,
-        /// The system's reason.
+        /// The system's error.
         cause: io::Error,
     },
-    /// The name's ending is not that of a format that can be written.
-    #[error("`.{extension}` is not a format that can be written, {}; give a name that ends in .toml or .glb", path.display())]
+    /// The file extension is not that of a format that can be written.
+    #[error("`.{extension}` is not a format that can be written, {}; use the extension .toml or .glb", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
-        /// Its ending without the dot; may be empty.
+        /// The extension without the dot; may be empty.
         extension: String,
     },
     /// A GLB file counts its bytes in 32 bits.
@@ -51,13 +51,13 @@ pub enum ExportError {
     TooLarge {
         /// The file.
         path: PathBuf,
-        /// Bytes that it would have.
+        /// Size that the file would have in bytes.
         bytes: usize,
     },
 }
 
 impl Scene {
-    /// Writes the scene as `.toml` (with `NAME.mesh.glb` beside it) or `.glb`.
+    /// Writes the scene as `.toml` (with `NAME.mesh.glb` next to it) or `.glb`.
     ///
     /// # Errors
     ///
@@ -79,7 +79,7 @@ impl Scene {
     }
 }
 
-/// Writes a file, whole or not at all.
+/// Writes a file, completely or not at all.
 fn write(path: &Path, bytes: &[u8]) -> Result<(), ExportError> {
     let mut file = Replacement::of(path)?;
     file.write_all(bytes).and_then(|()| file.commit()).map_err(|cause| refused(path, cause))

@@ -8,16 +8,16 @@ use serde_json::{Value, json};
 
 use crate::{Scene, Texture, TextureUse, Wrap, formats::gltf::affine};
 
-/// What a GLB holds of a scene's textures.
+/// The textures of a scene, as stored in a GLB.
 #[derive(Default)]
 pub(super) struct Pictures {
-    /// PNG files, in the order of the scene's textures; none where no material can use it.
+    /// PNG files, in the order of the scene's textures; none if no material can use it.
     files: Vec<Option<Vec<u8>>>,
-    /// How texels are looked up beyond the edge, without repetition.
+    /// How texels are looked up beyond the edge, without duplicates.
     samplers: Vec<[Wrap; 2]>,
     /// Image and sampler of each glTF texture.
     textures: Vec<(usize, usize)>,
-    /// Of each material: its glTF texture.
+    /// For each material, its glTF texture.
     by_material: Vec<Option<(usize, TextureUse)>>,
     transformed: bool,
 }
@@ -38,7 +38,7 @@ impl Pictures {
         Ok(pictures)
     }
 
-    /// The number of the glTF texture that shows `texture` as `uses` says.
+    /// The index of the glTF texture that shows `texture` as described by `uses`.
     fn add(&mut self, uses: TextureUse, texture: &Texture) -> io::Result<usize> {
         let file = &mut self.files[uses.texture as usize];
         if file.is_none() {
@@ -61,7 +61,7 @@ impl Pictures {
         Some(info)
     }
 
-    /// The transform of a material's texture, where glTF's angle and factors do not give it back to the last bit.
+    /// The transform of a material's texture, if glTF's angle and factors do not reproduce it to the last bit.
     pub(super) fn exact_transform(&self, index: usize) -> Option<[f32; 6]> {
         let transform = self.by_material[index].as_ref()?.1.transform;
         let (scale, rotation, offset) = parts(&transform);
@@ -73,7 +73,7 @@ impl Pictures {
         self.transformed
     }
 
-    /// Writes the images behind `bin` and describes them, samplers and textures in `root`.
+    /// Appends the images to `bin` and describes them, samplers and textures in `root`.
     pub(super) fn write(self, scene: &Scene, bin: &mut Vec<u8>, root: &mut Value) {
         if self.textures.is_empty() {
             return;
@@ -96,7 +96,7 @@ impl Pictures {
     }
 }
 
-/// Where `value` is in `list`; it is put there first where it is not.
+/// The index of `value` in `list`, to which it is added if necessary.
 fn place_in<T: PartialEq>(list: &mut Vec<T>, value: T) -> usize {
     list.iter().position(|known| *known == value).unwrap_or_else(|| {
         list.push(value);
@@ -129,7 +129,7 @@ fn parts(transform: &Affine2) -> (Vec2, f32, Vec2) {
     (Vec2::new(x.length(), y.dot(Vec2::new(sin, cos))), angle, transform.translation)
 }
 
-/// OpenGL's number.
+/// OpenGL's constant.
 fn gl_word(wrap: Wrap) -> u32 {
     match wrap {
         Wrap::Repeat => 10497,

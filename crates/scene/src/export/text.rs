@@ -1,4 +1,4 @@
-//! A scene file that refers to its triangles in a GLB beside it.
+//! A scene file that refers to its triangles in a GLB next to it.
 
 use glam::{DVec3, Vec3};
 
@@ -33,7 +33,7 @@ pub(super) fn encode(scene: &Scene, mesh_file: &str) -> Result<String, toml::ser
     })
 }
 
-/// A value that comes from no text.
+/// A value without a location in a text.
 fn anywhere<T>(value: T) -> Spanned<T> {
     Spanned::new(0..0, value)
 }
@@ -50,7 +50,7 @@ fn number(number: f32) -> Spanned<f64> {
     anywhere(shortest(number))
 }
 
-/// World coordinates, with no more digits than the local ones have where both frames are the same.
+/// World coordinates, with no more digits than the local ones if both frames are the same.
 fn world(scene: &Scene, local: Vec3) -> Spanned<[f64; 3]> {
     if scene.geometry.origin == DVec3::ZERO { vector(local) } else { anywhere(scene.to_world(local).to_array()) }
 }

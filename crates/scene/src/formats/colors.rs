@@ -1,13 +1,12 @@
-//! Colours as mesh formats keep them.
+//! Colours as stored in mesh formats.
 
 use glam::Vec3;
 
-/// A linear colour of one that is encoded as sRGB, each channel in [0, 1] (IEC 61966-2-1). What lies beyond is cut off, and what is
-/// no number counts as 0.
+/// Decodes an sRGB colour to linear, each channel in [0, 1] (IEC 61966-2-1). Values outside are clamped, and NaN counts as 0.
 pub(super) fn linear(encoded: Vec3) -> Vec3 {
     let channel = |value: f32| {
-        // In this order a value that is no number becomes 0.
-        #[allow(clippy::manual_clamp, reason = "`clamp` would keep what is no number")]
+        // In this order NaN becomes 0.
+        #[allow(clippy::manual_clamp, reason = "`clamp` would keep NaN")]
         let value = value.max(0.0).min(1.0);
         if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
     };

@@ -1,5 +1,5 @@
-//! One file format in one module; each ends in triangles, lights and cameras of a [`Draft`](crate::draft::Draft). Beside them is
-//! what several formats share: reading text, cutting polygons, making vertices of corners.
+//! One module per file format; each produces triangles, lights and cameras of a [`Draft`](crate::draft::Draft). Shared code is
+//! next to them: reading text, triangulating polygons, and turning corners into vertices.
 
 mod colors;
 pub(crate) mod gltf;

@@ -1,30 +1,30 @@
-//! Polygons to triangles: a convex one is a fan, any other is cut ear by ear.
+//! Triangulates polygons: a convex one becomes a fan, any other is clipped ear by ear.
 //!
-//! Ears are found as Meisters (1975) describes: a convex corner whose triangle holds no other corner is cut off, until three corners
-//! are left. Polygons are looked at along their normal (Newell's sum), so that they need not be flat. One that crosses itself has no
-//! right answer; like every other it becomes n − 2 triangles, which use its corners alone.
+//! Ears are found as described by Meisters (1975): a convex corner whose triangle contains no other corner is clipped, until three
+//! corners are left. Polygons are projected along their normal (Newell's sum), so that they need not be flat. One that intersects
+//! itself has no correct triangulation; like every other it becomes n − 2 triangles, which use only its corners.
 
 use glam::{DVec2, DVec3};
 
-/// Corners that may be compared per corner of a polygon without counting against [`Cutter::patience`].
+/// Comparisons per corner of a polygon that do not count towards [`Cutter::patience`].
 const CHEAP: u64 = 64;
 
 /// Comparisons that all polygons of a file may need beyond the cheap ones: about a second.
 const PATIENCE: u64 = 1 << 28;
 
-/// Cuts polygons; kept for a whole file, because it keeps its memory and counts its work.
+/// Triangulates polygons; used for a whole file, because it reuses its memory and counts its work.
 #[derive(Debug)]
 pub(super) struct Cutter {
     flat: Vec<DVec2>,
     next: Vec<usize>,
     previous: Vec<usize>,
-    /// Corners that may lie in another's triangle.
+    /// Corners that may lie in another corner's triangle.
     reflex: Vec<usize>,
     patience: u64,
     given_up: usize,
 }
 
-/// The corner is cut off.
+/// The corner has been clipped.
 const CUT: usize = usize::MAX;
 
 impl Default for Cutter {
@@ -41,7 +41,7 @@ impl Default for Cutter {
 }
 
 impl Cutter {
-    /// Calls `emit` with the corners of each triangle, in the polygon's order. Nothing comes of fewer than three corners.
+    /// Calls `emit` with the corners of each triangle, in the polygon's order. Fewer than three corners yield nothing.
     pub(super) fn cut(&mut self, corners: &[DVec3], mut emit: impl FnMut([usize; 3])) {
         if corners.len() > 3 && self.flatten(corners) {
             self.clip_ears(emit);
@@ -50,17 +50,19 @@ impl Cutter {
         }
     }
 
-    /// What went wrong, for a warning about the file.
+    /// The problem, for a warning about the file.
     pub(super) fn warning(&self) -> Option<String> {
         let count = self.given_up;
-        (count > 0).then(|| format!("{count} polygons with very many corners were cut without regard to their notches"))
+        (count > 0).then(|| {
+            format!("{count} polygons with very many corners were triangulated without regard to their concave parts")
+        })
     }
 
-    /// Lays the polygon down so that it turns counter-clockwise, and lists its reflex corners; false where it has none.
+    /// Projects the polygon so that it is counter-clockwise, and lists its reflex corners; false if there are none.
     fn flatten(&mut self, corners: &[DVec3]) -> bool {
         let first = corners[0];
         let normal: DVec3 = corners.windows(2).map(|pair| (pair[0] - first).cross(pair[1] - first)).sum();
-        // Seen along the axis that is nearest to the normal, from the side where it turns counter-clockwise.
+        // Seen along the axis that is closest to the normal, from the side on which it is counter-clockwise.
         let size = normal.abs().to_array();
         let axis = (0..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most });
         let [right, up] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -95,7 +97,7 @@ impl Cutter {
                 hopeless = true;
                 self.given_up += 1;
             }
-            // After a round without an ear a flat corner will do, after another one any.
+            // After a round without an ear a flat corner is accepted, after another one any.
             let accepted = hopeless
                 || match self.area(ear) {
                     area if area > 0.0 => !self.holds_a_corner(ear),
@@ -110,13 +112,13 @@ impl Cutter {
             } else {
                 refused += 1;
             }
-            // Hopeless ones become a fan, others lose ears all around.
+            // Hopeless polygons become a fan, others lose ears all around.
             corner = if hopeless { ear[0] } else { ear[2] };
         }
         emit([self.previous[corner], corner, self.next[corner]]);
     }
 
-    /// Pays for one look at a corner; false where the file has used up its patience.
+    /// Accounts for one comparison; false if the file has used up its patience.
     fn spend(&mut self, free: &mut u64) -> bool {
         let cost = 1 + self.reflex.len() as u64;
         let purse = if *free >= cost { free } else { &mut self.patience };
@@ -125,8 +127,8 @@ impl Cutter {
         enough
     }
 
-    /// Whether a corner that is left lies in or on the triangle. Corners at the same place do not count: a polygon with a hole is
-    /// drawn with a seam whose both sides coincide.
+    /// Whether a remaining corner lies in or on the triangle. Corners at the same position do not count: a polygon with a hole is
+    /// drawn with a seam whose two sides coincide.
     fn holds_a_corner(&self, triangle: [usize; 3]) -> bool {
         let [a, b, c] = triangle.map(|corner| self.flat[corner]);
         self.reflex.iter().any(|&corner| {
@@ -141,7 +143,7 @@ impl Cutter {
         })
     }
 
-    /// Twice the area of a triangle; negative where it turns clockwise.
+    /// Twice the area of a triangle; negative if it is clockwise.
     fn area(&self, triangle: [usize; 3]) -> f64 {
         let [a, b, c] = triangle.map(|corner| self.flat[corner]);
         (b - a).perp_dot(c - b)
@@ -165,7 +167,7 @@ mod tests {
         triangles.map(|t| t.map(|i| corners[i])).map(|[a, b, c]| 0.5 * (b - a).cross(c - a).dot(normal)).sum()
     }
 
-    /// The area that triangles cover if none turns round: each counts by its size.
+    /// The total area of the triangles if none is reversed: each counts by its size.
     fn covered(corners: &[DVec3]) -> f64 {
         cut(corners).iter().map(|t| t.map(|i| corners[i])).map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum()
     }
@@ -213,7 +215,7 @@ mod tests {
             .chain([[40.0, 10.0], [-1.0, 10.0]])
             .collect();
         let teeth = flat(&comb);
-        // The outline's own area, by the sum of Gauss.
+        // The area enclosed by the outline, by the shoelace formula.
         let gauss = |points: &[DVec3]| {
             0.5 * (0..points.len()).map(|i| points[i].cross(points[(i + 1) % points.len()]).z).sum::<f64>()
         };

@@ -1,14 +1,14 @@
-//! Text of scene files: bytes that need not be UTF-8, of any line ending.
+//! Text of scene files: bytes that need not be UTF-8, with any line endings.
 
 use std::borrow::Cow;
 
 use memchr::memchr;
 
-/// Longest piece of a file that a message quotes, in characters.
+/// Maximum length of a quotation from a file in a message, in characters.
 const QUOTED: usize = 60;
 
-/// The text without a byte order mark, each line ended by a line feed: a file of an old system, with carriage returns alone, is
-/// changed.
+/// The text without a byte order mark, with line feeds as line endings: files with lone carriage returns, from old systems, are
+/// converted.
 pub(super) fn with_line_feeds(bytes: &mut [u8]) -> &[u8] {
     if memchr(b'\n', bytes).is_none() {
         bytes.iter_mut().filter(|byte| **byte == b'\r').for_each(|byte| *byte = b'\n');
@@ -16,7 +16,7 @@ pub(super) fn with_line_feeds(bytes: &mut [u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
-/// What the bytes say in UTF-8, or else in Latin-1, so that different names stay different.
+/// The bytes decoded as UTF-8, or else as Latin-1, so that different names stay different.
 pub(super) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
     match str::from_utf8(bytes) {
         Ok(text) => text.into(),
@@ -24,9 +24,9 @@ pub(super) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
     }
 }
 
-/// A piece of a file as a message shows it: printable and not too long.
+/// A quotation from a file for a message: printable and not too long.
 pub(super) fn quoted(bytes: &[u8]) -> String {
-    // Four bytes a character at most; what is cut within one is left out anyway.
+    // At most four bytes per character; a character that is cut is dropped anyway.
     let text = decoded(&bytes[..bytes.len().min(4 * (QUOTED + 1))]).into_owned();
     let mut shown: String = text.trim().chars().take(QUOTED).map(|c| if c.is_control() { ' ' } else { c }).collect();
     if bytes.trim_ascii().len() > shown.len() {
@@ -35,7 +35,7 @@ pub(super) fn quoted(bytes: &[u8]) -> String {
     shown
 }
 
-/// The first word of a line and what follows it, both trimmed.
+/// The first word of a line and the rest, both trimmed.
 pub(super) fn split_word(line: &[u8]) -> (&[u8], &[u8]) {
     let line = line.trim_ascii();
     let end = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());
@@ -47,12 +47,12 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
 }
 
-/// A number in decimal notation, or what `f64` calls infinite or not a number.
+/// A number in decimal notation, or one of the words for infinity and NaN that `f64` accepts.
 pub(super) fn number(word: &[u8]) -> Option<f64> {
     str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// The number of the line that holds byte `at`, counted from 1.
+/// The number of the line that contains byte `at`, counted from 1.
 pub(super) fn line_of(text: &[u8], at: usize) -> usize {
     1 + text[..at.min(text.len())].iter().filter(|&&byte| byte == b'\n').count()
 }

@@ -1,12 +1,12 @@
-//! One vertex for every combination of position and attributes that corners of faces ask for.
+//! One vertex for every combination of position and attributes used by the corners of faces.
 
 use std::collections::HashMap;
 
 /// No index: a corner without this attribute.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Combinations of one position that are looked for one after the other, before a hash table takes over: a file that has thousands
-/// must not take thousands of steps for each.
+/// Number of combinations of one position that are searched linearly before a hash table takes over: a file with thousands must not
+/// take thousands of steps for each.
 const LONGEST_CHAIN: usize = 12;
 
 /// Indices of a corner: position, and two attributes or [`NONE`].
@@ -14,8 +14,8 @@ pub(super) type Corner = [u32; 3];
 
 /// The vertices so far.
 ///
-/// Combinations of one position form a chain, the newest first. Faces ask for what they asked for shortly before, and for positions
-/// near each other, so that the chains' beginnings are in the cache; a hash table over all would be several times slower.
+/// Combinations of one position form a chain, the newest first. Faces use combinations that were used shortly before, and positions
+/// near each other, so that the starts of the chains are in the cache; a hash table over all would be several times slower.
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
     corners: Vec<Corner>,

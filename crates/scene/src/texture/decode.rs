@@ -1,7 +1,7 @@
-//! Picture files to [`Texture`]s: PNG, JPEG, BMP and TGA, through the `image` crate.
+//! Decodes image files to [`Texture`]s: PNG, JPEG, BMP and TGA, through the `image` crate.
 //!
-//! Files come from anywhere: sizes are checked before memory is taken for them. Grey, palettes and 16 bits a channel all become
-//! RGBA8. Not promised: colour profiles and EXIF orientation are left aside, as glTF wants it.
+//! Files are untrusted: sizes are checked before memory is allocated for them. Grey, palettes and 16 bits per channel all
+//! become RGBA8. Limitation: colour profiles and EXIF orientation are ignored, as glTF requires.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -12,26 +12,27 @@ use super::Texture;
 
 /// The longest side, in texels.
 const MAX_SIDE: u32 = 16384;
-/// No format packs more texels into a byte than PNG: deflate repeats 1032-fold, and a byte may hold eight texels.
+/// No format packs more texels into a byte than PNG: deflate repeats 1032-fold, and a byte may contain eight texels.
 const MAX_TEXELS_PER_BYTE: u64 = 8 * 1032;
-/// Bytes of a texel with 16 bits a channel.
+/// Bytes of a texel with 16 bits per channel.
 const MAX_BYTES_PER_TEXEL: u64 = 8;
-/// What a decoder may take whatever the picture's size: tables, and metadata that nobody asks for.
+/// Memory that a decoder may use whatever the image's size: tables, and unused metadata.
 const DECODER_BYTES: u64 = 16 << 20;
 
 const START_OF_SCAN: [u8; 2] = [0xff, 0xda];
 const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
 
-/// The picture in `bytes`. What it is, the first bytes say; a TGA file, which has no signature, by the ending of `name`.
+/// The image in `bytes`. Its first bytes determine the format; a TGA file, which has no signature, is recognised by the
+/// extension of `name`.
 ///
 /// # Errors
 ///
-/// Why it cannot be used, for a sentence in brackets.
+/// The reason why it cannot be used, worded to be put in brackets.
 pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
     let format = format(name, bytes)?;
-    // The decoder fills what is missing with grey and calls it a success.
+    // The decoder fills missing data with grey and reports success.
     if format == ImageFormat::Jpeg && is_cut_off(bytes) {
-        return Err("the JPEG data ends before the picture does".to_owned());
+        return Err("the JPEG data is truncated".to_owned());
     }
     let malformed = |error: ImageError| match error {
         ImageError::Unsupported(_) | ImageError::Limits(_) => error.to_string(),
@@ -41,7 +42,7 @@ pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
     let (width, height) = decoder.dimensions();
     let texels = u64::from(width) * u64::from(height);
     if texels == 0 || width.max(height) > MAX_SIDE {
-        return Err(format!("it has {width} x {height} texels, 1 to {MAX_SIDE} a side can be read"));
+        return Err(format!("it has {width} x {height} texels, but only 1 to {MAX_SIDE} per side are supported"));
     }
     if texels > MAX_TEXELS_PER_BYTE * bytes.len() as u64 {
         return Err(format!("its header says {width} x {height} texels, too many for {} bytes", bytes.len()));
@@ -58,12 +59,12 @@ fn format(name: &str, bytes: &[u8]) -> Result<ImageFormat, String> {
     match guess_format(bytes) {
         Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Bmp)) => Ok(format),
         _ if by_name().is_some() => Ok(ImageFormat::Tga),
-        Ok(other) => Err(format!("it is a {} picture; PNG, JPEG, BMP and TGA can be read", word(other))),
-        Err(_) => Err("it is no PNG, JPEG, BMP or TGA picture".to_owned()),
+        Ok(other) => Err(format!("it is a {} image; supported: PNG, JPEG, BMP and TGA", word(other))),
+        Err(_) => Err("it is not a PNG, JPEG, BMP or TGA image".to_owned()),
     }
 }
 
-/// The format's name for people.
+/// The format's name for display.
 fn word(format: ImageFormat) -> String {
     format!("{format:?}").to_uppercase()
 }
@@ -80,7 +81,7 @@ mod tests {
 
     use super::*;
 
-    /// Two by two texels that JPEG keeps nearly, each of another grey.
+    /// Two by two texels that JPEG preserves well, each a different grey.
     fn grey() -> DynamicImage {
         GrayImage::from_fn(2, 2, |x, y| Luma([(40 + 50 * x + 100 * y) as u8])).into()
     }
@@ -132,7 +133,7 @@ mod tests {
     fn a_truncated_picture_is_an_error_wherever_it_ends() {
         for (format, name) in FORMATS {
             let whole = encoded(&grey(), format);
-            // Beyond the last texel there may be a footer that nobody needs.
+            // After the last texel there may be a footer that is not needed.
             let needed = match format {
                 ImageFormat::Png => whole.len() - 16,
                 ImageFormat::Tga => 18 + 4,
@@ -147,11 +148,8 @@ mod tests {
 
     #[test]
     fn what_is_no_picture_or_no_known_one_is_said() {
-        assert_eq!(decode("oak.png", b"<html>").unwrap_err(), "it is no PNG, JPEG, BMP or TGA picture");
-        assert_eq!(
-            decode("oak.png", b"GIF89a").unwrap_err(),
-            "it is a GIF picture; PNG, JPEG, BMP and TGA can be read"
-        );
+        assert_eq!(decode("oak.png", b"<html>").unwrap_err(), "it is not a PNG, JPEG, BMP or TGA image");
+        assert_eq!(decode("oak.png", b"GIF89a").unwrap_err(), "it is a GIF image; supported: PNG, JPEG, BMP and TGA");
     }
 
     #[test]

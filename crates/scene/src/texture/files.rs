@@ -1,4 +1,4 @@
-//! Textures of a scene that is read: each file once, and one sentence about all that cannot be had.
+//! Textures of a scene that is being read: each file once, and one sentence about all that are not available.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -7,20 +7,20 @@ use super::{Texture, decode};
 use crate::draft::Draft;
 use crate::open::read_bytes;
 
-/// Textures that one warning names with their reasons; the others it counts.
+/// Number of textures that a warning names with their reasons; the others are counted.
 const NAMED: usize = 3;
 
-/// What is known of the texture files of a scene so far.
+/// The texture files of a scene read so far.
 #[derive(Debug, Default)]
 pub(crate) struct TextureFiles {
-    /// Index of the texture by its path; `None` where it cannot be had.
+    /// Index of the texture by its path; `None` if it is not available.
     read: HashMap<PathBuf, Option<u32>>,
-    /// A clause about each that cannot be had.
+    /// A clause about each one that is not available.
     missing: Vec<String>,
 }
 
 impl TextureFiles {
-    /// One sentence about all that could not be had.
+    /// One sentence about all that are not available.
     pub(crate) fn warning(&self) -> Option<String> {
         let count = self.missing.len();
         let mut clauses = self.missing[..count.min(NAMED)].join("; ");
@@ -28,18 +28,18 @@ impl TextureFiles {
             clauses += &format!("; and {} more", count - NAMED);
         }
         let textures = if count == 1 { "1 texture" } else { &format!("{count} textures") };
-        (count > 0).then(|| format!("{textures} cannot be used, the plain colours of the materials are: {clauses}"))
+        (count > 0).then(|| format!("{textures} cannot be used, so the materials keep their plain colours: {clauses}"))
     }
 }
 
 impl Draft {
-    /// Index of the texture in the file that `source`, one of the scene's files, calls `name`. Each file is read once. Where it
-    /// cannot be had, a warning will say so.
+    /// Index of the texture in the file that `source`, one of the scene's files, refers to as `name`. Each file is read once. If
+    /// it is not available, a warning will say so.
     pub(crate) fn texture_file(&mut self, source: &Path, name: &str) -> Option<u32> {
         let path = match self.path_beside(source, name) {
             Ok(path) => path,
             Err(error) => {
-                // By its name, which is no path: it is not to be asked for.
+                // Keyed by its name, which is not a path: the file must not be accessed.
                 let refused = PathBuf::from(format!("{}\0{name}", source.display()));
                 if self.texture_files.read.insert(refused, None).is_none() {
                     self.texture_files.missing.push(error.to_string());
@@ -61,7 +61,7 @@ impl Draft {
         index
     }
 
-    /// Index of the texture in `bytes`, a picture that `source` holds and calls `name`. Where it cannot be used, a warning will say
+    /// Index of the texture in `bytes`, an image that `source` contains and calls `name`. If it cannot be used, a warning will say
     /// so.
     pub(crate) fn texture_bytes(&mut self, source: &Path, name: &str, bytes: &[u8]) -> Option<u32> {
         self.texture(&format!("{}: {name}", source.display()), decode(name, bytes))
@@ -88,7 +88,7 @@ mod tests {
     use super::*;
     use crate::LoadOptions;
 
-    /// A folder with a picture of one blue texel, and a draft of a scene in it.
+    /// A folder with an image of one blue texel, and a draft of a scene in it.
     fn folder() -> (tempfile::TempDir, PathBuf, Draft) {
         let folder = tempfile::tempdir().unwrap();
         let pixel = image::RgbImage::from_pixel(1, 1, image::Rgb([0, 0, 255]));
@@ -116,7 +116,7 @@ mod tests {
         assert_eq!(draft.texture_bytes(&scene, "image 0", &bytes), Some(0));
         assert_eq!(draft.texture_bytes(&scene, "image 1", &bytes[..30]), None);
         let warning = draft.texture_files.warning().unwrap();
-        let start = format!("1 texture cannot be used, the plain colours of the materials are: {}", scene.display());
+        let start = format!("1 texture cannot be used, so the materials keep their plain colours: {}", scene.display());
         assert!(warning.starts_with(&format!("{start}: image 1 (its PNG data is damaged")), "{warning}");
     }
 
@@ -130,11 +130,11 @@ mod tests {
         let scene = draft.finish().unwrap();
         let warning = &scene.warnings[0];
         assert!(
-            warning.starts_with("5 textures cannot be used, the plain colours of the materials are: "),
+            warning.starts_with("5 textures cannot be used, so the materials keep their plain colours: "),
             "{warning}"
         );
         assert!(warning.contains("none.png; check that it exists"), "{warning}");
-        assert!(warning.contains("page.png (it is no PNG, JPEG, BMP or TGA picture)"), "{warning}");
+        assert!(warning.contains("page.png (it is not a PNG, JPEG, BMP or TGA image)"), "{warning}");
         assert!(warning.contains("`../a.png` lies outside the scene's folder"), "{warning}");
         assert!(warning.ends_with("; and 2 more"), "{warning}");
     }

@@ -1,12 +1,12 @@
-//! Triangles that have a texture but no place in it.
+//! Triangles that have a texture but no texture coordinates.
 
 use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::{Material, Mesh};
 
-/// Gives the triangles in `ranges`, which have no texture coordinates, materials without texture. A sentence where there were any
-/// with one.
+/// Gives the triangles in `ranges`, which have no texture coordinates, materials without texture. Returns a sentence if any of
+/// them had a texture.
 pub(crate) fn untextured(mesh: &mut Mesh, materials: &mut Vec<Material>, ranges: &[Range<usize>]) -> Option<String> {
     if materials.iter().all(|material| material.texture.is_none()) {
         return None;
@@ -30,7 +30,7 @@ pub(crate) fn untextured(mesh: &mut Mesh, materials: &mut Vec<Material>, ranges:
     }
     (count > 0).then(|| {
         format!(
-            "{count} triangles have a texture but no texture coordinates, the plain colours of their materials are used"
+            "{count} triangles have a texture but no texture coordinates, so their materials keep their plain colours"
         )
     })
 }

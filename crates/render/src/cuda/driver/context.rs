@@ -1,4 +1,4 @@
-//! A device made ready: its context, one queue, and a pool of memory.
+//! A device ready for use: its context, one stream, and a memory pool.
 
 use std::ptr;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -14,33 +14,33 @@ use super::fault::failed;
 use crate::cuda::gpu::Gpu;
 use crate::cuda::{Fault, Kernel};
 
-/// What all operations on a device need. Whatever lives on the device keeps this alive.
+/// What all operations on a device need. Everything that lives on the device keeps this alive.
 pub(super) struct Context {
     device: CUdevice,
     handle: CUcontext,
-    /// All work goes here. It does not wait for the streams of others.
+    /// All work is queued here. It does not synchronise with the streams of others.
     stream: CUstream,
-    /// Absent where the device has no stream-ordered memory.
+    /// Absent if the device has no stream-ordered memory.
     pool: Option<CUmemoryPool>,
     /// Bytes of memory on the device.
     memory: u64,
-    /// What was launched last, for messages.
+    /// The kernel launched last, for messages.
     last_kernel: Mutex<Option<Kernel>>,
 }
 
-// SAFETY: the handles name objects of the driver, which may be used from any thread and locks what must be locked.
+// SAFETY: the handles name driver objects, which may be used from any thread; the driver does the necessary locking.
 unsafe impl Send for Context {}
 // SAFETY: as above.
 unsafe impl Sync for Context {}
 
 impl Context {
-    /// Retains the device's primary context, which is shared with everyone else in the process, and makes a queue and a pool
-    /// of its own in it.
+    /// Retains the device's primary context, which is shared with everyone else in the process, and creates a separate stream
+    /// and pool in it.
     pub(super) fn new(gpu: &Gpu) -> Result<Context, Fault> {
-        // SAFETY: the device was named by the driver.
+        // SAFETY: the driver returned this device.
         let handle = unsafe { result::primary_ctx::retain(gpu.handle) };
         let handle = handle.map_err(|error| failed("creating a context", error, None))?;
-        // From here on `drop` gives back what there is.
+        // From here on `drop` releases what exists.
         let mut context = Context {
             device: gpu.handle,
             handle,
@@ -57,14 +57,14 @@ impl Context {
         Ok(context)
     }
 
-    /// Makes a call, in this context, on whatever thread this is.
+    /// Makes a call in this context, on any thread.
     pub(super) fn call<T>(&self, call: impl FnOnce(CUstream) -> Result<T, DriverError>) -> Result<T, DriverError> {
         // SAFETY: retained, and not released before `drop`.
         unsafe { result::ctx::set_current(self.handle) }?;
         call(self.stream)
     }
 
-    /// Makes a call that is named `what` where it fails.
+    /// Makes a call; `what` names it in the error.
     pub(super) fn run<T>(
         &self,
         what: impl FnOnce() -> String,
@@ -79,12 +79,12 @@ impl Context {
         self.call(|stream| unsafe { stream::synchronize(stream) })
     }
 
-    /// What was launched last.
+    /// The kernel launched last.
     pub(super) fn last_kernel(&self) -> MutexGuard<'_, Option<Kernel>> {
         self.last_kernel.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The pool to allocate from.
+    /// The pool to allocate from, if there is one.
     pub(super) fn pool(&self) -> Option<CUmemoryPool> {
         self.pool
     }
@@ -97,14 +97,14 @@ impl Context {
 
 impl Drop for Context {
     fn drop(&mut self) {
-        // Errors have nobody left to go to: each step is tried whatever became of the one before.
+        // Errors cannot be reported from here: each step is attempted whatever happened to the one before.
         let _ = self.wait();
         if let Some(pool) = self.pool {
-            // SAFETY: made in `new`; all memory from it has been freed, since it holds the context.
+            // SAFETY: created in `new`; all memory from it has been freed, since that memory holds the context.
             let _ = self.call(|_| unsafe { mem_pool::destroy(pool) });
         }
         if !self.stream.is_null() {
-            // SAFETY: made in `new`, and idle.
+            // SAFETY: created in `new`, and idle.
             let _ = self.call(|stream| unsafe { stream::destroy(stream) });
         }
         // SAFETY: retained in `new`.
@@ -112,7 +112,7 @@ impl Drop for Context {
     }
 }
 
-/// A pool that keeps what is freed, so that the next allocation is cheap.
+/// A pool that keeps freed memory, so that the next allocation is cheap.
 fn pool_on(device: CUdevice) -> Result<CUmemoryPool, DriverError> {
     let location = CUmemLocation { type_: CUmemLocationType::CU_MEM_LOCATION_TYPE_DEVICE, id: device };
     let properties = CUmemPoolProps {
@@ -122,14 +122,14 @@ fn pool_on(device: CUdevice) -> Result<CUmemoryPool, DriverError> {
         win32SecurityAttributes: ptr::null_mut(),
         reserved: [0; 64],
     };
-    // SAFETY: the properties are whole, and zero where nothing is asked for.
+    // SAFETY: the properties are fully initialised, zero where the default is wanted.
     let pool = unsafe { mem_pool::create(&properties) }?;
     let mut threshold = u64::MAX;
     let attribute = PoolAttribute::CU_MEMPOOL_ATTR_RELEASE_THRESHOLD;
-    // SAFETY: this attribute is a number of 64 bits.
+    // SAFETY: this attribute is a 64-bit number.
     let set = unsafe { mem_pool::set_attribute(pool, attribute, (&raw mut threshold).cast()) };
     if set.is_err() {
-        // SAFETY: made above, and empty.
+        // SAFETY: created above, and empty.
         let _ = unsafe { mem_pool::destroy(pool) };
     }
     set.map(|()| pool)

@@ -1,11 +1,11 @@
-//! What the driver says when it fails.
+//! Errors reported by the driver.
 
 use cudarc::driver::DriverError;
 use cudarc::driver::sys::CUresult;
 
 use crate::cuda::{Fault, Kernel};
 
-/// The driver's own words: `out of memory (CUDA_ERROR_OUT_OF_MEMORY)`.
+/// The driver's own description: `out of memory (CUDA_ERROR_OUT_OF_MEMORY)`.
 pub(super) fn describe(error: DriverError) -> String {
     let number = error.0 as u32;
     let name =
@@ -16,8 +16,8 @@ pub(super) fn describe(error: DriverError) -> String {
     }
 }
 
-/// A failed operation. Kernels fail after the call that queued them, so `last`, the kernel that was launched last, is named where
-/// the error is one that kernels make.
+/// A failed operation. Kernels fail after the call that queued them, so `last`, the kernel that was launched last, is named if
+/// the error is one that kernels cause.
 pub(super) fn failed(what: &str, error: DriverError, last: Option<Kernel>) -> Fault {
     let words = describe(error);
     Fault::Failed(match last.filter(|_| KERNEL_ERRORS.contains(&error.0)) {
@@ -29,7 +29,7 @@ pub(super) fn failed(what: &str, error: DriverError, last: Option<Kernel>) -> Fa
     })
 }
 
-/// Errors that a running kernel leaves behind.
+/// Errors caused by a running kernel.
 const KERNEL_ERRORS: [CUresult; 10] = [
     CUresult::CUDA_ERROR_ECC_UNCORRECTABLE,
     CUresult::CUDA_ERROR_ILLEGAL_ADDRESS,

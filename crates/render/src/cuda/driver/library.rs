@@ -1,8 +1,8 @@
-//! NVIDIA's driver library: whether it is there, what it is for, and which devices it shows.
+//! NVIDIA's driver library: whether it is installed, its version, and the devices it reports.
 //!
-//! The library is loaded when it is first asked for, so that the same program starts where there is none. cudarc looks up each
-//! symbol at its first call, and panics where one is missing; so nothing beyond [`FIRST`] is called before the driver's version
-//! is known to be new enough.
+//! The library is loaded on first use, so that the same program starts on systems without it. cudarc looks up each symbol at
+//! its first call, and panics if one is missing; so nothing beyond [`FIRST`] is called before the driver's version is known to
+//! be new enough.
 
 use cudarc::driver::sys::CUdevice_attribute_enum as Attribute;
 use cudarc::driver::sys::{self, CUresult};
@@ -12,68 +12,68 @@ use super::fault::describe;
 use super::ptx::Needs;
 use crate::cuda::gpu::{Gpu, Version, capability, visible_devices};
 
-/// What is called before the version is known. All of it is in every driver since CUDA 6.0 (2014).
+/// The functions called before the version is known. All of them are in every driver since CUDA 6.0 (2014).
 const FIRST: [&str; 4] = ["cuInit", "cuDriverGetVersion", "cuGetErrorName", "cuGetErrorString"];
 
 /// Why CUDA cannot be used at all.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Unavailable {
-    /// NVIDIA has no driver for this system.
-    #[error("there is no CUDA for {0}")]
+    /// NVIDIA has no driver for this operating system.
+    #[error("CUDA is not available for {0}")]
     NoPlatform(&'static str),
-    /// There is no driver.
+    /// The driver is not installed.
     #[error(
         "NVIDIA's driver is not installed ({library} was not found): install version {needed} or newer; a container must be started \
          with access to the GPUs"
     )]
     NoLibrary {
-        /// File that was looked for.
+        /// The file that was searched for.
         library: &'static str,
-        /// First branch that will do.
+        /// The first branch that is sufficient.
         needed: u32,
     },
-    /// Something else has the library's name, or it is ancient.
+    /// Another library has this name, or the driver is very old.
     #[error("the CUDA library that was found lacks {symbol}: install NVIDIA's driver, version {needed} or newer")]
     NotADriver {
         /// The missing function.
         symbol: &'static str,
-        /// First branch that will do.
+        /// The first branch that is sufficient.
         needed: u32,
     },
-    /// The driver does not know the kernels' version of PTX.
+    /// The driver does not support the kernels' PTX version.
     #[error(
-        "the driver is for CUDA {version}, and CUDA {} is needed: install NVIDIA's driver {} or newer",
+        "the driver supports CUDA {version}, but CUDA {} is needed: install NVIDIA's driver {} or newer",
         needs.cuda,
         needs.driver
     )]
     TooOld {
-        /// What it is for.
+        /// The CUDA version it supports.
         version: Version,
-        /// What will do.
+        /// The requirements.
         needs: Needs,
     },
     /// The user has hidden all devices.
     #[error("CUDA_VISIBLE_DEVICES is \"{0}\" and hides every device: unset it, or set it to the devices to use")]
     Hidden(String),
-    /// The driver has nothing to drive.
-    #[error("the driver finds no CUDA device: see whether `nvidia-smi` lists one")]
+    /// The driver reports no device.
+    #[error("the driver finds no CUDA device: check whether `nvidia-smi` lists one")]
     NoDevice,
-    /// Anything else, in the driver's words.
-    #[error("the driver does not start ({0}): see whether `nvidia-smi` works; after an update of the driver, restart")]
+    /// Any other error, as described by the driver.
+    #[error("the driver does not start ({0}): check whether `nvidia-smi` works; after a driver update, reboot")]
     Failed(String),
 }
 
-/// The driver, started, with the devices that it shows.
+/// The initialised driver, with the devices it reports.
 #[derive(Clone, Debug)]
 pub(crate) struct Library {
-    /// What it is for.
+    /// The CUDA version it supports.
     pub(crate) version: Version,
     /// At least one.
     pub(crate) devices: Vec<Gpu>,
 }
 
 impl Library {
-    /// Starts the driver and asks for its devices.
+    /// Initialises the driver and lists its devices.
     pub(crate) fn open() -> Result<Library, Unavailable> {
         let needs = Needs::of_kernels();
         present(needs)?;
@@ -93,36 +93,36 @@ impl Library {
 }
 
 impl Gpu {
-    /// Why the kernels cannot run on it.
+    /// Why the kernels cannot run on this device; `None` if they can.
     pub(crate) fn refusal(&self, needs: Needs) -> Option<String> {
         let [has, wants] = [self.capability, needs.capability].map(capability);
         (self.capability < needs.capability).then(|| {
-            format!("compute capability {has}, and {wants} is needed (GeForce RTX 20, Quadro RTX, T4 and whatever came later)")
+            format!("compute capability {has}, but {wants} is needed (GeForce RTX 20, Quadro RTX, T4 or newer)")
         })
     }
 }
 
-/// Whether the library is there and has what comes first.
+/// Checks that the library is installed and has the functions of [`FIRST`].
 fn present(needs: Needs) -> Result<(), Unavailable> {
     if cfg!(target_vendor = "apple") {
         return Err(Unavailable::NoPlatform(std::env::consts::OS));
     }
     let needed = needs.driver;
-    // SAFETY: loads the library by its own name; running its initialisers is what a driver is loaded for.
+    // SAFETY: loads the library by its own name; running its initialisers is the purpose of loading a driver.
     if !unsafe { sys::is_culib_present() } {
         let library = if cfg!(windows) { "nvcuda.dll" } else { "libcuda.so.1" };
         return Err(Unavailable::NoLibrary { library, needed });
     }
-    // SAFETY: the library is there, so that this does not panic; the symbols are looked up and not called.
+    // SAFETY: the library is installed, so this does not panic; the symbols are looked up, not called.
     let library = unsafe { sys::culib() };
     let missing = FIRST.iter().find(|symbol| {
-        // SAFETY: any function is a pointer that may be looked at as one.
+        // SAFETY: any function may be viewed as a pointer of this type.
         unsafe { library.get::<unsafe extern "C" fn()>(symbol.as_bytes()) }.is_err()
     });
     missing.map_or(Ok(()), |&symbol| Err(Unavailable::NotADriver { symbol, needed }))
 }
 
-/// What the driver is for. May be asked before it is started.
+/// The CUDA version that the driver supports. May be called before the driver is initialised.
 fn version() -> Result<Version, DriverError> {
     let mut code = 0;
     // SAFETY: writes one number.
@@ -138,7 +138,7 @@ fn devices() -> Result<Vec<Gpu>, DriverError> {
 fn device(number: u32) -> Result<Gpu, DriverError> {
     let handle = result::device::get(number as i32)?;
     let attribute = |attribute| {
-        // SAFETY: the device was named by the driver.
+        // SAFETY: the driver returned this device.
         unsafe { result::device::get_attribute(handle, attribute) }
     };
     let major = attribute(Attribute::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR)?;
@@ -170,7 +170,7 @@ mod tests {
             (Unavailable::NotADriver { symbol: "cuInit", needed: 550 }, ["lacks cuInit", "version 550"]),
             (
                 Unavailable::TooOld { version: Version { major: 11, minor: 4 }, needs: NEEDS },
-                ["is for CUDA 11.4, and CUDA 12.4 is needed", "driver 550 or newer"],
+                ["supports CUDA 11.4, but CUDA 12.4 is needed", "driver 550 or newer"],
             ),
             (Unavailable::Hidden("-1".into()), ["CUDA_VISIBLE_DEVICES is \"-1\"", "unset it"]),
             (Unavailable::NoDevice, ["finds no CUDA device", "nvidia-smi"]),
@@ -186,7 +186,7 @@ mod tests {
     fn devices_before_turing_are_refused() {
         let gpu =
             |capability| Gpu { number: 0, name: "Tesla".into(), capability, memory: 1 << 34, pools: true, handle: 0 };
-        assert!(gpu(70).refusal(NEEDS).unwrap().starts_with("compute capability 7.0, and 7.5 is needed"));
+        assert!(gpu(70).refusal(NEEDS).unwrap().starts_with("compute capability 7.0, but 7.5 is needed"));
         assert_eq!(gpu(75).refusal(NEEDS), None);
         assert_eq!(gpu(120).refusal(NEEDS), None);
     }

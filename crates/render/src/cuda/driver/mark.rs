@@ -1,4 +1,4 @@
-//! Moments in the queue.
+//! Points in the stream.
 
 use std::sync::Arc;
 
@@ -8,55 +8,55 @@ use cudarc::driver::sys::{CUevent, CUevent_flags};
 use super::context::Context;
 use crate::cuda::Fault;
 
-/// A moment in the queue: it comes when all work queued before is done.
+/// A point in the stream: it is reached when all work queued before it has finished.
 pub struct Event {
     context: Arc<Context>,
     handle: CUevent,
 }
 
-// SAFETY: the handle names an object of the driver, which may be used from any thread.
+// SAFETY: the handle names a driver object, which may be used from any thread.
 unsafe impl Send for Event {}
 // SAFETY: as above.
 unsafe impl Sync for Event {}
 
 impl Event {
-    /// An event that has come, as long as it is not recorded.
+    /// An event that counts as reached until it is recorded.
     pub(super) fn new(context: &Arc<Context>, flags: CUevent_flags) -> Result<Event, Fault> {
         let handle = context.run(|| "creating an event".to_owned(), |_| event::create(flags))?;
         Ok(Event { context: Arc::clone(context), handle })
     }
 
-    /// An event at the present moment of the queue, with its time.
+    /// An event at the current end of the stream, with timing.
     pub(super) fn now(context: &Arc<Context>) -> Result<Event, Fault> {
         let event = Event::new(context, CUevent_flags::CU_EVENT_DEFAULT)?;
         event.record()?;
         Ok(event)
     }
 
-    /// Moves it to the present moment of the queue.
+    /// Moves the event to the current end of the stream.
     pub(super) fn record(&self) -> Result<(), Fault> {
         // SAFETY: event and stream belong to this context.
         let record = |stream| unsafe { event::record(self.handle, stream) };
         self.context.run(|| "recording an event".to_owned(), record)
     }
 
-    /// Whether it has come.
+    /// Whether it has been reached.
     pub(super) fn has_come(&self) -> bool {
         // SAFETY: the event lives as long as this.
         self.context.call(|_| unsafe { event::query(self.handle) }).is_ok()
     }
 
-    /// Waits until it comes.
+    /// Waits until it is reached.
     pub(super) fn wait(&self) -> Result<(), Fault> {
         // SAFETY: the event lives as long as this.
         let wait = |_| unsafe { event::synchronize(self.handle) };
         self.context.run(|| "waiting for the device".to_owned(), wait)
     }
 
-    /// Waits for `later` and gives the seconds between both.
+    /// Waits for `later` and returns the seconds between the two.
     pub(super) fn seconds_until(&self, later: &Event) -> Result<f64, Fault> {
         later.wait()?;
-        // SAFETY: both live; both are in the same stream, since a context has only one.
+        // SAFETY: both are alive; both are in the same stream, since a context has only one.
         let elapsed = |_| unsafe { event::elapsed(self.handle, later.handle) };
         let milliseconds = self.context.run(|| "reading the device's clock".to_owned(), elapsed)?;
         Ok(f64::from(milliseconds) * 1e-3)
@@ -65,7 +65,7 @@ impl Event {
 
 impl Drop for Event {
     fn drop(&mut self) {
-        // SAFETY: made in `new`. An event that has not come yet is released when it does.
+        // SAFETY: created in `new`. An event that has not been reached yet is released once it is.
         let _ = self.context.call(|_| unsafe { event::destroy(self.handle) });
     }
 }

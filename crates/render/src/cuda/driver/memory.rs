@@ -1,7 +1,7 @@
-//! Device memory in the order of the queue.
+//! Stream-ordered device memory.
 //!
-//! Freed memory stays in the pool, so that allocating it again costs microseconds instead of a call to the system that waits for
-//! the device. Where the device has no pools, memory comes from the system each time; freeing it then waits.
+//! Freed memory stays in the pool, so that allocating it again costs microseconds instead of a system call that waits for the
+//! device. If the device has no pools, memory is requested from the system each time; freeing it then waits.
 
 use std::sync::Arc;
 
@@ -20,13 +20,13 @@ pub struct DeviceMemory {
 }
 
 impl DeviceMemory {
-    /// Takes `bytes` bytes, at least one.
+    /// Allocates `bytes` bytes, at least one.
     pub(super) fn new(context: &Arc<Context>, bytes: u64) -> Result<DeviceMemory, Fault> {
         if bytes > context.memory() {
             return Err(Fault::OutOfMemory { free: free(context) });
         }
         let address = match take(context, bytes) {
-            // What the pool keeps may lie in pieces that are too small: it goes back, and the system gives one whole piece.
+            // The memory kept by the pool may be too fragmented: it is returned, and the system provides one contiguous block.
             Err(DriverError(CUresult::CUDA_ERROR_OUT_OF_MEMORY)) => trim(context).and_then(|()| take(context, bytes)),
             taken => taken,
         };
@@ -37,12 +37,12 @@ impl DeviceMemory {
         }
     }
 
-    /// Where it begins.
+    /// Its start address.
     pub(super) fn address(&self) -> CUdeviceptr {
         self.address
     }
 
-    /// The address of `bytes` bytes from `offset` on, where they are all inside.
+    /// The address of `bytes` bytes at `offset`; an error if they are not all inside.
     pub(super) fn place(&self, offset: u64, bytes: u64) -> Result<CUdeviceptr, Fault> {
         let end = offset.checked_add(bytes);
         if end.is_some_and(|end| end <= self.bytes) {
@@ -58,7 +58,7 @@ impl DeviceMemory {
     /// Queues setting bytes to zero.
     pub(super) fn clear(&self, offset: u64, bytes: u64) -> Result<(), Fault> {
         let address = self.place(offset, bytes)?;
-        // SAFETY: all of it is inside; the stream is the one that it was allocated on.
+        // SAFETY: the range is inside the buffer; the stream is the one it was allocated on.
         let clear = |stream| unsafe { result::memset_d8_async(address, 0, bytes as usize, stream) };
         self.context.run(|| format!("clearing {bytes} bytes"), clear)
     }
@@ -66,7 +66,7 @@ impl DeviceMemory {
 
 impl Drop for DeviceMemory {
     fn drop(&mut self) {
-        // A drop cannot fail; an error that matters comes again with the next operation.
+        // `drop` cannot fail; an error that matters recurs with the next operation.
         let _ = self.context.call(|stream| match self.context.pool() {
             // SAFETY: allocated in `new` from the pool, on this stream.
             Some(_) => unsafe { result::free_async(self.address, stream) },
@@ -76,8 +76,8 @@ impl Drop for DeviceMemory {
     }
 }
 
-/// Bytes that can still be allocated: what the system has, and what the pool keeps unused. Waits for the queue, since memory is
-/// free only when its turn has come.
+/// Bytes that can still be allocated: free memory of the system, and unused memory of the pool. Waits for the stream, since
+/// memory becomes free only when its turn has come.
 pub(super) fn free(context: &Context) -> Option<u64> {
     context.wait().ok()?;
     let (free, _) = context.call(|_| result::mem_get_info()).ok()?;
@@ -98,23 +98,23 @@ fn take(context: &Context, bytes: u64) -> Result<CUdeviceptr, DriverError> {
     })
 }
 
-/// Gives unused memory of the pool back to the system.
+/// Returns unused memory of the pool to the system.
 fn trim(context: &Context) -> Result<(), DriverError> {
     context.call(|stream| {
         // SAFETY: the stream lives as long as the context.
         unsafe { stream::synchronize(stream) }?;
         match context.pool() {
-            // SAFETY: so does the pool.
+            // SAFETY: the pool lives as long as the context.
             Some(pool) => unsafe { mem_pool::trim_to(pool, 0) },
             None => Ok(()),
         }
     })
 }
 
-/// One of a pool's counts of bytes.
+/// One of a pool's byte counts.
 fn pool_number(pool: CUmemoryPool, attribute: sys::CUmemPool_attribute) -> Result<u64, DriverError> {
     let mut number = 0_u64;
-    // SAFETY: the counts are numbers of 64 bits.
+    // SAFETY: the counts are 64-bit numbers.
     unsafe { mem_pool::get_attribute(pool, attribute, (&raw mut number).cast()) }?;
     Ok(number)
 }

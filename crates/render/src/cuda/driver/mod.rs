@@ -1,10 +1,10 @@
-//! The real device: NVIDIA's driver, loaded when it is first asked for.
+//! The real device: NVIDIA's driver, loaded on first use.
 //!
-//! Only the driver is needed, no toolkit: kernels come as PTX with the program ([`ptx`]) and the driver compiles them. Where the
-//! driver is missing or too old, [`open`] says so and what to do ([`library`]).
+//! Only the driver is needed, no toolkit: kernels are embedded in the program as PTX ([`ptx`]) and the driver compiles them. If the
+//! driver is missing or too old, [`open`] reports this and the remedy ([`library`]).
 //!
-//! Everything goes through one queue ([`context`]), in the order of the calls. Failures come with the name of the operation and the
-//! driver's own words ([`fault`]).
+//! Everything goes through one stream ([`context`]), in the order of the calls. Errors carry the name of the operation and the
+//! driver's own description ([`fault`]).
 
 mod context;
 mod fault;
@@ -44,7 +44,7 @@ pub struct Driver {
 }
 
 impl Driver {
-    /// Makes a device ready, and sees that it takes kernels.
+    /// Prepares a device, and checks that it accepts kernels.
     fn new(gpu: &Gpu, version: Version) -> Result<Driver, Fault> {
         let context = Arc::new(Context::new(gpu)?);
         let driver = Driver {
@@ -55,7 +55,7 @@ impl Driver {
             staging: Staging::new(&context),
             context,
         };
-        // The smallest module. A driver without its compiler, for instance, fails here and not in the middle of a picture.
+        // The smallest module. A driver without its compiler, for instance, fails here and not in the middle of an image.
         driver.modules.load("scan")?;
         Ok(driver)
     }
@@ -65,12 +65,12 @@ impl Driver {
         self.gpu.number
     }
 
-    /// The device as the driver describes it.
+    /// The device as described by the driver.
     pub(crate) fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// What the driver is for.
+    /// The CUDA version that the driver supports.
     pub(crate) fn version(&self) -> Version {
         self.version
     }
@@ -127,7 +127,7 @@ impl Runtime for Driver {
         }
         let function = self.modules.function(kernel, shared)?;
         let mut size = arguments.len();
-        // As one buffer with its size: the driver refuses a record that is not as long as the kernel's parameter.
+        // As one buffer with its size: the driver rejects a record whose size differs from that of the kernel's parameter.
         let mut parameters: [*mut c_void; 5] = [
             ptr::without_provenance_mut(sys::CU_LAUNCH_PARAM_BUFFER_POINTER_AS_INT as usize),
             arguments.as_ptr().cast_mut().cast(),
@@ -139,7 +139,7 @@ impl Runtime for Driver {
         let queue = |stream| {
             let (none, extra) = (ptr::null_mut(), parameters.as_mut_ptr());
             // SAFETY: the function's module is loaded; the driver copies the arguments before it returns. What the kernel does with
-            // the addresses in them is in the hands of the stages.
+            // the addresses in them is the responsibility of the stages.
             unsafe { sys::cuLaunchKernel(function, blocks, 1, 1, threads, 1, 1, shared, stream, none, extra) }.result()
         };
         let what = || {

@@ -1,4 +1,4 @@
-//! Modules and their kernels, loaded when they are first needed.
+//! Modules and their kernels, loaded on first use.
 
 use std::collections::HashMap;
 use std::ffi::{CString, c_void};
@@ -16,15 +16,15 @@ use super::ptx::MODULES;
 use crate::cuda::gpu::Version;
 use crate::cuda::{Fault, Kernel};
 
-/// Room for what the driver's compiler has to say, in bytes.
+/// Size of the buffer for the log of the driver's compiler, in bytes.
 const LOG: usize = 8 << 10;
-/// Dynamic shared memory of a block, in bytes, above which the driver's own choice leaves room for too few blocks.
+/// Dynamic shared memory per block, in bytes, above which the driver's own choice leaves room for too few blocks.
 const MUCH_SHARED_MEMORY: u32 = 4 << 10;
 
-/// All modules that were loaded.
+/// All modules loaded so far.
 pub(super) struct Modules {
     context: Arc<Context>,
-    /// What the driver is for, for messages.
+    /// The CUDA version that the driver supports, for messages.
     version: Version,
     loaded: Mutex<Loaded>,
 }
@@ -39,27 +39,27 @@ struct Loaded {
 #[derive(Clone, Copy)]
 struct Function {
     handle: CUfunction,
-    /// Bytes of dynamic shared memory that a block may have so far.
+    /// Bytes of dynamic shared memory that a block is allowed so far.
     shared: u32,
-    /// Whether shared memory takes precedence over cache.
+    /// Whether shared memory takes precedence over L1 cache.
     carved: bool,
 }
 
-// SAFETY: the handles name objects of the driver, which may be used from any thread.
+// SAFETY: the handles name driver objects, which may be used from any thread.
 unsafe impl Send for Loaded {}
 
 impl Modules {
-    /// Nothing is loaded yet.
+    /// A store without modules.
     pub(super) fn new(context: &Arc<Context>, version: Version) -> Modules {
         Modules { context: Arc::clone(context), version, loaded: Mutex::default() }
     }
 
-    /// Loads a module if it is not.
+    /// Loads a module unless it is loaded.
     pub(super) fn load(&self, name: &str) -> Result<(), Fault> {
         self.module(&mut self.loaded(), name).map(|_| ())
     }
 
-    /// The kernel, allowed to have `shared` bytes of dynamic shared memory.
+    /// The kernel, allowed to use `shared` bytes of dynamic shared memory.
     pub(super) fn function(&self, kernel: Kernel, shared: u32) -> Result<CUfunction, Fault> {
         let mut loaded = self.loaded();
         let mut function = match loaded.functions.get(&kernel) {
@@ -67,8 +67,8 @@ impl Modules {
             None => self.find(&mut loaded, kernel)?,
         };
         if shared > MUCH_SHARED_MEMORY && !function.carved {
-            // Shared memory decides how many blocks fit: let it be as large as it can. It is taken from the cache, which others
-            // have more use for.
+            // Shared memory limits the number of resident blocks: make it as large as possible. It is taken from the L1 cache,
+            // which other kernels need more.
             let attribute = FunctionAttribute::CU_FUNC_ATTRIBUTE_PREFERRED_SHARED_MEMORY_CARVEOUT;
             // SAFETY: the function's module is loaded.
             let set = |_| unsafe { function::set_function_attribute(function.handle, attribute, 100) };
@@ -76,7 +76,7 @@ impl Modules {
             function.carved = true;
         }
         if shared > function.shared {
-            // A block may have 48 KiB in all by default; more only where the kernel is said to want it.
+            // By default a block may use 48 KiB in all; more only if the kernel opts in.
             let attribute = FunctionAttribute::CU_FUNC_ATTRIBUTE_MAX_DYNAMIC_SHARED_SIZE_BYTES;
             // SAFETY: the function's module is loaded.
             let set = |_| unsafe { function::set_function_attribute(function.handle, attribute, shared as i32) };
@@ -105,15 +105,15 @@ impl Modules {
             .context
             .run(|| format!("looking for the kernel {kernel}"), |_| unsafe { module::get_function(module, name) })?;
         let attribute = FunctionAttribute::CU_FUNC_ATTRIBUTE_MAX_DYNAMIC_SHARED_SIZE_BYTES;
-        // SAFETY: the function was just found.
+        // SAFETY: the function was just looked up.
         let read = |_| unsafe { function::get_function_attribute(handle, attribute) };
-        let shared = self.context.run(|| format!("asking what {kernel} may have"), read)?;
+        let shared = self.context.run(|| format!("querying the attributes of {kernel}"), read)?;
         Ok(Function { handle, shared: u32::try_from(shared).unwrap_or(0), carved: false })
     }
 
     fn module(&self, loaded: &mut Loaded, name: &str) -> Result<CUmodule, Fault> {
         let entry = MODULES.iter().find(|(module, _)| *module == name);
-        let &(name, ptx) = entry.ok_or_else(|| Fault::Failed(format!("there is no module {name}")))?;
+        let &(name, ptx) = entry.ok_or_else(|| Fault::Failed(format!("unknown module {name}")))?;
         if let Some(&module) = loaded.modules.get(name) {
             return Ok(module);
         }
@@ -122,7 +122,7 @@ impl Modules {
         Ok(module)
     }
 
-    /// Hands PTX to the driver, which compiles it or takes what it has kept of the last time.
+    /// Passes PTX to the driver, which compiles it or uses the result that it cached the last time.
     fn compile(&self, name: &str, ptx: &str) -> Result<CUmodule, Fault> {
         let image = text(ptx)?;
         let mut log = vec![0_u8; LOG];
@@ -131,13 +131,13 @@ impl Modules {
         let mut module = ptr::null_mut();
         let load = |_| {
             let (options, values) = (options.as_mut_ptr(), values.as_mut_ptr());
-            // SAFETY: the image ends with a zero; there are as many options as values, and the log is as long as they say.
+            // SAFETY: the image is zero-terminated; there are as many options as values, and the log has the given size.
             unsafe { sys::cuModuleLoadDataEx(&mut module, image.as_ptr().cast(), 2, options, values) }.result()
         };
         let Err(error) = self.context.call(load) else { return Ok(module) };
         let mut reason = describe(error);
         if error.0 == CUresult::CUDA_ERROR_UNSUPPORTED_PTX_VERSION {
-            reason += &format!("; the driver is for CUDA {}: install a newer one", self.version);
+            reason += &format!("; the driver supports CUDA {}: install a newer one", self.version);
         }
         let log = String::from_utf8_lossy(&log);
         let log = log.split('\0').next().unwrap_or_default().trim();
@@ -154,7 +154,7 @@ impl Drop for Modules {
     fn drop(&mut self) {
         let _ = self.context.wait();
         for &module in self.loaded().modules.values() {
-            // SAFETY: loaded above; nothing of it runs any more.
+            // SAFETY: loaded above; none of its kernels is running any more.
             let _ = self.context.call(|_| unsafe { module::unload(module) });
         }
     }
@@ -162,5 +162,5 @@ impl Drop for Modules {
 
 /// Text for the driver, which ends at the first zero.
 fn text(text: &str) -> Result<CString, Fault> {
-    CString::new(text).map_err(|_| Fault::Failed("a name or PTX has a zero in it".to_owned()))
+    CString::new(text).map_err(|_| Fault::Failed("a name or PTX contains a zero byte".to_owned()))
 }

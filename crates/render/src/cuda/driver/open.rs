@@ -1,4 +1,4 @@
-//! From a number to a device that is ready.
+//! From a device number to a device that is ready for use.
 
 use std::sync::Arc;
 
@@ -8,12 +8,12 @@ use super::{Driver, Fault};
 use crate::cuda::gpu::{Gpu, visible_devices};
 use crate::{Device, RenderError};
 
-/// Makes a CUDA device ready: the one with this number, or the first that works. The driver lists the fastest first.
+/// Prepares a CUDA device: the one with this number, or the first that works. The driver lists the fastest first.
 ///
-/// Each call gives a device with a queue, modules and memory of its own, so that renderers do not meet.
+/// Each call returns a device with its own stream, modules and memory, so that renderers do not interfere.
 ///
 /// # Errors
-/// [`RenderError::Device`] with what was asked for, why it cannot be used, and what to do.
+/// [`RenderError::Device`] with the requested device, why it cannot be used, and what to do.
 pub fn open_cuda(number: Option<u32>) -> Result<Arc<Driver>, RenderError> {
     let opened = Library::open().map_err(|why| why.to_string()).and_then(|library| match number {
         Some(number) => numbered(&library, number),
@@ -23,7 +23,7 @@ pub fn open_cuda(number: Option<u32>) -> Result<Arc<Driver>, RenderError> {
 }
 
 impl Library {
-    /// Makes one of the devices ready, or says why it cannot be used.
+    /// Prepares one of the devices, or returns why it cannot be used.
     pub(crate) fn ready(&self, gpu: &Gpu) -> Result<Driver, String> {
         if let Some(refusal) = gpu.refusal(Needs::of_kernels()) {
             return Err(refusal);

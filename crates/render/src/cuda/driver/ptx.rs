@@ -1,7 +1,7 @@
-//! The kernels as PTX, and what a driver must be to take them.
+//! The kernels as PTX, and the requirements on a driver.
 //!
-//! PTX is text for a virtual machine. `cargo xtask kernels` writes it ahead of time; the driver compiles it for its device when a
-//! module is loaded, and keeps the result in a cache of its own (`~/.nv/ComputeCache`) for the next start.
+//! PTX is text for a virtual machine. `cargo xtask kernels` generates it ahead of time; the driver compiles it for its device
+//! when a module is loaded, and keeps the result in its own cache (`~/.nv/ComputeCache`) for the next start.
 
 use crate::cuda::gpu::Version;
 
@@ -20,8 +20,8 @@ pub(super) const MODULES: [(&str, &str); 11] = [
     ("scan", include_str!("../ptx/scan.ptx")),
 ];
 
-/// PTX version, the first CUDA version that takes it, and the first branch of NVIDIA's driver for that one ("Release History" in
-/// the PTX ISA document). Nothing older is listed: the bindings need a driver for CUDA 12.0 in any case.
+/// PTX version, the first CUDA version that supports it, and the first branch of NVIDIA's driver for that one ("Release History"
+/// in the PTX ISA document). Nothing older is listed: the bindings need a driver for CUDA 12.0 in any case.
 const VERSIONS: [(&str, Version, u32); 10] = [
     ("8.0", Version { major: 12, minor: 0 }, 525),
     ("8.1", Version { major: 12, minor: 1 }, 530),
@@ -35,10 +35,10 @@ const VERSIONS: [(&str, Version, u32); 10] = [
     ("9.0", Version { major: 13, minor: 0 }, 580),
 ];
 
-/// What PTX asks of a machine.
+/// What PTX requires of a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Needs {
-    /// CUDA version that the driver must be for.
+    /// CUDA version that the driver must support.
     pub(crate) cuda: Version,
     /// First branch of NVIDIA's driver for it.
     pub(crate) driver: u32,
@@ -47,12 +47,12 @@ pub(crate) struct Needs {
 }
 
 impl Needs {
-    /// What all modules together need.
+    /// The requirements of all modules together.
     pub(crate) fn of_kernels() -> Needs {
         MODULES.iter().fold(Needs::of(""), |needs, (_, text)| needs.and(Needs::of(text)))
     }
 
-    /// What one module needs. A version that is not in the table is left to the driver to judge.
+    /// The requirements of one module. A version that is not in the table is left to the driver.
     fn of(text: &str) -> Needs {
         let version = directive(text, ".version").and_then(|word| VERSIONS.iter().find(|row| row.0 == word));
         let (_, cuda, driver) = *version.unwrap_or(&VERSIONS[0]);

@@ -1,7 +1,7 @@
 //! Copies between host and device through page-locked memory.
 //!
-//! The device can only reach host memory that is locked in place. The driver's own way with ordinary memory copies it piece by
-//! piece on one thread, while the bus waits. Here several pieces are on their way while all threads copy the others.
+//! The device can access only page-locked host memory. For pageable memory, the driver copies piece by piece on one thread, while
+//! the bus waits. Here several pieces are in flight while all threads copy the others.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -14,17 +14,17 @@ use super::context::Context;
 use super::mark::Event;
 use crate::cuda::Fault;
 
-/// Bytes of a piece: long enough that a copy's start-up does not count.
+/// Bytes per piece: long enough that the start-up cost of a copy does not matter.
 const PIECE: usize = 4 << 20;
 
-/// Pieces that are on their way at once, and that are kept for the next copy.
+/// Number of pieces in flight at once, which are kept for the next copy.
 const PIECES: usize = 4;
 
 /// Bytes that one thread copies at a time.
 const GRAIN: usize = 256 << 10;
 
-/// Page-locked memory that copies go through. No lock is held while a copy runs, so that copies may run side by side, and in any
-/// nesting that a thread pool makes of them.
+/// Page-locked staging memory. No lock is held while a copy runs, so that copies may run concurrently, and in any nesting that a
+/// thread pool produces.
 pub(super) struct Staging {
     context: Arc<Context>,
     /// Pieces that nobody fills or empties; the device may still be reading them. Oldest first.
@@ -43,7 +43,7 @@ impl Staging {
             let mut piece = self.take()?;
             let staged = &mut piece.bytes()[..part.len()];
             copy(staged, part);
-            // SAFETY: the caller has checked the address; the piece stays until its event has come.
+            // SAFETY: the caller has checked the address; the piece stays alive until its event is reached.
             let queue = |stream| unsafe { result::memcpy_htod_async(address, staged, stream) };
             self.context.run(|| format!("copying {} bytes to the device", bytes.len()), queue)?;
             piece.event.record()?;
@@ -62,7 +62,7 @@ impl Staging {
             }
             let mut piece = self.take()?;
             let staged = &mut piece.bytes()[..part.len()];
-            // SAFETY: the caller has checked the address; the piece stays until its event has come.
+            // SAFETY: the caller has checked the address; the piece stays alive until its event is reached.
             let queue = |stream| unsafe { result::memcpy_dtoh_async(staged, address, stream) };
             self.context.run(|| format!("copying {length} bytes from the device"), queue)?;
             piece.event.record()?;
@@ -83,7 +83,7 @@ impl Staging {
         Ok(())
     }
 
-    /// A piece that the device is done with.
+    /// A piece that the device has finished with.
     fn take(&self) -> Result<Piece, Fault> {
         let piece = {
             let mut idle = self.idle();
@@ -112,11 +112,11 @@ impl Staging {
 struct Piece {
     context: Arc<Context>,
     start: *mut u8,
-    /// Comes when the device is done with it.
+    /// Reached when the device has finished with it.
     event: Event,
 }
 
-// SAFETY: the memory is the piece's own.
+// SAFETY: the memory belongs to the piece.
 unsafe impl Send for Piece {}
 
 impl Piece {
@@ -125,14 +125,14 @@ impl Piece {
         let what = || format!("locking {PIECE} bytes of host memory");
         // SAFETY: the memory belongs to nobody else, and is freed in `drop`.
         let start = context.run(what, |_| unsafe { result::malloc_host(PIECE, 0) })?.cast::<u8>();
-        // SAFETY: there are that many bytes. Written once, so that they may be looked at.
+        // SAFETY: the allocation has this size. It is written once, so that it may be read.
         unsafe { start.write_bytes(0, PIECE) };
         Ok(Piece { context: Arc::clone(context), start, event })
     }
 
-    /// The memory. The device must be done with it.
+    /// The memory. The device must have finished with it.
     fn bytes(&mut self) -> &mut [u8] {
-        // SAFETY: there are that many bytes, all written, and the piece is borrowed as they are.
+        // SAFETY: the allocation has this size and is initialised, and the slice borrows the piece.
         unsafe { std::slice::from_raw_parts_mut(self.start, PIECE) }
     }
 }
@@ -146,8 +146,8 @@ impl Drop for Piece {
     }
 }
 
-/// Copies with all threads where it pays. Fresh memory is given out by the system while it is written, and that takes longer than
-/// the copy.
+/// Copies with all threads where it pays. The system provides fresh memory page by page as it is written, and that takes longer
+/// than the copy.
 fn copy(to: &mut [u8], from: &[u8]) {
     if from.len() <= GRAIN {
         to.copy_from_slice(from);

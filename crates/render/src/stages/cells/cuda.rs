@@ -1,4 +1,4 @@
-//! Surface points by cell on a CUDA device: a block sorts each tile of the picture.
+//! Surface points by cell on a CUDA device: a block sorts each tile of the image.
 
 use bytemuck::Zeroable;
 use lightmesh_layout::constants::{TILE, TILE_SIDE};
@@ -13,7 +13,7 @@ use crate::light_mesh::LightMesh;
 
 const GROUP: Kernel = Kernel { module: "cells", name: "group_points" };
 const GATHER: Kernel = Kernel { module: "cells", name: "gather_items" };
-/// Tiles of the first launch ever.
+/// Number of tiles in the first launch.
 const FIRST_TILES: u64 = 256;
 
 pub(crate) fn cells<R: Runtime>(
@@ -36,7 +36,7 @@ pub(crate) fn cells<R: Runtime>(
         counts: counts.output(),
         ..GroupCells::zeroed()
     };
-    // 1. to 3. Each tile sorts its surface points by cell and cuts them into items.
+    // 1. to 3. Each tile sorts its surface points by cell and splits them into items.
     let progress = wave.rays.len() as u64;
     cuda.in_pieces(wave.job, GROUP, Work { units: tiles, cost: 1, first: FIRST_TILES, progress }, |piece| {
         cuda.launch(GROUP, blocks_for(&piece, TILE), &GroupCells { first_block: piece.start, ..record })

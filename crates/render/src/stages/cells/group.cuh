@@ -1,4 +1,4 @@
-// Object points by cell, tile by tile: a block of 1024 threads takes a tile of 32 x 32 pixels, or 1024 rays of a list.
+// Surface points by cell, tile by tile: a block of 1024 threads takes a tile of 32 x 32 pixels, or 1024 rays of a list.
 #pragma once
 
 #include "cuda/rays.cuh"
@@ -7,18 +7,18 @@
 #include "light_mesh/lattice.cuh"
 #include "surface.cuh"
 
-// What sorts an object point: 16 bits of its cell's hash, 6 bits of its triangle's, 10 bits of its thread. Points of one triangle
-// come together, so that items have few normals and small boxes. Cells whose hashes are equal may come out mixed; then they are cut
-// into more items, and nothing else changes.
+// The sort key of a surface point: 16 bits of its cell's hash, 6 bits of its triangle's, 10 bits of its thread. Points of one
+// triangle are adjacent, so that items have few normals and small boxes. Cells with equal hashes may be interleaved; then they are
+// split into more items, and nothing else changes.
 #define NO_POINT 0xffffffffu
 
 DEVICE unsigned sort_word(unsigned long long cell, unsigned triangle, unsigned thread) {
     const unsigned hash = (unsigned)((cell * GOLDEN_RATIO) >> 48);
-    // All ones is left to threads without an object point.
+    // All ones is reserved for threads without a surface point.
     return (hash < 0xffff ? hash : 0xfffe) << 16 | triangle * (unsigned)(GOLDEN_RATIO >> 32) >> 26 << 10 | thread;
 }
 
-// Sorts one word a thread, ascending (bitonic sort: Batcher 1968). Partners within a warp exchange through registers.
+// Sorts one word per thread, ascending (bitonic sort: Batcher 1968). Partners within a warp exchange through registers.
 DEVICE unsigned sorted(unsigned word, unsigned *shared) {
     const unsigned thread = threadIdx.x;
     for (unsigned length = 2; length <= TILE; length *= 2) {
@@ -40,7 +40,7 @@ DEVICE unsigned sorted(unsigned word, unsigned *shared) {
     return word;
 }
 
-// The largest value of this thread and all before it. `shared` has a place for each warp.
+// The largest value of this thread and all before it. `shared` has an entry for each warp.
 DEVICE unsigned largest_before(unsigned value, unsigned *shared) {
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / WARP;
     for (unsigned step = 1; step < WARP; step *= 2) {
@@ -57,7 +57,7 @@ DEVICE unsigned largest_before(unsigned value, unsigned *shared) {
     return value;
 }
 
-// How many threads before this one have a flag, and how many there are in all. `shared` has a place for each warp.
+// How many threads before this one have the flag set, and how many there are in all. `shared` has an entry for each warp.
 DEVICE unsigned flags_before(bool flag, unsigned *shared, unsigned &all) {
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / WARP;
     const unsigned flags = __ballot_sync(ALL_LANES, flag);
@@ -82,7 +82,7 @@ DEVICE void group_points_of_tile(const GroupCells &args) {
     const unsigned thread = threadIdx.x;
     const unsigned long long tile = args.first_block + blockIdx.x;
 
-    // 1. The cell of each object point.
+    // 1. The cell of each surface point.
     unsigned ray = 0;
     const bool in_picture = tile_ray_of_thread(args.rays, (unsigned)tile, thread, ray);
     unsigned word = NO_POINT;
@@ -127,7 +127,7 @@ DEVICE void group_points_of_tile(const GroupCells &args) {
         args.counts[tile] = items;
 }
 
-// 4. Copies the items of a tile to their place among all.
+// 4. Copies the items of a tile to their place in the list.
 DEVICE void gather_items_of_tile(const GroupCells &args) {
     const unsigned first = args.counts[blockIdx.x], count = args.counts[blockIdx.x + 1] - first;
     if (threadIdx.x < count)

@@ -1,14 +1,14 @@
-// The object points of an item as a warp sees them, one a lane.
+// The surface points of an item as a warp sees them, one per lane.
 #pragma once
 
 #include "cuda/warp.cuh"
 #include "surface.cuh"
 
-// The object point of a lane.
+// The surface point of a lane.
 struct ItemLane {
     SurfacePoint point;
     unsigned ray;
-    // Whether the lane has an object point. One without takes the item's first, and no part.
+    // Whether the lane has a surface point. One without uses the item's first, and takes no part.
     bool alive;
 };
 

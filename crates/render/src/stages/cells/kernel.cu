@@ -1,5 +1,5 @@
-// Surface points by light-mesh cell on a CUDA device, at most 32 to an item. Twin of cpu.rs, tile by tile: the cells of a tile of the
-// picture are grouped, not those of the whole picture, so that no large sort is needed.
+// Surface points by light-mesh cell on a CUDA device, at most 32 per item. Twin of cpu.rs, tile by tile: the cells of a tile of the
+// image are grouped, not those of the whole image, so that no large sort is needed.
 //
 // 1. to 3. `group_points`: the items of each tile.
 // 4. `gather_items`: those of all tiles in one list.

@@ -1,5 +1,5 @@
-//! Formula (3) on the CPU: the values of a cell's template points are fetched once, then every object point of the cell takes
-//! its mean.
+//! Formula (3) on the CPU: the values of a cell's template points are fetched once, then every surface point of the cell takes its
+//! mean.
 
 use std::ops::Range;
 
@@ -17,14 +17,14 @@ use crate::light_mesh::{CellPoints, LightMesh, Span, UsedPoints, Windows, point_
 use crate::shadow::{above_horizon, fallback};
 use crate::simd::dispatch;
 
-/// Object points that one task takes.
+/// Number of surface points per task.
 const RUN: usize = 4096;
 
 pub(crate) fn interpolate(wave: &HostWave, seen: &HostSeen) -> Visibility {
     Interpolation { wave, seen }.run()
 }
 
-/// What formula (3) needs.
+/// The inputs of formula (3).
 struct Interpolation<'a> {
     wave: &'a HostWave<'a>,
     seen: &'a HostSeen<'a>,
@@ -62,7 +62,8 @@ impl Interpolation<'_> {
         visibility
     }
 
-    /// Finds the shares of the object points of some cells, one for each light, and how many object points found no light point.
+    /// Computes the shares of the surface points of some cells, one for each light, and counts the surface points without light
+    /// points.
     #[inline(always)]
     fn fill<S: Simd>(&self, simd: S, windows: &Windows, run: Range<usize>, shares: &mut [f32]) -> u64 {
         let (wave, lights) = (self.wave, self.wave.lights());
@@ -100,7 +101,7 @@ impl Interpolation<'_> {
     }
 }
 
-/// Cuts a slice into parts of these lengths.
+/// Splits a slice into parts of these lengths.
 fn parts_of(mut rest: &mut [f32], lengths: impl Iterator<Item = usize>) -> Vec<&mut [f32]> {
     let part = |length| {
         let (part, behind) = std::mem::take(&mut rest).split_at_mut(length);
@@ -117,17 +118,17 @@ struct CellValues<'a> {
     windows: &'a Windows,
     bricks: Vec<Option<usize>>,
     lights: Vec<LightValues>,
-    /// Weights of an object point's light points.
+    /// Weights of a surface point's light points.
     weights: Vec<f32>,
 }
 
-/// The template points' values for one light, as masks. Points that nobody uses come out as dark; no object point has them.
+/// The template points' values for one light, as masks. Unused points come out as dark; no surface point refers to them.
 struct LightValues {
-    /// Points that see all of the light.
+    /// Points that see the whole light.
     full: Vec<u32>,
-    /// Points that see some of it.
+    /// Points that see part of it.
     some: Vec<u32>,
-    /// The share that each point sees, padded to whole words; empty for a light without a size, which is seen or not.
+    /// The share that each point sees, padded to whole words; empty for a light without an area, which is visible or not.
     share: Vec<f32>,
 }
 
@@ -202,7 +203,7 @@ impl LightValues {
     }
 }
 
-/// Formula (3) without χ for one object point.
+/// Formula (3) without χ for one surface point.
 struct Means<'a> {
     lights: &'a [LightValues],
     points: &'a CellPoints,
@@ -211,7 +212,7 @@ struct Means<'a> {
     position: Vec3,
     /// Light points of the mask.
     used: u64,
-    /// Their weights, and the sum once a light has asked for it: weights are the same for all lights.
+    /// Their weights, and the sum once a light has required it: weights are the same for all lights.
     weights: &'a mut [f32],
     sum: Option<f32>,
 }
@@ -229,7 +230,7 @@ impl<'a> Means<'a> {
         Means { lights, points, mesh, mask, position, used: population(mask), weights, sum: None }
     }
 
-    /// The mean for a light; `None` where no light point counts.
+    /// The mean for a light; `None` if no light point counts.
     #[inline(always)]
     fn mean<S: Simd>(&mut self, simd: S, light: usize) -> Option<f32> {
         if self.used == 0 {
@@ -239,7 +240,7 @@ impl<'a> Means<'a> {
         if values.share.is_empty() { self.mean_of_bits(simd, values) } else { self.mean_of_shares(simd, values) }
     }
 
-    /// Where all light points see the same, and where all weights are 1, numbers give the mean.
+    /// If all light points see the same, or all weights are 1, counts give the mean.
     #[inline(always)]
     fn mean_of_bits<S: Simd>(&mut self, simd: S, values: &LightValues) -> Option<f32> {
         let mut lit = 0;
@@ -259,7 +260,7 @@ impl<'a> Means<'a> {
         }
     }
 
-    /// Where light points see all or nothing, the mean is known without weights.
+    /// If light points see all or nothing, the mean is known without weights.
     #[inline(always)]
     fn mean_of_shares<S: Simd>(&mut self, simd: S, values: &LightValues) -> Option<f32> {
         let (mut dark, mut full) = (true, true);
@@ -277,7 +278,7 @@ impl<'a> Means<'a> {
         }
     }
 
-    /// Finds the weights at the first call. `None` where all of them vanish, as at the rim they may.
+    /// Computes the weights at the first call. `None` if all of them vanish, which is possible at the rim.
     #[inline(always)]
     fn weigh<S: Simd>(&mut self, simd: S) -> Option<f32> {
         let sum = match self.sum {

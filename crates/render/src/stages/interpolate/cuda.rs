@@ -1,4 +1,4 @@
-//! Formula (3) on a CUDA device: a warp for each item, then long tests where no light point counts.
+//! Formula (3) on a CUDA device: one warp per item, then long tests where no light point counts.
 
 use lightmesh_layout::constants::{ITEM_WARPS, MOST_LIGHTS};
 use lightmesh_layout::stages::Interpolate;
@@ -14,12 +14,12 @@ use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, Cuda, PerStructure, Work, blocks_for, per_structure, sampling, warps_for};
 use crate::light_mesh::window_bricks;
 
-/// What formula (3) needs.
+/// The inputs of formula (3).
 pub(crate) type DeviceSeen<'a, R> = Seen<'a, DeviceCells<R>, DeviceMasks<R>, DevicePoints<R>, DeviceLit<R>>;
 
 const INTERPOLATE: Kernel = Kernel { module: "interpolate", name: "interpolate" };
 const FALLBACK: PerStructure = per_structure!("interpolate", "fallback");
-/// Items, and blocks of rays, of the first launches ever.
+/// Items, and blocks of rays, in the first launches.
 const FIRST_ITEMS: u64 = 4096;
 const FIRST_BLOCKS: u64 = 256;
 
@@ -66,7 +66,7 @@ pub(crate) fn interpolate<R: Runtime>(
             &Interpolate { first: piece.start, count, ..record },
         )
     })?;
-    // 2. Object points without light points take their own long tests.
+    // 2. Surface points without light points take their own long tests.
     let kernel = FALLBACK.of(wave.scene.structure);
     let blocks = (wave.rays.len() as u64).div_ceil(u64::from(BLOCK));
     cuda.in_pieces(wave.job, kernel, Work { units: blocks, cost, first: FIRST_BLOCKS, progress: 0 }, |piece| {

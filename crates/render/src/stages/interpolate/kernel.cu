@@ -1,6 +1,6 @@
-// Step 5, first half, on a CUDA device: the weighted mean of what an object point's light points see. Formula (3).
+// Step 5, first half, on a CUDA device: the weighted mean of what a surface point's light points see. Formula (3).
 //
-// `interpolate`: a warp an item; `fallback_*`: long tests of object points that no light point speaks for.
+// `interpolate`: one warp per item; `fallback_*`: long tests of surface points without usable light points.
 #include "cuda/prelude.cuh"
 
 #include "accel/walk.cuh"
@@ -13,10 +13,10 @@
 #include "stages/cells/item.cuh"
 #include "surface.cuh"
 
-// What tells the fallback to find a share.
+// Tells the fallback to compute a share.
 #define UNKNOWN -1.0f
 
-// Where an item's light points are kept.
+// Where an item's light points are stored.
 struct ItemPoints {
     IVec3 cell;
     Window window;
@@ -25,7 +25,7 @@ struct ItemPoints {
     const unsigned *seen;
 };
 
-// The share of a light with a size that a light point sees.
+// The share of an area light that a light point sees.
 DEVICE float light_point_share(const Interpolate &args, const LitBy &lit, const ItemPoints &points, IVec3 point) {
     const unsigned slot = points.slots[window_place(points.window, point)];
     const unsigned bit = point_bit(point);
@@ -43,7 +43,7 @@ DEVICE float falling_weight(const LightMesh &mesh, float q2) {
 
 // The lanes, by what their light points see of a light.
 struct LitLanes {
-    // Have a light point; have one that sees some of the light; have one that does not see all of it.
+    // Have a light point; have one that sees part of the light; have one that does not see all of it.
     unsigned any, some, not_full;
 };
 
@@ -66,7 +66,7 @@ DEVICE LitLanes lit_lanes(const Interpolate &args, const LitBy &lit, const ItemP
     return lanes;
 }
 
-// Formula (3) without χ for the lanes in `mixed`; negative where the weights vanish altogether.
+// Formula (3) without χ for the lanes in `mixed`; negative if all weights vanish.
 DEVICE float weighted_mean(const Interpolate &args, const LitBy &lit, const ItemPoints &points, const Vec3 &position,
                            unsigned mixed) {
     const LightMesh &mesh = args.mesh;
@@ -93,7 +93,7 @@ DEVICE float weighted_mean(const Interpolate &args, const LitBy &lit, const Item
     return weights > 0.0f ? fminf(products / weights, 1.0f) : UNKNOWN;
 }
 
-// Lights without a size, LIGHTS of them from `first` on: which light points see them is a bit each.
+// LIGHTS lights without an area, starting at `first`: which light points see them is one bit each.
 //
 // 2. A lane's light points that see a light are the common bits of its mask and a word that is the same for the warp. Returns the
 // number of the lane's light points.
@@ -106,7 +106,7 @@ DEVICE unsigned count_lit(const Interpolate &args, const ItemPoints &points, uns
     for (unsigned word = 0; word < mesh.words; word++) {
         const unsigned k = WARP * word + lane;
         const unsigned seen = next_seen;
-        // Asked for a round before it is needed: masks come from afar.
+        // Prefetched one iteration before it is needed: masks have a long latency.
         if (word + 1 < mesh.words)
             next_seen = points.seen[k + WARP];
         // Half of the points lie below the tangent plane.
@@ -164,12 +164,12 @@ DEVICE void weighted_means(const Interpolate &args, const ItemPoints &points, co
                 products[light] += lit_words[light * mesh.words + k / 32] >> k % 32 & 1 ? weight : 0.0f;
         }
     }
-    // Weights that vanish at the rim may vanish altogether.
+    // Weights that vanish at the rim may all vanish.
     for (unsigned light = 0; light < LIGHTS; light++)
         means[light] = weights > 0.0f ? fminf(products[light] / weights, 1.0f) : UNKNOWN;
 }
 
-// 4. χ; and what must be found otherwise. Returns whether that is so.
+// 4. χ; and whether a share remains to be computed. Returns whether that is so.
 DEVICE bool write_share(const Interpolate &args, const ItemLane &lane, unsigned light, float most, float share) {
     share = most == 0.0f ? 0.0f : fminf(share, most);
     if (lane.alive)
@@ -177,7 +177,7 @@ DEVICE bool write_share(const Interpolate &args, const ItemLane &lane, unsigned 
     return share < 0.0f;
 }
 
-// The shares of LIGHTS lights without a size. Returns whether the lane falls back.
+// The shares of LIGHTS lights without an area. Returns whether the lane falls back.
 template <unsigned LIGHTS>
 DEVICE bool lights_without_size(const Interpolate &args, const ItemPoints &points, const ItemLane &lane, unsigned first,
                                 unsigned *lit_words, unsigned &used) {
@@ -189,7 +189,7 @@ DEVICE bool lights_without_size(const Interpolate &args, const ItemPoints &point
     for (unsigned i = 0; i < LIGHTS; i++) {
         const bool is_here = first + i < args.scene.light_count && args.lit[first + i].bits != nullptr;
         most[i] = is_here && lane.alive ? above_horizon(lane.point, args.scene.lights[first + i], reach) : 0.0f;
-        // Where all weights are 1, and where all light points see the same, numbers give the mean.
+        // If all weights are 1, or all light points see the same, counts give the mean.
         means[i] = used > 0 ? (float)lit[i] / (float)used : UNKNOWN;
         mixed |= args.mesh.weight != LightMesh::WEIGHT_CONSTANT && most[i] > 0.0f && lit[i] > 0 && lit[i] < used;
     }
@@ -208,13 +208,13 @@ DEVICE bool lights_without_size(const Interpolate &args, const ItemPoints &point
     return fell_back;
 }
 
-// The share of one light with a size. Returns whether the lane falls back.
+// The share of one area light. Returns whether the lane falls back.
 DEVICE bool light_with_size(const Interpolate &args, const ItemPoints &points, const ItemLane &lane, unsigned light) {
     const LitBy lit = args.lit[light];
     const unsigned index = lane_of_thread();
     const float reach = scene_reach(args.scene, lane.point.origin);
     const float most = lane.alive ? above_horizon(lane.point, args.scene.lights[light], reach) : 0.0f;
-    // 2. All alike: the mean is known without weights.
+    // 2. All the same: the mean is known without weights.
     const LitLanes lanes = lit_lanes(args, lit, points);
     float share = lanes.some >> index & 1 ? 1.0f : 0.0f;
     // 3. The weighted mean.
@@ -228,7 +228,7 @@ DEVICE bool light_with_size(const Interpolate &args, const ItemPoints &points, c
     return write_share(args, lane, light, most, share);
 }
 
-// Lists the rays of lanes that fall back. Their order changes from run to run; what they find does not depend on it.
+// Lists the rays of lanes that fall back. Their order varies from run to run; their results do not depend on it.
 DEVICE void list_fallbacks(const Interpolate &args, unsigned ray, bool falls_back) {
     const unsigned lanes = __ballot_sync(ALL_LANES, falls_back), lane = lane_of_thread();
     if (lanes == 0)
@@ -280,7 +280,7 @@ KERNEL(interpolate, Interpolate, ITEM_WARPS * WARP, 8) {
     list_fallbacks(args, own.ray, fell_back);
 }
 
-// The visible share of each light that is still unknown, from rays of the object point's own.
+// The visible share of each light that is still unknown, from the surface point's own rays.
 template <typename Structure>
 DEVICE void fallback(const Interpolate &args, const Structure &structure) {
     const unsigned long long number = (args.first + blockIdx.x) * blockDim.x + threadIdx.x;

@@ -19,7 +19,7 @@ const LIGHTS: [LightKind; 2] = [
     LightKind::Sphere { position: Vec3::new(-2.0, 4.0, 2.0), radius: 0.4 },
 ];
 
-/// w of formula (3) as the method states it.
+/// w of formula (3) as defined by the method.
 fn w(weight: Weight, q: f64) -> f64 {
     match weight {
         Weight::Constant => 1.0,
@@ -63,7 +63,7 @@ fn visibility_is_the_weighted_mean_of_the_light_points() {
                     let center = scene.scene.lights[light].position().unwrap();
                     let facing = point.normal.dot(center - point.position);
                     if facing.abs() < 0.5 || used.is_empty() {
-                        // χ and the fallback have tests of their own.
+                        // χ and the fallback have separate tests.
                         continue;
                     }
                     let (mut sum, mut weights) = (0.0, 0.0);

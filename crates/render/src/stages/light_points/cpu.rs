@@ -1,4 +1,4 @@
-//! Step 3 on the CPU: which bricks, then which points in them.
+//! Step 3 on the CPU: first the bricks, then the points in them.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -11,7 +11,7 @@ use crate::data::masks::Masks;
 use crate::job::Job;
 use crate::light_mesh::{BrickKey, BrickMap, LightMesh, UsedPoints, Windows, point_of};
 
-/// Object points that one task takes.
+/// Number of surface points per task.
 const RUN: usize = 8192;
 
 pub(crate) fn light_points(job: &Job, cells: &CellGroups, masks: &Masks, mesh: &LightMesh) -> UsedPoints {
@@ -51,7 +51,7 @@ pub(crate) fn light_points(job: &Job, cells: &CellGroups, masks: &Masks, mesh: &
     points
 }
 
-/// Turns the masks of a cell's object points into marks in the bricks around the cell.
+/// Turns the masks of a cell's surface points into marks in the bricks around the cell.
 struct Marker<'a> {
     cells: &'a CellGroups,
     masks: &'a Masks,
@@ -65,7 +65,7 @@ impl<'a> Marker<'a> {
         Marker { cells, masks, windows, marks: vec![0; windows.len()], union: vec![0; masks.words] }
     }
 
-    /// Calls `mark` for each brick that a cell of `run` uses points of, with these points. A brick comes once a cell.
+    /// Calls `mark` for each brick in which a cell of `run` uses points, with these points. A brick may come once per cell.
     fn each_brick(&mut self, run: Range<usize>, mut mark: impl FnMut(BrickKey, u64)) {
         for group in run {
             let window = self.windows.around(point_of(self.cells.cell(group)));

@@ -1,7 +1,7 @@
 //! Step 3 on a CUDA device: a table of bricks, marks in them, ranks, a list.
 //!
 //! The table is filled so that it looks the same whatever the order of the threads (Shun, Blelloch: *Phase-Concurrent Hash Tables for
-//! Determinism*, SPAA 2014). So slots, ranks and lists repeat from run to run.
+//! Determinism*, SPAA 2014). So slots, ranks and lists are reproducible.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ const MARK: Kernel = Kernel { module: "light_points", name: "mark_points" };
 const COUNT: Kernel = Kernel { module: "light_points", name: "count_points" };
 const LIST: Kernel = Kernel { module: "light_points", name: "list_points" };
 
-/// Items of the first launch ever.
+/// Number of items in the first launch.
 const FIRST: u64 = 4096;
 /// Slots of the smallest table.
 const LEAST_CAPACITY: usize = 1024;
@@ -81,7 +81,7 @@ pub(crate) fn light_points<R: Runtime>(
     Ok(points)
 }
 
-/// Some of the used light points: `used`, by slot.
+/// A subset of the used light points: `used`, by slot.
 pub(crate) fn only<R: Runtime>(
     cuda: &Cuda<R>,
     points: &DevicePoints<R>,
@@ -90,7 +90,7 @@ pub(crate) fn only<R: Runtime>(
     listed(cuda, (Arc::clone(&points.keys), Arc::clone(&points.slots)), used)
 }
 
-/// Keys of a table, and where the bricks of each item's window lie in it.
+/// Keys of a table, and the slots of the bricks of each item's window.
 type Bricks<R> = (Arc<Buffer<R, u64>>, Arc<Buffer<R, u32>>);
 
 /// Ranks and list of used points in a table.
@@ -113,7 +113,7 @@ fn listed<R: Runtime>(
     Ok(DevicePoints { keys, used, rank, points, slots, count })
 }
 
-/// Launches a kernel that takes a brick of an item's window a thread, over all items.
+/// Launches a kernel with one thread per brick of an item's window, over all items.
 fn each_item<R: Runtime>(cuda: &Cuda<R>, job: &Job, kernel: Kernel, record: &LightPoints) -> Result<(), RenderError> {
     let work = Work { units: record.item_count, cost: 1, first: FIRST, progress: 0 };
     cuda.in_pieces(job, kernel, work, |piece| {

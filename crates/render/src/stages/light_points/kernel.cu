@@ -1,19 +1,19 @@
-// Step 3 on a CUDA device: each light point that some object point uses, once. Formula (7).
+// Step 3 on a CUDA device: each light point that some surface point uses, once. Formula (7).
 //
 // 1. `mark_items`: the used points of each brick around each item's cell.
 // 2. `insert_bricks`: the bricks that hold a used point, in a table.
-// 3. `mark_points`: the used points in each, and for each item where its bricks are.
+// 3. `mark_points`: the used points in each, and for each item the slots of its bricks.
 // 4. `count_points`, then a scan: ranks.
 // 5. `list_points`: all of them.
 //
-// The table is an ordered one: whatever the order of insertion, a key lies at the same place (Shun, Blelloch: Phase-Concurrent Hash
+// The table is ordered: whatever the order of insertion, a key ends up in the same slot (Shun, Blelloch: Phase-Concurrent Hash
 // Tables for Determinism, SPAA 2014). A larger key has priority: it pushes smaller ones on.
 #include "cuda/prelude.cuh"
 
 #include "cuda/warp.cuh"
 #include "light_mesh/window.cuh"
 
-// Shared memory of a warp: two words a brick, since it has no 64-bit "or" of its own.
+// Shared memory of a warp: two words per brick, since there is no 64-bit "or" in shared memory.
 KERNEL(mark_items, LightPoints, WARP * ITEM_WARPS, 8) {
     DYNAMIC_SHARED(unsigned, shared);
     const LightMesh &mesh = args.mesh;
@@ -42,7 +42,7 @@ KERNEL(mark_items, LightPoints, WARP * ITEM_WARPS, 8) {
         args.marks[index * bricks + place] = (unsigned long long)marks[2 * place + 1] << 32 | marks[2 * place];
 }
 
-// Inserts a brick. Counts it if it is new; counts more than there can be where the table is full.
+// Inserts a brick, and counts it if it is new. If the table is full, the count exceeds its capacity.
 DEVICE void insert(const LightPoints &args, unsigned long long key) {
     const unsigned mask = args.table.capacity - 1;
     unsigned long long value = key + 1;
@@ -52,7 +52,7 @@ DEVICE void insert(const LightPoints &args, unsigned long long key) {
         if (current == value)
             return;
         if (current < value) {
-            // Another thread may have been here first: then look again.
+            // Another thread may have been faster: then look again.
             if (atomicCAS(&args.table.keys[slot], current, value) != current)
                 continue;
             if (current == 0) {
@@ -70,13 +70,13 @@ DEVICE void insert(const LightPoints &args, unsigned long long key) {
 // A brick of the window around an item's cell.
 struct WindowBrick {
     unsigned long long key;
-    // Its points that the item's object points use.
+    // Its points that the item's surface points use.
     unsigned long long points;
-    // Its number among all of the launch's windows.
+    // Its index among all of the launch's windows.
     unsigned long long index;
 };
 
-// The brick of a thread; `false` where there is none.
+// The brick of a thread; `false` if there is none.
 DEVICE bool brick_of_thread(const LightPoints &args, WindowBrick &brick) {
     const int side = window_side(args.mesh);
     const unsigned bricks = side * side * side;
@@ -91,7 +91,7 @@ DEVICE bool brick_of_thread(const LightPoints &args, WindowBrick &brick) {
 }
 
 KERNEL(insert_bricks, LightPoints, BLOCK, 4) {
-    // A table that is more than half full is given up: the host makes a larger one.
+    // A table that is more than half full is abandoned: the host allocates a larger one.
     WindowBrick brick;
     if (*(volatile unsigned *)args.bricks <= args.table.capacity / 2 && brick_of_thread(args, brick) &&
         brick.points != 0)

@@ -1,4 +1,4 @@
-//! Each used light point is listed once, and none is missed.
+//! Each used light point is listed once, and none is missing.
 
 use std::collections::BTreeSet;
 

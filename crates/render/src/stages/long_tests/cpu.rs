@@ -13,7 +13,7 @@ use crate::light_mesh::{LightMesh, UsedPoints, bits};
 use crate::shadow::{Aim, Targets, hidden};
 use crate::surface::long_segment;
 
-/// Bricks that one task takes.
+/// Number of bricks per task.
 const RUN: usize = 64;
 
 pub(crate) fn long_tests(
@@ -36,7 +36,7 @@ pub(crate) fn long_tests(
         let found = test(&unknown, (index, light));
         let saved = (points.count() - unknown.count()) as u64 * u64::from(table.samples(index));
         Tally::add(&wave.job.tally.long_tests_saved, saved);
-        // Where the observer has asked to stop some answers are missing.
+        // If the observer has requested cancellation, some results are missing.
         if wave.job.check().is_ok() {
             table.learn(index, &rows, unknown.used(), &found);
         }
@@ -86,7 +86,7 @@ impl LongTests<'_> {
         LitBy::Share { seen: seen.collect(), samples }
     }
 
-    /// Whether each of the rays from the used points of some bricks is blocked, `samples` of them a point.
+    /// Whether each of the rays from the used points of some bricks is blocked, `samples` of them per point.
     fn hidden(&self, bricks: Range<usize>, samples: u32) -> Vec<bool> {
         let LongTests { wave, aim, light, index, .. } = *self;
         let mut segments = Vec::new();
@@ -99,7 +99,7 @@ impl LongTests<'_> {
         wave.job.piece(segments.len(), || hidden(wave, &segments))
     }
 
-    /// Number by formula (7) and position of the used points of some bricks, ascending.
+    /// Formula (7)'s number and the position of the used points of some bricks, in ascending order.
     fn positions(&self, bricks: Range<usize>) -> impl Iterator<Item = (u64, glam::Vec3)> + '_ {
         let lattice = &self.mesh.lattice;
         bricks.flat_map(|brick| self.points.points(brick)).map(|index| (lattice.packed(index), lattice.point(index)))

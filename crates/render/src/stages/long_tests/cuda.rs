@@ -1,4 +1,4 @@
-//! Step 4 on a CUDA device: one thread a light point, light by light.
+//! Step 4 on a CUDA device: one thread per light point, light by light.
 
 use lightmesh_layout::mesh::LitBy;
 use lightmesh_layout::stages::LongTests;
@@ -50,7 +50,7 @@ impl<R: Runtime> LongTestsOf<'_, R> {
         Ok(lit)
     }
 
-    /// Those whose answer a table does not know. It learns them.
+    /// Those whose result is not in a table. The results are added to it.
     fn unknown(&self, table: &mut DeviceTable<R>) -> Result<DeviceLit<R>, RenderError> {
         let LongTestsOf { cuda, wave, points, .. } = *self;
         let lights = &wave.scene.host.scene.lights;

@@ -1,11 +1,11 @@
-// Step 4 on a CUDA device: which lights does each light point see? Twin of cpu.rs, one thread a light point.
+// Step 4 on a CUDA device: which lights does each light point see? Twin of cpu.rs, one thread per light point.
 #include "cuda/prelude.cuh"
 
 #include "light_mesh/bricks.cuh"
 #include "light_mesh/lattice.cuh"
 #include "shadow/shadow.cuh"
 
-// Shadow rays from a light point that reach the light: one, or those of this launch.
+// Number of shadow rays from a light point that reach the light: of one, or of those of this launch.
 template <class Structure>
 DEVICE unsigned rays_that_arrive(const LongTests &args, const Structure &structure, IVec3 index) {
     const Vec3 from = lattice_point(args.mesh, index);

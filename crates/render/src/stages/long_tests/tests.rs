@@ -1,4 +1,4 @@
-//! What light points see, against a ray each through every triangle.
+//! What light points see, compared with one ray each through every triangle.
 
 use glam::{DVec3, Vec3};
 use lightmesh_scene::{LightKind, Weight};
@@ -19,7 +19,7 @@ use crate::view::View;
 const CENTER: Vec3 = Vec3::new(2.0, 4.0, 1.0);
 const SAMPLES: u32 = 6;
 
-/// A point light, a sun, and a ball of the size `radius` around the point light.
+/// A point light, a sun, and a ball of radius `radius` around the point light.
 fn lights(radius: f32) -> [LightKind; 3] {
     [
         LightKind::Point { position: CENTER, spread: 0.5 },
@@ -28,7 +28,7 @@ fn lights(radius: f32) -> [LightKind; 3] {
     ]
 }
 
-/// Hands the tested light points, what they see, and the job over to a judge.
+/// Passes the tested light points, what they see, and the job to `judge`.
 fn with_light_points(radius: f32, judge: impl Fn(&PreparedScene, &LightMesh, &UsedPoints, &Lit, &Job)) {
     let scene = pile(DVec3::ZERO, &lights(radius));
     let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
@@ -98,7 +98,7 @@ fn a_light_of_hardly_any_size_is_seen_as_a_point_light() {
                 differing += usize::from(share != whole);
             }
         }
-        // Light points within 1e-6 of a shadow's border.
+        // Light points within 1e-6 of a shadow's border may differ.
         assert!(differing * 1000 < points.count(), "{differing} of {}", points.count());
     });
 }

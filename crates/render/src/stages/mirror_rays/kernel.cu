@@ -1,4 +1,4 @@
-// The last term of formula (1) on a CUDA device: twin of cpu.rs, one thread a ray.
+// The last term of formula (1) on a CUDA device: twin of cpu.rs, one thread per ray.
 //
 // 1. `mirror_rays_count`: how many rays of each block of 256 are mirrored; then a scan.
 // 2. `mirror_rays_emit`: the mirror rays, in the order of the rays.
@@ -7,7 +7,7 @@
 #include "cuda/warp.cuh"
 #include "shading/shading.cuh"
 
-// The share of what a mirror at the object point of `ray` shows that reaches the pixel; zero where there is none.
+// The share of what a mirror at the surface point of `ray` shows that reaches the pixel; zero if there is no mirror.
 DEVICE Vec3 mirror_weight(const MirrorRays &args, unsigned ray) {
     if (ray >= args.rays.count)
         return splat(0.0f);
@@ -18,7 +18,7 @@ DEVICE Vec3 mirror_weight(const MirrorRays &args, unsigned ray) {
     return weight_of(args.rays, ray) * material_at(args.scene, hit, own)->ks;
 }
 
-// How many threads of the block before this one have a flag, and how many have one in all.
+// How many threads of the block before this one have the flag set, and how many in all.
 DEVICE unsigned flags_before(bool flag, unsigned &all) {
     SHARED(unsigned, warps, [BLOCK / WARP]);
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / WARP;

@@ -1,7 +1,7 @@
-//! The last term of formula (1), k_s · I_r: rays from mirroring object points along the mirrored view.
+//! The last term of formula (1), k_s · I_r: rays from reflecting surface points along the reflected view direction.
 //!
-//! In: rays and hits of one depth. Out: the rays of the next one, with the share of their radiance that reaches the eye. The
-//! recursion of Whitted's tracer is a loop over such lists.
+//! In: rays and hits of one depth. Out: the rays of the next depth, with the share of their radiance that reaches the eye. The
+//! recursion of Whitted's ray tracer is a loop over such lists.
 
 pub(crate) mod cpu;
 pub(crate) mod cuda;

@@ -44,7 +44,7 @@ fn rays_leave_as_they_came_on_the_other_side() {
     for (ray, expected) in next.rays.iter().zip([Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.0, 0.8, -0.6)]) {
         assert!(ray.direction.distance(expected) < 1e-6, "{}", ray.direction);
         assert!((ray.direction.length() - 1.0).abs() < 1e-6);
-        assert!(ray.origin.y >= 0.0 && ray.origin.y < 1e-4, "off the floor, but hardly: {}", ray.origin.y);
+        assert!(ray.origin.y >= 0.0 && ray.origin.y < 1e-4, "just off the floor: {}", ray.origin.y);
     }
     assert!(next.rays[0].origin.distance(Vec3::new(2.0, 0.0, 0.25)) < 1e-4);
 }
@@ -69,7 +69,7 @@ fn smooth_normals_turn_the_mirror_but_not_into_the_surface() {
     let next = mirrored(mirror(Vec3::ONE), Some(Vec3::new(-lean.sin(), lean.cos(), 0.0)), &rays(Vec::new()));
     let expected = Vec3::new(0.6, 0.8, 0.0);
     assert!((next.rays[0].direction.angle_between(expected) - 2.0 * lean).abs() < 1e-3);
-    // A normal that would mirror into the floor: the geometric one takes its place.
+    // A normal that would reflect into the floor: the geometric one is used instead.
     let next = mirrored(mirror(Vec3::ONE), Some(Vec3::new(0.99, 0.141, 0.0)), &rays(Vec::new()));
     assert!(next.rays.iter().all(|ray| ray.direction.y > 0.0), "{:?}", next.rays);
 }

@@ -11,7 +11,7 @@ use crate::job::Job;
 use crate::prepared::PreparedScene;
 use crate::view::View;
 
-/// Rays that one task traces: enough to keep the dispatch cheap, few enough to balance the threads.
+/// Number of rays per task: enough to keep the dispatch cheap, few enough to balance the threads.
 const BATCH: usize = 2048;
 
 pub(crate) fn camera_rays(view: &View, rows: Range<u32>) -> RayList {
@@ -20,7 +20,7 @@ pub(crate) fn camera_rays(view: &View, rows: Range<u32>) -> RayList {
     RayList { rays, pixels, ..RayList::default() }
 }
 
-/// The pixels of some rows in blocks of 4×2 within 8×8, so that consecutive rays stay together.
+/// The pixels of some rows in blocks of 4×2 within 8×8, so that consecutive rays are coherent.
 fn blocks_of_pixels(width: u32, rows: Range<u32>) -> Vec<u32> {
     let mut pixels = Vec::with_capacity((width * (rows.end - rows.start)) as usize);
     let cut = |range: Range<u32>, size: u32| {

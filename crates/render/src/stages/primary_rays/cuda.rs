@@ -10,7 +10,7 @@ use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerStructure, Work, block
 use crate::job::Job;
 
 const KERNELS: PerStructure = per_structure!("primary_rays", "primary_rays");
-/// Blocks of the first launch ever.
+/// Number of blocks in the first launch.
 const FIRST: u64 = 256;
 
 pub(crate) fn primary_rays<R: Runtime>(

@@ -1,4 +1,4 @@
-// Step 1 on a CUDA device: what does each ray see? Twin of cpu.rs, one thread a ray.
+// Step 1 on a CUDA device: what does each ray see? Twin of cpu.rs, one thread per ray.
 #include "cuda/prelude.cuh"
 
 #include "accel/walk.cuh"

@@ -8,7 +8,7 @@ use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
 use crate::shading::{DEFAULT_AMBIENT, LightTargets, Surface};
 
-/// Rays that one task shades.
+/// Number of rays per task.
 const BATCH: usize = 2048;
 
 pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, picture: &mut Picture) {
@@ -51,7 +51,7 @@ fn surface_radiance(wave: &HostWave, visibility: &Visibility, targets: &LightTar
     radiance
 }
 
-/// What each pixel saw.
+/// Stores what each pixel sees.
 fn fill_layers(wave: &HostWave, visibility: &Visibility, picture: &mut Picture) {
     let start = (picture.rows.start * picture.size[0]) as usize;
     let Some(layers) = &mut picture.layers else { return };

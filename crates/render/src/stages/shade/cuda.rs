@@ -11,7 +11,7 @@ use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, Work, blocks_for};
 
 const KERNEL: Kernel = Kernel { module: "shade", name: "shade" };
-/// Blocks of the first launch ever.
+/// Number of blocks in the first launch.
 const FIRST: u64 = 1024;
 
 pub(crate) fn shade<R: Runtime>(

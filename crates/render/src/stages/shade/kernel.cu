@@ -1,4 +1,4 @@
-// Formula (1) on a CUDA device: twin of cpu.rs, one thread a ray.
+// Formula (1) on a CUDA device: twin of cpu.rs, one thread per ray.
 #include "cuda/prelude.cuh"
 
 #include "shading/shading.cuh"
@@ -15,7 +15,7 @@ DEVICE Vec3 surface_radiance(const Shade &args, unsigned ray, const Surface &sur
     return radiance;
 }
 
-// What a pixel saw. The layers of a pixel that saw nothing stay as they are.
+// Stores what a pixel sees. The layers of a pixel that sees nothing stay as they are.
 DEVICE void fill_layers(const Shade &args, unsigned ray, const Surface &surface, unsigned long long place) {
     args.depth[place] = load_hit(args.hits, ray).t;
     args.normal[place] = surface.point.normal;

@@ -10,7 +10,7 @@ use crate::data::wave::HostWave;
 use crate::shadow::{Aim, SEGMENTS, Targets, hidden, shadow_rays as rays_to};
 use crate::surface::SurfacePoint;
 
-/// Most surface points that one task takes.
+/// Maximum number of surface points per task.
 const BATCH: usize = 1024;
 
 /// The visible share of each light, by shadow rays from each surface point.
@@ -33,7 +33,7 @@ pub(crate) fn shadow_rays(wave: &HostWave, aim: &Aim) -> Visibility {
     visibility
 }
 
-/// Some surface points, and room for their rays to one light.
+/// Some surface points, and buffers for their rays to one light.
 struct Batch<'a> {
     wave: &'a HostWave<'a>,
     aim: &'a Aim,
@@ -41,12 +41,12 @@ struct Batch<'a> {
     first: usize,
     points: Vec<(usize, SurfacePoint)>,
     segments: Vec<Ray>,
-    /// The share that each segment counts for.
+    /// The share that each segment contributes to.
     owners: Vec<usize>,
 }
 
 impl Batch<'_> {
-    /// Finds the shares of one light.
+    /// Computes the shares of one light.
     fn light(&mut self, (index, light): (usize, &Light), share: &mut [f32]) {
         let samples = self.aim.samples(light);
         self.segments.clear();
@@ -64,7 +64,7 @@ impl Batch<'_> {
         let weight = 1.0 / samples as f32;
         for count in share {
             *count *= weight;
-            // The product of N and 1/N may miss 1 by a rounding.
+            // The product of N and 1/N may differ from 1 by rounding.
             *count = if *count > 1.0 - 0.5 * weight { 1.0 } else { *count };
         }
     }

@@ -1,13 +1,13 @@
-// Shadow rays on a CUDA device: twin of cpu.rs, one thread an object point.
+// Shadow rays on a CUDA device: twin of cpu.rs, one thread per surface point.
 //
-// `shadow_rays_*`: one ray to the middle of each light; `area_shadows_*`: many to points spread over it. Where an object point has
-// very many rays, a launch takes only some of them, and later ones go on.
+// `shadow_rays_*`: one ray to the centre of each light; `area_shadows_*`: many to points distributed over it. If a surface point
+// has very many rays, a launch casts only some of them, and later launches continue.
 #include "cuda/prelude.cuh"
 
 #include "cuda/rays.cuh"
 #include "shadow/shadow.cuh"
 
-// Where the share of a light for a ray lies.
+// The share of a light for a ray.
 DEVICE float &share_of(const ShadowRays &args, unsigned light, unsigned ray) {
     return args.share[(unsigned long long)light * args.rays.count + ray];
 }
@@ -18,7 +18,7 @@ DEVICE void no_shares(const ShadowRays &args, unsigned ray) {
         share_of(args, light, ray) = 0.0f;
 }
 
-// One ray from a surface point to the middle of each light of this launch. Returns how many were cast.
+// Casts one ray from a surface point to the centre of each light of this launch. Returns how many were cast.
 template <class Structure>
 DEVICE unsigned trace_hard(const ShadowRays &args, const Structure &structure, unsigned ray, const SurfacePoint &point) {
     unsigned cast = 0;
@@ -35,7 +35,7 @@ DEVICE unsigned trace_hard(const ShadowRays &args, const Structure &structure, u
     return cast;
 }
 
-// Adds a light to a surface point, the samples from `first` to `end`. Its share is a number of rays until the last sample is added.
+// Adds a light at a surface point, the samples from `first` to `end`. Its share is a number of rays until the last sample is added.
 template <class Structure>
 DEVICE void gather_light(const ShadowRays &args, const Structure &structure, unsigned ray, unsigned index, unsigned first,
                          unsigned end, const SurfacePoint &point, unsigned &cast) {
@@ -49,13 +49,13 @@ DEVICE void gather_light(const ShadowRays &args, const Structure &structure, uns
     if (end == samples) {
         const float weight = 1.0f / (float)samples;
         share *= weight;
-        // The product of N and 1/N may miss 1 by a rounding.
+        // The product of N and 1/N may differ from 1 by rounding.
         share = share > 1.0f - 0.5f * weight ? 1.0f : share;
     }
     share_of(args, index, ray) = share;
 }
 
-// Many rays from a surface point to the lights: those of this launch. Returns how many were cast.
+// Casts many rays from a surface point to the lights of this launch. Returns how many were cast.
 template <class Structure>
 DEVICE unsigned trace_area(const ShadowRays &args, const Structure &structure, unsigned ray, const SurfacePoint &point) {
     unsigned cast = 0;
@@ -70,7 +70,7 @@ DEVICE unsigned trace_area(const ShadowRays &args, const Structure &structure, u
     return cast;
 }
 
-// The rays of one thread: hard ones or many.
+// The rays of one thread: one hard-shadow ray per light, or many.
 template <bool HARD, class Structure>
 DEVICE void trace(const ShadowRays &args, const Structure &structure) {
     unsigned ray, cast = 0;

@@ -1,4 +1,4 @@
-//! What children play on. Each piece stands at its own zero on the ground; about 9 units are a metre.
+//! The playground equipment. Each piece is placed at its own origin on the ground; about 9 units are a metre.
 
 use glam::{Vec2, Vec3};
 

@@ -1,4 +1,4 @@
-//! What stands around the playground: benches, lamps, a bin, the fence.
+//! The surroundings of the playground: benches, lamps, a bin, the fence.
 
 use glam::{Vec2, Vec3};
 

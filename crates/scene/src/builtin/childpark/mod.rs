@@ -14,7 +14,7 @@ use super::surfaces::bezier;
 use super::{BuiltinOptions, Composition};
 use crate::Scene;
 
-/// What the meadow's blades of grass fill up to.
+/// Number of triangles up to which the meadow is filled with blades of grass.
 const TRIANGLES: usize = 27_000;
 
 struct Paints {
@@ -40,7 +40,7 @@ struct Paints {
     grass: [Paint; 3],
 }
 
-/// The scene *Childpark*: 27 000 triangles, 2 lights, 160 × 120 × 140 units. The thesis steps its light mesh by h = 1.
+/// The scene *Childpark*: 27 000 triangles, 2 lights, 160 × 120 × 140 units. The thesis uses the light-mesh step h = 1.
 pub fn childpark(options: &BuiltinOptions) -> Scene {
     let mut palette = Palette::default();
     let paints = paints(&mut palette);
@@ -113,7 +113,7 @@ fn grounds(parts: &mut Parts, paints: &Paints) {
     path(parts, paints.path);
 }
 
-/// A round mat that lies 0.25 above the lawn.
+/// A round mat, 0.25 above the lawn.
 fn mat(parts: &mut Parts, radius: f32, paint: Paint) {
     let edge = [Vec2::new(radius + 0.3, -0.1), Vec2::new(radius, 0.25)];
     parts.lathe(&edge, 40, false, paint);
@@ -161,7 +161,7 @@ fn surroundings(parts: &mut Parts, paints: &Paints) {
     }
 }
 
-/// Trees on the hill that close the view, and a few beside the playground.
+/// Trees on the hill that close the view, and a few next to the playground.
 fn wood(parts: &mut Parts, random: &mut Random, paints: &Paints) {
     const TREES: [[f32; 3]; 16] = [
         [-60.0, -50.0, 90.0],
@@ -210,7 +210,7 @@ fn bushes(parts: &mut Parts, random: &mut Random, paints: &Paints) {
     }
 }
 
-/// Tufts of grass and flowers where nobody treads.
+/// Tufts of grass and flowers where nobody walks.
 fn meadow(parts: &mut Parts, random: &mut Random, paints: &Paints) {
     let flowers = [paints.white, paints.yellow, paints.red];
     for index in 0.. {
@@ -237,7 +237,7 @@ fn meadow(parts: &mut Parts, random: &mut Random, paints: &Paints) {
     }
 }
 
-/// Whether (x, z) lies away from the places where children run.
+/// Whether (x, z) is away from the places where children run.
 fn is_wild(x: f32, z: f32) -> bool {
     let spot = Vec2::new(x, z);
     let clear = |center: [f32; 2], radius: f32| spot.distance(Vec2::from(center)) > radius;

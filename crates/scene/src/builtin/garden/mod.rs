@@ -11,7 +11,7 @@ use super::parts::{Paint, Palette, Parts, Place};
 use super::{BuiltinOptions, Composition};
 use crate::Scene;
 
-/// What the lawn's blades fill up to.
+/// Number of triangles up to which the lawn is filled with blades of grass.
 const TRIANGLES: usize = 234_000;
 
 /// Half the size of the garden in x and z.
@@ -35,7 +35,7 @@ struct Paints {
     flowers: [Paint; 5],
 }
 
-/// A flower bed: an ellipse of soil with its middle and half-axes in x and z.
+/// A flower bed: an ellipse of soil with its centre and half-axes in x and z.
 struct Bed {
     center: Vec2,
     radii: Vec2,
@@ -45,7 +45,7 @@ const fn bed(x: f32, z: f32, rx: f32, rz: f32) -> Bed {
     Bed { center: Vec2::new(x, z), radii: Vec2::new(rx, rz) }
 }
 
-/// The first four lie in the picture.
+/// The first four are visible in the image.
 const BEDS: [Bed; 8] = [
     bed(-2.0, -7.4, 1.1, 1.5),
     bed(2.5, -7.8, 1.1, 1.9),
@@ -57,11 +57,11 @@ const BEDS: [Bed; 8] = [
     bed(3.6, 10.4, 3.0, 1.6),
 ];
 
-/// Where the fountain stands.
+/// Position of the fountain.
 const FOUNTAIN: Vec2 = Vec2::new(0.1, -10.4);
 
-/// The scene *Garden*: 234 000 triangles, 1 light, 20 × 6 × 28 units. The thesis steps its light mesh by h = 0.1; its
-/// appendix lights the scene with 3 lights.
+/// The scene *Garden*: 234 000 triangles, 1 light, 20 × 6 × 28 units. The thesis uses the light-mesh step h = 0.1; its appendix
+/// lights the scene with 3 lights.
 pub fn garden(options: &BuiltinOptions) -> Scene {
     let mut palette = Palette::default();
     let paints = paints(&mut palette);

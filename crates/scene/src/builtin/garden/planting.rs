@@ -115,7 +115,7 @@ pub(super) fn bushes(parts: &mut Parts, random: &mut Random, paints: &Paints) {
     }
 }
 
-/// Blades of grass, most of them before the camera, until the count of triangles is reached.
+/// Blades of grass, most of them in front of the camera, until the number of triangles is reached.
 pub(super) fn lawn(parts: &mut Parts, random: &mut Random, paints: &Paints) {
     let steps = path_points();
     while parts.count() + 3 <= TRIANGLES {

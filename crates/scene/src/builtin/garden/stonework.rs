@@ -7,7 +7,7 @@ use crate::builtin::math::{Random, around};
 use crate::builtin::parts::{Open, Parts, Place};
 use crate::builtin::surfaces::bezier;
 
-/// Four walls of rough blocks about a core of mortar.
+/// Four walls of rough blocks around a core of mortar.
 pub(super) fn walls(parts: &mut Parts, random: &mut Random, paints: &Paints) {
     for (x, z, degrees, half) in [
         (0.0, -HALF.y, 0.0, HALF.x),
@@ -45,7 +45,7 @@ fn wall(parts: &mut Parts, random: &mut Random, half: f32, paints: &Paints) {
     }
 }
 
-/// Points along the middle of the path, a flagstone apart, from behind the camera to the fountain.
+/// Points along the middle of the path, one flagstone apart, from behind the camera to the fountain.
 pub(super) fn path_points() -> Vec<Vec2> {
     const APART: f32 = 0.55;
     let control = [[2.4, 6.0], [1.8, -2.0], [-1.2, -6.0], [0.3, -9.2]].map(|[x, z]| Vec3::new(x, 0.0, z));
@@ -59,7 +59,7 @@ pub(super) fn path_points() -> Vec<Vec2> {
     points
 }
 
-/// Irregular flagstones, two abreast, and a ring of them about the fountain.
+/// Irregular flagstones, two abreast, and a ring of them around the fountain.
 pub(super) fn path(parts: &mut Parts, random: &mut Random, paints: &Paints) {
     for middle in path_points() {
         for side in [-0.285, 0.285] {

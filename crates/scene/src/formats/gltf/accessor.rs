@@ -1,5 +1,5 @@
 //! Reads accessors: every range is checked against its buffer first, so that a damaged file is an error, never a panic, and no
-//! memory is taken before the bytes are there. What lies in the file as it is needed is borrowed from there.
+//! memory is allocated before the bytes are known to exist. Data that is stored in the required form is borrowed from the file.
 
 use std::{borrow::Cow, path::Path};
 
@@ -13,7 +13,7 @@ use super::{
 };
 use crate::LoadError;
 
-/// Accessors and what they refer to.
+/// Accessors and the data they refer to.
 #[derive(Clone, Copy)]
 pub(super) struct Accessors<'a> {
     pub(super) path: &'a Path,
@@ -21,7 +21,7 @@ pub(super) struct Accessors<'a> {
     pub(super) buffers: &'a Buffers<'a>,
 }
 
-/// An accessor whose bytes are known to be there.
+/// An accessor whose bytes are known to exist.
 struct Elements<'a> {
     kind: &'a str,
     component: Component,
@@ -33,25 +33,25 @@ struct Elements<'a> {
 }
 
 impl<'a> Accessors<'a> {
-    /// Number of elements, once it is known that they are there.
+    /// Number of elements, once they are known to exist.
     pub(super) fn count(&self, index: u32) -> Result<usize, LoadError> {
         Ok(self.elements(index)?.count)
     }
 
-    /// Vectors of `N` numbers; integers are mapped to [0, 1] or [-1, 1] where the accessor says "normalized".
+    /// Vectors of `N` numbers; integers are mapped to [0, 1] or [-1, 1] if the accessor is normalized.
     pub(super) fn vectors<const N: usize>(&self, index: u32) -> Result<Cow<'a, [[f32; N]]>, LoadError>
     where
         [f32; N]: AnyBitPattern,
     {
         let elements = self.elements(index)?;
         if dimensions(elements.kind) != Some(N) {
-            return Err(self.broken(index, &format!("holds {} where VEC{N} is expected", elements.kind)));
+            return Err(self.broken(index, &format!("has type {} where VEC{N} is expected", elements.kind)));
         }
         let is_float = elements.component == Component::F32;
         self.read(index, &elements, [0.0; N], is_float, |elements| elements.numbers())
     }
 
-    /// Colours with or without coverage, which is left out: surfaces are opaque.
+    /// Colours with or without alpha, which is ignored: surfaces are opaque.
     pub(super) fn colors(&self, index: u32) -> Result<Cow<'a, [[f32; 3]]>, LoadError> {
         if self.elements(index)?.kind == "VEC4" {
             Ok(self.vectors(index)?.iter().map(|&[r, g, b, _]| [r, g, b]).collect())
@@ -64,12 +64,12 @@ impl<'a> Accessors<'a> {
     pub(super) fn indices(&self, index: u32) -> Result<Cow<'a, [u32]>, LoadError> {
         let elements = self.elements(index)?;
         if elements.kind != "SCALAR" || !elements.component.is_unsigned() {
-            return Err(self.broken(index, "holds no unsigned integers, but indices are asked of it"));
+            return Err(self.broken(index, "does not contain unsigned integers, but is used for indices"));
         }
         self.read(index, &elements, 0, elements.component == Component::U32, |elements| elements.integers())
     }
 
-    /// The elements, borrowed where they lie in the file `as_is` and nothing replaces them.
+    /// The elements, borrowed if the file stores them `as_is` and nothing replaces them.
     fn read<T: AnyBitPattern>(
         &self,
         index: u32,
@@ -96,12 +96,14 @@ impl<'a> Accessors<'a> {
     }
 
     fn elements(&self, index: u32) -> Result<Elements<'a>, LoadError> {
-        let accessor = self.document.accessors.get(index as usize).ok_or_else(|| {
-            malformed(self.path, format!("something is asked of accessor {index}, which is not there"))
-        })?;
+        let accessor = self
+            .document
+            .accessors
+            .get(index as usize)
+            .ok_or_else(|| malformed(self.path, format!("accessor {index} is referenced, but does not exist")))?;
         let component = self.component(index, accessor.component_type)?;
         let dimensions = dimensions(&accessor.kind)
-            .ok_or_else(|| self.broken(index, &format!("holds {}, which is of no use here", accessor.kind)))?;
+            .ok_or_else(|| self.broken(index, &format!("has type {}, which is not valid here", accessor.kind)))?;
         let range = |view, range, dimensions, component| {
             self.range(index, view, range, dimensions, component)
                 .map(|found| Strided { normalized: accessor.normalized, ..found })
@@ -114,7 +116,7 @@ impl<'a> Accessors<'a> {
             Some(Sparse { count, indices, values }) => {
                 let kind = self.component(index, indices.component_type)?;
                 if !kind.is_unsigned() {
-                    return Err(self.broken(index, "has a sparse part whose indices are no unsigned integers"));
+                    return Err(self.broken(index, "has a sparse part whose indices are not unsigned integers"));
                 }
                 let indices = range(indices.buffer_view, (indices.byte_offset, *count), 1, kind)?;
                 let values = range(values.buffer_view, (values.byte_offset, *count), dimensions, component)?;
@@ -136,8 +138,8 @@ impl<'a> Accessors<'a> {
         Component::new(number).ok_or_else(|| self.broken(index, &format!("has the component type {number}")))
     }
 
-    /// Elements without a buffer view are zeros. There may be as many as the buffers have bytes: nothing in the file could tell more
-    /// of them apart.
+    /// Elements without a buffer view are zeros. There may be as many as the buffers have bytes: nothing in the file could
+    /// distinguish more of them.
     fn count_of_zeros(&self, index: u32, accessor: &Accessor) -> Result<usize, LoadError> {
         match usize::try_from(accessor.count) {
             Ok(count) if count <= self.buffers.bytes_read() => Ok(count),
@@ -145,7 +147,7 @@ impl<'a> Accessors<'a> {
         }
     }
 
-    /// `count` elements from `offset` bytes on in a view.
+    /// `count` elements starting `offset` bytes into a view.
     fn range(
         &self,
         index: u32,
@@ -167,7 +169,7 @@ impl<'a> Accessors<'a> {
             let problem = format!("reaches beyond its buffer view of {length} bytes with {count} elements");
             return Err(self.broken(index, &problem));
         }
-        // The offset is in range where there are elements. A stride may be any where there is but one.
+        // The offset is in range if there are elements. With only one element, any stride is allowed.
         let bytes = if count == 0 { &[] } else { &bytes[offset as usize..] };
         let stride = usize::try_from(stride).unwrap_or(usize::MAX);
         Ok(Strided { bytes, count: count as usize, stride, component, normalized: false })
@@ -178,7 +180,7 @@ impl<'a> Accessors<'a> {
     }
 }
 
-/// Components of one element; `None` for matrices, which no mesh has.
+/// Number of components per element; `None` for matrices, which no mesh has.
 fn dimensions(kind: &str) -> Option<usize> {
     Some(match kind {
         "SCALAR" => 1,

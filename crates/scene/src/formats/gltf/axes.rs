@@ -1,4 +1,4 @@
-//! Where a node looks.
+//! The orientation of nodes.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! The bytes behind accessors and images, each buffer read when it is first asked for.
+//! The bytes behind accessors and images; each buffer is read on first use.
 
 use std::{borrow::Cow, cell::OnceCell, path::Path, path::PathBuf};
 
@@ -18,7 +18,7 @@ pub(super) struct Buffers<'a> {
 
 struct Buffer<'a> {
     source: Source<'a>,
-    /// As the document says.
+    /// As stated by the document.
     length: u64,
     bytes: OnceCell<Cow<'a, [u8]>>,
 }
@@ -32,7 +32,7 @@ enum Source<'a> {
 }
 
 impl<'a> Buffers<'a> {
-    /// Finds where each buffer is; none is read yet.
+    /// Locates each buffer; none is read yet.
     pub(super) fn new(
         path: &'a Path,
         document: &'a Document,
@@ -63,7 +63,7 @@ impl<'a> Buffers<'a> {
         Ok((bytes, view.byte_stride))
     }
 
-    /// Bytes of all buffers that have been read so far.
+    /// Number of bytes in all buffers that have been read so far.
     pub(super) fn bytes_read(&self) -> usize {
         self.buffers.iter().filter_map(|buffer| buffer.bytes.get()).map(|bytes| bytes.len()).sum()
     }
@@ -94,7 +94,7 @@ impl<'a> Buffer<'a> {
         };
         let short = || {
             let there = bytes.len();
-            malformed(path, format!("buffer {index} holds {there} bytes of {}: it was cut off", self.length))
+            malformed(path, format!("buffer {index} has {there} of {} bytes: it is truncated", self.length))
         };
         match usize::try_from(self.length) {
             Ok(length) if length <= bytes.len() => Ok(bytes),

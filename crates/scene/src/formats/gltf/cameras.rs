@@ -1,5 +1,5 @@
-//! Cameras. They look along −Z of their node, with +Y up; its scale does not change them. How wide they see follows from the
-//! picture's shape, and what they clip is not clipped: `aspectRatio`, `xmag`, `znear` and `zfar` are not looked at.
+//! Cameras. They look along −Z of their node, with +Y up; its scale does not affect them. The other angle follows from the
+//! image's aspect ratio, and there is no clipping: `aspectRatio`, `xmag`, `znear` and `zfar` are ignored.
 
 use std::{f64::consts::PI, path::Path};
 
@@ -14,14 +14,14 @@ use super::{
 };
 use crate::{Camera, Fov, LoadError, Projection, formats::toml::upright};
 
-/// A camera of this name in its node, at the local frame's zero.
+/// A camera with this name in its node, at the local frame's origin.
 pub(super) fn placed(axes: &Axes, placed: &Placed, name: String, projection: Projection) -> Result<Camera, LoadError> {
     let direction = axes.forward(placed)?;
     let up = upright(direction, axes.up(placed)?).ok_or_else(|| axes.flat(placed))?;
     Ok(Camera { name, position: Vec3::ZERO, direction: direction.as_vec3(), up: up.as_vec3(), projection })
 }
 
-/// What camera number `index` of the document sees.
+/// The projection of camera number `index` of the document.
 pub(super) fn projection(path: &Path, index: u32, camera: &document::Camera) -> Result<Projection, LoadError> {
     let bad = |what: &str, value: f64| Err(malformed(path, format!("camera {index} has {what} = {value}")));
     if let Some(perspective) = &camera.perspective {
@@ -36,9 +36,9 @@ pub(super) fn projection(path: &Path, index: u32, camera: &document::Camera) -> 
         };
     }
     let Some(orthographic) = &camera.orthographic else {
-        return Err(malformed(path, format!("camera {index} says neither yfov nor ymag")));
+        return Err(malformed(path, format!("camera {index} has neither yfov nor ymag")));
     };
-    // Negative, it would mirror the picture; exporters write it for nothing.
+    // A negative value would mirror the image; exporters write it without meaning that.
     let height = (2.0 * orthographic.ymag.abs()) as f32;
     if height > 0.0 && height.is_finite() {
         Ok(Projection::Orthographic { height })

@@ -14,17 +14,17 @@ const HEADER: usize = 12;
 const CHUNK_HEADER: usize = 8;
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// The parts of a file, as they lie in its bytes.
+/// The parts of a file, borrowed from its bytes.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Container<'a> {
     pub(super) json: &'a [u8],
     pub(super) bin: Option<&'a [u8]>,
-    /// A GLB file, whose JSON has no lines to point at.
+    /// A GLB file, whose JSON has no lines to refer to.
     binary: bool,
 }
 
 impl<'a> Container<'a> {
-    /// Takes a GLB file apart; anything else is JSON.
+    /// Splits a GLB file; anything else is JSON.
     pub(super) fn split(path: &Path, bytes: &'a [u8]) -> Result<Container<'a>, LoadError> {
         if !bytes.starts_with(MAGIC) {
             return Ok(Container { json: trim(bytes), bin: None, binary: false });
@@ -37,19 +37,20 @@ impl<'a> Container<'a> {
             return Err(old(path, &version.to_string()));
         }
         let whole = bytes.get(..length as usize).ok_or_else(|| {
-            damaged(format!("states a length of {length} bytes, but the file has {}: it was cut off", bytes.len()))
+            damaged(format!("states a length of {length} bytes, but the file has {}: it is truncated", bytes.len()))
         })?;
-        let (kind, json, rest) = chunk(whole.get(HEADER..).unwrap_or_default())
-            .ok_or_else(|| damaged(format!("states a length of {length} bytes, which do not hold its JSON chunk")))?;
+        let (kind, json, rest) = chunk(whole.get(HEADER..).unwrap_or_default()).ok_or_else(|| {
+            damaged(format!("states a length of {length} bytes, which is too short for its JSON chunk"))
+        })?;
         if kind != b"JSON" {
             return Err(damaged("does not begin with a JSON chunk".to_owned()));
         }
-        // Chunks of other kinds may follow, and are for others.
+        // Chunks of other types may follow, and are ignored.
         let bin = if rest.len() < CHUNK_HEADER {
             None
         } else {
             let (kind, bin, _) = chunk(rest).ok_or_else(|| {
-                damaged(format!("states a length of {length} bytes, which do not hold its second chunk"))
+                damaged(format!("states a length of {length} bytes, which is too short for its second chunk"))
             })?;
             (kind == b"BIN\0").then_some(bin)
         };
@@ -59,7 +60,7 @@ impl<'a> Container<'a> {
     /// Reads the JSON.
     pub(super) fn parse(&self, path: &Path) -> Result<Document<'a>, LoadError> {
         let document = serde_json::from_slice::<Document>(self.json);
-        // A file of another version differs in its very structure: say that, and not where it first shows.
+        // A file of another version differs in its basic structure: report that, and not where the difference first shows.
         match document {
             Ok(document) => {
                 check_version(path, &document.asset)?;
@@ -76,7 +77,7 @@ impl<'a> Container<'a> {
 
     fn syntax(&self, path: &Path, error: &serde_json::Error) -> LoadError {
         let problem = if self.json.is_empty() {
-            "the file holds no JSON".to_owned()
+            "the file contains no JSON".to_owned()
         } else {
             format!("the JSON cannot be read as glTF ({error})")
         };
@@ -108,12 +109,12 @@ fn check_version(path: &Path, asset: &Asset) -> Result<(), LoadError> {
 fn old(path: &Path, version: &str) -> LoadError {
     LoadError::Malformed {
         place: Place::file(path).into(),
-        problem: format!("the file is of glTF version `{version}`"),
+        problem: format!("the file has glTF version `{version}`"),
         remedy: "export it as glTF 2.0".to_owned(),
     }
 }
 
-/// Kind and data of the first chunk, and what follows it.
+/// Type and data of the first chunk, and the bytes after it.
 fn chunk(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
     let length = word(bytes, 0)? as usize;
     let (header, rest) = bytes.split_at_checked(CHUNK_HEADER)?;
@@ -125,7 +126,7 @@ fn word(bytes: &[u8], at: usize) -> Option<u32> {
     bytes.get(at..)?.first_chunk().map(|&bytes| u32::from_le_bytes(bytes))
 }
 
-/// Without the byte order mark that some editors write, and without the zeros that some exporters pad with.
+/// Without the byte order mark that some editors write, and without the zeros that some exporters use as padding.
 fn trim(json: &[u8]) -> &[u8] {
     let json = json.strip_prefix(BYTE_ORDER_MARK).unwrap_or(json);
     let end = json.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);

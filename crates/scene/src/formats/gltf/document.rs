@@ -1,15 +1,15 @@
-//! The JSON of glTF 2.0, as far as it is read. Names are the format's own (glTF 2.0, section 5, and the extensions' schemas).
+//! The subset of glTF 2.0's JSON that is read. Names are the format's own (glTF 2.0, section 5, and the extensions' schemas).
 //!
-//! Numbers stay in double precision: a node may lie far from the origin. Strings and extras are borrowed from the file's bytes, so
-//! that a data URI is held once. Indices are not checked here, but where they are used. Rarely used parts are boxed: two letters
-//! of a hostile file must not become a kilobyte.
+//! Numbers stay in double precision: a node may be far from the origin. Strings and extras are borrowed from the file's bytes, so
+//! that a data URI is held only once. Indices are not checked here, but where they are used. Rarely used parts are boxed: two
+//! characters of a hostile file must not become a kilobyte.
 
 use std::{borrow::Cow, collections::HashMap};
 
 use serde::{Deserialize, de::IgnoredAny};
 use serde_json::value::RawValue;
 
-/// A whole file.
+/// A complete file.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Document<'a> {
@@ -85,7 +85,7 @@ pub(super) struct Node {
     pub(super) mesh: Option<u32>,
     pub(super) camera: Option<u32>,
     pub(super) skin: Option<u32>,
-    /// Of morph targets, instead of the mesh's.
+    /// Weights of morph targets, instead of the mesh's.
     #[serde(default)]
     pub(super) weights: Box<[f64]>,
     pub(super) extensions: Option<Box<NodeExtensions>>,
@@ -104,7 +104,7 @@ pub(super) struct LightReference {
     pub(super) light: u32,
 }
 
-/// Accessors by the names TRANSLATION, ROTATION, SCALE, and whatever else an exporter adds.
+/// Accessors by the names TRANSLATION, ROTATION, SCALE, and others that exporters add.
 #[derive(Debug, Deserialize)]
 pub(super) struct Instancing {
     #[serde(default)]
@@ -114,7 +114,7 @@ pub(super) struct Instancing {
 #[derive(Debug, Deserialize)]
 pub(super) struct Mesh {
     pub(super) primitives: Vec<Primitive>,
-    /// Of morph targets.
+    /// Weights of morph targets.
     #[serde(default)]
     pub(super) weights: Box<[f64]>,
 }
@@ -134,7 +134,7 @@ impl Primitive {
     }
 }
 
-/// Accessors of the attributes that are shown.
+/// Accessors of the attributes that are used.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "SCREAMING_SNAKE_CASE")]
 pub(super) struct Attributes {
@@ -359,7 +359,7 @@ pub(super) struct Perspective {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Orthographic {
-    /// Half the height of the picture.
+    /// Half the height of the image.
     pub(super) ymag: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Which extensions are understood.
+//! The supported extensions.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ const KNOWN: [&str; 8] = [
     "KHR_texture_transform",
 ];
 
-/// Refuses a file that requires what is not known, and warns of what it uses.
+/// Rejects a file that requires an unsupported extension, and warns about unsupported ones that it uses.
 pub(super) fn check(path: &Path, document: &Document, draft: &mut Draft) -> Result<(), LoadError> {
     let is_known = |name: &&String| KNOWN.contains(&name.as_str());
     if let Some(extension) = document.extensions_required.iter().find(|name| !is_known(name)) {
@@ -31,7 +31,7 @@ pub(super) fn check(path: &Path, document: &Document, draft: &mut Draft) -> Resu
         document.extensions_used.iter().filter(|name| !is_known(name)).map(String::as_str).collect();
     if !unknown.is_empty() {
         let (path, unknown) = (path.display(), unknown.join(", "));
-        draft.warnings.push(format!("{path}: what these extensions add is not shown: {unknown}"));
+        draft.warnings.push(format!("{path}: these extensions are ignored: {unknown}"));
     }
     Ok(())
 }

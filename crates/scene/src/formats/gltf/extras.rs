@@ -1,4 +1,4 @@
-//! What glTF has no word for, kept in `extras` under `lightmesh`, so that a scene survives being written and read.
+//! Data that glTF cannot represent, stored in `extras` under `lightmesh`, so that a scene survives being written and read.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use serde_json::value::RawValue;
 use super::container::malformed;
 use crate::{LoadError, Material};
 
-/// Of a material: the coefficients that metallic-roughness cannot say.
+/// Of a material: the coefficients that metallic-roughness cannot represent.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MaterialExtras {
@@ -22,7 +22,7 @@ pub(crate) struct MaterialExtras {
     pub(crate) ks_tinted: [f32; 3],
     #[serde(default, skip_serializing_if = "is_zero")]
     pub(crate) emission_tinted: [f32; 3],
-    /// From texture coordinates to the picture's, by columns, where an angle and factors would round it.
+    /// The transform from texture coordinates to the image's, by columns, if an angle and factors would round it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) texture_transform: Option<[f32; 6]>,
 }
@@ -48,13 +48,13 @@ fn is_zero(color: &[f32; 3]) -> bool {
     Vec3::from(*color) == Vec3::ZERO
 }
 
-/// Of a light: its size, in the node's coordinates, and that distance does not weaken it.
+/// Of a light: its size, in the node's coordinates, and whether distance does not attenuate it.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LightExtras {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) shape: Option<ShapeExtras>,
-    /// Radius of the ball in which area mode strews the points of a point light.
+    /// Radius of the ball in which area mode distributes the points of a point light.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) spread: Option<f32>,
     /// Falloff `none`; else inverse-square, as in glTF.
@@ -71,7 +71,7 @@ pub(crate) enum ShapeExtras {
     Rectangle { half_u: [f32; 3], half_v: [f32; 3] },
 }
 
-/// Of a camera: the full horizontal angle in degrees, where that is the one that is fixed.
+/// Of a camera: the full horizontal field of view in degrees, if that is the one that is fixed.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CameraExtras {
@@ -82,7 +82,7 @@ pub(crate) struct CameraExtras {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SceneExtras {
-    /// Zero of the local frame in world coordinates.
+    /// Origin of the local frame in world coordinates.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) origin: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -97,7 +97,7 @@ pub(crate) struct SceneExtras {
     pub(crate) weight: Option<String>,
 }
 
-/// Reads our extras of `what`, such as "material 3"; `None` where there are none, or others'.
+/// Reads our extras of `what`, such as "material 3"; `None` if there are none, or only those of other programs.
 pub(super) fn read<T: DeserializeOwned>(
     path: &Path,
     what: &str,
@@ -108,7 +108,7 @@ pub(super) fn read<T: DeserializeOwned>(
     struct Ours<T> {
         lightmesh: Option<T>,
     }
-    // Extras may be of any kind; ours are an object.
+    // Extras may have any type; ours are an object.
     let Some(extras) = extras.filter(|extras| extras.get().starts_with('{')) else { return Ok(None) };
     serde_json::from_str::<Ours<T>>(extras.get())
         .map(|ours| ours.lightmesh)

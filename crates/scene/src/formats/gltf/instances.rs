@@ -7,7 +7,7 @@ use glam::{DMat4, DQuat, DVec3, Quat, Vec3};
 use super::{accessor::Accessors, container::malformed, document::Instancing, nodes};
 use crate::LoadError;
 
-/// Where a node's mesh stands: an own transform for each instance, below that of the node.
+/// Positions of a node's mesh: a separate transform for each instance, below that of the node.
 pub(super) struct Instances<'a> {
     count: usize,
     translations: Option<Cow<'a, [[f32; 3]]>>,
@@ -22,7 +22,7 @@ const ATTRIBUTES: [&str; 3] = ["TRANSLATION", "ROTATION", "SCALE"];
 pub(super) fn count(accessors: &Accessors, node: usize, instancing: &Instancing) -> Result<usize, LoadError> {
     let named = ATTRIBUTES.iter().filter_map(|name| instancing.attributes.get(*name));
     let counts = named.map(|&accessor| accessors.count(accessor)).collect::<Result<Vec<usize>, LoadError>>()?;
-    // Without any of the three all instances stand in one place, and show as one.
+    // Without any of the three, all instances coincide and look like one.
     let Some((&count, others)) = counts.split_first() else { return Ok(1) };
     match others.iter().find(|&&other| other != count) {
         None => Ok(count),
@@ -34,7 +34,7 @@ pub(super) fn count(accessors: &Accessors, node: usize, instancing: &Instancing)
 }
 
 impl<'a> Instances<'a> {
-    /// Reads the attributes, which were found to give so many instances.
+    /// Reads the attributes, whose number of instances was determined before.
     pub(super) fn read(
         accessors: &Accessors<'a>,
         instancing: &Instancing,

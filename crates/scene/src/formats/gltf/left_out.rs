@@ -1,11 +1,11 @@
-//! What of a file is not shown: counted while it is read, and said in one sentence for each kind.
+//! Content of a file that is not shown: counted while reading, and reported in one sentence per kind.
 
 use std::path::Path;
 
 use super::nodes::Placed;
 use crate::draft::Draft;
 
-/// How often each kind was met.
+/// How often each kind occurred.
 #[derive(Default)]
 pub(super) struct LeftOut {
     /// Cameras and lights of a file that is part of another scene.
@@ -17,9 +17,9 @@ pub(super) struct LeftOut {
     pub(super) placeless: usize,
     pub(super) skinned: usize,
     pub(super) morphed: usize,
-    /// Primitives whose material is not there.
+    /// Primitives whose material does not exist.
     pub(super) missing_materials: usize,
-    /// Of materials.
+    /// Materials with cut-outs or transparency.
     pub(super) see_through: usize,
     pub(super) roughness_textures: usize,
     pub(super) normal_textures: usize,
@@ -39,21 +39,21 @@ impl LeftOut {
     /// Adds the sentences to the draft's warnings.
     pub(super) fn warn(&self, path: &Path, draft: &mut Draft) {
         let sentences = [
-            (self.cameras, "camera", "of a file that is part of the scene: left out"),
-            (self.lights, "light", "of a file that is part of the scene: left out"),
-            (self.unknown_lights, "light", "of an unknown type: left out"),
-            (self.points_and_lines, "primitive", "of points or lines: left out"),
-            (self.placeless, "primitive", "without positions: left out"),
-            (self.skinned, "skinned mesh", "shown as if at rest, without its skeleton"),
+            (self.cameras, "camera", "of a file that is part of the scene: ignored"),
+            (self.lights, "light", "of a file that is part of the scene: ignored"),
+            (self.unknown_lights, "light", "of an unknown type: ignored"),
+            (self.points_and_lines, "primitive", "of points or lines: ignored"),
+            (self.placeless, "primitive", "without positions: ignored"),
+            (self.skinned, "skinned mesh", "shown in its rest pose, without its skeleton"),
             (self.morphed, "mesh", "shown without the morph targets that the file blends in"),
-            (self.missing_materials, "primitive", "with a material that the file does not hold: shown white"),
+            (self.missing_materials, "primitive", "with a material that the file does not contain: shown white"),
             (self.see_through, "material", "with cut-outs or transparency (alphaMode): shown opaque"),
             (self.roughness_textures, "metallic-roughness texture", "not shown: the material's factors are used"),
             (self.normal_textures, "normal texture", "not shown"),
             (self.occlusion_textures, "occlusion texture", "not shown"),
-            (self.emissive_textures, "emissive texture", "not shown: the surface gives off no light"),
+            (self.emissive_textures, "emissive texture", "not shown: the surface emits no light"),
             (self.specular_textures, "specular texture", "not shown: the material's factors are used"),
-            (self.missing_textures, "material", "with a texture that the file does not hold: shown in plain colour"),
+            (self.missing_textures, "material", "with a texture that the file does not contain: shown in plain colour"),
         ];
         let path = path.display();
         for (count, what, outcome) in sentences.into_iter().filter(|(count, ..)| *count > 0) {

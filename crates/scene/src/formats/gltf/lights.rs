@@ -1,8 +1,7 @@
 //! `KHR_lights_punctual`: point, spot and directional lights, in candela and lux, with inverse-square falloff.
 //!
-//! They shine along −Z of their node; its scale does not change them. A light's `range` is not looked at: it is a hint for programs
-//! that sort lights, and cuts off what would still be seen. Lights with a size are ours, see
-//! [`extras`](super::extras).
+//! They shine along −Z of their node; its scale does not affect them. A light's `range` is ignored: it is a hint for programs that
+//! sort lights, and cuts off light that would still be visible. Area lights are our own extension, see [`extras`](super::extras).
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -17,7 +16,8 @@ use super::{
 };
 use crate::{Falloff, Light, LightKind, LoadError, formats::toml::unit};
 
-/// Light number `index` of the document in its node, at the local frame's zero, yet without a name. `None` where its type is unknown.
+/// Light number `index` of the document in its node, at the local frame's origin, still without a name. `None` if its type is
+/// unknown.
 pub(super) fn placed(
     axes: &Axes,
     placed: &Placed,
@@ -32,8 +32,9 @@ pub(super) fn placed(
     }
     let position = Vec3::ZERO;
     let kind = match (&*light.kind, &own.shape) {
-        (_, Some(shape)) => shaped(shape, &placed.transform)
-            .ok_or_else(|| malformed(axes.path, format!("extras.lightmesh of light {index} give it no size")))?,
+        (_, Some(shape)) => shaped(shape, &placed.transform).ok_or_else(|| {
+            malformed(axes.path, format!("extras.lightmesh of light {index} does not give it a valid size"))
+        })?,
         ("directional", None) => LightKind::Directional { direction: axes.forward(placed)?.as_vec3() },
         ("spot", None) => {
             let (inner, outer) = cone(axes, index, light.spot.as_deref().unwrap_or(&Spot::default()))?;
@@ -50,14 +51,14 @@ pub(super) fn placed(
     }))
 }
 
-/// Radius of the ball that stands for a point light; one that is no length counts as 0.
+/// Radius of the ball that represents a point light; an invalid length counts as 0.
 fn spread(own: &LightExtras) -> f32 {
     own.spread.filter(|spread| spread.is_finite()).unwrap_or(0.0).max(0.0)
 }
 
 /// Inner and outer half-angle.
 fn cone(axes: &Axes, index: u32, spot: &Spot) -> Result<(f32, f32), LoadError> {
-    // As `f32`, where a right angle is a little more than in `f64`.
+    // As `f32`, in which a right angle is a little more than in `f64`.
     let (inner, outer) = (spot.inner_cone_angle as f32, spot.outer_cone_angle as f32);
     if 0.0 <= inner && inner <= outer && outer <= FRAC_PI_2 {
         Ok((inner, outer))
@@ -66,8 +67,8 @@ fn cone(axes: &Axes, index: u32, spot: &Spot) -> Result<(f32, f32), LoadError> {
     }
 }
 
-/// A light with a size, whose extras are in the node's coordinates. Its node may turn it and scale it evenly. `None` where
-/// nothing is left of it.
+/// An area light, whose extras are in the node's coordinates. Its node may rotate it and scale it uniformly. `None` if it becomes
+/// degenerate.
 fn shaped(shape: &ShapeExtras, transform: &DMat4) -> Option<LightKind> {
     let vector = |v: [f32; 3]| transform.transform_vector3(Vec3::from(v).as_dvec3());
     let scaled = |radius: f32| {

@@ -1,7 +1,7 @@
 //! Metallic-roughness to the coefficients of formula (1).
 //!
-//! With the base colour b, metalness m, roughness r and the reflectance f of a dielectric at right angles (0.04, unless
-//! `KHR_materials_ior` or `KHR_materials_specular` say otherwise), s = (1 − r)² is how much of a mirror the surface is (glTF 2.0,
+//! With the base colour b, metalness m, roughness r and the reflectance f of a dielectric at normal incidence (0.04, unless
+//! `KHR_materials_ior` or `KHR_materials_specular` specify another), s = (1 − r)² is how much of a mirror the surface is (glTF 2.0,
 //! appendix B):
 //!
 //! ```text
@@ -9,11 +9,11 @@
 //!                                                                    lobe of α = r²)
 //! ```
 //!
-//! so that a rough metal is matt in its own colour, as it looks under point lights, and a smooth one mirrors. Where a texture or
+//! so that a rough metal is matt in its own colour, as it looks under point lights, and a smooth one reflects. If a texture or
 //! vertex colours tint b, the part b m s of k_s is tinted with it.
 //!
 //! An unlit material (`KHR_materials_unlit`) shows its base colour, tinted, whatever the lights: k_a = k_d = k_s = 0, and the colour
-//! is what the surface gives off. It still throws shadows, like everything.
+//! is what the surface emits. It still casts shadows, like everything else.
 
 use std::path::Path;
 
@@ -27,14 +27,14 @@ use super::{
 };
 use crate::{LoadError, Material};
 
-/// Reflectance of a dielectric at right angles, by the index of refraction 1.5.
+/// Reflectance of a dielectric at normal incidence, for the index of refraction 1.5.
 const DIELECTRIC: f32 = 0.04;
 
-/// Phong exponents beyond this are mirrors to the eye, and hard on `f32`.
+/// Higher Phong exponents look like mirrors, and cause problems in `f32`.
 const SHARPEST: f32 = 10_000.0;
 
-/// The material without its texture, by our own extras where the file has them. `tinted`: a texture or vertex colours are going to
-/// tint it.
+/// The material without its texture, by our own extras if the file has them. `tinted`: whether a texture or vertex colours are going
+/// to tint it.
 pub(super) fn read(path: &Path, index: usize, of: &document::Material, tinted: bool) -> Result<Material, LoadError> {
     let name = of.name.as_deref().unwrap_or_default().to_owned();
     let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
@@ -48,7 +48,7 @@ pub(super) fn read(path: &Path, index: usize, of: &document::Material, tinted: b
     Ok(Material { name, ..translated(of, tinted) })
 }
 
-/// How the material places its texture, where our own extras say it.
+/// How the material places its texture, if our own extras specify it.
 pub(super) fn texture_transform(
     path: &Path,
     index: usize,
@@ -58,7 +58,7 @@ pub(super) fn texture_transform(
     Ok(own.and_then(|own| own.texture_transform).map(|columns| Affine2::from_cols_array(&columns)))
 }
 
-/// Counts what of the material is not shown.
+/// Counts the properties of the material that are not shown.
 pub(super) fn count_left_out(of: &document::Material, left_out: &mut LeftOut) {
     let pbr = of.pbr_metallic_roughness.as_deref();
     let specular = of.extensions.as_deref().and_then(|extensions| extensions.specular.as_ref());
@@ -73,7 +73,7 @@ pub(super) fn count_left_out(of: &document::Material, left_out: &mut LeftOut) {
     );
 }
 
-/// The material by glTF's own terms.
+/// The material in glTF's own terms.
 pub(super) fn translated(of: &document::Material, tinted: bool) -> Material {
     let defaults = MetallicRoughness::default();
     let pbr = of.pbr_metallic_roughness.as_deref().unwrap_or(&defaults);
@@ -85,7 +85,7 @@ pub(super) fn translated(of: &document::Material, tinted: bool) -> Material {
     }
     let mut material = phong(base, pbr.metallic_factor, pbr.roughness_factor, dielectric(extensions), tinted);
     let strength = extensions.and_then(|extensions| extensions.emissive_strength.as_ref());
-    // Such a texture is black nearly everywhere: better no light than light from all of the surface.
+    // Such a texture is black nearly everywhere: better no light than light from the whole surface.
     if of.emissive_texture.is_none() {
         let strength = strength.map_or(1.0, |strength| strength.emissive_strength);
         material.emission = (strength * Vec3::from(of.emissive_factor)).max(Vec3::ZERO);
@@ -109,10 +109,10 @@ fn unlit(base: Vec3, tinted: bool) -> Material {
     Material { ka: Vec3::ZERO, kd: Vec3::ZERO, ks: Vec3::ZERO, emission, emission_tinted, ..Material::default() }
 }
 
-/// Reflectance of the surface at right angles, as far as it is not a metal.
+/// Reflectance of the surface at normal incidence, apart from its metallic part.
 fn dielectric(extensions: Option<&MaterialExtensions>) -> Vec3 {
     let ior = extensions.and_then(|extensions| extensions.ior.as_ref()).map_or(DIELECTRIC, |ior| match ior.ior {
-        // As the extension has it: a surface that reflects everything.
+        // As defined by the extension: a surface that reflects everything.
         0.0 => 1.0,
         ior => ((ior.max(1.0) - 1.0) / (ior.max(1.0) + 1.0)).powi(2),
     });

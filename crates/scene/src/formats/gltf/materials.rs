@@ -1,4 +1,4 @@
-//! The materials of a file in the draft, with their textures, and which of them a primitive gets.
+//! Adds the materials of a file to the draft, with their textures, and chooses those of primitives.
 
 use std::path::Path;
 
@@ -24,7 +24,7 @@ pub(super) struct Materials {
     default: Option<u32>,
 }
 
-/// What a primitive is made of.
+/// The material of a primitive, and the attributes it needs.
 pub(super) struct Chosen {
     /// Index in the draft.
     pub(super) material: u32,
@@ -74,7 +74,7 @@ impl Materials {
         let attributes = &primitive.attributes;
         let (first, colors) = (attributes.texcoord_0, attributes.color_0);
         if let Some(material) = self.replacement {
-            // Vertex colours are the file's own, as its materials are.
+            // Vertex colours belong to the file, as its materials do.
             return Chosen { material, uvs: first, colors: None };
         }
         let named = primitive.material.map(|material| self.read.get(material as usize));

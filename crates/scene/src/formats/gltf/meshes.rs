@@ -1,7 +1,7 @@
-//! Meshes: primitives of all triangle modes, placed once for every node that uses them, or once for every instance.
+//! Meshes: primitives of all triangle modes, placed once for every node that uses them, or once per instance.
 //!
-//! First a survey counts what is going to be added, and checks that its bytes are there; so a few small meshes in very many nodes
-//! are refused before they fill the memory.
+//! First a survey counts what is going to be added, and checks that its bytes exist; so a few small meshes in very many nodes are
+//! rejected before they fill the memory.
 
 use std::borrow::Cow;
 
@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{LoadError, MeshPart, draft::Draft, mesh_part::Room};
 
-/// How a primitive's vertices make triangles, by its number in the file.
+/// How a primitive's vertices form triangles, by its number in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mode {
     PointsOrLines,
@@ -37,7 +37,7 @@ impl Mode {
         })
     }
 
-    /// Triangles that this many indices make. Indices left over are none.
+    /// Number of triangles formed by this many indices. Remaining indices are ignored.
     fn count(self, indices: usize) -> usize {
         match self {
             Mode::PointsOrLines => 0,
@@ -56,11 +56,11 @@ struct Survey<'a> {
     placeless: usize,
 }
 
-/// A mesh at one place, or at many.
+/// A mesh at one position, or at many.
 pub(super) struct Shown<'a> {
     pub(super) mesh: u32,
     pub(super) transform: DMat4,
-    /// How many instances there are, and where.
+    /// The number of instances and their transforms.
     pub(super) instances: Option<(usize, &'a Instancing)>,
 }
 
@@ -101,7 +101,7 @@ impl<'a> Meshes<'a> {
         draft.reserve(&room)?;
         for shown in all {
             let survey = self.surveys[shown.mesh as usize].as_ref().expect("surveyed above");
-            // Read no sooner than this: the attributes of all nodes together might not fit.
+            // Read only here: the attributes of all nodes together might not fit into memory.
             let instances = match shown.instances {
                 Some((count, instancing)) if !survey.primitives.is_empty() => {
                     Some(Instances::read(&self.accessors, instancing, count)?)
@@ -120,7 +120,7 @@ impl<'a> Meshes<'a> {
         let mesh = self
             .meshes
             .get(index as usize)
-            .ok_or_else(|| malformed(self.accessors.path, format!("there is no mesh {index}, but it is asked for")))?;
+            .ok_or_else(|| malformed(self.accessors.path, format!("there is no mesh {index}, but it is referenced")))?;
         let slot = &mut self.surveys[index as usize];
         if slot.is_none() {
             *slot = Some(Survey::new(&self.accessors, index, mesh)?);
@@ -177,7 +177,7 @@ impl<'a> Meshes<'a> {
         if largest < vertices || indices.is_empty() {
             return Ok(indices);
         }
-        let problem = format!("a primitive asks for vertex {largest} of {vertices} (accessor {accessor})");
+        let problem = format!("a primitive refers to vertex {largest} of {vertices} (accessor {accessor})");
         Err(malformed(self.accessors.path, problem))
     }
 }
@@ -217,7 +217,7 @@ impl<'a> Survey<'a> {
     }
 }
 
-/// Cuts strips and fans into triangles that face the same way (glTF 2.0, section 3.7.2.1).
+/// Splits strips and fans into triangles with the same orientation (glTF 2.0, section 3.7.2.1).
 fn triangles(mode: Mode, indices: &[u32]) -> Cow<'_, [[u32; 3]]> {
     match mode {
         Mode::Triangles => indices.as_chunks().0.into(),

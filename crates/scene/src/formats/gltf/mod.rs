@@ -1,18 +1,18 @@
 //! glTF 2.0 and GLB: triangles of the node hierarchy, materials with their base colour textures, cameras and punctual lights.
 //!
-//! By hand, over `serde_json`, because the `gltf` crate keeps nodes as `f32`, refuses extensions that we read, copies the binary
-//! chunk, and reads accessors element by element.
+//! Implemented on `serde_json` alone, because the `gltf` crate keeps nodes as `f32`, rejects extensions that we support, copies
+//! the binary chunk, and reads accessors element by element.
 //!
-//! 1. [`container`]: the bytes are read once; JSON and binary chunk are parts of them.
-//! 2. [`document`]: the JSON, its numbers in double precision; [`extensions`]: is it ours to read?
-//! 3. [`nodes`], [`instances`]: what stands where.
+//! 1. [`container`]: the bytes are read once; JSON and binary chunk are slices of them.
+//! 2. [`document`]: the JSON, with numbers in double precision; [`extensions`]: whether the file can be read.
+//! 3. [`nodes`], [`instances`]: the placement of everything.
 //! 4. [`materials`] of [`material`] and [`picture`].
-//! 5. [`meshes`] through [`accessor`], [`strided`] and [`buffers`]: counted first, then added, borrowed from the bytes where they
-//!    lie as they are needed.
-//! 6. [`views`]: [`cameras`], [`lights`], and [`extras`] of our own.
+//! 5. [`meshes`] through [`accessor`], [`strided`] and [`buffers`]: counted first, then added; data stored in the required
+//!    form is borrowed.
+//! 6. [`views`]: [`cameras`], [`lights`], and our own [`extras`].
 //!
-//! Animations are left out: the scene is shown as its nodes stand. What else is not shown is counted in [`left_out`] and becomes a
-//! warning.
+//! Animations are ignored: the scene is shown as its nodes are placed. Other content that is not shown is counted in [`left_out`]
+//! and reported as a warning.
 
 mod accessor;
 mod axes;
@@ -114,7 +114,7 @@ fn is_morphed(document: &Document, node: &Node, mesh: u32) -> bool {
     weights.iter().any(|&weight| weight != 0.0)
 }
 
-/// Ambient term, background and the like, from our own extras.
+/// Ambient term, background and similar properties, from our own extras.
 fn read_scene_extras(path: &Path, document: &Document, draft: &mut Draft) -> Result<(), LoadError> {
     let scene = nodes::scene_index(document).and_then(|index| document.scenes.get(index));
     let extras = scene.and_then(|scene| scene.extras);

@@ -1,4 +1,4 @@
-//! The hierarchy of nodes, without recursion: a chain may be as long as the file.
+//! The hierarchy of nodes, traversed without recursion: a chain may be as long as the file.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{LoadError, Place, draft::Draft};
 
-/// A node with its way from its own coordinates to the world.
+/// A node with its transform to world coordinates.
 pub(super) struct Placed<'a> {
     pub(super) index: usize,
     pub(super) node: &'a Node,
@@ -18,13 +18,13 @@ pub(super) struct Placed<'a> {
 }
 
 impl Placed<'_> {
-    /// Number of the node's light.
+    /// Index of the node's light.
     pub(super) fn light(&self) -> Option<u32> {
         self.node.extensions.as_ref()?.light.as_ref().map(|reference| reference.light)
     }
 }
 
-/// The nodes of the document's scene, depth first, the whole placed by `transform`.
+/// The nodes of the document's scene, depth first, with all of them placed by `transform`.
 pub(super) fn placed<'a>(
     path: &Path,
     document: &'a Document,
@@ -39,7 +39,7 @@ pub(super) fn placed<'a>(
         let node = document
             .nodes
             .get(index as usize)
-            .ok_or_else(|| malformed(path, format!("there is no node {index}, but it is asked for")))?;
+            .ok_or_else(|| malformed(path, format!("there is no node {index}, but it is referenced")))?;
         if std::mem::replace(&mut seen[index as usize], true) {
             return Err(no_tree(path, format!("node {index} has two parents or is its own ancestor")));
         }
@@ -50,21 +50,20 @@ pub(super) fn placed<'a>(
     Ok(placed)
 }
 
-/// Number of the scene that is read: the default one, else the first. `None` where the document names none and has none.
+/// Index of the scene that is read: the default one, else the first. `None` if the document names none and has none.
 pub(super) fn scene_index(document: &Document) -> Option<usize> {
     document.scene.map(|scene| scene as usize).or((!document.scenes.is_empty()).then_some(0))
 }
 
-/// The roots of the scene, else all nodes that are no one's child.
+/// The roots of the scene, or all nodes that have no parent.
 fn roots(path: &Path, document: &Document, draft: &mut Draft) -> Result<Vec<u32>, LoadError> {
     if let Some(index) = scene_index(document) {
         let count = document.scenes.len();
         let scene = document.scenes.get(index);
-        let scene =
-            scene.ok_or_else(|| malformed(path, format!("there is no scene {index} of {count} to begin with")))?;
+        let scene = scene.ok_or_else(|| malformed(path, format!("there is no scene {index}: the file has {count}")))?;
         if count > 1 {
             let path = path.display();
-            draft.warnings.push(format!("{path}: of {count} scenes only number {index} is read"));
+            draft.warnings.push(format!("{path}: of {count} scenes only scene {index} is loaded"));
         }
         return Ok(scene.nodes.to_vec());
     }
@@ -95,7 +94,7 @@ fn local_transform(node: &Node) -> DMat4 {
     )
 }
 
-/// A rotation of unit length; one without a length turns nothing.
+/// A unit quaternion; one without a length means no rotation.
 pub(super) fn rotation(rotation: DQuat) -> DQuat {
     let unit = rotation.normalize();
     if unit.is_finite() { unit } else { DQuat::IDENTITY }

@@ -11,14 +11,14 @@ use super::{
 };
 use crate::{TextureUse, Wrap, draft::Draft};
 
-/// The images of a file, each decoded when it is first asked for.
+/// The images of a file, each decoded on first use.
 pub(super) struct Pictures<'a> {
     path: &'a Path,
     document: &'a Document<'a>,
     buffers: &'a Buffers<'a>,
-    /// By image: index of the texture in the draft, or that there is none.
+    /// By image: index of the texture in the draft, or that it is unavailable.
     decoded: Vec<Option<Option<u32>>>,
-    /// Textures that the file names, but does not hold.
+    /// Number of textures that the file refers to, but does not contain.
     pub(super) missing: usize,
 }
 
@@ -27,7 +27,7 @@ impl<'a> Pictures<'a> {
         Pictures { path, document, buffers, decoded: vec![None; document.images.len()], missing: 0 }
     }
 
-    /// How a material uses its texture, with the set of texture coordinates. `None` where the picture cannot be had.
+    /// How a material uses its texture, with the set of texture coordinates. `None` if the image is not available.
     pub(super) fn find(&mut self, info: &TextureInfo, draft: &mut Draft) -> Option<(TextureUse, u32)> {
         let textures = &self.document.textures;
         let Some((texture, image)) =
@@ -60,7 +60,7 @@ impl<'a> Pictures<'a> {
         found
     }
 
-    /// `None`: the file does not hold it. `Some(None)`: of what it holds or names nothing can be made, as the draft will say.
+    /// `None`: the file does not contain it. `Some(None)`: what it contains or refers to cannot be used, as the draft will report.
     fn read(&self, index: usize, draft: &mut Draft) -> Option<Option<u32>> {
         let image = self.document.images.get(index)?;
         let name = image.name.as_deref().map_or_else(|| format!("image {index}"), str::to_owned);
@@ -75,7 +75,7 @@ impl<'a> Pictures<'a> {
     }
 }
 
-/// By OpenGL's number; what is unknown repeats, as what is not said does.
+/// By OpenGL's constant; unknown values repeat, as the default does.
 fn wrap(number: Option<u32>) -> Wrap {
     match number {
         Some(33071) => Wrap::Clamp,
@@ -84,8 +84,8 @@ fn wrap(number: Option<u32>) -> Wrap {
     }
 }
 
-/// Scale, then rotation, then offset. Positive rotations turn the coordinates counter-clockwise as they are seen, with v downwards:
-/// so the extension's text and its examples have it, while its shader code turns the other way.
+/// Scale, then rotation, then offset. Positive rotations turn the coordinates counter-clockwise as seen with v downwards: this is
+/// what the extension's text and its examples say, while its shader code turns the other way.
 pub(crate) fn affine(scale: Vec2, rotation: f32, offset: Vec2) -> Affine2 {
     let (sin, cos) = rotation.sin_cos();
     let rotation = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));
@@ -98,12 +98,12 @@ mod tests {
 
     use super::*;
 
-    /// The example of the extension's text: the lower left quarter of the picture, turned clockwise by a right angle.
+    /// The example in the extension's text: the lower left quarter of the image, rotated clockwise by a right angle.
     #[test]
     fn a_quarter_of_a_picture_is_shown_turned() {
         let transform = affine(Vec2::splat(0.5), FRAC_PI_2, Vec2::Y);
         let at = |u, v| transform.transform_point2(Vec2::new(u, v));
-        // What was in the lower left corner of the quarter is in its upper left one, seen on the surface.
+        // What was in the lower left corner of the quarter is in its upper left one, as seen on the surface.
         for (surface, picture) in
             [((0.0, 0.0), (0.0, 1.0)), ((1.0, 0.0), (0.0, 0.5)), ((1.0, 1.0), (0.5, 0.5)), ((0.0, 1.0), (0.5, 1.0))]
         {

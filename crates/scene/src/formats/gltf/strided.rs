@@ -1,4 +1,4 @@
-//! Elements in a buffer at equal distances, and their conversion to the numbers that a mesh holds.
+//! Elements at equal distances in a buffer, and their conversion to the numbers that a mesh contains.
 
 use bytemuck::AnyBitPattern;
 
@@ -42,20 +42,20 @@ impl Component {
     }
 }
 
-/// `count` elements, the first at the beginning of `bytes`, the others `stride` bytes apart; all lie within `bytes`.
+/// `count` elements, the first at the start of `bytes`, the others `stride` bytes apart; all are within `bytes`.
 #[derive(Clone, Copy)]
 pub(super) struct Strided<'a> {
     pub(super) bytes: &'a [u8],
     pub(super) count: usize,
-    /// Bytes, at least those of an element.
+    /// Distance in bytes, at least the size of an element.
     pub(super) stride: usize,
     pub(super) component: Component,
-    /// Integers stand for numbers in [0, 1] or [-1, 1].
+    /// Integers represent numbers in [0, 1] or [-1, 1].
     pub(super) normalized: bool,
 }
 
 impl<'a> Strided<'a> {
-    /// The elements as they lie there, where that is one after the other, aligned, and in this machine's order.
+    /// The elements in place, if they are contiguous, aligned, and in this machine's byte order.
     pub(super) fn borrowed<T: AnyBitPattern>(&self) -> Option<&'a [T]> {
         let packed = self.stride == size_of::<T>() && cfg!(target_endian = "little");
         if packed { bytemuck::try_cast_slice(&self.bytes[..self.count * self.stride]).ok() } else { None }
@@ -73,7 +73,7 @@ impl<'a> Strided<'a> {
         }
     }
 
-    /// The elements as whole numbers, where they are some.
+    /// The elements as integers, if that is their type.
     pub(super) fn integers(&self) -> Vec<u32> {
         let elements: Vec<[u32; 1]> = match self.component {
             Component::U8 => self.each(|c: u8| c.into()),
@@ -85,7 +85,7 @@ impl<'a> Strided<'a> {
 
     fn scaled<T: Stored, const N: usize>(&self, number: impl Fn(T) -> f32, largest: f32) -> Vec<[f32; N]> {
         if self.normalized {
-            // A division, and not a product with the inverse: the largest integer must become 1.
+            // A division, not a product with the reciprocal: the largest integer must become 1.
             self.each(|component| (number(component) / largest).max(-1.0))
         } else {
             self.each(number)
@@ -99,9 +99,9 @@ impl<'a> Strided<'a> {
     }
 }
 
-/// A component as it lies in a file: little-endian.
+/// A component as stored in a file: little-endian.
 trait Stored {
-    /// Takes it from the beginning of `bytes`, where it must be.
+    /// Reads it from the start of `bytes`, which must be long enough.
     fn read(bytes: &[u8]) -> Self;
 }
 

@@ -54,7 +54,7 @@ fn error(document: &Value) -> String {
     try_open(document.to_string().as_bytes()).unwrap_err()
 }
 
-/// All warnings, a line each.
+/// All warnings, one per line.
 fn warnings(document: &Value) -> String {
     open(document).warnings.join("\n").replace(&std::env::temp_dir().display().to_string(), "")
 }
@@ -63,7 +63,7 @@ fn bytes_of(numbers: &[f32]) -> Vec<u8> {
     numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
 }
 
-/// Adds an accessor with a buffer and a view of its own, and gives its number.
+/// Adds an accessor with its own buffer and view, and returns its index.
 fn add_accessor(document: &mut Value, bytes: &[u8], component: u32, kind: &str, count: usize) -> usize {
     let view = add_view(document, bytes);
     let accessors = document["accessors"].as_array_mut().unwrap();
@@ -71,7 +71,7 @@ fn add_accessor(document: &mut Value, bytes: &[u8], component: u32, kind: &str, 
     accessors.len() - 1
 }
 
-/// Adds a view of a buffer of its own, and gives its number.
+/// Adds a view of its own buffer, and returns its index.
 fn add_view(document: &mut Value, bytes: &[u8]) -> usize {
     let buffers = document["buffers"].as_array_mut().unwrap();
     let uri = format!("data:;base64,{}", STANDARD.encode(bytes));

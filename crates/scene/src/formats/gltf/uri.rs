@@ -1,4 +1,4 @@
-//! URIs of buffers and images: data within the file, or the name of a file beside it.
+//! URIs of buffers and images: embedded data, or the name of a file next to it.
 
 use std::borrow::Cow;
 
@@ -8,7 +8,7 @@ use base64::{
 };
 use percent_encoding::percent_decode_str;
 
-/// What a URI leads to.
+/// The target of a URI.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Uri<'a> {
     /// What follows `data:`.
@@ -26,7 +26,7 @@ impl<'a> Uri<'a> {
     }
 }
 
-/// The bytes of `mediatype;base64,DATA` or `mediatype,DATA`; `None` where that is not what it is.
+/// The bytes of `mediatype;base64,DATA` or `mediatype,DATA`; `None` if the data is invalid.
 pub(super) fn decode(data: &str) -> Option<Vec<u8>> {
     let (header, data) = data.split_once(',')?;
     let base64 = header.rsplit(';').next().is_some_and(|word| word.trim().eq_ignore_ascii_case("base64"));
@@ -39,7 +39,7 @@ pub(super) fn decode(data: &str) -> Option<Vec<u8>> {
     let engine = GeneralPurpose::new(&alphabet::STANDARD, config);
     match engine.decode(data) {
         Ok(bytes) => Some(bytes),
-        // Percent signs and line breaks are rare enough to try without them first.
+        // Percent signs and line breaks are rare enough to try without handling them first.
         Err(_) => {
             let plain: Vec<u8> = percent_decode_str(data).filter(|byte| !byte.is_ascii_whitespace()).collect();
             engine.decode(plain).ok()

@@ -1,4 +1,4 @@
-//! Cameras and lights of all nodes. What many nodes may share is looked at once: a long text must not become as many long texts.
+//! Cameras and lights of all nodes. Data that many nodes may share is processed once: a long text must not be multiplied.
 
 use std::path::Path;
 
@@ -8,16 +8,16 @@ use super::{
 };
 use crate::{LoadError, Projection, draft::Draft};
 
-/// Characters of a name that are kept.
+/// Maximum length of a name in characters; longer ones are cut.
 const LONGEST_NAME: usize = 200;
 
 /// The cameras and lights of a document.
 pub(super) struct Views<'a> {
     axes: Axes<'a>,
     document: &'a Document<'a>,
-    /// By camera, once a node has shown it.
+    /// By camera, once a node has used it.
     projections: Vec<Option<Projection>>,
-    /// By light, once a node has shown it.
+    /// By light, once a node has used it.
     extras: Vec<Option<LightExtras>>,
 }
 
@@ -84,7 +84,7 @@ impl<'a> Views<'a> {
     }
 
     fn missing(&self, what: &str, index: u32) -> LoadError {
-        malformed(self.axes.path, format!("there is no {what} {index}, but it is asked for"))
+        malformed(self.axes.path, format!("there is no {what} {index}, but it is referenced"))
     }
 }
 

@@ -8,10 +8,10 @@ use crate::formats::{
 
 const KINDS: [&str; 3] = ["position", "texture coordinate", "normal"];
 
-const REMEDY: &str = "indices count from 1, or from −1 backwards; correct the face or export again";
+const REMEDY: &str = "indices count from 1, or backwards from −1; correct the face or export the file again";
 
 /// Reads the corners up to a comment into `corners`; `counts` are those of positions, texture coordinates and normals so far. An
-/// attribute that one corner lacks is taken from all.
+/// attribute that one corner lacks is removed from all.
 pub(super) fn read(text: &[u8], counts: [usize; 3], corners: &mut Vec<Corner>) -> Result<(), Fault> {
     corners.clear();
     for word in words(text).take_while(|word| word[0] != b'#') {
@@ -29,17 +29,17 @@ fn corner(word: &[u8], counts: [usize; 3]) -> Result<Corner, Fault> {
     let mut corner = [NONE; 3];
     for (kind, text) in word.split(|&byte| byte == b'/').enumerate() {
         if kind == corner.len() {
-            return Err(Fault(format!("the face's corner `{}` has more than three indices", quoted(word)), REMEDY));
+            return Err(Fault(format!("the face corner `{}` has more than three indices", quoted(word)), REMEDY));
         }
         if text.is_empty() && kind > 0 {
             continue;
         }
-        let refuse = || Fault(format!("the face's corner `{}` is not made of indices", quoted(word)), REMEDY);
+        let refuse = || Fault(format!("the face corner `{}` is not made of indices", quoted(word)), REMEDY);
         let number = integer(text).ok_or_else(refuse)?;
         let count = counts[kind] as i64;
         let index = if number < 0 { count + number } else { number - 1 };
         if !(0..count.min(i64::from(NONE))).contains(&index) {
-            let problem = format!("the face's corner `{}` asks for {} {number} of {count}", quoted(word), KINDS[kind]);
+            let problem = format!("the face corner `{}` refers to {} {number} of {count}", quoted(word), KINDS[kind]);
             return Err(Fault(problem, REMEDY));
         }
         corner[kind] = index as u32;
@@ -47,7 +47,7 @@ fn corner(word: &[u8], counts: [usize; 3]) -> Result<Corner, Fault> {
     Ok(corner)
 }
 
-/// A whole number of at most 18 digits; no index has more.
+/// An integer of at most 18 digits; no index has more.
 fn integer(text: &[u8]) -> Option<i64> {
     const MOST_DIGITS: usize = 18;
     let (negative, digits) = match text {

@@ -2,11 +2,11 @@
 
 use memchr::memchr;
 
-/// Gives one line after the other.
+/// Iterates over the lines.
 pub(super) struct Lines<'a> {
     rest: &'a [u8],
     joined: Vec<u8>,
-    /// Lines taken so far: the number of the last one.
+    /// Number of lines read so far: the number of the last one.
     pub(super) number: usize,
 }
 
@@ -15,8 +15,8 @@ impl<'a> Lines<'a> {
         Lines { rest: text, joined: Vec::new(), number: 0 }
     }
 
-    /// The next line, with those that continue it, trimmed; `None` at the end. Comments are never continued, because their authors
-    /// do not expect it of a path in them.
+    /// The next line, with its continuation lines, trimmed; `None` at the end. Comments are never continued, because their authors
+    /// do not expect that of a path in them.
     pub(super) fn next(&mut self) -> Option<&[u8]> {
         let line = self.take()?;
         let Some(begun) = continued(line) else { return Some(line) };
@@ -47,7 +47,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// The line without its backslash, if it goes on in the next.
+/// The line without its backslash, if it continues on the next line.
 fn continued(line: &[u8]) -> Option<&[u8]> {
     line.strip_suffix(b"\\").filter(|line| !line.starts_with(b"#"))
 }

@@ -1,4 +1,4 @@
-//! `map_Kd`: a texture with options in front of its file's name, as in `map_Kd -s 2 2 -clamp on brick wall.png`.
+//! `map_Kd`: a texture with options before its file name, as in `map_Kd -s 2 2 -clamp on brick wall.png`.
 
 use std::path::Path;
 
@@ -16,7 +16,8 @@ pub(super) struct Map {
 }
 
 impl Map {
-    /// Reads what follows `map_Kd`; `None` where no file is named. Options that change no colour coordinate are passed over.
+    /// Parses the text after `map_Kd`; `None` if no file is named. Options that do not affect colour or coordinates are
+    /// skipped.
     pub(super) fn parse(text: &str) -> Option<Map> {
         let mut map = Map { file: String::new(), scale: Vec2::ONE, offset: Vec2::ZERO, clamp: false };
         let mut rest = text.trim();
@@ -33,7 +34,7 @@ impl Map {
                 }
                 "mm" => skip_words(after, 2)?,
                 "blendu" | "blendv" | "boost" | "texres" | "bm" | "imfchan" | "type" | "cc" => skip_words(after, 1)?,
-                // The file's name begins with a hyphen.
+                // The file name begins with a hyphen.
                 _ => break,
             }
             .trim_start();
@@ -42,10 +43,10 @@ impl Map {
         (!rest.is_empty()).then_some(map)
     }
 
-    /// The texture, read for `library`, the file that names it. `None` where it cannot be had.
+    /// The texture, read for `library`, the file that names it. `None` if it is not available.
     pub(super) fn texture_use(&self, library: &Path, draft: &mut Draft) -> Option<TextureUse> {
         let texture = draft.texture_file(library, &self.file)?;
-        // In the file (u, v) becomes scale (u, v) + offset with v upwards; here v runs downwards on both sides.
+        // In the file, (u, v) becomes scale (u, v) + offset with v upwards; here v points downwards on both sides.
         let Vec2 { x: scale_u, y: scale_v } = self.scale;
         let offset = Vec2::new(self.offset.x, 1.0 - scale_v - self.offset.y);
         let transform = Affine2::from_mat2_translation(Mat2::from_diagonal(Vec2::new(scale_u, scale_v)), offset);
@@ -54,7 +55,7 @@ impl Map {
     }
 }
 
-/// Reads one to three numbers, of which the first two matter, and gives the rest.
+/// Reads one to three numbers, of which the first two matter, and returns the rest.
 fn vector<'a>(text: &'a str, value: &mut Vec2) -> &'a str {
     let mut rest = text;
     for axis in 0..3 {

@@ -1,13 +1,14 @@
 //! Wavefront OBJ with MTL.
 //!
-//! Read by hand: tobj, put behind a check of each line, took four times as long and six times the file's size in memory.
+//! Not based on tobj, which, with a check of each line before it, took four times as long and six times the file's size in memory.
 //!
-//! - Every combination of position, texture coordinate and normal becomes one vertex. A corner without normal makes its whole face
-//!   flat, one without texture coordinate takes the texture from it.
-//! - Texture coordinates have v upwards in these files and are turned over.
-//! - Colours behind a position's coordinates (`v x y z r g b`) are taken as sRGB in [0, 1], as Blender and MeshLab write them; where
-//!   one is above 1 they count to 255. A fourth coordinate w is the weight of free-form surfaces and means nothing for faces.
-//! - Points, lines and free-form surfaces are left out with a warning; groups and smoothing groups change nothing.
+//! - Every combination of position, texture coordinate and normal becomes one vertex. A corner without a normal makes its whole face
+//!   flat, one without a texture coordinate removes the texture from it.
+//! - Texture coordinates have v upwards in these files and are flipped.
+//! - Colours after a position's coordinates (`v x y z r g b`) are treated as sRGB in [0, 1], as Blender and MeshLab write
+//!   them; if one is above 1, their range is 0 to 255. A fourth coordinate w is the weight of free-form surfaces and has
+//!   no meaning for faces.
+//! - Points, lines and free-form surfaces are ignored with a warning; groups and smoothing groups have no effect.
 
 mod face;
 mod lines;
@@ -107,7 +108,7 @@ fn mesh(content: Content, materials: Vec<u32>) -> LoadedMesh<DVec3> {
     }
 }
 
-/// Linear colours of those in the file; a position without one is white.
+/// The file's colours, converted to linear; a position without one is white.
 fn linear_colors(encoded: Vec<Vec3>) -> Vec<Vec3> {
     let largest = encoded.iter().fold(1.0, |largest: f32, color| largest.max(color.max_element()));
     let scale = if largest > 1.0 { 255.0 } else { 1.0 };

@@ -28,15 +28,15 @@ pub(super) struct Entry {
     transparency: Option<f64>,
 }
 
-/// What libraries hold beyond the scene's model.
+/// Statements of libraries that the scene's model cannot represent.
 #[derive(Default)]
 struct LeftOut {
     maps: usize,
     spectral: usize,
 }
 
-/// Reads the libraries that `mtllib` lines name, in their order. One that cannot be read is a warning, because the shape is there
-/// without it.
+/// Reads the libraries that `mtllib` lines name, in their order. One that cannot be read is a warning, because the shape is
+/// available without it.
 pub(super) fn read_libraries(obj: &Path, lines: &[String], draft: &mut Draft) -> Result<Vec<Entry>, LoadError> {
     let mut entries = Vec::new();
     let mut seen = Vec::new();
@@ -47,7 +47,7 @@ pub(super) fn read_libraries(obj: &Path, lines: &[String], draft: &mut Draft) ->
         }
         match draft.path_beside(obj, &name).and_then(|path| Ok((read_bytes(&path)?, path))) {
             Ok((mut bytes, path)) => read_library(&path, with_line_feeds(&mut bytes), &mut entries, draft)?,
-            Err(error) => draft.warnings.push(format!("{error}; light grey is used in its place")),
+            Err(error) => draft.warnings.push(format!("{error}; light grey is used instead")),
         }
         seen.push(name);
     }
@@ -55,13 +55,13 @@ pub(super) fn read_libraries(obj: &Path, lines: &[String], draft: &mut Draft) ->
     if transparent > 0 {
         draft
             .warnings
-            .push(format!("{}: {transparent} materials are transparent (d, Tr); they are shown opaque", obj.display()));
+            .push(format!("{}: {transparent} materials are transparent (d, Tr), but are shown opaque", obj.display()));
     }
     Ok(entries)
 }
 
-/// The files of an `mtllib` line: one whose name may hold blanks, or several; whichever are there. Where none is, as their endings
-/// part them.
+/// The files of an `mtllib` line: one whose name may contain blanks, or several; whichever exist. If none exists, the line is
+/// split after file extensions.
 fn file_names(obj: &Path, line: &str, draft: &Draft) -> Vec<String> {
     const ENDING: &str = ".mtl";
     let mut by_ending = Vec::new();
@@ -96,21 +96,21 @@ fn read_library(path: &Path, text: &[u8], entries: &mut Vec<Entry>, draft: &mut 
         } else if let Some(entry) = &mut entry
             && let Err(problem) = entry.set(word, rest, &mut left_out)
         {
-            return Err(malformed(path, lines.number, problem, "correct the line or export again"));
+            return Err(malformed(path, lines.number, problem, "correct the line or export the file again"));
         }
     }
     entries.extend(entry);
     let LeftOut { maps, spectral } = left_out;
     for (count, what) in [(maps, "textures other than map_Kd"), (spectral, "spectral or CIE-XYZ colours")] {
         if count > 0 {
-            draft.warnings.push(format!("{}: {count} {what} were left out", path.display()));
+            draft.warnings.push(format!("{}: {count} {what} were ignored", path.display()));
         }
     }
     Ok(())
 }
 
 impl Entry {
-    /// Takes one line; the error says what is wrong with it.
+    /// Parses one line; the error describes the problem.
     fn set(&mut self, word: &[u8], rest: &[u8], left_out: &mut LeftOut) -> Result<(), String> {
         match word {
             b"Ka" | b"Kd" | b"Ks" | b"Ke" => {
@@ -131,11 +131,11 @@ impl Entry {
                 let usable = exponent.filter(|exponent| exponent.is_finite());
                 self.shininess = Some(usable.ok_or_else(|| not_numbers(word, rest))?);
             }
-            // `d -halo 0.5` has its number at the end.
+            // In `d -halo 0.5` the number comes last.
             b"d" => self.dissolve = words(rest).last().and_then(number),
             b"Tr" => self.transparency = words(rest).last().and_then(number),
             b"map_Kd" => self.map = Map::parse(&decoded(rest)),
-            // Exporters write the ambient texture again.
+            // Exporters repeat the texture as the ambient texture.
             b"map_Ka" | b"map_aat" => {}
             b"bump" | b"disp" | b"decal" | b"refl" | b"norm" => left_out.maps += 1,
             word if word.starts_with(b"map_") => left_out.maps += 1,
@@ -144,7 +144,7 @@ impl Entry {
         Ok(())
     }
 
-    /// Some exporters write `Tr 1` for what is opaque; then `d 1` stands beside it.
+    /// Some exporters write `Tr 1` for opaque materials; then there is also `d 1`.
     fn is_transparent(&self) -> bool {
         match (self.dissolve, self.transparency) {
             (Some(dissolve), _) => dissolve < 1.0,
@@ -152,9 +152,9 @@ impl Entry {
         }
     }
 
-    /// The material for the shading model. Without Ka the ambient coefficient is the diffuse one, without Kd a texture shows as it
-    /// is; negative values count as 0. An exponent under 1 would smear the highlight over everything (exporters write `Ns 0` for
-    /// "none"), so it counts as 1. The texture is read if the material is `used`.
+    /// The material for the shading model. Without Ka the ambient coefficient is the diffuse one, without Kd a texture is shown as
+    /// it is; negative values count as 0. An exponent below 1 would smear the highlight over everything (exporters write `Ns 0`
+    /// for "none"), so it counts as 1. The texture is read only if the material is `used`.
     pub(super) fn material(&self, used: bool, draft: &mut Draft) -> Material {
         let default = Material::default();
         let texture = self.map.as_ref().filter(|_| used).and_then(|map| map.texture_use(&self.path, draft));
@@ -182,10 +182,10 @@ fn color(word: &[u8], rest: &[u8]) -> Result<Vec3, String> {
         _ => return Err(not_numbers(word, rest)),
     };
     let color = DVec3::new(r, g, b).as_vec3();
-    // First of all: the maximum of 0 and no number is 0.
+    // This comes first: the maximum of 0 and NaN is 0.
     if color.is_finite() { Ok(color.max(Vec3::ZERO)) } else { Err(not_numbers(word, rest)) }
 }
 
 fn not_numbers(word: &[u8], rest: &[u8]) -> String {
-    format!("`{} {}` is not one number or three", decoded(word), quoted(rest))
+    format!("`{} {}` must have one number or three", decoded(word), quoted(rest))
 }

@@ -1,4 +1,4 @@
-//! The lines of an OBJ file, one by one: points, and triangles of vertices.
+//! The lines of an OBJ file, one by one: points, and triangles made of vertices.
 
 use std::{collections::HashMap, path::Path};
 
@@ -14,26 +14,26 @@ use crate::{
     },
 };
 
-/// Numbers of a position that are looked at: three coordinates and a colour.
+/// Maximum number of values read from a position: three coordinates and a colour.
 const MOST_NUMBERS: usize = 6;
 
-/// Longest piece of an unknown statement that a warning names, in bytes.
+/// Maximum length of an unknown statement in a warning, in bytes.
 const NAMED: usize = 20;
 
-/// What is wrong with a line, and the remedy.
+/// The problem with a line, and the remedy.
 pub(super) struct Fault(pub(super) String, pub(super) &'static str);
 
-/// What faces refer to, in the file's order.
+/// The data that faces refer to, in the file's order.
 #[derive(Default)]
 pub(super) struct Points {
     pub(super) positions: Vec<DVec3>,
     pub(super) uvs: Vec<Vec2>,
     pub(super) normals: Vec<Vec3>,
-    /// By position, as they are in the file; empty where none has one, NaN for those that have none.
+    /// By position, as in the file; empty if no position has one, NaN for those without one.
     pub(super) colors: Vec<Vec3>,
 }
 
-/// What is in a file.
+/// The content of a file.
 pub(super) struct Content {
     pub(super) points: Points,
     /// By vertex: indices of position, texture coordinate and normal.
@@ -41,9 +41,9 @@ pub(super) struct Content {
     pub(super) triangles: Vec<[u32; 3]>,
     /// By triangle: index into `materials`.
     pub(super) material_of_triangle: Vec<u32>,
-    /// Names in the order of their first use; the empty one stands for none.
+    /// Names in the order of their first use; the empty one means none.
     pub(super) materials: Vec<String>,
-    /// What `mtllib` lines name, each once.
+    /// The names in `mtllib` lines, each once.
     pub(super) libraries: Vec<String>,
     pub(super) warnings: Vec<String>,
 }
@@ -70,14 +70,14 @@ struct Parser {
     cutter: Cutter,
     triangles: Vec<[u32; 3]>,
     material_of_triangle: Vec<u32>,
-    /// Number of each material's name.
+    /// Index of each material's name.
     materials: HashMap<String, u32>,
     material: Option<u32>,
     libraries: Vec<String>,
     points_and_lines: usize,
     unknown: Option<String>,
     unknown_line: usize,
-    // Of the face at hand, kept for their memory.
+    // Buffers for the current face, reused to avoid allocation.
     face: Vec<Corner>,
     face_vertices: Vec<u32>,
     face_positions: Vec<DVec3>,
@@ -89,7 +89,7 @@ impl Parser {
         match word {
             b"v" => self.position(rest)?,
             b"vt" => {
-                // One number is a texture of one dimension. In the file v runs upwards.
+                // One number is a one-dimensional texture. In the file v points upwards.
                 let ([u, v, ..], _) = numbers(word, rest, 1)?;
                 self.points.uvs.push(Vec2::new(u as f32, (1.0 - v) as f32));
             }
@@ -128,7 +128,7 @@ impl Parser {
         Ok(())
     }
 
-    /// The number of a material's name.
+    /// The index of a material's name.
     fn material_named(&mut self, name: &str) -> u32 {
         if let Some(&known) = self.materials.get(name) {
             return known;
@@ -167,11 +167,11 @@ impl Parser {
         let path = path.display();
         let mut warnings = Vec::new();
         if self.points_and_lines > 0 {
-            warnings.push(format!("{path}: {} points and lines were left out", self.points_and_lines));
+            warnings.push(format!("{path}: {} points and lines were ignored", self.points_and_lines));
         }
         if let Some(word) = &self.unknown {
             let line = self.unknown_line;
-            warnings.push(format!("{path}:{line}: `{word}` and other lines of unknown meaning were left out"));
+            warnings.push(format!("{path}:{line}: `{word}` and other unknown statements were ignored"));
         }
         warnings.extend(self.cutter.warning().map(|warning| format!("{path}: {warning}")));
         let mut materials: Vec<(String, u32)> = self.materials.into_iter().collect();
@@ -188,16 +188,16 @@ impl Parser {
     }
 }
 
-/// The numbers of a line up to a comment, zeros behind them, and how many there are: at least `least`. Further words are not
-/// looked at.
+/// The numbers of a line up to a comment, padded with zeros, and how many there are: at least `least`. Further words are
+/// ignored.
 fn numbers(word: &[u8], rest: &[u8], least: usize) -> Result<([f64; MOST_NUMBERS], usize), Fault> {
-    const REMEDY: &str = "correct the line or export again";
+    const REMEDY: &str = "correct the line or export the file again";
     let mut numbers = [0.0; MOST_NUMBERS];
     let mut count = 0;
     for text in words(rest).take_while(|word| word[0] != b'#').take(MOST_NUMBERS) {
         let line = || format!("{} {}", decoded(word), quoted(rest));
         numbers[count] =
-            number(text).ok_or_else(|| Fault(format!("`{}` in `{}` is no number", quoted(text), line()), REMEDY))?;
+            number(text).ok_or_else(|| Fault(format!("`{}` in `{}` is not a number", quoted(text), line()), REMEDY))?;
         count += 1;
     }
     if count < least {

@@ -100,12 +100,12 @@ fn damage_is_named_with_its_line() {
     #[rustfmt::skip]
     const MISTAKES: [(&str, &str); 8] = [
         ("v 0 0\n", "`v 0 0` has fewer than 3 numbers, shape.obj:1; "),
-        ("v 0 0 zero\n", "`zero` in `v 0 0 zero` is no number, shape.obj:1; "),
-        ("v 0 0 0\n\nf 1 1 2\n", "the face's corner `2` asks for position 2 of 1, shape.obj:3; "),
-        ("v 0 0 0\nf 1 1 0\n", "the face's corner `0` asks for position 0 of 1, shape.obj:2; "),
-        ("v 0 0 0\nf -2 1 1\n", "asks for position -2 of 1, shape.obj:2; "),
-        ("v 0 0 0\nf 1//1 1//1 1//1\n", "asks for normal 1 of 0, shape.obj:2; "),
-        ("v 0 0 0\nf 1 1 x\n", "the face's corner `x` is not made of indices, shape.obj:2; "),
+        ("v 0 0 zero\n", "`zero` in `v 0 0 zero` is not a number, shape.obj:1; "),
+        ("v 0 0 0\n\nf 1 1 2\n", "the face corner `2` refers to position 2 of 1, shape.obj:3; "),
+        ("v 0 0 0\nf 1 1 0\n", "the face corner `0` refers to position 0 of 1, shape.obj:2; "),
+        ("v 0 0 0\nf -2 1 1\n", "refers to position -2 of 1, shape.obj:2; "),
+        ("v 0 0 0\nf 1//1 1//1 1//1\n", "refers to normal 1 of 0, shape.obj:2; "),
+        ("v 0 0 0\nf 1 1 x\n", "the face corner `x` is not made of indices, shape.obj:2; "),
         ("v 0 0 0\nf 1/1/1/1 1 1\n", "shape.obj:2; "),
     ];
     for (obj, expected) in MISTAKES {
@@ -113,10 +113,10 @@ fn damage_is_named_with_its_line() {
         assert!(message.contains(expected), "{obj}: {message}");
     }
     let message = try_open("mtllib a b.mtl\nv 0 0 0\n", "newmtl a\nKd 1 x 1\n").unwrap_err();
-    assert!(message.contains("`Kd 1 x 1` is not one number or three, a b.mtl:2; "), "{message}");
+    assert!(message.contains("`Kd 1 x 1` must have one number or three, a b.mtl:2; "), "{message}");
     for color in ["nan 0 0", "0 inf 0", "0 0 1e39"] {
         let message = try_open("mtllib a b.mtl\nv 0 0 0\n", &format!("newmtl a\nKd {color}\n")).unwrap_err();
-        assert!(message.contains("is not one number or three, a b.mtl:2; "), "{message}");
+        assert!(message.contains("must have one number or three, a b.mtl:2; "), "{message}");
     }
 }
 

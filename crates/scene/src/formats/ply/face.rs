@@ -10,11 +10,11 @@ use crate::formats::{
     vertices::{NONE, Vertices},
 };
 
-/// Triangles of faces, and what they ask of the vertices.
+/// Triangles of faces, and their effect on the vertices.
 #[derive(Default)]
 pub(super) struct Faces {
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Where faces have colours: a vertex for each combination of the file's vertices (first index) and colours (second).
+    /// If faces have colours: a vertex for each combination of the file's vertices (first index) and colours (second).
     pub(super) split: Option<Vertices>,
     /// Colours of faces, linear.
     pub(super) colors: Vec<Vec3>,
@@ -27,11 +27,11 @@ pub(super) struct Faces {
 }
 
 impl Faces {
-    /// Takes one face.
+    /// Adds one face.
     ///
     /// # Errors
     ///
-    /// The first index that names no vertex.
+    /// The first index that is not a vertex.
     pub(super) fn push(&mut self, row: &Row, color: Option<&Color>, positions: &[DVec3]) -> Result<(), f64> {
         self.corners.clear();
         for &index in &row.list {
@@ -59,7 +59,7 @@ impl Faces {
         Ok(())
     }
 
-    /// The number of a colour.
+    /// The index of a colour.
     fn color_index(&mut self, color: Vec3) -> u32 {
         if self.colors.last() == Some(&color) {
             return self.colors.len() as u32 - 1;
@@ -70,12 +70,12 @@ impl Faces {
         })
     }
 
-    /// Takes triangle strips, one after the other: each vertex makes a triangle with the two before it, turned round every other
-    /// time; −1 begins anew. Triangles that use a vertex twice only lead to the next place.
+    /// Adds triangle strips, one after another: each vertex forms a triangle with the two before it, reversed every other time;
+    /// −1 starts a new strip. Triangles that use a vertex twice only move the strip to its next position.
     ///
     /// # Errors
     ///
-    /// The first index that names no vertex.
+    /// The first index that is not a vertex.
     pub(super) fn push_strips(&mut self, row: &Row, vertices: usize) -> Result<(), f64> {
         const RESTART: f64 = -1.0;
         for strip in row.list.split(|&index| index == RESTART) {
@@ -94,7 +94,7 @@ impl Faces {
     }
 }
 
-/// The vertex that an index names, if there is one.
+/// The vertex of an index, if it exists.
 fn vertex(index: f64, count: usize) -> Option<u32> {
     (index >= 0.0 && index < count as f64 && index.fract() == 0.0).then_some(index as u32)
 }

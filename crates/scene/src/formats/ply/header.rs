@@ -1,4 +1,4 @@
-//! The header of a PLY file: how numbers are written, and which elements with which properties follow.
+//! The header of a PLY file: the encoding of numbers, and the elements with their properties.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::{
     formats::text::{decoded, quoted, split_word},
 };
 
-/// How numbers are written.
+/// The encoding of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Ascii,
@@ -16,7 +16,7 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// A type of number.
+/// A number type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Type {
     I8,
@@ -30,7 +30,7 @@ pub(super) enum Type {
 }
 
 impl Type {
-    /// The type of this name, in the old or the new manner.
+    /// The type with this name, in the old or the new style.
     fn named(name: &[u8]) -> Option<Type> {
         Some(match name {
             b"char" | b"int8" => Type::I8,
@@ -45,7 +45,7 @@ impl Type {
         })
     }
 
-    /// Bytes in a binary file.
+    /// Size in a binary file in bytes.
     pub(super) fn size(self) -> usize {
         match self {
             Type::I8 | Type::U8 => 1,
@@ -55,7 +55,7 @@ impl Type {
         }
     }
 
-    /// What a colour channel of this type counts to.
+    /// The value of a colour channel of this type at full intensity.
     pub(super) fn full(self) -> f64 {
         match self {
             Type::I8 | Type::U8 => 255.0,
@@ -66,11 +66,11 @@ impl Type {
     }
 }
 
-/// What a property holds.
+/// The content of a property.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shape {
     One(Type),
-    /// So many items, a number of the first type, each of the second.
+    /// A count of the first type, and that many items of the second type.
     List(Type, Type),
 }
 
@@ -80,7 +80,7 @@ pub(super) struct Property {
     pub(super) shape: Shape,
 }
 
-/// So many rows of the same properties.
+/// A number of rows with the same properties.
 #[derive(Debug)]
 pub(super) struct Element {
     pub(super) name: String,
@@ -89,15 +89,15 @@ pub(super) struct Element {
 }
 
 impl Element {
-    /// Number of the first property with one of these names.
+    /// Index of the first property with one of these names.
     pub(super) fn property(&self, names: &[&str]) -> Option<usize> {
         self.properties.iter().position(|property| names.contains(&property.name.as_str()))
     }
 
-    /// Fewest bytes of a row.
+    /// Minimum number of bytes per row.
     pub(super) fn least_row(&self, encoding: Encoding) -> u64 {
         let least = |property: &Property| match (encoding, property.shape) {
-            // A digit and what parts it from the next.
+            // A digit and a separator.
             (Encoding::Ascii, _) => 2,
             (_, Shape::One(of) | Shape::List(of, _)) => of.size() as u64,
         };
@@ -109,9 +109,9 @@ impl Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// The picture that a `comment TextureFile` names.
+    /// The image named by `comment TextureFile`.
     pub(super) texture: Option<String>,
-    /// Where the first row begins.
+    /// Offset of the first row in bytes.
     pub(super) length: usize,
 }
 
@@ -140,7 +140,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Header, LoadError> {
                     b"binary_big_endian" => Encoding::BigEndian,
                     _ => {
                         let problem = format!("`{}` is not a known format of PLY files", quoted(first));
-                        return refuse(number, problem, "known are ascii, binary_little_endian and binary_big_endian");
+                        return refuse(number, problem, "supported: ascii, binary_little_endian and binary_big_endian");
                     }
                 });
             }
@@ -170,7 +170,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Header, LoadError> {
                 Some(encoding) => return Ok(Header { encoding, elements, texture, length: lines.at }),
                 None => return refuse(number, "the header has no line `format`".to_owned(), EXPORT),
             },
-            _ => return refuse(number, format!("`{}` is no line of a PLY header", quoted(line)), EXPORT),
+            _ => return refuse(number, format!("`{}` is not a valid line of a PLY header", quoted(line)), EXPORT),
         }
     }
     unreachable!("lines end before numbers do")
@@ -189,7 +189,7 @@ fn property(text: &[u8]) -> Option<Property> {
     (!name.is_empty()).then(|| Property { name: decoded(name).into_owned(), shape })
 }
 
-/// How the first line ends: the others do likewise. After `end_header` a line feed may be data.
+/// The line ending of the first line: the others use the same. After `end_header` a line feed may be data.
 fn line_ending(bytes: &[u8]) -> &'static [u8] {
     match bytes.iter().position(|byte| matches!(byte, b'\r' | b'\n')).map(|at| &bytes[at..]) {
         Some([b'\r', b'\n', ..]) => b"\r\n",
@@ -205,7 +205,7 @@ struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// The next line, trimmed; `None` where none is ended.
+    /// The next line, trimmed; `None` if no line is terminated.
     fn next(&mut self) -> Option<&'a [u8]> {
         let rest = &self.bytes[self.at..];
         let length = memchr::memmem::find(rest, self.ending)?;

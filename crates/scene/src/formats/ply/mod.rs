@@ -1,13 +1,13 @@
-//! PLY, the polygon format of Stanford (Turk 1994): ascii and binary in both byte orders.
+//! PLY, the Stanford polygon format (Turk 1994): ASCII and binary in both byte orders.
 //!
-//! Read by hand: ply-rs makes a table of named values of every row, which takes a multiple of the file's size, and trusts the
-//! counts of headers.
+//! Not based on ply-rs, which builds a table of named values from every row, takes a multiple of the file's size in memory, and
+//! trusts the counts in headers.
 //!
 //! - `vertex` with x y z, normals nx ny nz, texture coordinates (s t, u v, texture_u texture_v; v upwards) and colours, which are
-//!   taken as sRGB; `face` with vertex_indices or vertex_index; `tristrips`. Elements may come in any order; what else they hold is
-//!   passed over.
-//! - A face's colour goes to its corners, in place of those of the vertices: vertices are split where faces of several colours meet.
-//! - A picture named by `comment TextureFile` colours vertices with texture coordinates.
+//!   treated as sRGB; `face` with vertex_indices or vertex_index; `tristrips`. Elements may come in any order; their other
+//!   properties are skipped.
+//! - A face's colour replaces that of its vertices: vertices are split where faces of different colours meet.
+//! - An image named by `comment TextureFile` colours vertices with texture coordinates.
 
 mod face;
 mod header;
@@ -35,7 +35,7 @@ use crate::{
     open::read_bytes,
 };
 
-/// Names of the list that holds a face's or strip's vertices.
+/// Names of the list that contains a face's or strip's vertices.
 const INDICES: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// Reads a PLY file into `draft`.
@@ -91,7 +91,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// All that the scene needs, and what it does not.
+    /// Everything that the scene needs, and the names of elements that it does not.
     fn elements(&mut self, header: &Header) -> Result<(Points, Faces, Vec<String>), LoadError> {
         let (mut points, mut faces) = (None, Faces::default());
         let mut waiting = Vec::new();
@@ -102,7 +102,7 @@ impl Reader<'_> {
                 ("vertex", None) => points = Some(self.vertices(element)?),
                 ("face" | "tristrips", Some(points)) => self.faces(element, points, &mut faces)?,
                 (name, _) => {
-                    // Faces can be cut only when their vertices are known.
+                    // Faces can be triangulated only when their vertices are known.
                     match name {
                         "face" | "tristrips" => waiting.push((self.rows.at, element)),
                         _ if element.count > 0 => others.push(format!("{} ({})", element.name, element.count)),
@@ -121,20 +121,21 @@ impl Reader<'_> {
         }
         let mut warnings: Vec<String> = faces.cutter.warning().into_iter().collect();
         if faces.left_out > 0 {
-            warnings.push(format!("{} faces with fewer than three corners were left out", faces.left_out));
+            warnings.push(format!("{} faces with fewer than three corners were ignored", faces.left_out));
         }
         if !others.is_empty() {
-            warnings.push(format!("elements of unknown meaning were left out: {}", others.join(", ")));
+            warnings.push(format!("unknown elements were ignored: {}", others.join(", ")));
         }
         Ok((points, faces, warnings))
     }
 
-    /// Ends reading before anything is allocated by a count that the file cannot fulfil.
+    /// Stops reading before a count that the file cannot fulfil causes an allocation.
     fn check_room(&self, element: &Element) -> Result<(), LoadError> {
         let (room, Element { name, count, .. }) = (self.rows.room(element), element);
         if *count > room {
-            let problem =
-                format!("the header promises {count} of element `{name}`, the rest of the file has room for {room}");
+            let problem = format!(
+                "the header declares {count} of element `{name}`, but the rest of the file has room for only {room}"
+            );
             return Err(self.refuse(problem));
         }
         Ok(())
@@ -168,14 +169,15 @@ impl Reader<'_> {
             };
             pushed.map_err(|index| {
                 format!(
-                    "row {number} of element `{}` asks for vertex {index}, and there are {count} from 0 on",
+                    "row {number} of element `{}` refers to vertex {index}, but there are only {count}, counted from 0",
                     element.name
                 )
             })
         })
     }
 
-    /// Hands each row of an element to `take`, with its number counted from 1. What that refuses is an error at the row's line.
+    /// Passes each row of an element to `take`, with its number counted from 1. If that fails, the error is located at the row's
+    /// line.
     fn each_row(
         &mut self,
         element: &Element,
@@ -191,7 +193,7 @@ impl Reader<'_> {
                 let place = format!("row {number} of {} of element `{}`", element.count, element.name);
                 match fault {
                     Fault::Ended => format!("the file ends within {place}"),
-                    Fault::NoNumber(word) => format!("`{word}` in {place} is no number"),
+                    Fault::NoNumber(word) => format!("`{word}` in {place} is not a number"),
                     Fault::NoCount(count) => format!("{place} has a list of {count} items"),
                 }
             });
@@ -200,11 +202,11 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The error for what is wrong here: in a text, its line is known.
+    /// The error for a problem at the current position: in ASCII files, its line is known.
     fn refuse(&self, problem: String) -> LoadError {
-        // The last byte that was read, not the line feed behind it.
+        // The last byte that was read, not the line feed after it.
         let line = (self.encoding == Encoding::Ascii).then(|| line_of(self.bytes, self.rows.at.saturating_sub(1)));
-        malformed(self.path, line, problem, "export it again, or copy it again if it was cut short")
+        malformed(self.path, line, problem, "export it again, or copy it again if it is truncated")
     }
 }
 

@@ -1,4 +1,4 @@
-//! The rows behind a PLY header, number by number.
+//! The rows after a PLY header, number by number.
 
 use super::header::{Element, Encoding, Shape, Type};
 use crate::formats::text::{number, quoted};
@@ -8,9 +8,9 @@ use crate::formats::text::{number, quoted};
 pub(super) enum Fault {
     /// The file ends within it.
     Ended,
-    /// This stands where a number should.
+    /// This was found in place of a number.
     NoNumber(String),
-    /// A list cannot have so many items.
+    /// A list with an impossible number of items.
     NoCount(f64),
 }
 
@@ -19,14 +19,14 @@ pub(super) enum Fault {
 pub(super) struct Row {
     /// By property; the number of items for a list.
     pub(super) values: Vec<f64>,
-    /// Items of the list that was asked for.
+    /// Items of the requested list.
     pub(super) list: Vec<f64>,
 }
 
-/// A place among the rows.
+/// A position among the rows.
 pub(super) struct Rows<'a> {
     bytes: &'a [u8],
-    /// The next byte.
+    /// Offset of the next byte.
     pub(super) at: usize,
     encoding: Encoding,
 }
@@ -36,14 +36,14 @@ impl<'a> Rows<'a> {
         Rows { bytes, at, encoding }
     }
 
-    /// Most rows of `element` that the rest of the file can hold.
+    /// Maximum number of rows of `element` that the rest of the file can contain.
     pub(super) fn room(&self, element: &Element) -> u64 {
-        // The last row of a text need not be ended.
+        // The last row of an ASCII file need not be terminated.
         let rest = (self.bytes.len() - self.at) as u64 + u64::from(self.encoding == Encoding::Ascii);
         rest.checked_div(element.least_row(self.encoding)).unwrap_or(u64::MAX)
     }
 
-    /// Reads the next row of `element`, and of its lists the items of property number `list`.
+    /// Reads the next row of `element` and, of its lists, the items of property number `list`.
     pub(super) fn read(&mut self, element: &Element, list: Option<usize>, row: &mut Row) -> Result<(), Fault> {
         row.values.clear();
         row.list.clear();
@@ -113,7 +113,7 @@ impl<'a> Rows<'a> {
         Ok(bytes)
     }
 
-    /// The next word of a text.
+    /// The next word of an ASCII file.
     fn word(&mut self) -> Result<&'a [u8], Fault> {
         let rest = &self.bytes[self.at..];
         let begin = rest.iter().position(|byte| !byte.is_ascii_whitespace()).ok_or(Fault::Ended)?;

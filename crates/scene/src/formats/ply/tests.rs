@@ -176,7 +176,7 @@ fn damage_is_named_with_its_line() {
         ("ply\nend_header\n".to_owned(), "the header has no line `format`, part.ply:2; "),
         (
             "ply\nformat binary 1.0\n".to_owned(),
-            "`binary` is not a known format of PLY files, part.ply:2; known are ascii",
+            "`binary` is not a known format of PLY files, part.ply:2; supported: ascii",
         ),
         (head("element vertex -1\n"), "`element vertex -1` has no usable count, part.ply:3; "),
         (head("property float x\n"), "a property comes before the first element, part.ply:3; "),
@@ -184,12 +184,12 @@ fn damage_is_named_with_its_line() {
             head("element vertex 1\nproperty half x\n"),
             "`property half x` is not a property with a known type, part.ply:4; ",
         ),
-        (head("elephant\n"), "`elephant` is no line of a PLY header, part.ply:3; "),
+        (head("elephant\n"), "`elephant` is not a valid line of a PLY header, part.ply:3; "),
         (ascii("element face 0\n", ""), "the file has no element `vertex`, part.ply:"),
         (ascii("element vertex 1\nproperty float x\n", "0\n"), "lacks one of the properties x, y and z, part.ply:"),
         (
             ascii(&promise, three),
-            "the header promises 4294967295 of element `vertex`, the rest of the file has room for 3, ",
+            "the header declares 4294967295 of element `vertex`, but the rest of the file has room for only 3, ",
         ),
         (
             ascii(&many, &format!("{three}4294967295 0 1 2\n")),
@@ -199,11 +199,17 @@ fn damage_is_named_with_its_line() {
             ascii(&many, &format!("{three}-3 0 1 2\n")),
             "row 1 of 1 of element `face` has a list of -3 items, part.ply:13; ",
         ),
-        (ascii(&many, &format!("{three}3 0 1 3\n")), "asks for vertex 3, and there are 3 from 0 on, part.ply:13; "),
-        (ascii(&many, &format!("{three}3 0 1 -1\n")), "asks for vertex -1, and there are 3 from 0 on, part.ply:13; "),
+        (
+            ascii(&many, &format!("{three}3 0 1 3\n")),
+            "refers to vertex 3, but there are only 3, counted from 0, part.ply:13; ",
+        ),
+        (
+            ascii(&many, &format!("{three}3 0 1 -1\n")),
+            "refers to vertex -1, but there are only 3, counted from 0, part.ply:13; ",
+        ),
         (
             ascii(&many, "0 0 0\n1 zero 0\n0 1 0\n3 0 1 2\n"),
-            "`zero` in row 2 of 3 of element `vertex` is no number, part.ply:11; ",
+            "`zero` in row 2 of 3 of element `vertex` is not a number, part.ply:11; ",
         ),
     ];
     for (text, expected) in cases {

@@ -17,7 +17,7 @@ pub(super) struct Points {
     pub(super) colors: Vec<Vec3>,
 }
 
-/// Which numbers of a row mean what.
+/// The meaning of a row's numbers.
 pub(super) struct Layout {
     position: [usize; 3],
     normal: Option<[usize; 3]>,
@@ -26,7 +26,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// `None` where vertices have no position.
+    /// `None` if vertices have no position.
     pub(super) fn of(element: &Element) -> Option<Layout> {
         let uv_names = [["s", "t"], ["u", "v"], ["texture_u", "texture_v"], ["texture_s", "texture_t"]];
         Some(Layout {
@@ -37,21 +37,21 @@ impl Layout {
         })
     }
 
-    /// Takes one vertex.
+    /// Adds one vertex.
     pub(super) fn push(&self, row: &Row, points: &mut Points) {
         let vector = |[x, y, z]: [usize; 3]| DVec3::new(row.values[x], row.values[y], row.values[z]);
         points.positions.push(vector(self.position));
         points.normals.extend(self.normal.map(|normal| vector(normal).as_vec3()));
-        // In the file v runs upwards.
+        // In the file v points upwards.
         points.uvs.extend(self.uv.map(|[u, v]| Vec2::new(row.values[u] as f32, (1.0 - row.values[v]) as f32)));
         points.colors.extend(self.color.as_ref().map(|color| color.linear(row)));
     }
 }
 
-/// Where a row's colour stands.
+/// The indices of a row's colour channels.
 pub(super) struct Color {
     channels: [usize; 3],
-    /// What each counts to.
+    /// The value of each channel at full intensity.
     full: f64,
 }
 
@@ -63,13 +63,13 @@ impl Color {
         Some(Color { channels, full: of.full() })
     }
 
-    /// The row's colour; in the file it is encoded as sRGB.
+    /// The row's colour, decoded from sRGB.
     pub(super) fn linear(&self, row: &Row) -> Vec3 {
         linear(Vec3::from_array(self.channels.map(|channel| (row.values[channel] / self.full) as f32)))
     }
 }
 
-/// The properties of these names, if all are there and are single numbers.
+/// The properties with these names, if all exist and are single numbers.
 fn numbers<const COUNT: usize>(element: &Element, names: [&str; COUNT]) -> Option<[usize; COUNT]> {
     let mut found = [0; COUNT];
     for (slot, name) in found.iter_mut().zip(names) {

@@ -1,7 +1,7 @@
-//! STL as text: `solid NAME`, facets of three `vertex` lines, `endsolid NAME`, as often as there are parts.
+//! ASCII STL: `solid NAME`, facets of three `vertex` lines, `endsolid NAME`, repeated for each part.
 //!
-//! Blanks, line ends and capitals mean nothing, and `endsolid` may be missing. A facet with more corners than three is cut like any
-//! polygon.
+//! Whitespace, line endings and case are ignored, and `endsolid` may be missing. A facet with more than three corners is
+//! triangulated like any polygon.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use crate::{
     },
 };
 
-/// A facet's first word.
+/// A facet's first keyword.
 const FACET: &[u8] = b"facet";
 
 /// Reads all solids.
@@ -40,10 +40,10 @@ pub(super) fn read(path: &Path, text: &[u8]) -> Result<Soup<DVec3>, LoadError> {
             soup.positions.extend(&corners);
             cutter.cut(&corners, |triangle| soup.triangles.push(triangle.map(|corner| first + corner as u32)));
         } else {
-            return Err(reader.refuse(format!("`{}` stands where a facet should begin", quoted(word))));
+            return Err(reader.refuse(format!("`{}` found where a facet was expected", quoted(word))));
         }
     }
-    let short = (left_out > 0).then(|| format!("{left_out} facets with fewer than three corners were left out"));
+    let short = (left_out > 0).then(|| format!("{left_out} facets with fewer than three corners were ignored"));
     soup.warning = short.or_else(|| cutter.warning());
     Ok(soup)
 }
@@ -79,7 +79,7 @@ impl<'a> Reader<'a> {
         self.at += facet.unwrap_or(line.len());
     }
 
-    /// The corners of a facet, whose first word has been read.
+    /// The corners of a facet, whose first keyword has been read.
     fn facet(&mut self, corners: &mut Vec<DVec3>) -> Result<(), LoadError> {
         corners.clear();
         let mut in_normal = false;
@@ -98,7 +98,7 @@ impl<'a> Reader<'a> {
                 in_normal = false;
             } else if !in_normal {
                 // The numbers of a normal may be anything: they are not used.
-                return Err(self.refuse(format!("`{}` is no word of a facet", quoted(word))));
+                return Err(self.refuse(format!("`{}` is not a valid keyword in a facet", quoted(word))));
             }
         }
     }
@@ -108,7 +108,7 @@ impl<'a> Reader<'a> {
         for axis in 0..3 {
             let word = self.word().unwrap_or_default();
             vector[axis] = number(word)
-                .ok_or_else(|| self.refuse(format!("`{}` stands where a coordinate should", quoted(word))))?;
+                .ok_or_else(|| self.refuse(format!("`{}` found where a coordinate was expected", quoted(word))))?;
         }
         Ok(vector)
     }

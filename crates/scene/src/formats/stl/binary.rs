@@ -1,4 +1,4 @@
-//! Binary STL: 80 bytes of anything, the number of facets, and 50 bytes for each: normal, three corners, two bytes of attributes.
+//! Binary STL: 80 arbitrary bytes, the number of facets, and 50 bytes for each: normal, three corners, two attribute bytes.
 
 use std::path::Path;
 
@@ -16,13 +16,13 @@ const FACET: usize = 50;
 /// Bytes of a vector of three `f32`.
 const VECTOR: usize = 12;
 
-/// Facets promised, and the bytes in which they should be; `None` where the file is too short for that.
+/// The declared number of facets, and the bytes that should contain them; `None` if the file is too short for that.
 fn facets(bytes: &[u8]) -> Option<(u32, &[u8])> {
     let (count, facets) = bytes.get(HEADER..)?.split_first_chunk::<COUNT>()?;
     Some((u32::from_le_bytes(*count), facets))
 }
 
-/// Whether the file is as long as its count says.
+/// Whether the file has exactly the length implied by its count.
 pub(super) fn has_exact_length(bytes: &[u8]) -> bool {
     facets(bytes).is_some_and(|(count, facets)| facets.len() as u64 == FACET as u64 * u64::from(count))
 }
@@ -31,13 +31,13 @@ pub(super) fn has_exact_length(bytes: &[u8]) -> bool {
 pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Soup<Vec3>, LoadError> {
     let Some((count, facets)) = facets(bytes) else {
         let least = HEADER + COUNT;
-        let problem =
-            format!("{} bytes are neither STL as text nor binary STL, which has {least} at least", bytes.len());
+        let problem = format!("{} bytes are neither ASCII STL nor binary STL, which has at least {least}", bytes.len());
         return Err(malformed(path, None, problem));
     };
     let (whole, _) = facets.as_chunks::<FACET>();
     if whole.len() < count as usize {
-        let problem = format!("the header promises {count} facets, the rest of the file has room for {}", whole.len());
+        let problem =
+            format!("the header declares {count} facets, but the rest of the file has room for only {}", whole.len());
         return Err(malformed(path, None, problem));
     }
     let whole = &whole[..count as usize];
@@ -50,8 +50,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Soup<Vec3>, LoadError> {
     }
     let triangles = (0..count).map(|facet| [3 * facet, 3 * facet + 1, 3 * facet + 2]).collect();
     let surplus = facets.len() - FACET * whole.len();
-    let warning =
-        (surplus > 0).then(|| format!("{surplus} bytes behind the {count} facets of the header were left out"));
+    let warning = (surplus > 0).then(|| format!("{surplus} bytes after the {count} facets of the header were ignored"));
     Ok(Soup { positions, triangles, warning })
 }
 

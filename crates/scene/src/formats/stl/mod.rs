@@ -1,11 +1,11 @@
-//! STL (3D Systems 1988), as text or binary.
+//! STL (3D Systems 1988), ASCII or binary.
 //!
-//! Read by hand: stl_io takes for text what begins with `solid`, as many binary files do, and refuses text that differs from the
-//! specification in blanks or capitals.
+//! Not based on stl_io, which treats any file starting with `solid` as ASCII, as many binary files do, and rejects text that differs
+//! from the specification in whitespace or case.
 //!
-//! A file is binary if it is exactly as long as the count in its header says, whatever it begins with. Facets' normals are not used:
-//! they follow from the corners, and the surface is flat. Colours in the attribute bytes, of which there are several conventions,
-//! are not used either. Corners are not joined: each facet has vertices of its own.
+//! A file is binary if it has exactly the length implied by the count in its header, whatever it begins with. Facet normals are not
+//! used: they follow from the corners, and the surface is flat. Colours in the attribute bytes, of which there are several
+//! conventions, are not used either. Corners are not merged: each facet has its own vertices.
 
 mod ascii;
 mod binary;
@@ -23,7 +23,7 @@ use crate::{
     open::read_bytes,
 };
 
-/// Bytes at a text's beginning in which a word of its grammar must be found.
+/// Number of bytes at the start of a text in which a keyword must be found.
 const BEGINNING: usize = 4096;
 
 /// Reads an STL file into `draft`.
@@ -38,7 +38,7 @@ pub(crate) fn read(path: &Path, placement: &Placement, draft: &mut Draft) -> Res
     }
 }
 
-/// Triangles with vertices of their own.
+/// Triangles with their own vertices.
 #[derive(Debug, Default)]
 struct Soup<P> {
     positions: Vec<P>,
@@ -68,7 +68,7 @@ fn hand_over<P: Position>(
     draft.take(mesh, &placement.transform)
 }
 
-/// Whether it begins with `solid` and goes on like a text.
+/// Whether it begins with `solid` and continues like text.
 fn is_text(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let beginning = bytes[..bytes.len().min(BEGINNING)].to_ascii_lowercase();
@@ -78,6 +78,6 @@ fn is_text(bytes: &[u8]) -> bool {
 
 fn malformed(path: &Path, line: Option<usize>, problem: String) -> LoadError {
     let place = line.map_or_else(|| Place::file(path), |line| Place::line(path, line));
-    let remedy = "export it again, or copy it again if it was cut short".to_owned();
+    let remedy = "export it again, or copy it again if it is truncated".to_owned();
     LoadError::Malformed { place: place.into(), problem, remedy }
 }

@@ -57,7 +57,7 @@ fn text_is_read_however_it_is_laid_out() {
         format!("solid a facet of glass\n{}endsolid\n\nsolid\n{}", facet(&CORNERS[..3]), facet(&CORNERS[3..])),
         format!("solid\n{nameless}"),
     ] {
-        // One word a line gives a name on a line of its own, which is no facet.
+        // With one word per line, a name is on a separate line, which is not a facet.
         let scene = try_open(text.replace("solid   \npart", "solid").as_bytes());
         assert!(scene.as_ref().is_ok_and(is_right), "{text}: {:?}", scene.map(|scene| scene.geometry.mesh.clone()));
     }
@@ -73,7 +73,7 @@ fn the_length_tells_binary_from_text() {
     let mut longer = binary(b"solid", 2);
     longer.extend([7; 60]);
     let scene = open(&longer);
-    assert!(is_right(&scene) && scene.warnings[0].contains("60 bytes behind the 2 facets"), "{:?}", scene.warnings);
+    assert!(is_right(&scene) && scene.warnings[0].contains("60 bytes after the 2 facets"), "{:?}", scene.warnings);
 }
 
 #[test]
@@ -89,20 +89,23 @@ fn facets_of_other_numbers_of_corners_are_cut_or_left_out() {
 fn damage_is_named() {
     let text = format!("solid\n{}", facet(&CORNERS[..3]));
     let cases: [(&[u8], &str); 8] = [
-        (b"", "0 bytes are neither STL as text nor binary STL, which has 84 at least, part.STL; "),
-        (b"solid\nfacet normal 0 0 1 outer loop vertex 0 0", "`` stands where a coordinate should, part.STL:2; "),
+        (b"", "0 bytes are neither ASCII STL nor binary STL, which has at least 84, part.STL; "),
+        (b"solid\nfacet normal 0 0 1 outer loop vertex 0 0", "`` found where a coordinate was expected, part.STL:2; "),
         (
             b"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 zero 0",
-            "`zero` stands where a coordinate should, part.STL:4; ",
+            "`zero` found where a coordinate was expected, part.STL:4; ",
         ),
         (b"solid\nfacet normal 0 0 1\nouter loop\n", "the file ends within a facet, part.STL:3; "),
-        (b"solid\nfacet outer ring", "`ring` is no word of a facet, part.STL:2; "),
-        (b"solid\n\nfact\n", "`fact` stands where a facet should begin, part.STL:3; "),
+        (b"solid\nfacet outer ring", "`ring` is not a valid keyword in a facet, part.STL:2; "),
+        (b"solid\n\nfact\n", "`fact` found where a facet was expected, part.STL:3; "),
         (
             &binary(b"solid\0", u32::MAX),
-            "the header promises 4294967295 facets, the rest of the file has room for 2, part.STL; ",
+            "the header declares 4294967295 facets, but the rest of the file has room for only 2, part.STL; ",
         ),
-        (&binary(b"", 2)[..180], "the header promises 2 facets, the rest of the file has room for 1, part.STL; "),
+        (
+            &binary(b"", 2)[..180],
+            "the header declares 2 facets, but the rest of the file has room for only 1, part.STL; ",
+        ),
     ];
     for (bytes, expected) in cases {
         let message = try_open(bytes).map(|scene| scene.geometry.mesh.clone()).unwrap_err();

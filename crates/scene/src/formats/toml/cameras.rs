@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{Camera, Fov, LoadError, Projection};
 
-/// Vertical angle of a camera that says none, degrees.
+/// Default vertical field of view, degrees.
 const DEFAULT_VFOV: f32 = 50.0;
 
 /// The camera and its world position.
@@ -67,7 +67,7 @@ fn projection(
     let hfov = entry.hfov.as_ref().map(|angle| source.view_angle("hfov", angle)).transpose()?;
     if entry.projection.as_ref().map(|name| *name.get_ref()) == Some(ProjectionName::Orthographic) {
         let Some(height) = &entry.height else {
-            return Err(source.missing(table, "height", "add the height of the orthographic picture in scene units"));
+            return Err(source.missing(table, "height", "add the height of the orthographic image in scene units"));
         };
         if let Some(angle) = entry.vfov.as_ref().or(entry.hfov.as_ref()) {
             return Err(source.refuse("fov", angle, "has no meaning in an orthographic camera", "remove it"));
@@ -82,7 +82,7 @@ fn projection(
         (Some(vfov), Some(hfov)) => {
             if vfov != hfov {
                 let place = source.place(table.span());
-                warnings.push(format!("{place}: the camera has vfov and hfov; vfov = {vfov} is taken"));
+                warnings.push(format!("{place}: the camera has vfov and hfov; vfov = {vfov} is used"));
             }
             Fov::Vertical(vfov)
         }
@@ -91,8 +91,8 @@ fn projection(
     }))
 }
 
-/// `up` turned to a right angle with the unit vector `direction`, or as it is where it stands so to `f32` precision; `None`
-/// where they are parallel.
+/// `up` made perpendicular to the unit vector `direction`, or unchanged if it is so to `f32` precision; `None` if they are
+/// parallel.
 pub(crate) fn upright(direction: DVec3, up: DVec3) -> Option<DVec3> {
     const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
     if up.dot(direction).abs() <= ROUNDING {

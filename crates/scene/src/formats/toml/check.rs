@@ -1,4 +1,4 @@
-//! Values of a scene file made sure of: finite, in range, known. Every refusal names file, line, key and remedy.
+//! Checks of a scene file's values: finite, in range, known. Every error names file, line, key and remedy.
 
 use std::{fmt::Debug, ops::Range, path::Path};
 
@@ -8,10 +8,10 @@ use super::schema::{Color, Number, Text, Vector};
 use super::spanned::Spanned;
 use crate::{LoadError, error::Place};
 
-/// Numbers beyond this are taken for slips: their squares must fit into `f32`.
+/// Larger numbers are treated as typing errors: their squares must fit into `f32`.
 const LARGEST: f64 = crate::draft::LARGEST_COORDINATE;
 
-/// The file that is read: turns places in the text into lines.
+/// The file being read: converts positions in the text into lines.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source<'a> {
     pub(super) path: &'a Path,
@@ -19,12 +19,12 @@ pub(super) struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// The line of a place in the text.
+    /// The line of a position in the text.
     pub(super) fn place(&self, span: Range<usize>) -> Box<Place> {
         Box::new(Place::byte(self.path, self.text, span.start))
     }
 
-    /// The error for a value that cannot be used: "key = value `problem`; `remedy`".
+    /// The error for an invalid value: "key = value `problem`; `remedy`".
     pub(super) fn refuse<T>(&self, key: &str, value: &Spanned<T>, problem: &str, remedy: &str) -> LoadError {
         LoadError::Value {
             place: self.place(value.span()),
@@ -35,7 +35,7 @@ impl Source<'_> {
         }
     }
 
-    /// The error for a table that lacks a key.
+    /// The error for a table without a required key.
     pub(super) fn missing<T>(&self, table: &Spanned<T>, key: &str, remedy: &str) -> LoadError {
         LoadError::MissingKey { place: self.place(table.span()), key: key.to_owned(), remedy: remedy.to_owned() }
     }
@@ -59,11 +59,11 @@ impl Source<'_> {
     /// A number above 0.
     pub(super) fn positive(&self, key: &str, value: &Number) -> Result<f64, LoadError> {
         let number = self.number(key, value)?;
-        // Compared as it will be stored: 1e-60 is 0 there.
+        // Compared in the precision in which it will be stored: 1e-60 is 0 there.
         if number as f32 > 0.0 {
             Ok(number)
         } else {
-            Err(self.refuse(key, value, "is not above 0", &format!("give a {key} above 0")))
+            Err(self.refuse(key, value, "is not positive", &format!("give a {key} above 0")))
         }
     }
 
@@ -78,7 +78,7 @@ impl Source<'_> {
         }
     }
 
-    /// A full angle of view: above 0 and under 180 degrees.
+    /// A full field of view: above 0 and below 180 degrees.
     pub(super) fn view_angle(&self, key: &str, value: &Number) -> Result<f32, LoadError> {
         let degrees = self.positive(key, value)? as f32;
         if degrees < 180.0 {
@@ -88,7 +88,7 @@ impl Source<'_> {
         }
     }
 
-    /// A whole number of segments.
+    /// A number of segments.
     pub(super) fn segments(&self, value: &Option<Spanned<i64>>) -> Result<u32, LoadError> {
         const RANGE: std::ops::RangeInclusive<i64> = 3..=2048;
         match value {
@@ -107,7 +107,7 @@ impl Source<'_> {
         Ok(DVec3::from(*value.get_ref()))
     }
 
-    /// A direction, made unit length; one that is unit length to `f32` precision already is kept digit for digit.
+    /// A direction, normalised; one that has unit length to `f32` precision is kept digit for digit.
     pub(super) fn direction(&self, key: &str, value: &Vector) -> Result<DVec3, LoadError> {
         unit(self.vector(key, value)?)
             .ok_or_else(|| self.refuse(key, value, "has no direction", "give a vector that is not zero"))
@@ -119,7 +119,7 @@ impl Source<'_> {
         if value.get_ref().iter().all(|&length| length as f32 > 0.0) {
             Ok(*value.get_ref())
         } else {
-            Err(self.refuse(key, value, "has a length that is not above 0", "give lengths above 0"))
+            Err(self.refuse(key, value, "has a component that is not positive", "give lengths above 0"))
         }
     }
 
@@ -147,14 +147,14 @@ impl Source<'_> {
     }
 }
 
-/// The vector at unit length, or as it is where it is that long to `f32` precision, so that what was written reads the same.
-/// `None` where it has no direction.
+/// The vector at unit length, or unchanged if it has that length to `f32` precision, so that written values are read back
+/// unchanged. `None` if it has no direction.
 pub(crate) fn unit(vector: DVec3) -> Option<DVec3> {
     const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
     if (vector.length_squared() - 1.0).abs() <= ROUNDING { Some(vector) } else { vector.try_normalize() }
 }
 
-/// What toml and serde say against a file, in our words.
+/// An error of toml and serde in our words.
 pub(super) fn syntax_error(source: &Source, error: &toml::de::Error) -> LoadError {
     let place = source.place(error.span().unwrap_or(0..0));
     let message = error.message().lines().collect::<Vec<_>>().join(" ");
@@ -169,13 +169,13 @@ pub(super) fn syntax_error(source: &Source, error: &toml::de::Error) -> LoadErro
         return LoadError::MissingKey { place, key, remedy };
     }
     let remedy = match key_at(source, error.span()) {
-        Some(key) => format!("write a value that `{key}` can take"),
-        None => "write it as TOML asks (see https://toml.io)".to_owned(),
+        Some(key) => format!("use a value that is valid for `{key}`"),
+        None => "correct the TOML syntax (see https://toml.io)".to_owned(),
     };
     LoadError::Syntax { place, problem: message, remedy }
 }
 
-/// The key whose value is at fault; `None` where not even the grammar is kept.
+/// The key with the invalid value; `None` if not even the syntax is valid.
 fn key_at<'a>(source: &Source<'a>, span: Option<Range<usize>>) -> Option<&'a str> {
     let before = source.text.get(..span?.start)?;
     let line = before.rsplit('\n').next()?;
@@ -183,12 +183,12 @@ fn key_at<'a>(source: &Source<'a>, span: Option<Range<usize>>) -> Option<&'a str
     Some(key.trim())
 }
 
-/// For messages: the keys out of a list that are there.
+/// For messages: the keys in a list that are present.
 pub(super) fn present<'a>(keys: &[(&'a str, bool)]) -> Vec<&'a str> {
     keys.iter().filter(|(_, there)| *there).map(|(key, _)| *key).collect()
 }
 
-/// A required key of a kind of table that has it only sometimes.
+/// A key that is required for some kinds of a table only.
 pub(super) fn required<'a, T, E: Debug>(
     source: &Source,
     table: &Spanned<E>,

@@ -1,4 +1,4 @@
-//! `[[light]]` to [`Light`]: which keys each kind takes, and what they mean together.
+//! `[[light]]` to [`Light`]: the keys of each kind, and their combined meaning.
 
 use glam::{DVec3, Vec3};
 
@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{Falloff, Light, LightKind, LoadError};
 
-/// Half-angle of a spot light that says none, degrees.
+/// Default half-angle of a spot light, degrees.
 const DEFAULT_OUTER: f64 = 45.0;
 
 /// The light and its world position (zero for a directional one).
@@ -19,7 +19,7 @@ pub(super) fn read(source: &Source, table: &Spanned<LightEntry>) -> Result<(Ligh
     let position = match &entry.position {
         Some(position) => source.vector("position", position)?,
         None if *entry.kind.get_ref() == LightKindName::Directional => DVec3::ZERO,
-        None => return Err(source.missing(table, "position", "add the light's place, `position = [x, y, z]`")),
+        None => return Err(source.missing(table, "position", "add the light's position, `position = [x, y, z]`")),
     };
     let light = Light {
         name: entry.name.as_ref().map_or(String::new(), |name| name.get_ref().clone()),
@@ -61,7 +61,7 @@ fn kind(source: &Source, table: &Spanned<LightEntry>, position: DVec3) -> Result
     })
 }
 
-/// A key that the kind does not take is a misunderstanding, not something to be ignored.
+/// A key that the kind does not have is a misunderstanding, and must not be ignored.
 fn refuse_foreign_keys(source: &Source, table: &Spanned<LightEntry>) -> Result<(), LoadError> {
     let entry = table.get_ref();
     let there = present(&[
@@ -96,7 +96,7 @@ fn refuse_foreign_keys(source: &Source, table: &Spanned<LightEntry>) -> Result<(
     }
 }
 
-/// The one of `direction`, `target` and `normal` that is there.
+/// The one of `direction`, `target` and `normal` that is present.
 fn direction(source: &Source, table: &Spanned<LightEntry>, position: DVec3) -> Result<DVec3, LoadError> {
     let entry = table.get_ref();
     match (&entry.direction, &entry.target, &entry.normal) {
@@ -104,9 +104,11 @@ fn direction(source: &Source, table: &Spanned<LightEntry>, position: DVec3) -> R
         (None, None, Some(normal)) => source.direction("normal", normal),
         (None, Some(target), None) => unit(source.vector("target", target)? - position)
             .ok_or_else(|| source.refuse("target", target, "is the light's own position", "move one of them")),
-        (None, None, None) => {
-            Err(source.missing(table, "direction", "add the way the light shines, `direction = [x, y, z]`"))
-        }
+        (None, None, None) => Err(source.missing(
+            table,
+            "direction",
+            "add the direction in which the light shines, `direction = [x, y, z]`",
+        )),
         _ => Err(source.refuse(
             "kind",
             &entry.kind,
@@ -122,7 +124,7 @@ fn radius(source: &Source, table: &Spanned<LightEntry>) -> Result<f32, LoadError
         table,
         "radius",
         &table.get_ref().radius,
-        "add its radius; a light without size is a `point`",
+        "add its radius; a light without a size is a `point`",
     )?;
     Ok(source.positive("radius", radius)? as f32)
 }
@@ -135,7 +137,7 @@ fn cone(source: &Source, entry: &LightEntry) -> Result<(f32, f32), LoadError> {
     let outer = angle("outer", &entry.outer, DEFAULT_OUTER)?;
     let inner = angle("inner", &entry.inner, 0.0)?;
     if let (Some(outer), true) = (&entry.outer, outer as f32 <= 0.0) {
-        return Err(source.refuse("outer", outer, "is not above 0", "give the half-angle of the cone in degrees"));
+        return Err(source.refuse("outer", outer, "is not positive", "give the half-angle of the cone in degrees"));
     }
     if let (Some(value), true) = (&entry.inner, inner > outer) {
         let problem = format!("is above outer = {outer}");
@@ -151,13 +153,13 @@ fn rectangle(source: &Source, table: &Spanned<LightEntry>, position: DVec3) -> R
         let foreign = entry.direction.is_some() || entry.target.is_some() || entry.size.is_some() || entry.up.is_some();
         if foreign {
             let remedy = "keep either u and v, or a direction and size";
-            return Err(source.refuse("kind", &entry.kind, "is described twice", remedy));
+            return Err(source.refuse("kind", &entry.kind, "is specified twice", remedy));
         }
         let (edge_u, edge_v) = (source.vector("u", u)?, source.vector("v", v)?);
         let square = (edge_u.dot(edge_v)).abs() <= 1e-4 * edge_u.length() * edge_v.length();
         return match edge_u.cross(edge_v).as_vec3().length() > 0.0 {
             false => Err(source.refuse("v", v, "spans no area with `u`", "give two edges of the rectangle")),
-            true if !square => Err(source.refuse("v", v, "is not at a right angle to `u`", "turn one of them")),
+            true if !square => Err(source.refuse("v", v, "is not at a right angle to `u`", "rotate one of them")),
             true => Ok((0.5 * edge_u, 0.5 * edge_v)),
         };
     }
@@ -174,6 +176,6 @@ fn rectangle(source: &Source, table: &Spanned<LightEntry>, position: DVec3) -> R
     match (side, &entry.up) {
         (Some(side), _) => Ok((0.5 * width * side, 0.5 * height * side.cross(normal))),
         (None, Some(up)) => Err(source.refuse("up", up, "is parallel to the direction", "choose another `up`")),
-        (None, None) => Err(source.refuse("kind", &entry.kind, "has no upright side", "add `up`")),
+        (None, None) => Err(source.refuse("kind", &entry.kind, "has no up direction", "add `up`")),
     }
 }

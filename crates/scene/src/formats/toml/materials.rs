@@ -46,7 +46,7 @@ fn coefficients(source: &Source, entry: &MaterialEntry) -> Result<Material, Load
     })
 }
 
-/// The texture, where there is one that can be had; the other keys are checked all the same.
+/// The texture, if there is one that is available; the other keys are checked all the same.
 fn texture(source: &Source, entry: &MaterialEntry, draft: &mut Draft) -> Result<Option<TextureUse>, LoadError> {
     let wrap = entry.texture_wrap.as_ref().map_or([Wrap::Repeat; 2], |wrap| match *wrap.get_ref() {
         TextureWrap::Both(word) => [word.into(); 2],
@@ -56,7 +56,7 @@ fn texture(source: &Source, entry: &MaterialEntry, draft: &mut Draft) -> Result<
     let Some(file) = &entry.texture else {
         return match without_texture(entry) {
             Some((key, line)) => {
-                Err(source.refuse(key, &line, "says nothing without a texture", "add `texture = \"FILE\"`"))
+                Err(source.refuse(key, &line, "has no effect without a texture", "add `texture = \"FILE\"`"))
             }
             None => Ok(None),
         };
@@ -65,7 +65,7 @@ fn texture(source: &Source, entry: &MaterialEntry, draft: &mut Draft) -> Result<
     Ok(texture.map(|texture| TextureUse { texture, wrap, transform }))
 }
 
-/// A key that has sense with a texture only, where it is given.
+/// A key that requires a texture, if it is present without one.
 fn without_texture(entry: &MaterialEntry) -> Option<(&'static str, Spanned<()>)> {
     let keys = [
         ("texture_wrap", entry.texture_wrap.as_ref().map(Spanned::span)),
@@ -76,7 +76,7 @@ fn without_texture(entry: &MaterialEntry) -> Option<(&'static str, Spanned<()>)>
     keys.into_iter().find_map(|(key, span)| Some((key, Spanned::new(span?, ()))))
 }
 
-/// Scaled, then turned, then moved: the order of KHR_texture_transform.
+/// Scaled, then rotated, then translated: the order of KHR_texture_transform.
 fn transform(source: &Source, entry: &MaterialEntry) -> Result<Affine2, LoadError> {
     let mut scale = Vec2::ONE;
     if let Some(value) = &entry.texture_scale {

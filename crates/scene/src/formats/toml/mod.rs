@@ -1,6 +1,6 @@
-//! The scene file: TOML, read through serde into [`schema`] and checked from there into a draft.
+//! The scene file: TOML, parsed by serde into [`schema`], then checked and added to a draft.
 //!
-//! Every error, of grammar or of sense, names the line and the key.
+//! Every error, syntactic or semantic, names the line and the key.
 
 mod cameras;
 mod check;

@@ -1,4 +1,4 @@
-//! Reads `[key]` and `[[key]]` alike. Not an untagged enum, because those lose the places of values.
+//! Reads `[key]` and `[[key]]` alike. Not an untagged enum, because those lose the positions of values.
 
 use std::{fmt, marker::PhantomData};
 
@@ -14,7 +14,7 @@ use super::spanned::Spanned;
 pub(super) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Vec<Spanned<T>>, D::Error> {
-    // The span of a single table can only be asked for from outside: `Spanned` around the list knows it.
+    // The span of a single table is only available from outside: `Spanned` around the list knows it.
     let list: Spanned<OneOrMany<T>> = Spanned::deserialize(deserializer)?;
     let span = list.span();
     Ok(match list.into_inner() {
@@ -23,7 +23,7 @@ pub(super) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
     })
 }
 
-/// What is accepted: only a schema and this module see it.
+/// The accepted forms: only a schema and this module use it.
 #[derive(JsonSchema)]
 #[schemars(untagged, inline)]
 pub(super) enum OneOrMany<T> {

@@ -14,7 +14,7 @@ use crate::{
     shapes::{Shape, tangents},
 };
 
-/// Edge of a plane that says none, in diagonals of the rest of the scene.
+/// Default edge of a plane, in diagonals of the rest of the scene.
 const PLANE_DIAGONALS: f64 = 20.0;
 
 /// Adds all triangles of the file; `names` are the materials in the order of their indices. Planes come last, because their
@@ -73,7 +73,7 @@ fn read_mesh(source: &Source, entry: &MeshEntry, names: &[String], draft: &mut D
     read_part(&path, mesh_transform(source, entry)?, material, draft)
 }
 
-/// Scale, then turn, then move.
+/// Scale, then rotation, then translation.
 fn mesh_transform(source: &Source, entry: &MeshEntry) -> Result<DMat4, LoadError> {
     let translate = entry.translate.as_ref().map_or(Ok(DVec3::ZERO), |value| source.vector("translate", value))?;
     let scale = match &entry.scale {
@@ -112,7 +112,7 @@ fn cuboid(source: &Source, table: &Spanned<BoxEntry>) -> Result<(Shape, DMat4), 
                 return Err(source.refuse("max", max, "is not above `min` on every axis", "swap or move the corners"));
             }
             if entry.rotate.is_none() {
-                // The corners as they are written, not as middle and size round them.
+                // The corners as written, not as centre and size would round them.
                 return Ok((Shape::cuboid(low, high), DMat4::IDENTITY));
             }
             (0.5 * (low + high), 0.5 * (high - low))
@@ -173,7 +173,7 @@ fn triangle(source: &Source, table: &Spanned<TriangleEntry>) -> Result<Shape, Lo
     }
 }
 
-/// A plane with a size is centred on its point; one without reaches far around the rest of the scene.
+/// A plane with a size is centred on its point; one without extends far beyond the rest of the scene.
 fn plane(source: &Source, table: &Spanned<PlaneEntry>, rest: Option<(DVec3, DVec3)>) -> Result<Shape, LoadError> {
     let entry = table.get_ref();
     let point = source.vector("point", &entry.point)?;

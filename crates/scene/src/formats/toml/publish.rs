@@ -1,4 +1,4 @@
-//! The JSON Schema of scene files, made from [`schema`](super::schema): doc comments are its descriptions.
+//! The JSON Schema of scene files, generated from [`schema`](super::schema): doc comments are its descriptions.
 
 use schemars::{Schema, generate::SchemaSettings, transform::RecursiveTransform};
 use serde_json::{Map, Value};
@@ -7,8 +7,8 @@ use super::schema::SceneFile;
 use crate::Scene;
 
 impl Scene {
-    /// The JSON Schema (draft 2020-12) of scene files in TOML: which keys there are, what they mean and take. For editors and
-    /// checkers. What keys mean together, only reading a file checks.
+    /// The JSON Schema (draft 2020-12) of scene files in TOML: the keys, their meanings and their types. For editors and
+    /// validators. Constraints between keys are only checked when a file is read.
     pub fn file_schema() -> String {
         let settings = SchemaSettings::draft2020_12().with_transform(RecursiveTransform(plainly));
         let schema = settings.into_generator().into_root_schema_for::<SceneFile>();
@@ -16,7 +16,7 @@ impl Scene {
     }
 }
 
-/// Without `null`, which TOML does not have: a key that may be left out is left out. Descriptions are not broken into lines.
+/// Removes `null`, which TOML does not have: an optional key is simply absent. Line breaks are removed from descriptions.
 fn plainly(schema: &mut Schema) {
     let Some(schema) = schema.as_object_mut() else { return };
     if let Some(Value::String(text)) = schema.get_mut("description") {

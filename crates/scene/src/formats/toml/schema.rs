@@ -1,6 +1,6 @@
-//! The keys of a scene file, as serde types: what may be written, before its sense is checked.
+//! The keys of a scene file, as serde types: the syntax, before values are checked.
 //!
-//! Every value keeps its place in the text ([`Spanned`]), so that a check that fails later can name the line. Lengths are in
+//! Every value keeps its position in the text ([`Spanned`]), so that a later check can report the line. Lengths are in
 //! scene units, angles in degrees, positions in world coordinates.
 
 use schemars::JsonSchema;
@@ -17,7 +17,7 @@ pub(super) type Text = Spanned<String>;
 #[schemars(title = "Lightmesh scene")]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SceneFile {
-    /// Where the frame of the stored `f32` coordinates lies; written by `export`.
+    /// Origin of the frame of the stored `f32` coordinates; written by `export`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) origin: Option<Vector>,
     /// One `[camera]`, or several `[[camera]]` with names.
@@ -53,30 +53,30 @@ pub(crate) struct CameraEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) name: Option<Text>,
     pub(crate) position: Vector,
-    /// The point in the middle of the picture; or `direction`.
+    /// The point at the centre of the image; alternative: `direction`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) target: Option<Vector>,
-    /// The way the camera looks; or `target`.
+    /// The viewing direction; alternative: `target`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) direction: Option<Vector>,
     /// Default: +Y.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) up: Option<Vector>,
-    /// Full vertical angle. Default: 50.
+    /// Full vertical field of view. Default: 50.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) vfov: Option<Number>,
-    /// Full horizontal angle, instead of `vfov`.
+    /// Full horizontal field of view, instead of `vfov`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) hfov: Option<Number>,
     /// Default: perspective.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) projection: Option<Spanned<ProjectionName>>,
-    /// Height of an orthographic picture, scene units.
+    /// Height of an orthographic image, scene units.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) height: Option<Number>,
 }
 
-/// How a camera maps space to the picture.
+/// How a camera maps space to the image.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum ProjectionName {
@@ -99,25 +99,25 @@ pub(crate) struct AmbientEntry {
     /// I_a of formula (1).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) intensity: Option<Spanned<Color>>,
-    /// What rays see that hit nothing.
+    /// Radiance of rays that hit nothing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) background: Option<Spanned<Color>>,
 }
 
-/// `[[light]]`: one table for all kinds; each kind takes some of the keys.
+/// `[[light]]`: one table for all kinds; each kind uses some of the keys.
 #[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LightEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) name: Option<Text>,
     pub(crate) kind: Spanned<LightKindName>,
-    /// The light's middle; all kinds but directional.
+    /// The light's centre; all kinds except directional.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) position: Option<Vector>,
-    /// The way light travels (directional, spot); the axis (disk, rectangle).
+    /// The direction of the light (directional, spot); the axis (disk, rectangle).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) direction: Option<Vector>,
-    /// A point to shine at, instead of `direction`.
+    /// A point that the light is aimed at, instead of `direction`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) target: Option<Vector>,
     /// The axis of a disk, instead of `direction`.
@@ -126,7 +126,7 @@ pub(crate) struct LightEntry {
     /// Sphere and disk.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) radius: Option<Number>,
-    /// Point: radius of the ball in which area mode strews the points that replace it. Default: 0.
+    /// Point: radius of the ball in which area mode distributes the points that replace it. Default: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) spread: Option<Number>,
     /// Spot: half-angle of the full-strength cone. Default: 0.
@@ -138,13 +138,13 @@ pub(crate) struct LightEntry {
     /// Rectangle: one whole edge.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) u: Option<Vector>,
-    /// Rectangle: the edge next to `u`, at a right angle to it.
+    /// Rectangle: the edge next to `u`, perpendicular to it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) v: Option<Vector>,
     /// Rectangle with a direction: width and height.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) size: Option<Spanned<[f64; 2]>>,
-    /// Rectangle with a direction: which way its height goes. Default: +Y, or +Z where the direction is along Y.
+    /// Rectangle with a direction: the direction of its height. Default: +Y, or +Z if the direction is along Y.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) up: Option<Vector>,
     /// Default: 1.
@@ -167,7 +167,7 @@ pub(crate) enum LightKindName {
     Rectangle,
 }
 
-/// What distance does to a light.
+/// How distance attenuates a light.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum FalloffName {
@@ -195,25 +195,25 @@ pub(crate) struct MaterialEntry {
     /// Default: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) emission: Option<Spanned<Color>>,
-    /// A picture that `ka` and `kd` are multiplied with: PNG, JPEG, BMP or TGA, relative to the scene file.
+    /// An image that `ka` and `kd` are multiplied with: PNG, JPEG, BMP or TGA, relative to the scene file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture: Option<Text>,
-    /// What the picture shows beyond its edge; one word, or one for each direction. Default: repeat.
+    /// How the image continues beyond its edge; one word, or one for each direction. Default: repeat.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture_wrap: Option<Spanned<TextureWrap>>,
-    /// How often the picture fits on a face, or into the unit of the mesh's texture coordinates; one number, or one for each
+    /// How often the image fits on a face, or into the unit of the mesh's texture coordinates; one number, or one for each
     /// direction. Default: 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture_scale: Option<Spanned<TextureScale>>,
-    /// Turns texture coordinates from u towards v, degrees. Default: 0.
+    /// Rotates texture coordinates from u towards v, degrees. Default: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture_rotate: Option<Number>,
-    /// Added to texture coordinates last, in widths and heights of the picture. Default: 0.
+    /// Added to texture coordinates last, in widths and heights of the image. Default: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture_offset: Option<Spanned<[f64; 2]>>,
 }
 
-/// What a picture shows beyond its edge.
+/// How an image continues beyond its edge.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum WrapName {
@@ -238,7 +238,7 @@ pub(crate) enum TextureScale {
     Each([f64; 2]),
 }
 
-/// `[[mesh]]`: triangles of another file, scaled, then turned, then moved.
+/// `[[mesh]]`: triangles of another file, scaled, then rotated, then translated.
 #[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MeshEntry {
@@ -249,15 +249,15 @@ pub(crate) struct MeshEntry {
     pub(crate) material: Option<Text>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) translate: Option<Vector>,
-    /// Turns about the fixed X axis first, then Y, then Z.
+    /// Rotates about the fixed X axis first, then Y, then Z.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) rotate: Option<Vector>,
-    /// One factor, or one by axis.
+    /// One factor, or one per axis.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) scale: Option<Spanned<Scale>>,
 }
 
-/// One factor, or one by axis.
+/// One factor, or one per axis.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(untagged, expecting = "expected a number or [x, y, z]")]
 pub(crate) enum Scale {
@@ -284,7 +284,7 @@ pub(crate) struct BoxEntry {
     pub(crate) max: Option<Vector>,
     pub(crate) center: Option<Vector>,
     pub(crate) size: Option<Vector>,
-    /// About the box's middle, as in `[[mesh]]`.
+    /// About the box's centre, as in `[[mesh]]`.
     pub(crate) rotate: Option<Vector>,
     pub(crate) material: Option<Text>,
 }
@@ -313,7 +313,7 @@ pub(crate) struct CylinderEntry {
     /// Whether its ends are closed. Default: true.
     pub(crate) caps: Option<bool>,
     pub(crate) material: Option<Text>,
-    /// Edges around. Default: 96.
+    /// Edges around the axis. Default: 96.
     pub(crate) segments: Option<Spanned<i64>>,
 }
 
@@ -325,7 +325,7 @@ pub(crate) struct TriangleEntry {
     pub(crate) b: Option<Vector>,
     pub(crate) c: Option<Vector>,
     pub(crate) vertices: Option<Spanned<[[f64; 3]; 3]>>,
-    /// Where the corners lie in a picture: (0, 0) is its left upper corner. Default: left below, right below, left above.
+    /// Positions of the corners in an image: (0, 0) is its upper left corner. Default: lower left, lower right, upper left.
     pub(crate) uvs: Option<Spanned<[[f64; 2]; 3]>>,
     pub(crate) material: Option<Text>,
 }

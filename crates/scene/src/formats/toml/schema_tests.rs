@@ -1,4 +1,4 @@
-//! The published schema is the one of the code, takes the scenes that come with the repository, and refuses slips.
+//! The published schema is the one of the code, takes the scenes that come with the repository, and rejects slips.
 
 use std::{fs, path::Path};
 
@@ -14,7 +14,7 @@ fn schema() -> Value {
     serde_json::from_str(&Scene::file_schema()).unwrap()
 }
 
-/// What is wrong with `value`, where it is; nothing where `schema` takes it. Knows the words that our schema uses, no others.
+/// The problem with `value`, and its location; nothing if `schema` accepts it. Supports only the keywords that our schema uses.
 fn faults(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<String> {
     let fault = |text: String| vec![format!("{place}: {text}")];
     let mut all = Vec::new();

@@ -1,4 +1,4 @@
-//! A value with its place in the text, as [`toml::Spanned`], that a JSON Schema describes as the value alone.
+//! A value with its position in the text, like [`toml::Spanned`], which a JSON Schema describes as the value alone.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -6,13 +6,13 @@ use std::ops::Range;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 
-/// A value and where it stands in the text, in bytes.
+/// A value and its position in the text, in bytes.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(transparent)]
 pub(crate) struct Spanned<T>(toml::Spanned<T>);
 
 impl<T> Spanned<T> {
-    /// A value at a place.
+    /// A value at a position.
     pub(crate) fn new(span: Range<usize>, value: T) -> Spanned<T> {
         Spanned(toml::Spanned::new(span, value))
     }
@@ -22,12 +22,12 @@ impl<T> Spanned<T> {
         self.0.get_ref()
     }
 
-    /// The value alone.
+    /// The value without its position.
     pub(crate) fn into_inner(self) -> T {
         self.0.into_inner()
     }
 
-    /// Its place.
+    /// Its position.
     pub(crate) fn span(&self) -> Range<usize> {
         self.0.span()
     }

@@ -1,4 +1,4 @@
-//! Known answers for every table of the scene file, and the message of every way to get one wrong.
+//! Known answers for every table of the scene file, and the message for every kind of mistake.
 
 use std::{fs, path::PathBuf};
 
@@ -21,7 +21,7 @@ fn open(text: &str) -> Scene {
     Scene::open(path).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The message, with the folder left out of it.
+/// The message, without the folder.
 fn error(text: &str) -> String {
     let (folder, path) = folder(text);
     let message = Scene::open(path).expect_err("an error").to_string();
@@ -232,17 +232,17 @@ fn a_mirrored_mesh_keeps_its_front() {
     assert!((b - a).cross(c - a).z < 0.0);
 }
 
-/// Text with one mistake; what the message must say. Each names the line and a remedy after the semicolon.
+/// Text with one mistake, and the expected message. Each names the line and a remedy after the semicolon.
 #[rustfmt::skip]
 const MISTAKES: [(&str, &str); 32] = [
-    ("[[sphere]]\ncenter = [0, 1, 0]\nradius = -1", "radius = -1 is not above 0, room.toml:3; give a radius above 0"),
+    ("[[sphere]]\ncenter = [0, 1, 0]\nradius = -1", "radius = -1 is not positive, room.toml:3; give a radius above 0"),
     ("[[sphere]]\ncenter = [0, 1, 0]\nradius = nan", "radius = nan is not finite, room.toml:3; "),
     ("[[sphere]]\ncenter = [0, inf, 0]\nradius = 1", "center = [0, inf, 0] is not finite, room.toml:2; "),
     ("[[sphere]]\ncenter = [0, 1e30, 0]\nradius = 1", "is too large, room.toml:2; stay below 1e18"),
     ("[[sphere]]\ncenter = [0, 1, 0]\nraduis = 1", "unknown key `raduis`, room.toml:3; did you mean `radius`?"),
     ("[[sphere]]\n\ncenter = [0, 1, 0]", "key `radius` is missing, room.toml:1; add `radius = …`"),
-    ("[[sphere]]\ncenter = [0, 1]\nradius = 1", "room.toml:2; write a value that `center` can take"),
-    ("[[sphere]]\ncenter = \"up\"\nradius = 1", "room.toml:2; write a value that `center` can take"),
+    ("[[sphere]]\ncenter = [0, 1]\nradius = 1", "room.toml:2; use a value that is valid for `center`"),
+    ("[[sphere]]\ncenter = \"up\"\nradius = 1", "room.toml:2; use a value that is valid for `center`"),
     ("[[sphere]]\ncenter = [0, 1, 0]\nradius = 1\nsegments = 2", "segments = 2 cannot be used, room.toml:4; give a whole number from 3"),
     ("[[sphere]]\ncenter = [0, 1, 0]\nradius = 1\nmaterial = \"ston\"\n[[material]]\nname = \"stone\"", "there is no material named `ston`, room.toml:4; did you mean `stone`?"),
     ("[[sphere]]\ncenter = [0, 1, 0]\nradius = 1\nmaterial = \"ston\"", "there is no material named `ston`, room.toml:4; there are none"),
@@ -255,7 +255,7 @@ const MISTAKES: [(&str, &str); 32] = [
     ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nvfov = 180", "vfov = 180 is not under 180 degrees, room.toml:4; "),
     ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nprojection = \"orthographic\"", "key `height` is missing, room.toml:1; "),
     ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nheight = 3", "height = 3 has no meaning in a perspective camera, room.toml:4; "),
-    ("[[light]]\nkind = \"lamp\"\nposition = [0, 0, 0]", "room.toml:2; write a value that `kind` can take"),
+    ("[[light]]\nkind = \"lamp\"\nposition = [0, 0, 0]", "room.toml:2; use a value that is valid for `kind`"),
     ("[[light]]\nkind = \"point\"", "key `position` is missing, room.toml:1; "),
     ("[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\nradius = 1", "kind = \"point\" does not take `radius`, room.toml:2; it takes position, spread"),
     ("[[light]]\nkind = \"sphere\"\nposition = [0, 0, 0]", "key `radius` is missing, room.toml:1; "),
@@ -286,7 +286,7 @@ fn text_that_is_not_utf8_is_refused_with_its_line() {
     assert!(Scene::open(path).unwrap_err().to_string().contains("room.toml:2"));
 }
 
-/// A folder with a picture of one red and one blue texel and a scene file.
+/// A folder with an image of one red and one blue texel and a scene file.
 fn textured_folder(text: &str) -> (TempDir, PathBuf) {
     let (folder, path) = folder(text);
     let picture = image::RgbImage::from_fn(2, 1, |x, _| image::Rgb(if x == 0 { [255, 0, 0] } else { [0, 0, 255] }));
@@ -386,7 +386,7 @@ fn wrong_texture_keys_name_line_and_key() {
         assert!(message.contains(place) && message.contains(remedy), "{message}");
     }
     let message = error("[[material]]\nname = \"oak\"\ntexture_scale = 3");
-    assert_eq!(message, "texture_scale = 3 says nothing without a texture, room.toml:3; add `texture = \"FILE\"`");
+    assert_eq!(message, "texture_scale = 3 has no effect without a texture, room.toml:3; add `texture = \"FILE\"`");
 }
 
 #[test]
@@ -394,6 +394,6 @@ fn a_mesh_outside_of_the_folder_names_its_line() {
     let message = error("[[mesh]]\nfile = \"../one.obj\"");
     assert_eq!(
         message,
-        "`../one.obj` lies outside the scene's folder, room.toml:2; move it there, or allow references to lead outside"
+        "`../one.obj` lies outside the scene's folder, room.toml:2; move it there, or allow references outside"
     );
 }

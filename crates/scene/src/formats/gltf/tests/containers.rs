@@ -1,4 +1,4 @@
-//! GLB and JSON as files: lengths, chunks, versions, encodings and files beside.
+//! GLB and JSON as files: lengths, chunks, versions, encodings and external files.
 
 use super::*;
 
@@ -61,13 +61,13 @@ fn lengths_that_do_not_fit_are_named() {
         assert!(with_word(8, length).contains(&format!("states a length of {length} bytes, but the file has")));
     }
     for length in [0, 11, 12, 19, 20] {
-        assert!(with_word(8, length).contains("do not hold its JSON chunk"), "{length}");
+        assert!(with_word(8, length).contains("too short for its JSON chunk"), "{length}");
     }
-    assert!(with_word(8, whole.len() as u32 - 1).contains("do not hold its second chunk"));
-    assert!(with_word(12, u32::MAX).contains("do not hold its JSON chunk"));
+    assert!(with_word(8, whole.len() as u32 - 1).contains("too short for its second chunk"));
+    assert!(with_word(12, u32::MAX).contains("too short for its JSON chunk"));
     let second = 20 + json.len();
-    assert!(with_word(second, u32::MAX).contains("do not hold its second chunk"));
-    assert!(with_word(second, 8).contains("buffer 0 holds 8 bytes of 39"));
+    assert!(with_word(second, u32::MAX).contains("too short for its second chunk"));
+    assert!(with_word(second, 8).contains("buffer 0 has 8 of 39 bytes"));
 }
 
 #[test]
@@ -76,14 +76,14 @@ fn a_file_without_a_json_chunk_is_refused() {
     let message = refused(&glb(&[(b"BIN\0", &bin), (b"JSON", json.as_bytes())]));
     assert!(message.contains("does not begin with a JSON chunk"), "{message}");
     assert!(refused(b"glTF").contains("ends after 4 bytes"));
-    assert!(refused(&glb(&[(b"JSON", b"")])).contains("the file holds no JSON"));
+    assert!(refused(&glb(&[(b"JSON", b"")])).contains("the file contains no JSON"));
 }
 
 #[test]
 fn other_versions_are_refused_by_their_number() {
     let mut bytes = glb(&[(b"JSON", b"{}")]);
     bytes[4] = 1;
-    assert!(refused(&bytes).contains("the file is of glTF version `1`, model.gltf; export it as glTF 2.0"));
+    assert!(refused(&bytes).contains("the file has glTF version `1`, model.gltf; export it as glTF 2.0"));
     // Version 1 had objects where there are arrays now.
     let first = br#"{"asset": {"version": "1.0"}, "accessors": {"a": {}}, "scene": "main"}"#;
     assert!(refused(first).contains("version `1.0`"));
@@ -99,9 +99,9 @@ fn other_versions_are_refused_by_their_number() {
 #[test]
 fn what_is_no_gltf_is_refused() {
     for (bytes, expected) in [
-        (&b""[..], "the file holds no JSON"),
-        (b"\xef\xbb\xbf", "the file holds no JSON"),
-        (b"\0\0\0", "the file holds no JSON"),
+        (&b""[..], "the file contains no JSON"),
+        (b"\xef\xbb\xbf", "the file contains no JSON"),
+        (b"\0\0\0", "the file contains no JSON"),
         (b"solid teapot", "the JSON cannot be read as glTF"),
         (b"{}", "missing field `asset`"),
         (b"[]", "the JSON cannot be read as glTF"),
@@ -140,7 +140,7 @@ fn buffers_beside_the_file_have_encoded_names() {
     fs::write(&path, json).unwrap();
     assert_eq!(Scene::open(&path).unwrap().geometry.mesh.triangles.len(), 1);
     fs::write(folder.path().join("parts/my büro.bin"), &bin[..38]).unwrap();
-    assert!(Scene::open(&path).unwrap_err().to_string().contains("buffer 0 holds 38 bytes of 39: it was cut off"));
+    assert!(Scene::open(&path).unwrap_err().to_string().contains("buffer 0 has 38 of 39 bytes: it is truncated"));
 }
 
 #[test]

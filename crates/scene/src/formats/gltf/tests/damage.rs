@@ -1,4 +1,4 @@
-//! Files that contradict themselves, were cut off, or are meant to do harm.
+//! Files that are inconsistent, truncated, or malicious.
 
 use std::fs;
 
@@ -33,11 +33,11 @@ fn ranges_that_do_not_fit_are_refused() {
         ("/accessors/0/byteOffset", json!(u64::MAX - 8), "accessor 0 reaches beyond its buffer"),
         ("/accessors/1/bufferView", json!(7), "buffer view 7 is not there"),
         ("/accessors/1/count", json!(9), "accessor 1 reaches beyond its buffer"),
-        ("/accessors/1/componentType", json!(5126), "reaches beyond|no unsigned integers"),
-        ("/accessors/0/type", json!("VEC2"), "holds VEC2 where VEC3 is expected"),
+        ("/accessors/1/componentType", json!(5126), "reaches beyond|does not contain unsigned integers"),
+        ("/accessors/0/type", json!("VEC2"), "has type VEC2 where VEC3 is expected"),
         ("/bufferViews/0/byteLength", json!(u64::MAX), "reaches beyond its buffer"),
         ("/bufferViews/0/byteStride", json!(8), "8 bytes apart"),
-        ("/buffers/0/byteLength", json!(400), "buffer 0 holds 39 bytes of 400"),
+        ("/buffers/0/byteLength", json!(400), "buffer 0 has 39 of 400 bytes"),
         ("/buffers/0/uri", json!("missing.bin"), "missing.bin; check that it exists"),
         ("/buffers/0/uri", json!("data:;base64,*"), "the data URI of buffer 0 cannot be decoded"),
         ("/buffers/0/uri", json!("../model.bin"), "lies outside the scene's folder"),
@@ -45,7 +45,7 @@ fn ranges_that_do_not_fit_are_refused() {
         ("/bufferViews/0/buffer", json!(3), "there is no buffer 3"),
         ("/bufferViews/0/byteOffset", json!(u64::MAX), "buffer view 0 reaches beyond its buffer of 39 bytes"),
         ("/accessors/1/componentType", json!(5124), "accessor 1 has the component type 5124"),
-        ("/accessors/0/type", json!("MAT4"), "accessor 0 holds MAT4, which is of no use here"),
+        ("/accessors/0/type", json!("MAT4"), "accessor 0 has type MAT4, which is not valid here"),
         ("/meshes/0/primitives/0/mode", json!(7), "a primitive of mesh 0 has the mode 7"),
         ("/nodes/0/mesh", json!(1), "there is no mesh 1"),
     ];
@@ -65,7 +65,7 @@ fn an_index_beyond_the_vertices_is_refused() {
     // The positions read as indices.
     document["accessors"][1]["bufferView"] = json!(0);
     document["accessors"][1]["byteOffset"] = json!(14);
-    assert!(error(&document).contains("a primitive asks for vertex 128 of 3"), "{}", error(&document));
+    assert!(error(&document).contains("a primitive refers to vertex 128 of 3"), "{}", error(&document));
 }
 
 /// Bytes changed at random: an error or a scene, never a panic and never a hang.
@@ -101,7 +101,7 @@ fn damaged_files_never_panic() {
 #[test]
 fn references_between_nodes_and_scenes_are_checked() {
     for (pointer, value, expected) in [
-        ("/scene", json!(5), "there is no scene 5 of 1"),
+        ("/scene", json!(5), "there is no scene 5: the file has 1"),
         ("/scenes/0/nodes", json!([4]), "there is no node 4"),
         ("/nodes", json!([{"children": [9]}]), "there is no node 9"),
         ("/nodes", json!([{"children": [1]}, {"children": [2]}, {"children": [0]}]), "is its own ancestor"),
@@ -195,7 +195,7 @@ fn sparse_parts_that_do_not_fit_are_refused() {
         sparse(&|sparse| sparse["count"] = json!(u64::MAX)).contains("3 elements, but its sparse part replaces 1844")
     );
     assert!(sparse(&|sparse| sparse["count"] = json!(2)).contains("reaches beyond its buffer view"));
-    assert!(sparse(&|sparse| sparse["indices"]["componentType"] = json!(FLOAT)).contains("no unsigned integers"));
+    assert!(sparse(&|sparse| sparse["indices"]["componentType"] = json!(FLOAT)).contains("are not unsigned integers"));
     assert!(sparse(&|sparse| sparse["values"]["bufferView"] = json!(99)).contains("buffer view 99 is not there"));
 }
 
@@ -233,7 +233,7 @@ fn a_long_name_is_not_kept_in_every_node() {
     assert_eq!(scene.cameras[0].name.chars().count(), 200);
 }
 
-/// Nodes times primitives times vertices, from a small file: refused at once, and not when the memory is full.
+/// Nodes times primitives times vertices, from a small file: rejected at once, and not only when memory is full.
 #[test]
 fn a_few_triangles_in_very_many_places_are_refused() {
     let mut document = triangle();
@@ -261,7 +261,7 @@ fn very_many_primitives_without_triangles_take_no_time() {
     document["meshes"][0]["primitives"] = json!(vec![json!({"attributes": {"POSITION": 0}, "mode": 1}); 20_000]);
     document["nodes"] = json!(vec![json!({"mesh": 0}); 20_000]);
     document["scenes"][0]["nodes"] = json!((0..20_000).collect::<Vec<_>>());
-    assert!(warnings(&document).contains("400000000 primitives of points or lines: left out"));
+    assert!(warnings(&document).contains("400000000 primitives of points or lines: ignored"));
 }
 
 #[test]
@@ -270,14 +270,14 @@ fn json_nested_without_end_is_refused() {
         let text = triangle().to_string().replacen("{", &format!("{{\"extras\":{},", nested.repeat(200_000)), 1);
         assert!(try_open(text.as_bytes()).unwrap_err().contains("the JSON cannot be read as glTF"));
     }
-    // Extras that are closed again are skipped without recursion, those of a material included.
+    // Deeply nested extras are skipped without recursion, including those of a material.
     let mut text = triangle().to_string();
     let deep = format!("{}{}", "[".repeat(200_000), "]".repeat(200_000));
     text = text.replacen('{', &format!("{{\"materials\":[{{\"extras\":{deep}}}],\"extras\":{deep},"), 1);
     assert_eq!(try_open(text.as_bytes()).unwrap().geometry.mesh.triangles.len(), 1);
 }
 
-/// Cut off everywhere: an error that names the file, never a panic.
+/// Truncated everywhere: an error that names the file, never a panic.
 #[test]
 fn files_cut_off_at_every_byte_are_refused() {
     let (json, bin) = separate();

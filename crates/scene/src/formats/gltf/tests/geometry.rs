@@ -273,7 +273,7 @@ fn of_several_scenes_the_named_one_is_read() {
     document["scenes"] = json!([{"nodes": []}, {"nodes": [0]}]);
     document["scene"] = json!(1);
     assert_eq!(open(&document).geometry.mesh.triangles.len(), 1);
-    assert!(warnings(&document).contains("of 2 scenes only number 1 is read"));
+    assert!(warnings(&document).contains("of 2 scenes only scene 1 is loaded"));
 }
 
 #[test]
@@ -294,8 +294,8 @@ fn primitives_without_triangles_are_counted_or_nothing() {
         {"attributes": {}}, {"attributes": {"POSITION": 0}, "indices": 1}]);
     assert_eq!(open(&document).geometry.mesh.triangles.len(), 1);
     let warnings = warnings(&document);
-    assert!(warnings.contains("2 primitives of points or lines: left out"), "{warnings}");
-    assert!(warnings.contains("1 primitive without positions: left out"), "{warnings}");
+    assert!(warnings.contains("2 primitives of points or lines: ignored"), "{warnings}");
+    assert!(warnings.contains("1 primitive without positions: ignored"), "{warnings}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use image::{ImageFormat, Rgba, RgbaImage};
 use super::*;
 use crate::Wrap;
 
-/// A picture of one texel.
+/// An image of one texel.
 fn png() -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     RgbaImage::from_pixel(1, 1, Rgba([0, 128, 255, 255])).write_to(&mut bytes, ImageFormat::Png).unwrap();
@@ -102,7 +102,7 @@ fn a_material_picks_its_set_of_coordinates() {
     let mut document = textured();
     info(&mut document)["texCoord"] = json!(1);
     assert_eq!(open(&document).geometry.mesh.uvs, [Vec2::splat(0.5); 3]);
-    // The transform's own set goes before.
+    // The transform's own set takes precedence.
     info(&mut document)["extensions"] =
         json!({"KHR_texture_transform": {"texCoord": 0, "scale": [2, 3], "offset": [1, 0]}});
     let scene = open(&document);
@@ -141,7 +141,7 @@ fn textures_that_the_file_does_not_hold_are_counted() {
         document.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());
         let scene = open(&document);
         assert!(scene.geometry.materials[0].texture.is_none() && scene.geometry.mesh.triangles.len() == 1);
-        assert!(warnings(&document).contains("1 material with a texture that the file does not hold"), "{change}");
+        assert!(warnings(&document).contains("1 material with a texture that the file does not contain"), "{change}");
     }
 }
 
@@ -206,7 +206,7 @@ fn emission_has_its_strength() {
     assert_eq!(open(&document).geometry.materials[0].emission, Vec3::new(1.0, 0.5, 0.0));
     document["materials"][0]["extensions"] = json!({"KHR_materials_emissive_strength": {"emissiveStrength": 4}});
     assert_eq!(open(&document).geometry.materials[0].emission, Vec3::new(4.0, 2.0, 0.0));
-    // A texture that is black nearly everywhere must not make all of the surface glow.
+    // A texture that is black nearly everywhere must not make the whole surface glow.
     document["materials"][0]["emissiveTexture"] = json!({"index": 0});
     assert_eq!(open(&document).geometry.materials[0].emission, Vec3::ZERO);
 }
@@ -242,7 +242,7 @@ fn a_material_that_is_not_there_is_the_white_one() {
     document["meshes"][0]["primitives"][0]["material"] = json!(8);
     let scene = open(&document);
     assert_eq!((scene.geometry.materials.len(), scene.geometry.materials[0].kd), (1, Vec3::ONE));
-    assert!(warnings(&document).contains("1 primitive with a material that the file does not hold: shown white"));
+    assert!(warnings(&document).contains("1 primitive with a material that the file does not contain: shown white"));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Numbers that cannot be computed with.
+//! Numbers that are unusable in computations.
 
 use serde_json::json;
 

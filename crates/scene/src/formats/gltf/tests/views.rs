@@ -110,7 +110,7 @@ fn a_light_of_an_unknown_type_is_counted() {
     let mut document = furnished();
     lights(&mut document)[0]["type"] = json!("area");
     assert_eq!(open(&document).lights.len(), 2);
-    assert!(warnings(&document).contains("1 light of an unknown type: left out"));
+    assert!(warnings(&document).contains("1 light of an unknown type: ignored"));
 }
 
 #[test]
