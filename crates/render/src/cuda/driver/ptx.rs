@@ -5,20 +5,8 @@
 
 use crate::cuda::gpu::Version;
 
-/// All modules by name.
-pub(super) const MODULES: [(&str, &str); 11] = [
-    ("primary_rays", include_str!("../ptx/primary_rays.ptx")),
-    ("shadow_rays", include_str!("../ptx/shadow_rays.ptx")),
-    ("shade", include_str!("../ptx/shade.ptx")),
-    ("mirror_rays", include_str!("../ptx/mirror_rays.ptx")),
-    ("cells", include_str!("../ptx/cells.ptx")),
-    ("short_tests", include_str!("../ptx/short_tests.ptx")),
-    ("light_points", include_str!("../ptx/light_points.ptx")),
-    ("long_tests", include_str!("../ptx/long_tests.ptx")),
-    ("cache", include_str!("../ptx/cache.ptx")),
-    ("interpolate", include_str!("../ptx/interpolate.ptx")),
-    ("scan", include_str!("../ptx/scan.ptx")),
-];
+/// All modules by name, in a list that `cargo xtask kernels` generates.
+pub(super) const MODULES: &[(&str, &str)] = include!("../ptx/modules.rs");
 
 /// PTX version, the first CUDA version that supports it, and the first branch of NVIDIA's driver for that one ("Release History"
 /// in the PTX ISA document). Nothing older is listed: the bindings need a driver for CUDA 12.0 in any case.
