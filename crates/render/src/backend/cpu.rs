@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::table::{stage_table, stages_on_cpu};
 use super::{Backend, Needs, Probed, SeenOf, WaveOf};
 use crate::accel::Hit;
 use crate::bands;
@@ -21,9 +22,7 @@ use crate::prepared::PreparedScene;
 use crate::probes::Probes;
 use crate::shadow::Aim;
 use crate::stage::Stage;
-use crate::stages::{
-    cells, interpolate, light_points, long_tests, mirror_rays, primary_rays, shade, shadow_rays, short_tests,
-};
+use crate::stages::primary_rays;
 use crate::view::View;
 
 /// The CPU. Results do not depend on the number of threads.
@@ -83,66 +82,19 @@ impl Backend for Cpu {
         rays.rays.len()
     }
 
-    fn primary_rays(&self, job: &Job, scene: &PreparedScene, rays: &RayList) -> Result<Vec<Hit>, RenderError> {
-        Ok(primary_rays::cpu::primary_rays(job, scene, rays))
-    }
-
     fn probes(&self, scene: &PreparedScene, probes: &Probes) -> Result<Probed<Cpu>, RenderError> {
         Ok((scene.clone(), probes.rays.clone(), probes.hits.clone()))
-    }
-
-    fn cells(&self, wave: &WaveOf<Cpu>, mesh: &LightMesh) -> Result<CellGroups, RenderError> {
-        Ok(cells::cpu::cells(wave, &mesh.lattice))
     }
 
     fn cell_pieces(&self, cells: &CellGroups) -> usize {
         cells.members().len()
     }
 
-    fn short_tests(&self, wave: &WaveOf<Cpu>, cells: &CellGroups, mesh: &LightMesh) -> Result<Masks, RenderError> {
-        Ok(short_tests::cpu::short_tests(wave, cells, mesh))
-    }
-
-    fn light_points(
-        &self,
-        job: &Job,
-        cells: &CellGroups,
-        masks: &Masks,
-        mesh: &LightMesh,
-    ) -> Result<UsedPoints, RenderError> {
-        Ok(light_points::cpu::light_points(job, cells, masks, mesh))
-    }
-
     fn long_test_count(&self, wave: &WaveOf<Cpu>, points: &UsedPoints) -> usize {
         points.count() * wave.job.sampling.rays_to(wave.lights())
     }
 
-    fn long_tests(
-        &self,
-        wave: &WaveOf<Cpu>,
-        points: &UsedPoints,
-        mesh: &LightMesh,
-        kept: Option<&mut Kept<HostTable>>,
-    ) -> Result<Lit, RenderError> {
-        Ok(long_tests::cpu::long_tests(wave, points, mesh, kept))
-    }
-
-    fn interpolate(&self, wave: &WaveOf<Cpu>, seen: &SeenOf<Cpu>) -> Result<Visibility, RenderError> {
-        Ok(interpolate::cpu::interpolate(wave, seen))
-    }
-
-    fn shadow_rays(&self, wave: &WaveOf<Cpu>, aim: &Aim) -> Result<Visibility, RenderError> {
-        Ok(shadow_rays::cpu::shadow_rays(wave, aim))
-    }
-
-    fn shade(&self, wave: &WaveOf<Cpu>, visibility: &Visibility, film: &mut Picture) -> Result<(), RenderError> {
-        shade::cpu::shade(wave, visibility, film);
-        Ok(())
-    }
-
-    fn mirror_rays(&self, wave: &WaveOf<Cpu>) -> Result<RayList, RenderError> {
-        Ok(mirror_rays::cpu::mirror_rays(wave))
-    }
+    stage_table!(stages_on_cpu);
 
     fn finish(&self, _: &Job) -> Result<(), RenderError> {
         Ok(())

@@ -5,6 +5,7 @@ use std::ops::Range;
 use lightmesh_layout::In;
 use lightmesh_layout::geometry::Rays;
 
+use super::table::{stage_table, stages_on_cuda};
 use super::{
     Backend, Cuda, DeviceCells, DeviceFilm, DeviceHits, DeviceLit, DeviceMasks, DevicePoints, DeviceRays, DeviceScene,
     DeviceVisibility, Needs, Probed, SeenOf, WaveOf,
@@ -21,9 +22,6 @@ use crate::prepared::PreparedScene;
 use crate::probes::Probes;
 use crate::shadow::Aim;
 use crate::stage::Stage;
-use crate::stages::{
-    cells, interpolate, light_points, long_tests, mirror_rays, primary_rays, shade, shadow_rays, short_tests,
-};
 use crate::view::View;
 
 impl<R: Runtime> Backend for Cuda<R> {
@@ -80,81 +78,20 @@ impl<R: Runtime> Backend for Cuda<R> {
         rays.len()
     }
 
-    fn primary_rays(
-        &self,
-        job: &Job,
-        scene: &DeviceScene<R>,
-        rays: &DeviceRays<R>,
-    ) -> Result<DeviceHits<R>, RenderError> {
-        primary_rays::cuda::primary_rays(self, job, scene, rays)
-    }
-
     fn probes(&self, scene: &DeviceScene<R>, probes: &Probes) -> Result<Probed<Self>, RenderError> {
         self.begin_band()?;
         self.device_probes(scene, probes)
-    }
-
-    fn cells(&self, wave: &WaveOf<Self>, mesh: &LightMesh) -> Result<DeviceCells<R>, RenderError> {
-        cells::cuda::cells(self, wave, mesh)
     }
 
     fn cell_pieces(&self, cells: &DeviceCells<R>) -> usize {
         cells.count
     }
 
-    fn short_tests(
-        &self,
-        wave: &WaveOf<Self>,
-        cells: &DeviceCells<R>,
-        mesh: &LightMesh,
-    ) -> Result<DeviceMasks<R>, RenderError> {
-        short_tests::cuda::short_tests(self, wave, cells, mesh)
-    }
-
-    fn light_points(
-        &self,
-        job: &Job,
-        cells: &DeviceCells<R>,
-        masks: &DeviceMasks<R>,
-        mesh: &LightMesh,
-    ) -> Result<DevicePoints<R>, RenderError> {
-        light_points::cuda::light_points(self, job, cells, masks, mesh)
-    }
-
     fn long_test_count(&self, wave: &WaveOf<Self>, points: &DevicePoints<R>) -> usize {
         points.count * wave.job.sampling.rays_to(&wave.scene.host.scene.lights)
     }
 
-    fn long_tests(
-        &self,
-        wave: &WaveOf<Self>,
-        points: &DevicePoints<R>,
-        mesh: &LightMesh,
-        kept: Option<&mut Kept<DeviceTable<R>>>,
-    ) -> Result<DeviceLit<R>, RenderError> {
-        long_tests::cuda::long_tests(self, wave, points, mesh, kept)
-    }
-
-    fn interpolate(&self, wave: &WaveOf<Self>, seen: &SeenOf<Self>) -> Result<DeviceVisibility<R>, RenderError> {
-        interpolate::cuda::interpolate(self, wave, seen)
-    }
-
-    fn shadow_rays(&self, wave: &WaveOf<Self>, aim: &Aim) -> Result<DeviceVisibility<R>, RenderError> {
-        shadow_rays::cuda::shadow_rays(self, wave, aim)
-    }
-
-    fn shade(
-        &self,
-        wave: &WaveOf<Self>,
-        visibility: &DeviceVisibility<R>,
-        film: &mut DeviceFilm<R>,
-    ) -> Result<(), RenderError> {
-        shade::cuda::shade(self, wave, visibility, film)
-    }
-
-    fn mirror_rays(&self, wave: &WaveOf<Self>) -> Result<DeviceRays<R>, RenderError> {
-        mirror_rays::cuda::mirror_rays(self, wave)
-    }
+    stage_table!(stages_on_cuda);
 
     fn finish(&self, job: &Job) -> Result<(), RenderError> {
         self.end_band(job)

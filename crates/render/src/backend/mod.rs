@@ -7,6 +7,7 @@
 mod cpu;
 mod cuda;
 pub(crate) mod run;
+mod table;
 
 use std::ops::Range;
 
@@ -35,6 +36,7 @@ use crate::probes::Probes;
 pub use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::view::View;
+use table::{stage_methods, stage_table};
 
 /// What a picture needs of its scene on a device.
 #[derive(Clone, Copy, Debug, Default)]
@@ -55,7 +57,7 @@ pub type SeenOf<'a, B> =
 /// Probes on a backend: the scene, rays and hits of a wave.
 pub type Probed<B> = (<B as Backend>::Scene, <B as Backend>::Rays, <B as Backend>::Hits);
 
-/// The stages, in the order in which a picture needs them.
+/// What a device does, in the order in which an image needs it.
 pub trait Backend: Sized {
     /// A scene where the device needs it.
     type Scene;
@@ -110,64 +112,17 @@ pub trait Backend: Sized {
     /// Number of rays.
     fn ray_count(&self, rays: &Self::Rays) -> usize;
 
-    /// What does each ray see?
-    fn primary_rays(&self, job: &Job, scene: &Self::Scene, rays: &Self::Rays) -> Result<Self::Hits, RenderError>;
-
     /// Given points as a wave that hits them, and the scene as that wave needs it. What was counted and timed since the last band ended is
     /// forgotten.
     fn probes(&self, scene: &Self::Scene, probes: &Probes) -> Result<Probed<Self>, RenderError>;
 
-    /// Which surface points share a cell?
-    fn cells(&self, wave: &WaveOf<Self>, mesh: &LightMesh) -> Result<Self::Cells, RenderError>;
-
     /// Pieces of work that the cells are, for progress.
     fn cell_pieces(&self, cells: &Self::Cells) -> usize;
-
-    /// Which light points does each surface point see? Formula (2).
-    fn short_tests(
-        &self,
-        wave: &WaveOf<Self>,
-        cells: &Self::Cells,
-        mesh: &LightMesh,
-    ) -> Result<Self::Masks, RenderError>;
-
-    /// Each light point that is used, once. Formula (7).
-    fn light_points(
-        &self,
-        job: &Job,
-        cells: &Self::Cells,
-        masks: &Self::Masks,
-        mesh: &LightMesh,
-    ) -> Result<Self::Points, RenderError>;
 
     /// Number of long tests from these light points, to all lights.
     fn long_test_count(&self, wave: &WaveOf<Self>, points: &Self::Points) -> usize;
 
-    /// What does each light point see of each light? What is known is not tested again, what is found is kept.
-    fn long_tests(
-        &self,
-        wave: &WaveOf<Self>,
-        points: &Self::Points,
-        mesh: &LightMesh,
-        kept: Option<&mut Kept<Self::Table>>,
-    ) -> Result<Self::Lit, RenderError>;
-
-    /// The weighted mean over the light points that a surface point uses. Formula (3).
-    fn interpolate(&self, wave: &WaveOf<Self>, seen: &SeenOf<Self>) -> Result<Self::Visibility, RenderError>;
-
-    /// Shadow rays from each surface point: one to the middle of each light, or many spread over it.
-    fn shadow_rays(&self, wave: &WaveOf<Self>, aim: &Aim) -> Result<Self::Visibility, RenderError>;
-
-    /// Formula (1): adds the rays' radiance to the pixels they belong to.
-    fn shade(
-        &self,
-        wave: &WaveOf<Self>,
-        visibility: &Self::Visibility,
-        film: &mut Self::Film,
-    ) -> Result<(), RenderError>;
-
-    /// The rays of the last term of formula (1): from every mirroring surface point along the mirrored view.
-    fn mirror_rays(&self, wave: &WaveOf<Self>) -> Result<Self::Rays, RenderError>;
+    stage_table!(stage_methods);
 
     /// Waits for all stages of some rows; what they counted and how long they took goes to the job.
     fn finish(&self, job: &Job) -> Result<(), RenderError>;

@@ -1,0 +1,60 @@
+//! The table of stages: the methods of [`Backend`](super::Backend) that do the work. A stage's method calls the function of its name in
+//! `stages/<stage>/cpu.rs` or `cuda.rs`.
+
+/// Calls a macro with the table.
+macro_rules! stage_table {
+    ($use:ident) => {
+        $use! {
+            /// Computes what each ray hits.
+            primary_rays(job: &Job, scene: &Self::Scene, rays: &Self::Rays) -> Self::Hits;
+            /// Groups surface points by cell of the light mesh.
+            cells(wave: &WaveOf<Self>, mesh: &LightMesh) -> Self::Cells;
+            /// Tests which light points each surface point sees. Formula (2).
+            short_tests(wave: &WaveOf<Self>, cells: &Self::Cells, mesh: &LightMesh) -> Self::Masks;
+            /// Collects each light point that is used, once. Formula (7).
+            light_points(job: &Job, cells: &Self::Cells, masks: &Self::Masks, mesh: &LightMesh) -> Self::Points;
+            /// Tests what each light point sees of each light. What is cached is not tested again, what is found is cached.
+            long_tests(
+                wave: &WaveOf<Self>,
+                points: &Self::Points,
+                mesh: &LightMesh,
+                kept: Option<&mut Kept<Self::Table>>
+            ) -> Self::Lit;
+            /// Computes the weighted mean over the light points that a surface point uses. Formula (3).
+            interpolate(wave: &WaveOf<Self>, seen: &SeenOf<Self>) -> Self::Visibility;
+            /// Casts shadow rays from each surface point: one to the centre of each light, or many distributed over it.
+            shadow_rays(wave: &WaveOf<Self>, aim: &Aim) -> Self::Visibility;
+            /// Adds the radiance of each ray to its pixel. Formula (1).
+            shade(wave: &WaveOf<Self>, visibility: &Self::Visibility, film: &mut Self::Film) -> ();
+            /// Generates the rays of the last term of formula (1): from every mirroring surface point along the mirrored view.
+            mirror_rays(wave: &WaveOf<Self>) -> Self::Rays;
+        }
+    };
+}
+
+/// Declares the methods.
+macro_rules! stage_methods {
+    ($($(#[$doc:meta])* $stage:ident($($argument:ident: $type:ty),*) -> $result:ty;)*) => {
+        $($(#[$doc])* fn $stage(&self, $($argument: $type),*) -> Result<$result, RenderError>;)*
+    };
+}
+
+/// Implements them by the CPU's functions, which cannot fail.
+macro_rules! stages_on_cpu {
+    ($($(#[$doc:meta])* $stage:ident($($argument:ident: $type:ty),*) -> $result:ty;)*) => {
+        $(fn $stage(&self, $($argument: $type),*) -> Result<$result, RenderError> {
+            Ok(crate::stages::$stage::cpu::$stage($($argument),*))
+        })*
+    };
+}
+
+/// Implements them by the functions of CUDA devices.
+macro_rules! stages_on_cuda {
+    ($($(#[$doc:meta])* $stage:ident($($argument:ident: $type:ty),*) -> $result:ty;)*) => {
+        $(fn $stage(&self, $($argument: $type),*) -> Result<$result, RenderError> {
+            crate::stages::$stage::cuda::$stage(self, $($argument),*)
+        })*
+    };
+}
+
+pub(super) use {stage_methods, stage_table, stages_on_cpu, stages_on_cuda};
