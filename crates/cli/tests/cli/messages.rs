@@ -169,7 +169,7 @@ fn what_is_wrong_in_a_render_names_value_remedy_and_flag() {
         assert!(parts.iter().all(|part| message.contains(part)), "{flags:?}: {message}");
     }
     let chosen = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16"]).stderr;
-    assert!(chosen.contains("chosen for this picture (--step sets another)"), "{chosen}");
+    assert!(chosen.contains("chosen for this image (--step sets another)"), "{chosen}");
 }
 
 #[test]

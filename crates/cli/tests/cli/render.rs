@@ -27,7 +27,7 @@ fn choices_made_for_the_user_are_said_and_quiet_is_quiet() {
         done.stderr.contains("the scene has no lights: using a key light above the camera and a weaker fill light"),
         "{done:?}"
     );
-    assert!(done.stderr.contains("chosen for this picture (--step sets another)"), "{done:?}");
+    assert!(done.stderr.contains("chosen for this image (--step sets another)"), "{done:?}");
     assert!(!done.stderr.contains("no camera"), "{done:?}");
     let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16", "-q"]);
     assert_eq!(done.stderr, "");

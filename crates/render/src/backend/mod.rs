@@ -1,8 +1,7 @@
-//! What a device must be able to do: one method per stage of the method.
+//! The interface of a device: one method per stage.
 //!
-//! Data between stages has a type of the backend's own, so that it can stay where the device keeps it. A stage that a backend
-//! lacks does not compile. [`Cpu`] and [`Cuda`] are the backends there are. Clocks, progress and cancelling wrap stages in one place,
-//! `run.rs`.
+//! Each backend has its own types for data between stages, so that data can stay on the device. A backend that lacks a stage does not
+//! compile. The backends are [`Cpu`] and [`Cuda`]. Clocks, progress and cancellation wrap stages in one place, `run.rs`.
 
 mod cpu;
 mod cuda;
@@ -38,12 +37,12 @@ use crate::stage::Stage;
 use crate::view::View;
 use table::{stage_methods, stage_table};
 
-/// What a picture needs of its scene on a device.
+/// What an image needs of its scene on a device.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Needs {
     /// Searches for all triangles in a region, not only rays.
     pub search: bool,
-    /// Bytes of the device's memory to stay under; `None`: what is free, less a reserve.
+    /// Limit on the device's memory in bytes; `None`: what is free, minus a reserve.
     pub memory_limit: Option<u64>,
 }
 
@@ -57,7 +56,7 @@ pub type SeenOf<'a, B> =
 /// Probes on a backend: the scene, rays and hits of a wave.
 pub type Probed<B> = (<B as Backend>::Scene, <B as Backend>::Rays, <B as Backend>::Hits);
 
-/// What a device does, in the order in which an image needs it.
+/// A device, with its operations in the order in which an image needs them.
 pub trait Backend: Sized {
     /// A scene where the device needs it.
     type Scene;
@@ -80,16 +79,16 @@ pub trait Backend: Sized {
     /// What light points of a geometry see, kept from picture to picture.
     type Table: Table;
 
-    /// The word in settings and statistics: `cpu` or `cuda`.
+    /// Its name in settings and statistics: `cpu` or `cuda`.
     fn kind(&self) -> &'static str;
 
-    /// What the maker calls the device.
+    /// The vendor's name for the device.
     fn name(&self) -> String;
 
-    /// Most bytes of its own memory that the device has held at once; 0 for the host.
+    /// Peak use of the device's own memory in bytes; 0 for the host.
     fn peak_memory(&self) -> u64;
 
-    /// Does `work` and takes its time for `stage`.
+    /// Does `work` and measures its time for `stage`.
     fn timed<T>(
         &self,
         job: &Job,
@@ -97,26 +96,26 @@ pub trait Backend: Sized {
         work: impl FnOnce() -> Result<T, RenderError>,
     ) -> Result<T, RenderError>;
 
-    /// Brings the scene to where the device needs it. Geometry that is there already stays.
+    /// Uploads the scene. Geometry that is already on the device stays.
     fn scene(&self, job: &Job, scene: &PreparedScene, needs: &Needs) -> Result<Self::Scene, RenderError>;
 
-    /// How many rows of the picture can be made at once: an estimate of what each buffer takes, made before any is allocated.
+    /// How many rows of the image can be rendered at once: an estimate from the sizes of all buffers, before any is allocated.
     fn rows_at_once(&self, scene: &Self::Scene, plan: &Plan) -> Result<u32, RenderError>;
 
-    /// Begins some rows of a picture, black ones. What was counted and timed since the last ones ended is forgotten.
+    /// Begins some rows of an image, all black. Discards what was counted and timed since the last band ended.
     fn film(&self, plan: &Plan, rows: Range<u32>) -> Result<Self::Film, RenderError>;
 
-    /// The rays of the picture rows `rows`, one per pixel, row by row.
+    /// The camera rays of the rows `rows`, one per pixel, row by row.
     fn camera_rays(&self, view: &View, rows: Range<u32>) -> Result<Self::Rays, RenderError>;
 
     /// Number of rays.
     fn ray_count(&self, rays: &Self::Rays) -> usize;
 
-    /// Given points as a wave that hits them, and the scene as that wave needs it. What was counted and timed since the last band ended is
-    /// forgotten.
+    /// Given points as a wave that hits them, and the scene as that wave needs it. Discards what was counted and timed since the last band
+    /// ended.
     fn probes(&self, scene: &Self::Scene, probes: &Probes) -> Result<Probed<Self>, RenderError>;
 
-    /// Pieces of work that the cells are, for progress.
+    /// The cells as units of work, for progress.
     fn cell_pieces(&self, cells: &Self::Cells) -> usize;
 
     /// Number of long tests from these light points, to all lights.
@@ -124,12 +123,12 @@ pub trait Backend: Sized {
 
     stage_table!(stage_methods);
 
-    /// Waits for all stages of some rows; what they counted and how long they took goes to the job.
+    /// Waits for all stages of a band, and adds their counts and times to the job.
     fn finish(&self, job: &Job) -> Result<(), RenderError>;
 
-    /// What was found out, on the host.
+    /// Copies visibility to the host.
     fn visibility(&self, visibility: Self::Visibility) -> Result<Visibility, RenderError>;
 
-    /// Finished rows take their place in the picture.
+    /// Copies finished rows into the image.
     fn develop(&self, scene: &Self::Scene, film: Self::Film, picture: &mut Picture) -> Result<(), RenderError>;
 }

@@ -21,7 +21,7 @@ use crate::stats::{LatticeStats, SettingsStats};
 #[derive(Clone, Debug)]
 pub(crate) struct HalfBall {
     mesh: LightMesh,
-    /// Whether the step was chosen for this picture.
+    /// Whether the step was chosen for this image.
     step_auto: bool,
 }
 
@@ -38,7 +38,7 @@ impl Visible for HalfBall {
             Step::Fixed(step) => step,
             Step::Auto => {
                 let step = auto_step(scene, view, radius);
-                observer.chose(Setting::Step, &format!("light-mesh step h = {step} chosen for this picture"));
+                observer.chose(Setting::Step, &format!("light-mesh step h = {step} chosen for this image"));
                 step
             }
         };
@@ -78,8 +78,8 @@ impl Visible for HalfBall {
 
     fn footprint(&self, lights: u64) -> Footprint {
         let words = self.mesh.template.words();
-        // Sorting by cell, members and starts; the mask; and the light points, at most a half-ball a pixel but in
-        // practice under two, each with its share of a brick and its visibility.
+        // Sorting by cell, members and starts; the mask; and the light points, at most a half-ball per pixel but in
+        // practice fewer than two, each with its share of a brick and its visibility.
         let points = 2 * (16 + 16 + 2 * lights + lights.div_ceil(8) * 8);
         let host = 2 * 16 + 4 + 16 + 4 * words as u64 + points;
         let bricks = window_bricks(self.mesh.template.reach()) as usize;

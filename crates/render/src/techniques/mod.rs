@@ -1,7 +1,7 @@
-//! Techniques: the ways to find the visibility of lights. One file each: what it computes, what it needs, its bytes, its defaults, and what
-//! it says in the statistics. Rays, shading and mirrors are common to all.
+//! Techniques: ways to compute the visibility of lights. One file each: what it computes, what it needs, its memory, its defaults, and its
+//! entries in the statistics. Rays, shading and mirrors are shared.
 //!
-//! Nothing outside of this folder tells techniques apart. The enum below is made from the [`table`].
+//! No code outside this folder distinguishes techniques. The enum below is generated from the [`table`].
 
 pub(crate) mod table;
 
@@ -19,7 +19,7 @@ use crate::stats::SettingsStats;
 use crate::view::View;
 use table::technique_table;
 
-/// What a technique is resolved from: what is left open in the settings is chosen for this picture.
+/// What a technique is resolved from: what the settings leave open is chosen for this image.
 pub(crate) struct Request<'a> {
     pub(crate) scene: &'a PreparedScene,
     pub(crate) settings: &'a Settings,
@@ -29,12 +29,12 @@ pub(crate) struct Request<'a> {
     pub(crate) bounds: Bounds,
 }
 
-/// What every technique must be able to say and do.
+/// The interface of a technique.
 pub(crate) trait Visible: Sized {
-    /// Shadow rays for each light with a size, where the settings leave it open.
+    /// Default number of shadow rays per area light.
     const SAMPLES: u32;
 
-    /// Resolves what the technique needs; says what was chosen where it was left open.
+    /// Resolves the settings that the technique needs, and tells the observer what was chosen.
     fn resolve(request: &Request) -> Result<Self, RenderError>;
 
     /// The stages between primary rays and shading, in order.
@@ -43,7 +43,7 @@ pub(crate) trait Visible: Sized {
     /// What each surface point of a wave sees of each light.
     fn visibility<B: Backend>(&self, run: &Run<B>, wave: &WaveOf<B>) -> Result<B::Visibility, RenderError>;
 
-    /// Bytes that it adds for each ray, in a scene of `lights` lights.
+    /// Bytes that it needs per ray in a scene of `lights` lights.
     fn footprint(&self, lights: u64) -> Footprint;
 
     /// Whether it searches for all triangles in a region.
@@ -54,7 +54,7 @@ pub(crate) trait Visible: Sized {
         false
     }
 
-    /// Light points of the template; 0 where there is none.
+    /// Light points of the template; 0 without one.
     fn template(&self) -> u64 {
         0
     }
@@ -67,14 +67,14 @@ macro_rules! techniques {
     (modes $modes:tt lookups $lookups:tt techniques { $($file:ident :: $name:ident for $mode:ident by $lookup:ident,)* }) => {
         $(pub(crate) mod $file;)*
 
-        /// How the visibility of lights is found, with what that needs.
+        /// A resolved technique.
         #[derive(Clone, Debug)]
         pub(crate) enum Technique {
             $($name($file::$name),)*
         }
 
         impl Technique {
-            /// The technique that the settings ask for.
+            /// Resolves the technique selected by the settings.
             pub(crate) fn resolve(request: &Request) -> Result<Technique, RenderError> {
                 $(if chosen(request.settings, Mode::$mode, techniques!(@lookup $lookup)) {
                     return $file::$name::resolve(request).map(Technique::$name);
@@ -82,7 +82,7 @@ macro_rules! techniques {
                 Err(no_technique(request.settings))
             }
 
-            /// Shadow rays for each light with a size.
+            /// Shadow rays per area light.
             pub(crate) fn samples(settings: &Settings) -> u32 {
                 $(if chosen(settings, Mode::$mode, techniques!(@lookup $lookup)) {
                     return settings.samples.unwrap_or($file::$name::SAMPLES);
@@ -112,7 +112,7 @@ macro_rules! techniques {
     };
     (@lookup None) => { None };
     (@lookup $lookup:ident) => { Some(Lookup::$lookup) };
-    // Methods that every technique answers for itself.
+    // Methods that are forwarded to the technique.
     (@each $($name:ident)*; ) => {};
     (@each $($name:ident)*; $method:ident($($argument:ident: $type:ty),*) -> $result:ty; $($rest:tt)*) => {
         pub(crate) fn $method(&self, $($argument: $type),*) -> $result {
@@ -130,8 +130,8 @@ macro_rules! techniques {
 
 technique_table!(techniques);
 
-/// Whether the settings ask for the technique of `mode` and `lookup`. Where no lookup is chosen the first of the table is taken; a mode that
-/// looks nothing up has no use for one.
+/// Whether the settings select the technique of `mode` and `lookup`. Without a chosen lookup, the first of the table is used; a mode that
+/// looks nothing up ignores it.
 fn chosen(settings: &Settings, mode: Mode, lookup: Option<Lookup>) -> bool {
     let looked_up = |lookup| settings.lookup == Lookup::Auto || settings.lookup == lookup;
     settings.mode == mode && lookup.is_none_or(looked_up)
@@ -141,6 +141,6 @@ fn no_technique(settings: &Settings) -> RenderError {
     RenderError::Setting {
         setting: Setting::Lookup,
         value: settings.lookup.name().to_owned(),
-        remedy: "this mode has no such lookup: choose another one, or leave it to the mode",
+        remedy: "this mode has no such lookup: choose another, or omit it",
     }
 }

@@ -1,8 +1,8 @@
-//! The table of techniques. To add one, write its file beside this one and add its line here, with a mode or a lookup if it has a new
-//! word.
+//! The table of techniques. To add one, write its file next to this one and add its line here, with a mode or a lookup if it has a new
+//! name.
 
-/// Calls a macro with the table: the modes with their words, the lookups of light-mesh mode with theirs, and the techniques as
-/// `file::Type for Mode by Lookup`. Of the techniques of a mode the first is taken where no lookup is chosen.
+/// Calls a macro with the table: the modes with their names, the lookups of light-mesh mode with theirs, and the techniques as
+/// `file::Type for Mode by Lookup`. Without a chosen lookup, the first technique of a mode is used.
 macro_rules! technique_table {
     ($use:ident) => {
         $use! {
