@@ -34,15 +34,6 @@ pub use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::view::View;
 
-/// What a picture needs of its scene on a device.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Needs {
-    /// Searches for all triangles in a region, not only rays.
-    pub search: bool,
-    /// Bytes of the device's memory to stay under; `None`: what is free, less a reserve.
-    pub memory_limit: Option<u64>,
-}
-
 /// A wave of a backend's rays.
 pub type WaveOf<'a, B> = Wave<'a, <B as Backend>::Scene, <B as Backend>::Rays, <B as Backend>::Hits>;
 
@@ -90,8 +81,9 @@ pub trait Backend {
         work: impl FnOnce() -> Result<T, RenderError>,
     ) -> Result<T, RenderError>;
 
-    /// Brings the scene to where the device needs it. Geometry that is there already stays.
-    fn scene(&self, job: &Job, scene: &PreparedScene, needs: &Needs) -> Result<Self::Scene, RenderError>;
+    /// Brings the scene to where the device needs it. Geometry that is there already stays. From now on the device takes at most
+    /// `memory_limit` bytes of its memory; `None`: what is free, less a reserve.
+    fn scene(&self, job: &Job, scene: &PreparedScene, memory_limit: Option<u64>) -> Result<Self::Scene, RenderError>;
 
     /// How many rows of the picture can be made at once: an estimate of what each buffer takes, made before any is allocated.
     fn rows_at_once(&self, scene: &Self::Scene, plan: &Plan) -> Result<u32, RenderError>;

@@ -15,7 +15,7 @@ use lightmesh_scene::Scene;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::backend::run::Run;
-use crate::backend::{Backend, Cpu, Cuda, Needs};
+use crate::backend::{Backend, Cpu, Cuda};
 use crate::cache::{Kept, MeshCache};
 use crate::cuda::{Driver, Runtime};
 use crate::data::picture::Picture;
@@ -224,9 +224,8 @@ fn picture_on<B: Backend>(
     let Resolved { technique, view, plan, sampling, .. } = &resolved;
     let job = Job::new(observer, *sampling).with_short_tests(settings.short_tests);
     let mut picture = Picture::new(settings.size, plan.layers);
-    let needs = Needs { search: technique.searches(settings), memory_limit: plan.memory_limit };
     let run = Run::new(backend, &job, kept);
-    let on_device = run.or_forget(|backend| backend.scene(&job, scene, &needs))?;
+    let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
     let rows = Passes { run, scene: &on_device, technique, view, plan }.render(&mut picture)?;
     let device = report::DeviceFacts { kind: backend.kind(), name: backend.name(), peak_memory: backend.peak_memory() };
     let stats = report::stats(&job, &resolved, device, rows, start.elapsed().as_secs_f64());
