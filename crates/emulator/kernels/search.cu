@@ -30,9 +30,9 @@ DEVICE void search_region(const Search &args, const Structure &structure, const 
     const unsigned lane = lane_of_thread();
     auto search = begin_search(structure, region, memory);
     unsigned total = 0;
-    for (bool more = true; more;) {
+    while (goes_on(structure, search)) {
         unsigned count = WARP - 1;
-        more = next_triangles(structure, region, search, list, count);
+        next_triangles(structure, region, search, list, count);
         // More would not fit.
         if (count > FOUND_TRIANGLES) __trap();
         for (unsigned i = WARP - 1 + lane; i < count; i += WARP) {

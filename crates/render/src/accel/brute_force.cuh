@@ -23,14 +23,15 @@ DEVICE unsigned search_words(const BruteForce &) { return 0; }
 template <class Form>
 DEVICE ListSearch begin_search(const BruteForce &, const Region<Form> &, unsigned *) { return ListSearch{0}; }
 
+DEVICE bool goes_on(const BruteForce &all, const ListSearch &search) { return search.next < all.count; }
+
 // One round: lanes take three triangles each.
 template <class Form>
-DEVICE bool next_triangles(const BruteForce &all, const Region<Form> &region, ListSearch &search, unsigned *found, unsigned &count) {
+DEVICE void next_triangles(const BruteForce &all, const Region<Form> &region, ListSearch &search, unsigned *found, unsigned &count) {
     for (unsigned i = 0; i < 3; i++) {
         const unsigned place = search.next + lane_of_thread();
         sieve(region, all.triangles, place < all.count, place, found, count);
-        search.next = min(search.next + WARP, all.count);
+        search.next += WARP;
     }
     __syncwarp();
-    return search.next < all.count;
 }

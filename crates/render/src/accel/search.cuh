@@ -4,11 +4,12 @@
 //
 //     unsigned search_words(structure);                       // words of shared memory that a search takes, a multiple of four
 //     auto search = begin_search(structure, region, memory);  // `memory`: so many words
-//     bool next_triangles(structure, region, search, found, count);
+//     while (goes_on(structure, search))
+//         next_triangles(structure, region, search, found, count);
 //
-// A search goes on in rounds, which the whole warp takes part in, until `next_triangles` is false. Each adds places of triangles in
-// `structure.triangles` to the list `found` of `count` entries: 96 at most, none as often. What is found is what the twin finds: nothing
-// that meets the region is missing, and the region may meet the bounding box of everything found. A grid may find a triangle several times.
+// The whole warp takes part in every round. It adds places of triangles in `structure.triangles` to the list `found` of `count` entries: 96
+// at most, often none. What is found is what the twin finds: nothing that meets the region is missing, and the region may meet the bounding
+// box of everything found. A grid may find a triangle several times.
 #pragma once
 
 #include "accel/brute_force.cuh"

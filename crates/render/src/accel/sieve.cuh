@@ -12,8 +12,7 @@ DEVICE bool meets_triangle(const Region<Form> &region, const Triangle *triangle)
     return meets(region, low, high, REGION_ROUNDING * element_sum(high - low));
 }
 
-// Lists the places of those of the lanes' triangles whose bounding boxes the region may meet. Takes part all the warp; lanes that have
-// none say so.
+// Lists the places of those of the lanes' triangles whose bounding boxes the region may meet. Not every lane has one.
 template <class Form>
 DEVICE void sieve(const Region<Form> &region, const Triangle *triangles, bool has, unsigned place, unsigned *list, unsigned &count) {
     warp_append(has && meets_triangle(region, triangles + place), place, list, count);

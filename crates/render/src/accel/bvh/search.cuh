@@ -21,6 +21,8 @@ DEVICE BvhSearch begin_search(const Bvh &bvh, const Region<Form> &, unsigned *me
     return BvhSearch{memory, bvh.node_count != 0 ? 1u : 0u};
 }
 
+DEVICE bool goes_on(const Bvh &, const BvhSearch &search) { return search.height != 0; }
+
 // Whether the region may meet the box of a slot.
 template <class Form>
 DEVICE bool meets_child(const Region<Form> &region, const BvhNode &node, unsigned slot) {
@@ -34,9 +36,9 @@ DEVICE bool meets_child(const Region<Form> &region, const BvhNode &node, unsigne
 
 // One round: takes up to four nodes off the stack, eight lanes each, one a child.
 template <class Form>
-DEVICE bool next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch &search, unsigned *found, unsigned &count) {
+DEVICE void next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch &search, unsigned *found, unsigned &count) {
     const unsigned lane = lane_of_thread(), slot = lane % 8;
-    const unsigned taken = search.height + 4 * STACK_PER_LEVEL <= STACK_OF_ROUNDS ? min(search.height, 4u) : min(search.height, 1u);
+    const unsigned taken = search.height + 4 * STACK_PER_LEVEL <= STACK_OF_ROUNDS ? min(search.height, 4u) : 1;
     search.height -= taken;
     bool inner = false;
     unsigned child = 0, first = 0, triangles = 0;
@@ -55,5 +57,4 @@ DEVICE bool next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch
     for (unsigned i = 0; i < 3; i++)
         sieve(region, bvh.triangles, triangles > i, first + i, found, count);
     __syncwarp();
-    return search.height != 0;
 }

@@ -44,6 +44,7 @@ struct GridSearch {
     unsigned end, shift, next, all;
     // Triangles found lately, by a part of their index.
     unsigned *recent;
+    bool done;
 };
 
 DEVICE unsigned cells_of_axis(float low, float high, unsigned dims, int &first) {
@@ -103,12 +104,14 @@ DEVICE GridSearch begin_search(const Grid &grid, const Region<Form> &region, uns
     return search;
 }
 
-// Goes on with the next part of the region; false where there is none.
+// Goes on with the next part of the region, or ends the search.
 template <class Form>
-DEVICE bool next_part(const Grid &grid, const Region<Form> &region, GridSearch &search) {
+DEVICE void next_part(const Grid &grid, const Region<Form> &region, GridSearch &search) {
+    search.done = true;
     if constexpr (Form::SLANTED) {
         if (search.layer > search.last_layer)
-            return false;
+            return;
+        search.done = false;
         const unsigned axis = search.axis;
         const float grow = component(axis, growth(grid)), size = component(axis, grid.size), layer = (float)search.layer++;
         const float corner = component(axis, to_single(grid.origin));
@@ -124,10 +127,10 @@ DEVICE bool next_part(const Grid &grid, const Region<Form> &region, GridSearch &
         else
             search.part.low.z = low, search.part.high.z = high;
         search.taken = 0;
-        return true;
     }
-    return false;
 }
+
+DEVICE bool goes_on(const Grid &, const GridSearch &search) { return !search.done; }
 
 // A grid whose cells lanes take: the outer one, or a nested one.
 struct SearchedGrid {
@@ -169,13 +172,15 @@ DEVICE bool meets_cell(const Grid &grid, const Region<Form> &region, const Searc
                  0.0f);
 }
 
-// Lanes take up to 32 cells and look into those that the region meets. False where there are none left.
+// Lanes take up to 32 cells and look into those that the region meets.
 template <class Form>
-DEVICE bool next_cells(const Grid &grid, const Region<Form> &region, GridSearch &search) {
+DEVICE void next_cells(const Grid &grid, const Region<Form> &region, GridSearch &search) {
     SearchedGrid searched = outer_grid(grid, search);
     const bool is_nested = search.nested != 0;
-    if (!is_nested && search.taken >= count_of(searched.cells))
-        return next_part(grid, region, search);
+    if (!is_nested && search.taken >= count_of(searched.cells)) {
+        next_part(grid, region, search);
+        return;
+    }
     if (is_nested)
         searched = nested_grid(grid, search, searched);
     const unsigned number = (is_nested ? search.taken_nested : search.taken) + lane_of_thread(), cells = count_of(searched.cells);
@@ -201,12 +206,11 @@ DEVICE bool next_cells(const Grid &grid, const Region<Form> &region, GridSearch 
             search.nested &= search.nested - 1;
             search.taken_nested = 0;
         }
-        return true;
+        return;
     }
     search.taken += WARP;
     search.nested = __ballot_sync(ALL_LANES, head > 0);
     search.grid = offset;
-    return true;
 }
 
 // Whether a triangle was found lately, and by no lane before this one. Larger indices displace smaller ones, so that what is found when
@@ -225,17 +229,18 @@ DEVICE bool is_new(GridSearch &search, bool has, unsigned index) {
 
 // One round: lanes take three triangles each of the cells last looked into; or cells.
 template <class Form>
-DEVICE bool next_triangles(const Grid &grid, const Region<Form> &region, GridSearch &search, unsigned *found, unsigned &count) {
-    if (search.next >= search.all)
-        return next_cells(grid, region, search);
+DEVICE void next_triangles(const Grid &grid, const Region<Form> &region, GridSearch &search, unsigned *found, unsigned &count) {
+    if (search.next >= search.all) {
+        next_cells(grid, region, search);
+        return;
+    }
     for (unsigned i = 0; i < 3; i++) {
         const unsigned number = search.next + lane_of_thread();
         const unsigned place = number + __shfl_sync(ALL_LANES, search.shift, warp_owner(search.end, number));
         bool has = number < search.all && meets_triangle(region, grid.triangles + place);
         has = is_new(search, has, has ? triangle_index(grid.triangles + place) : 0);
         warp_append(has, place, found, count);
-        search.next = min(search.next + WARP, search.all);
+        search.next += WARP;
     }
     __syncwarp();
-    return true;
 }

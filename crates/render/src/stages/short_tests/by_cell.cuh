@@ -21,11 +21,11 @@ DEVICE bool test_occluders(const ShortTests &args, const Structure &structure, c
     const LightMesh &mesh = args.mesh;
     const auto region = region_above(region_near(Bounds{item.low, item.high}, mesh.radius + mesh.slack), item.planes, mesh.slack);
     auto search = begin_search(structure, region, memory.search);
-    bool asked = false, more = true;
+    bool asked = false;
     unsigned found = 0;
-    while (more || found != 0) {
-        while (more && found < WARP)
-            more = next_triangles(structure, region, search, memory.found, found);
+    while (goes_on(structure, search) || found != 0) {
+        while (goes_on(structure, search) && found < WARP)
+            next_triangles(structure, region, search, memory.found, found);
         unsigned count = min(found, WARP);
         found -= count;
         const unsigned rows = choose_candidates(mesh, item, structure.triangles, memory, found, count);
