@@ -98,6 +98,8 @@ constants! {
 
     /// The largest number of single precision.
     F32_MAX: f32 = f32::MAX;
+    /// The smallest positive number of single precision that has all its digits.
+    F32_MIN_POSITIVE: f32 = f32::MIN_POSITIVE;
     /// The largest number of double precision.
     F64_MAX: f64 = f64::MAX;
     /// The bits of infinity in single precision.
@@ -193,10 +195,23 @@ constants! {
     /// The value of the last of these digits.
     LAST_DIGIT: f32 = 1.0 / (1u32 << SAMPLE_DIGITS) as f32;
 
+    // Searches by region.
+
+    /// Tangent planes that a region tells apart.
+    TANGENT_PLANES: u32 = 4;
+    /// Words of a region's tangent planes in shared memory.
+    PLANE_WORDS: u32 = 5 * TANGENT_PLANES;
+    /// Entries of a search's stack of nodes up to which a round takes four of them.
+    STACK_OF_ROUNDS: u32 = 64;
+    /// Entries kept beyond those for each level of the tree.
+    STACK_PER_LEVEL: u32 = 7;
+    /// Triangles found lately that a search through a grid remembers.
+    RECENT_TRIANGLES: u32 = 128;
+    /// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of a search adds.
+    FOUND_TRIANGLES: u32 = 128;
+
     // Short tests.
 
-    /// Tangent planes of an item's surface points that short tests tell apart.
-    TANGENT_PLANES: u32 = 4;
     /// Words of a candidate of the short tests by cell, a triangle that can matter.
     CANDIDATE_WORDS: u32 = 24;
     /// Candidates of one round.
@@ -205,12 +220,6 @@ constants! {
     LISTED_TARGETS: u32 = 64;
     /// Words of such a pair.
     TARGET_WORDS: u32 = 4;
-    /// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of the search adds.
-    FOUND_TRIANGLES: u32 = 128;
-    /// Entries of the search's stack up to which a round takes four nodes.
-    STACK_OF_ROUNDS: u32 = 64;
-    /// Entries kept beyond those for each level of the tree.
-    STACK_PER_LEVEL: u32 = 7;
 
     // Interpolation.
 

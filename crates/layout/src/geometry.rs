@@ -98,8 +98,8 @@ records! {
         approach: Approach,
         /// Entries of `triangles`.
         triangle_count: u32,
-        /// For eight-byte size.
-        spare: u32,
+        /// By how much cells were enlarged when triangles were sorted into them.
+        margin: f32,
     }
 
     /// Every triangle, always.

@@ -8,7 +8,7 @@
 use std::process::ExitCode;
 
 use lightmesh::render::accel::Hit;
-use lightmesh::render::backend::{Backend, Cpu, Cuda, Needs, Wave};
+use lightmesh::render::backend::{Backend, Cpu, Cuda, Wave};
 use lightmesh::render::cuda::{Driver, open_cuda};
 use lightmesh::render::light_mesh::{Lattice, LightMesh, Template};
 use lightmesh::render::{Job, PreparedScene, RenderError, Sampling, ShortTests, Unobserved, View, render_on};
@@ -125,7 +125,7 @@ fn stages(
     let rays = Cpu.camera_rays(&view, 0..size)?;
     let hits = Cpu.primary_rays(&by_cell, scene, &rays)?;
     let device_rays = cuda.camera_rays(&view, 0..size)?;
-    let device_scene = cuda.scene(&by_cell, scene, &Needs { search: true, ..Needs::default() })?;
+    let device_scene = cuda.scene(&by_cell, scene, None)?;
     let device_hits = cuda.primary_rays(&by_cell, &device_scene, &device_rays)?;
 
     let found = device_hits.read()?;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use lightmesh_render::accel::Hit;
 use lightmesh_render::backend::{
-    Aim, Backend, Cpu, Cuda, DeviceHits, DeviceLit, DevicePoints, DeviceRays, DeviceScene, Needs, Seen, Wave, WaveOf,
+    Aim, Backend, Cpu, Cuda, DeviceHits, DeviceLit, DevicePoints, DeviceRays, DeviceScene, Seen, Wave, WaveOf,
 };
 use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, UsedPoints};
 use lightmesh_render::{Job, Lit, LitBy, RayList, Sampling, ShortTests, Unobserved, Visibility};
@@ -89,8 +89,7 @@ impl<'a, R: Target> Twins<'a, R> {
         let job = job(4);
         let hits = Cpu.primary_rays(&job, scene, &rays).unwrap();
         let device_rays = cuda.camera_rays(&view, 0..size[1]).unwrap();
-        let needs = Needs { search: true, ..Needs::default() };
-        let device_scene = cuda.scene(&job, scene, &needs).unwrap();
+        let device_scene = cuda.scene(&job, scene, None).unwrap();
         let device_hits = cuda.primary_rays(&job, &device_scene, &device_rays).unwrap();
         let found = device_hits.read().unwrap();
         assert_eq!(found.len(), hits.len());

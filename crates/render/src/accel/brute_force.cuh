@@ -1,6 +1,7 @@
 // Asks every triangle: twin of brute_force.rs.
 #pragma once
 
+#include "accel/sieve.cuh"
 #include "accel/visit.cuh"
 
 template <class Visitor>
@@ -10,4 +11,27 @@ DEVICE void walk(const BruteForce &all, const Tally &, const Ray &, Visitor &vis
 
 DEVICE void walk_short(const BruteForce &all, Short &segment, float) {
     ask(segment, all.triangles, Run{0, all.count});
+}
+
+// A search in progress: the first triangle that was not looked at.
+struct ListSearch {
+    unsigned next;
+};
+
+DEVICE unsigned search_words(const BruteForce &) { return 0; }
+
+template <class Form>
+DEVICE ListSearch begin_search(const BruteForce &, const Region<Form> &, unsigned *) { return ListSearch{0}; }
+
+DEVICE bool goes_on(const BruteForce &all, const ListSearch &search) { return search.next < all.count; }
+
+// One round: lanes take three triangles each.
+template <class Form>
+DEVICE void next_triangles(const BruteForce &all, const Region<Form> &region, ListSearch &search, unsigned *found, unsigned &count) {
+    for (unsigned i = 0; i < 3; i++) {
+        const unsigned place = search.next + lane_of_thread();
+        sieve(region, all.triangles, place < all.count, place, found, count);
+        search.next += WARP;
+    }
+    __syncwarp();
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::table::{stage_table, stages_on_cpu};
-use super::{Backend, Needs, Probed, SeenOf, WaveOf};
+use super::{Backend, Probed, SeenOf, WaveOf};
 use crate::accel::Hit;
 use crate::bands;
 use crate::cache::{HostTable, Kept};
@@ -62,7 +62,7 @@ impl Backend for Cpu {
         job.wall_time(stage, work)
     }
 
-    fn scene(&self, _: &Job, scene: &PreparedScene, _: &Needs) -> Result<PreparedScene, RenderError> {
+    fn scene(&self, _: &Job, scene: &PreparedScene, _: Option<u64>) -> Result<PreparedScene, RenderError> {
         Ok(scene.clone())
     }
 

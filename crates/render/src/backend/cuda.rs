@@ -8,7 +8,7 @@ use lightmesh_layout::geometry::Rays;
 use super::table::{stage_table, stages_on_cuda};
 use super::{
     Backend, Cuda, DeviceCells, DeviceFilm, DeviceHits, DeviceLit, DeviceMasks, DevicePoints, DeviceRays, DeviceScene,
-    DeviceVisibility, Needs, Probed, SeenOf, WaveOf,
+    DeviceVisibility, Probed, SeenOf, WaveOf,
 };
 use crate::cache::{DeviceTable, Kept};
 use crate::cuda::Runtime;
@@ -53,9 +53,14 @@ impl<R: Runtime> Backend for Cuda<R> {
         self.on_device_clock(stage, work)
     }
 
-    fn scene(&self, job: &Job, scene: &PreparedScene, needs: &Needs) -> Result<DeviceScene<R>, RenderError> {
-        self.pool().set_limit(needs.memory_limit);
-        self.device_scene(job, scene, needs.search)
+    fn scene(
+        &self,
+        job: &Job,
+        scene: &PreparedScene,
+        memory_limit: Option<u64>,
+    ) -> Result<DeviceScene<R>, RenderError> {
+        self.pool().set_limit(memory_limit);
+        self.device_scene(job, scene)
     }
 
     fn rows_at_once(&self, scene: &DeviceScene<R>, plan: &Plan) -> Result<u32, RenderError> {

@@ -37,15 +37,6 @@ use crate::stage::Stage;
 use crate::view::View;
 use table::{stage_methods, stage_table};
 
-/// What an image needs of its scene on a device.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Needs {
-    /// Searches for all triangles in a region, not only rays.
-    pub search: bool,
-    /// Limit on the device's memory in bytes; `None`: what is free, minus a reserve.
-    pub memory_limit: Option<u64>,
-}
-
 /// A wave of a backend's rays.
 pub type WaveOf<'a, B> = Wave<'a, <B as Backend>::Scene, <B as Backend>::Rays, <B as Backend>::Hits>;
 
@@ -96,8 +87,9 @@ pub trait Backend: Sized {
         work: impl FnOnce() -> Result<T, RenderError>,
     ) -> Result<T, RenderError>;
 
-    /// Uploads the scene. Geometry that is already on the device stays.
-    fn scene(&self, job: &Job, scene: &PreparedScene, needs: &Needs) -> Result<Self::Scene, RenderError>;
+    /// Uploads the scene. Geometry that is already on the device stays. From now on the device allocates at most `memory_limit` bytes of its
+    /// memory; `None`: what is free, minus a reserve.
+    fn scene(&self, job: &Job, scene: &PreparedScene, memory_limit: Option<u64>) -> Result<Self::Scene, RenderError>;
 
     /// How many rows of the image can be rendered at once: an estimate from the sizes of all buffers, before any is allocated.
     fn rows_at_once(&self, scene: &Self::Scene, plan: &Plan) -> Result<u32, RenderError>;

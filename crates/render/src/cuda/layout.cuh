@@ -17,6 +17,8 @@
 #define VALUES_OF_THREAD 4u
 // The largest number of single precision.
 #define F32_MAX 0x1.fffffep127f
+// The smallest positive number of single precision that has all its digits.
+#define F32_MIN_POSITIVE 0x1p-126f
 // The largest number of double precision.
 #define F64_MAX 0x1.fffffffffffffp1023
 // The bits of infinity in single precision.
@@ -99,8 +101,18 @@
 #define SAMPLE_DIGITS 24u
 // The value of the last of these digits.
 #define LAST_DIGIT 0x1p-24f
-// Tangent planes of an item's surface points that short tests tell apart.
+// Tangent planes that a region tells apart.
 #define TANGENT_PLANES 4u
+// Words of a region's tangent planes in shared memory.
+#define PLANE_WORDS 20u
+// Entries of a search's stack of nodes up to which a round takes four of them.
+#define STACK_OF_ROUNDS 64u
+// Entries kept beyond those for each level of the tree.
+#define STACK_PER_LEVEL 7u
+// Triangles found lately that a search through a grid remembers.
+#define RECENT_TRIANGLES 128u
+// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of a search adds.
+#define FOUND_TRIANGLES 128u
 // Words of a candidate of the short tests by cell, a triangle that can matter.
 #define CANDIDATE_WORDS 24u
 // Candidates of one round.
@@ -109,12 +121,6 @@
 #define LISTED_TARGETS 64u
 // Words of such a pair.
 #define TARGET_WORDS 4u
-// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of the search adds.
-#define FOUND_TRIANGLES 128u
-// Entries of the search's stack up to which a round takes four nodes.
-#define STACK_OF_ROUNDS 64u
-// Entries kept beyond those for each level of the tree.
-#define STACK_PER_LEVEL 7u
 // Warps of a block that marks light points or interpolates, an item each.
 #define ITEM_WARPS 4u
 // Maximum number of lights without an area that are interpolated at once.
@@ -257,7 +263,7 @@ struct alignas(8) Grid {
     unsigned dims[3];
     Approach approach;
     unsigned triangle_count;
-    unsigned spare;
+    float margin;
 };
 static_assert(sizeof(Grid) == 96, "size of Grid");
 static_assert(PLACE_OF(Grid, cells) == 0, "place of Grid::cells");
@@ -268,7 +274,7 @@ static_assert(PLACE_OF(Grid, size) == 48, "place of Grid::size");
 static_assert(PLACE_OF(Grid, dims) == 60, "place of Grid::dims");
 static_assert(PLACE_OF(Grid, approach) == 72, "place of Grid::approach");
 static_assert(PLACE_OF(Grid, triangle_count) == 88, "place of Grid::triangle_count");
-static_assert(PLACE_OF(Grid, spare) == 92, "place of Grid::spare");
+static_assert(PLACE_OF(Grid, margin) == 92, "place of Grid::margin");
 
 struct alignas(8) BruteForce {
     const Triangle *triangles;

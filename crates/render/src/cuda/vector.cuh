@@ -32,6 +32,7 @@ DEVICE Vec3 normalize(Vec3 a) { return (1.0f / length(a)) * a; }
 // As in glam: the second if either is NaN.
 DEVICE float larger(float a, float b) { return a > b ? a : b; }
 DEVICE Vec3 max(Vec3 a, Vec3 b) { return Vec3{larger(a.x, b.x), larger(a.y, b.y), larger(a.z, b.z)}; }
+DEVICE Vec3 min(Vec3 a, Vec3 b) { return Vec3{fminf(a.x, b.x), fminf(a.y, b.y), fminf(a.z, b.z)}; }
 DEVICE Vec3 abs(Vec3 a) { return Vec3{fabsf(a.x), fabsf(a.y), fabsf(a.z)}; }
 DEVICE float max_element(Vec3 a) { return larger(a.x, larger(a.y, a.z)); }
 DEVICE float element_sum(Vec3 a) { return a.x + a.y + a.z; }
@@ -45,6 +46,11 @@ DEVICE Vec3 normalize_or_zero(Vec3 a) {
     const float reciprocal = 1.0f / length(a);
     return is_finite(reciprocal) && reciprocal > 0.0f ? reciprocal * a : splat(0.0f);
 }
+
+// The component of an axis. Selects, not branches: lanes of a warp may have different axes, and would take turns.
+template <class Number>
+DEVICE Number component(unsigned axis, Number x, Number y, Number z) { return axis == 0 ? x : axis == 1 ? y : z; }
+DEVICE float component(unsigned axis, Vec3 a) { return component(axis, a.x, a.y, a.z); }
 
 DEVICE DVec3 operator+(DVec3 a, DVec3 b) { return DVec3{a.x + b.x, a.y + b.y, a.z + b.z}; }
 DEVICE DVec3 operator-(DVec3 a, DVec3 b) { return DVec3{a.x - b.x, a.y - b.y, a.z - b.z}; }

@@ -37,6 +37,25 @@ DEVICE unsigned warp_running_sum(unsigned value) {
     return value;
 }
 
+// Appends the values of the lanes that have one to a list, in the order of the lanes.
+DEVICE void warp_append(bool has, unsigned value, unsigned *list, unsigned &count) {
+    const unsigned lanes = __ballot_sync(ALL_LANES, has);
+    if (has)
+        list[count + __popc(lanes & lanes_below(lane_of_thread()))] = value;
+    count += __popc(lanes);
+}
+
+// The lane to whose share of a list a place belongs, where shares follow each other and `end` is where the lane's ends: the number of
+// lanes whose shares end before or there. Only where the place is in the list.
+DEVICE unsigned warp_owner(unsigned end, unsigned place) {
+    unsigned owner = 0;
+    for (unsigned step = WARP / 2; step > 0; step /= 2) {
+        const unsigned other = __shfl_sync(ALL_LANES, end, owner + step - 1);
+        owner += other <= place ? step : 0;
+    }
+    return owner;
+}
+
 // The value of one lane.
 DEVICE Vec3 warp_broadcast(const Vec3 &value, unsigned lane) {
     return Vec3{__shfl_sync(ALL_LANES, value.x, lane), __shfl_sync(ALL_LANES, value.y, lane),

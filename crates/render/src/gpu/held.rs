@@ -21,8 +21,6 @@ pub(crate) struct DeviceGeometry<R: Runtime> {
     /// The part of the record that geometry fills.
     pub(super) record: Scene,
     pub(super) structure: Structure,
-    /// Whether the BVH is there, whatever rays walk.
-    pub(super) has_bvh: bool,
     /// What the record points to.
     #[expect(dead_code, reason = "only kept")]
     pub(super) buffers: Buffers<R>,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lightmesh_layout::constants::BVH_STACK;
+use lightmesh_layout::constants::{BVH_STACK, RECENT_TRIANGLES, STACK_OF_ROUNDS, STACK_PER_LEVEL};
 use lightmesh_layout::geometry::{Approach, BruteForce, Bvh, BvhNode, DVec3, Grid, Triangle, Vec3};
 use lightmesh_layout::scene::{Indices, Light, Scene};
 use lightmesh_layout::{DeviceType, In, Structure};
@@ -46,16 +46,31 @@ impl<R: Runtime> DeviceScene<R> {
     }
 }
 
+impl<R: Runtime> DeviceScene<R> {
+    /// What kernels are given of the scene.
+    pub fn record(&self) -> &Scene {
+        &self.record
+    }
+
+    /// The structure that rays walk and that is searched.
+    pub fn structure(&self) -> Structure {
+        self.structure
+    }
+
+    /// Words of shared memory that a warp needs to search the structure by region: `search_words` in accel/search.cuh.
+    pub fn search_words(&self) -> u32 {
+        match self.structure {
+            Structure::Bvh => (STACK_OF_ROUNDS + STACK_PER_LEVEL * self.record.bvh.depth).next_multiple_of(4),
+            Structure::Grid => RECENT_TRIANGLES,
+            Structure::BruteForce => 0,
+        }
+    }
+}
+
 impl<R: Runtime> Cuda<R> {
-    /// The scene on this device. Its geometry is brought there, if it is not there yet; with a BVH for the candidates of short tests on
-    /// request.
-    pub(crate) fn device_scene(
-        &self,
-        job: &Job,
-        scene: &PreparedScene,
-        with_bvh: bool,
-    ) -> Result<DeviceScene<R>, RenderError> {
-        let geometry = self.device_geometry(job, scene, with_bvh)?;
+    /// The scene on this device. Its geometry is brought there, if it is not there yet.
+    pub(crate) fn device_scene(&self, job: &Job, scene: &PreparedScene) -> Result<DeviceScene<R>, RenderError> {
+        let geometry = self.device_geometry(job, scene)?;
         let mut upload = Upload { cuda: self, buffers: Vec::new() };
         let record = upload.lights(&scene.scene.lights, geometry.record)?;
         Ok(DeviceScene {
@@ -68,18 +83,13 @@ impl<R: Runtime> Cuda<R> {
         })
     }
 
-    fn device_geometry(
-        &self,
-        job: &Job,
-        scene: &PreparedScene,
-        with_bvh: bool,
-    ) -> Result<Arc<DeviceGeometry<R>>, RenderError> {
+    fn device_geometry(&self, job: &Job, scene: &PreparedScene) -> Result<Arc<DeviceGeometry<R>>, RenderError> {
         let mut resident = locked(&self.resident);
-        if let Some(copy) = resident.find(&scene.geometry).filter(|copy| copy.has_bvh || !with_bvh) {
+        if let Some(copy) = resident.find(&scene.geometry) {
             return Ok(copy);
         }
         job.work.begin(job.observer, Stage::Upload, 1, 0);
-        let upload = || Upload { cuda: self, buffers: Vec::new() }.geometry(scene, with_bvh);
+        let upload = || Upload { cuda: self, buffers: Vec::new() }.geometry(scene);
         let uploaded = job.wall_time(Stage::Upload, upload);
         job.work.end(job.observer, Stage::Upload);
         let copy = Arc::new(uploaded?);
@@ -105,7 +115,7 @@ impl<R: Runtime> Upload<'_, R> {
         Ok(address)
     }
 
-    fn geometry(mut self, scene: &PreparedScene, with_bvh: bool) -> Result<DeviceGeometry<R>, RenderError> {
+    fn geometry(mut self, scene: &PreparedScene) -> Result<DeviceGeometry<R>, RenderError> {
         let (geometry, prepared) = (&*scene.scene.geometry, &*scene.geometry);
         let mesh = &geometry.mesh;
         let tinted = geometry.materials.iter().any(|material| is_tinted(geometry, material));
@@ -134,11 +144,7 @@ impl<R: Runtime> Upload<'_, R> {
                 Structure::BruteForce
             }
         };
-        let has_bvh = with_bvh || structure == Structure::Bvh;
-        if with_bvh && structure != Structure::Bvh {
-            record.bvh = self.bvh(&accel::Bvh::new(&prepared.triangles))?;
-        }
-        Ok(DeviceGeometry { record, structure, has_bvh, buffers: self.buffers })
+        Ok(DeviceGeometry { record, structure, buffers: self.buffers })
     }
 
     /// The record of a scene with these lights.
@@ -190,7 +196,7 @@ impl<R: Runtime> Upload<'_, R> {
             dims: grid.dims(),
             approach: approach(grid.approach()),
             triangle_count: grid.triangles().len() as u32,
-            spare: 0,
+            margin: grid.margin(),
         })
     }
 

@@ -226,7 +226,7 @@ pub fn visibility_on<B: Backend>(
     let resolved = Resolved::at_points(points, settings, observer)?;
     let job = resolved.job(observer);
     let run = Run::new(backend, &job, None);
-    let on_device = run.or_forget(|backend| backend.scene(&job, scene, &resolved.needs()))?;
+    let on_device = run.or_forget(|backend| backend.scene(&job, scene, resolved.plan.memory_limit))?;
     let Resolved { technique, plan, .. } = &resolved;
     let (visibility, rows) = Baking { run, scene: &on_device, technique, plan }.bake(points)?;
     let stats = report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
@@ -274,7 +274,7 @@ fn picture_on<B: Backend>(
     let job = resolved.job(observer);
     let mut picture = Picture::new(settings.size, plan.layers);
     let run = Run::new(backend, &job, kept);
-    let on_device = run.or_forget(|backend| backend.scene(&job, scene, &resolved.needs()))?;
+    let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
     let rows = Passes { run, scene: &on_device, technique, view, plan }.render(&mut picture)?;
     let stats = report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
     Ok(Frame { image: picture.into_frame(), stats })

@@ -2,7 +2,6 @@
 
 use lightmesh_scene::{Bounds, Camera};
 
-use crate::backend::Needs;
 use crate::error::RenderError;
 use crate::job::{Job, Sampling};
 use crate::observer::Observer;
@@ -85,11 +84,6 @@ impl Resolved<'_> {
     /// The job that an image or given points are.
     pub(super) fn job<'b>(&self, observer: &'b dyn Observer) -> Job<'b> {
         Job::new(observer, self.sampling).with_short_tests(self.settings.short_tests)
-    }
-
-    /// What that needs of the scene on a device.
-    pub(super) fn needs(&self) -> Needs {
-        Needs { search: self.technique.searches(self.settings), memory_limit: self.plan.memory_limit }
     }
 }
 

@@ -35,10 +35,6 @@ impl Visible for Area {
         Footprint::default()
     }
 
-    fn searches(&self, _: &Settings) -> bool {
-        false
-    }
-
     fn spreads_points(&self) -> bool {
         true
     }

@@ -13,7 +13,7 @@ use crate::gpu::memory::bytes_of_light_mesh;
 use crate::light_mesh::{Lattice, LightMesh, Template, auto_step, window_bricks};
 use crate::plan::Footprint;
 use crate::prepared::PreparedScene;
-use crate::settings::{Lookup, Setting, Settings, ShortTests, Step};
+use crate::settings::{Lookup, Setting, Settings, Step};
 use crate::stage::Stage;
 use crate::stats::{LatticeStats, SettingsStats};
 
@@ -84,10 +84,6 @@ impl Visible for HalfBall {
         let host = 2 * 16 + 4 + 16 + 4 * words as u64 + points;
         let bricks = window_bricks(self.mesh.template.reach()) as usize;
         Footprint { host, device: bytes_of_light_mesh(words, bricks, lights) }
-    }
-
-    fn searches(&self, settings: &Settings) -> bool {
-        settings.short_tests == ShortTests::Cells
     }
 
     fn template(&self) -> u64 {

@@ -46,9 +46,6 @@ pub(crate) trait Visible: Sized {
     /// Bytes that it needs per ray in a scene of `lights` lights.
     fn footprint(&self, lights: u64) -> Footprint;
 
-    /// Whether it searches for all triangles in a region.
-    fn searches(&self, settings: &Settings) -> bool;
-
     /// Whether point lights are distributed over their spread.
     fn spreads_points(&self) -> bool {
         false
@@ -93,7 +90,6 @@ macro_rules! techniques {
             techniques!(@each $($name)*;
                 stages() -> &'static [Stage];
                 footprint(lights: u64) -> Footprint;
-                searches(settings: &Settings) -> bool;
                 spreads_points() -> bool;
                 template() -> u64;
                 describe(scene: &PreparedScene, settings: &Settings, stats: &mut SettingsStats) -> ();

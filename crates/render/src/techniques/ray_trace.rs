@@ -35,9 +35,5 @@ impl Visible for RayTrace {
         Footprint::default()
     }
 
-    fn searches(&self, _: &Settings) -> bool {
-        false
-    }
-
     fn describe(&self, _: &PreparedScene, _: &Settings, _: &mut SettingsStats) {}
 }

@@ -134,6 +134,11 @@ impl Grid {
         (self.lattice.origin, self.lattice.size)
     }
 
+    /// By how much cells were enlarged when triangles were sorted into them.
+    pub(crate) fn margin(&self) -> f32 {
+        self.margin
+    }
+
     /// Middle and radius of the sphere of interest.
     pub(crate) fn approach(&self) -> (glam::Vec3, f32) {
         self.approach.parts()

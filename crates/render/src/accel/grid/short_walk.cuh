@@ -31,10 +31,6 @@ DEVICE float parameter_at(float coordinate, float origin, float inverse) {
     return fminf(fmaxf((coordinate - origin) * inverse, 0.0f), 1.0f);
 }
 
-// The component of an axis. Selects, not branches: lanes of a warp have different axes, and would take turns.
-template <class Number>
-DEVICE Number component(unsigned axis, Number x, Number y, Number z) { return axis == 0 ? x : axis == 1 ? y : z; }
-
 // One axis of a segment in cells.
 struct CellAxis {
     float origin, direction, slack;

@@ -1,8 +1,8 @@
-// The short tests by cell, a warp for up to 32 object points: twin of cells.rs (which triangles can matter, each with the box of
-// light points that its shadow can reach) and batch.rs (lanes are object points; triangle and light point are the same for all).
+// The short tests by cell, a warp for up to 32 surface points: twin of cells.rs (which triangles can matter, each with the box of
+// light points that its shadow can reach) and batch.rs (lanes are surface points; triangle and light point are the same for all).
 //
 // 1, 2. The half-balls: half_balls.cuh.
-// 3. What stands in the way: triangles are found (search.cuh), those that can matter chosen (candidates.cuh), and the light points
+// 3. What stands in the way: triangles are found (accel/search.cuh), those that can matter chosen (candidates.cuh), and the light points
 //    that they may hide tested (targets.cuh), round by round.
 // 4. The masks: masks.cuh.
 #pragma once
@@ -12,38 +12,36 @@
 #include "stages/short_tests/candidates.cuh"
 #include "stages/short_tests/half_balls.cuh"
 #include "stages/short_tests/masks.cuh"
-#include "stages/short_tests/search.cuh"
 #include "stages/short_tests/targets.cuh"
 
 // 3. What stands in the way. Returns whether the lane asked any triangle.
-DEVICE bool test_occluders(const ShortTests &args, const CellItem &item, const ItemLane &lane, const CellMemory &memory) {
+template <class Structure>
+DEVICE bool test_occluders(const ShortTests &args, const Structure &structure, const CellItem &item, const ItemLane &lane,
+                           const CellMemory &memory) {
+    const LightMesh &mesh = args.mesh;
+    const auto region = region_above(region_near(Bounds{item.low, item.high}, mesh.radius + mesh.slack), item.planes, mesh.slack);
+    auto search = begin_search(structure, region, memory.search);
     bool asked = false;
-    unsigned height = 0, found = 0;
-    if (args.scene.bvh.node_count != 0) {
-        if (lane_of_thread() == 0)
-            memory.stack[0] = 0;
-        height = 1;
-    }
-    __syncwarp();
-    while (height != 0 || found != 0) {
-        while (height != 0 && found < WARP)
-            next_nodes(args, item, memory, height, found);
+    unsigned found = 0;
+    while (goes_on(structure, search) || found != 0) {
+        while (goes_on(structure, search) && found < WARP)
+            next_triangles(structure, region, search, memory.found, found);
         unsigned count = min(found, WARP);
         found -= count;
-        const unsigned rows = choose_candidates(args, item, memory, found, count);
+        const unsigned rows = choose_candidates(mesh, item, structure.triangles, memory, found, count);
         asked |= test_candidates(args, item, lane, memory, rows);
         __syncwarp();
     }
     return asked;
 }
 
-template <bool SHARED_MASKS>
-DEVICE void short_tests_by_cell_of_item(const ShortTests &args) {
+template <bool SHARED_MASKS, class Structure>
+DEVICE void short_tests_of_item(const ShortTests &args, const Structure &structure) {
     DYNAMIC_SHARED(unsigned, shared);
     // The last come first: slow items are more often in the lower part of a picture (in Childpark this saves a tenth), and where one
     // begins late, the device waits for it alone.
     const unsigned long long index = args.first_item + (args.item_count - 1 - blockIdx.x);
-    const CellMemory memory = cell_memory<SHARED_MASKS>(args, shared, index);
+    const CellMemory memory = cell_memory<SHARED_MASKS>(args, structure, shared, index);
     const Item item = args.items[index];
     const ItemLane own = lane_of_item(args.scene, args.rays, args.hits, args.members, item);
     const CellItem shape = cell_item(args.mesh, item, own, memory.planes);
@@ -52,9 +50,20 @@ DEVICE void short_tests_by_cell_of_item(const ShortTests &args) {
     const unsigned size = half_balls(args.mesh, shape, own, memory.seen);
     __syncwarp();
     // 3. What stands in their way.
-    const bool asked = test_occluders(args, shape, own, memory);
+    const bool asked = test_occluders(args, structure, shape, own, memory);
 
     // 4. The masks, and what was counted.
     const unsigned used = write_masks(args, index, memory.seen);
     count_short_tests(args.tally, size, used, asked ? size : 0);
+}
+
+template <class Structure>
+DEVICE void short_tests_by_cell(const ShortTests &args, const Structure &structure) {
+    short_tests_of_item<true>(args, structure);
+}
+
+// For templates whose masks do not fit into shared memory.
+template <class Structure>
+DEVICE void short_tests_by_cell_large(const ShortTests &args, const Structure &structure) {
+    short_tests_of_item<false>(args, structure);
 }

@@ -1,4 +1,4 @@
-// The triangles that can hide light points from an item's object points, each with the box of those: twin of cells.rs.
+// The triangles that can hide light points from an item's surface points, each with the box of those: twin of cells.rs.
 #pragma once
 
 #include "light_mesh/lattice.cuh"
@@ -16,21 +16,22 @@ DEVICE bool plane_is_near(const CellItem &item, const Vec3 &a, const Vec3 &b, co
     return apart <= 0.0f || apart * apart <= reach * reach * dot(normal, normal);
 }
 
-// Whether a triangle certainly lies on or behind the tangent planes of all object points.
-DEVICE bool is_behind(const CellItem &item, const float4 *planes, const Vec3 &a, const Vec3 &b, const Vec3 &c) {
-    bool behind = item.planes != 0;
+// Whether a triangle certainly lies on or behind the tangent planes of all surface points.
+DEVICE bool is_behind(const CellItem &item, const Vec3 &a, const Vec3 &b, const Vec3 &c) {
+    bool behind = item.planes.count != 0;
     const Vec3 from_a = a - item.low, from_b = b - item.low, from_c = c - item.low, extent = item.high - item.low;
     const Vec3 size = max(max(abs(from_a), abs(from_b)), abs(from_c)) + extent;
-    for (unsigned i = 0; i < item.planes; i++) {
-        const Vec3 normal = {planes[i].x, planes[i].y, planes[i].z};
+    for (unsigned i = 0; i < item.planes.count; i++) {
+        const float4 plane = item.planes.memory->planes[i];
+        const Vec3 normal = {plane.x, plane.y, plane.z};
         // Relative to the box, so that rounding is of the size of the box and the triangle: 8 ε bounds that of both products.
         const float top = fmaxf(fmaxf(dot(normal, from_a), dot(normal, from_b)), dot(normal, from_c));
-        behind &= top + 8.0f * UNIT_ROUNDOFF * dot(abs(normal), size) < planes[i].w;
+        behind &= top + 8.0f * UNIT_ROUNDOFF * dot(abs(normal), size) < plane.w;
     }
     return behind;
 }
 
-// One axis of the box of light points, as offsets from the cell, that a triangle can hide from the item's object points: see
+// One axis of the box of light points, as offsets from the cell, that a triangle can hide from the item's surface points: see
 // `shadow_box` in cells.rs. `most` is the farthest that a shadow is stretched.
 DEVICE Span span_to(float low, float high, float a, float b, float c, float slack) {
     return Span{fminf(fminf(a, b), c) - high - slack, fmaxf(fmaxf(a, b), c) - low + slack};
@@ -98,9 +99,8 @@ DEVICE int box_bound(unsigned box, int index) {
 
 // 3. b. Lanes take up to 32 of the triangles found; those that can matter are kept as candidates. Returns how many rows of
 // light points the lane's candidate reaches, candidates being in the order of the lanes; `count` becomes their number.
-DEVICE unsigned choose_candidates(const ShortTests &args, const CellItem &item, const CellMemory &memory, unsigned first,
-                                  unsigned &count) {
-    const LightMesh &mesh = args.mesh;
+DEVICE unsigned choose_candidates(const LightMesh &mesh, const CellItem &item, const Triangle *triangles, const CellMemory &memory,
+                                  unsigned first, unsigned &count) {
     const unsigned lane = lane_of_thread();
     bool kept = false;
     unsigned box = 0;
@@ -108,9 +108,9 @@ DEVICE unsigned choose_candidates(const ShortTests &args, const CellItem &item, 
     Span x, y, z;
     float most = 0.0f;
     if (lane < count) {
-        corners = load_corners(args.scene.bvh.triangles + memory.found[first + lane]);
+        corners = load_corners(triangles + memory.found[first + lane]);
         const Vec3 a = corners.a, b = corners.b, c = corners.c;
-        kept = !is_behind(item, memory.planes, a, b, c) && plane_is_near(item, a, b, c, mesh.radius + mesh.slack) &&
+        kept = !is_behind(item, a, b, c) && plane_is_near(item, a, b, c, mesh.radius + mesh.slack) &&
                shadow_box(mesh, item, a, b, c, box, x, y, z, most);
     }
     const unsigned lanes = __ballot_sync(ALL_LANES, kept);

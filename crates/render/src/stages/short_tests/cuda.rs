@@ -1,8 +1,7 @@
 //! Step 2 on a CUDA device: a warp for up to 32 surface points of one cell.
 
 use lightmesh_layout::constants::{
-    CANDIDATE_WORDS, CANDIDATES, FOUND_TRIANGLES, LISTED_TARGETS, STACK_OF_ROUNDS, STACK_PER_LEVEL, TANGENT_PLANES,
-    TARGET_WORDS,
+    CANDIDATE_WORDS, CANDIDATES, FOUND_TRIANGLES, LISTED_TARGETS, PLANE_WORDS, TARGET_WORDS,
 };
 use lightmesh_layout::stages::ShortTests;
 
@@ -16,6 +15,9 @@ use crate::light_mesh::LightMesh;
 use crate::settings;
 
 const HALF_BALLS: Kernel = Kernel { module: "short_tests", name: "half_balls_of_items" };
+const BY_CELL: PerStructure = per_structure!("short_tests", "short_tests_by_cell");
+/// For templates whose masks do not fit into shared memory: they stay where they end up anyway.
+const BY_CELL_LARGE: PerStructure = per_structure!("short_tests", "short_tests_by_cell_large");
 const PLAIN: PerStructure = per_structure!("short_tests", "short_tests_plain");
 /// Warps of a block that tests.
 const WARPS: u32 = 1;
@@ -34,15 +36,14 @@ pub(crate) fn short_tests<R: Runtime>(
     let words = mesh.template.words();
     let masks = cuda.pool().room("masks", cells.count * 32 * words)?;
     let by_cell = wave.job.short_tests == settings::ShortTests::Cells;
-    let search = shared_words(scene.record.bvh.depth);
-    let all = search + 32 * words as u32;
-    let (kernel, shared) = if !by_cell {
-        (PLAIN.of(scene.structure), 0)
+    let least = shared_words(scene.search_words());
+    let all = least + 32 * words as u32;
+    let (kernels, shared) = if !by_cell {
+        (PLAIN, 0)
     } else if 4 * WARPS * all <= SHARED_MEMORY {
-        (Kernel { module: "short_tests", name: "short_tests_by_cell" }, all)
+        (BY_CELL, all)
     } else {
-        // Masks of large templates stay where they end up anyway.
-        (Kernel { module: "short_tests", name: "short_tests_by_cell_large" }, search)
+        (BY_CELL_LARGE, least)
     };
     let record = ShortTests {
         scene: scene.record,
@@ -67,13 +68,12 @@ pub(crate) fn short_tests<R: Runtime>(
     if !by_cell {
         each_item(HALF_BALLS, 0, 0)?;
     }
-    each_item(kernel, shared, cells.count as u64)?;
+    each_item(kernels.of(scene.structure), shared, cells.count as u64)?;
     Ok(DeviceMasks { masks, words })
 }
 
-/// Shared memory of a warp that tests by cell, in 32-bit words, its masks apart: candidates and targets of one round, triangles
-/// found, and the stack of the search through a BVH of `depth` levels. See `cell_memory` in `memory.cuh`.
-fn shared_words(depth: u32) -> u32 {
-    let stack = (STACK_OF_ROUNDS + STACK_PER_LEVEL * depth).next_multiple_of(4);
-    CANDIDATE_WORDS * CANDIDATES + TARGET_WORDS * (LISTED_TARGETS + 1) + 4 * TANGENT_PLANES + FOUND_TRIANGLES + stack
+/// Shared memory of a warp that tests by cell, in 32-bit words, its masks apart: candidates and targets of one round, tangent planes,
+/// triangles found, and `search` words that the search for them takes. See `cell_memory` in `memory.cuh`.
+fn shared_words(search: u32) -> u32 {
+    CANDIDATE_WORDS * CANDIDATES + TARGET_WORDS * (LISTED_TARGETS + 1) + PLANE_WORDS + FOUND_TRIANGLES + search
 }

@@ -21,7 +21,7 @@ DEVICE unsigned half_balls(const LightMesh &mesh, const CellItem &item, const It
     const SurfacePoint &point = lane.point;
     const Span x = warp_span(point.position.x), y = warp_span(point.position.y), z = warp_span(point.position.z);
     Span nx = {point.normal.x, point.normal.x}, ny = {point.normal.y, point.normal.y}, nz = {point.normal.z, point.normal.z};
-    if (item.planes != 1) {
+    if (item.planes.count != 1) {
         nx = warp_span(point.normal.x);
         ny = warp_span(point.normal.y);
         nz = warp_span(point.normal.z);

@@ -1,6 +1,6 @@
 // Step 2 on a CUDA device: which light points does each surface point see? Formula (2).
 //
-// 1. `short_tests_by_cell`: twin of cells.rs and batch.rs, a warp an item.
+// 1. `short_tests_by_cell_*`: twin of cells.rs and batch.rs, a warp an item.
 // 2. `half_balls_of_items`, `short_tests_plain_*`: twin of plain.rs, the oracle: every segment walks through the acceleration
 //    structure.
 #include "cuda/prelude.cuh"
@@ -9,14 +9,9 @@
 
 #include "stages/short_tests/plain.cuh"
 
-KERNEL(short_tests_by_cell, ShortTests, WARP, 32) {
-    short_tests_by_cell_of_item<true>(args);
-}
+KERNEL_PER_STRUCTURE(short_tests_by_cell, ShortTests, WARP, 32)
 
-// For templates whose masks do not fit into shared memory.
-KERNEL(short_tests_by_cell_large, ShortTests, WARP, 32) {
-    short_tests_by_cell_of_item<false>(args);
-}
+KERNEL_PER_STRUCTURE(short_tests_by_cell_large, ShortTests, WARP, 32)
 
 KERNEL(half_balls_of_items, ShortTests, WARP, 32) {
     half_balls_of_item(args);

@@ -1,7 +1,7 @@
 // The shared memory of a warp that tests by cell.
 #pragma once
 
-#include "accel/triangle.cuh"
+#include "accel/search.cuh"
 #include "stages/short_tests/cell_item.cuh"
 
 // What comes after the last of them.
@@ -29,26 +29,25 @@ struct CellMemory {
     unsigned *seen;
     Candidate *candidates;
     Target *targets;
-    // Normals, and how high the lowest origin lies along each above the corner of the box around all.
-    float4 *planes;
+    PlanesMemory *planes;
+    // Triangles found and not yet looked at, and what the search for more needs.
     unsigned *found;
-    unsigned *stack;
+    unsigned *search;
 };
 
-// Cuts a block's shared memory up, as `shared_words` in cuda.rs counts it. A block is one warp: items differ in cost, and a block keeps its place until its last warp is
-// done. Whether masks are kept there is known to the compiler, which then knows what kind of memory they are in.
-template <bool SHARED_MASKS>
-DEVICE CellMemory cell_memory(const ShortTests &args, unsigned *shared, unsigned long long item) {
-    const unsigned stack = 4 * ((STACK_OF_ROUNDS + STACK_PER_LEVEL * args.scene.bvh.depth + 3) / 4);
+// Cuts a block's shared memory up, as `shared_words` in cuda.rs counts it. A block is one warp: items differ in cost, and a block keeps
+// its place until its last warp is done. Whether masks are kept there is known to the compiler, which then knows what kind of memory they
+// are in.
+template <bool SHARED_MASKS, class Structure>
+DEVICE CellMemory cell_memory(const ShortTests &args, const Structure &structure, unsigned *shared, unsigned long long item) {
     const unsigned candidates = CANDIDATE_WORDS * CANDIDATES, targets = TARGET_WORDS * (LISTED_TARGETS + 1);
-    const unsigned planes = 4 * TANGENT_PLANES;
     CellMemory memory;
     memory.candidates = (Candidate *)shared;
     memory.targets = (Target *)(shared + candidates);
-    memory.planes = (float4 *)(shared + candidates + targets);
-    memory.found = shared + candidates + targets + planes;
-    memory.stack = memory.found + FOUND_TRIANGLES;
-    memory.seen = SHARED_MASKS ? memory.stack + stack : args.masks + item * 32 * args.mesh.words;
+    memory.planes = (PlanesMemory *)(shared + candidates + targets);
+    memory.found = shared + candidates + targets + PLANE_WORDS;
+    memory.search = memory.found + FOUND_TRIANGLES;
+    memory.seen = SHARED_MASKS ? memory.search + search_words(structure) : args.masks + item * 32 * args.mesh.words;
     return memory;
 }
 

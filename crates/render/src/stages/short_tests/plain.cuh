@@ -14,7 +14,7 @@ DEVICE void half_balls_of_item(const ShortTests &args) {
     CellItem shape;
     shape.cell = point_of(item.cell);
     // Whether planes are shared does not pay here.
-    shape.planes = 0;
+    shape.planes.count = 0;
     const ItemLane own = lane_of_item(args.scene, args.rays, args.hits, args.members, item);
     const unsigned size = half_balls(args.mesh, shape, own, args.masks + index * 32 * args.mesh.words);
     count_short_tests(args.tally, size, 0, size);

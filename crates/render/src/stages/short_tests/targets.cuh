@@ -147,13 +147,8 @@ DEVICE bool test_candidates(const ShortTests &args, const CellItem &item, const 
     const unsigned end = warp_running_sum(rows), all = __shfl_sync(ALL_LANES, end, WARP - 1);
     bool asked = false;
     for (unsigned first = 0; first < all; first += WARP) {
-        // The candidate of a row: the number of candidates whose rows end before.
-        const unsigned number = first + lane;
-        unsigned owner = 0;
-        for (unsigned step = WARP / 2; step > 0; step /= 2) {
-            const unsigned other = __shfl_sync(ALL_LANES, end, owner + step - 1);
-            owner += other <= number ? step : 0;
-        }
+        // The candidate of a row.
+        const unsigned number = first + lane, owner = warp_owner(end, number);
         const unsigned before = __shfl_sync(ALL_LANES, end - rows, owner);
         unsigned targets = 0, bit = 0;
         int x = 0;

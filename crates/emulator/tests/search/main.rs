@@ -1,0 +1,232 @@
+//! Searches by region on the emulator, with the kernels of `kernels/search.cu`: nothing is missed that meets the region, and nothing is
+//! found but what the CPU's list finds.
+#![cfg(unix)]
+
+mod regions;
+mod triangles;
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use lightmesh_emulator::Emulator;
+use lightmesh_layout::constants::{FOUND_TRIANGLES, PLANE_WORDS};
+use lightmesh_layout::names_per_structure;
+use lightmesh_layout::scene;
+use lightmesh_render::accel::{Region, TangentPlanes, Triangle};
+use lightmesh_render::backend::{Backend, Cuda};
+use lightmesh_render::cuda::{Kernel, Launch, Pool, Runtime};
+use lightmesh_render::{Acceleration, Job, PreparedScene, Sampling, Unobserved};
+use lightmesh_scene::{Bounds, Geometry, Material, Mesh, Scene};
+use lightmesh_testkit::Random;
+
+use regions::{Asked, Form, asked};
+
+/// Points with normals that a region is cut off by, at most.
+const POINTS: usize = 32;
+/// Regions of a launch.
+const REGIONS: usize = 12;
+
+/// `Asked` of `kernels/search.cu`.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct AskedRecord {
+    form: u32,
+    point_count: u32,
+    slack: f32,
+    reach: f32,
+    corners: [Vec3; 4],
+    points: [Vec3; POINTS],
+    normals: [Vec3; POINTS],
+}
+
+/// `Search` of `kernels/search.cu`.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct SearchRecord {
+    scene: scene::Scene,
+    regions: u64,
+    found: u64,
+    counts: u64,
+    room: u32,
+    spare: u32,
+}
+
+impl Asked {
+    fn record(&self) -> AskedRecord {
+        let (form, reach, emitter) = match self.form {
+            Form::Box => (0, 0.0, self.origins),
+            Form::Near(reach) => (1, reach, self.origins),
+            Form::Shaft(emitter) => (2, 0.0, emitter),
+        };
+        let mut record = AskedRecord {
+            form,
+            point_count: self.points.len() as u32,
+            slack: self.slack,
+            reach,
+            corners: [self.origins.min, self.origins.max, emitter.min, emitter.max],
+            ..Zeroable::zeroed()
+        };
+        for (place, &(point, normal)) in self.points.iter().enumerate() {
+            (record.points[place], record.normals[place]) = (point, normal);
+        }
+        record
+    }
+
+    fn region(&self) -> Region {
+        let region = match self.form {
+            Form::Box => Region::within(self.origins),
+            Form::Near(reach) => Region::near(self.origins, reach),
+            Form::Shaft(emitter) => Region::shaft(self.origins, emitter),
+        };
+        region.above(TangentPlanes::new(self.origins.min, self.points.iter().copied(), self.slack))
+    }
+}
+
+/// Triangles with a structure over them.
+fn prepared(triangles: &[[Vec3; 3]], acceleration: &Acceleration) -> PreparedScene {
+    let mesh = Mesh {
+        positions: triangles.as_flattened().to_vec(),
+        triangles: (0..triangles.len() as u32).map(|first| [3 * first, 3 * first + 1, 3 * first + 2]).collect(),
+        materials: vec![0; triangles.len()],
+        ..Mesh::default()
+    };
+    let geometry = Geometry { mesh, materials: vec![Material::default()], ..Geometry::default() };
+    PreparedScene::new(&Scene::new("triangles", geometry), acceleration, &Unobserved).unwrap()
+}
+
+/// What a device finds in each region, with repetitions.
+fn search(prepared: &PreparedScene, regions: &[Asked]) -> Vec<Vec<u32>> {
+    let emulator = Arc::new(Emulator::new());
+    let (cuda, pool) = (Cuda::new(Arc::clone(&emulator)), Pool::new(Arc::clone(&emulator)));
+    let job = Job::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
+    let scene = cuda.scene(&job, prepared, None).unwrap();
+    let room = 64 * prepared.geometry.triangles.len().max(1);
+    let records: Vec<AskedRecord> = regions.iter().map(Asked::record).collect();
+    let asked = pool.upload("regions", &records).unwrap();
+    let found = pool.zeros::<u32>("found", room * regions.len()).unwrap();
+    let counts = pool.zeros::<u32>("counts", regions.len()).unwrap();
+    let arguments = SearchRecord {
+        scene: *scene.record(),
+        regions: asked.input().address(),
+        found: found.output().address(),
+        counts: counts.output().address(),
+        room: room as u32,
+        spare: 0,
+    };
+    let name = names_per_structure!("search_regions")[scene.structure() as usize];
+    let shared = 4 * (PLANE_WORDS + FOUND_TRIANGLES + scene.search_words());
+    let launch = Launch { blocks: regions.len() as u32, threads: 32, shared };
+    emulator.launch(Kernel { module: "search", name }, launch, bytemuck::bytes_of(&arguments)).unwrap();
+    let (found, counts) = (found.read().unwrap(), counts.read().unwrap());
+    found
+        .chunks(room)
+        .zip(counts)
+        .map(|(found, count)| {
+            assert!(count as usize <= room, "{count} found");
+            found[..count as usize].to_vec()
+        })
+        .collect()
+}
+
+/// Ascending, each once.
+fn set(mut indices: Vec<u32>) -> Vec<u32> {
+    indices.sort_unstable();
+    indices.dedup();
+    indices
+}
+
+/// Holds every structure against the list on the CPU. Returns how many triangles that has.
+fn check(what: &str, corners: &[[Vec3; 3]], regions: &[Asked], random: &mut Random) -> usize {
+    let mut listed = Vec::new();
+    for acceleration in [
+        Acceleration::BruteForce,
+        Acceleration::Bvh,
+        Acceleration::Grid(None),
+        Acceleration::Grid(Some([7, 5, 9])),
+        Acceleration::Grid(Some([2, 1, 3])),
+    ] {
+        let prepared = prepared(corners, &acceleration);
+        let all = search(&prepared, regions);
+        if acceleration == Acceleration::BruteForce {
+            for asked in regions {
+                let mut found = Vec::new();
+                prepared.geometry.accelerator.triangles_in(&asked.region(), &mut found);
+                listed.push(found);
+            }
+        }
+        for ((asked, listed), found) in regions.iter().zip(&listed).zip(all) {
+            let case = || format!("{what}, {acceleration:?}: {asked:?}");
+            if !matches!(acceleration, Acceleration::Grid(_)) {
+                assert!(found.len() == listed.len(), "each once: {}", case());
+                assert_eq!(set(found), *listed, "{}", case());
+                continue;
+            }
+            let found = set(found);
+            let other = found.iter().find(|index| listed.binary_search(index).is_err());
+            assert_eq!(other, None, "not in the list: {}", case());
+            for &index in listed.iter().filter(|index| found.binary_search(index).is_err()) {
+                let triangle = &prepared.geometry.triangles[index as usize];
+                assert!(!asked.holds_a_point_of(triangle, random), "lacks {index}: {}", case());
+            }
+        }
+    }
+    listed.iter().map(Vec::len).sum()
+}
+
+#[test]
+fn regions_hold_what_meets_them() {
+    let mut found = 0;
+    for (number, kind) in triangles::ALL.iter().cycle().take(30 * triangles::ALL.len()).enumerate() {
+        let random = &mut Random::new(number as u64);
+        let corners = triangles::triangles(*kind, random);
+        let near = |random: &mut Random| match corners.len() {
+            0 => Vec3::ZERO,
+            len => corners[(random.unit() * len as f64) as usize][0],
+        };
+        let regions: Vec<Asked> = (0..REGIONS).map(|_| asked(near(random), random)).collect();
+        found += check(&format!("{kind:?}, number {number}"), &corners, &regions, random);
+    }
+    assert!(found > 10_000, "little is found: {found}");
+}
+
+#[test]
+fn a_search_finds_more_than_one_round_holds() {
+    let random = &mut Random::new(3);
+    // Deeper than a round takes nodes, and every triangle many times.
+    let mut corners = triangles::triangles(triangles::Kind::Soup, random);
+    corners.extend(vec![corners[0]; 700]);
+    let around = Bounds { min: Vec3::splat(-9.0), max: Vec3::splat(9.0) };
+    let region = |form| Asked { form, origins: around, points: Vec::new(), slack: 0.0, cut: false };
+    let regions = [region(Form::Box), region(Form::Near(1.0)), region(Form::Shaft(around))];
+    assert_eq!(check("all", &corners, &regions, random), regions.len() * corners.len());
+}
+
+#[test]
+fn nothing_below_all_planes_is_found() {
+    let floor = [Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 0.0, -1.0), Vec3::new(0.0, 0.0, 1.0)];
+    let corners = [floor, floor.map(|corner| corner + 0.5 * Vec3::Y)];
+    let origins = Bounds { min: Vec3::new(0.0, 1e-3, 0.0), max: Vec3::new(0.1, 1e-3, 0.1) };
+    let up = vec![(origins.min, Vec3::Y), (origins.max, Vec3::Y)];
+    let aside = vec![(origins.min, Vec3::Y), (origins.max, Vec3::X)];
+    let shaft = Form::Shaft(Bounds { min: Vec3::NEG_Y, max: Vec3::Y });
+    for form in [Form::Near(0.7), shaft, Form::Near(5.0)] {
+        let ask = |points, slack| Asked { form, origins, points, slack, cut: true };
+        let regions = [ask(Vec::new(), 0.0), ask(up.clone(), 0.0), ask(up.clone(), 0.1), ask(aside.clone(), 0.0)];
+        for acceleration in [Acceleration::BruteForce, Acceleration::Bvh, Acceleration::Grid(Some([2, 2, 2]))] {
+            let found: Vec<_> = search(&prepared(&corners, &acceleration), &regions).into_iter().map(set).collect();
+            assert_eq!(found, [vec![0, 1], vec![1], vec![0, 1], vec![0, 1]], "{acceleration:?}, {form:?}");
+        }
+    }
+}
+
+/// The triangles of a scene that are [usable](Triangle::is_usable) are what structures hold: the others are found by none.
+#[test]
+fn what_cannot_be_hit_is_not_found() {
+    let corners = [[Vec3::ZERO, Vec3::X, Vec3::Y], [Vec3::ZERO, Vec3::X, Vec3::splat(1e30)]];
+    assert!(!Triangle::new(corners[1], 1).is_usable());
+    let origins = Bounds { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) };
+    let region = Asked { form: Form::Box, origins, points: Vec::new(), slack: 0.0, cut: false };
+    check("unusable", &corners, std::slice::from_ref(&region), &mut Random::new(0));
+    assert_eq!(search(&prepared(&corners, &Acceleration::BruteForce), &[region]), [[0]]);
+}

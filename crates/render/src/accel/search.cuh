@@ -1,0 +1,17 @@
+// The search for all triangles that meet a region, by a warp: twin of `triangles_in` of the trait in mod.rs.
+//
+// Every function exists for each of the three structures:
+//
+//     unsigned search_words(structure);                       // words of shared memory that a search takes, a multiple of four
+//     auto search = begin_search(structure, region, memory);  // `memory`: so many words
+//     while (goes_on(structure, search))
+//         next_triangles(structure, region, search, found, count);
+//
+// The whole warp takes part in every round. It adds places of triangles in `structure.triangles` to the list `found` of `count` entries: 96
+// at most, often none. What is found is what the twin finds: nothing that meets the region is missing, and the region may meet the bounding
+// box of everything found. A grid may find a triangle several times.
+#pragma once
+
+#include "accel/brute_force.cuh"
+#include "accel/bvh/search.cuh"
+#include "accel/grid/search.cuh"

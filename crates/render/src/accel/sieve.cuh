@@ -1,0 +1,19 @@
+// Triangles that a region may meet, one a lane: twin of sieve.rs.
+#pragma once
+
+#include "accel/region.cuh"
+#include "accel/triangle.cuh"
+
+// Whether the region may meet the bounding box of a triangle.
+template <class Form>
+DEVICE bool meets_triangle(const Region<Form> &region, const Triangle *triangle) {
+    const Corners corners = load_corners(triangle);
+    const Vec3 low = min(min(corners.a, corners.b), corners.c), high = max(max(corners.a, corners.b), corners.c);
+    return meets(region, low, high, REGION_ROUNDING * element_sum(high - low));
+}
+
+// Lists the places of those of the lanes' triangles whose bounding boxes the region may meet. Not every lane has one.
+template <class Form>
+DEVICE void sieve(const Region<Form> &region, const Triangle *triangles, bool has, unsigned place, unsigned *list, unsigned &count) {
+    warp_append(has && meets_triangle(region, triangles + place), place, list, count);
+}
