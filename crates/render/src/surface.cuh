@@ -29,7 +29,7 @@ DEVICE SurfacePoint surface_point(const Ray &ray, const Hit &hit, const Corners 
 }
 
 // The surface point that ray number `ray` sees; the ray must have hit something.
-DEVICE SurfacePoint object_point(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray) {
+DEVICE SurfacePoint surface_point_of(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray) {
     const Hit hit = load_hit(hits, ray);
     return surface_point(ray_at(rays, ray), hit, load_corners(scene.triangles + hit.triangle));
 }

@@ -134,7 +134,7 @@ fn lights_may_be_anywhere() {
 }
 
 #[test]
-fn a_light_may_be_the_object_point() {
+fn a_light_may_be_the_surface_point() {
     let scene = SceneDraft::new().floor(0.0, 2.0).point_light([0.0; 3]).camera([-1.0, 1.0, 0.0], [0.0; 3]);
     in_all_modes(&scene.finish("P = L"), [1, 1], |frame| assert_eq!(hits(frame), 1));
 }

@@ -16,7 +16,7 @@ fn with_few_light_points(scene: &Scene, radius: f32) {
     let traced = render(scene, &settings.with_mode(Mode::RayTrace));
     let (sparse_picture, traced) = (Picture::new(&sparse), Picture::new(&traced));
     let empty: Vec<usize> = sparse_picture.hits().filter(|&pixel| sparse_picture.layers().used[pixel] == 0).collect();
-    assert!(empty.len() > 100, "{} object points without light points", empty.len());
+    assert!(empty.len() > 100, "{} surface points without light points", empty.len());
     let share = &sparse.stats.counts.fallback_share;
     assert!(*share > 0.0 && *share <= 1.0, "{share}");
     let (mut lit, mut dark) = (0, 0);
@@ -30,7 +30,7 @@ fn with_few_light_points(scene: &Scene, radius: f32) {
 }
 
 #[test]
-fn object_points_without_light_points_trace_their_own_rays() {
+fn surface_points_without_light_points_trace_their_own_rays() {
     for radius in [0.5, 0.7] {
         with_few_light_points(&pile(DVec3::ZERO, &[LIGHT]), radius);
     }

@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_of_visibility_are_of_object_points_alone() {
+    fn errors_of_visibility_are_of_surface_points_alone() {
         let errors = Errors::between(&frame([1.0, 1.0, 0.0, 0.0]), &frame([1.0, 0.5, 1.0, 0.5])).unwrap();
         assert!((errors.visibility_rmse - (0.5_f64 / 3.0).sqrt()).abs() < 1e-12, "{errors:?}");
         assert_eq!((errors.rmse, errors.mean_flip), (0.0, 0.0));

@@ -87,7 +87,7 @@ DEVICE void group_points_of_tile(const GroupCells &args) {
     const bool in_picture = tile_ray_of_thread(args.rays, (unsigned)tile, thread, ray);
     unsigned word = NO_POINT;
     if (in_picture && args.hits[ray].triangle != Hit::NONE) {
-        const SurfacePoint point = object_point(args.scene, args.rays, args.hits, ray);
+        const SurfacePoint point = surface_point_of(args.scene, args.rays, args.hits, ray);
         const unsigned long long cell = point_key(lattice_cell(args.mesh, point.position));
         cells[thread] = cell;
         rays[thread] = ray;

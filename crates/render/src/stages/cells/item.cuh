@@ -17,6 +17,6 @@ DEVICE ItemLane lane_of_item(const Scene &scene, const Rays &rays, const Hit *hi
     ItemLane own;
     own.alive = lane < item.count;
     own.ray = members[item.first + (own.alive ? lane : 0)];
-    own.point = object_point(scene, rays, hits, own.ray);
+    own.point = surface_point_of(scene, rays, hits, own.ray);
     return own;
 }

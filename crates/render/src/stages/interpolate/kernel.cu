@@ -290,7 +290,7 @@ DEVICE void fallback(const Interpolate &args, const Structure &structure) {
     for (unsigned light = 0; light < args.scene.light_count; light++) {
         float &share = args.share[(unsigned long long)light * args.rays.count + ray];
         if (share < 0.0f) {
-            const SurfacePoint point = object_point(args.scene, args.rays, args.hits, ray);
+            const SurfacePoint point = surface_point_of(args.scene, args.rays, args.hits, ray);
             share = fallback_share(structure, args.scene, args.sampling, args.tally, point, ray_key(args.rays, ray), light);
         }
     }

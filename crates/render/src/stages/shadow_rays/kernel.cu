@@ -79,7 +79,7 @@ DEVICE void trace(const ShadowRays &args, const Structure &structure) {
             if (args.first_sample == 0)
                 no_shares(args, ray);
         } else {
-            const SurfacePoint point = object_point(args.scene, args.rays, args.hits, ray);
+            const SurfacePoint point = surface_point_of(args.scene, args.rays, args.hits, ray);
             cast = HARD ? trace_hard(args, structure, ray, point) : trace_area(args, structure, ray, point);
         }
     }
