@@ -26,13 +26,14 @@ struct Search {
 
 // Finds the triangles of a region and writes their indices.
 template <class Form, class Structure>
-DEVICE void search_region(const Search &args, const Structure &structure, const Region<Form> &region, unsigned *list, unsigned *memory) {
+DEVICE void search_region(const Search &args, const Structure &structure, const Region<Form> &region, unsigned *list,
+                          unsigned *memory) {
     const unsigned lane = lane_of_thread();
     auto search = begin_search(structure, region, memory);
     unsigned total = 0;
     while (goes_on(structure, search)) {
         unsigned count = WARP - 1;
-        next_triangles(structure, region, search, list, count);
+        next_triangles<true>(structure, region, search, list, count);
         // More would not fit.
         if (count > FOUND_TRIANGLES) __trap();
         for (unsigned i = WARP - 1 + lane; i < count; i += WARP) {

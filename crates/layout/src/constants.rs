@@ -205,8 +205,8 @@ constants! {
     STACK_OF_ROUNDS: u32 = 64;
     /// Entries kept beyond those for each level of the tree.
     STACK_PER_LEVEL: u32 = 7;
-    /// Triangles found lately that a search through a grid remembers.
-    RECENT_TRIANGLES: u32 = 128;
+    /// Triangles found lately that a search through a grid remembers, at most.
+    RECENT_TRIANGLES: u32 = 256;
     /// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of a search adds.
     FOUND_TRIANGLES: u32 = 128;
 

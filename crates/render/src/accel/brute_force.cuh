@@ -26,11 +26,12 @@ DEVICE ListSearch begin_search(const BruteForce &, const Region<Form> &, unsigne
 DEVICE bool goes_on(const BruteForce &all, const ListSearch &search) { return search.next < all.count; }
 
 // One round: lanes take three triangles each.
-template <class Form>
-DEVICE void next_triangles(const BruteForce &all, const Region<Form> &region, ListSearch &search, unsigned *found, unsigned &count) {
-    for (unsigned i = 0; i < 3; i++) {
+template <bool SIEVED, class Form>
+DEVICE void next_triangles(const BruteForce &all, const Region<Form> &region, ListSearch &search, unsigned *found,
+                           unsigned &count) {
+    for (unsigned i = 0; i < 3 && search.next < all.count; i++) {
         const unsigned place = search.next + lane_of_thread();
-        sieve(region, all.triangles, place < all.count, place, found, count);
+        sieve<SIEVED>(region, all.triangles, place < all.count, place, found, count);
         search.next += WARP;
     }
     __syncwarp();

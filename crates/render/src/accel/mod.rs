@@ -13,7 +13,7 @@
 //!   that is not finite and a triangle that is not [usable](Triangle::is_usable) hit nothing.
 //!
 //! The structures are built here; devices hold copies ([`Form`]) and walk them by the `.cuh` files beside the Rust ones, under the
-//! same promises. `walk.cuh` is the twin of the trait.
+//! same promises. `walk.cuh` and `search.cuh` are the twins of the trait.
 
 mod approach;
 mod brute_force;

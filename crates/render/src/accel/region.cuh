@@ -1,7 +1,7 @@
 // Parts of space that triangles are looked for in, and which boxes they may meet: twin of region/, where rounding is explained.
 //
-// The region is the same for the whole warp, boxes are the lanes'. Its form is a type, so that a search holds no other form's numbers.
-// Steps are those of the twin, in its order: both meet the same boxes.
+// The region is the same for the whole warp, boxes are the lanes'. Its form is a type, so that a search holds no other form's
+// numbers. Steps are those of the twin, in its order: both meet the same boxes.
 #pragma once
 
 #include "cuda/warp.cuh"
@@ -31,8 +31,8 @@ struct TangentPlanes {
     PlanesMemory *memory;
 };
 
-// The planes through the points of the lanes that are `alive`, with unit normals; none where there are too many normals. `corner` is a
-// point near all of them.
+// The planes through the points of the lanes that are `alive`, with unit normals; none where there are too many normals. `corner` is
+// a point near all of them.
 DEVICE TangentPlanes tangent_planes(const Vec3 &corner, bool alive, const Vec3 &point, const Vec3 &normal, PlanesMemory *memory) {
     TangentPlanes result = {0, corner, memory};
     // Points of one normal have one plane: that through the lowest of them.
@@ -118,8 +118,8 @@ struct ShaftForm {
 };
 
 // For which parameters a shaft may overlap a box on one axis.
-DEVICE void narrow_shaft(float low_from, float low_inverse, float high_from, float high_inverse, float low, float high, float &first,
-                         float &last) {
+DEVICE void narrow_shaft(float low_from, float low_inverse, float high_from, float high_inverse, float low, float high,
+                         float &first, float &last) {
     // The lower face must not be above the box, nor the upper face below it.
     const float above = (high - low_from) * low_inverse, below = (low - high_from) * high_inverse;
     if (low_inverse > 0.0f)
@@ -192,8 +192,8 @@ DEVICE Region<Form> region_above(Region<Form> region, const TangentPlanes &plane
     return region;
 }
 
-// Whether the region may meet the lane's box. `loose` is added to how high that reaches above a plane: 16 ε of the sum of its edges; zero
-// for a box that was enlarged by as much on each side.
+// Whether the region may meet the lane's box. `loose` is added to how high that reaches above a plane: 16 ε of the sum of its edges;
+// zero for a box that was enlarged by as much on each side.
 template <class Form>
 DEVICE bool meets(const Region<Form> &region, const Vec3 &low, const Vec3 &high, float loose) {
     return form_meets(region.form, low, high) && (region.planes.count == 0 || reached(region.planes, low, high, loose));

@@ -5,11 +5,12 @@
 //     unsigned search_words(structure);                       // words of shared memory that a search takes, a multiple of four
 //     auto search = begin_search(structure, region, memory);  // `memory`: so many words
 //     while (goes_on(structure, search))
-//         next_triangles(structure, region, search, found, count);
+//         next_triangles<SIEVED>(structure, region, search, found, count);
 //
-// The whole warp takes part in every round. It adds places of triangles in `structure.triangles` to the list `found` of `count` entries: 96
-// at most, often none. What is found is what the twin finds: nothing that meets the region is missing, and the region may meet the bounding
-// box of everything found. A grid may find a triangle several times.
+// The whole warp takes part in every round. It adds places of triangles in `structure.triangles` to the list `found` of `count`
+// entries: 96 at most, often none. A grid may find a triangle several times. Where SIEVED, the result is the twin's: nothing that meets
+// the region is missing, and the region may meet the bounding box of everything found. Else it also holds triangles that share a leaf or a
+// cell with these, for callers that test triangles more strictly themselves.
 #pragma once
 
 #include "accel/brute_force.cuh"

@@ -12,8 +12,10 @@ DEVICE bool meets_triangle(const Region<Form> &region, const Triangle *triangle)
     return meets(region, low, high, REGION_ROUNDING * element_sum(high - low));
 }
 
-// Lists the places of those of the lanes' triangles whose bounding boxes the region may meet. Not every lane has one.
-template <class Form>
-DEVICE void sieve(const Region<Form> &region, const Triangle *triangles, bool has, unsigned place, unsigned *list, unsigned &count) {
-    warp_append(has && meets_triangle(region, triangles + place), place, list, count);
+// Lists the places of those of the lanes' triangles whose bounding boxes the region may meet; of all, unless SIEVED. Not every lane has
+// one.
+template <bool SIEVED, class Form>
+DEVICE void sieve(const Region<Form> &region, const Triangle *triangles, bool has, unsigned place, unsigned *list,
+                  unsigned &count) {
+    warp_append(has && (!SIEVED || meets_triangle(region, triangles + place)), place, list, count);
 }

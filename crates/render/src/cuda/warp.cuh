@@ -45,8 +45,8 @@ DEVICE void warp_append(bool has, unsigned value, unsigned *list, unsigned &coun
     count += __popc(lanes);
 }
 
-// The lane to whose share of a list a place belongs, where shares follow each other and `end` is where the lane's ends: the number of
-// lanes whose shares end before or there. Only where the place is in the list.
+// The lane to whose share of a list a place belongs, where shares follow each other and `end` is where the lane's ends: the number
+// of lanes whose shares end before or there. Nothing of meaning for a place behind the list.
 DEVICE unsigned warp_owner(unsigned end, unsigned place) {
     unsigned owner = 0;
     for (unsigned step = WARP / 2; step > 0; step /= 2) {

@@ -35,7 +35,7 @@ DEVICE bool meets_child(const Region<Form> &region, const BvhNode &node, unsigne
 }
 
 // One round: takes up to four nodes off the stack, eight lanes each, one a child.
-template <class Form>
+template <bool SIEVED, class Form>
 DEVICE void next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch &search, unsigned *found, unsigned &count) {
     const unsigned lane = lane_of_thread(), slot = lane % 8;
     const unsigned taken = search.height + 4 * STACK_PER_LEVEL <= STACK_OF_ROUNDS ? min(search.height, 4u) : 1;
@@ -55,6 +55,6 @@ DEVICE void next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch
     __syncwarp();
     warp_append(inner, child, search.stack, search.height);
     for (unsigned i = 0; i < 3; i++)
-        sieve(region, bvh.triangles, triangles > i, first + i, found, count);
+        sieve<SIEVED>(region, bvh.triangles, triangles > i, first + i, found, count);
     __syncwarp();
 }

@@ -1,20 +1,20 @@
 // The search for all triangles that meet a region, cell by cell: twin of search.rs.
 //
-// Lanes take the cells of a box of cells: that around the region, or, where the region is slanted, those around its parts in layers of
-// cells. A cell that holds something is looked into where the region meets its box, and the lanes share the triangles of all such cells.
-// Nested grids follow, one after the other.
+// Lanes take the cells of a box of cells: that around the region, or, where the region is slanted, those around its parts in layers
+// of cells. A cell that holds something is looked into where the region meets its box, and the lanes share the triangles of all such
+// cells. Nested grids follow, one after the other.
 //
 // # How far it can err
 //
-// In units of ε r as in lattice.rs, where the scene is 2 r wide and a triangle is listed in every cell that comes within 320 of it. The
-// twin computes cells in double precision; here the corners of a box, relative to the grid's, are rounded once (2), multiplied with the
-// rounded reciprocal of a cell's edge (4 more), and for a nested grid with its number of cells, once the outer cell is taken off (4 more),
-// whose planes are rounded, too (2): less than 16. So where a point of a triangle lies in the region, a cell that the triangle is
-// listed in is among those looked at, and comes within 16 of the point.
+// In units of ε r as in lattice.rs, where the scene is 2 r wide and a triangle is listed in every cell that comes within 320 of it.
+// The twin computes cells in double precision. Here the corners of a box, relative to the grid's, are rounded once, by 2; multiplied
+// with the rounded reciprocal of a cell's edge, by 4 more; and for a nested grid with its number of cells, once the outer cell is taken
+// off, by 4 more; planes of cells by 2. That is less than 16. So where a point of a triangle lies in the region, a cell is looked at
+// that comes within 16 of the point, and therefore lists the triangle.
 //
 // The box of a cell is in world coordinates, which are below S = |corner| + extent of the grid. It is rounded by less than 8 ε S, and
-// enlarged on each side by the margin, and by 32 ε S: that leaves the 16 ε of its edges that tangent planes ask for. So it holds the point.
-// Layers are bounded by the planes of these boxes.
+// enlarged on each side by the margin and 32 ε S. So it holds the point, and leaves the 16 ε of its edges that tangent planes ask for.
+// The layers of a slanted region lie between the planes of these boxes.
 #pragma once
 
 #include "accel/sieve.cuh"
@@ -35,12 +35,13 @@ struct GridSearch {
     int layer, last_layer;
     // Cells of the part that were taken.
     unsigned taken;
-    // The lanes whose cells hold grids that are still to be searched, where the lane's begins, and cells of the first that were taken.
+    // The lanes whose cells hold grids that are still to be searched, where the lane's begins, and how many cells of the first lane's
+    // were taken.
     unsigned nested;
     int grid;
     unsigned taken_nested;
-    // The triangles of the cells that lanes look into, one cell after the other: where the lane's end in this list, and what to add to
-    // a place in the list for that in memory; how many were taken, of how many.
+    // The triangles of the cells that lanes look into, one cell after the other: where the lane's end in this list, and what to add
+    // to a place there for the place in memory; how many were taken, of how many.
     unsigned end, shift, next, all;
     // Triangles found lately, by a part of their index.
     unsigned *recent;
@@ -66,13 +67,15 @@ DEVICE unsigned count_of(const CellBox &cells) { return cells.width * cells.heig
 // The cell of a number.
 DEVICE IVec3 cell_of(const CellBox &cells, unsigned number) {
     const unsigned row = number / cells.width;
-    return IVec3{cells.x + (int)(number - row * cells.width), cells.y + (int)(row % cells.height), cells.z + (int)(row / cells.height)};
+    return IVec3{cells.x + (int)(number - row * cells.width), cells.y + (int)(row % cells.height),
+                 cells.z + (int)(row / cells.height)};
 }
 
 // Bounds in cells of the outer grid.
 DEVICE Bounds in_cells(const Grid &grid, const Bounds &bounds) {
     const Vec3 inverse = {1.0f / grid.size.x, 1.0f / grid.size.y, 1.0f / grid.size.z};
-    return Bounds{to_single(to_double(bounds.low) - grid.origin) * inverse, to_single(to_double(bounds.high) - grid.origin) * inverse};
+    return Bounds{to_single(to_double(bounds.low) - grid.origin) * inverse,
+                  to_single(to_double(bounds.high) - grid.origin) * inverse};
 }
 
 // By how much boxes of cells are enlarged.
@@ -168,8 +171,8 @@ DEVICE SearchedGrid nested_grid(const Grid &grid, const GridSearch &search, cons
 template <class Form>
 DEVICE bool meets_cell(const Grid &grid, const Region<Form> &region, const SearchedGrid &searched, const IVec3 &cell) {
     const Vec3 grow = growth(grid), number = {(float)cell.x, (float)cell.y, (float)cell.z};
-    return meets(region, searched.corner + searched.size * number - grow, searched.corner + searched.size * (number + splat(1.0f)) + grow,
-                 0.0f);
+    const Vec3 low = searched.corner + searched.size * number, high = searched.corner + searched.size * (number + splat(1.0f));
+    return meets(region, low - grow, high + grow, 0.0f);
 }
 
 // Lanes take up to 32 cells and look into those that the region meets.
@@ -213,31 +216,32 @@ DEVICE void next_cells(const Grid &grid, const Region<Form> &region, GridSearch 
     search.grid = offset;
 }
 
-// Whether a triangle was found lately, and by no lane before this one. Larger indices displace smaller ones, so that what is found when
-// does not depend on an order of lanes.
+// Whether a triangle was neither found lately nor is that of a lane before this one. What is remembered does not depend on an order in
+// which lanes write: of those that want the same place, the last has it.
 DEVICE bool is_new(GridSearch &search, bool has, unsigned index) {
-    const unsigned lane = lane_of_thread(), number = has ? index + 1 : 0;
-    unsigned *recent = search.recent + index % RECENT_TRIANGLES;
+    const unsigned lane = lane_of_thread(), place = index % RECENT_TRIANGLES, number = has ? index + 1 : 0;
     const unsigned same = __match_any_sync(ALL_LANES, number);
-    const bool is_new = has && (same & lanes_below(lane)) == 0 && *recent != number;
+    const bool is_new = has && (same & lanes_below(lane)) == 0 && search.recent[place] != number;
+    // All have read before any writes.
     __syncwarp();
-    if (is_new)
-        atomicMax(recent, number);
+    const unsigned rivals = __match_any_sync(ALL_LANES, is_new ? place : RECENT_TRIANGLES);
+    if (is_new && rivals >> lane == 1)
+        search.recent[place] = number;
     __syncwarp();
     return is_new;
 }
 
 // One round: lanes take three triangles each of the cells last looked into; or cells.
-template <class Form>
+template <bool SIEVED, class Form>
 DEVICE void next_triangles(const Grid &grid, const Region<Form> &region, GridSearch &search, unsigned *found, unsigned &count) {
     if (search.next >= search.all) {
         next_cells(grid, region, search);
         return;
     }
-    for (unsigned i = 0; i < 3; i++) {
+    for (unsigned i = 0; i < 3 && search.next < search.all; i++) {
         const unsigned number = search.next + lane_of_thread();
         const unsigned place = number + __shfl_sync(ALL_LANES, search.shift, warp_owner(search.end, number));
-        bool has = number < search.all && meets_triangle(region, grid.triangles + place);
+        bool has = number < search.all && (!SIEVED || meets_triangle(region, grid.triangles + place));
         has = is_new(search, has, has ? triangle_index(grid.triangles + place) : 0);
         warp_append(has, place, found, count);
         search.next += WARP;

@@ -2,8 +2,8 @@
 // light points that its shadow can reach) and batch.rs (lanes are surface points; triangle and light point are the same for all).
 //
 // 1, 2. The half-balls: half_balls.cuh.
-// 3. What stands in the way: triangles are found (accel/search.cuh), those that can matter chosen (candidates.cuh), and the light points
-//    that they may hide tested (targets.cuh), round by round.
+// 3. What stands in the way: triangles are found (accel/search.cuh), those that can matter chosen (candidates.cuh), and the light
+//    points that they may hide tested (targets.cuh), round by round.
 // 4. The masks: masks.cuh.
 #pragma once
 
@@ -19,13 +19,15 @@ template <class Structure>
 DEVICE bool test_occluders(const ShortTests &args, const Structure &structure, const CellItem &item, const ItemLane &lane,
                            const CellMemory &memory) {
     const LightMesh &mesh = args.mesh;
-    const auto region = region_above(region_near(Bounds{item.low, item.high}, mesh.radius + mesh.slack), item.planes, mesh.slack);
+    const auto near = region_near(Bounds{item.low, item.high}, mesh.radius + mesh.slack);
+    const auto region = region_above(near, item.planes, mesh.slack);
+    // Unsieved: choosing candidates tests triangles more strictly than a sieve would.
     auto search = begin_search(structure, region, memory.search);
     bool asked = false;
     unsigned found = 0;
     while (goes_on(structure, search) || found != 0) {
         while (goes_on(structure, search) && found < WARP)
-            next_triangles(structure, region, search, memory.found, found);
+            next_triangles<false>(structure, region, search, memory.found, found);
         unsigned count = min(found, WARP);
         found -= count;
         const unsigned rows = choose_candidates(mesh, item, structure.triangles, memory, found, count);

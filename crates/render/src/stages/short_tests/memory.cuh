@@ -35,9 +35,9 @@ struct CellMemory {
     unsigned *search;
 };
 
-// Cuts a block's shared memory up, as `shared_words` in cuda.rs counts it. A block is one warp: items differ in cost, and a block keeps
-// its place until its last warp is done. Whether masks are kept there is known to the compiler, which then knows what kind of memory they
-// are in.
+// Cuts a block's shared memory up, as `shared_words` in cuda.rs counts it. A block is one warp: items differ in cost, and a block
+// keeps its place until its last warp is done. Whether masks are kept there is known to the compiler, which then knows what kind of
+// memory they are in.
 template <bool SHARED_MASKS, class Structure>
 DEVICE CellMemory cell_memory(const ShortTests &args, const Structure &structure, unsigned *shared, unsigned long long item) {
     const unsigned candidates = CANDIDATE_WORDS * CANDIDATES, targets = TARGET_WORDS * (LISTED_TARGETS + 1);
