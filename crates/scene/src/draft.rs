@@ -288,45 +288,4 @@ fn moved(mut light: Light, to: Vec3) -> Light {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn triangles_without_a_place_are_left_out_and_counted() {
-        let positions = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(f64::NAN, 0.0, 0.0), DVec3::splat(1e300)];
-        let triangles = [[0, 1, 3], [0, 1, 2], [2, 1, 4]];
-        let part = MeshPart { positions: &positions, triangles: &triangles, ..Default::default() };
-        let mut draft = Draft::new(Path::new("scene.obj"), &LoadOptions::default());
-        draft.add(part, &DMat4::IDENTITY, |index| index as u32).unwrap();
-        let scene = draft.finish().unwrap();
-        assert_eq!(scene.geometry.mesh.triangles, [[0, 1, 2]]);
-        assert_eq!(scene.geometry.mesh.materials, [1]);
-        assert_eq!(scene.geometry.mesh.corners(0), [Vec3::X, Vec3::Y, Vec3::Z]);
-        assert!(scene.warnings[0].starts_with("2 triangles"), "{:?}", scene.warnings);
-    }
-
-    #[test]
-    fn references_stay_in_the_scenes_folder() {
-        let beside = |scene: &str, source: &str, name: &str| {
-            Draft::new(Path::new(scene), &LoadOptions::default()).path_beside(Path::new(source), name).ok()
-        };
-        let inside = |path: &str| Some(PathBuf::from(path));
-        assert_eq!(beside("room.toml", "room.toml", r".\maps\oak.png"), inside("./maps/oak.png"));
-        assert_eq!(beside("a/room.toml", "a/parts/door.gltf", "../oak.png"), inside("a/parts/../oak.png"));
-        assert_eq!(beside("../a/room.toml", "../a/room.toml", "oak.png"), inside("../a/oak.png"));
-        for name in ["../oak.png", "/etc/passwd", "maps/../../oak.png", r"C:\oak.png", "https://example.org/oak.png"] {
-            assert_eq!(beside("room.toml", "room.toml", name), None, "{name}");
-            assert_eq!(beside("../room.toml", "../room.toml", name), None, "{name}");
-        }
-        let free = Draft::new(Path::new("a/room.toml"), &LoadOptions { allow_outside: true, ..Default::default() });
-        let path = |name| free.path_beside(Path::new("a/room.toml"), name).ok();
-        assert_eq!([path("../oak.png"), path("http://oak.png")], [inside("a/../oak.png"), None]);
-    }
-
-    #[test]
-    fn strict_reading_ends_at_a_warning() {
-        let strict = LoadOptions { strict: true, ..Default::default() };
-        let message = Draft::new(Path::new("a.obj"), &strict).finish().unwrap_err().to_string();
-        assert_eq!(message, "the scene has no triangles, a.obj; fix this, or load the scene without strict checks");
-    }
-}
+mod tests;

@@ -1,0 +1,63 @@
+use glam::{DVec3, Vec3};
+
+use super::*;
+use crate::SceneBuilder;
+
+fn scene() -> Scene {
+    let mut scene = SceneBuilder::new().finish_scene("test");
+    scene.geometry_mut().origin = DVec3::new(1000.0, 0.0, 0.0);
+    scene.geometry_mut().mesh.positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+    scene.geometry_mut().mesh.triangles = vec![[0, 1, 2]];
+    scene.lights.list =
+        vec![Light::point(Vec3::Z).with_intensity(Vec3::splat(0.1)), Light::directional(Vec3::NEG_Y).unwrap()];
+    let camera = Camera {
+        name: "main".into(),
+        position: Vec3::Z,
+        direction: Vec3::NEG_Z,
+        up: Vec3::Y,
+        projection: Projection::Perspective(Fov::Vertical(50.0)),
+    };
+    let plan = Projection::Orthographic { height: 4.0 };
+    scene.cameras = vec![camera.clone(), Camera { projection: plan, ..camera }];
+    scene
+}
+
+#[test]
+fn the_json_is_in_world_coordinates_and_degrees() {
+    let json = serde_json::to_value(scene().info()).unwrap();
+    let expected = serde_json::json!({
+        "triangles": 1,
+        "bounds": {"min": [1000.0, 0.0, 0.0], "max": [1001.0, 1.0, 0.0]},
+        "lights": [
+            {"kind": "point", "position": [1000.0, 0.0, 1.0], "direction": null, "intensity": [0.1, 0.1, 0.1],
+             "falloff": "none"},
+            {"kind": "directional", "position": null, "direction": [0.0, -1.0, 0.0], "intensity": [1.0, 1.0, 1.0],
+             "falloff": "none"},
+        ],
+        "cameras": [
+            {"name": "main", "position": [1000.0, 0.0, 1.0], "direction": [0.0, 0.0, -1.0], "up": [0.0, 1.0, 0.0],
+             "vfov": 50.0},
+            {"name": "main", "position": [1000.0, 0.0, 1.0], "direction": [0.0, 0.0, -1.0], "up": [0.0, 1.0, 0.0],
+             "vfov": null, "height": 4.0},
+        ],
+        "materials": 0,
+        "textures": 0,
+        "up": {"axis": "y", "reason": "its cameras are oriented that way"},
+        "warnings": [],
+    });
+    assert_eq!(json, expected);
+}
+
+#[test]
+fn people_read_the_same() {
+    let text = scene().info().to_string();
+    assert!(text.contains("light   point, at 1000 0 1, intensity 0.1 0.1 0.1, falloff none"), "{text}");
+    assert!(text.contains("camera  `main` at 1000 0 1, along 0 0 -1, vfov 50°"), "{text}");
+    assert!(text.contains("0 materials\n") && text.contains("up      y: its cameras are oriented that way"), "{text}");
+}
+
+#[test]
+fn an_empty_scene_has_no_bounds() {
+    let info = SceneBuilder::new().finish_scene("empty").info();
+    assert_eq!(info.bounds, None);
+}
