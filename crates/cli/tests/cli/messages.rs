@@ -161,7 +161,7 @@ fn what_is_wrong_in_a_render_names_value_remedy_and_flag() {
     let cases: [(&[&str], &[&str]); 4] = [
         (&["--step", "1e-9"], &["light-mesh step h = 0.000000001", "or more (--step)"]),
         (&["--radius", "99"], &["R = 99", "2.1 is a good choice (--radius)"]),
-        (&["--size", "100000x100000"], &["size = 100000x100000", "fewer than 4294967295 (--size)"]),
+        (&["--size", "100000x100000"], &["size = 100000x100000", "below 4294967295 (--size)"]),
         (&["--memory-limit", "1M"], &["the limit of 1048576", "(--memory-limit, --size, --step, --radius)"]),
     ];
     for (flags, parts) in cases {
