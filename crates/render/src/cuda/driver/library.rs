@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn what_is_missing_comes_with_what_to_do() {
         let messages = [
-            (Unavailable::NoPlatform("macos"), ["no CUDA", "macos"]),
+            (Unavailable::NoPlatform("macos"), ["CUDA is not available", "macos"]),
             (Unavailable::NoLibrary { library: "libcuda.so.1", needed: 550 }, ["libcuda.so.1", "install version 550"]),
             (Unavailable::NotADriver { symbol: "cuInit", needed: 550 }, ["lacks cuInit", "version 550"]),
             (

@@ -27,7 +27,7 @@ fn an_unknown_required_extension_is_refused_by_name() {
 fn ranges_that_do_not_fit_are_refused() {
     #[rustfmt::skip]
     let changes: [(&str, Value, &str); 21] = [
-        ("/meshes/0/primitives/0/attributes/POSITION", json!(9), "accessor 9, which is not there"),
+        ("/meshes/0/primitives/0/attributes/POSITION", json!(9), "accessor 9 is referenced, but does not exist"),
         ("/accessors/0/count", json!(4), "accessor 0 reaches beyond its buffer"),
         ("/accessors/0/count", json!(u64::MAX), "accessor 0 reaches beyond its buffer"),
         ("/accessors/0/byteOffset", json!(u64::MAX - 8), "accessor 0 reaches beyond its buffer"),
