@@ -275,7 +275,7 @@ mod tests {
         for dims in [[u32::MAX; 3], [1 << 16, 1 << 15, 1]] {
             let error = built(&triangles, dims, Levels::One).unwrap_err();
             assert!(matches!(error, GridError::TooLarge { what: "integers", .. }), "{error}");
-            assert!(error.to_string().contains("take fewer cells"), "{error}");
+            assert!(error.to_string().contains("use fewer cells"), "{error}");
         }
         let wide: Vec<_> = (0..300).map(|index| Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], index)).collect();
         let error = built(&wide, [3000, 3000, 1], Levels::One).unwrap_err();

@@ -86,7 +86,7 @@ pub enum GridFault {
         expected: usize,
     },
     /// It is shorter or longer than its header says.
-    #[error("has {found} bytes where its header says {expected}")]
+    #[error("has {found} bytes, but its header says {expected}")]
     Length {
         /// Length of the file.
         found: u64,

@@ -66,7 +66,7 @@ pub enum GridError {
     },
     /// Offsets would not fit 32 bits.
     #[error(
-        "a grid of {}x{}x{} cells needs {needed} {what}, more than 32-bit offsets reach ({}): take fewer cells or the BVH",
+        "a grid of {}x{}x{} cells needs {needed} {what}, more than 32-bit offsets reach ({}): use fewer cells or the BVH",
         dims[0], dims[1], dims[2], i32::MAX
     )]
     TooLarge {
