@@ -63,8 +63,8 @@ fn bounds(triangle: &Triangle) -> Aabb {
     Aabb::from_points(&triangle.corners().map(Vec3A::from))
 }
 
-/// Moves boxes that many triangles share slightly apart. Among equal boxes, all find the same partner, only one pair is
-/// joined per round, and building takes quadratic time. Boxes that are moved too far are repaired by [`enclose`].
+/// Slightly separates boxes that many triangles share. Equal boxes all find the same partner, so that only one pair is joined
+/// per round and building takes quadratic time. Boxes that are moved too far are repaired by [`enclose`].
 fn spread(boxes: &mut [Aabb]) {
     let mut seen: HashMap<[u32; 6], u32> = HashMap::new();
     for bounds in boxes {

@@ -27,7 +27,7 @@ pub(super) fn triangles_in<S: Simd>(simd: S, bvh: &Bvh, region: &Region, found: 
     sieve.finish();
 }
 
-/// Passes the triangles of all leaves whose boxes the region may meet to a sieve.
+/// Passes to a sieve the triangles of all leaves whose boxes the region may meet.
 #[inline(always)]
 fn search<S: Simd>(simd: S, bvh: &Bvh, region: &Region, sieve: &mut Sieve<S>) {
     let mut stack = Stack::new(bvh.depth);

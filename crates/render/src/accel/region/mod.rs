@@ -1,7 +1,7 @@
 //! Regions of space that are searched for triangles, and which boxes they may meet.
 //!
 //! Three forms: a box; all points [near](Region::near) a box of origins; the [shaft](Region::shaft) from a box of origins to the box
-//! around an emitter (Haines, Wallace: *Shaft Culling for Efficient Ray-Traced Radiosity*, 1991). Each may be cut off by [tangent
+//! around an emitter (Haines, Wallace: *Shaft Culling for Efficient Ray-Traced Radiosity*, 1991). Each may be cut off by the [tangent
 //! planes](TangentPlanes) of the origins, since nothing below all of them hides anything from any origin: the points near a box then
 //! become a union of half-balls.
 //!

@@ -9,7 +9,7 @@
 //! where eᵢ are the edges of the box, and Dᵢ how far the region extends from the corner, provided that the box overlaps the
 //! region's bounds. A point's height is off by 4.1 ε Σ |nᵢ| Dᵢ; so is the decision of a [short test](crate::accel::ShortTest)
 //! whether a triangle in the box lies above a point, and it must find nothing there that was discarded here. Together that is less
-//! than 16 ε Σ |nᵢ| Dᵢ and 16 ε Σ |nᵢ| eᵢ. Heights of planes are lowered by the former; boxes contribute the latter, either as
+//! than 16 ε Σ |nᵢ| Dᵢ plus 16 ε Σ |nᵢ| eᵢ. Heights of planes are lowered by the former; boxes contribute the latter, either as
 //! [`Boxes::loose`] or by being enlarged by 16 ε eᵢ.
 
 use fearless_simd::f32x8;

@@ -5,10 +5,10 @@
 //!
 //! # What is rounded
 //!
-//! A bound is a difference of coordinates times the reciprocal of another: a relative error of 4.1 ε, two for the differences, one
-//! each for reciprocal and product. Its sign is right. So if the largest lower bound and the smallest upper one are at most 1, and
-//! the former is not above the latter, then as computed it is not above it by more than 8.2 ε: less than [`REGION_ROUNDING`]. Neither
-//! the boxes nor the distance from the world's origin matter.
+//! A bound is a difference of coordinates times the reciprocal of another: a relative error of 4.1 ε, two for the differences, one each
+//! for reciprocal and product. Its sign is right. So if the largest lower bound and the smallest upper one are at most 1, and the former
+//! is not above the latter, then as computed it exceeds the latter by at most 8.2 ε: less than [`REGION_ROUNDING`]. Neither the boxes nor
+//! the distance from the world's origin matter.
 
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
