@@ -1,12 +1,12 @@
-// Searches by region, a warp each: tests accel/search.cuh and accel/region.cuh.
+// Searches by region, one warp each: tests accel/search.cuh and accel/region.cuh.
 #include "cuda/prelude.cuh"
 
 #include "accel/search.cuh"
 
-// What a region is made from.
+// What a region is built from.
 struct Asked {
     unsigned form;
-    // Points with normals, at most 32; none where nothing is cut off.
+    // Points with normals, at most 32; none if nothing is cut off.
     unsigned point_count;
     float slack, reach;
     Vec3 low, high, emitter_low, emitter_high;
@@ -19,7 +19,7 @@ enum Form { BOX, NEAR, SHAFT };
 struct Search {
     Scene scene;
     const Asked *regions;
-    // The places found by region, `room` for each, and how many.
+    // The positions found per region, with room for `room` each, and their number.
     unsigned *found, *counts;
     unsigned room, spare;
 };

@@ -1,4 +1,4 @@
-//! Formats that the crate was built without are rejected by name, before anything is written.
+//! Formats that are not built into the crate are rejected by name, before anything is written.
 
 use lightmesh_image::{DecodeError, Format, Frame, LoadError, SaveError, check_size, check_writable};
 

@@ -197,17 +197,17 @@ constants! {
 
     // Searches by region.
 
-    /// Tangent planes that a region tells apart.
+    /// Maximum number of tangent planes that a region distinguishes.
     TANGENT_PLANES: u32 = 4;
     /// Words of a region's tangent planes in shared memory.
     PLANE_WORDS: u32 = 5 * TANGENT_PLANES;
-    /// Entries of a search's stack of nodes up to which a round takes four of them.
+    /// Number of entries of a search's node stack up to which a round takes four nodes.
     STACK_OF_ROUNDS: u32 = 64;
-    /// Entries kept beyond those for each level of the tree.
+    /// Additional stack entries per level of the tree.
     STACK_PER_LEVEL: u32 = 7;
-    /// Triangles found lately that a search through a grid remembers, at most.
+    /// Maximum number of recently found triangles that a search through a grid remembers.
     RECENT_TRIANGLES: u32 = 256;
-    /// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of a search adds.
+    /// Triangles found but not yet processed: fewer than 32, and at most 96 that one round of a search adds.
     FOUND_TRIANGLES: u32 = 128;
 
     // Short tests.

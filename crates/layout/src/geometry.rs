@@ -60,7 +60,7 @@ records! {
 
     /// The sphere of interest around the triangles: rays that start far away are moved to it.
     Approach {
-        /// Middle of the box around the triangles.
+        /// Centre of the box around the triangles.
         center: Vec3,
         /// Half its longest edge.
         radius: f32,
@@ -80,7 +80,7 @@ records! {
         depth: u32,
     }
 
-    /// A regular grid of one or two levels in the flat form of the thesis.
+    /// A regular grid with one or two levels, in the flat form of the thesis.
     Grid {
         /// `nx ny nz <offset>…`, cells, nested grids.
         cells: In<i32>,
@@ -98,11 +98,11 @@ records! {
         approach: Approach,
         /// Entries of `triangles`.
         triangle_count: u32,
-        /// By how much cells were enlarged when triangles were sorted into them.
+        /// The margin by which cells were enlarged when triangles were sorted into them.
         margin: f32,
     }
 
-    /// Every triangle, always.
+    /// A list of triangles, all of which are tested.
     BruteForce {
         /// The usable triangles.
         triangles: In<Triangle>,

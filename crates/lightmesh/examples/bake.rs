@@ -1,4 +1,4 @@
-//! Baking: soft light and shadows become vertex colours, for viewers that have no shadows.
+//! Baking: soft light and shadows become vertex colours, for viewers without shadows.
 //!
 //! `cargo run --release -p lightmesh --example bake [SCENE [MODEL]]`
 #![allow(clippy::print_stdout, reason = "an example says what it wrote")]
@@ -10,7 +10,7 @@ use lightmesh::render::Unobserved;
 use lightmesh::scene::{Falloff, Geometry, Light, LightKind, MeshPart, SceneBuilder, Up};
 use lightmesh::{Device, Mode, Renderer, Scene, Settings};
 
-/// The longest edge of a triangle, as a share of the scene's diagonal: shadows are as sharp as this.
+/// The longest edge of a triangle, as a share of the scene's diagonal: this limits how sharp shadows are.
 const LONGEST_EDGE: f32 = 0.004;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let seen = renderer.visibility(&prepared, &fine.positions, &fine.normals, &settings, &Unobserved)?;
     println!("{} vertices, {} lights: {:.2} s", seen.points(), seen.lights(), seen.stats.seconds.render);
 
-    // 2. The light that arrives there tints the materials.
+    // 2. The light that arrives there multiplies the materials' colours.
     let ambient = scene.lights.ambient.unwrap_or(Vec3::splat(0.1));
     let arriving = |vertex: usize| -> Vec3 {
         let (position, normal) = (fine.positions[vertex], fine.normals[vertex]);
@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Light that arrives at a surface, were nothing in between.
+/// The light that would arrive at a surface if nothing were in between.
 fn arriving(light: &Light, position: Vec3, normal: Vec3) -> Vec3 {
     let way = match light.kind {
         LightKind::Directional { direction } => -direction,
@@ -61,7 +61,7 @@ fn arriving(light: &Light, position: Vec3, normal: Vec3) -> Vec3 {
     light.intensity * falloff * normal.dot(way.normalize_or_zero()).max(0.0)
 }
 
-/// Triangles cut small, each with corners of its own, which have its normal.
+/// Triangles cut into small ones, each with separate vertices that have its normal.
 #[derive(Default)]
 struct Fine {
     positions: Vec<Vec3>,
@@ -80,7 +80,7 @@ impl Fine {
         fine
     }
 
-    /// Cuts a triangle into n² of its own shape.
+    /// Cuts a triangle into n² similar ones.
     fn cut(&mut self, [a, b, c]: [Vec3; 3], longest: f32, material: u32) {
         let Some(normal) = (b - a).cross(c - a).try_normalize() else { return };
         let edges = [b - a, c - b, a - c].map(Vec3::length);

@@ -1,7 +1,7 @@
-//! How the stages are combined, whatever the technique: for an image, and for points given by the caller.
+//! How the stages are combined, for every technique: for an image, and for points given by the caller.
 //!
-//! An image is rendered band by band, with as many rows at once as memory allows; every band yields the pixels that rendering the
-//! whole image at once would. Within a band, mirrors are a loop over waves of rays.
+//! An image is rendered band by band, with as many rows at once as memory allows; every band yields the same pixels as rendering
+//! the whole image at once. Within a band, mirrors are a loop over waves of rays.
 
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ use crate::stage::Stage;
 use crate::techniques::Technique;
 use crate::view::View;
 
-/// Visibility at given points, to be found.
+/// Visibility at given points, to be computed.
 pub(crate) struct Baking<'a, B: Backend> {
     pub(crate) run: Run<'a, B>,
     pub(crate) scene: &'a B::Scene,
@@ -26,7 +26,7 @@ pub(crate) struct Baking<'a, B: Backend> {
 }
 
 impl<B: Backend> Baking<'_, B> {
-    /// Finds what each probe sees of each light. Returns how many rows of probes were taken at once, too.
+    /// Finds what each probe sees of each light. Also returns how many rows of probes were processed at once.
     pub(crate) fn bake(&self, points: &GivenPoints) -> Result<(Visibility, u32), RenderError> {
         let Baking { run, scene, technique, plan } = self;
         run.job.work.expect(points.len() as u64 * technique.stages().len() as u64);
@@ -101,8 +101,8 @@ impl<B: Backend> Passes<'_, B> {
 
 /// Does the work of `rows` rows band by band, initially `at_once` rows at a time. Returns the final number of rows at a time.
 ///
-/// If memory runs out in spite of the plan, the band is restarted: first without what is kept of earlier images, then with half
-/// of its rows. How much an image needs is known only once its light points are.
+/// If memory runs out in spite of the plan, the band is restarted: first without what is kept from earlier images, then with half
+/// of its rows. How much memory an image needs is known only once its light points are.
 pub(crate) fn in_bands<B: Backend>(
     run: &Run<B>,
     rows: u32,

@@ -1,7 +1,7 @@
 //! Visibility at points that the caller chooses, instead of those that a camera sees: for baking.
 //!
-//! A *probe* is a surface point in the form in which stages know surface points: a ray and the triangle that it hits. The triangle has no area
-//! and one corner at the point, so that the ray alone says what its normal is; stages need not know the difference.
+//! A *probe* is a surface point in the form in which stages know surface points: a ray and the triangle that it hits. The triangle
+//! has no area and one corner at the point, so that the ray alone determines its normal; stages need not know the difference.
 
 use std::ops::Range;
 
@@ -83,7 +83,7 @@ pub struct Probes {
 }
 
 impl Probes {
-    /// Bytes per probe beyond what a ray takes elsewhere, on the host and on a device: its triangle, and the ray in a list.
+    /// Bytes per probe beyond what a ray needs elsewhere, on the host and on a device: its triangle, and the ray in a list.
     pub(crate) const BYTES: u64 = (size_of::<Triangle>() + size_of::<ListedRay>()) as u64;
 }
 
@@ -128,9 +128,9 @@ impl<'a> GivenPoints<'a> {
 
     /// The probes of some rows as a wave.
     ///
-    /// A segment that leaves a surface starts some way off it, which follows from the size of the triangle's coordinates
-    /// ([`SurfacePoint`](crate::SurfacePoint)). Which triangle of the scene a probe lies on is not known, so its own has coordinates that sum
-    /// up to at least those of any.
+    /// A segment that leaves a surface starts at some distance from it, which depends on the size of the triangle's coordinates
+    /// ([`SurfacePoint`](crate::SurfacePoint)). Which triangle of the scene a probe lies on is not known, so the coordinates of its
+    /// own triangle add up to at least those of any.
     pub(crate) fn part(&self, rows: &Range<u32>) -> Probes {
         let range = self.range(rows);
         let n = range.len();

@@ -1,5 +1,5 @@
-//! Searches by region on the emulator, with the kernels of `kernels/search.cu`: nothing is missed that meets the region, and nothing is
-//! found but what the CPU's list finds.
+//! Searches by region on the emulator, with the kernels of `kernels/search.cu`: nothing that meets the region is missed, and nothing is
+//! found that the CPU's list does not find.
 #![cfg(unix)]
 
 mod regions;
@@ -22,9 +22,9 @@ use lightmesh_testkit::Random;
 
 use regions::{Asked, Form, asked};
 
-/// Points with normals that a region is cut off by, at most.
+/// Maximum number of points with normals that cut off a region.
 const POINTS: usize = 32;
-/// Regions of a launch.
+/// Regions per launch.
 const REGIONS: usize = 12;
 
 /// `Asked` of `kernels/search.cu`.
@@ -136,7 +136,7 @@ fn set(mut indices: Vec<u32>) -> Vec<u32> {
     indices
 }
 
-/// Holds every structure against the list on the CPU. Returns how many triangles that has.
+/// Compares every structure with the list on the CPU. Returns how many triangles the list finds.
 fn check(what: &str, corners: &[[Vec3; 3]], regions: &[Asked], random: &mut Random) -> usize {
     let mut listed = Vec::new();
     for acceleration in [
@@ -187,13 +187,13 @@ fn regions_hold_what_meets_them() {
         let regions: Vec<Asked> = (0..REGIONS).map(|_| asked(near(random), random)).collect();
         found += check(&format!("{kind:?}, number {number}"), &corners, &regions, random);
     }
-    assert!(found > 10_000, "little is found: {found}");
+    assert!(found > 10_000, "too little is found: {found}");
 }
 
 #[test]
 fn a_search_finds_more_than_one_round_holds() {
     let random = &mut Random::new(3);
-    // Deeper than a round takes nodes, and every triangle many times.
+    // A tree deeper than full rounds can handle, with one triangle many times.
     let mut corners = triangles::triangles(triangles::Kind::Soup, random);
     corners.extend(vec![corners[0]; 700]);
     let around = Bounds { min: Vec3::splat(-9.0), max: Vec3::splat(9.0) };
@@ -220,7 +220,7 @@ fn nothing_below_all_planes_is_found() {
     }
 }
 
-/// The triangles of a scene that are [usable](Triangle::is_usable) are what structures hold: the others are found by none.
+/// Structures hold the triangles of a scene that are [usable](Triangle::is_usable): none finds the others.
 #[test]
 fn what_cannot_be_hit_is_not_found() {
     let corners = [[Vec3::ZERO, Vec3::X, Vec3::Y], [Vec3::ZERO, Vec3::X, Vec3::splat(1e30)]];

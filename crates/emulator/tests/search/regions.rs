@@ -9,7 +9,7 @@ use lightmesh_testkit::Random;
 
 use crate::triangles::cube;
 
-/// What a region is made from.
+/// What a region is built from.
 #[derive(Clone, Debug)]
 pub(crate) struct Asked {
     pub(crate) form: Form,
@@ -17,7 +17,7 @@ pub(crate) struct Asked {
     /// Points of `origins` with their normals.
     pub(crate) points: Vec<(Vec3, Vec3)>,
     pub(crate) slack: f32,
-    /// Whether their planes cut anything off: more normals than four are not told apart.
+    /// Whether their planes cut anything off: more than four normals are not distinguished.
     pub(crate) cut: bool,
 }
 
@@ -32,7 +32,7 @@ fn pick<T: Copy>(random: &mut Random, from: &[T]) -> T {
     from[(random.unit() * from.len() as f64) as usize]
 }
 
-/// A box around a point, some of them flat.
+/// A box around a point; some boxes are flat.
 fn around(center: Vec3, random: &mut Random) -> Bounds {
     let flat = pick(random, &[Vec3::ONE, Vec3::ONE, Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y]);
     let half = cube(random).abs() * pick(random, &[0.01, 0.1, 1.0]) * flat;
@@ -69,7 +69,7 @@ pub(crate) fn asked(near: Vec3, random: &mut Random) -> Asked {
 }
 
 impl Asked {
-    /// Whether a point of a triangle, of some that are tried, lies within.
+    /// Whether one of several points of a triangle lies within.
     pub(crate) fn holds_a_point_of(&self, triangle: &Triangle, random: &mut Random) -> bool {
         let [a, b, c] = triangle.corners().map(Vec3::as_dvec3);
         (0..200).any(|number| {

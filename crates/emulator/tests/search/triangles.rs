@@ -8,11 +8,11 @@ use lightmesh_testkit::Random;
 pub(crate) enum Kind {
     Empty,
     Soup,
-    /// Triangles of sizes from 1e-3 to 1e2 together.
+    /// Triangles of sizes from 1e-3 to 1e2 mixed.
     Scales,
     /// A slanted strip of triangles that share edges.
     Strip,
-    /// All in one axis-aligned plane.
+    /// All triangles in one axis-aligned plane.
     Flat,
     /// A few, each many times.
     Coincident,

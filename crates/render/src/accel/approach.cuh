@@ -1,17 +1,17 @@
-// Brings a ray near the triangles before it is traced: twin of approach.rs.
+// Moves a ray close to the triangles before it is traced: twin of approach.rs.
 #pragma once
 
 #include "accel/ray.cuh"
 
-// A ray near the triangles, and how its parameter relates to that of the ray asked for: t = start + t' · scale.
+// A ray close to the triangles, and how its parameter relates to that of the original ray: t = start + t' · scale.
 struct NearRay {
     Ray ray;
-    // Zero where the ray cannot hit anything.
+    // Zero if the ray cannot hit anything.
     double scale;
     double start;
 };
 
-// Where along the ray to begin; negative where it passes the triangles by or leads away from them.
+// Where along the ray to begin; negative if it misses the triangles or points away from them.
 DEVICE double approach_start(float radius_of_triangles, DVec3 origin, DVec3 direction) {
     const double radius = radius_of_triangles;
     if (max_element(abs(origin)) <= (double)REACH * radius)
@@ -54,7 +54,7 @@ DEVICE NearRay near_ray(const Approach &approach, const Ray &ray) {
     return far_ray(approach.center, approach.radius, ray);
 }
 
-// The parameter `t` of the near ray as that of the ray that was asked for.
+// Converts the parameter `t` of the near ray to that of the original ray.
 DEVICE float asked_parameter(const NearRay &near, float t) {
     return near.start != 0.0 || near.scale != 1.0 ? (float)(near.start + (double)t * near.scale) : t;
 }

@@ -1,9 +1,9 @@
-//! Brings a ray near the triangles before it is traced.
+//! Moves a ray close to the triangles before it is traced.
 //!
-//! A ray that starts a thousand scene sizes away would meet a triangle with the rounding of a thousand scene sizes. So every
-//! structure first moves such an origin along the ray, in double precision, to just before the sphere around the triangles,
-//! and scales extreme directions. Afterwards all coordinates relative to an origin are below [`REACH`] + 1 radii, which bounds
-//! every rounding error in a walk.
+//! A ray that starts a thousand scene sizes away would hit a triangle with the rounding errors of a thousand scene sizes. So
+//! every structure first moves such an origin along the ray, in double precision, to just in front of the sphere around the
+//! triangles, and scales extreme directions. Afterwards all coordinates relative to an origin are below [`REACH`] + 1 radii,
+//! which bounds every rounding error in a walk.
 
 use glam::{DVec3, Vec3};
 use lightmesh_layout::constants::{LARGEST_DIRECTION, REACH};
@@ -14,7 +14,7 @@ use super::{Hit, Ray, Triangle};
 /// Directions whose largest component lies outside these powers of two are scaled.
 const DIRECTION_RANGE: std::ops::RangeInclusive<f32> = 1.0 / LARGEST_DIRECTION..=LARGEST_DIRECTION;
 
-/// The sphere of interest: where the triangles of a structure are.
+/// The sphere of interest, which contains the triangles of a structure.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Approach {
     center: Vec3,
@@ -22,7 +22,7 @@ pub(super) struct Approach {
     radius: f32,
 }
 
-/// A ray that is near the triangles, and how its parameter relates to that of the ray asked for: `t = start + t' · scale`.
+/// A ray close to the triangles, and how its parameter relates to that of the original ray: `t = start + t' · scale`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NearRay {
     pub(super) origin: Vec3,
@@ -39,7 +39,7 @@ impl Approach {
             return Approach { center: Vec3::ZERO, radius: 1.0 };
         }
         let center = bounds.center();
-        // The floor keeps rounding of the coordinates themselves below the radius.
+        // The floor keeps the rounding of the coordinates themselves below the radius.
         let floor = (center.abs().max_element() * f32::EPSILON).max(f32::MIN_POSITIVE);
         Approach { center, radius: (0.5 * bounds.extent().max_element()).max(floor) }
     }
@@ -48,7 +48,7 @@ impl Approach {
         Approach::new(&bounds(triangles))
     }
 
-    /// Middle and radius.
+    /// Centre and radius.
     pub(super) fn parts(&self) -> (Vec3, f32) {
         (self.center, self.radius)
     }
@@ -58,7 +58,7 @@ impl Approach {
         self.radius
     }
 
-    /// The ray to trace; `None` where it cannot hit anything.
+    /// The ray to trace; `None` if it cannot hit anything.
     #[inline(always)]
     pub(super) fn ray(&self, ray: &Ray) -> Option<NearRay> {
         let Ray { origin, direction, t_max } = *ray;
@@ -78,7 +78,7 @@ impl Approach {
         if !usable {
             return None;
         }
-        // A power of two: the scaled direction has the same bits but for its exponent.
+        // A power of two: the scaled direction has the same bits except for its exponent.
         let scale = largest.log2().floor().exp2().recip();
         let direction = ray.direction.as_dvec3() * scale;
         let start = self.start(origin - center, direction)?;
@@ -92,7 +92,7 @@ impl Approach {
         })
     }
 
-    /// Where along the ray to begin; `None` where it passes the triangles by or leads away from them.
+    /// Where along the ray to begin; `None` if it misses the triangles or points away from them.
     fn start(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
         let radius = f64::from(self.radius);
         if origin.abs().max_element() <= f64::from(REACH) * radius {
@@ -107,7 +107,7 @@ impl Approach {
 }
 
 impl NearRay {
-    /// The hit of this ray as a hit of the ray that was asked for.
+    /// Converts a hit of this ray to a hit of the original ray.
     #[inline(always)]
     pub(super) fn finish(&self, mut hit: Hit) -> Hit {
         if self.start != 0.0 || self.scale != 1.0 {
@@ -117,7 +117,7 @@ impl NearRay {
     }
 }
 
-/// The triangles that structures take.
+/// The triangles that structures accept.
 pub(super) fn usable(triangles: &[Triangle]) -> Vec<Triangle> {
     triangles.iter().copied().filter(Triangle::is_usable).collect()
 }

@@ -1,4 +1,4 @@
-// Asks every triangle: twin of brute_force.rs.
+// Tests every triangle: twin of brute_force.rs.
 #pragma once
 
 #include "accel/sieve.cuh"
@@ -13,7 +13,7 @@ DEVICE void walk_short(const BruteForce &all, Short &segment, float) {
     ask(segment, all.triangles, Run{0, all.count});
 }
 
-// A search in progress: the first triangle that was not looked at.
+// A search in progress: the first triangle that has not been looked at.
 struct ListSearch {
     unsigned next;
 };
@@ -25,7 +25,7 @@ DEVICE ListSearch begin_search(const BruteForce &, const Region<Form> &, unsigne
 
 DEVICE bool goes_on(const BruteForce &all, const ListSearch &search) { return search.next < all.count; }
 
-// One round: lanes take three triangles each.
+// One round: each lane takes three triangles.
 template <bool SIEVED, class Form>
 DEVICE void next_triangles(const BruteForce &all, const Region<Form> &region, ListSearch &search, unsigned *found,
                            unsigned &count) {

@@ -1,4 +1,4 @@
-//! Asks every triangle: the oracle that the other structures are held against.
+//! Tests every triangle: the reference with which the other structures are compared.
 
 use fearless_simd::Level;
 use fearless_simd::prelude::*;
@@ -10,7 +10,7 @@ use super::triangle::RayShear;
 use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Triangle};
 use crate::simd::dispatch;
 
-/// A list of triangles, all of which are asked.
+/// A list of triangles, all of which are tested.
 #[derive(Clone, Debug)]
 pub struct BruteForce {
     triangles: Vec<Triangle>,
@@ -29,7 +29,7 @@ impl BruteForce {
         &self.triangles
     }
 
-    /// Middle and radius of the sphere of interest.
+    /// Centre and radius of the sphere of interest.
     pub(crate) fn approach(&self) -> (glam::Vec3, f32) {
         self.approach.parts()
     }

@@ -1,19 +1,19 @@
-//! Acceleration structures: which triangles can a ray or a segment meet?
+//! Acceleration structures: which triangles can a ray or a segment hit?
 //!
-//! One trait, three answers that must agree: [`BruteForce`] (the oracle), the regular [`Grid`] of the thesis and a wide
-//! [`Bvh`]. They are asked in batches, because that is where packets, SIMD and sorting fit; a single ray is a batch of one.
+//! One trait, three implementations that must agree: [`BruteForce`] (the reference), the regular [`Grid`] of the thesis and a wide
+//! [`Bvh`]. They are queried in batches, because that is where packets, SIMD and sorting fit in; a single ray is a batch of one.
 //!
 //! # What every implementation promises
 //!
-//! * A **closest hit** is the smallest `t` in `(0, t_max)`; among equal `t` the smallest triangle index. A segment is
-//!   **occluded** when some triangle is hit at a `t` in `(0, t_max)`. Both ends are open.
-//! * Whether and where a triangle is hit is decided by [`triangle`] alone. Structures only choose which triangles to ask, and
-//!   their box tests err on the side of asking, so that all three give the same bits.
+//! * A **closest hit** is the smallest `t` in `(0, t_max)`; among equal `t` the smallest triangle index. A segment is **occluded**
+//!   if some triangle is hit at a `t` in `(0, t_max)`. Both ends are open.
+//! * Whether and where a triangle is hit is decided by [`triangle`] alone. Structures only choose which triangles to test, and
+//!   their box tests err on the side of testing, so that all three give the same bits.
 //! * Zero, negative-zero and subnormal direction components and far-away origins are ordinary input. A zero direction, a ray
 //!   that is not finite and a triangle that is not [usable](Triangle::is_usable) hit nothing.
 //!
-//! The structures are built here; devices hold copies ([`Form`]) and walk them by the `.cuh` files beside the Rust ones, under the
-//! same promises. `walk.cuh` and `search.cuh` are the twins of the trait.
+//! The structures are built here; devices hold copies ([`Form`]) and walk them with the code in the `.cuh` files next to the Rust
+//! ones, with the same promises. `walk.cuh` and `search.cuh` are the twins of the trait.
 
 mod approach;
 mod brute_force;
@@ -52,21 +52,21 @@ pub struct Ray {
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Hit {
-    /// Ray parameter; infinite where nothing was hit.
+    /// Ray parameter; infinite if nothing was hit.
     pub t: f32,
     /// Barycentric weight of the triangle's second corner.
     pub u: f32,
     /// Barycentric weight of the triangle's third corner.
     pub v: f32,
-    /// Index of the triangle in the scene's mesh; [`Hit::NONE`] where nothing was hit.
+    /// Index of the triangle in the scene's mesh; [`Hit::NONE`] if nothing was hit.
     pub triangle: u32,
 }
 
 impl Hit {
-    /// The triangle index that stands for "no triangle".
+    /// The triangle index that means "no triangle".
     pub const NONE: u32 = lightmesh_layout::geometry::Hit::NONE;
 
-    /// The answer for a ray that hits nothing.
+    /// The result for a ray that hits nothing.
     pub const MISS: Hit = Hit { t: f32::INFINITY, u: 0.0, v: 0.0, triangle: Hit::NONE };
 
     /// Whether a triangle was hit.
@@ -74,7 +74,7 @@ impl Hit {
         self.triangle != Hit::NONE
     }
 
-    /// Whether this hit wins over `other`: nearer, or as near on a triangle of smaller index.
+    /// Whether this hit wins over `other`: nearer, or equally near on a triangle of smaller index.
     pub fn beats(&self, other: &Hit) -> bool {
         self.t < other.t || (self.t == other.t && self.triangle < other.triangle)
     }
@@ -83,16 +83,16 @@ impl Hit {
 /// The segments of one short-test query: from one surface point to some light points near it.
 #[derive(Clone, Copy, Debug)]
 pub struct ShortSegments<'a> {
-    /// What decides whether a triangle blocks a segment, set up for the surface point.
+    /// The test of whether a triangle blocks a segment, set up for the surface point.
     pub test: ShortTest,
     /// Light point minus segment origin, for each segment.
     pub directions: &'a [Vec3],
-    /// Triangles whose bounding box comes this near to a segment must be asked, scene units.
+    /// Triangles whose bounding box comes this close to a segment must be tested, scene units.
     pub slack: f32,
 }
 
 impl ShortSegments<'_> {
-    /// The box that no triangle to be asked lies outside of.
+    /// A box that every triangle to be tested meets.
     fn region(&self) -> Bounds {
         let origin = self.test.origin;
         let ends = self.directions.iter().map(|&direction| origin + direction);
@@ -100,7 +100,7 @@ impl ShortSegments<'_> {
         Bounds { min: min - self.slack, max: max + self.slack }
     }
 
-    /// Asks each triangle about every segment.
+    /// Tests each triangle against every segment.
     fn ask<'a>(&self, triangles: impl Iterator<Item = &'a Triangle>, blocked: &mut [bool]) {
         blocked.fill(false);
         for occluder in triangles.filter_map(|triangle| self.test.occluder(triangle.corners())) {
@@ -111,7 +111,7 @@ impl ShortSegments<'_> {
     }
 }
 
-/// The structures there are.
+/// The kinds of structures.
 #[derive(Clone, Copy, Debug)]
 pub enum Form<'a> {
     /// A wide BVH.
@@ -127,24 +127,24 @@ pub trait Accelerator: Send + Sync {
     /// Closest hit of every ray. `hits` is as long as `rays` and is overwritten.
     fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]);
 
-    /// For every segment whether anything blocks it. `occluded` is as long as `segments` and is overwritten.
+    /// For every segment, whether anything blocks it. `occluded` is as long as `segments` and is overwritten.
     fn occluded(&self, segments: &[Ray], occluded: &mut [bool]);
 
-    /// For every short segment whether a triangle blocks it by [`ShortTest`]. `blocked` is as long as the directions and is
-    /// overwritten.
+    /// For every short segment, whether a triangle blocks it according to [`ShortTest`]. `blocked` is as long as the directions and
+    /// is overwritten.
     fn short_segments(&self, segments: &ShortSegments, blocked: &mut [bool]);
 
-    /// Replaces the content of `found` by all triangles that meet `region`, each once, in ascending order of index. May give others
-    /// as well, but only such whose bounding box the region [may meet](Region). A list and a BVH give all of those; a grid need not
-    /// find a triangle that stays away from the region's cells though its bounding box does not.
+    /// Replaces the content of `found` with all triangles that meet `region`, each once, in ascending order of index. May return
+    /// others as well, but only those whose bounding box the region [may meet](Region). A list and a BVH return all of those; a
+    /// grid need not find a triangle that stays away from the region's cells although its bounding box does not.
     fn triangles_in(&self, region: &Region, found: &mut Vec<u32>);
 
-    /// The word for it in settings and statistics: `grid`, `bvh` or `brute-force`.
+    /// Its name in settings and statistics: `grid`, `bvh` or `brute-force`.
     fn name(&self) -> &'static str;
 
-    /// Bytes that it holds.
+    /// Its size in memory, bytes.
     fn memory(&self) -> usize;
 
-    /// What it is, for devices that hold a copy.
+    /// Its form, for devices that hold a copy.
     fn form(&self) -> Form<'_>;
 }

@@ -1,5 +1,5 @@
-//! Eight rays asked about one triangle at once: [`RayShear`](super::triangle::RayShear) and the visitors for coherent rays,
-//! one lane a ray. Every operation is that of the single ray, in its order, so that every answer has the same bits.
+//! Eight rays tested against one triangle at once: [`RayShear`](super::triangle::RayShear) and the visitors for coherent rays,
+//! one ray per lane. Every operation is that of the single ray, in the same order, so that every result has the same bits.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, f64x4, mask32x8, u32x8};
@@ -95,7 +95,7 @@ fn meet_half<S: Simd>(
     depth: f64x4<S>,
 ) -> (u32, f64x4<S>, [f64x4<S>; 3]) {
     let zero = f64x4::splat(simd, 0.0);
-    // 3. Scaled barycentric coordinates: all of one sign where the triangle is hit.
+    // 3. Scaled barycentric coordinates: all of one sign if the triangle is hit.
     let u = c[0] * b[1] - c[1] * b[0];
     let v = a[0] * c[1] - a[1] * c[0];
     let w = b[0] * a[1] - b[1] * a[0];
@@ -122,20 +122,20 @@ pub(super) trait PacketVisitor<S: Simd> {
     /// A single ray's visitor.
     type Single;
 
-    /// Asks a triangle for the rays in `lanes`.
+    /// Tests a triangle against the rays in `lanes`.
     fn triangle(&mut self, simd: S, triangle: &Triangle, lanes: u32);
 
-    /// What lies at larger ray parameters need not be asked; negative for a ray that is done.
+    /// What lies at larger ray parameters need not be tested; negative for a ray that is done.
     fn limit(&self) -> f32x8<S>;
 
-    /// Bit k: ray k wants no more triangles.
+    /// Bit k: ray k needs no more triangles.
     fn done(&self) -> u32;
 
-    /// Continues the ray of one lane alone, and takes its answer over.
+    /// Continues the ray of one lane alone, and adopts its result.
     fn alone(&mut self, simd: S, lane: usize, near: &NearRay, walk: impl FnOnce(&mut Self::Single));
 }
 
-/// Looks for the closest hits.
+/// Searches for the closest hits.
 #[derive(Clone, Copy)]
 pub(super) struct ClosestPacket<S: Simd> {
     shear: PacketShear<S>,
@@ -219,7 +219,7 @@ impl<S: Simd> PacketVisitor<S> for ClosestPacket<S> {
     }
 }
 
-/// Looks for any hits.
+/// Searches for any hits.
 #[derive(Clone, Copy)]
 pub(super) struct AnyPacket<S: Simd> {
     shear: PacketShear<S>,

@@ -13,7 +13,7 @@ struct Ray {
 
 DEVICE Hit hit_nothing() { return Hit{INFINITE, 0.0f, 0.0f, Hit::NONE}; }
 
-// Hits are moved sixteen bytes at once.
+// Hits are moved sixteen bytes at a time.
 DEVICE Hit load_hit(const Hit *hits, unsigned ray) {
     const uint4 bits = __ldg(reinterpret_cast<const uint4 *>(hits) + ray);
     return Hit{__uint_as_float(bits.x), __uint_as_float(bits.y), __uint_as_float(bits.z), bits.w};

@@ -1,7 +1,7 @@
-// Parts of space that triangles are looked for in, and which boxes they may meet: twin of region/, where rounding is explained.
+// Regions of space that are searched for triangles, and which boxes they may meet: twin of region/, where rounding is explained.
 //
-// The region is the same for the whole warp, boxes are the lanes'. Its form is a type, so that a search holds no other form's
-// numbers. Steps are those of the twin, in its order: both meet the same boxes.
+// The region is the same for the whole warp; each lane has its own box. The form is a type, so that a search does not hold the
+// numbers of other forms. The steps are those of the twin, in the same order: both meet the same boxes.
 #pragma once
 
 #include "cuda/warp.cuh"
@@ -15,15 +15,15 @@ struct Bounds {
 
 // The shared memory of a region's planes: PLANE_WORDS words.
 struct PlanesMemory {
-    // Unit normals, and how high along them the lowest point lies above the corner.
+    // Unit normals, and the height of the lowest point above the corner along each.
     float4 planes[TANGENT_PLANES];
-    // The same heights lowered by the slack and by what is rounded: what a region is cut off at.
+    // The same heights, lowered by the slack and the rounding: where a region is cut off.
     float heights[TANGENT_PLANES];
 };
 
 static_assert(sizeof(PlanesMemory) == 4 * PLANE_WORDS, "words of tangent planes");
 
-// Up to TANGENT_PLANES planes; none stands for "nothing is known".
+// Up to TANGENT_PLANES planes; none means "nothing is known".
 struct TangentPlanes {
     unsigned count;
     // Where heights are measured from.
@@ -31,8 +31,8 @@ struct TangentPlanes {
     PlanesMemory *memory;
 };
 
-// The planes through the points of the lanes that are `alive`, with unit normals; none where there are too many normals. `corner` is
-// a point near all of them.
+// The planes through the points of the lanes that are `alive`, with unit normals; none if there are too many normals. `corner` is a
+// point near all of them.
 DEVICE TangentPlanes tangent_planes(const Vec3 &corner, bool alive, const Vec3 &point, const Vec3 &normal, PlanesMemory *memory) {
     TangentPlanes result = {0, corner, memory};
     // Points of one normal have one plane: that through the lowest of them.
@@ -78,7 +78,7 @@ DEVICE bool form_meets(const BoxForm &box, const Vec3 &low, const Vec3 &high) {
     return low.x <= max.x && high.x >= min.x && low.y <= max.y && high.y >= min.y && low.z <= max.z && high.z >= min.z;
 }
 
-// What is near a box.
+// All points near a box.
 struct NearForm {
     enum { SLANTED = false };
     Bounds origins;
@@ -98,7 +98,7 @@ struct Faces {
     Vec3 inverse;
 };
 
-// One axis: a face that stays where it is, or goes less than the smallest normal number, has the sign of `still`: outward.
+// One axis: a face that does not move, or moves less than the smallest normal number, has the sign of `still`: outward.
 DEVICE float inverse_way(float from, float to, float still) {
     const float way = to - from;
     return 1.0f / (fabsf(way) >= F32_MIN_POSITIVE ? way : still * F32_MIN_POSITIVE);
@@ -111,7 +111,7 @@ DEVICE Faces faces_of(const Vec3 &from, const Vec3 &to, float still) {
 
 DEVICE Vec3 faces_at(const Faces &faces, float t) { return faces.from + t * (faces.to - faces.from); }
 
-// What lies between two boxes: twin of region/shaft.rs.
+// The space between two boxes: twin of region/shaft.rs.
 struct ShaftForm {
     enum { SLANTED = true };
     Faces low, high;
@@ -151,7 +151,7 @@ struct Region {
     Bounds bounds;
 };
 
-// The next numbers below and above, of numbers that are finite or lie at the other end.
+// The next numbers below and above a number that is finite or the opposite infinity.
 DEVICE float next_down(float a) {
     const unsigned bits = __float_as_uint(a);
     return a == 0.0f ? -__uint_as_float(1) : __uint_as_float(a > 0.0f ? bits - 1 : bits + 1);
@@ -178,7 +178,7 @@ DEVICE Region<ShaftForm> region_shaft(const Bounds &origins, const Bounds &emitt
     return Region<ShaftForm>{form, no_planes(), Bounds{min(origins.low, emitter.low), max(origins.high, emitter.high)}};
 }
 
-// What of a region does not lie below all the planes lowered by `slack`; everything, where there are none.
+// The part of a region that does not lie below all the planes lowered by `slack`; everything if there are none.
 template <class Form>
 DEVICE Region<Form> region_above(Region<Form> region, const TangentPlanes &planes, float slack) {
     const unsigned lane = lane_of_thread();
@@ -192,14 +192,14 @@ DEVICE Region<Form> region_above(Region<Form> region, const TangentPlanes &plane
     return region;
 }
 
-// Whether the region may meet the lane's box. `loose` is added to how high that reaches above a plane: 16 ε of the sum of its edges;
-// zero for a box that was enlarged by as much on each side.
+// Whether the region may meet the lane's box. `loose` is added to the height that the box reaches above a plane: 16 ε times the sum
+// of its edges; zero for a box that was enlarged by as much on each side.
 template <class Form>
 DEVICE bool meets(const Region<Form> &region, const Vec3 &low, const Vec3 &high, float loose) {
     return form_meets(region.form, low, high) && (region.planes.count == 0 || reached(region.planes, low, high, loose));
 }
 
-// A box around all points of a shaft whose coordinate on `axis` lies between `low` and `high`; false where there are none.
+// A box around all points of a shaft whose coordinate on `axis` lies between `low` and `high`; false if there are none.
 DEVICE bool region_between(const Region<ShaftForm> &region, unsigned axis, float low, float high, Bounds &bounds) {
     const Faces &lower = region.form.low, &upper = region.form.high;
     float first = 0.0f, last = 1.0f;

@@ -1,4 +1,4 @@
-// Triangles that a region may meet, one a lane: twin of sieve.rs.
+// Triangles that a region may meet, one per lane: twin of sieve.rs.
 #pragma once
 
 #include "accel/region.cuh"
@@ -12,8 +12,8 @@ DEVICE bool meets_triangle(const Region<Form> &region, const Triangle *triangle)
     return meets(region, low, high, REGION_ROUNDING * element_sum(high - low));
 }
 
-// Lists the places of those of the lanes' triangles whose bounding boxes the region may meet; of all, unless SIEVED. Not every lane has
-// one.
+// Lists the positions of those of the lanes' triangles whose bounding boxes the region may meet, or of all unless SIEVED. Not every
+// lane has a triangle.
 template <bool SIEVED, class Form>
 DEVICE void sieve(const Region<Form> &region, const Triangle *triangles, bool has, unsigned place, unsigned *list,
                   unsigned &count) {

@@ -7,15 +7,15 @@ use lightmesh_layout::constants::REGION_ROUNDING;
 use super::Triangle;
 use super::region::{Boxes, Region};
 
-/// Boxes that a region is asked about at once.
+/// Boxes that are tested against a region at once.
 const LANES: usize = 8;
 
-/// Takes triangles and lists those whose bounding boxes a region may meet.
+/// Accepts triangles, and lists those whose bounding boxes a region may meet.
 pub(super) struct Sieve<'a, S: Simd> {
     simd: S,
     region: &'a Region,
     found: &'a mut Vec<u32>,
-    /// Those that wait until there are eight.
+    /// How many wait until there are eight.
     waiting: usize,
     low: [[f32; LANES]; 3],
     high: [[f32; LANES]; 3],
@@ -24,7 +24,7 @@ pub(super) struct Sieve<'a, S: Simd> {
 }
 
 impl<'a, S: Simd> Sieve<'a, S> {
-    /// Begins a list in `found`, whose content is dropped.
+    /// Begins a list in `found`, whose content is discarded.
     #[inline(always)]
     pub(super) fn new(simd: S, region: &'a Region, found: &'a mut Vec<u32>) -> Sieve<'a, S> {
         found.clear();

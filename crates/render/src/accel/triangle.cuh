@@ -71,7 +71,7 @@ DEVICE void shear_corner(const RayShear &ray, const float4 &corner, float &x, fl
     y = permuted_y<AXIS>(corner.x, corner.y, corner.z) - ray.y - ray.shear_y * z;
 }
 
-// Steps 1 and 2 of the test: false where the ray, whose axis is AXIS, surely misses.
+// Steps 1 and 2 of the test: false if the ray, whose axis is AXIS, certainly misses.
 template <unsigned AXIS>
 DEVICE bool may_meet(const RayShear &ray, const Triangle *triangle, Sheared &corners) {
     // 1. Corners relative to the origin, sheared so that the ray is the z axis.
@@ -80,7 +80,7 @@ DEVICE bool may_meet(const RayShear &ray, const Triangle *triangle, Sheared &cor
     shear_corner<AXIS>(ray, b, corners.bx, corners.by, corners.bz);
     shear_corner<AXIS>(ray, c, corners.cx, corners.cy, corners.cz);
 
-    // 2. Signs of the edge functions: of two products rounded alike, the larger is never smaller than the other.
+    // 2. Signs of the edge functions: of two products rounded in the same way, the larger never becomes the smaller.
     const float u = corners.cx * corners.by, minus_u = corners.cy * corners.bx;
     const float v = corners.ax * corners.cy, minus_v = corners.ay * corners.cx;
     const float w = corners.bx * corners.ay, minus_w = corners.by * corners.ax;
@@ -94,7 +94,7 @@ struct Weights {
     double u, v, w, det;
 };
 
-// Step 3, in double precision, where products of f32 are exact: false where the ray misses.
+// Step 3, in double precision, where products of f32 are exact: false if the ray misses.
 DEVICE bool weigh(const Sheared &s, Weights &weights) {
     const double ax = s.ax, ay = s.ay, bx = s.bx, by = s.by, cx = s.cx, cy = s.cy;
     const double u = cx * by - cy * bx;
@@ -133,7 +133,8 @@ struct Occluder {
     float volume;
 };
 
-// Whether a triangle stands in the way of one segment: `occluder` and `blocks` for callers that ask once, what fails most first.
+// Whether a triangle stands in the way of one segment: `occluder` and `blocks` combined, for callers that test once; what fails
+// most often comes first.
 DEVICE bool blocks_segment(const ShortTest &test, const Corners &corners, Vec3 direction) {
     const Vec3 a = corners.a - test.origin, b = corners.b - test.origin, c = corners.c - test.origin;
     const Vec3 bc = cross(b, c);

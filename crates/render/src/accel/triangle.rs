@@ -32,15 +32,15 @@ impl Triangle {
         self.corners[0][3].to_bits()
     }
 
-    /// Whether the structures take it: all coordinates finite and within ±[`Triangle::MAX_COORDINATE`], and no two corners
-    /// equal. Others are never hit.
+    /// Whether the structures accept it: all coordinates finite and within ±[`Triangle::MAX_COORDINATE`], and no two corners equal.
+    /// Others are never hit.
     pub fn is_usable(&self) -> bool {
         let [a, b, c] = self.corners();
         let in_range = |corner: Vec3| corner.abs().cmple(Vec3::splat(Triangle::MAX_COORDINATE)).all();
         in_range(a) && in_range(b) && in_range(c) && a != b && b != c && c != a
     }
 
-    /// The largest usable coordinate, 2⁴⁰: beyond, products of three would leave the range of `f32`.
+    /// The largest usable coordinate, 2⁴⁰: beyond it, products of three would leave the range of `f32`.
     pub const MAX_COORDINATE: f32 = (1u64 << 40) as f32;
 
     /// The box around the corners.
@@ -92,21 +92,21 @@ impl RayShear {
         RayShear { axes, origin, shear, depth }
     }
 
-    /// Where the ray meets the triangle: `(t, u, v)` with barycentric weights of the second and third corner. Both sides
-    /// count. The caller checks `t` against the ray's ends (it may be infinite or NaN where it leaves the range of `f32`).
+    /// Where the ray meets the triangle: `(t, u, v)` with barycentric weights of the second and third corner. Both sides count. The
+    /// caller checks `t` against the ray's ends (it may be infinite or NaN if it leaves the range of `f32`).
     ///
     /// # Precision
     ///
     /// Let ε = 2⁻²⁴ and S the largest coordinate of a corner relative to the origin. The point at the computed `t` lies within
-    /// 9 ε S, on every axis, of a point of the triangle: shearing moves a corner by at most 6 ε S; the sheared corners then
-    /// decide exactly; and `t` adds 3 ε S. All box tests rest on this bound.
+    /// 9 ε S, on every axis, of a point of the triangle: shearing moves a corner by at most 6 ε S; the sheared corners then decide
+    /// exactly; and `t` adds 3 ε S. All box tests rely on this bound.
     #[inline(always)]
     pub fn intersect(&self, triangle: &Triangle) -> Option<(f32, f32, f32)> {
         // 1. Corners relative to the origin, sheared so that the ray is the z axis.
         let [a, b, c] = &triangle.corners;
         let (a, b, c) = (self.sheared(a), self.sheared(b), self.sheared(c));
 
-        // 2. Signs of the edge functions. Rounding is monotone: it can turn one to zero, but never past it.
+        // 2. Signs of the edge functions. Rounding is monotonic: it can turn a value to zero, but never past it.
         let u = c[0] * b[1] - c[1] * b[0];
         let v = a[0] * c[1] - a[1] * c[0];
         let w = b[0] * a[1] - b[1] * a[0];
@@ -133,11 +133,11 @@ impl RayShear {
     }
 
     /// The decision and the distance, from sheared corners. In double precision products of `f32` are exact and so is their
-    /// difference where it cancels: the weights are right to the last bits even for a triangle seen edge-on.
+    /// difference if it cancels: the weights are right to the last bits even for a triangle seen edge-on.
     #[inline(never)]
     fn meet(&self, a: [f32; 3], b: [f32; 3], c: [f32; 3]) -> Option<(f32, f32, f32)> {
         let [a, b, c] = [a, b, c].map(|corner| corner.map(f64::from));
-        // 3. Scaled barycentric coordinates: all of one sign where the triangle is hit.
+        // 3. Scaled barycentric coordinates: all of one sign if the triangle is hit.
         let u = c[0] * b[1] - c[1] * b[0];
         let v = a[0] * c[1] - a[1] * c[0];
         let w = b[0] * a[1] - b[1] * a[0];
@@ -161,7 +161,7 @@ pub struct ShortTest {
     pub origin: Vec3,
     /// Geometric normal on the viewer's side; every segment leaves on this side.
     pub normal: Vec3,
-    /// A triangle whose plane passes this near to the origin is edge-on: it hides nothing, and rounding would decide about it.
+    /// A triangle whose plane passes this close to the origin is edge-on: it hides nothing, because rounding would decide whether it does.
     pub edge_on: f32,
 }
 
@@ -176,7 +176,7 @@ pub struct Occluder {
 }
 
 impl ShortTest {
-    /// Prepares a triangle; `None` where it can block nothing: wholly on or behind the tangent plane, or edge-on.
+    /// Prepares a triangle; `None` if it can block nothing: wholly on or behind the tangent plane, or edge-on.
     #[inline(always)]
     pub fn occluder(&self, [a, b, c]: [Vec3; 3]) -> Option<Occluder> {
         let (a, b, c) = (a - self.origin, b - self.origin, c - self.origin);
@@ -250,7 +250,7 @@ mod tests {
         let occluder = test.occluder(TRIANGLE).unwrap();
         assert!(occluder.blocks(Vec3::new(0.0, 0.0, 1.5)));
         assert!(!occluder.blocks(Vec3::new(0.0, 0.0, 0.9)), "ends before the triangle");
-        assert!(!occluder.blocks(Vec3::new(1.5, 0.0, 1.5)), "passes beside it");
+        assert!(!occluder.blocks(Vec3::new(1.5, 0.0, 1.5)), "passes next to it");
         assert!(!occluder.blocks(Vec3::new(0.0, 0.0, -1.5)), "points away");
         let turned = test.occluder([TRIANGLE[0], TRIANGLE[2], TRIANGLE[1]]).unwrap();
         assert!(turned.blocks(Vec3::new(0.0, 0.0, 1.5)), "the back side blocks too");

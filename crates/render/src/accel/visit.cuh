@@ -1,9 +1,9 @@
 // What is done with the triangles that a walk reaches; the same for every structure. Twin of visit.rs.
 //
-// A walk hands triangles over in sets, and asks how far it is still worth walking:
+// A walk passes on triangles in sets, and queries how far it is still worth walking:
 //
 //     template <class Set> bool ask(Visitor &, const Triangle *triangles, Set set);   // false ends the walk
-//     float limit(const Visitor &);                                                    // what lies beyond need not be asked
+//     float limit(const Visitor &);                                                    // what lies beyond need not be tested
 #pragma once
 
 #include "accel/triangle.cuh"
@@ -18,7 +18,7 @@ DEVICE bool take(Run &run, unsigned &triangle) {
     return triangle < run.end;
 }
 
-// For each bit of a word the triangle that lies as many places after `base`.
+// For each bit set in a word, the triangle that many places after `base`.
 struct Chosen {
     unsigned base, bits;
 };
@@ -42,7 +42,7 @@ DEVICE bool next_candidate_along(const RayShear &ray, const Triangle *triangles,
 // that do are decided outside of it, by all lanes of a warp that have one at once.
 template <class Set>
 DEVICE bool next_candidate(const RayShear &ray, const Triangle *triangles, Set &set, unsigned &triangle, Sheared &corners) {
-    // Asked bit by bit, this becomes two branches and no jump through a table.
+    // Tested bit by bit, this becomes two branches instead of a jump table.
     if (ray.axis & 1)
         return next_candidate_along<1>(ray, triangles, set, triangle, corners);
     if (ray.axis & 2)
@@ -50,12 +50,12 @@ DEVICE bool next_candidate(const RayShear &ray, const Triangle *triangles, Set &
     return next_candidate_along<0>(ray, triangles, set, triangle, corners);
 }
 
-// Looks for the closest hit.
+// Searches for the closest hit.
 struct Closest {
     RayShear ray;
     // Ray parameter of the best hit, or where the ray ends.
     float limit;
-    // Place of the triangle that was hit, in the structure's array.
+    // Position of the triangle that was hit in the structure's array.
     unsigned best;
 };
 
@@ -72,7 +72,7 @@ DEVICE bool ask(Closest &closest, const Triangle *triangles, Set set) {
         if (!weigh(corners, weights))
             continue;
         const float t = hit_distance(closest.ray, corners, weights);
-        // As near as the best one: the smaller index wins.
+        // Equally near: the smaller index wins.
         const bool wins = t < closest.limit || (t == closest.limit && closest.best != Hit::NONE &&
                                                 triangle_index(triangles + triangle) < triangle_index(triangles + closest.best));
         if (t > 0.0f && wins) {
@@ -96,7 +96,7 @@ DEVICE Hit found_hit(const Closest &closest, const Triangle *triangles) {
     return Hit{closest.limit, u, v, triangle_index(triangle)};
 }
 
-// Looks for any hit.
+// Searches for any hit.
 struct Any {
     RayShear ray;
     float t_max;
@@ -124,7 +124,7 @@ DEVICE bool ask(Any &any, const Triangle *triangles, Set set) {
     return true;
 }
 
-// Looks for a triangle that blocks one short segment.
+// Searches for a triangle that blocks one short segment.
 struct Short {
     ShortTest test;
     Vec3 direction;

@@ -6,16 +6,16 @@ use super::approach::NearRay;
 use super::triangle::RayShear;
 use super::{Hit, ShortTest, Triangle};
 
-/// Asks triangles and says how far it is still worth walking.
+/// Tests triangles and says how far it is still worth walking.
 pub(super) trait Visitor {
-    /// Asks a triangle; false ends the walk.
+    /// Tests a triangle; false ends the walk.
     fn triangle(&mut self, triangle: &Triangle) -> bool;
 
-    /// What lies at a larger ray parameter need not be asked.
+    /// What lies at a larger ray parameter need not be tested.
     fn limit(&self) -> f32;
 }
 
-/// Looks for the closest hit.
+/// Searches for the closest hit.
 pub(super) struct Closest {
     shear: RayShear,
     t_max: f32,
@@ -30,7 +30,7 @@ impl Closest {
         Closest { shear, t_max: ray.t_max, limit: ray.t_max, best: Hit::MISS }
     }
 
-    /// Goes on with a hit that is known.
+    /// Continues with a known hit.
     #[inline(always)]
     pub(super) fn from(ray: &NearRay, best: Hit) -> Closest {
         Closest { best, limit: ray.t_max.min(best.t), ..Closest::new(ray) }
@@ -55,7 +55,7 @@ impl Visitor for Closest {
     }
 }
 
-/// Looks for any hit.
+/// Searches for any hit.
 pub(super) struct Any {
     shear: RayShear,
     t_max: f32,
@@ -82,7 +82,7 @@ impl Visitor for Any {
     }
 }
 
-/// Looks for a triangle that blocks one short segment.
+/// Searches for a triangle that blocks one short segment.
 pub(super) struct Short<'a> {
     test: &'a ShortTest,
     direction: Vec3,

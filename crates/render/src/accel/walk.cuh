@@ -1,4 +1,4 @@
-// The acceleration structures as kernels ask them, one ray or segment a thread: twin of the trait in mod.rs.
+// The acceleration structures as kernels query them, one ray or segment per thread: twin of the trait in mod.rs.
 //
 // Every function exists for each of the three structures. All three give the same bits.
 #pragma once
@@ -34,7 +34,7 @@ DEVICE bool occluded(const Structure &structure, const Tally &tally, const Ray &
 }
 
 // Whether a triangle blocks the segment from the origin of a short test along `direction`. Triangles whose bounding box comes as
-// near as `slack` to it are asked.
+// close as `slack` to it are tested.
 template <class Structure>
 DEVICE bool short_blocked(const Structure &structure, const Tally &, const ShortTest &test, Vec3 direction, float slack) {
     Short segment = {test, direction, false};

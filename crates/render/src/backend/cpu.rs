@@ -1,4 +1,4 @@
-//! The CPU: every stage with rayon over tiles, SIMD chosen at run time.
+//! The CPU: every stage runs with rayon over tiles, with SIMD chosen at run time.
 
 use std::ops::Range;
 

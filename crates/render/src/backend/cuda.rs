@@ -1,4 +1,4 @@
-//! A CUDA device: every stage as kernels, nothing of it on the host.
+//! A CUDA device: every stage runs as kernels, none on the host.
 
 use std::ops::Range;
 
@@ -48,7 +48,7 @@ impl<R: Runtime> Backend for Cuda<R> {
         self.pool().peak()
     }
 
-    /// By the device's clock; the time is read when the band is done.
+    /// Uses the device's clock; the time is read when the band is done.
     fn timed<T>(&self, _: &Job, stage: Stage, work: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
         self.on_device_clock(stage, work)
     }

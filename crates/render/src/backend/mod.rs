@@ -49,7 +49,7 @@ pub type Probed<B> = (<B as Backend>::Scene, <B as Backend>::Rays, <B as Backend
 
 /// A device, with its operations in the order in which an image needs them.
 pub trait Backend: Sized {
-    /// A scene where the device needs it.
+    /// A scene in the memory of the device.
     type Scene;
     /// Rays with the pixels they belong to.
     type Rays;
@@ -65,9 +65,9 @@ pub trait Backend: Sized {
     type Lit;
     /// What each surface point sees of each light.
     type Visibility;
-    /// Some rows of a picture in the making.
+    /// Some rows of an unfinished image.
     type Film;
-    /// What light points of a geometry see, kept from picture to picture.
+    /// What light points of a geometry see, kept from image to image.
     type Table: Table;
 
     /// Its name in settings and statistics: `cpu` or `cuda`.
@@ -94,7 +94,7 @@ pub trait Backend: Sized {
     /// How many rows of the image can be rendered at once: an estimate from the sizes of all buffers, before any is allocated.
     fn rows_at_once(&self, scene: &Self::Scene, plan: &Plan) -> Result<u32, RenderError>;
 
-    /// Begins some rows of an image, all black. Discards what was counted and timed since the last band ended.
+    /// Begins some rows of an image, all black. Discards counts and times since the last band ended.
     fn film(&self, plan: &Plan, rows: Range<u32>) -> Result<Self::Film, RenderError>;
 
     /// The camera rays of the rows `rows`, one per pixel, row by row.
@@ -103,8 +103,7 @@ pub trait Backend: Sized {
     /// Number of rays.
     fn ray_count(&self, rays: &Self::Rays) -> usize;
 
-    /// Given points as a wave that hits them, and the scene as that wave needs it. Discards what was counted and timed since the last band
-    /// ended.
+    /// Given points as a wave that hits them, with the scene as that wave needs it. Discards counts and times since the last band ended.
     fn probes(&self, scene: &Self::Scene, probes: &Probes) -> Result<Probed<Self>, RenderError>;
 
     /// The cells as units of work, for progress.

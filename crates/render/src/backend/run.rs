@@ -1,4 +1,4 @@
-//! The one place where stages are run: timing, progress and cancellation are handled here for all of them.
+//! The one place where stages run: timing, progress and cancellation are handled here for all of them.
 
 use std::cell::{Cell, RefCell};
 
@@ -14,12 +14,12 @@ pub(crate) struct Run<'a, B: Backend> {
     pub(crate) job: &'a Job<'a>,
     /// What the caller keeps from image to image.
     kept: Option<RefCell<&'a mut Kept<B::Table>>>,
-    /// Memory ran short: the rest of the image is rendered without what is kept.
+    /// Memory ran short: the rest of the image is rendered without it.
     is_short: Cell<bool>,
 }
 
 impl<'a, B: Backend> Run<'a, B> {
-    /// A run that has done nothing yet.
+    /// A run that has not started.
     pub(crate) fn new(backend: &'a B, job: &'a Job<'a>, kept: Option<&'a mut Kept<B::Table>>) -> Run<'a, B> {
         Run { backend, job, kept: kept.map(RefCell::new), is_short: Cell::new(false) }
     }
@@ -55,7 +55,7 @@ impl<'a, B: Backend> Run<'a, B> {
         self.with_kept(|kept| kept.is_some())
     }
 
-    /// Frees what the caller keeps and reports it: the rest of the image is rendered without. Returns `false` if it already is.
+    /// Frees what the caller keeps and reports it: the rest of the image is rendered without it. Returns `false` if it already is.
     pub(crate) fn forget(&self) -> bool {
         let kept = self.keeps();
         if kept {

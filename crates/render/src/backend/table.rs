@@ -13,7 +13,7 @@ macro_rules! stage_table {
             short_tests(wave: &WaveOf<Self>, cells: &Self::Cells, mesh: &LightMesh) -> Self::Masks;
             /// Collects each light point that is used, once. Formula (7).
             light_points(job: &Job, cells: &Self::Cells, masks: &Self::Masks, mesh: &LightMesh) -> Self::Points;
-            /// Tests what each light point sees of each light. What is cached is not tested again, what is found is cached.
+            /// Tests what each light point sees of each light. Cached results are not tested again; new ones are cached.
             long_tests(
                 wave: &WaveOf<Self>,
                 points: &Self::Points,

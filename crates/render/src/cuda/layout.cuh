@@ -101,17 +101,17 @@
 #define SAMPLE_DIGITS 24u
 // The value of the last of these digits.
 #define LAST_DIGIT 0x1p-24f
-// Tangent planes that a region tells apart.
+// Maximum number of tangent planes that a region distinguishes.
 #define TANGENT_PLANES 4u
 // Words of a region's tangent planes in shared memory.
 #define PLANE_WORDS 20u
-// Entries of a search's stack of nodes up to which a round takes four of them.
+// Number of entries of a search's node stack up to which a round takes four nodes.
 #define STACK_OF_ROUNDS 64u
-// Entries kept beyond those for each level of the tree.
+// Additional stack entries per level of the tree.
 #define STACK_PER_LEVEL 7u
-// Triangles found lately that a search through a grid remembers, at most.
+// Maximum number of recently found triangles that a search through a grid remembers.
 #define RECENT_TRIANGLES 256u
-// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of a search adds.
+// Triangles found but not yet processed: fewer than 32, and at most 96 that one round of a search adds.
 #define FOUND_TRIANGLES 128u
 // Words of a candidate of the short tests by cell, a triangle that can matter.
 #define CANDIDATE_WORDS 24u

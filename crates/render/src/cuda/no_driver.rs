@@ -1,4 +1,4 @@
-//! What stands in for the driver if the crate is built without the feature `cuda`: there is no device, and messages say why.
+//! Replaces the driver if the crate is built without the feature `cuda`: there is no device, and messages say why.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ pub enum DeviceMemory {}
 #[derive(Debug)]
 pub enum Event {}
 
-/// NVIDIA's driver: it is not looked for.
+/// NVIDIA's driver: it is not searched for.
 pub(crate) struct Library {
     pub(crate) version: Version,
     pub(crate) devices: Vec<Gpu>,
@@ -36,7 +36,7 @@ impl Library {
     }
 }
 
-/// Refuses, since the crate is built without the feature `cuda`.
+/// Fails, since the crate is built without the feature `cuda`.
 ///
 /// # Errors
 /// [`RenderError::Device`], always.

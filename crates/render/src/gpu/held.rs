@@ -1,4 +1,4 @@
-//! What a device keeps from picture to picture: geometry, and the template of the light mesh.
+//! What a device keeps from image to image: geometry, and the template of the light mesh.
 
 use std::sync::{Arc, Weak};
 
@@ -16,9 +16,9 @@ pub(super) struct DeviceTemplate<R: Runtime> {
     pub(super) rows: Buffer<R, u32>,
 }
 
-/// Geometry on a device, with what rays walk through.
+/// Geometry on a device, with the structure that rays traverse.
 pub(crate) struct DeviceGeometry<R: Runtime> {
-    /// The part of the record that geometry fills.
+    /// The part of the record that describes geometry.
     pub(super) record: Scene,
     pub(super) structure: Structure,
     /// What the record points to.
@@ -38,14 +38,14 @@ impl<R: Runtime> Default for Resident<R> {
 }
 
 impl<R: Runtime> Resident<R> {
-    /// Frees the copies of geometry that is gone, and finds that of `geometry`.
+    /// Frees the copies of geometry that no longer exists, and finds the copy of `geometry`.
     pub(super) fn find(&mut self, geometry: &Arc<PreparedGeometry>) -> Option<Arc<DeviceGeometry<R>>> {
         self.copies.retain(|(known, _)| known.strong_count() > 0);
         let (_, copy) = self.copies.iter().find(|(known, _)| known.as_ptr() == Arc::as_ptr(geometry))?;
         Some(Arc::clone(copy))
     }
 
-    /// Keeps a copy instead of an earlier one.
+    /// Keeps a copy in place of an earlier one.
     pub(super) fn keep(&mut self, geometry: &Arc<PreparedGeometry>, copy: Arc<DeviceGeometry<R>>) {
         self.copies.retain(|(known, _)| known.as_ptr() != Arc::as_ptr(geometry));
         self.copies.push((Arc::downgrade(geometry), copy));

@@ -1,4 +1,4 @@
-//! Points that the caller gives, on a device.
+//! Points given by the caller, on a device.
 
 use std::sync::Arc;
 
@@ -15,8 +15,8 @@ use crate::error::RenderError;
 use crate::probes::Probes;
 
 impl<R: Runtime> Cuda<R> {
-    /// Given points as a wave of listed rays. Stages find the triangles that rays hit by the scene's record: in the scene of this wave they
-    /// are the probes' own, while structures keep the triangles that hide lights.
+    /// Given points as a wave of listed rays. Stages find the triangles that rays hit through the scene's record: in the scene of this wave
+    /// they are the probes' own triangles, while the structures keep the triangles that hide lights.
     pub(crate) fn device_probes(&self, scene: &DeviceScene<R>, probes: &Probes) -> Result<Probed<Self>, RenderError> {
         let pool = self.pool();
         let listed: Vec<ListedRay> = (0..probes.hits.len()).map(|ray| listed(probes, ray)).collect();
@@ -41,10 +41,10 @@ fn listed(probes: &Probes, ray: usize) -> ListedRay {
 }
 
 impl<R: Runtime> DeviceVisibility<R> {
-    /// Copies it to the host.
+    /// Copies the visibility to the host.
     ///
     /// # Errors
-    /// [`RenderError::DeviceFault`] where the device fails.
+    /// [`RenderError::DeviceFault`] if the device fails.
     pub(crate) fn to_host(&self) -> Result<Visibility, RenderError> {
         let used = self.used.as_ref().map_or(Ok(Vec::new()), |used| used.read())?;
         Ok(Visibility { rays: self.rays, share: self.read()?, used })

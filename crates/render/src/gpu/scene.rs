@@ -1,4 +1,4 @@
-//! The copy of a scene that a device holds: geometry once, lights for each picture.
+//! The copy of a scene that a device holds: geometry once, lights for each image.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::shading::{DEFAULT_AMBIENT, LightTargets};
 use crate::stage::Stage;
 use crate::sync::locked;
 
-/// A scene on a device: the geometry's copy, which is kept for later pictures, and the lights of this one.
+/// A scene on a device: the geometry's copy, which is kept for later images, and the lights of this one.
 pub struct DeviceScene<R: Runtime> {
     pub(crate) record: Scene,
     pub(crate) structure: Structure,
@@ -33,7 +33,7 @@ pub struct DeviceScene<R: Runtime> {
 }
 
 impl<R: Runtime> DeviceScene<R> {
-    /// The same with other triangles for rays to see; what hides lights stays.
+    /// The same scene with other triangles for rays to see; the triangles that hide lights stay.
     pub(super) fn with_triangles(&self, triangles: Arc<Buffer<R, Triangle>>) -> DeviceScene<R> {
         DeviceScene {
             record: Scene { triangles: triangles.input(), ..self.record },
@@ -47,17 +47,17 @@ impl<R: Runtime> DeviceScene<R> {
 }
 
 impl<R: Runtime> DeviceScene<R> {
-    /// What kernels are given of the scene.
+    /// The scene as it is passed to kernels.
     pub fn record(&self) -> &Scene {
         &self.record
     }
 
-    /// The structure that rays walk and that is searched.
+    /// The structure that rays traverse and that is searched by region.
     pub fn structure(&self) -> Structure {
         self.structure
     }
 
-    /// Words of shared memory that a warp needs to search the structure by region: `search_words` in accel/search.cuh.
+    /// Words of shared memory that a warp needs for a search by region: `search_words` in accel/search.cuh.
     pub fn search_words(&self) -> u32 {
         match self.structure {
             Structure::Bvh => (STACK_OF_ROUNDS + STACK_PER_LEVEL * self.record.bvh.depth).next_multiple_of(4),
@@ -68,7 +68,7 @@ impl<R: Runtime> DeviceScene<R> {
 }
 
 impl<R: Runtime> Cuda<R> {
-    /// The scene on this device. Its geometry is brought there, if it is not there yet.
+    /// The scene on this device. Its geometry is uploaded if it is not there yet.
     pub(crate) fn device_scene(&self, job: &Job, scene: &PreparedScene) -> Result<DeviceScene<R>, RenderError> {
         let geometry = self.device_geometry(job, scene)?;
         let mut upload = Upload { cuda: self, buffers: Vec::new() };
@@ -170,7 +170,7 @@ impl<R: Runtime> Upload<'_, R> {
             return Err(RenderError::Device {
                 device: self.cuda.pool.runtime().name(),
                 reason: format!(
-                    "the scene's BVH has {} levels, its kernels take {BVH_STACK}: choose a grid, or the device cpu",
+                    "the scene's BVH has {} levels, more than the {BVH_STACK} that kernels support: choose a grid, or the device cpu",
                     bvh.depth()
                 ),
             });

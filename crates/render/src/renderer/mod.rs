@@ -79,7 +79,7 @@ pub struct Renderer {
 /// The backend in use.
 enum Engine {
     Cpu,
-    /// Images take turns: a device has one template in constant memory, and one set of counters.
+    /// Images are rendered one after another: a device has one template in constant memory, and one set of counters.
     Cuda(Box<Mutex<Cuda<Driver>>>),
 }
 
@@ -128,8 +128,8 @@ impl Renderer {
         self.render_prepared(&prepared, settings, &Unobserved)
     }
 
-    /// Builds the acceleration structure, for any number of images. Geometry that this renderer has prepared before is not rebuilt while
-    /// it is alive, whatever lights and cameras surround it.
+    /// Builds the acceleration structure, for any number of images. The structure for geometry that this renderer has prepared before is
+    /// not rebuilt while it is alive, whatever the lights and cameras.
     ///
     /// # Errors
     /// [`RenderError::Geometry`] if the geometry is inconsistent, [`RenderError::Grid`] or [`RenderError::GridFile`] if a grid was
@@ -162,11 +162,11 @@ impl Renderer {
         })
     }
 
-    /// Finds what given points see of each light, whatever a camera sees: to bake vertex colours, lightmaps or irradiance probes.
+    /// Computes what given points see of each light, whatever a camera sees: to bake vertex colours, lightmaps or irradiance probes.
     ///
-    /// `points` are in the coordinates of the geometry's positions (scene units, local frame), `normals` have any length but zero. Mode,
-    /// lookup, step, radius, weight, samples and seed are those of `settings`; size and camera only matter if the step is automatic,
-    /// which is then the one that an image has. A point with its normal is a surface seen from that side: what lies behind is dark.
+    /// `points` are in the coordinates of the geometry's positions (scene units, local frame), `normals` may have any length but zero.
+    /// Mode, lookup, step, radius, weight, samples and seed are those of `settings`; size and camera only matter if the step is
+    /// automatic, which is then that of an image. A point with its normal is a surface seen from that side: what lies behind is dark.
     ///
     /// # Errors
     /// As [`Renderer::render_prepared`], and [`RenderError::Points`] or [`RenderError::Point`] if the points cannot be used.
@@ -188,7 +188,7 @@ impl Renderer {
         })
     }
 
-    /// Renders one image of a prepared scene with the cached visibility of its light points, and adds what it finds to the cache. The
+    /// Renders one image of a prepared scene with the cached visibility of its light points, and adds what it computes to the cache. The
     /// image is bit-identical to one without a cache; only long tests are saved (light-mesh mode).
     ///
     /// # Errors
@@ -211,7 +211,7 @@ impl Renderer {
     }
 }
 
-/// Finds the visibility of each light at given points on the caller's own backend, on the caller's threads.
+/// Computes the visibility of each light at given points on the caller's own backend, on the caller's threads.
 ///
 /// # Errors
 /// As [`Renderer::visibility`].
@@ -246,7 +246,7 @@ pub fn render_on<B: Backend>(
     picture_on(backend, None, scene, settings, observer)
 }
 
-/// The same with what is kept from image to image on this backend, and on no other.
+/// The same with what is kept from image to image on this backend only.
 ///
 /// # Errors
 /// As [`Renderer::render_prepared`].

@@ -24,7 +24,7 @@ pub(super) struct Resolved<'a> {
     pub(super) technique: Technique,
     pub(super) plan: Plan,
     pub(super) sampling: Sampling,
-    /// Pixels, or points that the caller gave.
+    /// Pixels, or points given by the caller.
     pub(super) pixels: u64,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Resolved<'a> {
         Resolved::within(scene.geometry.bounds, scene, settings, observer)
     }
 
-    /// The same for points that the caller gave, in place of those that the camera sees.
+    /// The same for points given by the caller, in place of those that the camera sees.
     pub(super) fn at_points(
         points: &GivenPoints<'a>,
         settings: &'a Settings,
@@ -81,7 +81,7 @@ impl<'a> Resolved<'a> {
 }
 
 impl Resolved<'_> {
-    /// The job that an image or given points are.
+    /// The job for an image or given points.
     pub(super) fn job<'b>(&self, observer: &'b dyn Observer) -> Job<'b> {
         Job::new(observer, self.sampling).with_short_tests(self.settings.short_tests)
     }

@@ -61,7 +61,7 @@ fn the_seed_chooses_the_pattern_of_sized_lights() {
     for which in [Mode::LightMesh, Mode::Area] {
         let seeded = |seed| render(2, &settings(which).with_seed(seed)).unwrap();
         let first = seeded(5);
-        assert!(Picture::new(&seeded(5)).bits() == Picture::new(&first).bits(), "{which:?}: same seed, same picture");
+        assert!(Picture::new(&seeded(5)).bits() == Picture::new(&first).bits(), "{which:?}: same seed, same image");
         assert!(Picture::new(&seeded(6)).bits() != Picture::new(&first).bits(), "{which:?}: another seed, another one");
     }
 }

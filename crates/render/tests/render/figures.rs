@@ -22,11 +22,7 @@ fn half_balls_of_the_built_in_scenes_hold_62_points() {
         assert!((counts.half_ball_mean - 62.0).abs() < 8.0, "{name}: {}", counts.half_ball_mean);
         assert!(counts.used_mean > 0.1 * counts.half_ball_mean, "{name}: {}", counts.used_mean);
         assert!(counts.used_mean <= counts.half_ball_mean, "{name}: {}", counts.used_mean);
-        assert!(
-            10 * counts.hits > 9 * counts.pixels,
-            "{name}: a built-in scene fills its picture, {} hits",
-            counts.hits
-        );
+        assert!(10 * counts.hits > 9 * counts.pixels, "{name}: a built-in scene fills its image, {} hits", counts.hits);
         let asked = counts.short_tests + counts.short_tests_culled;
         assert_eq!(asked, (counts.half_ball_mean * counts.hits as f64).round() as u64, "{name}");
         assert_eq!(counts.long_tests, counts.light_points * stats.scene.lights as u64, "{name}");

@@ -39,7 +39,7 @@ fn aside(scene: &PreparedScene, way: f32) -> Camera {
 fn same(cache: &mut MeshCache, scene: &PreparedScene, settings: &Settings) -> (u64, u64) {
     let with = renderer().render_with(cache, scene, settings, &Unobserved).unwrap();
     let without = renderer().render_prepared(scene, settings, &Unobserved).unwrap();
-    assert!(Picture::new(&with).bits() == Picture::new(&without).bits(), "another picture");
+    assert!(Picture::new(&with).bits() == Picture::new(&without).bits(), "the image differs");
     let tests = |frame: &Frame| (frame.stats.counts.long_tests, frame.stats.counts.long_tests_saved);
     let (made, saved) = tests(&with);
     assert_eq!(tests(&without), (made + saved, 0), "each test is made or saved");

@@ -1,4 +1,4 @@
-//! Visibility at given points: that of an image at the points of its pixels.
+//! Visibility at given points equals that of an image at the points of its pixels.
 
 use glam::{DVec3, Vec3};
 use lightmesh_render::{
@@ -55,7 +55,7 @@ fn compare(scene: &PreparedScene, settings: &Settings, tolerance: f32) -> f64 {
 #[test]
 fn points_of_an_image_see_what_its_pixels_see() {
     let scene = prepared(&pile(DVec3::ZERO, &[POINT, LAMP]));
-    // Where segments start differs by a rounding, so that single rays at edges do.
+    // Segment origins differ by rounding, so a few rays at edges differ, too.
     assert!(compare(&scene, &mode(Mode::RayTrace, SIZE), 0.0) < 0.002);
     assert!(compare(&scene, &light_mesh(SIZE, 0.2, 2.1).with_samples(8), 0.01) < 0.02);
     let scene = prepared(&Scene::open("builtin:childpark").unwrap());
@@ -73,8 +73,8 @@ fn bands_change_nothing() {
     for settings in [light_mesh(SIZE, 0.2, 2.1).with_samples(5), mode(Mode::Area, SIZE).with_samples(9)] {
         let whole = visibility(&scene, &points, &normals, &settings);
         let mean = whole.of_light(0).iter().sum::<f32>() / points.len() as f32;
-        assert!((0.2..0.98).contains(&mean), "some of it is in the shadow: {mean}");
-        // What is kept free for other things, and room for some rows of 1024 points.
+        assert!((0.2..0.98).contains(&mean), "some of it is in shadow: {mean}");
+        // The reserve for other purposes, and room for some rows of 1024 points.
         let limited = visibility(&scene, &points, &normals, &settings.with_memory_limit((64 << 20) + (1 << 20)));
         assert!(limited.stats.settings.rows_per_band < 10, "{}", limited.stats.settings.rows_per_band);
         assert_eq!(limited.into_shares(), whole.into_shares());

@@ -2,8 +2,8 @@
 //!
 //! 1. `obvhs` sorts the triangles' boxes into a binary tree (PLOC) and improves it by reinsertion.
 //! 2. It collapses the tree into compressed nodes of eight children.
-//! 3. We widen every quantised box that rounding left too small, so that each holds its triangles exactly: the walk's margins
-//!    rest on that.
+//! 3. We widen every quantised box that rounding left too small, so that each holds its triangles exactly: the margins of the
+//!    walk rely on this.
 
 use std::collections::HashMap;
 
@@ -26,7 +26,7 @@ const SEARCH_DISTANCE: PlocSearchDistance = PlocSearchDistance::Medium;
 const SEARCH_DEPTH: usize = 3;
 /// Share of the nodes that are reinserted in a round.
 const REINSERTION: f32 = 0.1;
-/// As many triangles may have the same box before these are moved apart.
+/// This many triangles may have the same box before their boxes are moved apart.
 const SAME: u32 = 16;
 /// Most triangles in a leaf: the node format has room for three.
 const LEAF_SIZE: u32 = 3;
@@ -63,8 +63,8 @@ fn bounds(triangle: &Triangle) -> Aabb {
     Aabb::from_points(&triangle.corners().map(Vec3A::from))
 }
 
-/// Moves boxes that many triangles have in common a little apart. Among equal boxes each finds the same partner, one pair is
-/// joined in each round, and building takes quadratic time. What is moved too far, [`enclose`] mends.
+/// Slightly separates boxes that many triangles share. Equal boxes all find the same partner, so that only one pair is joined
+/// per round and building takes quadratic time. Boxes that are moved too far are repaired by [`enclose`].
 fn spread(boxes: &mut [Aabb]) {
     let mut seen: HashMap<[u32; 6], u32> = HashMap::new();
     for bounds in boxes {
@@ -120,7 +120,7 @@ fn enclose(nodes: &mut [Node], triangles: &[Triangle]) {
     }
 }
 
-/// Quantises the children's boxes on one axis anew where one of them does not hold its content.
+/// Requantises the children's boxes on one axis if one of them does not hold its content.
 fn enclose_axis(node: &mut Node, axis: usize, boxes: &[(usize, Bounds)], origin: f32) {
     let holds = |node: &Node| {
         let (start, step) = (node.p.as_dvec3()[axis], extent(node)[axis]);

@@ -1,9 +1,9 @@
-//! A wide BVH: eight children a node, 80 bytes each, after Ylitie, Karras, Laine: *Efficient Incoherent Ray Traversal on GPUs
-//! Through Compressed Wide BVHs* (HPG 2017).
+//! A wide BVH: eight children per node, 80 bytes per node, after Ylitie, Karras, Laine: *Efficient Incoherent Ray Traversal on
+//! GPUs Through Compressed Wide BVHs* (HPG 2017).
 //!
-//! * `build`: the tree comes from `obvhs`; we check that every box holds its triangles, and lay these out in leaf order.
-//! * `walk`: the walk over the nodes by a ray; `search`: by a region. Nodes and triangles are plain arrays, which devices copy.
-//! * `packet`: the walk by many coherent rays at once.
+//! * `build`: the tree comes from `obvhs`; we make sure that every box holds its triangles, and store these in leaf order.
+//! * `walk`: the traversal by a ray; `search`: by a region. Nodes and triangles are plain arrays, which devices copy.
+//! * `packet`: the traversal by many coherent rays at once.
 
 mod build;
 mod packet;
@@ -21,11 +21,11 @@ use crate::simd::dispatch;
 /// A compressed wide bounding volume hierarchy.
 #[derive(Clone, Debug)]
 pub struct Bvh {
-    /// Root first; empty where there are no triangles.
+    /// Root first; empty if there are no triangles.
     nodes: Vec<Node>,
     /// In leaf order.
     triangles: Vec<Triangle>,
-    /// Number of levels: the longest stack a walk needs.
+    /// Number of levels: the largest stack that a walk needs.
     depth: usize,
     approach: Approach,
     level: Level,
@@ -52,12 +52,12 @@ impl Bvh {
         self.depth
     }
 
-    /// Middle and radius of the sphere of interest.
+    /// Centre and radius of the sphere of interest.
     pub(crate) fn approach(&self) -> (Vec3, f32) {
         self.approach.parts()
     }
 
-    /// The same tree walked at another SIMD level; every level gives the same bits.
+    /// The same tree traversed at another SIMD level; every level gives the same bits.
     #[cfg(test)]
     pub(crate) fn at_level(mut self, level: Level) -> Bvh {
         self.level = level;

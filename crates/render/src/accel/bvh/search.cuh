@@ -9,8 +9,8 @@ struct BvhSearch {
     unsigned height;
 };
 
-// Where the stack might grow beyond STACK_OF_ROUNDS, a round takes a single node. From then on it grows by seven entries a level at
-// most, for which there is room.
+// If the stack might grow beyond STACK_OF_ROUNDS, a round takes a single node. From then on it grows by at most seven entries per
+// level, for which there is room.
 DEVICE unsigned search_words(const Bvh &bvh) { return (STACK_OF_ROUNDS + STACK_PER_LEVEL * bvh.depth + 3) / 4 * 4; }
 
 template <class Form>
@@ -34,7 +34,7 @@ DEVICE bool meets_child(const Region<Form> &region, const BvhNode &node, unsigne
     return meets(region, low, high, 0.0f);
 }
 
-// One round: takes up to four nodes off the stack, eight lanes each, one a child.
+// One round: takes up to four nodes off the stack; each gets eight lanes, one per child.
 template <bool SIEVED, class Form>
 DEVICE void next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch &search, unsigned *found, unsigned &count) {
     const unsigned lane = lane_of_thread(), slot = lane % 8;

@@ -1,9 +1,9 @@
 //! The search for all triangles that meet a region, through compressed wide nodes: eight children at once.
 //!
 //! A child's plane is a byte times a power of two, which is exact, added to the node's corner: off by ε S, S being the largest
-//! coordinate of the node's frame on that axis, and moved outward by a margin of γ S with γ = 2⁻¹⁹ = 32 ε, which is rounded by as
-//! much. The edges of the box are below S, so that it is larger by 30 ε of them than the box that holds the triangles: more than
-//! tangent planes ask for, see [`Boxes::loose`].
+//! coordinate of the node's frame on that axis, and moved outward by a margin of γ S with γ = 2⁻¹⁹ = 32 ε, which is rounded by
+//! the same amount. The edges of the box are below S, so it exceeds the box that holds the triangles by 30 ε times their length:
+//! more than tangent planes require, see [`Boxes::loose`].
 
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
@@ -27,7 +27,7 @@ pub(super) fn triangles_in<S: Simd>(simd: S, bvh: &Bvh, region: &Region, found: 
     sieve.finish();
 }
 
-/// Hands the triangles of all leaves whose boxes the region may meet to a sieve.
+/// Passes to a sieve the triangles of all leaves whose boxes the region may meet.
 #[inline(always)]
 fn search<S: Simd>(simd: S, bvh: &Bvh, region: &Region, sieve: &mut Sieve<S>) {
     let mut stack = Stack::new(bvh.depth);
@@ -58,7 +58,7 @@ fn search<S: Simd>(simd: S, bvh: &Bvh, region: &Region, sieve: &mut Sieve<S>) {
             triangles &= triangles - 1;
         }
 
-        // 5. No child left to enter: go on with the group left last.
+        // 5. No child left to enter: continue with the group most recently set aside.
         if nodes.bits <= TRIANGLE_HITS {
             if height == 0 {
                 return;

@@ -1,6 +1,6 @@
 // The walk over compressed wide nodes: twin of walk.rs, where theory and margins are explained.
 //
-// One thread a ray. Nodes are loaded sixteen bytes at once; the eight boxes of a node are tested without branches. The stack
+// One thread per ray. Nodes are loaded sixteen bytes at once; the eight boxes of a node are tested without branches. The stack
 // of node groups lies in local memory.
 #pragma once
 
@@ -9,9 +9,9 @@
 // A ray prepared for the slab tests.
 struct Slabs {
     Vec3 origin, inverse;
-    // How far outside a box may be and still count, in units of the margin.
+    // How far outside of a box the ray may pass and still count, in units of the margin.
     float slack;
-    // The octant that the ray points to: traversal order is slot xor this.
+    // The octant that the ray points into: traversal order is slot xor this.
     unsigned octant;
 };
 
@@ -25,7 +25,7 @@ DEVICE Slabs slabs_of(Vec3 origin, Vec3 direction, float slack) {
     return Slabs{origin, inverse, slack / BVH_MARGIN, octant};
 }
 
-// A node's planes on one axis: bytes of four slots a word, as the ray meets them.
+// A node's planes on one axis: bytes of four slots per word, in the order in which the ray crosses them.
 struct Planes {
     unsigned near[2], far[2];
     // Ray parameter per step of the planes; where the ray crosses plane -PLANE_BIAS, with the margin.
@@ -48,7 +48,7 @@ DEVICE unsigned byte_products(unsigned a, unsigned b, unsigned sum) {
 #endif
 }
 
-// The byte in a slot of a word. The inner product of bytes runs beside the comparisons, which are most of the work here.
+// The byte in a slot of a word. The inner product of bytes runs alongside the comparisons, which are most of the work here.
 DEVICE unsigned byte_of(unsigned bytes, unsigned slot) { return byte_products(bytes, 1u << 8 * slot, 0u); }
 
 DEVICE Planes planes_of(const uint4 &bytes, unsigned exponent, float offset, float inverse, float margin) {
@@ -92,13 +92,13 @@ DEVICE unsigned child_hits(const Planes &x, const Planes &y, const Planes &z, co
     return hits;
 }
 
-// The siblings still to be entered, and the triangles to be asked, where a ray meets a node.
+// The siblings still to be entered, and the triangles to be tested, if a ray meets a node.
 DEVICE void meet_node(const BvhNode *node, const Slabs &slabs, float limit, uint2 &nodes, Chosen &triangles) {
     const uint4 *words = reinterpret_cast<const uint4 *>(node);
     const uint4 frame = __ldg(words), links = __ldg(words + 1);
 
-    // 1. The node's frame in units of the ray parameter. The margin is that of walk.rs and what PLANE_BIAS costs: of 2304 steps
-    // it is 2^-8 steps more than of 256.
+    // 1. The node's frame in units of the ray parameter. The margin is that of walk.rs plus the loss due to PLANE_BIAS:
+    // computed for 2304 steps, it is 2^-8 steps larger than for 256.
     const Vec3 offset = Vec3{__uint_as_float(frame.x), __uint_as_float(frame.y), __uint_as_float(frame.z)} - slabs.origin;
     const unsigned ex = frame.w & 0xff, ey = frame.w >> 8 & 0xff, ez = frame.w >> 16 & 0xff;
     const float largest = fmaxf(fmaxf(fmaf(2304.0f, __uint_as_float(ex << 23), fabsf(offset.x)),
@@ -133,13 +133,13 @@ DEVICE void walk_nodes(const Bvh &bvh, const Slabs &slabs, Visitor &visitor) {
         const unsigned slot = (bit - FIRST_INNER) ^ slabs.octant;
         const unsigned node = nodes.x + __popc(siblings & ((1u << slot) - 1));
 
-        // 3, 4. Which of its children does the ray meet? Ask the triangles of those that are leaves.
+        // 3, 4. Which of its children does the ray meet? Test the triangles of those that are leaves.
         Chosen triangles;
         meet_node(bvh.nodes + node, slabs, limit(visitor), nodes, triangles);
         if (triangles.bits != 0 && !ask(visitor, bvh.triangles, triangles))
             return;
 
-        // 5. No child left to enter: go on with the group left last.
+        // 5. No child left to enter: continue with the group most recently set aside.
         if (nodes.y <= TRIANGLE_HITS) {
             if (height == 0)
                 return;

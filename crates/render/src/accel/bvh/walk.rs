@@ -1,18 +1,19 @@
-//! The walk over compressed wide nodes: by a ray, by a segment.
+//! The walk over compressed wide nodes, for rays and segments.
 //!
 //! # Theory
 //!
 //! A walk holds two groups. A *node group* is a set of sibling nodes still to be entered: the index of the first sibling, and a
-//! word with a hit bit for each slot (bits 24–31, nearest octant highest) above the mask of inner slots (bits 0–7). A
-//! *triangle group* is a set of triangles still to be asked: the index of the first, and a bit for each (bits 0–23).
+//! word with a hit bit for each slot (bits 24–31, nearest octant highest) above the mask of inner slots (bits 0–7). A *triangle
+//! group* is a set of triangles still to be tested: the index of the first, and a bit for each (bits 0–23).
 //!
 //! # The margin
 //!
-//! Let ε = 2⁻²⁴ and S the largest coordinate, relative to the ray's origin, of the node's frame. [`RayShear::intersect`](crate::accel::triangle::RayShear::intersect) reports
-//! points that lie up to 9 ε S outside their triangle. The slab test itself rounds by at most 12 ε S: ε S for the frame's
-//! origin, 2 ε S for its product with the reciprocal direction, 4 ε S for the plane (whose offset is at most 2 S), and 3 ε S for
-//! the sum; 2 ε S for the margin. So a margin of γ S with γ = 2⁻¹⁹ = 32 ε on both sides of every slab never loses a hit. It is
-//! the same for all eight children, and so costs next to nothing.
+//! Let ε = 2⁻²⁴ and S the largest coordinate, relative to the ray's origin, of the node's frame.
+//! [`RayShear::intersect`](crate::accel::triangle::RayShear::intersect) reports points that lie up to 9 ε S outside their
+//! triangle. The slab test itself rounds by at most 12 ε S: ε S for the frame's origin, 2 ε S for its product with the
+//! reciprocal direction, 4 ε S for the plane (whose offset is at most 2 S), and 3 ε S for the sum; 2 ε S for the margin. So a
+//! margin of γ S with γ = 2⁻¹⁹ = 32 ε on both sides of every slab never loses a hit. It is the same for all eight children, so
+//! it costs next to nothing.
 //!
 //! A direction component below 2⁻³⁰ of the largest is replaced by that bound, sign kept: over the length of a node this moves
 //! the ray by 2⁻²⁹ S at most, and γ S times the reciprocal then exceeds every `t` in the node. No reciprocal is infinite, no
@@ -28,10 +29,10 @@ use super::{Bvh, Node};
 use crate::accel::visit::{Any, Closest, Short, Visitor};
 use crate::accel::{Hit, Ray, ShortSegments};
 
-/// Entries of the stack that lies in registers and cache; deeper trees, which only hostile input makes, get one from the heap.
+/// Entries of the stack that lies in registers and cache; deeper trees, which only hostile input produces, get one from the heap.
 const STACK: usize = 32;
 
-/// A set of siblings to enter, or of triangles to ask.
+/// A set of siblings to enter, or of triangles to test.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Group {
     pub(super) base: u32,
@@ -45,9 +46,9 @@ pub(super) struct Slabs {
     inverse: Vec3A,
     /// Margin for a node of unit distance, in units of the ray parameter.
     margin: Vec3A,
-    /// Added to the distance S: how far outside a box may be and still count.
+    /// Added to the distance S: how far outside of a box the ray may pass and still count.
     slack: f32,
-    /// The octant that the ray points to: traversal order is slot xor this.
+    /// The octant that the ray points into: traversal order is slot xor this.
     octant: u32,
 }
 
@@ -131,7 +132,7 @@ pub(super) fn walk<S: Simd>(
         let hits = child_hits(node, met_slots(simd, node, slabs, visitor.limit()), slabs.octant);
         nodes = Group { base: node.child_base_idx, bits: (hits & INNER_HITS) | u32::from(node.imask) };
 
-        // 4. Ask the triangles of those that are leaves.
+        // 4. Test the triangles of those that are leaves.
         let mut triangles = hits & TRIANGLE_HITS;
         while triangles != 0 {
             let triangle = node.primitive_base_idx + triangles.trailing_zeros();
@@ -141,7 +142,7 @@ pub(super) fn walk<S: Simd>(
             }
         }
 
-        // 5. No child left to enter: go on with the group left last.
+        // 5. No child left to enter: continue with the group most recently set aside.
         if nodes.bits <= TRIANGLE_HITS {
             if height == 0 {
                 return;
@@ -174,7 +175,7 @@ fn met_slots<S: Simd>(simd: S, node: &Node, slabs: &Slabs, limit: f32) -> u32 {
         .min(planes(simd, far_y, scale.y, far.y))
         .min(planes(simd, far_z, scale.z, far.z));
 
-    // 3. Met where the slabs overlap within the segment.
+    // 3. Met if the slabs overlap within the segment.
     let met = enter.max(f32x8::splat(simd, 0.0)).simd_le(leave.min(f32x8::splat(simd, limit)));
     met.to_bitmask() as u32
 }
@@ -192,8 +193,8 @@ fn by_sign<'a>(inverse: f32, low: &'a [u8; 8], high: &'a [u8; 8]) -> (&'a [u8; 8
     if inverse < 0.0 { (high, low) } else { (low, high) }
 }
 
-/// The hit bits of a node and triangle group for the slots met: inner nodes from bit 24 on in traversal order, the triangles of
-/// leaves below.
+/// The hit bits of a node group and a triangle group for the slots met: inner nodes from bit 24 on in traversal order, the
+/// triangles of leaves below.
 #[inline(always)]
 pub(super) fn child_hits(node: &Node, mut met: u32, octant: u32) -> u32 {
     let mut hits = 0;

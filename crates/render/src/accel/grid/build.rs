@@ -11,17 +11,17 @@ use super::{Grid, GridError, GridOptions, Levels};
 use crate::accel::Triangle;
 use crate::accel::approach::Approach;
 
-/// Cells for each triangle, where there is one level.
+/// Cells per triangle, if there is one level.
 const DENSITY: f64 = 8.0;
-/// Cells for each triangle of the outer grid, where there are two.
+/// Cells of the outer grid per triangle, if there are two levels.
 const OUTER_DENSITY: f64 = 0.5;
-/// Cells for each triangle of a nested grid.
+/// Cells per triangle of a nested grid.
 const INNER_DENSITY: f64 = 4.0;
 /// A cell with more triangles than this becomes a grid.
 const MANY: usize = 8;
-/// Most cells on an axis that are chosen automatically: finer ones would drown in the margin.
+/// Most cells along an axis that are chosen automatically: smaller cells would be dominated by the margin.
 const MOST: [f64; 2] = [1024.0, 32.0];
-/// In how many cells' boxes a triangle may lie on average, before an automatic grid is made coarser: one for each level.
+/// How many cells a triangle's box may overlap on average before an automatic grid is made coarser: one number per level.
 const COPIES: [u64; 2] = [64, 16];
 /// Triangles that one task sorts into cells.
 const TASK: usize = 2048;
@@ -61,7 +61,7 @@ pub(super) fn build(triangles: &[Triangle], options: &GridOptions) -> Result<Gri
     })
 }
 
-/// Where the cells lie. A loaded grid must get the same.
+/// Where the cells lie. A loaded grid must get the same frame.
 pub(super) fn frame(bounds: &Bounds, dims: UVec3) -> Result<(Lattice, Approach, f32), GridError> {
     let cells = dims.to_array().map(u128::from).iter().product::<u128>();
     if cells == 0 {
@@ -79,7 +79,7 @@ fn fit(needed: u64, what: &'static str, dims: UVec3) -> Result<i32, GridError> {
     i32::try_from(needed).map_err(|_| GridError::TooLarge { dims: dims.to_array(), what, needed })
 }
 
-/// About `wanted` cells that are nearly cubes: the largest cube edge that gives as many.
+/// About `wanted` cells that are nearly cubes: the largest cube edge that yields that many.
 fn automatic(bounds: &Bounds, wanted: f64, most: f64) -> UVec3 {
     let extent = bounds.extent().as_dvec3();
     let longest = extent.max_element();
@@ -113,14 +113,14 @@ struct Nested {
     lists: Lists,
 }
 
-/// Sorts triangles into the cells that they meet.
+/// Sorts triangles into the cells that they overlap.
 struct Sorter<'a> {
     triangles: &'a [Triangle],
     margin: f32,
 }
 
 impl Sorter<'_> {
-    /// `dims` halved until triangles that span many cells no longer fill them all.
+    /// `dims`, halved until triangles that span many cells no longer dominate.
     fn coarsened(&self, mut dims: UVec3, sources: &[u32], copies: u64, lattice: impl Fn(UVec3) -> Lattice) -> UVec3 {
         while dims != UVec3::ONE && self.candidates(&lattice(dims), sources) > copies * sources.len() as u64 {
             dims = (dims / 2).max(UVec3::ONE);
@@ -137,7 +137,7 @@ impl Sorter<'_> {
         sources.iter().map(cells).fold(0, u64::saturating_add)
     }
 
-    /// The triangles at `sources` by cell, each list in the order of `sources`.
+    /// The triangles at `sources`, grouped by cell; each list is in the order of `sources`.
     fn sort(&self, lattice: &Lattice, sources: &[u32]) -> Lists {
         let tasks = sources.par_chunks(TASK);
         let pairs: Vec<Vec<(usize, u32)>> = tasks.map(|sources| self.pairs(lattice, sources)).collect();
@@ -177,7 +177,7 @@ impl Sorter<'_> {
         pairs
     }
 
-    /// The grid within a cell; `None` where it would not separate its triangles.
+    /// The grid within a cell; `None` if it would not separate its triangles.
     fn nested(&self, outer: &Lattice, cell: usize, list: &[u32]) -> Option<Nested> {
         let at = position(outer, cell);
         let bounds = Bounds { min: Vec3::ZERO, max: outer.size };
@@ -237,66 +237,4 @@ impl Writer {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn built(triangles: &[Triangle], dims: [u32; 3], levels: Levels) -> Result<Grid, GridError> {
-        Grid::new(triangles, &GridOptions { dims: Some(dims), levels })
-    }
-
-    fn triangle(at: Vec3, index: u32) -> Triangle {
-        Triangle::new([at, at + 0.1 * Vec3::X, at + 0.1 * Vec3::Y], index)
-    }
-
-    #[test]
-    fn the_flat_form_is_that_of_the_thesis() {
-        let triangles = [triangle(Vec3::ZERO, 5), triangle(Vec3::new(4.0, 4.0, 0.0), 6), triangle(Vec3::ZERO, 7)];
-        let grid = built(&triangles, [2, 2, 1], Levels::One).unwrap();
-        // nx ny nz, four offsets, a leaf with triangles 0 and 1, a leaf with triangle 2.
-        assert_eq!(grid.cells, [2, 2, 1, 7, -1, -1, 9, -2, 0, -1, 2]);
-        assert_eq!(grid.triangles.iter().map(Triangle::index).collect::<Vec<_>>(), [5, 7, 6]);
-        assert_eq!(grid.sources, [0, 2, 1]);
-    }
-
-    #[test]
-    fn full_cells_hold_grids() {
-        let corner = (0..30).map(|index| triangle(Vec3::splat(0.03 * index as f32), index));
-        let triangles: Vec<_> = corner.chain([triangle(Vec3::splat(9.0), 30)]).collect();
-        let grid = built(&triangles, [2, 2, 2], Levels::Two).unwrap();
-        let nested = grid.cells[3] as usize;
-        assert!(grid.cells[nested] > 0, "the first cell holds a grid");
-        assert!(built(&triangles, [2, 2, 2], Levels::One).unwrap().cells.len() < grid.cells.len());
-    }
-
-    #[test]
-    fn impossible_sizes_are_refused_before_anything_is_allocated() {
-        let triangles = [triangle(Vec3::ZERO, 0)];
-        assert_eq!(built(&triangles, [4, 0, 4], Levels::One).unwrap_err(), GridError::NoCells { dims: [4, 0, 4] });
-        for dims in [[u32::MAX; 3], [1 << 16, 1 << 15, 1]] {
-            let error = built(&triangles, dims, Levels::One).unwrap_err();
-            assert!(matches!(error, GridError::TooLarge { what: "integers", .. }), "{error}");
-            assert!(error.to_string().contains("take fewer cells"), "{error}");
-        }
-        let wide: Vec<_> = (0..300).map(|index| Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], index)).collect();
-        let error = built(&wide, [3000, 3000, 1], Levels::One).unwrap_err();
-        assert!(matches!(error, GridError::TooLarge { what: "triangle references", .. }), "{error}");
-    }
-
-    #[test]
-    fn triangles_that_fill_the_scene_make_automatic_grids_coarse() {
-        let wide: Vec<_> = (0..5000).map(|index| Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], index)).collect();
-        for levels in [Levels::One, Levels::Two] {
-            let grid = Grid::new(&wide, &GridOptions { dims: None, levels }).unwrap();
-            assert!(grid.triangles.len() < 400_000, "{levels:?}: {}", grid.triangles.len());
-        }
-    }
-
-    #[test]
-    fn flat_and_empty_scenes_have_few_cells() {
-        let flat: Vec<_> = (0..100).map(|index| triangle(Vec3::X * index as f32, index)).collect();
-        let grid = Grid::new(&flat, &GridOptions { dims: None, levels: Levels::One }).unwrap();
-        assert_eq!(grid.dims()[2], 1);
-        assert!(grid.dims()[0] > 50);
-        assert_eq!(Grid::new(&[], &GridOptions::default()).unwrap().dims(), [1, 1, 1]);
-    }
-}
+mod tests;

@@ -1,15 +1,14 @@
 //! How far each cell of the outer grid is from the nearest one that holds something.
 //!
-//! A walk in an empty cell at distance d can leap to where it leaves the cube of the cells less than d away: they are all empty.
-//! The distance is therefore the largest of those on the three axes (the chessboard distance). Two sweeps find it exactly
-//! (Rosenfeld, Pfaltz: *Distance Functions on Digital Pictures*, Pattern Recognition 1968): one onward, in which each cell takes the
-//! least distance of its thirteen neighbours that come before it plus one, and the same backward.
+//! From an empty cell at distance d, a walk can skip to where it leaves the cube of cells less than d away: they are all empty. The
+//! distance is therefore the largest of those on the three axes (the chessboard distance). Two sweeps find it exactly (Rosenfeld,
+//! Pfaltz: *Distance Functions on Digital Pictures*, Pattern Recognition 1968): one forward, in which each cell takes the least
+//! distance of the thirteen neighbours before it, plus one, and one backward.
 
 use super::Grid;
 
 impl Grid {
-    /// For each cell of the outer grid, x fastest, the distance in cells to the nearest that is not empty: 0 for those that are not
-    /// empty themselves, at most 255.
+    /// For each cell of the outer grid, x fastest, the distance in cells to the nearest non-empty one: 0 for non-empty cells, at most 255.
     pub(crate) fn distances(&self) -> Vec<u8> {
         let dims = self.dims().map(|count| count as usize);
         let offsets = &self.cells[3..3 + dims.iter().product::<usize>()];
@@ -21,14 +20,14 @@ impl Grid {
 
 /// From 0 and 255, for cells that hold something and others, to distances.
 fn spread(distances: &mut [u8], dims: [usize; 3]) {
-    // What comes after is what comes before in the reversed list.
+    // The neighbours after a cell are those before it in the reversed list.
     for _ in 0..2 {
         sweep(distances, dims);
         distances.reverse();
     }
 }
 
-/// Each cell takes the least distance of its neighbours before it plus one, where that is less than its own.
+/// Each cell takes the least distance of the neighbours before it, plus one, if that is less than its own.
 fn sweep(distances: &mut [u8], [x, y, z]: [usize; 3]) {
     let mut before = vec![u8::MAX; x];
     for row in 0..y * z {
@@ -52,7 +51,7 @@ fn sweep(distances: &mut [u8], [x, y, z]: [usize; 3]) {
                 take(row - y + 1);
             }
         }
-        // 2. In these rows the cells beside this one and their neighbours; then the cell before in this row.
+        // 2. In these rows, the cells next to this one and their neighbours; then the previous cell in this row.
         let own = &mut rest[..x];
         for (place, cell) in own.iter_mut().enumerate() {
             let near = &before[place.saturating_sub(1)..(place + 2).min(x)];

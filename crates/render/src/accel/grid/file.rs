@@ -14,8 +14,8 @@
 //! | 4 each | the integers, then the references |
 //! | 8 | hash of everything before |
 //!
-//! A file is taken only if every byte of it is as expected: it belongs to these triangles, has the length that its header
-//! says, the right hash, and each offset is the one that building would have written. So no file can make a walk fail.
+//! A file is accepted only if every byte of it is as expected: it belongs to these triangles, has the length that its header
+//! says and the right hash, and each offset is the one that building would have written. So no file can make a walk fail.
 
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Write};
@@ -38,15 +38,15 @@ const TRAILER: usize = 8;
 /// Why a grid cannot be saved.
 #[derive(Debug, thiserror::Error)]
 pub enum GridSaveError {
-    /// There could be no such file.
+    /// No such file can exist.
     #[error(transparent)]
     Target(#[from] TargetError),
-    /// Writing failed, most often for want of space; nothing is left behind.
+    /// Writing failed, most often for lack of space; nothing is left behind.
     #[error("cannot write {}: {reason}; nothing was written, check the space left on the disk", path.display())]
     Write {
         /// The target.
         path: PathBuf,
-        /// What the system said.
+        /// What the system reported.
         reason: io::Error,
     },
 }
@@ -68,7 +68,7 @@ pub enum GridFault {
     /// It cannot be read.
     #[error("cannot be read: {0}")]
     Read(io::Error),
-    /// It is something else.
+    /// It is not a grid file.
     #[error("is not a grid file")]
     NotAGrid,
     /// It was written by another version of this program.
@@ -80,20 +80,20 @@ pub enum GridFault {
     /// It belongs to other triangles.
     #[error("belongs to another scene ({found} triangles in the file, {expected} in the scene, or other positions)")]
     OtherGeometry {
-        /// Triangles that the file was made from.
+        /// Triangles that the file was built from.
         found: u32,
         /// Triangles of the scene.
         expected: usize,
     },
     /// It is shorter or longer than its header says.
-    #[error("has {found} bytes where its header says {expected}")]
+    #[error("has {found} bytes, but its header says {expected}")]
     Length {
         /// Length of the file.
         found: u64,
-        /// Length by the header.
+        /// Length according to its header.
         expected: u128,
     },
-    /// Its content is not what was written.
+    /// Its content is not as written.
     #[error("is corrupted: {0}")]
     Corrupted(&'static str),
 }
@@ -113,7 +113,7 @@ impl Grid {
     ///
     /// # Errors
     ///
-    /// Where the file cannot be written.
+    /// If the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), GridSaveError> {
         let path = path.as_ref();
         let file = Replacement::of(path)?;
@@ -145,15 +145,14 @@ impl Grid {
     ///
     /// # Errors
     ///
-    /// Where the file cannot be read, is of another kind or version, belongs to other triangles, or differs in any byte from
-    /// what was saved.
+    /// If the file cannot be read, is of another kind or version, belongs to other triangles, or differs in any byte from what was saved.
     pub fn load(path: impl AsRef<Path>, triangles: &[Triangle]) -> Result<Grid, GridFileError> {
         let path = path.as_ref();
         read(path, triangles).map_err(|fault| GridFileError { path: path.into(), fault })
     }
 }
 
-/// A writer that hashes what passes.
+/// A writer that hashes everything written.
 struct Hashed<W> {
     inner: W,
     hash: Xxh3,
@@ -184,7 +183,7 @@ fn read(path: &Path, triangles: &[Triangle]) -> Result<Grid, GridFault> {
         return Err(GridFault::Length { found: length, expected });
     }
 
-    // 2. The rest. The buffer grows with what is really there.
+    // 2. The rest. The buffer grows with the data that is actually there.
     let mut bytes = head;
     input.take(length - HEADER as u64).read_to_end(&mut bytes).map_err(GridFault::Read)?;
     if bytes.len() as u64 != length {
@@ -193,7 +192,7 @@ fn read(path: &Path, triangles: &[Triangle]) -> Result<Grid, GridFault> {
     decode(&header, &bytes, triangles)
 }
 
-/// The grid from all bytes of a file, of which there are as many as the header says.
+/// Decodes a grid from all bytes of a file, whose number is the one in the header.
 fn decode(header: &Header, bytes: &[u8], triangles: &[Triangle]) -> Result<Grid, GridFault> {
     // 3. Is it what was saved for these triangles?
     let geometry = geometry_hash(triangles);
@@ -270,7 +269,7 @@ fn words(bytes: &[u8]) -> impl Iterator<Item = [u8; 4]> {
     bytes.as_chunks::<4>().0.iter().copied()
 }
 
-/// Reads the flat form as building writes it: cells and triangle references follow each other without a gap.
+/// Reads the flat form as the builder writes it: cells and triangle references follow each other without gaps.
 struct Check<'a> {
     cells: &'a [i32],
     /// Where the next cell must lie.

@@ -1,4 +1,4 @@
-//! What tells the geometry of two grids apart.
+//! Tells apart grids of different geometry.
 
 use xxhash_rust::xxh3::Xxh3;
 

@@ -2,24 +2,24 @@
 //!
 //! # How far a walk can err
 //!
-//! Let r be half the longest edge of the box around the triangles and ε = 2⁻²⁴. Ray origins lie within 8 r of its middle
+//! Let r be half the longest edge of the box around the triangles and ε = 2⁻²⁴. Ray origins lie within 8 r of its centre
 //! (`approach`), so that every coordinate relative to an origin is below S = 10 r. Planes are multiples of the cell size,
 //! relative to the grid's corner. On each axis,
 //!
 //! * a reported hit lies up to 9 ε S outside its triangle;
 //! * the origin relative to the corner is rounded by ε S, at each of two levels;
 //! * a plane is rounded by ε S, at each of two levels;
-//! * a crossing parameter errs by as much as 3 ε S of way;
-//! * the point that the first cell is taken from errs by 4 ε S;
-//! * a direction component taken for zero moves the ray by less than ε S.
+//! * a crossing parameter errs by as much as 3 ε S of distance along the ray;
+//! * the point that determines the first cell errs by 4 ε S;
+//! * a direction component treated as zero moves the ray by less than ε S.
 //!
-//! That is 21 ε S. A triangle is therefore listed in every cell that it meets when the cell is enlarged by 32 ε S =
-//! 320 ε r on all sides: see [`margin`].
+//! That is 21 ε S. A triangle is therefore listed in every cell that it meets once the cell is enlarged by
+//! 32 ε S = 320 ε r on all sides: see [`margin`].
 
 use glam::{DVec3, UVec3, Vec3};
 use lightmesh_scene::Bounds;
 
-/// By how much cells are enlarged when triangles are sorted into them, for triangles in a box of half edge `radius`.
+/// The margin by which cells are enlarged when triangles are sorted into them, for triangles in a box of half edge `radius`.
 pub(super) fn margin(radius: f32) -> f32 {
     320.0 / (1u32 << 24) as f32 * radius
 }
@@ -62,7 +62,7 @@ impl Lattice {
         (z * self.dims.y as usize + y) * self.dims.x as usize + x
     }
 
-    /// The first and the last cell that the box, enlarged by `margin`, overlaps; `None` where it overlaps none.
+    /// The first and the last cell that the box, enlarged by `margin`, overlaps; `None` if it overlaps none.
     pub(super) fn cells(&self, bounds: &Bounds, margin: f32) -> Option<(UVec3, UVec3)> {
         let margin = f64::from(margin);
         let size = self.size.as_dvec3();

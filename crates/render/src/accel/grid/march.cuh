@@ -1,17 +1,17 @@
-// A ray and a grid in the coordinates of the walk: cells of the grid, mirrored so that the ray goes up on every axis.
+// A ray and a grid in the coordinates of the walk: units are cells of the grid, mirrored so that the ray ascends on every axis.
 #pragma once
 
 #include "cuda/prelude.cuh"
 
 #include "accel/ray.cuh"
 
-// Cells of an axis that the walk can tell apart: their numbers are whole in a float, and `bits_of_cell` needs room.
+// Cells of an axis that the walk can tell apart: their numbers are exact in a float, and `bits_of_cell` needs room.
 #define GRID_MOST_CELLS (1u << 22)
-// A float around which floats are the whole numbers, and its bits.
+// A float around which the floats are the integers, and its bits.
 #define WHOLE_FLOATS 12582912.0f
 #define WHOLE_FLOATS_BITS 0x4b400000u
 
-// Where a ray goes through the outer grid.
+// How a ray passes through the outer grid.
 struct March {
     // Ray parameter per cell, and at plane 0.
     Vec3 inverse, start;
@@ -21,11 +21,11 @@ struct March {
     bool mirror_x, mirror_y, mirror_z;
 };
 
-// The cells that a walk is among: those of the outer grid, numbered from 0, or of a nested one, numbered up to -1. So the last
-// plane of a nested grid is plane 0, and crossed at exactly `start`, where the ray leaves the cell of the outer grid.
+// The cells that a walk is passing through: those of the outer grid, numbered from 0, or those of a nested one, numbered up to -1.
+// So the last plane of a nested grid is plane 0, and is crossed at exactly `start`, where the ray leaves the cell of the outer grid.
 struct Cells {
     Vec3 inverse, start;
-    // Where in memory cell (0, 0, 0) lies, less what `bits_of_cell` adds; cells to the next one on each axis.
+    // Where cell (0, 0, 0) lies in memory, minus what `bits_of_cell` adds; the strides to the next cell on each axis.
     unsigned first, stride_x, stride_y, stride_z;
 };
 
@@ -37,7 +37,7 @@ DEVICE Vec3 crossing(Vec3 planes, Vec3 inverse, Vec3 start) {
     return Vec3{fmaf(planes.x, inverse.x, start.x), fmaf(planes.y, inverse.y, start.y), fmaf(planes.z, inverse.z, start.z)};
 }
 
-// Cells numbered from 0 on; the place in memory is that of the first before any is mirrored.
+// Cells numbered from 0; `place` is where the first lies in memory, before mirroring.
 DEVICE Cells cells_of(const March &march, Vec3 inverse, Vec3 start, unsigned place, const unsigned (&dims)[3]) {
     const unsigned row = dims[0], layer = dims[0] * dims[1];
     Cells cells = {inverse, start, place, march.mirror_x ? 0u - 1u : 1u, march.mirror_y ? 0u - row : row,
@@ -68,7 +68,7 @@ DEVICE float leave_grid(Vec3 inverse, Vec3 start, Vec3 dims) {
     return fminf(last.x, fminf(last.y, last.z));
 }
 
-// The cell at ray parameter t, of those between two.
+// The cell at ray parameter t, clamped to those between two.
 DEVICE float cell_at(float t, float start, float speed, float first, float last) {
     return fmaxf(fminf(floorf((t - start) * speed), last), first);
 }
@@ -99,7 +99,7 @@ DEVICE March march_of(const Grid &grid, const Ray &ray) {
 
 DEVICE bool few_cells(const unsigned (&dims)[3]) { return (dims[0] | dims[1] | dims[2]) < GRID_MOST_CELLS; }
 
-// Whether the walk can do with these numbers: neither cells without number nor scenes at the ends of the range of f32.
+// Whether the walk can handle these numbers: neither too many cells nor scenes at the ends of the range of f32.
 DEVICE bool can_march(const March &march, const unsigned (&dims)[3]) {
     return is_finite(march.start) && is_finite(march.speed) && few_cells(dims);
 }

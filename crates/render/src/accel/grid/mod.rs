@@ -11,10 +11,10 @@
 //! so a cell's first number tells a leaf (negative) from a nested grid (positive). Triangles are repeated for every cell that
 //! they meet: neighbours in a cell are neighbours in memory.
 //!
-//! * `lattice`: where cells lie, and how much they are enlarged so that rounding cannot lose a hit.
+//! * `lattice`: where cells lie, and by how much they are enlarged so that rounding cannot lose a hit.
 //! * `overlap`: the exact test of a triangle against a box.
 //! * `build`: triangles to cells; `walk`: along a ray (Amanatides, Woo 1987); `search`: by a region; `file`: saved and loaded.
-//! * `distance`: how far each cell is from the nearest that is not empty, for the walks of devices.
+//! * `distance`: how far each cell is from the nearest non-empty one, for walks on devices.
 
 mod build;
 mod distance;
@@ -39,7 +39,7 @@ use lattice::Lattice;
 /// How a grid is laid out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GridOptions {
-    /// Cells on each axis; `None` follows the number of triangles.
+    /// Cells on each axis; `None`: chosen by the number of triangles.
     pub dims: Option<[u32; 3]>,
     /// One level or two.
     pub levels: Levels,
@@ -50,7 +50,7 @@ pub struct GridOptions {
 pub enum Levels {
     /// One grid.
     One,
-    /// Cells with many triangles hold a grid of their own.
+    /// Cells with many triangles contain a nested grid.
     #[default]
     Two,
 }
@@ -61,12 +61,12 @@ pub enum GridError {
     /// An axis without cells.
     #[error("a grid of {}x{}x{} cells has no cells: every axis needs at least 1", dims[0], dims[1], dims[2])]
     NoCells {
-        /// The cells asked for.
+        /// The requested cells.
         dims: [u32; 3],
     },
     /// Offsets would not fit 32 bits.
     #[error(
-        "a grid of {}x{}x{} cells needs {needed} {what}, more than 32-bit offsets reach ({}): take fewer cells or the BVH",
+        "a grid of {}x{}x{} cells needs {needed} {what}, more than 32-bit offsets reach ({}): use fewer cells or the BVH",
         dims[0], dims[1], dims[2], i32::MAX
     )]
     TooLarge {
@@ -88,7 +88,7 @@ pub struct Grid {
     cells: Vec<i32>,
     /// The triangles of all cells, one cell after the other.
     triangles: Vec<Triangle>,
-    /// Where each of these lies in the list that the grid was built from.
+    /// The position of each in the list that the grid was built from.
     sources: Vec<u32>,
     approach: Approach,
     /// Hash of the list that the grid was built from.
@@ -103,7 +103,7 @@ impl Grid {
     ///
     /// # Errors
     ///
-    /// Where the cells asked for are none, or too many for 32-bit offsets.
+    /// If the requested grid has no cells, or too many for 32-bit offsets.
     pub fn new(triangles: &[Triangle], options: &GridOptions) -> Result<Grid, GridError> {
         build::build(triangles, options)
     }
@@ -113,7 +113,7 @@ impl Grid {
         self.lattice.dims.to_array()
     }
 
-    /// How many walks took more steps than a grid of this size allows and asked all triangles instead. Always 0, unless the
+    /// How many walks took more steps than a grid of this size allows and tested all triangles instead. Always 0, unless the
     /// bound that `walk` derives is wrong.
     pub fn overruns(&self) -> u64 {
         self.overruns.load(Ordering::Relaxed)
@@ -129,7 +129,7 @@ impl Grid {
         &self.triangles
     }
 
-    /// Lowest corner, and edges of a cell, of the outer grid.
+    /// Lowest corner of the outer grid, and edges of its cells.
     pub(crate) fn geometry(&self) -> (glam::DVec3, glam::Vec3) {
         (self.lattice.origin, self.lattice.size)
     }
@@ -139,7 +139,7 @@ impl Grid {
         self.margin
     }
 
-    /// Middle and radius of the sphere of interest.
+    /// Centre and radius of the sphere of interest.
     pub(crate) fn approach(&self) -> (glam::Vec3, f32) {
         self.approach.parts()
     }
@@ -201,7 +201,7 @@ impl Accelerator for Grid {
     }
 
     fn short_segments(&self, segments: &ShortSegments, blocked: &mut [bool]) {
-        // The segments are short and leave one point: the cells around all of them are about those that each would walk.
+        // The segments are short and leave one point: the cells around all of them are roughly those that each would visit.
         let mut triangles: Vec<&Triangle> = Vec::new();
         let bounds = segments.region();
         self.visit_region(&Region::within(bounds), &mut |cell| {

@@ -1,8 +1,8 @@
 //! The search for all triangles that meet a region, cell by cell.
 //!
-//! A triangle that meets the region has a point in it, and is listed in every cell that comes within the [margin](super::lattice) of
-//! that point. Cells are computed in double precision from a box around the region, or, where that may be far larger than the region,
-//! from boxes around its parts in layers of cells. These parts are cut in single precision: layers overlap by one rounding.
+//! A triangle that meets the region has a point in it, and is listed in every cell within the [margin](super::lattice) of that point.
+//! Cells are computed in double precision from a box around the region or, if that may be far larger than the region, from boxes
+//! around its parts in layers of cells. These parts are clipped in single precision, so layers overlap by one rounding.
 
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
@@ -28,7 +28,7 @@ pub(super) fn triangles_in<S: Simd>(simd: S, grid: &Grid, region: &Region, found
 }
 
 impl Grid {
-    /// Calls `visit` with the triangles of every cell that the region may meet: some several times.
+    /// Calls `visit` with the triangles of every cell that the region may meet; some come several times.
     pub(super) fn visit_region<'a>(&'a self, region: &Region, visit: &mut impl FnMut(&'a [Triangle])) {
         self.visit_grid(&self.lattice, 0, region, visit);
     }

@@ -1,9 +1,9 @@
 // The cells around a short segment.
 //
-// A triangle that blocks a segment by the plane form of the test may lie beside it, by rounding: all that come as near as `slack`
-// must be asked. So the walk goes through the layers of cells along the segment's longest axis, and in each layer through the
-// rectangle of cells that the segment, thickened by the slack, passes. What is rounded here is covered by the margin of the cells
-// (lattice.rs). A triangle may be asked several times.
+// By rounding, a triangle that blocks a segment according to the plane form of the test may lie next to it: all triangles within
+// `slack` must be tested. So the walk visits the layers of cells along the segment's longest axis, and in each layer the
+// rectangle of cells that the segment, thickened by the slack, passes through. Rounding here is covered by the margin of the
+// cells (lattice.rs). A triangle may be tested several times.
 #pragma once
 
 #include "accel/visit.cuh"
@@ -16,17 +16,17 @@ struct CellSegment {
     unsigned first;
 };
 
-// Cells of an axis, both included; none where last < first.
+// Cells of an axis, first and last included; none if last < first.
 struct CellRange {
     int first, last;
 };
 
-// The cells that the way from a to b meets, thickened by the slack.
+// The cells that the path from a to b, thickened by the slack, meets.
 DEVICE CellRange cells_between(float a, float b, float slack, unsigned dims) {
     return CellRange{max(__float2int_rd(fminf(a, b) - slack), 0), min(__float2int_rd(fmaxf(a, b) + slack), (int)dims - 1)};
 }
 
-// The segment parameter at which an axis has this coordinate; that of an end where the segment does not reach it.
+// The segment parameter at which an axis has this coordinate; that of an end if the segment does not reach it.
 DEVICE float parameter_at(float coordinate, float origin, float inverse) {
     return fminf(fmaxf((coordinate - origin) * inverse, 0.0f), 1.0f);
 }
@@ -35,7 +35,7 @@ DEVICE float parameter_at(float coordinate, float origin, float inverse) {
 struct CellAxis {
     float origin, direction, slack;
     unsigned cells;
-    // Places in the list of cells from one cell of this axis to the next.
+    // Distance in the list of cells from one cell of this axis to the next.
     int stride;
 };
 
@@ -50,7 +50,7 @@ DEVICE CellAxis cell_axis(const CellSegment &cells, unsigned axis) {
 template <int LEVEL>
 DEVICE bool ask_cell(const Grid &grid, const CellSegment &cells, int place, Short &segment);
 
-// Asks the triangles of the cells around a segment: layers along its longest axis, and rectangles in these; false ends the walk.
+// Tests the triangles of the cells around a segment: layers along its longest axis, and rectangles in these; false ends the walk.
 template <int LEVEL>
 DEVICE bool ask_around(const Grid &grid, const CellSegment &cells, Short &segment) {
     const Vec3 way = abs(cells.direction);
@@ -94,7 +94,7 @@ DEVICE bool ask_cell(const Grid &grid, const CellSegment &cells, int place, Shor
 }
 
 DEVICE void walk_short(const Grid &grid, Short &segment, float slack) {
-    // What all segments of a surface point have in common, the compiler computes once.
+    // The compiler computes only once what all segments of a surface point have in common.
     const Vec3 origin = to_single(to_double(segment.test.origin) - grid.origin);
     const Vec3 inverse = {1.0f / grid.size.x, 1.0f / grid.size.y, 1.0f / grid.size.z};
     const CellSegment cells = {origin * inverse, segment.direction * inverse, slack * inverse,

@@ -1,22 +1,22 @@
-// The walk along a ray through the cells of a grid: twin of walk.rs, with leaps over empty space.
+// The walk along a ray through the cells of a grid: twin of walk.rs, skipping empty space.
 //
 // # Theory
 //
-// Coordinates are cells of the grid, mirrored so that the ray goes up on every axis. Where it crosses plane p of an axis is
-// computed from p alone, never summed up: t(p) = p · inverse + start.
+// Coordinates are cells of the grid, mirrored so that the ray ascends on every axis. Where it crosses plane p of an axis is
+// computed from p alone, never accumulated: t(p) = p · inverse + start.
 //
 // An empty cell of the outer grid knows the distance to the nearest cell that holds something: all cells less than that many cells
-// away, on whatever axis, are empty. So the walk leaps to where the ray leaves this cube: on one axis its cell is known; on the
-// others it follows from the position, but never lies before the last one. A cell of distance 1, and one that holds something, is
-// left by an ordinary step. Each step moves onward on at least one axis, so that a grid of nx × ny × nz cells is left after fewer
-// than nx + ny + nz steps. Should that bound ever be reached, all triangles are asked and the event is counted.
+// away, on any axis, are empty. So the walk skips to where the ray leaves this cube: on one axis its cell is known; on the others
+// it follows from the position, but never lies before the previous one. A cell at distance 1, or one that holds something, is left
+// by an ordinary step. Each step advances on at least one axis, so that a grid of nx × ny × nz cells is left after fewer than
+// nx + ny + nz steps. Should that bound ever be reached, all triangles are tested and the event is counted.
 //
 // # How far the walk can err
 //
-// In units of ε S as in lattice.rs: a reported hit lies up to 9 outside its triangle; the origin relative to the corner is rounded
-// by 1, in cells by 2, mirrored by 1; a crossing errs by 5 of way, 2 more in a nested grid, whose planes lie 1 off; a cell that
-// follows from a position, which errs by 5, may be entered too soon by as much (too late does no harm: it is left at once); a
-// component that is raised moves the ray by less than 1. Together that is less than the 32 by which cells are enlarged.
+// In units of ε S, as in lattice.rs: a reported hit lies up to 9 outside its triangle; the origin relative to the corner is rounded
+// by 1, in cells by 2, mirrored by 1; a crossing errs by 5 along the ray, 2 more in a nested grid, whose planes are off by 1; a
+// cell that follows from a position, which errs by 5, may be entered too soon by as much (too late does no harm: it is left at
+// once); a component that is raised moves the ray by less than 1. Together that is less than the 32 by which cells are enlarged.
 #pragma once
 
 #include "accel/grid/march.cuh"
@@ -26,21 +26,21 @@
 // A walk in progress.
 struct GridWalk {
     March march;
-    // The grid that it is in, its cell there, and the ray parameter at which the ray came there. That cannot be told from the cell:
-    // by rounding, a cell may be entered before its planes are crossed.
+    // The grid that it is in, its cell there, and the ray parameter at which the ray entered it. The parameter does not follow from
+    // the cell: by rounding, a cell may be entered before its planes are crossed.
     Cells cells;
     Vec3 cell;
     float t;
-    // Where the grid is left, or the visitor's limit where that comes first.
+    // Where the grid is left, or the visitor's limit if that comes first.
     float stop;
-    // Within a nested grid, and in which cell of the outer one.
+    // Whether the walk is in a nested grid, and in which cell of the outer one.
     bool nested;
     Vec3 outer;
-    // Steps left before something must be wrong.
+    // Steps left; if none are, something is wrong.
     unsigned steps;
 };
 
-// 1. Begins at the first cell; false where the ray misses the grid. Without a step where the walk cannot do with the numbers.
+// 1. Begins at the first cell; false if the ray misses the grid. If the walk cannot handle the numbers, it has no steps.
 DEVICE bool begin_walk(const Grid &grid, const March &march, float limit, GridWalk &walk) {
     walk.steps = 0;
     if (!can_march(march, grid.dims))
@@ -57,7 +57,7 @@ DEVICE bool begin_walk(const Grid &grid, const March &march, float limit, GridWa
     return walk.t <= leave;
 }
 
-// Goes on within the grid nested in the current cell; false where it cannot.
+// Continues within the grid nested in the current cell; false if it cannot.
 DEVICE bool enter_nested(const Grid &grid, GridWalk &walk, int offset, float limit) {
     const unsigned dims[3] = {(unsigned)__ldg(grid.cells + offset), (unsigned)__ldg(grid.cells + offset + 1),
                               (unsigned)__ldg(grid.cells + offset + 2)};
@@ -84,10 +84,10 @@ DEVICE void leave_nested(const Grid &grid, GridWalk &walk, float limit) {
     walk.nested = false;
 }
 
-// What a cell may hold beside an offset; where the ray ends; where the walk can do no more.
+// Besides offsets: the cell is empty; the ray ends; the walk cannot continue.
 enum Content { NOTHING = -1, END = -2, LOST = -3 };
 
-// 2. The offset of what the current cell holds; or that it is nothing, and how many cells on something may be.
+// 2. The offset of what the current cell holds; or that it holds nothing, and how many cells ahead something may be.
 DEVICE int look(const Grid &grid, const GridWalk &walk, float &ahead) {
     ahead = 1.0f;
     if (walk.steps == 0)
@@ -102,7 +102,7 @@ DEVICE int look(const Grid &grid, const GridWalk &walk, float &ahead) {
     return NOTHING;
 }
 
-// 3. Into the next cell, or over all that are less than `ahead` cells away; false where nothing beyond can matter.
+// 3. Steps into the next cell, or past all that are less than `ahead` cells away; false if nothing beyond can matter.
 DEVICE bool step(const Grid &grid, GridWalk &walk, float ahead, float limit) {
     Vec3 planes, next;
     float exit;
@@ -113,13 +113,13 @@ DEVICE bool step(const Grid &grid, GridWalk &walk, float ahead, float limit) {
         exit = fminf(next.x, fminf(next.y, next.z));
         if (exit < walk.stop)
             break;
-        // b. The end, or that of a nested grid; then the step is one of the outer grid.
+        // b. The end, or the end of a nested grid; then the step is one in the outer grid.
         if (!walk.nested)
             return false;
         leave_nested(grid, walk, limit);
         ahead = 1.0f;
     }
-    // c. On the other axes a leap may pass several planes.
+    // c. On the other axes, a skip may pass several planes.
     walk.t = fmaxf(walk.t, exit);
     if (ahead > 1.0f)
         walk.cell = cell_at(walk.t, walk.march.start, walk.march.speed, walk.cell, to_float(grid.dims) - splat(1.0f));
@@ -132,8 +132,8 @@ DEVICE bool step(const Grid &grid, GridWalk &walk, float ahead, float limit) {
 
 // Visits the triangles of all cells along the ray up to the visitor's limit.
 //
-// Where TOGETHER, all rays of a warp walk on until each has found something, and then look into it at once: good where what is met
-// first is mostly what is hit. Else rays that have found something look into it while the others wait.
+// If TOGETHER, all rays of a warp walk on until each has found something, and then examine it at the same time: faster if what is
+// met first is mostly what is hit. Otherwise, rays that have found something examine it while the others wait.
 template <bool TOGETHER, class Visitor>
 DEVICE void walk_cells(const Grid &grid, const Tally &tally, const Ray &ray, Visitor &visitor) {
     GridWalk walk;

@@ -1,13 +1,13 @@
-//! The walk along a ray through the cells: Amanatides, Woo: *A Fast Voxel Traversal Algorithm for Ray Tracing* (1987).
+//! The walk along a ray through the cells. Amanatides, Woo: *A Fast Voxel Traversal Algorithm for Ray Tracing* (1987).
 //!
-//! Crossing parameters are computed from the planes anew at each step, not summed up, so that their error does not grow.
-//! Each step moves one cell onward on one axis and never back: a grid of nx × ny × nz cells is left after at most
-//! nx + ny + nz − 2 cells. By rounding, a ray may come to a border of a nested grid before it leaves the cell that holds it; then
-//! it stays in its cell, once on each axis. The loop is bounded by nx + ny + nz + 1; should it ever end there, all triangles are
-//! asked and the event is counted, see [`Grid::overruns`].
+//! Crossing parameters are computed from the planes at each step, not accumulated, so that their error does not grow. Each step
+//! advances one cell on one axis and never goes back: a grid of nx × ny × nz cells is left after at most nx + ny + nz − 2 cells.
+//! By rounding, a ray may reach the border of a nested grid before it leaves the cell that contains that grid; then it stays in
+//! its cell, once on each axis. The loop is bounded by nx + ny + nz + 1; should that bound ever be reached, all triangles are
+//! tested and the event is counted, see [`Grid::overruns`].
 //!
-//! A triangle may be met in one cell and hit in a later one. The walk therefore keeps the best hit and ends only when it lies
-//! before the way out of the current cell.
+//! A triangle may be met in one cell and hit in a later one. The walk therefore keeps the best hit and ends only when that lies
+//! before the exit from the current cell.
 
 use glam::{IVec3, UVec3, Vec3};
 use lightmesh_layout::constants::LEAST_COMPONENT;
@@ -18,7 +18,7 @@ use crate::accel::visit::Visitor;
 /// How a walk through one grid ended.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Outcome {
-    /// It was left: there may be more to find.
+    /// The walk left the grid: there may be more to find.
     Left,
     /// There is nothing more to find.
     Done,
@@ -38,23 +38,23 @@ struct March {
 }
 
 impl March {
-    /// The cell, of those there are, nearest to where the ray is at `t`.
+    /// The existing cell nearest to where the ray is at `t`.
     #[inline(always)]
     fn cell(&self, t: f32) -> [i32; 3] {
         let cell = (self.origin + t * self.direction) / self.size;
         let last = self.dims.as_vec3() - 1.0;
-        // Where nothing is negative, cutting off the fraction is the floor, and faster.
+        // If nothing is negative, truncation equals the floor, and is faster.
         cell.max(Vec3::ZERO).min(last).as_ivec3().to_array()
     }
 
-    /// One cell onward on each axis.
+    /// One cell ahead on each axis.
     #[inline(always)]
     fn step(&self) -> [i32; 3] {
         let onward = |inverse: f32| if inverse > 0.0 { 1 } else { -1 };
         [onward(self.inverse.x), onward(self.inverse.y), onward(self.inverse.z)]
     }
 
-    /// Where the ray leaves `cell` on one axis; infinite where it does not move.
+    /// Where the ray leaves `cell` on one axis; infinite if it does not move.
     #[inline(always)]
     fn crossing(&self, axis: usize, cell: i32) -> f32 {
         let inverse = self.inverse[axis];
@@ -65,7 +65,7 @@ impl March {
         (plane - self.origin[axis]) * inverse
     }
 
-    /// Where the ray enters the box of all cells, not before its origin; `None` where it misses it.
+    /// Where the ray enters the box of all cells, not before its origin; `None` if it misses the box.
     fn enter(&self) -> Option<f32> {
         let extent = self.size * self.dims.as_vec3();
         let (mut enter, mut leave) = (0.0f32, f32::INFINITY);
@@ -143,7 +143,7 @@ impl Grid {
             };
             let exit = next[axis].min(leave);
 
-            // 3. Ask what the cell holds.
+            // 3. Test what the cell holds.
             let index = (cell[2] as usize * dims[1] as usize + cell[1] as usize) * dims[0] as usize + cell[0] as usize;
             match self.cell(base, index) {
                 Cell::Empty => {}
@@ -162,7 +162,7 @@ impl Grid {
                 }
             }
 
-            // 4. Nothing beyond this cell can matter?
+            // 4. Can nothing beyond this cell matter?
             if visitor.limit() <= exit {
                 return Outcome::Done;
             }

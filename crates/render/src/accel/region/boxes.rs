@@ -8,13 +8,14 @@ use lightmesh_scene::Bounds;
 pub(in crate::accel) struct Boxes<S: Simd> {
     pub(in crate::accel) low: [f32x8<S>; 3],
     pub(in crate::accel) high: [f32x8<S>; 3],
-    /// Added to how high each reaches above a plane, see [`TangentPlanes`](super::planes::TangentPlanes): 16 ε of the sum of its edges. Zero
-    /// for boxes that were enlarged by as much on each side.
+    /// Added to the height that each reaches above a plane, see
+    /// [`TangentPlanes`](super::planes::TangentPlanes): 16 ε times the sum of its edges. Zero for boxes that
+    /// were enlarged by as much on each side.
     pub(in crate::accel) loose: f32x8<S>,
 }
 
 impl<S: Simd> Boxes<S> {
-    /// Bit k: box k and `bounds` have a point in common. Nothing is rounded.
+    /// Bit k: box k and `bounds` have a point in common. There is no rounding.
     #[inline(always)]
     pub(super) fn overlapping(&self, simd: S, bounds: &Bounds) -> u32 {
         let mut met = 0xff;

@@ -1,17 +1,17 @@
-//! Parts of space that triangles are looked for in, and which boxes they may meet.
+//! Regions of space that are searched for triangles, and which boxes they may meet.
 //!
 //! Three forms: a box; all points [near](Region::near) a box of origins; the [shaft](Region::shaft) from a box of origins to the box
-//! around an emitter (Haines, Wallace: *Shaft Culling for Efficient Ray-Traced Radiosity*, 1991). Each may be cut off by
-//! [tangent planes](TangentPlanes) of the origins, since nothing below all of them hides anything from any: what is near then becomes
-//! a bundle of half-balls.
+//! around an emitter (Haines, Wallace: *Shaft Culling for Efficient Ray-Traced Radiosity*, 1991). Each may be cut off by the [tangent
+//! planes](TangentPlanes) of the origins, since nothing below all of them hides anything from any origin: the points near a box then
+//! become a union of half-balls.
 //!
 //! # What a structure may rely on
 //!
 //! [`Region::meets`] is true of every box that the region meets, and of few others. Rounding is on the safe side: each form says how,
-//! beside its test, and all have [`REGION_ROUNDING`] for it, 16 ε with ε = 2⁻²⁴. No box has to be enlarged for that; one whose planes
-//! are rounded, as those of a compressed node are, is enlarged by whoever computes it.
+//! next to its test, and all allow [`REGION_ROUNDING`] for it, 16 ε with ε = 2⁻²⁴. No box has to be enlarged for that; boxes whose
+//! planes are rounded, such as those of a compressed node, are enlarged where they are computed.
 //!
-//! Coordinates are finite and below 2¹⁰⁰, so that nothing overflows. Boxes may be flat or points. `region.cuh` is the twin.
+//! Coordinates are finite and below 2¹⁰⁰, so that nothing overflows. Boxes may be flat, or points. `region.cuh` is the twin.
 
 mod boxes;
 mod planes;
@@ -26,7 +26,7 @@ pub(super) use boxes::Boxes;
 pub use planes::TangentPlanes;
 use shaft::Shaft;
 
-/// A part of space that triangles are looked for in.
+/// A region of space that is searched for triangles.
 #[derive(Clone, Copy, Debug)]
 pub struct Region {
     form: Form,
@@ -39,13 +39,13 @@ pub struct Region {
 enum Form {
     /// The bounds themselves.
     Box,
-    /// What is near a box.
+    /// All points near a box.
     Near {
         origins: Bounds,
         /// A little more than the square of the distance.
         square: f32,
     },
-    /// What lies between two boxes.
+    /// The space between two boxes.
     Shaft(Shaft),
 }
 
@@ -57,8 +57,8 @@ impl Region {
 
     /// All points at most `reach` away from some point of `origins`.
     ///
-    /// Distances along the axes are rounded by a share ε, their squares by 3 ε in all, the sum by 2 ε more, and the square of
-    /// `reach` by 3 ε here: 16 ε cover these 8 ε. The smallest normal number covers squares that are none.
+    /// Distances along the axes have a relative error of ε, their squares 3 ε in all, the sum 2 ε more, and the square of `reach` 3 ε
+    /// here: 16 ε cover these 8 ε. The smallest normal number covers squares that are subnormal.
     pub fn near(origins: Bounds, reach: f32) -> Region {
         let square = reach * reach * (1.0 + REGION_ROUNDING) + f32::MIN_POSITIVE;
         let bounds = Bounds { min: below(origins.min - reach), max: above(origins.max + reach) };
@@ -74,7 +74,7 @@ impl Region {
         Region { form: Form::Shaft(Shaft::new(&origins, &emitter)), planes: TangentPlanes::NONE, bounds }
     }
 
-    /// What of it does not lie below all the planes; everything, where there are none.
+    /// The part that does not lie below all the planes; everything if there are none.
     pub fn above(self, planes: TangentPlanes) -> Region {
         Region { planes: planes.for_boxes_in(&self.bounds), ..self }
     }
@@ -84,12 +84,12 @@ impl Region {
         &self.bounds
     }
 
-    /// Whether its bounds may be far larger than itself, so that parts of it should be bounded [one by one](Self::between).
+    /// Whether its bounds may be far larger than the region itself, so that parts of it should be bounded [one by one](Self::between).
     pub(super) fn is_slanted(&self) -> bool {
         matches!(self.form, Form::Shaft(_))
     }
 
-    /// A box around all of its points whose coordinate on `axis` lies between `low` and `high`; empty where there are none.
+    /// A box around all of its points whose coordinate on `axis` lies between `low` and `high`; empty if there are none.
     pub(super) fn between(&self, axis: usize, low: f32, high: f32) -> Bounds {
         let mut bounds = match &self.form {
             Form::Shaft(shaft) => shaft.between(axis, low, high),

@@ -1,16 +1,16 @@
-//! The tangent planes of object points: what lies below all of them hides nothing.
+//! The tangent planes of surface points: what lies below all of them hides nothing.
 //!
-//! Points of one normal n have one plane: that through the lowest of them. A box reaches above it where its topmost corner does.
-//! Heights are along n above a corner common to all, so that they are small however far away the scene is.
+//! Points with the same normal n have one plane: that through the lowest of them. A box reaches above it if its topmost corner
+//! does. Heights are measured along n from a corner common to all, so that they are small however far the scene is from the origin.
 //!
 //! # What is rounded
 //!
 //! The height of a box's topmost corner is three differences, three products and two sums: off by at most 4.1 ε Σ |nᵢ| (Dᵢ + eᵢ),
-//! where eᵢ are the edges of the box, and Dᵢ how far the region goes from the corner, provided that the box overlaps the region's
-//! bounds. A point's height is off by 4.1 ε Σ |nᵢ| Dᵢ; so is the decision of a [short test](crate::accel::ShortTest) whether a
-//! triangle in the box lies above a point, which is to find nothing there that was dropped here: together less than 16 ε Σ |nᵢ| Dᵢ
-//! and 16 ε Σ |nᵢ| eᵢ. Heights of planes are lowered by the one; boxes bring the other, either as [`Boxes::loose`] or by being
-//! enlarged by 16 ε eᵢ.
+//! where eᵢ are the edges of the box, and Dᵢ how far the region extends from the corner, provided that the box overlaps the
+//! region's bounds. A point's height is off by 4.1 ε Σ |nᵢ| Dᵢ; so is the decision of a [short test](crate::accel::ShortTest)
+//! whether a triangle in the box lies above a point, and it must find nothing there that was discarded here. Together that is less
+//! than 16 ε Σ |nᵢ| Dᵢ plus 16 ε Σ |nᵢ| eᵢ. Heights of planes are lowered by the former; boxes contribute the latter, either as
+//! [`Boxes::loose`] or by being enlarged by 16 ε eᵢ.
 
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
@@ -22,7 +22,7 @@ use super::boxes::Boxes;
 
 const MOST: usize = TANGENT_PLANES as usize;
 
-/// Up to four planes; none stands for "nothing is known".
+/// Up to four planes; none means "nothing is known".
 #[derive(Clone, Copy, Debug)]
 pub struct TangentPlanes {
     count: usize,
@@ -33,11 +33,11 @@ pub struct TangentPlanes {
 }
 
 impl TangentPlanes {
-    /// Nothing is known: nothing lies below.
+    /// Nothing is known, so nothing lies below.
     pub const NONE: TangentPlanes =
         TangentPlanes { count: 0, corner: Vec3::ZERO, normals: [Vec3::ZERO; MOST], heights: [0.0; MOST] };
 
-    /// The planes through points with unit normals, lowered by `slack`; none where there are more than four normals. `corner` is a
+    /// The planes through points with unit normals, lowered by `slack`; none if there are more than four normals. `corner` is a
     /// point near all of them.
     pub fn new(corner: Vec3, points: impl IntoIterator<Item = (Vec3, Vec3)>, slack: f32) -> TangentPlanes {
         let mut planes = TangentPlanes { corner, ..TangentPlanes::NONE };
@@ -60,7 +60,7 @@ impl TangentPlanes {
         self.count == 0
     }
 
-    /// The same planes lowered by what is rounded for boxes that overlap `bounds`.
+    /// The same planes, lowered by the rounding for boxes that overlap `bounds`.
     pub(super) fn for_boxes_in(mut self, bounds: &Bounds) -> TangentPlanes {
         let far = (bounds.min - self.corner).abs().max((bounds.max - self.corner).abs());
         for (height, normal) in self.heights[..self.count].iter_mut().zip(&self.normals) {

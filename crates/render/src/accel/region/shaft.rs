@@ -1,15 +1,14 @@
 //! All segments between two boxes.
 //!
-//! At parameter t the points of all segments fill a box, (1 − t) A + t B, whose every face moves linearly from A's to B's. The shaft
-//! meets a box where for some t in [0, 1] the two overlap on every axis: six linear inequalities, each of which bounds t from
-//! above or from below.
+//! At parameter t the points of all segments fill a box, (1 − t) A + t B, whose every face moves linearly from A's to B's. The shaft meets
+//! a box if for some t in [0, 1] the two overlap on every axis: six linear inequalities, each of which bounds t from above or from below.
 //!
 //! # What is rounded
 //!
-//! A bound is a difference of coordinates times the reciprocal of another: off by a share of 4.1 ε, two for the differences, one each
-//! for reciprocal and product. It has its sign right. So where the largest lower bound and the smallest upper one are at most 1, and
-//! the one is not above the other, then not by more than 8.2 ε as they are computed: less than [`REGION_ROUNDING`]. Neither the boxes nor the
-//! distance from the world's origin matter.
+//! A bound is a difference of coordinates times the reciprocal of another: a relative error of 4.1 ε, two for the differences, one each
+//! for reciprocal and product. Its sign is right. So if the largest lower bound and the smallest upper one are at most 1, and the former
+//! is not above the latter, then as computed it exceeds the latter by at most 8.2 ε: less than [`REGION_ROUNDING`]. Neither the boxes nor
+//! the distance from the world's origin matter.
 
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
@@ -29,8 +28,8 @@ struct Faces {
 }
 
 impl Faces {
-    /// `still` has the sign of the way that faces go which stay where they are, and those that go less than the smallest normal
-    /// number: outward, then a face never moves past a box that it touches.
+    /// `still` has the sign given to the motion of faces that do not move, or move less than the smallest normal number: outward, so
+    /// that such a face never moves past a box that it touches.
     fn new(from: Vec3, to: Vec3, still: f32) -> Faces {
         let way = to - from;
         let moves = way.abs().cmpge(Vec3::splat(f32::MIN_POSITIVE));
@@ -78,9 +77,9 @@ impl Shaft {
         first.simd_le(last + REGION_ROUNDING).to_bitmask() as u32
     }
 
-    /// A box around what lies between two coordinates of an axis.
+    /// A box around the part between two coordinates of an axis.
     ///
-    /// A face at t is off by at most 4 ε (|from| + |to|): 2 ε of its way, ε of the sum, and ε where that is moved outward. That and
+    /// A face at t is off by at most 4 ε (|from| + |to|): 2 ε for its motion, ε for the sum, and ε for moving that outward. That and
     /// the 4.1 ε of t itself are less than [`REGION_ROUNDING`].
     pub(super) fn between(&self, axis: usize, low: f32, high: f32) -> Bounds {
         let (mut first, mut last) = (0.0f32, 1.0f32);

@@ -9,7 +9,7 @@ use super::{Random, grids, structures};
 use crate::accel::{Accelerator, BruteForce, Bvh, Hit, Ray, ShortSegments, ShortTest, Triangle};
 
 fn closest(accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<Hit> {
-    // Whatever the answer held before must not matter.
+    // Previous content must not matter.
     let mut hits = vec![Hit { t: 0.5, u: 0.5, v: 0.5, triangle: 0 }; rays.len()];
     accelerator.closest_hits(rays, &mut hits);
     hits
@@ -31,7 +31,7 @@ fn bits(hit: &Hit) -> [u32; 4] {
     bytemuck::cast(*hit)
 }
 
-/// All structures over a scene, and batches of rays that suit it; the number of rays that hit.
+/// Compares all structures over a scene on batches of rays that suit it. Returns the number of rays that hit.
 fn rays_agree(triangles: &[Triangle], mut batch: impl FnMut(&Targets) -> Vec<Ray>) -> Result<usize, TestCaseError> {
     let grids = grids(triangles);
     let rays = batch(&Targets { triangles, grids: &grids });
@@ -68,7 +68,7 @@ fn single_rays_agree(scene: Scene, seed: u64) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// By rounding, a ray that all but keeps to a plane came to the border of a nested grid before it left the cell around it, and the
+/// By rounding, a ray nearly parallel to a plane reached the border of a nested grid before it left the cell around it, and the
 /// walk through the nested grid ended there, before the hit.
 #[test]
 fn a_nested_grid_is_not_left_before_the_cell_that_holds_it() {

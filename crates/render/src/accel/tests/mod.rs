@@ -1,4 +1,4 @@
-//! Property tests: all structures answer with the same bits, on rays and scenes chosen to be hard.
+//! Property tests: all structures give the same bits, on rays and scenes chosen to be hard.
 
 mod agreement;
 mod closed;
@@ -56,7 +56,7 @@ fn grids(triangles: &[Triangle]) -> [Grid; 3] {
 
 type Named = (&'static str, Box<dyn Accelerator>);
 
-/// Every structure but the oracle, in several shapes, with a word for messages.
+/// Every structure but the reference, in several shapes, with a name for messages.
 fn structures(triangles: &[Triangle]) -> Vec<Named> {
     let bvh = Bvh::new(triangles);
     let slow = bvh.clone().at_level(fearless_simd::Level::baseline());

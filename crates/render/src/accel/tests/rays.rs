@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::Random;
 use crate::accel::{Grid, Ray, Triangle};
 
-/// What a scene offers to aim at.
+/// What rays can be aimed at in a scene.
 pub(super) struct Targets<'a> {
     pub(super) triangles: &'a [Triangle],
     pub(super) grids: &'a [Grid],
@@ -30,7 +30,7 @@ impl Targets<'_> {
         Ray { origin, direction, t_max: if random.below(3) == 0 { t_max } else { f32::INFINITY } }
     }
 
-    /// Neighbouring rays of one of many kinds, as many as fill no, one or some packets; a few of them spoiled or cut short.
+    /// Neighbouring rays of one of many kinds, enough to fill none, one or several packets; a few of them are spoiled or cut short.
     pub(super) fn bundle(&self, random: &mut Random) -> Vec<Ray> {
         let count = random.pick(&[1, 3, 4, 7, 8, 9, 31, 32, 33, 64, 77]);
         let (origin, target) = (self.around(random), self.point(random));
@@ -88,7 +88,7 @@ impl Targets<'_> {
         if random.below(3) == 0 { point.round() } else { point }
     }
 
-    /// Along an axis, half of them through a vertex: there boxes are only touched.
+    /// Along an axis, half of them through a vertex, where boxes are only touched.
     fn along_axis(&self, random: &mut Random) -> (Vec3, Vec3) {
         let direction = axis(random);
         let corners = self.corners(random);
@@ -141,7 +141,7 @@ fn axis(random: &mut Random) -> Vec3 {
     direction
 }
 
-/// Some components made zero, negative zero, tiny or subnormal; some directions very long or short.
+/// Makes some components zero, negative zero, tiny or subnormal, and some directions very long or short.
 fn spoiled(mut direction: Vec3, random: &mut Random) -> Vec3 {
     if random.below(4) == 0 {
         direction[random.below(3)] = random.pick(&[0.0, -0.0, 1e-30, -1e-12, 1e-42, -1e-45]);

@@ -1,4 +1,4 @@
-//! Searches by region: nothing is missed that meets the region, and little else is found.
+//! Searches by region: nothing that meets the region is missed, and little else is found.
 
 use std::collections::BTreeSet;
 
@@ -11,15 +11,15 @@ use super::{Random, structures};
 use crate::accel::grid::overlap::triangle_meets_box;
 use crate::accel::{Accelerator, BruteForce, Region, TangentPlanes, Triangle};
 
-/// A region as the oracle understands it, in double precision.
+/// A region as the reference understands it, in double precision.
 #[derive(Clone, Debug)]
 struct Asked {
     form: Form,
     origins: Bounds,
-    /// Points of `origins` with their normals; none where nothing is cut off.
+    /// Points of `origins` with their normals; none if nothing is cut off.
     points: Vec<(Vec3, Vec3)>,
     slack: f32,
-    /// How large the region is, where planes cut it off: more normals than four are not told apart.
+    /// How large the region is, if planes cut it off: more than four normals are not distinguished.
     far: Option<f64>,
 }
 
@@ -40,7 +40,7 @@ impl Asked {
         region.above(TangentPlanes::new(self.origins.min, self.points.iter().copied(), self.slack))
     }
 
-    /// Whether it meets a box, itself enlarged by a share `more` of all sizes.
+    /// Whether the region, enlarged by a share `more` of all sizes, meets a box.
     fn meets(&self, low: DVec3, high: DVec3, more: f64) -> bool {
         let [min, max] = [self.origins.min, self.origins.max].map(Vec3::as_dvec3);
         let met = match self.form {
@@ -67,7 +67,7 @@ impl Asked {
         })
     }
 
-    /// Whether a point of a triangle, of some that are tried, lies within.
+    /// Whether one of several random points of a triangle lies within.
     fn holds_a_point_of(&self, triangle: &Triangle, random: &mut Random) -> bool {
         let [a, b, c] = triangle.corners().map(Vec3::as_dvec3);
         if self.points.is_empty() && self.meets_triangle(triangle) {
@@ -83,7 +83,7 @@ impl Asked {
         })
     }
 
-    /// Whether a triangle meets one of the boxes that the form consists of, of some that are tried.
+    /// Whether a triangle meets one of several boxes that make up the form.
     fn meets_triangle(&self, triangle: &Triangle) -> bool {
         let [min, max] = [self.origins.min, self.origins.max].map(Vec3::as_dvec3);
         let meets =
@@ -158,7 +158,7 @@ impl Random {
     }
 }
 
-/// A scene, some far away, some with every triangle many times.
+/// A scene; some are far away, some have every triangle many times.
 fn triangles(scene: scenes::Scene, random: &mut Random) -> Vec<Triangle> {
     let all = scene.triangles(random);
     let offset = random.pick(&[Vec3::ZERO, Vec3::ZERO, Vec3::new(1e6, -1e6, 5e5)]);

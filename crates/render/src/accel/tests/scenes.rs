@@ -13,7 +13,7 @@ pub(super) enum Scene {
     Empty,
     One,
     Soup,
-    /// Triangles of sizes from 1e-3 to 1e3 together.
+    /// Triangles of sizes from 1e-3 to 1e3 mixed.
     Scales,
     /// Axis-aligned boxes with whole coordinates.
     Boxes,

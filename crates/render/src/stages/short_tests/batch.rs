@@ -1,4 +1,4 @@
-//! Eight object points of one cell at a time, one lane a point; light points and triangles are the same for all lanes.
+//! Eight surface points of one cell at a time, one per lane; light points and triangles are the same for all lanes.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ use crate::light_mesh::{CellPoints, LightMesh};
 use crate::simd::{Axes, LANES, cross, difference, dot, dot_along_x, scaled, splat};
 use crate::surface::SurfacePoint;
 
-/// Up to eight object points and, for each light point of the template, the lanes that still see it.
+/// Up to eight surface points and, for each light point of the template, the lanes that still see it.
 pub(super) struct Batch {
     position: [[f32; LANES]; 3],
     origin: [[f32; LANES]; 3],
@@ -30,7 +30,7 @@ impl Batch {
         Batch { position: lanes(), origin: lanes(), normal: lanes(), lanes: 0, seen }
     }
 
-    /// Takes in object points, at most eight.
+    /// Loads surface points, at most eight.
     pub(super) fn fill(&mut self, points: &[SurfacePoint]) {
         self.lanes = 0;
         for (lane, point) in points.iter().enumerate() {
@@ -43,7 +43,7 @@ impl Batch {
         }
     }
 
-    /// The masks of the object points, one after the other.
+    /// The masks of the surface points, one after the other.
     #[inline(always)]
     pub(super) fn masks<S: Simd>(
         &mut self,
@@ -56,7 +56,7 @@ impl Batch {
         // 1, 2. The half-balls.
         let sizes = self.half_balls(simd, mesh, points);
 
-        // 3. What stands in their way.
+        // 3. What blocks their segments.
         let mut tested = 0;
         for candidate in &triangles.candidates {
             if let Some((occluders, lanes)) = self.occluders(simd, mesh, &candidate.corners) {
@@ -100,7 +100,7 @@ impl Batch {
     }
 
     /// [`ShortTest::occluder`](crate::accel::ShortTest::occluder) in each lane, with the same operations in the same order, and
-    /// the lanes in which there is one.
+    /// the lanes that have an occluder.
     #[inline(always)]
     fn occluders<S: Simd>(&self, simd: S, mesh: &LightMesh, corners: &[Vec3; 3]) -> Option<(Occluders<S>, u8)> {
         let zero = f32x8::splat(simd, 0.0);
@@ -141,7 +141,7 @@ impl Batch {
         let origin = self.load(simd, &self.origin);
         let Occluders { sides: [a, b, c], volume, .. } = *occluders;
         for row in rows {
-            // Rows are passed over eight points at a time where no lane sees any of them, or none lies in a shadow.
+            // Eight points of a row are skipped at a time if no lane sees any of them, or none lies in a shadow.
             let (mut next, end) = (usize::from(row.start), usize::from(row.end));
             while next < end {
                 let (first, count) = (next, 8.min(end - next));
@@ -175,7 +175,7 @@ impl Batch {
         u64::from_le_bytes(bytes) & wanted != 0
     }
 
-    /// From lanes by light point to light points by lane: the masks, `words` for each object point.
+    /// Turns lanes per light point into light points per lane: the masks, `words` for each surface point.
     #[inline(always)]
     fn write(&self, words: usize, masks: &mut [u32]) {
         for (group, seen) in self.seen[..words * 32].chunks_exact(8).enumerate() {
@@ -200,13 +200,13 @@ impl Batch {
 struct Occluders<S: Simd> {
     sides: [Axes<S>; 3],
     volume: f32x8<S>,
-    /// Far above the rounding of the products with each side, which is a few ε of the same.
+    /// Far above the rounding of the products with each side, which is a few ε of the same size.
     slack: Axes<S>,
 }
 
 impl<S: Simd> Occluders<S> {
-    /// The lanes in which a light point between two on a line along x can be hidden. The functions that decide are linear:
-    /// their largest values on the line are at its ends.
+    /// The lanes in which a light point between two on a line along x can be hidden. The deciding functions are linear: their
+    /// largest values on the line are at its ends.
     #[inline(always)]
     fn reach(&self, simd: S, origin: Axes<S>, (low, high): (Vec3, Vec3)) -> u8 {
         let [a, b, c] = self.sides;
@@ -231,7 +231,7 @@ fn length<S: Simd>(a: Axes<S>) -> f32x8<S> {
     a[0].abs() + a[1].abs() + a[2].abs()
 }
 
-/// The 8×8 bit matrix mirrored at its diagonal (Warren: *Hacker's Delight*, 7-3). Bit j of byte i goes to bit i of byte j.
+/// The 8×8 bit matrix transposed (Warren: *Hacker's Delight*, 7-3). Bit j of byte i goes to bit i of byte j.
 #[inline(always)]
 fn transposed(mut x: u64) -> u64 {
     for (shift, bits) in [(7, 0x00aa_00aa_00aa_00aa), (14, 0x0000_cccc_0000_cccc), (28, 0x0000_0000_f0f0_f0f0)] {

@@ -1,9 +1,9 @@
-// The short tests by cell, a warp for up to 32 surface points: twin of cells.rs (which triangles can matter, each with the box of
+// The short tests by cell, one warp for up to 32 surface points: twin of cells.rs (which triangles can matter, each with the box of
 // light points that its shadow can reach) and batch.rs (lanes are surface points; triangle and light point are the same for all).
 //
 // 1, 2. The half-balls: half_balls.cuh.
-// 3. What stands in the way: triangles are found (accel/search.cuh), those that can matter chosen (candidates.cuh), and the light
-//    points that they may hide tested (targets.cuh), round by round.
+// 3. Occluders: triangles are found (accel/search.cuh), those that can matter are chosen (candidates.cuh), and the light points that
+//    they may hide are tested (targets.cuh), round by round.
 // 4. The masks: masks.cuh.
 #pragma once
 
@@ -14,7 +14,7 @@
 #include "stages/short_tests/masks.cuh"
 #include "stages/short_tests/targets.cuh"
 
-// 3. What stands in the way. Returns whether the lane asked any triangle.
+// 3. Occluders. Returns whether the lane tested any triangle.
 template <class Structure>
 DEVICE bool test_occluders(const ShortTests &args, const Structure &structure, const CellItem &item, const ItemLane &lane,
                            const CellMemory &memory) {
@@ -40,7 +40,7 @@ DEVICE bool test_occluders(const ShortTests &args, const Structure &structure, c
 template <bool SHARED_MASKS, class Structure>
 DEVICE void short_tests_of_item(const ShortTests &args, const Structure &structure) {
     DYNAMIC_SHARED(unsigned, shared);
-    // The last come first: slow items are more often in the lower part of a picture (in Childpark this saves a tenth), and where one
+    // The last come first: slow items are more often in the lower part of an image (in Childpark this saves a tenth), and if one
     // begins late, the device waits for it alone.
     const unsigned long long index = args.first_item + (args.item_count - 1 - blockIdx.x);
     const CellMemory memory = cell_memory<SHARED_MASKS>(args, structure, shared, index);
@@ -51,7 +51,7 @@ DEVICE void short_tests_of_item(const ShortTests &args, const Structure &structu
     // 1, 2. The half-balls.
     const unsigned size = half_balls(args.mesh, shape, own, memory.seen);
     __syncwarp();
-    // 3. What stands in their way.
+    // 3. Occluders.
     const bool asked = test_occluders(args, structure, shape, own, memory);
 
     // 4. The masks, and what was counted.

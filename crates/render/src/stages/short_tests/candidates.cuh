@@ -1,4 +1,4 @@
-// The triangles that can hide light points from an item's surface points, each with the box of those: twin of cells.rs.
+// The triangles that can hide light points from an item's surface points, each with the box of these light points: twin of cells.rs.
 #pragma once
 
 #include "light_mesh/lattice.cuh"
@@ -24,7 +24,7 @@ DEVICE bool is_behind(const CellItem &item, const Vec3 &a, const Vec3 &b, const 
     for (unsigned i = 0; i < item.planes.count; i++) {
         const float4 plane = item.planes.memory->planes[i];
         const Vec3 normal = {plane.x, plane.y, plane.z};
-        // Relative to the box, so that rounding is of the size of the box and the triangle: 8 ε bounds that of both products.
+        // Relative to the box, so that rounding is relative to the size of the box and the triangle: 8 ε bounds that of both products.
         const float top = fmaxf(fmaxf(dot(normal, from_a), dot(normal, from_b)), dot(normal, from_c));
         behind &= top + 8.0f * UNIT_ROUNDOFF * dot(abs(normal), size) < plane.w;
     }
@@ -32,19 +32,19 @@ DEVICE bool is_behind(const CellItem &item, const Vec3 &a, const Vec3 &b, const 
 }
 
 // One axis of the box of light points, as offsets from the cell, that a triangle can hide from the item's surface points: see
-// `shadow_box` in cells.rs. `most` is the farthest that a shadow is stretched.
+// `shadow_box` in cells.rs. `most` is the largest factor by which a shadow is stretched.
 DEVICE Span span_to(float low, float high, float a, float b, float c, float slack) {
     return Span{fminf(fminf(a, b), c) - high - slack, fmaxf(fmaxf(a, b), c) - low + slack};
 }
 
-// How far all q - P are from zero, at least.
+// A lower bound on the distance of all q - P from zero.
 DEVICE float distance_apart(const Span &x, const Span &y, const Span &z) {
     const Vec3 apart = {fmaxf(fmaxf(x.low, -x.high), 0.0f), fmaxf(fmaxf(y.low, -y.high), 0.0f),
                         fmaxf(fmaxf(z.low, -z.high), 0.0f)};
     return sqrtf(dot(apart, apart));
 }
 
-// The largest s for which s (q - P) can be within reach; boundless where the triangle may touch an origin.
+// The largest s for which s (q - P) can be within reach; unbounded if the triangle may touch an origin.
 DEVICE float most_stretch(float apart, float reach) { return apart > reach * 1e-20f ? reach / apart : 1e20f; }
 
 DEVICE void stretch(Span &span, float most, float reach) {
@@ -62,8 +62,7 @@ DEVICE void span_in_steps(const LightMesh &mesh, float inverse_step, const Span 
     last = min(__float2int_rd((high + span.high + mesh.slack - corner) * inverse_step), mesh.reach);
 }
 
-// The box of light points that a triangle can hide, packed: six numbers of five bits, each offset + BOX_BIAS; `false` where there is
-// none.
+// The box of light points that a triangle can hide, packed: six numbers of five bits, each offset + BOX_BIAS; `false` if there is none.
 DEVICE bool shadow_box(const LightMesh &mesh, const CellItem &item, const Vec3 &a, const Vec3 &b, const Vec3 &c, unsigned &box,
                        Span &own_x, Span &own_y, Span &own_z, float &most) {
     const float reach = mesh.radius + mesh.slack;
@@ -74,7 +73,7 @@ DEVICE bool shadow_box(const LightMesh &mesh, const CellItem &item, const Vec3 &
     own_x = x;
     own_y = y;
     own_z = z;
-    // 2. All s (q - P) within the ball. A boundless s leaves the ball's own box.
+    // 2. All s (q - P) within the ball. An unbounded s leaves the box of the ball itself.
     const float apart = distance_apart(x, y, z);
     if (apart > reach)
         return false;
@@ -97,8 +96,8 @@ DEVICE int box_bound(unsigned box, int index) {
     return (int)(box >> 5 * index & 31) - BOX_BIAS;
 }
 
-// 3. b. Lanes take up to 32 of the triangles found; those that can matter are kept as candidates. Returns how many rows of
-// light points the lane's candidate reaches, candidates being in the order of the lanes; `count` becomes their number.
+// 3. b. Lanes take up to 32 of the triangles found; those that can matter are kept as candidates. Returns how many rows of light
+// points the lane's candidate reaches; candidates are in the order of the lanes, and `count` becomes their number.
 DEVICE unsigned choose_candidates(const LightMesh &mesh, const CellItem &item, const Triangle *triangles, const CellMemory &memory,
                                   unsigned first, unsigned &count) {
     const unsigned lane = lane_of_thread();

@@ -1,11 +1,11 @@
-// An item as the short tests see it: what is the same for the whole warp.
+// An item as the short tests see it: data that are the same for the whole warp.
 #pragma once
 
 #include "accel/region.cuh"
 #include "light_mesh/bricks.cuh"
 #include "stages/cells/item.cuh"
 
-// What is the same for the whole warp.
+// Data that are the same for the whole warp.
 struct CellItem {
     IVec3 cell;
     // The box around all origins.

@@ -1,8 +1,8 @@
-//! The short tests by cell: the triangles that can stand between the points of a cell and their light points are looked up
-//! once a cell, each with the box of light points that its shadow can reach.
+//! The short tests by cell: the triangles that can stand between the points of a cell and their light points are searched for
+//! once per cell, each with the box of light points that its shadow can reach.
 //!
-//! An object point drops those that lie on or behind its tangent plane. If none is left, its whole half-ball is visible
-//! without a single test: so it is for most points of a scene with open spaces.
+//! A surface point discards those that lie on or behind its tangent plane. If none is left, its whole half-ball is visible
+//! without a single test: this is the case for most points of a scene with open spaces.
 
 use std::ops::Range;
 
@@ -14,19 +14,19 @@ use crate::light_mesh::LightMesh;
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
 
-/// A triangle that may block segments which start in one cell.
+/// A triangle that may block segments that start in a cell.
 pub(super) struct Candidate {
     pub(super) corners: [Vec3; 3],
-    /// Where its rows are in [`CellOccluders::rows`].
+    /// The range of its rows in [`CellOccluders::rows`].
     rows: Range<usize>,
 }
 
-/// The triangles that can block a segment which starts in one cell.
+/// The triangles that can block segments that start in a cell.
 #[derive(Default)]
 pub(super) struct CellOccluders {
     found: Vec<u32>,
     pub(super) candidates: Vec<Candidate>,
-    /// Runs of bits of the template.
+    /// Runs of template bits.
     rows: Vec<Range<u16>>,
 }
 
@@ -55,7 +55,7 @@ impl CellOccluders {
         }
     }
 
-    /// The light points that `candidate` can hide from an object point of the cell, as runs of bits: neighbours along x.
+    /// The light points that `candidate` can hide from a surface point of the cell, as runs of bits: neighbours along x.
     #[inline(always)]
     pub(super) fn rows(&self, candidate: &Candidate) -> &[Range<u16>] {
         &self.rows[candidate.rows.clone()]
@@ -82,11 +82,11 @@ fn plane_is_near([a, b, c]: &[Vec3; 3], region: &Bounds, reach: f32) -> bool {
     apart <= 0.0 || apart * apart <= reach * reach * normal.length_squared()
 }
 
-/// The box of light points, as offsets from `cell`, that a triangle can hide from a point in `origins`; `None` where there is
-/// no such light point.
+/// The box of light points, as offsets from `cell`, that a triangle can hide from a point in `origins`; `None` if there is no
+/// such light point.
 ///
 /// A hidden light point lies at P + s·(q − P) with P in `origins`, q on the triangle and s ≥ 1. It is nearer to P than the
-/// radius r, so s is at most r over the distance between the box and the triangle.
+/// radius r, so s is at most r divided by the distance between the box and the triangle.
 #[inline(always)]
 fn shadow_box(mesh: &LightMesh, cell: IVec3, origins: &Bounds, [a, b, c]: &[Vec3; 3]) -> Option<(IVec3, IVec3)> {
     let slack = Vec3::splat(mesh.slack());
@@ -94,7 +94,7 @@ fn shadow_box(mesh: &LightMesh, cell: IVec3, origins: &Bounds, [a, b, c]: &[Vec3
     // 1. All q − P.
     let low = a.min(*b).min(*c) - origins.max - slack;
     let high = a.max(*b).max(*c) - origins.min + slack;
-    // 2. All s·(q − P) within the ball. An infinite s leaves the ball's own box.
+    // 2. All s·(q − P) within the ball. An infinite s leaves the box of the ball itself.
     let apart = low.max(-high).max(Vec3::ZERO).max_element();
     if apart > reach.x {
         return None;

@@ -1,4 +1,4 @@
-//! Step 2 on the CPU: groups, then masks run by run.
+//! Step 2 on the CPU: masks, one run of cells after another.
 
 use fearless_simd::{Level, prelude::*};
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ use crate::settings::ShortTests;
 use crate::simd::{LANES, dispatch};
 use crate::surface::SurfacePoint;
 
-/// Object points that one task takes.
+/// Surface points per task.
 const RUN: usize = 4096;
 
 pub(crate) fn short_tests(wave: &HostWave, cells: &CellGroups, mesh: &LightMesh) -> Masks {

@@ -1,4 +1,4 @@
-//! Step 2 on a CUDA device: a warp for up to 32 surface points of one cell.
+//! Step 2 on a CUDA device: one warp for up to 32 surface points of a cell.
 
 use lightmesh_layout::constants::{
     CANDIDATE_WORDS, CANDIDATES, FOUND_TRIANGLES, LISTED_TARGETS, PLANE_WORDS, TARGET_WORDS,
@@ -16,14 +16,14 @@ use crate::settings;
 
 const HALF_BALLS: Kernel = Kernel { module: "short_tests", name: "half_balls_of_items" };
 const BY_CELL: PerStructure = per_structure!("short_tests", "short_tests_by_cell");
-/// For templates whose masks do not fit into shared memory: they stay where they end up anyway.
+/// For templates whose masks do not fit into shared memory: the masks stay in global memory, where they end up anyway.
 const BY_CELL_LARGE: PerStructure = per_structure!("short_tests", "short_tests_by_cell_large");
 const PLAIN: PerStructure = per_structure!("short_tests", "short_tests_plain");
-/// Warps of a block that tests.
+/// Warps per block of the tests.
 const WARPS: u32 = 1;
 /// Shared memory that every device gives a block, bytes.
 const SHARED_MEMORY: u32 = 48 << 10;
-/// Items of the first launches ever.
+/// Items of the very first launches.
 const FIRST_ITEMS: u64 = 1024;
 
 pub(crate) fn short_tests<R: Runtime>(
@@ -72,8 +72,8 @@ pub(crate) fn short_tests<R: Runtime>(
     Ok(DeviceMasks { masks, words })
 }
 
-/// Shared memory of a warp that tests by cell, in 32-bit words, its masks apart: candidates and targets of one round, tangent planes,
-/// triangles found, and `search` words that the search for them takes. See `cell_memory` in `memory.cuh`.
+/// Shared memory of a warp that tests by cell, in 32-bit words, without its masks: candidates and targets of one round, tangent
+/// planes, triangles found, and `search` words that the search for them needs. See `cell_memory` in `memory.cuh`.
 fn shared_words(search: u32) -> u32 {
     CANDIDATE_WORDS * CANDIDATES + TARGET_WORDS * (LISTED_TARGETS + 1) + PLANE_WORDS + FOUND_TRIANGLES + search
 }

@@ -1,4 +1,4 @@
-// The half-balls of an item's object points: conditions 1 and 2 of formula (2).
+// The half-balls of an item's surface points: conditions 1 and 2 of formula (2).
 #pragma once
 
 #include "light_mesh/lattice.cuh"
@@ -6,17 +6,17 @@
 #include "stages/short_tests/cell_item.cuh"
 #include "stages/short_tests/span.cuh"
 
-// What formula (2) makes of one lane's object point and a light point: conditions 1 and 2.
+// Whether a light point satisfies conditions 1 and 2 of formula (2) for a surface point.
 DEVICE bool in_half_ball(const LightMesh &mesh, const SurfacePoint &point, const Vec3 &light_point) {
     const Vec3 d = light_point - point.position;
     return (d.z * d.z + d.y * d.y) + d.x * d.x < mesh.radius * mesh.radius && dot_along_x(point.normal, d) > mesh.least_height;
 }
 
-// 1, 2. The half-balls: conditions 1 and 2 of formula (2). Returns how many light points the lane's has.
+// 1, 2. The half-balls: conditions 1 and 2 of formula (2). Returns how many light points the lane's half-ball has.
 //
-// Lanes take a light point each and bound the two conditions over all object points of the item. Few light points are left that some
-// object points use and others do not: the warp asks all for those. Rounding is monotonic and the bounds follow the order of
-// operations of `in_half_ball`, so they hold bit by bit.
+// Each lane takes a light point and bounds the two conditions over all surface points of the item. For the few light points that may
+// be in some half-balls but not in others, the warp tests all surface points. Rounding is monotonic and the bounds follow the order
+// of operations of `in_half_ball`, so they hold bit by bit.
 DEVICE unsigned half_balls(const LightMesh &mesh, const CellItem &item, const ItemLane &lane, unsigned *seen) {
     const SurfacePoint &point = lane.point;
     const Span x = warp_span(point.position.x), y = warp_span(point.position.y), z = warp_span(point.position.z);

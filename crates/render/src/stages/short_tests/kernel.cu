@@ -1,8 +1,8 @@
 // Step 2 on a CUDA device: which light points does each surface point see? Formula (2).
 //
-// 1. `short_tests_by_cell_*`: twin of cells.rs and batch.rs, a warp an item.
-// 2. `half_balls_of_items`, `short_tests_plain_*`: twin of plain.rs, the oracle: every segment walks through the acceleration
-//    structure.
+// 1. `short_tests_by_cell_*`: twin of cells.rs and batch.rs, one warp per item.
+// 2. `half_balls_of_items`, `short_tests_plain_*`: twin of plain.rs, the reference: every segment walks through the
+//    acceleration structure.
 #include "cuda/prelude.cuh"
 
 #include "stages/short_tests/by_cell.cuh"

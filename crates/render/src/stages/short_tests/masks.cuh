@@ -1,4 +1,4 @@
-// What short tests leave behind.
+// The results of short tests.
 #pragma once
 
 #include "cuda/tally.cuh"
@@ -16,7 +16,7 @@ DEVICE unsigned write_masks(const ShortTests &args, unsigned long long index, co
     return used;
 }
 
-// Adds what a warp counted. `used` may be of any part of the warp's masks, the others are of the lane.
+// Adds what a warp counted. `used` may count any part of the warp's masks, the others count the lane's.
 DEVICE void count_short_tests(const Tally &tally, unsigned half_ball, unsigned used, unsigned tested) {
     Counters &shard = tally_shard(tally);
     count(shard.half_ball, half_ball);

@@ -4,20 +4,20 @@
 #include "accel/search.cuh"
 #include "stages/short_tests/cell_item.cuh"
 
-// What comes after the last of them.
+// Follows the last target.
 #define NO_TARGET 0xffffffffu
 
 // A triangle that can matter: its corners, and all q - P with q on it and P an origin of the item.
 struct Candidate {
-    // The unused parts: the packed box of light points that it can hide, then low and high x of q - P.
+    // The w components hold the packed box of light points that it can hide, then low and high x of q - P.
     float4 corners[3];
-    // Low and high y, low and high z; and their reciprocals.
+    // Low and high y, low and high z, and their reciprocals.
     float4 span_yz, inverse_yz;
-    // The farthest that its shadow is stretched, and the reciprocal of the number of lines in a plane of its box.
+    // The largest factor by which its shadow is stretched, and the reciprocal of the number of lines in a plane of its box.
     float4 most;
 };
 
-// A light point that a candidate may hide: its position, and packed its template point and its candidate.
+// A light point that a candidate may hide: its position, and its template point and its candidate, packed.
 typedef float4 Target;
 
 static_assert(sizeof(Candidate) == 4 * CANDIDATE_WORDS, "words of a candidate");
@@ -25,19 +25,19 @@ static_assert(sizeof(Target) == 4 * TARGET_WORDS, "words of a target");
 
 // The shared memory of one warp.
 struct CellMemory {
-    // For each template point the lanes that see it. In global memory where the template is too large.
+    // For each template point, the lanes that see it. In global memory if the template is too large.
     unsigned *seen;
     Candidate *candidates;
     Target *targets;
     PlanesMemory *planes;
-    // Triangles found and not yet looked at, and what the search for more needs.
+    // Triangles found but not yet processed, and the memory of the search for more.
     unsigned *found;
     unsigned *search;
 };
 
-// Cuts a block's shared memory up, as `shared_words` in cuda.rs counts it. A block is one warp: items differ in cost, and a block
-// keeps its place until its last warp is done. Whether masks are kept there is known to the compiler, which then knows what kind of
-// memory they are in.
+// Divides a block's shared memory, as `shared_words` in cuda.rs counts it. A block is one warp: items differ in cost, and a block
+// keeps its place until its last warp is done. Whether masks are kept in it is a template parameter, so that the compiler knows
+// what kind of memory they are in.
 template <bool SHARED_MASKS, class Structure>
 DEVICE CellMemory cell_memory(const ShortTests &args, const Structure &structure, unsigned *shared, unsigned long long item) {
     const unsigned candidates = CANDIDATE_WORDS * CANDIDATES, targets = TARGET_WORDS * (LISTED_TARGETS + 1);

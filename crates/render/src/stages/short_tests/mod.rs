@@ -1,14 +1,14 @@
-//! Step 2: which light points does each object point see? Formula (2).
+//! Step 2: which light points does each surface point see? Formula (2).
 //!
-//! In: rays and hits. Out: [`Masks`]. Light point k of the template belongs to the half-ball D(P, r) of object point P when
+//! In: rays and hits. Out: [`Masks`]. Light point k of the template belongs to the half-ball D(P, r) of surface point P when
 //!
 //! 1. |x − P| < r,
 //! 2. (n, x − P) > ε h (see [`LightMesh::least_height`]),
 //! 3. no triangle stands between P and x, by [`ShortTest`](crate::accel::ShortTest).
 //!
-//! Object points are grouped by light-mesh cell, because all points of a cell share their template, its positions and the
-//! triangles that can matter. [`cells`] uses that; [`plain`] asks the acceleration structure segment by segment and is the
-//! oracle: both give the same masks in every bit, and so do their twins on a CUDA device (`by_cell.cuh`, `plain.cuh`).
+//! Surface points are grouped by light-mesh cell, because all points of a cell share their template, its positions and the
+//! triangles that can matter. [`cells`] uses that; [`plain`] queries the acceleration structure segment by segment and is the
+//! reference: both give the same masks in every bit, and so do their twins on a CUDA device (`by_cell.cuh`, `plain.cuh`).
 
 mod batch;
 pub(crate) mod cells;
@@ -21,14 +21,14 @@ mod tests;
 #[cfg(doc)]
 use crate::light_mesh::LightMesh;
 
-/// What was counted while masks were made.
+/// Counts from the computation of masks.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MaskCounts {
     /// Light points in the half-balls, before visibility.
     pub half_ball: u64,
     /// Light points in the masks.
     pub used: u64,
-    /// Segments for which triangles were asked.
+    /// Segments that were tested against triangles.
     pub tested: u64,
 }
 

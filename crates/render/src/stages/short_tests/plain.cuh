@@ -1,6 +1,6 @@
-// The plain short tests: every segment through the acceleration structure. The oracle: twin of plain.rs.
+// The plain short tests: every segment through the acceleration structure. The reference: twin of plain.rs.
 //
-// The half-balls are a kernel of their own: together both would need more registers than there are, and the walk would pay for it.
+// The half-balls are a separate kernel: a single one would need more registers than there are, and the walk would pay for it.
 #pragma once
 
 #include "accel/walk.cuh"
@@ -13,7 +13,7 @@ DEVICE void half_balls_of_item(const ShortTests &args) {
     const Item item = args.items[index];
     CellItem shape;
     shape.cell = point_of(item.cell);
-    // Whether planes are shared does not pay here.
+    // Finding out whether planes are shared does not pay here.
     shape.planes.count = 0;
     const ItemLane own = lane_of_item(args.scene, args.rays, args.hits, args.members, item);
     const unsigned size = half_balls(args.mesh, shape, own, args.masks + index * 32 * args.mesh.words);
@@ -49,7 +49,7 @@ DEVICE void short_tests_plain(const ShortTests &args, const Structure &structure
         }
     }
     __syncwarp();
-    // 4. The masks are where they belong; what was counted.
+    // 4. The masks are already in place; add the counts.
     unsigned used = 0;
     for (unsigned k = lane; k < 32 * mesh.words; k += WARP)
         used += __popc(seen[k]);

@@ -1,4 +1,4 @@
-//! The plain short tests: every segment through the acceleration structure. The oracle.
+//! The plain short tests: every segment through the acceleration structure. The reference.
 
 use glam::Vec3;
 
@@ -10,7 +10,7 @@ use crate::light_mesh::{CellPoints, LightMesh};
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
 
-/// Room for the segments of one object point.
+/// Room for the segments of one surface point.
 #[derive(Default)]
 pub(crate) struct Scratch {
     bits: Vec<usize>,
@@ -18,7 +18,7 @@ pub(crate) struct Scratch {
     blocked: Vec<bool>,
 }
 
-/// The mask of one object point, cell by cell.
+/// The mask of one surface point, cell by cell.
 pub(crate) fn mask(
     scene: &PreparedScene,
     mesh: &LightMesh,
@@ -47,7 +47,7 @@ pub(crate) fn mask(
     MaskCounts { half_ball: bits.len() as u64, used: population(mask), tested: bits.len() as u64 }
 }
 
-/// Conditions 1 and 2 of formula (2), one light point after the other.
+/// Conditions 1 and 2 of formula (2), one light point after another.
 fn half_ball(mesh: &LightMesh, points: &CellPoints, point: &SurfacePoint, mask: &mut [u32]) {
     mask.fill(0);
     for bit in 0..mesh.template.len() {

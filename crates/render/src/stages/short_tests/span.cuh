@@ -20,5 +20,5 @@ DEVICE Span squared(const Span &a) {
     return Span{least * least, most * most};
 }
 
-// All values of a lane's variable over the warp.
+// The interval of a variable's values over the warp.
 DEVICE Span warp_span(float value) { return Span{warp_min(value), warp_max(value)}; }

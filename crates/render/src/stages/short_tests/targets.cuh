@@ -1,4 +1,4 @@
-// The light points that candidates may hide, and their tests: lanes are object points, triangle and light point are the same
+// The light points that candidates may hide, and their tests: lanes are surface points, triangle and light point are the same
 // for all, as in batch.rs.
 #pragma once
 
@@ -6,7 +6,7 @@
 #include "stages/short_tests/memory.cuh"
 #include "stages/short_tests/span.cuh"
 
-// Narrows the range of s to where s [low, high] can meet [from, to]. The reciprocals stand for divisions.
+// Narrows the range of s to where s [low, high] can meet [from, to]. Reciprocals replace divisions.
 DEVICE void narrow(float low, float high, float inverse_low, float inverse_high, float from, float to, float &least, float &most) {
     // s high >= from. No branches: lanes differ.
     const float at_high = from * inverse_high, at_low = to * inverse_low;
@@ -19,15 +19,15 @@ DEVICE void narrow(float low, float high, float inverse_low, float inverse_high,
 
 // The light points of one row that a candidate may hide and that some lane still sees: one bit each, from the row's first point.
 //
-// A hidden light point lies at P + s (q - P) with s >= 1 (`shadow_box` in cells.rs). Its y and z, which the row knows, narrow s; that
-// narrows its x.
+// A hidden light point lies at P + s (q - P) with s >= 1 (`shadow_box` in cells.rs). Its y and z, which are known for the row, narrow
+// s; that in turn narrows its x.
 DEVICE unsigned row_targets(const LightMesh &mesh, const CellItem &item, const Candidate &candidate, float py, float pz,
                             unsigned bit, int count, int x, const unsigned *seen) {
     const float4 yz = candidate.span_yz, inverse = candidate.inverse_yz;
     float least = 1.0f, most = candidate.most.x;
     narrow(yz.x, yz.y, inverse.x, inverse.y, py - item.high.y - mesh.slack, py - item.low.y + mesh.slack, least, most);
     narrow(yz.z, yz.w, inverse.z, inverse.w, pz - item.high.z - mesh.slack, pz - item.low.z + mesh.slack, least, most);
-    // Products are rounded, by far less than this.
+    // The rounding of products is far less than this.
     if (least > most * 1.000001f)
         return 0;
     const float low_x = candidate.corners[1].w, high_x = candidate.corners[2].w;
@@ -42,15 +42,15 @@ DEVICE unsigned row_targets(const LightMesh &mesh, const CellItem &item, const C
     return targets;
 }
 
-// Whether a triangle may stand between a light point and an object point of the item: whether the light point, looking through the
-// triangle, sees any of the box around the origins beyond it.
+// Whether a triangle may stand between a light point and a surface point of the item: whether the light point, looking through the
+// triangle, sees any part of the box around the origins behind it.
 DEVICE bool may_hide(const LightMesh &mesh, const CellItem &item, const Candidate &candidate, const Vec3 &target) {
     const Vec3 a = corner_of(candidate.corners[0]) - target, b = corner_of(candidate.corners[1]) - target,
                c = corner_of(candidate.corners[2]) - target;
     const Vec3 bc = cross(b, c), ca = cross(c, a), ab = cross(a, b), all = bc + ca + ab;
     const float volume = dot(a, bc), sign = volume < 0.0f ? -1.0f : 1.0f;
     const Vec3 middle = 0.5f * (item.low + item.high) - target, half = 0.5f * (item.high - item.low) + splat(mesh.slack);
-    // The largest products of three lengths that are rounded below and in the test itself, which begins at the other end.
+    // The largest products of three lengths that are rounded below, and in the test itself, which starts at the other end.
     const float reach = mesh.radius + mesh.slack, size = max_element(max(max(abs(a), abs(b)), abs(c))) + reach;
     const float rounding = 128.0f * UNIT_ROUNDOFF * size * size * reach;
     return sign * dot(bc, middle) + dot(abs(bc), half) + rounding >= 0.0f &&
@@ -85,7 +85,7 @@ DEVICE void filter_targets(const LightMesh &mesh, const CellItem &item, const Ce
     __syncwarp();
 }
 
-// A triangle as the lane's object point sees it.
+// A triangle as seen from the lane's surface point.
 DEVICE Occluder occluder_of(const Candidate &candidate, const ItemLane &lane, bool &above) {
     const Vec3 &origin = lane.point.origin, &normal = lane.point.normal;
     const Vec3 a = corner_of(candidate.corners[0]) - origin, b = corner_of(candidate.corners[1]) - origin,
@@ -96,7 +96,7 @@ DEVICE Occluder occluder_of(const Candidate &candidate, const ItemLane &lane, bo
     return Occluder{sign * bc, sign * cross(c, a), sign * cross(a, b), sign * volume};
 }
 
-// Whether the lane's object point sees the triangle from its edge.
+// Whether the lane's surface point sees the triangle edge-on.
 DEVICE bool is_edge_on(const LightMesh &mesh, const Candidate &candidate, const ItemLane &lane, const Occluder &occluder) {
     const Vec3 &origin = lane.point.origin;
     const Vec3 a = corner_of(candidate.corners[0]) - origin, b = corner_of(candidate.corners[1]) - origin,
@@ -105,13 +105,13 @@ DEVICE bool is_edge_on(const LightMesh &mesh, const Candidate &candidate, const 
     return !(occluder.volume * occluder.volume > mesh.edge_on * mesh.edge_on * dot(outward, outward));
 }
 
-// 3. d. Clears the light points that the candidates hide from the lanes. Targets of one candidate follow each other, and after the
-// last of all comes one of no candidate. Returns whether the lane asked a triangle.
+// 3. d. Clears the light points that the candidates hide from the lanes. Targets of one candidate are consecutive, and the last is
+// followed by one of no candidate. Returns whether the lane tested a triangle.
 DEVICE bool clear_blocked(const ShortTests &args, const ItemLane &lane, const CellMemory &memory) {
     bool asked = false;
     Target target = memory.targets[0];
     for (unsigned i = 0; __float_as_uint(target.w) != NO_TARGET;) {
-        // ShortTest::occluder; whether it is edge-on is asked only once something is hidden.
+        // ShortTest::occluder; whether it is edge-on is tested only once something is hidden.
         const unsigned current = __float_as_uint(target.w) >> 16;
         const Candidate &candidate = memory.candidates[current];
         bool above, edges_known = false;
@@ -138,8 +138,8 @@ DEVICE bool clear_blocked(const ShortTests &args, const ItemLane &lane, const Ce
     return asked;
 }
 
-// 3. c. Lanes take the rows of light points that the candidates reach, and list the points that may be hidden; the warp tests them.
-// `rows` is the number of rows of the lane's candidate.
+// 3. c. Lanes process the rows of light points that the candidates reach, and list the points that may be hidden; the warp tests
+// them. `rows` is the number of rows of the lane's candidate.
 DEVICE bool test_candidates(const ShortTests &args, const CellItem &item, const ItemLane &own, const CellMemory &memory,
                             unsigned rows) {
     const LightMesh &mesh = args.mesh;
@@ -157,7 +157,7 @@ DEVICE bool test_candidates(const ShortTests &args, const CellItem &item, const 
             const Candidate &candidate = memory.candidates[owner];
             const unsigned box = __float_as_uint(candidate.corners[0].w);
             const unsigned lines = box_bound(box, 3) - box_bound(box, 2) + 1, row = number - before;
-            // Fewer than 1024 rows: the quotient of floats, moved off whole numbers, is exact.
+            // Fewer than 1024 rows: the quotient of floats, moved away from integers, gives the exact result.
             const unsigned plane = __float2int_rd(((float)row + 0.5f) * candidate.most.y);
             const int y = box_bound(box, 2) + (int)(row - plane * lines), z = box_bound(box, 4) + (int)plane;
             py = lattice_coordinate(mesh.anchor.y, mesh.step, item.cell.y + y);
@@ -166,7 +166,7 @@ DEVICE bool test_candidates(const ShortTests &args, const CellItem &item, const 
             template_row(mesh, row_of(mesh, y, z), bit, count, x);
             targets = row_targets(mesh, item, candidate, py, pz, bit, count, x, memory.seen);
         }
-        // As many lanes as there is room for list their points; then those are tested.
+        // As many lanes as there is room for list their points; then these are tested.
         while (__any_sync(ALL_LANES, targets != 0)) {
             const unsigned amount = __popc(targets), until = warp_running_sum(amount);
             const bool fits = until <= LISTED_TARGETS;

@@ -1,4 +1,4 @@
-//! Masks against a direct evaluation of formula (2), and against themselves: however they are found, they are the same.
+//! Masks are compared with a direct evaluation of formula (2), and with each other: they are the same, however they are found.
 
 use glam::{DVec3, IVec3, Vec3};
 use lightmesh_scene::Scene;
@@ -51,7 +51,7 @@ fn masks(
     (cells, masks)
 }
 
-/// The masks of every accelerator and every way of testing are those of the first accelerator's plain tests.
+/// The masks of every accelerator and every kind of test equal those of the first accelerator's plain tests.
 fn assert_all_alike(scene: &Scene, accelerations: &[Acceleration], pixels: u32, cases: &[(f32, f32)]) {
     let prepared: Vec<PreparedScene> =
         accelerations.iter().map(|kind| PreparedScene::new(scene, kind, &Unobserved).unwrap()).collect();
@@ -96,7 +96,7 @@ fn cells_and_plain_tests_agree_on_soups() {
 
 #[test]
 fn cells_and_plain_tests_agree_far_from_the_origin() {
-    // No frame of its own brings this scene home: it is moved after the frame was chosen.
+    // No local frame brings this scene back to the origin: it is moved after the frame was chosen.
     let mut scene = soup(9, 150);
     let offset = Vec3::new(700.0, -300.0, 500.0);
     scene.geometry_mut().mesh.positions.iter_mut().for_each(|position| *position += offset);
@@ -104,7 +104,7 @@ fn cells_and_plain_tests_agree_far_from_the_origin() {
     assert_all_alike(&scene, &ACCELERATIONS, 40, &[(0.2, 2.1), (0.6, 3.1)]);
 }
 
-/// What a comparison in real numbers says that one in `f32` may see otherwise near the border.
+/// The result of a comparison in real numbers; near the border, one in `f32` may differ.
 #[derive(Clone, Copy, PartialEq)]
 enum Verdict {
     Yes,
@@ -116,7 +116,7 @@ enum Verdict {
 struct Direct<'a> {
     scene: &'a PreparedScene,
     mesh: &'a LightMesh,
-    /// How near a border rounding may decide, scene units: far above that of `f32`, far below a step.
+    /// How close to a border rounding may decide, scene units: far above the rounding of `f32`, far below a step.
     border: f64,
 }
 
@@ -169,7 +169,7 @@ impl Direct<'_> {
         let meeting = from.lerp(to, t);
         let inside = [(a, b), (b, c), (c, a)].map(|(p, q)| plane.cross(q - p).normalize_or_zero().dot(meeting - p));
         let inside = inside.into_iter().fold(f64::INFINITY, f64::min);
-        // Nearly parallel to the plane: where the line meets it is uncertain by as much more.
+        // If the line is nearly parallel to the plane, the point where they meet is correspondingly more uncertain.
         let slack = self.border * (1.0 + from.distance(to) / (start - end).abs().max(1e-30));
         if inside < -slack {
             Verdict::No
@@ -181,8 +181,8 @@ impl Direct<'_> {
     }
 }
 
-/// Holds the used light points of each object point against the direct evaluation. At most the share `at_border` of all
-/// lattice points near object points may be undecided.
+/// Compares the used light points of each surface point with the direct evaluation. At most a share `at_border` of all
+/// lattice points near surface points may be undecided.
 fn assert_direct(scene: &Scene, pixels: u32, step: f32, radius: f32, at_border: f64) {
     let prepared = PreparedScene::new(scene, &Acceleration::Bvh, &Unobserved).unwrap();
     let seen = look(&prepared, pixels);

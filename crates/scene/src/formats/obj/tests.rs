@@ -189,7 +189,7 @@ fn textures_come_from_map_kd_with_its_options() {
     let path = folder.path().join("shape.obj");
     fs::write(&path, format!("mtllib a.mtl\n{TETRAHEDRON}{faces}")).unwrap();
     let scene = Scene::open(&path).unwrap();
-    let texture = scene.geometry.materials[0].texture.expect("the picture is there");
+    let texture = scene.geometry.materials[0].texture.expect("the image is there");
     assert_eq!((scene.geometry.materials[0].kd, texture.wrap), (Vec3::ONE, [crate::Wrap::Clamp; 2]));
     // (2 · 0.5 + 0.25, 4 · 0.25 + 0.5) upwards is (1.25, −0.5) downwards.
     let uv = scene.geometry.mesh.uvs[scene.geometry.mesh.triangles[0][0] as usize];

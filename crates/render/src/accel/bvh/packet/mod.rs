@@ -1,22 +1,22 @@
-//! The walk of many coherent rays at once: one lane a ray, [`GROUPS`](size::GROUPS) vectors of lanes; nodes and triangles uniform.
+//! The walk of many coherent rays at once: one ray per lane, [`GROUPS`](size::GROUPS) vectors of lanes; nodes and triangles are uniform.
 //!
 //! # Theory
 //!
 //! Rays whose directions have the same signs enter a box through the same three planes. So one walk serves them all:
 //!
 //! * A node's planes are decoded once. An interval test (Boulos, Wald, Shirley: *Geometric and Arithmetic Culling Methods for
-//!   Entire Ray Packets*, 2006) drops, eight children at a time, those that no ray of the packet can reach; it takes all
+//!   Entire Ray Packets*, 2006) discards, eight children at a time, those that no ray of the packet can reach; it treats all
 //!   origins and all reciprocal directions as intervals.
-//! * The children left are tested ray by ray, eight rays at a time. Rays that miss a child are masked out below it; where few
-//!   are left, these go on [alone](super::walk).
+//! * The remaining children are tested ray by ray, eight rays at a time. Rays that miss a child are masked out below it; if only
+//!   few are left, they continue [alone](super::walk).
 //!
 //! # Practice
 //!
-//! [`order::Order`] puts together rays that may share a packet: same signs, and same dominant axis, so that the watertight test
-//! permutes the axes alike. Neighbours in a batch should be neighbours in space.
+//! [`order::Order`] groups rays that may share a packet: same signs, and same dominant axis, so that the watertight test permutes
+//! the axes in the same way. Neighbours in a batch should be neighbours in space.
 //!
-//! Both box tests have the margin that [`walk`](super::walk) derives, with S the largest of the packet for the interval test;
-//! what remains is decided by [`PacketShear`], so that every answer has the bits that the single ray gives.
+//! Both box tests have the margin that [`walk`](super::walk) derives, with S the largest in the packet for the interval test; the
+//! rest is decided by [`PacketShear`], so that every result has the same bits as that of a single ray.
 
 mod order;
 mod planes;
@@ -38,10 +38,10 @@ use size::{GROUPS, RAYS};
 
 /// Rays that are sorted together.
 const CHUNK: usize = 512;
-/// As few rays do better alone.
+/// Up to this many rays are faster alone.
 pub(super) const FEW: usize = 3;
 
-/// A node to enter later: the rays that meet it, and a bound on where the first of them does.
+/// A node to enter later: the rays that meet it, and a bound on where the first of them meets it.
 #[derive(Clone, Copy, Default)]
 struct Entry {
     lanes: u64,
@@ -168,7 +168,7 @@ fn walk_packet<S: Simd, V: PacketVisitor<S>>(
         let frames = planes.frames(simd, node, packet, lanes);
         let inner = u32::from(node.imask);
 
-        // 3. Ask the triangles of those that are leaves, nearest first.
+        // 3. Test the triangles of those that are leaves, nearest first.
         let mut slots = in_order(reachable & !inner, octant);
         while slots != 0 {
             let nearest = 31 - slots.leading_zeros();

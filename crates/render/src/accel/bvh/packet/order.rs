@@ -10,7 +10,7 @@ const KINDS: usize = 24;
 /// The rays of a chunk that can hit something, by kind.
 #[derive(Default)]
 pub(super) struct Order {
-    /// With their index in the chunk.
+    /// Each with its index in the chunk.
     pub(super) rays: Vec<(NearRay, usize)>,
     kinds: Vec<u8>,
     /// Indices into `rays`, sorted by kind.
@@ -43,7 +43,7 @@ impl Order {
         }
     }
 
-    /// Up to as many rays of one kind as a packet takes, from `start` on.
+    /// Rays of one kind from `start` on, at most as many as fit into a packet.
     #[inline(always)]
     pub(super) fn packet(&self, start: usize) -> &[u16] {
         let rest = &self.sorted[start..];

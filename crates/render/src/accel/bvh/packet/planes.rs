@@ -9,7 +9,7 @@ use super::size::GROUPS;
 use crate::accel::bvh::Node;
 use crate::accel::packet::LANES;
 
-/// The planes of a node's children, by axis: those that the rays meet first, and last.
+/// The planes of a node's children, by axis: those that the rays cross first, and those that they cross last.
 pub(super) struct Planes {
     near: [[f32; 8]; 3],
     far: [[f32; 8]; 3],

@@ -26,7 +26,7 @@ pub(super) struct Packet<'a, S: Simd> {
 pub(super) struct Group<S: Simd> {
     pub(super) shear: PacketShear<S>,
     pub(super) slabs: PacketSlabs<S>,
-    /// Negative where there is no ray.
+    /// Negative if there is no ray.
     pub(super) t_max: f32x8<S>,
 }
 
@@ -114,9 +114,9 @@ impl<S: Simd> PacketSlabs<S> {
     }
 }
 
-/// Between which bounds all rays of a packet lie.
+/// The bounds between which all rays of a packet lie.
 pub(super) struct Interval {
-    /// The origins' bound that gives the smallest, and the largest, distance to a plane.
+    /// The bounds of the origins that give the smallest and the largest distance to a plane.
     pub(super) near_origin: Vec3A,
     pub(super) far_origin: Vec3A,
     /// Smallest and largest reciprocal directions.

@@ -28,7 +28,7 @@ fn load(path: &Path, bytes: &[u8]) -> Result<Grid, GridFault> {
     Grid::load(path, &triangles()).map_err(|error| error.fault)
 }
 
-/// The same without a file in between.
+/// Decodes the bytes without a file in between.
 fn decoded(bytes: &[u8]) -> Result<Grid, GridFault> {
     let header = Header::parse(&bytes[..HEADER])?;
     if header.file_length() != bytes.len() as u128 {
@@ -37,7 +37,7 @@ fn decoded(bytes: &[u8]) -> Result<Grid, GridFault> {
     decode(&header, bytes, &triangles())
 }
 
-/// Bytes whose hash is right again after a change.
+/// Bytes with the hash corrected after a change.
 fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
     let content = bytes.len() - TRAILER;
     let hash = xxh3_64(&bytes[..content]).to_le_bytes();
@@ -65,7 +65,7 @@ fn a_loaded_grid_is_the_saved_one() {
     assert_eq!(hits(&loaded), hits(&built));
     assert!(hits(&built).iter().filter(|hit| hit.is_some()).count() > 20);
     assert!(built.cells.len() > 100, "a second level");
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left beside it");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left next to it");
 }
 
 #[test]
