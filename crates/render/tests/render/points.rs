@@ -25,7 +25,7 @@ fn prepared(scene: &Scene) -> PreparedScene {
 fn seen(scene: &PreparedScene, frame: &Frame) -> (Vec<usize>, Vec<Vec3>, Vec<Vec3>) {
     let layers = frame.layers().unwrap();
     let pixels: Vec<usize> = (0..layers.depth.len()).filter(|&pixel| layers.depth[pixel].is_finite()).collect();
-    let world = |pixel: usize| DVec3::from(Vec3::from(layers.position[pixel]).as_dvec3());
+    let world = |pixel: usize| Vec3::from(layers.position[pixel]).as_dvec3();
     let points = pixels.iter().map(|&pixel| scene.scene.geometry.to_local(world(pixel))).collect();
     let normals = pixels.iter().map(|&pixel| 3.0 * Vec3::from(layers.normal[pixel])).collect();
     (pixels, points, normals)

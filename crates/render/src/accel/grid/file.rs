@@ -17,96 +17,26 @@
 //! A file is accepted only if every byte of it is as expected: it belongs to these triangles, has the length that its header
 //! says and the right hash, and each offset is the one that building would have written. So no file can make a walk fail.
 
+mod fault;
+
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::UVec3;
-use lightmesh_files::{Replacement, TargetError};
+use lightmesh_files::Replacement;
 use lightmesh_scene::Bounds;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 use super::hash::geometry_hash;
 use super::{Grid, build};
 use crate::accel::Triangle;
+pub use fault::{GridFault, GridFileError, GridSaveError};
 
 const MAGIC: [u8; 8] = *b"LM GRID\0";
 const VERSION: u32 = 1;
 const HEADER: usize = 40;
 const TRAILER: usize = 8;
-
-/// Why a grid cannot be saved.
-#[derive(Debug, thiserror::Error)]
-pub enum GridSaveError {
-    /// No such file can exist.
-    #[error(transparent)]
-    Target(#[from] TargetError),
-    /// Writing failed, most often for lack of space; nothing is left behind.
-    #[error("cannot write {}: {reason}; nothing was written, check the space left on the disk", path.display())]
-    Write {
-        /// The target.
-        path: PathBuf,
-        /// What the system reported.
-        reason: io::Error,
-    },
-}
-
-/// Why a grid file cannot be used.
-#[derive(Debug, thiserror::Error)]
-#[error("{}: {fault}; {}", path.display(), fault.remedy())]
-pub struct GridFileError {
-    /// The file.
-    pub path: PathBuf,
-    /// What is wrong with it.
-    #[source]
-    pub fault: GridFault,
-}
-
-/// What is wrong with a grid file.
-#[derive(Debug, thiserror::Error)]
-pub enum GridFault {
-    /// It cannot be read.
-    #[error("cannot be read: {0}")]
-    Read(io::Error),
-    /// It is not a grid file.
-    #[error("is not a grid file")]
-    NotAGrid,
-    /// It was written by another version of this program.
-    #[error("has format version {found}, this program reads version {VERSION}")]
-    Version {
-        /// The version in the file.
-        found: u32,
-    },
-    /// It belongs to other triangles.
-    #[error("belongs to another scene ({found} triangles in the file, {expected} in the scene, or other positions)")]
-    OtherGeometry {
-        /// Triangles that the file was built from.
-        found: u32,
-        /// Triangles of the scene.
-        expected: usize,
-    },
-    /// It is shorter or longer than its header says.
-    #[error("has {found} bytes, but its header says {expected}")]
-    Length {
-        /// Length of the file.
-        found: u64,
-        /// Length according to its header.
-        expected: u128,
-    },
-    /// Its content is not as written.
-    #[error("is corrupted: {0}")]
-    Corrupted(&'static str),
-}
-
-impl GridFault {
-    /// What to do about it.
-    fn remedy(&self) -> &'static str {
-        match self {
-            GridFault::Read(_) => "check the path and its permissions",
-            _ => "build the grid again and save it",
-        }
-    }
-}
 
 impl Grid {
     /// Writes the grid to a file, whole or not at all.

@@ -92,8 +92,7 @@ impl Run<'_> {
         for group in run {
             points.place(self.mesh, point_of(self.cells.cell(group)));
             for (slot, mask) in self.cells.slots(group).zip(&mut masks) {
-                counts =
-                    counts + plain::mask(self.wave.scene, self.mesh, &points, &self.point(slot), &mut scratch, mask);
+                counts = counts + scratch.mask(self.wave.scene, self.mesh, &points, &self.point(slot), mask);
             }
         }
         counts

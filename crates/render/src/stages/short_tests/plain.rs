@@ -18,33 +18,35 @@ pub(crate) struct Scratch {
     blocked: Vec<bool>,
 }
 
-/// The mask of one surface point, cell by cell.
-pub(crate) fn mask(
-    scene: &PreparedScene,
-    mesh: &LightMesh,
-    points: &CellPoints,
-    point: &SurfacePoint,
-    scratch: &mut Scratch,
-    mask: &mut [u32],
-) -> MaskCounts {
-    let Scratch { bits, directions, blocked } = scratch;
+impl Scratch {
+    /// The mask of one surface point, cell by cell.
+    pub(crate) fn mask(
+        &mut self,
+        scene: &PreparedScene,
+        mesh: &LightMesh,
+        points: &CellPoints,
+        point: &SurfacePoint,
+        mask: &mut [u32],
+    ) -> MaskCounts {
+        let Scratch { bits, directions, blocked } = self;
 
-    // 1, 2. The half-ball.
-    half_ball(mesh, points, point, mask);
-    bits.clear();
-    bits.extend((0..mesh.template.len()).filter(|bit| mask[bit / 32] >> (bit % 32) & 1 != 0));
+        // 1, 2. The half-ball.
+        half_ball(mesh, points, point, mask);
+        bits.clear();
+        bits.extend((0..mesh.template.len()).filter(|bit| mask[bit / 32] >> (bit % 32) & 1 != 0));
 
-    // 3. Its segments.
-    directions.clear();
-    directions.extend(bits.iter().map(|&bit| points.get(bit) - point.origin));
-    blocked.clear();
-    blocked.resize(bits.len(), false);
-    let test = ShortTest { origin: point.origin, normal: point.normal, edge_on: mesh.edge_on() };
-    scene.geometry.accelerator.short_segments(&ShortSegments { test, directions, slack: mesh.slack() }, blocked);
-    for (&bit, _) in bits.iter().zip(blocked.iter()).filter(|(_, blocked)| **blocked) {
-        mask[bit / 32] &= !(1 << (bit % 32));
+        // 3. Its segments.
+        directions.clear();
+        directions.extend(bits.iter().map(|&bit| points.get(bit) - point.origin));
+        blocked.clear();
+        blocked.resize(bits.len(), false);
+        let test = ShortTest { origin: point.origin, normal: point.normal, edge_on: mesh.edge_on() };
+        scene.geometry.accelerator.short_segments(&ShortSegments { test, directions, slack: mesh.slack() }, blocked);
+        for (&bit, _) in bits.iter().zip(blocked.iter()).filter(|(_, blocked)| **blocked) {
+            mask[bit / 32] &= !(1 << (bit % 32));
+        }
+        MaskCounts { half_ball: bits.len() as u64, used: population(mask), tested: bits.len() as u64 }
     }
-    MaskCounts { half_ball: bits.len() as u64, used: population(mask), tested: bits.len() as u64 }
 }
 
 /// Conditions 1 and 2 of formula (2), one light point after another.

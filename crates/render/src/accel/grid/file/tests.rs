@@ -1,6 +1,7 @@
 use super::*;
 use crate::accel::{Accelerator, GridOptions, Hit, Levels, Ray};
 use glam::Vec3;
+use std::path::PathBuf;
 
 fn triangles() -> Vec<Triangle> {
     let corner = |index: u32, turn: u32| {
