@@ -89,15 +89,15 @@ pub(crate) fn hidden(wave: &HostWave, segments: &[Ray]) -> Vec<bool> {
     hidden
 }
 
-/// The shadow rays from a surface point to a light. A sample behind the surface is dark without a ray.
-pub(crate) fn shadow_rays<'a>(
-    point: &'a SurfacePoint,
-    targets: &'a Targets,
-    samples: u32,
-) -> impl Iterator<Item = Ray> + use<'a> {
-    let targets = (0..samples).map(|sample| targets.get(sample));
-    let in_front = targets.filter(|&target| point.normal.dot(target - point.origin) > 0.0);
-    in_front.map(|target| long_segment(point.origin, target))
+/// Hands the shadow rays from a surface point to a light to `take`. A sample behind the surface is dark without a ray.
+#[inline(always)]
+pub(crate) fn each_shadow_ray(point: &SurfacePoint, targets: &Targets, samples: u32, mut take: impl FnMut(Ray)) {
+    for sample in 0..samples {
+        let target = targets.get(sample);
+        if point.normal.dot(target - point.origin) > 0.0 {
+            take(long_segment(point.origin, target));
+        }
+    }
 }
 
 /// χ of formula (3) for a light: 1 if it is in front of the surface at `point`, 0 if it is behind.
@@ -134,7 +134,8 @@ pub(crate) fn fallback(wave: &HostWave, ray: usize, point: &SurfacePoint, index:
     let reach = wave.scene.geometry.reach(point.origin);
     let targets = Targets::new(&aim, (index, light), point.origin, reach, wave.rays.key(ray));
     let samples = aim.samples(light);
-    let segments: Vec<Ray> = shadow_rays(point, &targets, samples).collect();
+    let mut segments = Vec::with_capacity(samples as usize);
+    each_shadow_ray(point, &targets, samples, |segment| segments.push(segment));
     Tally::add(&wave.job.tally.shadow_rays, segments.len() as u64);
     let seen = hidden(wave, &segments).into_iter().filter(|hidden| !hidden).count();
     seen as f32 / samples as f32

@@ -7,7 +7,7 @@ use crate::accel::Ray;
 use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
-use crate::shadow::{Aim, SEGMENTS, Targets, hidden, shadow_rays as rays_to};
+use crate::shadow::{Aim, SEGMENTS, Targets, each_shadow_ray, hidden};
 use crate::surface::SurfacePoint;
 
 /// Maximum number of surface points per task.
@@ -54,12 +54,17 @@ impl Batch<'_> {
         for (ray, point) in &self.points {
             let reach = self.wave.scene.geometry.reach(point.origin);
             let targets = Targets::new(self.aim, (index, light), point.origin, reach, self.wave.rays.key(*ray));
-            self.segments.extend(rays_to(point, &targets, samples));
-            self.owners.resize(self.segments.len(), ray - self.first);
+            each_shadow_ray(point, &targets, samples, |segment| {
+                self.segments.push(segment);
+                self.owners.push(ray - self.first);
+            });
         }
         Tally::add(&self.wave.job.tally.shadow_rays, self.segments.len() as u64);
         for (&owner, _) in self.owners.iter().zip(hidden(self.wave, &self.segments)).filter(|(_, hidden)| !hidden) {
             share[owner] += 1.0;
+        }
+        if samples == 1 {
+            return;
         }
         let weight = 1.0 / samples as f32;
         for count in share {
