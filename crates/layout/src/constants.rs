@@ -206,7 +206,9 @@ constants! {
     /// Entries kept beyond those for each level of the tree.
     STACK_PER_LEVEL: u32 = 7;
     /// Triangles found lately that a search through a grid remembers, at most.
-    RECENT_TRIANGLES: u32 = 256;
+    RECENT_TRIANGLES: u32 = 128;
+    /// Words that describe the part of a grid that is searched.
+    GRID_FRAME_WORDS: u32 = 20;
     /// Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of a search adds.
     FOUND_TRIANGLES: u32 = 128;
 

@@ -110,7 +110,9 @@
 // Entries kept beyond those for each level of the tree.
 #define STACK_PER_LEVEL 7u
 // Triangles found lately that a search through a grid remembers, at most.
-#define RECENT_TRIANGLES 256u
+#define RECENT_TRIANGLES 128u
+// Words that describe the part of a grid that is searched.
+#define GRID_FRAME_WORDS 20u
 // Triangles found and not yet looked at: fewer than 32, and at most 96 that one round of a search adds.
 #define FOUND_TRIANGLES 128u
 // Words of a candidate of the short tests by cell, a triangle that can matter.
