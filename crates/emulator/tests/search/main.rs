@@ -101,7 +101,7 @@ fn search(prepared: &PreparedScene, regions: &[Asked]) -> Vec<Vec<u32>> {
     let (cuda, pool) = (Cuda::new(Arc::clone(&emulator)), Pool::new(Arc::clone(&emulator)));
     let job = Job::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
     let scene = cuda.scene(&job, prepared, None).unwrap();
-    let room = 64 * prepared.geometry.triangles.len().max(1);
+    let room = 1024 * prepared.geometry.triangles.len().max(1);
     let records: Vec<AskedRecord> = regions.iter().map(Asked::record).collect();
     let asked = pool.upload("regions", &records).unwrap();
     let found = pool.zeros::<u32>("found", room * regions.len()).unwrap();

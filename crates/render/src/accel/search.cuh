@@ -9,8 +9,8 @@
 //
 // The whole warp takes part in every round. It adds places of triangles in `structure.triangles` to the list `found` of `count`
 // entries: 96 at most, often none. A grid may find a triangle several times. Where SIEVED, the result is the twin's: nothing that meets
-// the region is missing, and the region may meet the bounding box of everything found. Else it also holds triangles that share a leaf or a
-// cell with these, for callers that test triangles more strictly themselves.
+// the region is missing, and the region may meet the bounding box of everything found. Else it also holds triangles of the same leaf,
+// cell or row of cells, for callers that test triangles more strictly themselves.
 #pragma once
 
 #include "accel/brute_force.cuh"

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lightmesh_layout::constants::{BVH_STACK, RECENT_TRIANGLES, STACK_OF_ROUNDS, STACK_PER_LEVEL};
+use lightmesh_layout::constants::{BVH_STACK, GRID_FRAME_WORDS, RECENT_TRIANGLES, STACK_OF_ROUNDS, STACK_PER_LEVEL};
 use lightmesh_layout::geometry::{Approach, BruteForce, Bvh, BvhNode, DVec3, Grid, Triangle, Vec3};
 use lightmesh_layout::scene::{Indices, Light, Scene};
 use lightmesh_layout::{DeviceType, In, Structure};
@@ -61,7 +61,7 @@ impl<R: Runtime> DeviceScene<R> {
     pub fn search_words(&self) -> u32 {
         match self.structure {
             Structure::Bvh => (STACK_OF_ROUNDS + STACK_PER_LEVEL * self.record.bvh.depth).next_multiple_of(4),
-            Structure::Grid => RECENT_TRIANGLES,
+            Structure::Grid => GRID_FRAME_WORDS + RECENT_TRIANGLES,
             Structure::BruteForce => 0,
         }
     }

@@ -1,243 +1,221 @@
 // The search for all triangles that meet a region, cell by cell: twin of search.rs.
 //
-// Lanes take the cells of a box of cells: that around the region, or, where the region is slanted, those around its parts in layers
-// of cells. A cell that holds something is looked into where the region meets its box, and the lanes share the triangles of all such
-// cells. Nested grids follow, one after the other.
+// Every step is one for all lanes, and what the lanes find is shared out evenly before the next:
 //
-// # How far it can err
+// 1. Lanes take the cells of a box of cells of the outer grid: that around the region, or, where the region is slanted, those around
+//    its parts in layers of cells. A cell that holds something is looked into where the region meets its box.
+// 2. Lanes take the rows of the grids nested in these cells. A row is read where the region meets its box.
+// 3. Lanes take the cells in these rows that hold something. Their boxes are not tested, which would spare about a fifth of the
+//    triangles.
+// 4. Lanes take the triangles of the cells of step 1 or 3.
 //
-// In units of ε r as in lattice.rs, where the scene is 2 r wide and a triangle is listed in every cell that comes within 320 of it.
-// The twin computes cells in double precision. Here the corners of a box, relative to the grid's, are rounded once, by 2; multiplied
-// with the rounded reciprocal of a cell's edge, by 4 more; and for a nested grid with its number of cells, once the outer cell is taken
-// off, by 4 more; planes of cells by 2. That is less than 16. So where a point of a triangle lies in the region, a cell is looked at
-// that comes within 16 of the point, and therefore lists the triangle.
-//
-// The box of a cell is in world coordinates, which are below S = |corner| + extent of the grid. It is rounded by less than 8 ε S, and
-// enlarged on each side by the margin and 32 ε S. So it holds the point, and leaves the 16 ε of its edges that tangent planes ask for.
-// The layers of a slanted region lie between the planes of these boxes.
+// Which cells these are, and why none is missed: searched_cells.cuh.
 #pragma once
 
+#include "accel/grid/searched_cells.cuh"
 #include "accel/sieve.cuh"
-
-// Numbers of the cells of a box of cells, x fastest.
-struct CellBox {
-    // The first cell on each axis, and how many there are.
-    int x, y, z;
-    unsigned width, height, depth;
-};
 
 // A search in progress.
 struct GridSearch {
-    // The part of the region that is searched, in cells of the outer grid.
-    Bounds part;
+    GridFrame *frame;
     // Slanted regions: the axis of the layers, and the layers from the next to the last.
     unsigned axis;
     int layer, last_layer;
     // Cells of the part that were taken.
     unsigned taken;
-    // The lanes whose cells hold grids that are still to be searched, where the lane's begins, and how many cells of the first lane's
-    // were taken.
-    unsigned nested;
+    // The rows of cells of the grids nested in the cells last taken, one grid after the other: where the lane's grid begins in memory,
+    // and where its rows end in this list; how many were taken, of how many.
     int grid;
-    unsigned taken_nested;
-    // The triangles of the cells that lanes look into, one cell after the other: where the lane's end in this list, and what to add
+    unsigned end_of_rows, row, rows;
+    // The cells that hold something in the rows last taken, one row after the other: those of the lane's row, a bit each, where the
+    // first one's offset is in memory, and where they end in this list; how many were taken, of how many.
+    unsigned occupied, place, end_of_cells, cell, cells;
+    // The triangles of the cells last taken, one cell after the other: where those of the lane's cell end in this list, and what to add
     // to a place there for the place in memory; how many were taken, of how many.
     unsigned end, shift, next, all;
     // Triangles found lately, by a part of their index.
     unsigned *recent;
-    bool done;
+    // Whether no part is left.
+    bool over;
 };
 
-DEVICE unsigned cells_of_axis(float low, float high, unsigned dims, int &first) {
-    first = max(__float2int_rd(low), 0);
-    return (unsigned)max(min(__float2int_rd(high), (int)dims - 1) - first + 1, 0);
+DEVICE unsigned search_words(const Grid &) { return GRID_FRAME_WORDS + RECENT_TRIANGLES; }
+
+// Sets the part of the region that is searched.
+DEVICE void set_part(const Grid &grid, GridSearch &search, const Bounds &part) {
+    // All have read what they need of the last one.
+    __syncwarp();
+    if (lane_of_thread() == 0) {
+        search.frame->part = part;
+        search.frame->cells = cell_box(part, grid.dims);
+    }
+    search.taken = 0;
+    __syncwarp();
 }
-
-// The cells that a box meets.
-DEVICE CellBox cell_box(const Bounds &box, const unsigned (&dims)[3]) {
-    CellBox cells;
-    cells.width = cells_of_axis(box.low.x, box.high.x, dims[0], cells.x);
-    cells.height = cells_of_axis(box.low.y, box.high.y, dims[1], cells.y);
-    cells.depth = cells_of_axis(box.low.z, box.high.z, dims[2], cells.z);
-    return cells;
-}
-
-DEVICE unsigned count_of(const CellBox &cells) { return cells.width * cells.height * cells.depth; }
-
-// The cell of a number.
-DEVICE IVec3 cell_of(const CellBox &cells, unsigned number) {
-    const unsigned row = number / cells.width;
-    return IVec3{cells.x + (int)(number - row * cells.width), cells.y + (int)(row % cells.height),
-                 cells.z + (int)(row / cells.height)};
-}
-
-// Bounds in cells of the outer grid.
-DEVICE Bounds in_cells(const Grid &grid, const Bounds &bounds) {
-    const Vec3 inverse = {1.0f / grid.size.x, 1.0f / grid.size.y, 1.0f / grid.size.z};
-    return Bounds{to_single(to_double(bounds.low) - grid.origin) * inverse,
-                  to_single(to_double(bounds.high) - grid.origin) * inverse};
-}
-
-// By how much boxes of cells are enlarged.
-DEVICE Vec3 growth(const Grid &grid) {
-    const Vec3 extent = grid.size * Vec3{(float)grid.dims[0], (float)grid.dims[1], (float)grid.dims[2]};
-    return 2.0f * REGION_ROUNDING * (abs(to_single(grid.origin)) + extent) + splat(grid.margin);
-}
-
-DEVICE unsigned search_words(const Grid &) { return RECENT_TRIANGLES; }
 
 template <class Form>
 DEVICE GridSearch begin_search(const Grid &grid, const Region<Form> &region, unsigned *memory) {
     GridSearch search = {};
-    search.part = in_cells(grid, region.bounds);
-    search.recent = memory;
+    search.frame = reinterpret_cast<GridFrame *>(memory);
+    search.recent = memory + GRID_FRAME_WORDS;
     for (unsigned i = lane_of_thread(); i < RECENT_TRIANGLES; i += WARP)
-        memory[i] = 0;
-    __syncwarp();
+        search.recent[i] = 0;
+    if (lane_of_thread() == 0) {
+        search.frame->corner = to_single(grid.origin);
+        search.frame->grow = growth(grid);
+    }
+    set_part(grid, search, in_cells(grid, region.bounds));
     if constexpr (Form::SLANTED) {
         // Layers along the axis of most cells; the first is still to come.
-        const CellBox cells = cell_box(search.part, grid.dims);
+        const CellBox cells = search.frame->cells;
         const unsigned width = cells.width, height = cells.height, depth = cells.depth;
         search.axis = width >= height && width >= depth ? 0 : depth > height ? 2 : 1;
         search.layer = component(search.axis, cells.x, cells.y, cells.z);
         search.last_layer = count_of(cells) == 0 ? search.layer - 1
                                                  : search.layer + (int)component(search.axis, width, height, depth) - 1;
-        search.part = Bounds{splat(0.0f), splat(-1.0f)};
+        search.taken = count_of(cells);
     }
     return search;
 }
 
-// Goes on with the next part of the region, or ends the search.
+// Goes on with the next part of the region, if any.
 template <class Form>
 DEVICE void next_part(const Grid &grid, const Region<Form> &region, GridSearch &search) {
-    search.done = true;
+    search.over = true;
     if constexpr (Form::SLANTED) {
         if (search.layer > search.last_layer)
             return;
-        search.done = false;
+        search.over = false;
         const unsigned axis = search.axis;
-        const float grow = component(axis, growth(grid)), size = component(axis, grid.size), layer = (float)search.layer++;
-        const float corner = component(axis, to_single(grid.origin));
+        const float grow = component(axis, search.frame->grow), size = component(axis, grid.size), layer = (float)search.layer++;
+        const float corner = component(axis, search.frame->corner);
         Bounds bounds;
         const bool any = region_between(region, axis, corner + size * layer - grow, corner + size * (layer + 1.0f) + grow, bounds);
-        search.part = in_cells(grid, bounds);
+        Bounds part = in_cells(grid, bounds);
         // On the axis, all of this layer and nothing of the next; and nothing at all where the region has no point in it.
         const float low = layer, high = any ? next_down(layer + 1.0f) : layer - 1.0f;
         if (axis == 0)
-            search.part.low.x = low, search.part.high.x = high;
+            part.low.x = low, part.high.x = high;
         else if (axis == 1)
-            search.part.low.y = low, search.part.high.y = high;
+            part.low.y = low, part.high.y = high;
         else
-            search.part.low.z = low, search.part.high.z = high;
-        search.taken = 0;
+            part.low.z = low, part.high.z = high;
+        set_part(grid, search, part);
     }
 }
 
-DEVICE bool goes_on(const Grid &, const GridSearch &search) { return !search.done; }
+DEVICE bool goes_on(const Grid &, const GridSearch &search) { return !search.over; }
 
-// A grid whose cells lanes take: the outer one, or a nested one.
-struct SearchedGrid {
-    // World coordinates of the lowest corner, and edges of a cell.
-    Vec3 corner, size;
-    unsigned dims[3];
-    // Where its cells are, and which of them are searched.
-    unsigned first;
-    CellBox cells;
-};
-
-DEVICE SearchedGrid outer_grid(const Grid &grid, const GridSearch &search) {
-    return SearchedGrid{to_single(grid.origin), grid.size, {grid.dims[0], grid.dims[1], grid.dims[2]}, 3,
-                        cell_box(search.part, grid.dims)};
+// Lanes may have a cell with triangles each: these are to be taken next.
+DEVICE void take_cells(const Grid &grid, GridSearch &search, bool has, int offset) {
+    const unsigned triangles = has ? (unsigned)-__ldg(grid.cells + offset) : 0;
+    const unsigned first = has ? (unsigned)__ldg(grid.cells + offset + 1) : 0;
+    search.end = warp_running_sum(triangles);
+    search.shift = first - (search.end - triangles);
+    search.next = 0;
+    search.all = __shfl_sync(ALL_LANES, search.end, WARP - 1);
 }
 
-// The grid nested in the cell of the first lane that has one.
-DEVICE SearchedGrid nested_grid(const Grid &grid, const GridSearch &search, const SearchedGrid &outer) {
-    const unsigned owner = __ffs(search.nested) - 1;
-    const int offset = __shfl_sync(ALL_LANES, search.grid, owner);
-    const IVec3 place = cell_of(outer.cells, search.taken - WARP + owner);
-    const Vec3 cell = {(float)place.x, (float)place.y, (float)place.z};
-    SearchedGrid nested;
-    for (unsigned axis = 0; axis < 3; axis++)
-        nested.dims[axis] = (unsigned)__ldg(grid.cells + offset + axis);
-    const Vec3 n = {(float)nested.dims[0], (float)nested.dims[1], (float)nested.dims[2]};
-    nested.corner = outer.corner + outer.size * cell;
-    nested.size = outer.size / n;
-    nested.first = (unsigned)offset + 3;
-    nested.cells = cell_box(Bounds{n * (search.part.low - cell), n * (search.part.high - cell)}, nested.dims);
-    return nested;
-}
-
-// Whether the region may meet the box of a cell.
-template <class Form>
-DEVICE bool meets_cell(const Grid &grid, const Region<Form> &region, const SearchedGrid &searched, const IVec3 &cell) {
-    const Vec3 grow = growth(grid), number = {(float)cell.x, (float)cell.y, (float)cell.z};
-    const Vec3 low = searched.corner + searched.size * number, high = searched.corner + searched.size * (number + splat(1.0f));
-    return meets(region, low - grow, high + grow, 0.0f);
-}
-
-// Lanes take up to 32 cells and look into those that the region meets.
+// 1. Lanes take cells of the outer grid.
 template <class Form>
 DEVICE void next_cells(const Grid &grid, const Region<Form> &region, GridSearch &search) {
-    SearchedGrid searched = outer_grid(grid, search);
-    const bool is_nested = search.nested != 0;
-    if (!is_nested && search.taken >= count_of(searched.cells)) {
-        next_part(grid, region, search);
-        return;
-    }
-    if (is_nested)
-        searched = nested_grid(grid, search, searched);
-    const unsigned number = (is_nested ? search.taken_nested : search.taken) + lane_of_thread(), cells = count_of(searched.cells);
-    int first = 0, head = 0, offset = -1;
-    if (number < cells) {
-        const IVec3 cell = cell_of(searched.cells, number);
-        const unsigned place = ((unsigned)cell.z * searched.dims[1] + (unsigned)cell.y) * searched.dims[0] + (unsigned)cell.x;
-        offset = __ldg(grid.cells + searched.first + place);
-        if (offset >= 0 && meets_cell(grid, region, searched, cell)) {
+    const GridFrame &frame = *search.frame;
+    const unsigned number = search.taken + lane_of_thread();
+    int head = 0, offset = -1;
+    if (number < count_of(frame.cells)) {
+        const IVec3 cell = cell_of(frame.cells, number);
+        offset = __ldg(grid.cells + 3 + ((unsigned)cell.z * grid.dims[1] + (unsigned)cell.y) * grid.dims[0] + (unsigned)cell.x);
+        const Vec3 first = {(float)cell.x, (float)cell.y, (float)cell.z};
+        if (offset >= 0 && meets_cells(region, frame, frame.corner, grid.size, first, first + splat(1.0f)))
             head = __ldg(grid.cells + offset);
-            first = __ldg(grid.cells + offset + 1);
-        }
     }
-    // Triangles to share, and grids to search.
-    const unsigned triangles = head < 0 ? (unsigned)-head : 0;
-    search.end = warp_running_sum(triangles);
-    search.shift = (unsigned)first - (search.end - triangles);
-    search.all = __shfl_sync(ALL_LANES, search.end, WARP - 1);
-    search.next = 0;
-    if (is_nested) {
-        search.taken_nested += WARP;
-        if (search.taken_nested >= cells) {
-            search.nested &= search.nested - 1;
-            search.taken_nested = 0;
-        }
-        return;
+    take_cells(grid, search, head < 0, offset);
+    unsigned rows = 0;
+    if (head > 0) {
+        const NestedGrid nested = nested_grid(grid, frame, number, offset);
+        rows = nested.cells.height * nested.cells.depth * nested.parts;
     }
-    search.taken += WARP;
-    search.nested = __ballot_sync(ALL_LANES, head > 0);
     search.grid = offset;
+    search.end_of_rows = warp_running_sum(rows);
+    search.row = 0;
+    search.rows = __shfl_sync(ALL_LANES, search.end_of_rows, WARP - 1);
+    search.taken += WARP;
 }
 
-// Whether a triangle was neither found lately nor is that of a lane before this one. What is remembered does not depend on an order in
-// which lanes write: of those that want the same place, the last has it.
+// A bit for each cell of a row that holds something.
+DEVICE unsigned occupied_cells(const int *row, unsigned count) {
+    unsigned occupied = 0;
+    for (unsigned x = 0; x < count; x++)
+        occupied |= __ldg(row + x) >= 0 ? 1u << x : 0;
+    return occupied;
+}
+
+// Looks for cells that hold something in a row of a nested grid, where the region meets the row's box.
+template <class Form>
+DEVICE void look_into_row(const Grid &grid, const Region<Form> &region, const NestedGrid &nested, unsigned number,
+                          GridSearch &search) {
+    const CellBox &cells = nested.cells;
+    const unsigned line = number / nested.parts, skipped = WARP * (number - line * nested.parts), layer = line / cells.height;
+    const unsigned count = min(cells.width - skipped, WARP), x = (unsigned)cells.x + skipped,
+                   y = (unsigned)cells.y + line - layer * cells.height, z = (unsigned)cells.z + layer;
+    const Vec3 first = {(float)x, (float)y, (float)z}, end = first + Vec3{(float)count, 1.0f, 1.0f};
+    search.place = nested.first + (z * nested.height + y) * nested.width + x;
+    if (meets_cells(region, *search.frame, nested.corner, nested.size, first, end))
+        search.occupied = occupied_cells(grid.cells + search.place, count);
+}
+
+// 2. Lanes take rows of the grids nested in the cells last taken.
+template <class Form>
+DEVICE void next_rows(const Grid &grid, const Region<Form> &region, GridSearch &search) {
+    const unsigned number = search.row + lane_of_thread(), owner = warp_owner(search.end_of_rows, number);
+    const int offset = __shfl_sync(ALL_LANES, search.grid, owner);
+    const unsigned before = __shfl_sync(ALL_LANES, search.end_of_rows, owner - 1);
+    search.occupied = 0;
+    if (number < search.rows) {
+        const NestedGrid nested = nested_grid(grid, *search.frame, search.taken - WARP + owner, offset);
+        look_into_row(grid, region, nested, number - (owner == 0 ? 0 : before), search);
+    }
+    search.row += WARP;
+    search.end_of_cells = warp_running_sum(__popc(search.occupied));
+    search.cell = 0;
+    search.cells = __shfl_sync(ALL_LANES, search.end_of_cells, WARP - 1);
+}
+
+// The place of a bit of those that are set, the lowest being number 0.
+DEVICE unsigned place_of_bit(unsigned bits, unsigned number) {
+    for (; number != 0; number--)
+        bits &= bits - 1;
+    return __ffs(bits) - 1;
+}
+
+// 3. Lanes take cells of the rows last taken.
+DEVICE void next_occupied(const Grid &grid, GridSearch &search) {
+    const unsigned number = search.cell + lane_of_thread(), owner = warp_owner(search.end_of_cells, number);
+    const unsigned occupied = __shfl_sync(ALL_LANES, search.occupied, owner), place = __shfl_sync(ALL_LANES, search.place, owner);
+    const unsigned end = __shfl_sync(ALL_LANES, search.end_of_cells, owner);
+    const bool has = number < search.cells;
+    const int offset = has ? __ldg(grid.cells + place + place_of_bit(occupied, __popc(occupied) - (end - number))) : 0;
+    take_cells(grid, search, has, offset);
+    search.cell += WARP;
+}
+
+// Whether a triangle was neither found lately nor is that of another lane. Which of the triangles that want the same place is remembered
+// is left to chance: the others may be found again.
 DEVICE bool is_new(GridSearch &search, bool has, unsigned index) {
-    const unsigned lane = lane_of_thread(), place = index % RECENT_TRIANGLES, number = has ? index + 1 : 0;
-    const unsigned same = __match_any_sync(ALL_LANES, number);
-    const bool is_new = has && (same & lanes_below(lane)) == 0 && search.recent[place] != number;
+    unsigned *recent = search.recent + index % RECENT_TRIANGLES;
+    const unsigned number = index / RECENT_TRIANGLES + 1, own = number * WARP + lane_of_thread();
+    bool is_new = has && *recent / WARP != number;
     // All have read before any writes.
     __syncwarp();
-    const unsigned rivals = __match_any_sync(ALL_LANES, is_new ? place : RECENT_TRIANGLES);
-    if (is_new && rivals >> lane == 1)
-        search.recent[place] = number;
+    if (is_new)
+        *recent = own;
     __syncwarp();
-    return is_new;
+    return is_new && (*recent / WARP != number || *recent == own);
 }
 
-// One round: lanes take three triangles each of the cells last looked into; or cells.
+// 4. Lanes take up to three triangles each of the cells last taken.
 template <bool SIEVED, class Form>
-DEVICE void next_triangles(const Grid &grid, const Region<Form> &region, GridSearch &search, unsigned *found, unsigned &count) {
-    if (search.next >= search.all) {
-        next_cells(grid, region, search);
-        return;
-    }
+DEVICE void next_listed(const Grid &grid, const Region<Form> &region, GridSearch &search, unsigned *found, unsigned &count) {
     for (unsigned i = 0; i < 3 && search.next < search.all; i++) {
         const unsigned number = search.next + lane_of_thread();
         const unsigned place = number + __shfl_sync(ALL_LANES, search.shift, warp_owner(search.end, number));
@@ -247,4 +225,19 @@ DEVICE void next_triangles(const Grid &grid, const Region<Form> &region, GridSea
         search.next += WARP;
     }
     __syncwarp();
+}
+
+// One step: the last one for which there is something left.
+template <bool SIEVED, class Form>
+DEVICE void next_triangles(const Grid &grid, const Region<Form> &region, GridSearch &search, unsigned *found, unsigned &count) {
+    if (search.next < search.all)
+        next_listed<SIEVED>(grid, region, search, found, count);
+    else if (search.cell < search.cells)
+        next_occupied(grid, search);
+    else if (search.row < search.rows)
+        next_rows(grid, region, search);
+    else if (search.taken < count_of(search.frame->cells))
+        next_cells(grid, region, search);
+    else
+        next_part(grid, region, search);
 }
