@@ -206,7 +206,7 @@ constants! {
     /// Additional stack entries per level of the tree.
     STACK_PER_LEVEL: u32 = 7;
     /// Maximum number of recently found triangles that a search through a grid remembers.
-    RECENT_TRIANGLES: u32 = 256;
+    RECENT_TRIANGLES: u32 = 512;
     /// Words that describe the part of a grid that is searched.
     GRID_FRAME_WORDS: u32 = 20;
     /// Triangles found but not yet processed: fewer than 32, and at most 96 that one round of a search adds.

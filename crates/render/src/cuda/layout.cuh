@@ -110,7 +110,7 @@
 // Additional stack entries per level of the tree.
 #define STACK_PER_LEVEL 7u
 // Maximum number of recently found triangles that a search through a grid remembers.
-#define RECENT_TRIANGLES 256u
+#define RECENT_TRIANGLES 512u
 // Words that describe the part of a grid that is searched.
 #define GRID_FRAME_WORDS 20u
 // Triangles found but not yet processed: fewer than 32, and at most 96 that one round of a search adds.
