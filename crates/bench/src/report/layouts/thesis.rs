@@ -1,5 +1,7 @@
 //! The table of the thesis: full frames in both modes, their time by stage, and counts.
 
+use lightmesh::Stage;
+
 use super::{WHOLE, key_column, key_columns};
 use crate::report::document::{Block, Cell, Column, Table};
 use crate::report::numbers;
@@ -33,17 +35,15 @@ const COUNTS: [(&str, &str); 7] = [
     ("device_peak_bytes", "GPU memory"),
 ];
 
-/// Stages by name, with their headings, and the whole frame.
-const STAGES: [(&str, &str); 8] = [
-    ("upload", "upload"),
-    ("primary_rays", "primary rays"),
-    ("short_tests", "short tests"),
-    ("collect", "collect"),
-    ("long_tests", "long tests, shadow rays"),
-    ("shade", "shade"),
-    ("download", "download"),
-    (WHOLE, "whole"),
-];
+/// All stages of a frame by name, with their headings, and the whole frame.
+fn shown_stages() -> Vec<(&'static str, String)> {
+    let heading = |stage: Stage| match stage {
+        Stage::LongTests => "long tests, shadow rays".to_owned(),
+        other => other.name().replace('_', " "),
+    };
+    let stages = Stage::ALL.into_iter().filter(|&stage| stage != Stage::Build);
+    stages.map(|stage| (stage.name(), heading(stage))).chain([(WHOLE, "whole".to_owned())]).collect()
+}
 
 pub(super) fn frames(rows: &[Measured]) -> Vec<Block> {
     vec![Block::Table(times(rows)), Block::Table(stages(rows).folded()), Block::Table(counts(rows).folded())]
@@ -143,13 +143,14 @@ fn stages(rows: &[Measured]) -> Table {
     let keys = case_columns(rows);
     let mut columns = vec![Column::words("place", "on"), Column::words("mode", "mode")];
     columns.extend(keys.iter().map(|key| key_column(key, rows)));
-    columns.extend(STAGES.iter().map(|(stage, title)| Column::numbers(*stage, *title)));
+    let shown = shown_stages();
+    columns.extend(shown.iter().map(|(stage, title)| Column::numbers(*stage, title)));
     let mut table =
         Table::new("timings, stages", "Milliseconds per stage, medians; stages that took no time are empty.", columns);
     for row in rows {
         let mut cells: Vec<Cell> = vec![row.place().into(), row.text("mode").into()];
         cells.extend(keys.iter().map(|key| Cell::from(row.text(key))));
-        cells.extend(STAGES.iter().map(|(stage, _)| Cell::number(row.median(stage), numbers::milliseconds)));
+        cells.extend(shown.iter().map(|(stage, _)| Cell::number(row.median(stage), numbers::milliseconds)));
         table.rows.push(cells);
     }
     table.without_empty_columns()
@@ -157,7 +158,9 @@ fn stages(rows: &[Measured]) -> Table {
 
 /// Rows of the experiment `stages`: medians, and light points.
 pub(super) fn by_stage(rows: &[Measured]) -> Vec<Block> {
-    vec![super::generic::chosen(super::STAGES, "", rows, &STAGES, &COUNTS[..1])]
+    let shown = shown_stages();
+    let shown: Vec<(&str, &str)> = shown.iter().map(|(stage, title)| (*stage, title.as_str())).collect();
+    vec![super::generic::chosen(super::STAGES, "", rows, &shown, &COUNTS[..1])]
 }
 
 /// Counts; equal counts on several devices share a line.
