@@ -33,7 +33,7 @@ struct GridSearch {
     // The triangles of the cells last taken, one cell after the other: where those of the lane's cell end in this list, and what to add
     // to a place there for the place in memory; how many were taken, of how many.
     unsigned end, shift, next, all;
-    // Triangles found lately, by a part of their index.
+    // Triangles found recently, by a part of their index.
     unsigned *recent;
     // Whether no part is left.
     bool over;
@@ -199,18 +199,19 @@ DEVICE void next_occupied(const Grid &grid, GridSearch &search) {
     search.cell += WARP;
 }
 
-// Whether a triangle was neither found lately nor is that of another lane. Which of the triangles that want the same place is remembered
-// is left to chance: the others may be found again.
+// Whether a triangle was neither found recently nor belongs to a lane before this one. What is remembered does not depend on the order
+// in which lanes write: of those that want the same place, the last one gets it.
 DEVICE bool is_new(GridSearch &search, bool has, unsigned index) {
-    unsigned *recent = search.recent + index % RECENT_TRIANGLES;
-    const unsigned number = index / RECENT_TRIANGLES + 1, own = number * WARP + lane_of_thread();
-    bool is_new = has && *recent / WARP != number;
+    const unsigned lane = lane_of_thread(), place = index % RECENT_TRIANGLES, number = has ? index + 1 : 0;
+    const unsigned same = __match_any_sync(ALL_LANES, number);
+    const bool is_new = has && (same & lanes_below(lane)) == 0 && search.recent[place] != number;
     // All have read before any writes.
     __syncwarp();
-    if (is_new)
-        *recent = own;
+    const unsigned rivals = __match_any_sync(ALL_LANES, is_new ? place : RECENT_TRIANGLES);
+    if (is_new && rivals >> lane == 1)
+        search.recent[place] = number;
     __syncwarp();
-    return is_new && (*recent / WARP != number || *recent == own);
+    return is_new;
 }
 
 // 4. Lanes take up to three triangles each of the cells last taken.
