@@ -92,11 +92,16 @@ pub(crate) fn hidden(wave: &HostWave, segments: &[Ray]) -> Vec<bool> {
 /// Hands the shadow rays from a surface point to a light to `take`. A sample behind the surface is dark without a ray.
 #[inline(always)]
 pub(crate) fn each_shadow_ray(point: &SurfacePoint, targets: &Targets, samples: u32, mut take: impl FnMut(Ray)) {
-    for sample in 0..samples {
-        let target = targets.get(sample);
+    let Targets { light, from, reach, ref pattern } = *targets;
+    let mut cast = |target: Vec3| {
         if point.normal.dot(target - point.origin) > 0.0 {
             take(long_segment(point.origin, target));
         }
+    };
+    match pattern {
+        // Apart from the loop: hard shadows are little more than this.
+        None => cast(light_center(light, from, reach)),
+        Some(pattern) => (0..samples).for_each(|sample| cast(light_point(light, from, reach, pattern.point(sample)))),
     }
 }
 
