@@ -89,6 +89,8 @@ pub struct Row {
 
 /// Digits of a sample: runs differ in the second or third, and a file with thousands of samples stays small.
 const SAMPLE_DIGITS: usize = 5;
+/// Digits of a value in a file: of numbers with more than 15, or far below 1, the JSON reader may change the last one.
+const VALUE_DIGITS: usize = 12;
 
 /// The stage that stands for the whole frame.
 pub(crate) const WHOLE: &str = "render";
@@ -133,6 +135,13 @@ pub struct Picture {
 impl Results {
     /// The current format version.
     pub const VERSION: u32 = 1;
+
+    /// The same with values of so few digits that they are read back as they are written.
+    pub(crate) fn with_rounded_values(mut self) -> Results {
+        let values = self.rows.iter_mut().flat_map(|row| row.values.values_mut());
+        values.for_each(|value| *value = rounded(*value, VALUE_DIGITS));
+        self
+    }
 }
 
 impl Row {
@@ -178,11 +187,15 @@ impl std::fmt::Display for Key {
     }
 }
 
+/// A number with `digits` significant digits.
+fn rounded(number: f64, digits: usize) -> f64 {
+    format!("{number:.*e}", digits - 1).parse().unwrap_or(number)
+}
+
 impl Samples {
     /// Adds a sample in seconds, rounded to the precision of clocks.
     pub fn push(&mut self, seconds: f64) {
-        let digits = SAMPLE_DIGITS - 1;
-        self.0.push(format!("{seconds:.digits$e}").parse().unwrap_or(seconds));
+        self.0.push(rounded(seconds, SAMPLE_DIGITS));
     }
 
     /// The minimum; `None` if there are no samples.

@@ -41,7 +41,7 @@ impl Results {
     }
 
     fn write(&self, path: &Path, pictures: Vec<Picture>) -> Result<(), OutputError> {
-        write(path, &json::lines(&Results { pictures, ..self.clone() }))
+        write(path, &json::lines(&Results { pictures, ..self.clone() }.with_rounded_values()))
     }
 }
 
@@ -78,6 +78,22 @@ mod tests {
             Results::load(&path).unwrap().pictures.into_iter().map(|picture| picture.file).collect();
         assert_eq!(files, ["a-pictures/p-r-1.png", "a-pictures/p-r-1-2.png"]);
         assert_eq!(std::fs::read(folder.path().join(&files[1])).unwrap(), results.pictures[1].png);
+    }
+
+    #[test]
+    fn what_is_read_back_is_what_was_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let [first, second] = ["a.json", "b.json"].map(|name| folder.path().join(name));
+        let values = [147.14578143982843, 1.5214273212081701e-9, 0.1 + 0.2, 2977583.0, 9199.649061238813];
+        let mut results = results();
+        results.rows[0].values = (0..).zip(values).map(|(index, value)| (format!("value {index}"), value)).collect();
+        results.save(&first).unwrap();
+        let read = Results::load(&first).unwrap();
+        for (value, read) in values.iter().zip(read.rows[0].values.values()) {
+            assert!((read / value - 1.0).abs() < 1e-11, "{value} became {read}");
+        }
+        read.save(&second).unwrap();
+        assert_eq!(std::fs::read(&first).unwrap(), std::fs::read(&second).unwrap());
     }
 
     #[test]
