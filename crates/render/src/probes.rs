@@ -106,9 +106,8 @@ impl<'a> GivenPoints<'a> {
             return Err(RenderError::Point { index, position: points[index].into(), normal: normals[index].into() });
         }
         let geometry = scene.geometry.bounds;
-        let far = if geometry.is_empty() { 0.0 } else { geometry.min.abs().max(geometry.max.abs()).max_element() };
         let bounds = points.iter().fold(geometry, |bounds, &point| bounds.including(point));
-        Ok(GivenPoints { scene, points, normals, bounds, far_corner: Vec3::splat(1.5 * far) })
+        Ok(GivenPoints { scene, points, normals, bounds, far_corner: Vec3::splat(1.5 * geometry.farthest()) })
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -174,7 +173,7 @@ mod tests {
             let point = SurfacePoint::new(&wave.rays.rays[ray], hit, &wave.rays.probes[hit.triangle as usize]);
             assert_eq!(point.position, points[probe]);
             assert!(point.normal.abs_diff_eq(normals[probe].normalize(), 1e-6), "{}", point.normal);
-            let far = given.bounds.min.abs().max(given.bounds.max.abs()).max_element();
+            let far = given.bounds.farthest();
             assert!((point.origin - point.position).dot(point.normal) >= GAMMA_32 * points[probe].abs().max_element());
             assert!((point.origin - point.position).length() <= 5.0 * GAMMA_32 * far);
             assert_eq!(wave.rays.pixels[ray] as usize, probe);

@@ -27,6 +27,12 @@ impl Bounds {
         Bounds { min: self.min.min(point), max: self.max.max(point) }
     }
 
+    /// The largest absolute value of a coordinate within; 0 if it is empty.
+    #[inline]
+    pub fn farthest(&self) -> f32 {
+        if self.is_empty() { 0.0 } else { self.min.abs().max(self.max.abs()).max_element() }
+    }
+
     /// Whether the box is empty.
     #[inline]
     pub fn is_empty(&self) -> bool {

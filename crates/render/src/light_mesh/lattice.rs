@@ -57,7 +57,7 @@ impl Lattice {
         let bounds = if bounds.is_empty() { Bounds { min: Vec3::ZERO, max: Vec3::ZERO } } else { *bounds };
         let least = least_step(origin, &bounds, reach);
         if f64::from(step) < least {
-            let reach = f64::from(farthest(&bounds)).max(origin.abs().max_element());
+            let reach = f64::from(bounds.farthest()).max(origin.abs().max_element());
             return Err(LatticeError::TooFine { step, reach, least: least as f32 * 1.001 });
         }
         let h = f64::from(step);
@@ -101,13 +101,8 @@ impl Lattice {
 /// The smallest step for which no index has more bits than keys have room for: they are exact in `f32`, and three of them fit into 63
 /// bits.
 fn least_step(origin: DVec3, bounds: &Bounds, reach: f32) -> f64 {
-    let here = f64::from(farthest(bounds)) / (f64::from(INDEX_BIAS) - margin(reach) - 2.0);
+    let here = f64::from(bounds.farthest()) / (f64::from(INDEX_BIAS) - margin(reach) - 2.0);
     here.max(origin.abs().max_element() / Lattice::MOST_IN_WORLD)
-}
-
-/// The largest coordinate within some bounds.
-fn farthest(bounds: &Bounds) -> f32 {
-    bounds.min.abs().max(bounds.max.abs()).max_element()
 }
 
 /// Light points beyond those around the scene: those that its surface points may use, and a margin for rounding.

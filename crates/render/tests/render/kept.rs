@@ -3,25 +3,13 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DVec3, Vec3};
-use lightmesh_render::{
-    Device, Frame, MeshCache, Observer, PreparedScene, RenderError, Renderer, Settings, Step, Unobserved,
-};
+use lightmesh_render::{Frame, MeshCache, Observer, PreparedScene, RenderError, Settings, Step, Unobserved};
 use lightmesh_scene::{Camera, LightKind, Lights, Scene};
 use lightmesh_testkit::{Picture, pile};
 
-use crate::light_mesh;
+use crate::{LAMP, POINT, light_mesh, prepared, renderer};
 
 const SIZE: [u32; 2] = [96, 96];
-const LAMP: LightKind = LightKind::Sphere { position: Vec3::new(-2.0, 4.0, 2.0), radius: 0.6 };
-const POINT: LightKind = LightKind::Point { position: Vec3::new(2.0, 4.0, 1.0), spread: 0.0 };
-
-fn renderer() -> Renderer {
-    Renderer::with_threads(Device::Cpu, Some(2)).unwrap()
-}
-
-fn prepared(scene: &Scene) -> PreparedScene {
-    renderer().prepare(scene, &Settings::default(), &Unobserved).unwrap()
-}
 
 fn small(samples: u32) -> Settings {
     light_mesh([40, 40], 0.2, 2.1).with_samples(samples).with_bounces(1).with_layers(true)

@@ -3,16 +3,14 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use lightmesh_render::{Acceleration, Device, Mode, PreparedScene, RenderError, Renderer, Settings, Unobserved};
+use lightmesh_render::{Acceleration, Mode, PreparedScene, RenderError, Settings, Unobserved};
 use lightmesh_scene::{Light, Scene};
 use lightmesh_testkit::half_plane;
 
+use crate::renderer;
+
 fn settings() -> Settings {
     Settings::default().with_size([32, 32]).with_mode(Mode::RayTrace)
-}
-
-fn renderer() -> Renderer {
-    Renderer::with_threads(Device::Cpu, Some(2)).unwrap()
 }
 
 /// The scene with another lamp.

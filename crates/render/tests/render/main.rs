@@ -15,7 +15,21 @@ mod shading;
 mod shadow_rays;
 mod walls;
 
-use lightmesh_render::{Mode, Settings, Step};
+use glam::Vec3;
+use lightmesh_render::{Device, Mode, PreparedScene, Renderer, Settings, Step, Unobserved};
+use lightmesh_scene::{LightKind, Scene};
+
+/// Lights for piles.
+const LAMP: LightKind = LightKind::Sphere { position: Vec3::new(-2.0, 4.0, 2.0), radius: 0.6 };
+const POINT: LightKind = LightKind::Point { position: Vec3::new(2.0, 4.0, 1.0), spread: 0.0 };
+
+fn renderer() -> Renderer {
+    Renderer::with_threads(Device::Cpu, Some(2)).unwrap()
+}
+
+fn prepared(scene: &Scene) -> PreparedScene {
+    renderer().prepare(scene, &Settings::default(), &Unobserved).unwrap()
+}
 
 /// The method with a step of `step` scene units and a radius of `radius` steps.
 fn light_mesh(size: [u32; 2], step: f32, radius: f32) -> Settings {

@@ -1,25 +1,13 @@
 //! Visibility at given points equals that of an image at the points of its pixels.
 
 use glam::{DVec3, Vec3};
-use lightmesh_render::{
-    Device, Frame, Mode, PointVisibility, PreparedScene, RenderError, Renderer, Settings, Step, Unobserved,
-};
-use lightmesh_scene::{LightKind, Scene};
+use lightmesh_render::{Frame, Mode, PointVisibility, PreparedScene, RenderError, Settings, Step, Unobserved};
+use lightmesh_scene::Scene;
 use lightmesh_testkit::{half_plane, pile};
 
-use crate::{light_mesh, mode};
+use crate::{LAMP, POINT, light_mesh, mode, prepared, renderer};
 
 const SIZE: [u32; 2] = [96, 64];
-const LAMP: LightKind = LightKind::Sphere { position: Vec3::new(-2.0, 4.0, 2.0), radius: 0.6 };
-const POINT: LightKind = LightKind::Point { position: Vec3::new(2.0, 4.0, 1.0), spread: 0.0 };
-
-fn renderer() -> Renderer {
-    Renderer::with_threads(Device::Cpu, Some(2)).unwrap()
-}
-
-fn prepared(scene: &Scene) -> PreparedScene {
-    renderer().prepare(scene, &Settings::default(), &Unobserved).unwrap()
-}
 
 /// The surface points and normals of an image with their pixels.
 fn seen(scene: &PreparedScene, frame: &Frame) -> (Vec<usize>, Vec<Vec3>, Vec<Vec3>) {
