@@ -9,63 +9,39 @@ use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 use glam::Vec3A;
-use lightmesh_layout::constants::{BVH_MARGIN, FIRST_INNER, INNER_HITS, ROOT_HIT, TRIANGLE_HITS};
+use lightmesh_layout::constants::BVH_MARGIN;
 
-use super::walk::{Group, Stack, child_hits, planes};
+use super::walk::{Guide, Stack, descend, planes};
 use super::{Bvh, Node};
-use crate::accel::Region;
 use crate::accel::region::Boxes;
 use crate::accel::sieve::Sieve;
+use crate::accel::{Region, Triangle};
 
 /// All triangles whose bounding boxes the region may meet, in ascending order.
 #[simd]
 pub(super) fn triangles_in<S: Simd>(simd: S, bvh: &Bvh, region: &Region, found: &mut Vec<u32>) {
-    let mut sieve = Sieve::new(simd, region, found);
-    if !bvh.nodes.is_empty() {
-        search(simd, bvh, region, &mut sieve);
-    }
-    sieve.finish();
+    let mut search = Search { simd, region, sieve: Sieve::new(simd, region, found) };
+    descend(bvh, 0, 0, Stack::new(bvh.depth).entries(), &mut search);
+    search.sieve.finish();
 }
 
 /// Passes to a sieve the triangles of all leaves whose boxes the region may meet.
-#[inline(always)]
-fn search<S: Simd>(simd: S, bvh: &Bvh, region: &Region, sieve: &mut Sieve<S>) {
-    let mut stack = Stack::new(bvh.depth);
-    let stack = stack.entries();
-    let mut height = 0;
-    // 1. Begin with the root, as if it were the only child in the last slot.
-    let mut nodes = Group { base: 0, bits: ROOT_HIT };
-    loop {
-        // 2. Take a node out of its group; keep the rest for later.
-        let bit = 31 - nodes.bits.leading_zeros();
-        let siblings = nodes.bits;
-        nodes.bits &= !(1 << bit);
-        if nodes.bits > TRIANGLE_HITS {
-            stack[height] = nodes;
-            height += 1;
-        }
-        let before = siblings & ((1 << (bit - FIRST_INNER)) - 1) & 0xff;
-        let node = &bvh.nodes[(nodes.base + before.count_ones()) as usize];
+struct Search<'a, S: Simd> {
+    simd: S,
+    region: &'a Region,
+    sieve: Sieve<'a, S>,
+}
 
-        // 3. Which of its children may the region meet?
-        let hits = child_hits(node, region.meets(simd, &children(simd, node)), 0);
-        nodes = Group { base: node.child_base_idx, bits: (hits & INNER_HITS) | u32::from(node.imask) };
+impl<S: Simd> Guide for Search<'_, S> {
+    #[inline(always)]
+    fn met(&self, node: &Node) -> u32 {
+        self.region.meets(self.simd, &children(self.simd, node))
+    }
 
-        // 4. The triangles of those that are leaves.
-        let mut triangles = hits & TRIANGLE_HITS;
-        while triangles != 0 {
-            sieve.take(&bvh.triangles[(node.primitive_base_idx + triangles.trailing_zeros()) as usize]);
-            triangles &= triangles - 1;
-        }
-
-        // 5. No child left to enter: continue with the group most recently set aside.
-        if nodes.bits <= TRIANGLE_HITS {
-            if height == 0 {
-                return;
-            }
-            height -= 1;
-            nodes = stack[height];
-        }
+    #[inline(always)]
+    fn triangle(&mut self, triangle: &Triangle) -> bool {
+        self.sieve.take(triangle);
+        true
     }
 }
 

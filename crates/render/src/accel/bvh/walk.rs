@@ -27,7 +27,7 @@ use lightmesh_layout::constants::{BVH_MARGIN, FIRST_INNER, INNER_HITS, LEAST_COM
 
 use super::{Bvh, Node};
 use crate::accel::visit::{Any, Closest, Short, Visitor};
-use crate::accel::{Hit, Ray, ShortSegments};
+use crate::accel::{Hit, Ray, ShortSegments, Triangle};
 
 /// Entries of the stack that lies in registers and cache; deeper trees, which only hostile input produces, get one from the heap.
 const STACK: usize = 32;
@@ -109,6 +109,40 @@ pub(super) fn walk<S: Simd>(
     stack: &mut [Group],
     visitor: &mut impl Visitor,
 ) {
+    descend(bvh, root, slabs.octant, stack, &mut RayGuide { simd, slabs, visitor });
+}
+
+/// Decides where a descent through the tree goes.
+pub(super) trait Guide {
+    /// Bit k: enter the box of slot k.
+    fn met(&self, node: &Node) -> u32;
+
+    /// Takes a triangle of a leaf that is entered; `false` ends the descent.
+    fn triangle(&mut self, triangle: &Triangle) -> bool;
+}
+
+/// A ray that looks for triangles.
+struct RayGuide<'a, S: Simd, V: Visitor> {
+    simd: S,
+    slabs: &'a Slabs,
+    visitor: &'a mut V,
+}
+
+impl<S: Simd, V: Visitor> Guide for RayGuide<'_, S, V> {
+    #[inline(always)]
+    fn met(&self, node: &Node) -> u32 {
+        met_slots(self.simd, node, self.slabs, self.visitor.limit())
+    }
+
+    #[inline(always)]
+    fn triangle(&mut self, triangle: &Triangle) -> bool {
+        self.visitor.triangle(triangle)
+    }
+}
+
+/// Visits the triangles of all leaves below `root` that the guide enters, in the order of slot xor `octant`.
+#[inline(always)]
+pub(super) fn descend(bvh: &Bvh, root: u32, octant: u32, stack: &mut [Group], guide: &mut impl Guide) {
     if bvh.nodes.is_empty() {
         return;
     }
@@ -116,7 +150,7 @@ pub(super) fn walk<S: Simd>(
     let mut nodes = Group { base: root, bits: ROOT_HIT };
     let mut height = 0;
     loop {
-        // 2. Take the nearest node out of its group; keep the rest for later.
+        // 2. Take the first node out of its group; keep the rest for later.
         let bit = 31 - nodes.bits.leading_zeros();
         let siblings = nodes.bits;
         nodes.bits &= !(1 << bit);
@@ -124,20 +158,20 @@ pub(super) fn walk<S: Simd>(
             stack[height] = nodes;
             height += 1;
         }
-        let slot = (bit - FIRST_INNER) ^ slabs.octant;
+        let slot = (bit - FIRST_INNER) ^ octant;
         let before = siblings & ((1 << slot) - 1) & 0xff;
         let node = &bvh.nodes[(nodes.base + before.count_ones()) as usize];
 
-        // 3. Which of its children does the ray meet?
-        let hits = child_hits(node, met_slots(simd, node, slabs, visitor.limit()), slabs.octant);
+        // 3. Which of its children are entered?
+        let hits = child_hits(node, guide.met(node), octant);
         nodes = Group { base: node.child_base_idx, bits: (hits & INNER_HITS) | u32::from(node.imask) };
 
-        // 4. Test the triangles of those that are leaves.
+        // 4. Take the triangles of those that are leaves.
         let mut triangles = hits & TRIANGLE_HITS;
         while triangles != 0 {
             let triangle = node.primitive_base_idx + triangles.trailing_zeros();
             triangles &= triangles - 1;
-            if !visitor.triangle(&bvh.triangles[triangle as usize]) {
+            if !guide.triangle(&bvh.triangles[triangle as usize]) {
                 return;
             }
         }
