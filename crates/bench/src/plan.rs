@@ -18,13 +18,15 @@ pub enum Suite {
     Quality,
     /// Rays per second of each acceleration structure.
     Rays,
+    /// Shadows of lights with a size: occluder lists and their rivals.
+    Shadows,
     /// Seconds of each stage, by acceleration structure and kind of short tests.
     Stages,
 }
 
 impl Suite {
     /// All of them.
-    pub const ALL: [Suite; 4] = [Suite::Thesis, Suite::Quality, Suite::Rays, Suite::Stages];
+    pub const ALL: [Suite; 5] = [Suite::Thesis, Suite::Quality, Suite::Rays, Suite::Shadows, Suite::Stages];
 
     /// The name on the command line and in results.
     pub fn name(self) -> &'static str {
@@ -32,6 +34,7 @@ impl Suite {
             Suite::Thesis => "thesis",
             Suite::Quality => "quality",
             Suite::Rays => "rays",
+            Suite::Shadows => "shadows",
             Suite::Stages => "stages",
         }
     }
@@ -42,6 +45,9 @@ impl Suite {
             Suite::Thesis => "all tables and figures of the thesis: timings, light points, break-even, images",
             Suite::Quality => "errors relative to converged area shadows, and the cost of shadow rays with equal error",
             Suite::Rays => "primary, shadow and short rays per second with BVH and grid, on any scene",
+            Suite::Shadows => {
+                "seconds and exactness of the shadows of lights with a size, by occluder lists and without, on any scene"
+            }
             Suite::Stages => {
                 "seconds of each stage by acceleration structure, kind of short tests and radius, on any scene"
             }

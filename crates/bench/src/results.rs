@@ -98,6 +98,9 @@ pub(crate) const WHOLE: &str = "render";
 /// The experiment that measures stages.
 pub(crate) const STAGES: &str = "stages";
 
+/// The experiment that compares ways to compute shadows.
+pub(crate) const SHADOWS: &str = "shadows";
+
 /// A setting: a number or a word.
 #[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[serde(untagged)]

@@ -195,6 +195,33 @@ constants! {
     /// The value of the last of these digits.
     LAST_DIGIT: f32 = 1.0 / (1u32 << SAMPLE_DIGITS) as f32;
 
+    // Rows of samples.
+
+    /// Maximum number of rows of samples that are tested at once.
+    MOST_ROWS: u32 = 20;
+    /// Maximum number of words of their bits.
+    MOST_WORDS: u32 = 10;
+    /// Maximum number of samples in a row, so that its bits are an exact difference of powers of two in 32 bits.
+    MOST_OF_ROW: u32 = 30;
+    /// Edge functions below this in size, along a row, count as constant.
+    LEAST_SLOPE: f32 = 1e-25;
+    /// Far outside of every emitter: the bound of a row without an edge on that side.
+    BEYOND: f32 = 1e30;
+    /// Number of places by which samples are shifted along their rows: sums of a few shifts are exact.
+    SHIFTS: f32 = (1u32 << 16) as f32;
+    /// By how much the boxes of surface points and emitters are enlarged before bounds are derived from them.
+    GROWN: f32 = 1.0 + 1e-5;
+    /// Least width in pixels of the cells by which surface points are grouped.
+    CELL_PIXELS: f32 = 32.0;
+    /// The exponent's last bit in single precision.
+    F32_EXPONENT_STEP: u32 = 1 << (f32::MANTISSA_DIGITS - 1);
+    /// The largest hash of a cell.
+    LAST_HASH: u32 = 0xfffe;
+    /// Words of a candidate that may hide a light: corners, edges and normal.
+    OCCLUDER_WORDS: u32 = 24;
+    /// The margin of searches for what may hide a light, 2^-16 of the size of the searched space.
+    SHADOW_MARGIN: f32 = 1.0 / (1u32 << 16) as f32;
+
     // Searches by region.
 
     /// Maximum number of tangent planes that a region distinguishes.

@@ -1,6 +1,7 @@
 //! The scene in a device's memory.
 
 use crate::In;
+use crate::constants::{MOST_ROWS, MOST_WORDS};
 use crate::geometry::{BruteForce, Bvh, Grid, Triangle, Vec3};
 use crate::record::records;
 
@@ -29,8 +30,10 @@ records! {
         cos_outer: f32,
         /// 1 / (cos inner − cos outer) of a spot.
         cone_scale: f32,
+        /// A power of two: vectors to the light are multiplied by it, so that their products with triangles do not overflow.
+        scale: f32,
         /// Padding to a multiple of sixteen bytes.
-        spare: [u32; 3],
+        spare: [u32; 2],
     }
 
     /// The vertices of a triangle.
@@ -139,5 +142,37 @@ records! {
         samples: u32,
         /// 1: point lights are distributed over their spread.
         spread: u32,
+    }
+
+    /// Samples of an emitter in rows, all or some of them. Entries of arrays are by row unless stated.
+    SampleRows {
+        /// Position across the emitter, in [-1, 1].
+        y: [f32; MOST_ROWS as usize],
+        /// Samples per unit of length along the row.
+        density: [f32; MOST_ROWS as usize],
+        /// Half the number of samples.
+        half: [f32; MOST_ROWS as usize],
+        /// By how much of their distance samples are shifted, in addition to the surface point's own shift; in [0, 1).
+        shift: [f32; MOST_ROWS as usize],
+        /// Number of samples.
+        count: [u32; MOST_ROWS as usize],
+        /// Bit of the first sample in its word.
+        place: [u32; MOST_ROWS as usize],
+        /// The row of the emitter that the samples belong to: two lines of a rectangle share one.
+        line: [u32; MOST_ROWS as usize],
+        /// The end of each word's rows, by word.
+        ends: [u32; MOST_WORDS as usize],
+        /// Number of rows.
+        rows: u32,
+        /// Number of words.
+        words: u32,
+        /// Number of rows of the whole emitter.
+        lines: u32,
+        /// Number of rows of the whole emitter that have a sample too many; only a rectangle's.
+        surplus: u32,
+        /// The line that enters the rectangle within its length, or MOST_ROWS.
+        entering: u32,
+        /// The line that leaves it, or MOST_ROWS.
+        leaving: u32,
     }
 }

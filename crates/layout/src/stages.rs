@@ -3,10 +3,66 @@
 use crate::geometry::{Hit, ListedRay, Rays, Tally, Vec3};
 use crate::mesh::{BrickTable, Item, KeptBy, LightMesh, LitBy, UsedPoints};
 use crate::record::records;
-use crate::scene::{Sampling, Scene};
+use crate::scene::{SampleRows, Sampling, Scene};
 use crate::{In, Out};
 
 records! {
+    /// `group_items` and `gather_items`: one block per tile of 1024 rays.
+    GroupItems {
+        /// The scene.
+        scene: Scene,
+        /// Rays.
+        rays: Rays,
+        /// Their hits.
+        hits: In<Hit>,
+        /// Surface points by tile, then cell: ray numbers, 1024 entries per tile.
+        members: Out<u32>,
+        /// The end of each item among the members of its tile, 1024 entries per tile.
+        ends: Out<u16>,
+        /// Number of items of each tile; after the scan, of all tiles before it.
+        counts: Out<u32>,
+        /// All items, one tile after another: slot of the first member · 64 + their number.
+        items: Out<u64>,
+        /// The first block of this launch among all blocks.
+        first_block: u64,
+        /// The distance between the surface points of neighbouring pixels: a constant, and a multiple of their distance.
+        spacing: [f32; 2],
+    }
+
+    /// `area_shadows`: one warp per 32 rays; `occluder_lists`: one warp per item; `sample_rays`: one thread per ray.
+    Shadows {
+        /// The scene.
+        scene: Scene,
+        /// Rays that found the surface points.
+        rays: Rays,
+        /// Their hits.
+        hits: In<Hit>,
+        /// Ray numbers by slot.
+        members: In<u32>,
+        /// Slot of the first member · 64 + their number, by item.
+        items: In<u64>,
+        /// Share of each light by light, then ray; the number of samples seen until the last set.
+        share: Out<f32>,
+        /// How area lights are sampled.
+        sampling: Sampling,
+        /// Counts samples.
+        tally: Tally,
+        /// The first warp, item or block of this launch.
+        first: u64,
+        /// Number of warps, items or blocks in this launch.
+        count: u64,
+        /// The samples of discs and rectangles that are tested now; no rows if there are none left.
+        sets: [SampleRows; 2],
+        /// Number of this set.
+        set: u32,
+        /// Number of sets.
+        set_count: u32,
+        /// The first light of this launch.
+        first_light: u32,
+        /// The last, and one.
+        end_light: u32,
+    }
+
     /// `primary_rays`: one thread per ray.
     PrimaryRays {
         /// The scene.
@@ -21,7 +77,7 @@ records! {
         first_block: u64,
     }
 
-    /// `shadow_rays` and `area_shadows`: one thread per ray.
+    /// `shadow_rays`: one thread per ray.
     ShadowRays {
         /// The scene.
         scene: Scene,
@@ -31,17 +87,14 @@ records! {
         hits: In<Hit>,
         /// Share of each light by light, then ray.
         share: Out<f32>,
-        /// How area lights are sampled.
-        sampling: Sampling,
         /// Counts shadow rays.
         tally: Tally,
         /// The first block of this launch among all blocks.
         first_block: u64,
-        /// The first shadow ray of each thread in this launch, counted light by light as if all had `sampling.samples`, or one each for
-        /// hard shadows. A later launch adds to the results of earlier ones.
-        first_sample: u64,
-        /// Number of shadow rays of each thread in this launch.
-        sample_count: u64,
+        /// The first light of this launch.
+        first_light: u32,
+        /// Number of lights in this launch.
+        light_count: u32,
     }
 
     /// `shade`: one thread per ray.

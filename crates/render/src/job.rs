@@ -10,7 +10,7 @@ use crate::counters::Tally;
 use crate::error::RenderError;
 use crate::observer::Observer;
 use crate::progress::Work;
-use crate::settings::ShortTests;
+use crate::settings::{ShadowTests, ShortTests};
 use crate::stage::{Seconds, Stage};
 
 /// How area lights are sampled.
@@ -44,6 +44,8 @@ pub struct Job<'a> {
     pub sampling: Sampling,
     /// How short tests are evaluated.
     pub short_tests: ShortTests,
+    /// How the samples of lights are tested.
+    pub shadow_tests: ShadowTests,
     /// The counts so far.
     pub tally: Tally,
     pub(crate) work: Work,
@@ -55,14 +57,28 @@ pub struct Job<'a> {
 impl<'a> Job<'a> {
     /// A job that has done nothing yet.
     pub fn new(observer: &'a dyn Observer, sampling: Sampling) -> Job<'a> {
-        let short_tests = ShortTests::default();
+        let (short_tests, shadow_tests) = (ShortTests::default(), ShadowTests::default());
         let (tally, work) = (Tally::default(), Work::new());
-        Job { observer, sampling, short_tests, tally, work, seconds: Mutex::default(), stopped: AtomicBool::new(false) }
+        Job {
+            observer,
+            sampling,
+            short_tests,
+            shadow_tests,
+            tally,
+            work,
+            seconds: Mutex::default(),
+            stopped: AtomicBool::new(false),
+        }
     }
 
     /// The same with another evaluation of short tests.
     pub fn with_short_tests(self, short_tests: ShortTests) -> Job<'a> {
         Job { short_tests, ..self }
+    }
+
+    /// The same with another test of the samples of lights.
+    pub fn with_shadow_tests(self, shadow_tests: ShadowTests) -> Job<'a> {
+        Job { shadow_tests, ..self }
     }
 
     /// Does a piece of the current stage's work, and reports that `pieces` more are done. Does nothing if the observer has requested

@@ -16,8 +16,13 @@ DEVICE unsigned long long mix(unsigned long long value) {
     return value ^ (value >> 31);
 }
 
+// Random bits of `key` (a pixel or light point), light number `light` and the user's `seed`.
+DEVICE unsigned long long random_bits(unsigned long long seed, unsigned long long key, unsigned light) {
+    return mix(seed ^ mix(key ^ mix((unsigned long long)light + 1)));
+}
+
 DEVICE Pattern pattern_of(unsigned long long seed, unsigned long long key, unsigned light) {
-    const unsigned long long base = mix(seed ^ mix(key ^ mix((unsigned long long)light + 1)));
+    const unsigned long long base = random_bits(seed, key, light);
     return Pattern{{(unsigned)mix(base), (unsigned)mix(base + 1), (unsigned)mix(base + 2), (unsigned)mix(base + 3)}};
 }
 

@@ -21,7 +21,7 @@ impl Pattern {
     /// The pattern that belongs to `key` (a pixel or light point), light number `light` and the user's `seed`.
     #[inline(always)]
     pub fn new(seed: u64, key: u64, light: usize) -> Pattern {
-        let base = mix(seed ^ mix(key ^ mix(light as u64 + 1)));
+        let base = random_bits(seed, key, light);
         let word = |i: u64| mix(base.wrapping_add(i)) as u32;
         Pattern { seeds: [word(0), word(1), word(2), word(3)] }
     }
@@ -34,6 +34,12 @@ impl Pattern {
         let axis = |digits: u32, seed: u32| first_digits(scramble(digits, seed)) as f32 * LAST_DIGIT;
         Vec3::new(axis(index, self.seeds[1]), axis(sobol_1(index), self.seeds[2]), axis(sobol_2(index), self.seeds[3]))
     }
+}
+
+/// Random bits of `key` (a pixel or light point), light number `light` and the user's `seed`.
+#[inline(always)]
+pub(crate) fn random_bits(seed: u64, key: u64, light: usize) -> u64 {
+    mix(seed ^ mix(key ^ mix(light as u64 + 1)))
 }
 
 /// The finaliser of SplitMix64 (Steele, Lea, Flood 2014).

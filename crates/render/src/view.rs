@@ -39,6 +39,12 @@ impl View {
         self.size
     }
 
+    /// The distance between the surface points of neighbouring pixels that face the camera: a constant, and a multiple of the distance.
+    pub(crate) fn spacing(&self) -> [f32; 2] {
+        let pixel = self.right.length();
+        if self.perspective { [0.0, pixel] } else { [pixel, 0.0] }
+    }
+
     /// The view as a record for kernels.
     pub(crate) fn record(&self) -> layout::View {
         layout::View {

@@ -2,6 +2,7 @@
 
 mod quality;
 mod rays;
+mod shadows;
 mod stages;
 mod subjects;
 mod thesis;
@@ -26,6 +27,7 @@ pub fn run(suite: Suite, plan: &Plan, observer: &dyn Observer) -> Result<Results
         Suite::Thesis => thesis::run(plan, observer, &mut findings),
         Suite::Quality => quality::run(plan, observer, &mut findings),
         Suite::Rays => rays::run(plan, observer, &mut findings),
+        Suite::Shadows => shadows::run(plan, observer, &mut findings),
         Suite::Stages => stages::run(plan, observer, &mut findings),
     };
     match outcome {

@@ -36,6 +36,9 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
             add("hits", |cuda, subject, index| drop(Twins::new(cuda, subject, index, HITS)));
             if subject.small || name != "brute_force" {
                 add("shadow_rays", |cuda, subject, index| Twins::new(cuda, subject, index, SIZE).shadow_rays());
+                add("occluder_lists", |cuda, subject, index| {
+                    Twins { samples: 16, ..Twins::new(cuda, subject, index, SIZE) }.occluder_lists();
+                });
                 add("light_mesh_2.1", |cuda, subject, index| {
                     Twins::new(cuda, subject, index, SIZE).light_mesh(2.1, Weight::Smooth);
                 });
@@ -47,6 +50,9 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
                 add("many_samples", |cuda, subject, index| {
                     let twins = Twins { samples: MANY_SAMPLES, ..Twins::new(cuda, subject, index, TINY) };
                     twins.shadow_rays();
+                    for samples in [1, 2, 13, 64, 256, MANY_SAMPLES] {
+                        Twins { samples, ..Twins::new(cuda, subject, index, SMALL) }.occluder_lists();
+                    }
                     twins.light_mesh(0.5, Weight::Constant);
                 });
                 // Templates of one brick and of many, masks inside and outside shared memory, kernels unrolled and not.
@@ -132,6 +138,22 @@ impl<'a, R: Target> Twins<'a, R> {
         let device = self.cuda.shadow_rays(&self.on_device(&job), &Aim::Extent(job.sampling)).unwrap();
         let allowed = R::allowed(host.share.len(), 1000);
         self.same_shares("area shadows", &host, &device.read().unwrap(), 0.0, allowed);
+    }
+
+    /// Samples in rows, each surface point on its own and by lists: the same bits.
+    fn occluder_lists(&self) {
+        let job = self.job();
+        let (host, device) = (self.on_host(&job), self.on_device(&job));
+        let aim = Aim::Extent(job.sampling);
+        let expected = Cpu.area_shadows(&host, &aim).unwrap();
+        let lists = Cpu.occluder_lists(&host, &Cpu.items(&host).unwrap(), &aim).unwrap();
+        let same = (expected.share.iter().zip(&lists.share)).all(|(a, b)| a.to_bits() == b.to_bits());
+        assert!(same, "{} samples: lists on the CPU", self.samples);
+        let found = self.cuda.area_shadows(&device, &aim).unwrap();
+        self.same_shares("samples in rows", &expected, &found.read().unwrap(), 0.0, 0);
+        let items = self.cuda.items(&device).unwrap();
+        let found = self.cuda.occluder_lists(&device, &items, &aim).unwrap();
+        self.same_shares("occluder lists", &expected, &found.read().unwrap(), 0.0, 0);
     }
 
     /// Steps 2 to 5.

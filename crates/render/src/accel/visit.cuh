@@ -100,10 +100,11 @@ DEVICE Hit found_hit(const Closest &closest, const Triangle *triangles) {
 struct Any {
     RayShear ray;
     float t_max;
-    bool hit;
+    // Position of a triangle that was hit in the structure's array.
+    unsigned hit;
 };
 
-DEVICE Any find_any(const Ray &ray) { return Any{ray_shear(ray.origin, ray.direction), ray.t_max, false}; }
+DEVICE Any find_any(const Ray &ray) { return Any{ray_shear(ray.origin, ray.direction), ray.t_max, Hit::NONE}; }
 
 DEVICE float limit(const Any &any) { return any.t_max; }
 
@@ -117,7 +118,7 @@ DEVICE bool ask(Any &any, const Triangle *triangles, Set set) {
             continue;
         const float t = hit_distance(any.ray, corners, weights);
         if (t > 0.0f && t < any.t_max) {
-            any.hit = true;
+            any.hit = triangle;
             return false;
         }
     }

@@ -30,7 +30,23 @@ DEVICE bool occluded(const Structure &structure, const Tally &tally, const Ray &
         return false;
     Any any = find_any(near.ray);
     walk(structure, tally, near.ray, any);
-    return any.hit;
+    return any.hit != Hit::NONE;
+}
+
+// The same for segments that are likely to be blocked by the same triangle: `last` is the position of that which blocked an earlier
+// one, or Hit::NONE.
+template <class Structure>
+DEVICE bool occluded(const Structure &structure, const Tally &tally, const Ray &segment, unsigned &last) {
+    const NearRay near = near_ray(structure.approach, segment);
+    if (near.scale == 0.0)
+        return false;
+    Any any = find_any(near.ray);
+    if (last == Hit::NONE || ask(any, structure.triangles, Run{last, last + 1}))
+        walk(structure, tally, near.ray, any);
+    if (any.hit == Hit::NONE)
+        return false;
+    last = any.hit;
+    return true;
 }
 
 // Whether a triangle blocks the segment from the origin of a short test along `direction`. Triangles whose bounding box comes as

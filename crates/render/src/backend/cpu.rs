@@ -8,6 +8,7 @@ use crate::accel::Hit;
 use crate::bands;
 use crate::cache::{HostTable, Kept};
 use crate::data::cells::CellGroups;
+use crate::data::items::Items;
 use crate::data::lit::Lit;
 use crate::data::masks::Masks;
 use crate::data::picture::Picture;
@@ -34,6 +35,7 @@ impl Backend for Cpu {
     type Rays = RayList;
     type Hits = Vec<Hit>;
     type Cells = CellGroups;
+    type Items = Items;
     type Masks = Masks;
     type Points = UsedPoints;
     type Lit = Lit;
@@ -88,6 +90,10 @@ impl Backend for Cpu {
 
     fn cell_pieces(&self, cells: &CellGroups) -> usize {
         cells.members().len()
+    }
+
+    fn item_pieces(&self, items: &Items) -> usize {
+        items.points()
     }
 
     fn long_test_count(&self, wave: &WaveOf<Cpu>, points: &UsedPoints) -> usize {

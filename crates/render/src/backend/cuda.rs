@@ -7,8 +7,8 @@ use lightmesh_layout::geometry::Rays;
 
 use super::table::{stage_table, stages_on_cuda};
 use super::{
-    Backend, Cuda, DeviceCells, DeviceFilm, DeviceHits, DeviceLit, DeviceMasks, DevicePoints, DeviceRays, DeviceScene,
-    DeviceVisibility, Probed, SeenOf, WaveOf,
+    Backend, Cuda, DeviceCells, DeviceFilm, DeviceHits, DeviceItems, DeviceLit, DeviceMasks, DevicePoints, DeviceRays,
+    DeviceScene, DeviceVisibility, Probed, SeenOf, WaveOf,
 };
 use crate::cache::{DeviceTable, Kept};
 use crate::cuda::Runtime;
@@ -29,6 +29,7 @@ impl<R: Runtime> Backend for Cuda<R> {
     type Rays = DeviceRays<R>;
     type Hits = DeviceHits<R>;
     type Cells = DeviceCells<R>;
+    type Items = DeviceItems<R>;
     type Masks = DeviceMasks<R>;
     type Points = DevicePoints<R>;
     type Lit = DeviceLit<R>;
@@ -90,6 +91,10 @@ impl<R: Runtime> Backend for Cuda<R> {
 
     fn cell_pieces(&self, cells: &DeviceCells<R>) -> usize {
         cells.count
+    }
+
+    fn item_pieces(&self, items: &DeviceItems<R>) -> usize {
+        items.count
     }
 
     fn long_test_count(&self, wave: &WaveOf<Self>, points: &DevicePoints<R>) -> usize {

@@ -15,6 +15,7 @@ pub use crate::gpu::Cuda;
 pub use crate::gpu::DeviceScene;
 pub use crate::gpu::cells::DeviceCells;
 pub use crate::gpu::film::DeviceFilm;
+pub use crate::gpu::items::DeviceItems;
 pub use crate::gpu::lit::DeviceLit;
 pub use crate::gpu::masks::DeviceMasks;
 pub use crate::gpu::points::DevicePoints;
@@ -57,6 +58,8 @@ pub trait Backend: Sized {
     type Hits;
     /// The surface points of each cell of the light mesh.
     type Cells;
+    /// Surface points in small groups.
+    type Items;
     /// Which light points each surface point sees.
     type Masks;
     /// The distinct light points.
@@ -108,6 +111,9 @@ pub trait Backend: Sized {
 
     /// The cells as units of work, for progress.
     fn cell_pieces(&self, cells: &Self::Cells) -> usize;
+
+    /// The items as units of work, for progress.
+    fn item_pieces(&self, items: &Self::Items) -> usize;
 
     /// Number of long tests from these light points, to all lights.
     fn long_test_count(&self, wave: &WaveOf<Self>, points: &Self::Points) -> usize;

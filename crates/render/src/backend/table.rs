@@ -24,6 +24,12 @@ macro_rules! stage_table {
             interpolate(wave: &WaveOf<Self>, seen: &SeenOf<Self>) -> Self::Visibility;
             /// Casts shadow rays from each surface point: one to the centre of each light, or many distributed over it.
             shadow_rays(wave: &WaveOf<Self>, aim: &Aim) -> Self::Visibility;
+            /// Finds which samples of each light each surface point sees, by what stands between the two: the reference.
+            area_shadows(wave: &WaveOf<Self>, aim: &Aim) -> Self::Visibility;
+            /// Puts surface points that are close together into items.
+            items(wave: &WaveOf<Self>) -> Self::Items;
+            /// Finds the same as `area_shadows`, by what stands between an item and the light.
+            occluder_lists(wave: &WaveOf<Self>, items: &Self::Items, aim: &Aim) -> Self::Visibility;
             /// Adds the radiance of each ray to its pixel. Formula (1).
             shade(wave: &WaveOf<Self>, visibility: &Self::Visibility, film: &mut Self::Film) -> ();
             /// Generates the rays of the last term of formula (1): from every mirroring surface point along the mirrored view.

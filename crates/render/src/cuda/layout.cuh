@@ -101,6 +101,30 @@
 #define SAMPLE_DIGITS 24u
 // The value of the last of these digits.
 #define LAST_DIGIT 0x1p-24f
+// Maximum number of rows of samples that are tested at once.
+#define MOST_ROWS 20u
+// Maximum number of words of their bits.
+#define MOST_WORDS 10u
+// Maximum number of samples in a row, so that its bits are an exact difference of powers of two in 32 bits.
+#define MOST_OF_ROW 30u
+// Edge functions below this in size, along a row, count as constant.
+#define LEAST_SLOPE 0x1.ef2d1p-84f
+// Far outside of every emitter: the bound of a row without an edge on that side.
+#define BEYOND 0x1.93e594p99f
+// Number of places by which samples are shifted along their rows: sums of a few shifts are exact.
+#define SHIFTS 0x1p16f
+// By how much the boxes of surface points and emitters are enlarged before bounds are derived from them.
+#define GROWN 0x1.0000a8p0f
+// Least width in pixels of the cells by which surface points are grouped.
+#define CELL_PIXELS 0x1p5f
+// The exponent's last bit in single precision.
+#define F32_EXPONENT_STEP 0x00800000u
+// The largest hash of a cell.
+#define LAST_HASH 65534u
+// Words of a candidate that may hide a light: corners, edges and normal.
+#define OCCLUDER_WORDS 24u
+// The margin of searches for what may hide a light, 2^-16 of the size of the searched space.
+#define SHADOW_MARGIN 0x1p-16f
 // Maximum number of tangent planes that a region distinguishes.
 #define TANGENT_PLANES 4u
 // Words of a region's tangent planes in shared memory.
@@ -372,7 +396,8 @@ struct alignas(4) Light {
     Vec3 intensity;
     float cos_outer;
     float cone_scale;
-    unsigned spare[3];
+    float scale;
+    unsigned spare[2];
 };
 static_assert(sizeof(Light) == 96, "size of Light");
 static_assert(PLACE_OF(Light, position) == 0, "place of Light::position");
@@ -386,7 +411,8 @@ static_assert(PLACE_OF(Light, inverse_square) == 60, "place of Light::inverse_sq
 static_assert(PLACE_OF(Light, intensity) == 64, "place of Light::intensity");
 static_assert(PLACE_OF(Light, cos_outer) == 76, "place of Light::cos_outer");
 static_assert(PLACE_OF(Light, cone_scale) == 80, "place of Light::cone_scale");
-static_assert(PLACE_OF(Light, spare) == 84, "place of Light::spare");
+static_assert(PLACE_OF(Light, scale) == 84, "place of Light::scale");
+static_assert(PLACE_OF(Light, spare) == 88, "place of Light::spare");
 
 struct alignas(4) Indices {
     unsigned vertices[3];
@@ -512,6 +538,38 @@ static_assert(PLACE_OF(Sampling, seed) == 0, "place of Sampling::seed");
 static_assert(PLACE_OF(Sampling, samples) == 8, "place of Sampling::samples");
 static_assert(PLACE_OF(Sampling, spread) == 12, "place of Sampling::spread");
 
+struct alignas(4) SampleRows {
+    float y[20];
+    float density[20];
+    float half[20];
+    float shift[20];
+    unsigned count[20];
+    unsigned place[20];
+    unsigned line[20];
+    unsigned ends[10];
+    unsigned rows;
+    unsigned words;
+    unsigned lines;
+    unsigned surplus;
+    unsigned entering;
+    unsigned leaving;
+};
+static_assert(sizeof(SampleRows) == 624, "size of SampleRows");
+static_assert(PLACE_OF(SampleRows, y) == 0, "place of SampleRows::y");
+static_assert(PLACE_OF(SampleRows, density) == 80, "place of SampleRows::density");
+static_assert(PLACE_OF(SampleRows, half) == 160, "place of SampleRows::half");
+static_assert(PLACE_OF(SampleRows, shift) == 240, "place of SampleRows::shift");
+static_assert(PLACE_OF(SampleRows, count) == 320, "place of SampleRows::count");
+static_assert(PLACE_OF(SampleRows, place) == 400, "place of SampleRows::place");
+static_assert(PLACE_OF(SampleRows, line) == 480, "place of SampleRows::line");
+static_assert(PLACE_OF(SampleRows, ends) == 560, "place of SampleRows::ends");
+static_assert(PLACE_OF(SampleRows, rows) == 600, "place of SampleRows::rows");
+static_assert(PLACE_OF(SampleRows, words) == 604, "place of SampleRows::words");
+static_assert(PLACE_OF(SampleRows, lines) == 608, "place of SampleRows::lines");
+static_assert(PLACE_OF(SampleRows, surplus) == 612, "place of SampleRows::surplus");
+static_assert(PLACE_OF(SampleRows, entering) == 616, "place of SampleRows::entering");
+static_assert(PLACE_OF(SampleRows, leaving) == 620, "place of SampleRows::leaving");
+
 // DO(structure, …) for each acceleration structure, by the name of its field in `Scene`.
 #define PER_STRUCTURE(DO, ...) DO(bvh, __VA_ARGS__) DO(grid, __VA_ARGS__) DO(brute_force, __VA_ARGS__)
 
@@ -619,6 +677,62 @@ static_assert(PLACE_OF(UsedPoints, used) == 16, "place of UsedPoints::used");
 static_assert(PLACE_OF(UsedPoints, rank) == 24, "place of UsedPoints::rank");
 static_assert(PLACE_OF(UsedPoints, points) == 32, "place of UsedPoints::points");
 
+struct alignas(8) GroupItems {
+    Scene scene;
+    Rays rays;
+    const Hit *hits;
+    unsigned *members;
+    unsigned short *ends;
+    unsigned *counts;
+    unsigned long long *items;
+    unsigned long long first_block;
+    float spacing[2];
+};
+static_assert(sizeof(GroupItems) == 440, "size of GroupItems");
+static_assert(PLACE_OF(GroupItems, scene) == 0, "place of GroupItems::scene");
+static_assert(PLACE_OF(GroupItems, rays) == 304, "place of GroupItems::rays");
+static_assert(PLACE_OF(GroupItems, hits) == 384, "place of GroupItems::hits");
+static_assert(PLACE_OF(GroupItems, members) == 392, "place of GroupItems::members");
+static_assert(PLACE_OF(GroupItems, ends) == 400, "place of GroupItems::ends");
+static_assert(PLACE_OF(GroupItems, counts) == 408, "place of GroupItems::counts");
+static_assert(PLACE_OF(GroupItems, items) == 416, "place of GroupItems::items");
+static_assert(PLACE_OF(GroupItems, first_block) == 424, "place of GroupItems::first_block");
+static_assert(PLACE_OF(GroupItems, spacing) == 432, "place of GroupItems::spacing");
+
+struct alignas(8) Shadows {
+    Scene scene;
+    Rays rays;
+    const Hit *hits;
+    const unsigned *members;
+    const unsigned long long *items;
+    float *share;
+    Sampling sampling;
+    Tally tally;
+    unsigned long long first;
+    unsigned long long count;
+    SampleRows sets[2];
+    unsigned set;
+    unsigned set_count;
+    unsigned first_light;
+    unsigned end_light;
+};
+static_assert(sizeof(Shadows) == 1720, "size of Shadows");
+static_assert(PLACE_OF(Shadows, scene) == 0, "place of Shadows::scene");
+static_assert(PLACE_OF(Shadows, rays) == 304, "place of Shadows::rays");
+static_assert(PLACE_OF(Shadows, hits) == 384, "place of Shadows::hits");
+static_assert(PLACE_OF(Shadows, members) == 392, "place of Shadows::members");
+static_assert(PLACE_OF(Shadows, items) == 400, "place of Shadows::items");
+static_assert(PLACE_OF(Shadows, share) == 408, "place of Shadows::share");
+static_assert(PLACE_OF(Shadows, sampling) == 416, "place of Shadows::sampling");
+static_assert(PLACE_OF(Shadows, tally) == 432, "place of Shadows::tally");
+static_assert(PLACE_OF(Shadows, first) == 440, "place of Shadows::first");
+static_assert(PLACE_OF(Shadows, count) == 448, "place of Shadows::count");
+static_assert(PLACE_OF(Shadows, sets) == 456, "place of Shadows::sets");
+static_assert(PLACE_OF(Shadows, set) == 1704, "place of Shadows::set");
+static_assert(PLACE_OF(Shadows, set_count) == 1708, "place of Shadows::set_count");
+static_assert(PLACE_OF(Shadows, first_light) == 1712, "place of Shadows::first_light");
+static_assert(PLACE_OF(Shadows, end_light) == 1716, "place of Shadows::end_light");
+
 struct alignas(8) PrimaryRays {
     Scene scene;
     Rays rays;
@@ -638,22 +752,20 @@ struct alignas(8) ShadowRays {
     Rays rays;
     const Hit *hits;
     float *share;
-    Sampling sampling;
     Tally tally;
     unsigned long long first_block;
-    unsigned long long first_sample;
-    unsigned long long sample_count;
+    unsigned first_light;
+    unsigned light_count;
 };
-static_assert(sizeof(ShadowRays) == 448, "size of ShadowRays");
+static_assert(sizeof(ShadowRays) == 424, "size of ShadowRays");
 static_assert(PLACE_OF(ShadowRays, scene) == 0, "place of ShadowRays::scene");
 static_assert(PLACE_OF(ShadowRays, rays) == 304, "place of ShadowRays::rays");
 static_assert(PLACE_OF(ShadowRays, hits) == 384, "place of ShadowRays::hits");
 static_assert(PLACE_OF(ShadowRays, share) == 392, "place of ShadowRays::share");
-static_assert(PLACE_OF(ShadowRays, sampling) == 400, "place of ShadowRays::sampling");
-static_assert(PLACE_OF(ShadowRays, tally) == 416, "place of ShadowRays::tally");
-static_assert(PLACE_OF(ShadowRays, first_block) == 424, "place of ShadowRays::first_block");
-static_assert(PLACE_OF(ShadowRays, first_sample) == 432, "place of ShadowRays::first_sample");
-static_assert(PLACE_OF(ShadowRays, sample_count) == 440, "place of ShadowRays::sample_count");
+static_assert(PLACE_OF(ShadowRays, tally) == 400, "place of ShadowRays::tally");
+static_assert(PLACE_OF(ShadowRays, first_block) == 408, "place of ShadowRays::first_block");
+static_assert(PLACE_OF(ShadowRays, first_light) == 416, "place of ShadowRays::first_light");
+static_assert(PLACE_OF(ShadowRays, light_count) == 420, "place of ShadowRays::light_count");
 
 struct alignas(8) Shade {
     Scene scene;

@@ -25,6 +25,13 @@ DEVICE Vec3 cross(Vec3 a, Vec3 b) {
     return Vec3{a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
 }
 
+// Products fused into sums: `fused_dot` and `fused_cross` of simd/lanes.rs.
+DEVICE float fused_dot(Vec3 a, Vec3 b) { return fmaf(a.z, b.z, fmaf(a.y, b.y, a.x * b.x)); }
+
+DEVICE Vec3 fused_cross(Vec3 a, Vec3 b) {
+    return Vec3{fmaf(a.y, b.z, -(a.z * b.y)), fmaf(a.z, b.x, -(a.x * b.z)), fmaf(a.x, b.y, -(a.y * b.x))};
+}
+
 DEVICE float length_squared(Vec3 a) { return dot(a, a); }
 DEVICE float length(Vec3 a) { return sqrtf(dot(a, a)); }
 DEVICE Vec3 normalize(Vec3 a) { return (1.0f / length(a)) * a; }

@@ -4,6 +4,7 @@
 //! at surface points, and images being rendered. [`Wave`] is what every stage works on.
 
 pub(crate) mod cells;
+pub(crate) mod items;
 pub(crate) mod lit;
 pub(crate) mod masks;
 pub(crate) mod picture;

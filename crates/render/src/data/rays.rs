@@ -15,6 +15,9 @@ pub struct RayList {
     pub pixels: Vec<u32>,
     /// The share of a ray's radiance that reaches its pixel. Empty for camera rays, which contribute all of it.
     pub weights: Vec<Vec3>,
+    /// The distance between the surface points of neighbouring pixels that face the camera: a constant, and a multiple of the distance from
+    /// the camera. Zero if the rays are not a camera's.
+    pub spacing: [f32; 2],
     /// The triangles that the rays hit in place of the scene's, if they come from given points; else empty.
     pub probes: Vec<Triangle>,
 }

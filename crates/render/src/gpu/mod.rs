@@ -9,6 +9,7 @@ pub(crate) mod cells;
 mod device;
 pub(crate) mod film;
 mod held;
+pub(crate) mod items;
 pub(crate) mod lit;
 pub(crate) mod masks;
 mod materials;

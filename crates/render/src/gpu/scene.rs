@@ -14,7 +14,7 @@ use crate::accel::{self, Form};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::job::Job;
-use crate::prepared::PreparedScene;
+use crate::prepared::{PreparedGeometry, PreparedScene};
 use crate::shading::tint::is_tinted;
 use crate::shading::{DEFAULT_AMBIENT, LightTargets};
 use crate::stage::Stage;
@@ -72,7 +72,7 @@ impl<R: Runtime> Cuda<R> {
     pub(crate) fn device_scene(&self, job: &Job, scene: &PreparedScene) -> Result<DeviceScene<R>, RenderError> {
         let geometry = self.device_geometry(job, scene)?;
         let mut upload = Upload { cuda: self, buffers: Vec::new() };
-        let record = upload.lights(&scene.scene.lights, geometry.record)?;
+        let record = upload.lights(&scene.scene.lights, &scene.geometry, geometry.record)?;
         Ok(DeviceScene {
             record,
             structure: geometry.structure,
@@ -148,8 +148,8 @@ impl<R: Runtime> Upload<'_, R> {
     }
 
     /// The record of a scene with these lights.
-    fn lights(&mut self, lights: &Lights, geometry: Scene) -> Result<Scene, RenderError> {
-        let records: Vec<Light> = lights.iter().map(light).collect();
+    fn lights(&mut self, lights: &Lights, prepared: &PreparedGeometry, geometry: Scene) -> Result<Scene, RenderError> {
+        let records: Vec<Light> = lights.iter().map(|it| light(prepared, it)).collect();
         let targets = LightTargets::new(lights).flat();
         Ok(Scene {
             lights: self.array("lights", &records)?,
@@ -218,12 +218,13 @@ fn approach((center, radius): (glam::Vec3, f32)) -> Approach {
     Approach { center: vec3(center), radius }
 }
 
-fn light(light: &lightmesh_scene::Light) -> Light {
+fn light(geometry: &PreparedGeometry, light: &lightmesh_scene::Light) -> Light {
     let mut record = Light {
         position: vec3(light.position().unwrap_or_default()),
         intensity: vec3(light.intensity),
         inverse_square: u32::from(light.falloff == Falloff::InverseSquare),
         size: crate::shadow::size(light),
+        scale: crate::shadow::sight::scale(geometry, light),
         ..bytemuck::Zeroable::zeroed()
     };
     match light.kind {

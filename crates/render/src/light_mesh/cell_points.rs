@@ -5,7 +5,7 @@ use glam::{IVec3, Vec3};
 use lightmesh_scene::Weight;
 
 use super::mesh::LightMesh;
-use crate::simd::{LANES, dot, load, sum};
+use crate::simd::{LANES, dot, load, sum_of_lanes};
 
 /// Positions of a cell's template points, one lane per point, padded with points at infinity to whole mask words.
 #[derive(Clone, Debug)]
@@ -71,7 +71,7 @@ impl CellPoints {
             chosen.store_slice(weights);
             total += chosen;
         }
-        sum(total)
+        sum_of_lanes(total)
     }
 }
 
@@ -92,7 +92,7 @@ pub(crate) fn sum_in_both<S: Simd>(simd: S, weights: &[f32], mask: &[u32], lit: 
             total += mask32x8::from_bitmask(simd, bits).select(load(simd, weights, part * LANES), zero);
         }
     }
-    sum(total)
+    sum_of_lanes(total)
 }
 
 /// The sum of products of `weights` with `values`, lane by lane; weights outside the mask are 0, and not read.
@@ -104,7 +104,7 @@ pub(crate) fn sum_of_products<S: Simd>(simd: S, weights: &[f32], mask: &[u32], v
             total += load(simd, weights, part * LANES) * load(simd, values, part * LANES);
         }
     }
-    sum(total)
+    sum_of_lanes(total)
 }
 
 /// w of formula (3) as a function of q² = (distance / radius)². Zero at the rim for all but the constant weight, so that a light

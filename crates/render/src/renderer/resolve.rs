@@ -83,7 +83,9 @@ impl<'a> Resolved<'a> {
 impl Resolved<'_> {
     /// The job for an image or given points.
     pub(super) fn job<'b>(&self, observer: &'b dyn Observer) -> Job<'b> {
-        Job::new(observer, self.sampling).with_short_tests(self.settings.short_tests)
+        Job::new(observer, self.sampling)
+            .with_short_tests(self.settings.short_tests)
+            .with_shadow_tests(self.settings.shadow_tests)
     }
 }
 

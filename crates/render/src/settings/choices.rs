@@ -154,6 +154,41 @@ impl ShortTests {
 
 parse_by_name!(ShortTests, "short-test method");
 
+/// How area mode tests the samples of a light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ShadowTests {
+    /// Row by row: each triangle between a surface point and a light hides some samples of each row. The reference for occluder lists,
+    /// which give the same bits.
+    #[default]
+    Rows,
+    /// A ray to each sample, for comparison: next to an edge a ray may be rounded to the other side.
+    Rays,
+}
+
+impl ShadowTests {
+    /// All of them.
+    pub const ALL: &'static [ShadowTests] = &[ShadowTests::Rows, ShadowTests::Rays];
+
+    /// Its name, also in statistics.
+    pub fn name(self) -> &'static str {
+        match self {
+            ShadowTests::Rows => "rows",
+            ShadowTests::Rays => "rays",
+        }
+    }
+
+    /// A short description.
+    pub fn help(self) -> &'static str {
+        match self {
+            ShadowTests::Rows => "Row by row of samples, by the triangles in the way",
+            ShadowTests::Rays => "A ray to each sample",
+        }
+    }
+}
+
+parse_by_name!(ShadowTests, "shadow-test method");
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,7 +7,7 @@ mod setting;
 use lightmesh_scene::{Camera, Up, Weight};
 
 pub use acceleration::Acceleration;
-pub use choices::{Lookup, Mode, ShortTests, Step, UnknownStep};
+pub use choices::{Lookup, Mode, ShadowTests, ShortTests, Step, UnknownStep};
 pub use setting::Setting;
 
 /// All settings of an image, apart from the scene. Fields can be set, or methods chained; more may be added.
@@ -41,6 +41,8 @@ pub struct Settings {
     pub lookup: Lookup,
     /// How short tests are evaluated.
     pub short_tests: ShortTests,
+    /// How area mode tests the samples of a light.
+    pub shadow_tests: ShadowTests,
     /// Shadow rays per area light; `None`: 225 in area mode, 4 per light point in light-mesh mode.
     pub samples: Option<u32>,
     /// The acceleration structure.
@@ -66,6 +68,7 @@ impl Default for Settings {
             weight: None,
             lookup: Lookup::Auto,
             short_tests: ShortTests::Cells,
+            shadow_tests: ShadowTests::Rows,
             samples: None,
             acceleration: Acceleration::Auto,
             seed: 0,
@@ -131,6 +134,11 @@ impl Settings {
     /// How short tests are evaluated.
     pub fn with_short_tests(self, short_tests: ShortTests) -> Settings {
         Settings { short_tests, ..self }
+    }
+
+    /// How area mode tests the samples of a light.
+    pub fn with_shadow_tests(self, shadow_tests: ShadowTests) -> Settings {
+        Settings { shadow_tests, ..self }
     }
 
     /// Shadow rays per area light.

@@ -1,6 +1,10 @@
 //! What all stages that cast shadow rays share: where the rays end, whether anything hides a light, and χ of formula (3). Twin:
 //! `shadow.cuh`.
 
+pub(crate) mod launch;
+pub(crate) mod occlusion;
+pub(crate) mod rows;
+pub(crate) mod sight;
 #[cfg(test)]
 mod tests;
 

@@ -4,8 +4,7 @@
 
 #include "accel/walk.cuh"
 #include "cuda/tally.cuh"
-#include "sampling.cuh"
-#include "surface.cuh"
+#include "shadow/sight.cuh"
 
 // χ of formula (3) for a light that straddles the horizon: its share above the horizon.
 COLD float share_above_horizon(SurfacePoint point, const Light *light, float reach) {
@@ -24,12 +23,6 @@ DEVICE float above_horizon(const SurfacePoint &point, const Light &light, float 
     if (fabsf(height) >= light.size)
         return height > 0.0f ? 1.0f : 0.0f;
     return share_above_horizon(point, &light, reach);
-}
-
-// Whether more than the centre of a light counts.
-DEVICE bool is_spread_over(const Sampling &sampling, const Light &light) {
-    const bool spread = sampling.spread && light.kind == Light::POINT && light.radius > 0.0f && sampling.samples > 1;
-    return has_size(light) || spread;
 }
 
 // Number of shadow rays from a point to a light.

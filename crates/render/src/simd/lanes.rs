@@ -27,6 +27,11 @@ pub(crate) fn difference<S: Simd>(a: Axes<S>, b: Axes<S>) -> Axes<S> {
 }
 
 #[inline(always)]
+pub(crate) fn sum<S: Simd>(a: Axes<S>, b: Axes<S>) -> Axes<S> {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+#[inline(always)]
 pub(crate) fn scaled<S: Simd>(scale: f32x8<S>, a: Axes<S>) -> Axes<S> {
     [scale * a[0], scale * a[1], scale * a[2]]
 }
@@ -49,9 +54,25 @@ pub(crate) fn cross<S: Simd>(a: Axes<S>, b: Axes<S>) -> Axes<S> {
     [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]]
 }
 
+/// The inner product with products fused into sums, that of z last.
+#[inline(always)]
+pub(crate) fn fused_dot<S: Simd>(a: Axes<S>, b: Axes<S>) -> f32x8<S> {
+    a[2].mul_add_precise(b[2], a[1].mul_add_precise(b[1], a[0] * b[0]))
+}
+
+/// The cross product with one product of each component fused into the difference. If `b` changes its sign, so does the result, exactly.
+#[inline(always)]
+pub(crate) fn fused_cross<S: Simd>(a: Axes<S>, b: Axes<S>) -> Axes<S> {
+    [
+        a[1].mul_sub_precise(b[2], a[2] * b[1]),
+        a[2].mul_sub_precise(b[0], a[0] * b[2]),
+        a[0].mul_sub_precise(b[1], a[1] * b[0]),
+    ]
+}
+
 /// The lanes added in ascending order.
 #[inline(always)]
-pub(crate) fn sum<S: Simd>(lanes: f32x8<S>) -> f32 {
+pub(crate) fn sum_of_lanes<S: Simd>(lanes: f32x8<S>) -> f32 {
     let lanes: [f32; LANES] = lanes.into();
     let mut total = 0.0;
     for lane in lanes {

@@ -6,7 +6,9 @@
 
 mod lanes;
 
-pub(crate) use lanes::{Axes, LANES, cross, difference, dot, dot_along_x, load, scaled, splat, sum};
+pub(crate) use lanes::{
+    Axes, LANES, cross, difference, dot, dot_along_x, fused_cross, fused_dot, load, scaled, splat, sum, sum_of_lanes,
+};
 
 /// Evaluates an expression with `$simd` bound to the best token for `$level`. The expression must call `#[simd]` or
 /// `#[inline(always)]` functions only.

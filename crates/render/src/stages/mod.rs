@@ -1,11 +1,14 @@
 //! The stages of an image: one folder each, with its contract in `mod.rs` and a file for each kind of device next to it:
 //! `cpu.rs`, and `cuda.rs` with the kernels in `kernel.cu`. All have the same numbered steps.
 
+pub(crate) mod area_shadows;
 pub(crate) mod cells;
 pub(crate) mod interpolate;
+pub(crate) mod items;
 pub(crate) mod light_points;
 pub(crate) mod long_tests;
 pub(crate) mod mirror_rays;
+pub(crate) mod occluder_lists;
 pub(crate) mod primary_rays;
 pub(crate) mod shade;
 pub(crate) mod shadow_rays;

@@ -1,4 +1,4 @@
-//! Area shadows: many shadow rays from each surface point to points spread over each light. The reference.
+//! Area shadows: what each surface point on its own sees of many samples of each light. The reference.
 
 use super::{Request, Visible};
 use crate::backend::run::Run;
@@ -6,7 +6,7 @@ use crate::backend::{Backend, WaveOf};
 use crate::error::RenderError;
 use crate::plan::Footprint;
 use crate::prepared::PreparedScene;
-use crate::settings::Settings;
+use crate::settings::{Settings, ShadowTests};
 use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stats::SettingsStats;
@@ -28,7 +28,11 @@ impl Visible for Area {
 
     fn visibility<B: Backend>(&self, run: &Run<B>, wave: &WaveOf<B>) -> Result<B::Visibility, RenderError> {
         let rays = run.backend.ray_count(wave.rays);
-        run.stage(Stage::LongTests, [rays; 2], |backend| backend.shadow_rays(wave, &Aim::Extent(wave.job.sampling)))
+        let aim = Aim::Extent(wave.job.sampling);
+        run.stage(Stage::LongTests, [rays; 2], |backend| match wave.job.shadow_tests {
+            ShadowTests::Rows => backend.area_shadows(wave, &aim),
+            ShadowTests::Rays => backend.shadow_rays(wave, &aim),
+        })
     }
 
     fn footprint(&self, _: u64) -> Footprint {

@@ -17,9 +17,12 @@ macro_rules! technique_table {
             lookups {
                 /// Formula (3): the mean over the light points of a half-ball.
                 HalfBall = "half-ball",
+                /// Exact area shadows: the triangles that can hide a light, found once for neighbouring surface points.
+                Lists = "lists",
             }
             techniques {
                 half_ball::HalfBall for LightMesh by HalfBall,
+                lists::Lists for LightMesh by Lists,
                 ray_trace::RayTrace for RayTrace by None,
                 area::Area for Area by None,
             }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cuda/rays.cuh"
-#include "cuda/warp.cuh"
+#include "cuda/tile.cuh"
 #include "light_mesh/bricks.cuh"
 #include "light_mesh/lattice.cuh"
 #include "surface.cuh"
@@ -16,62 +16,6 @@ DEVICE unsigned sort_word(unsigned long long cell, unsigned triangle, unsigned t
     const unsigned hash = (unsigned)((cell * GOLDEN_RATIO) >> 48);
     // All ones is reserved for threads without a surface point.
     return (hash < 0xffff ? hash : 0xfffe) << 16 | triangle * (unsigned)(GOLDEN_RATIO >> 32) >> 26 << 10 | thread;
-}
-
-// Sorts one word per thread, ascending (bitonic sort: Batcher 1968). Partners within a warp exchange through registers.
-DEVICE unsigned sorted(unsigned word, unsigned *shared) {
-    const unsigned thread = threadIdx.x;
-    for (unsigned length = 2; length <= TILE; length *= 2) {
-        for (unsigned distance = length / 2; distance > 0; distance /= 2) {
-            unsigned other;
-            if (distance < WARP) {
-                other = __shfl_xor_sync(ALL_LANES, word, distance);
-            } else {
-                __syncthreads();
-                shared[thread] = word;
-                __syncthreads();
-                other = shared[thread ^ distance];
-            }
-            const bool ascending = (thread & length) == 0;
-            const bool lower = (thread & distance) == 0;
-            word = ascending == lower ? min(word, other) : max(word, other);
-        }
-    }
-    return word;
-}
-
-// The largest value of this thread and all before it. `shared` has an entry for each warp.
-DEVICE unsigned largest_before(unsigned value, unsigned *shared) {
-    const unsigned lane = lane_of_thread(), warp = threadIdx.x / WARP;
-    for (unsigned step = 1; step < WARP; step *= 2) {
-        const unsigned other = __shfl_up_sync(ALL_LANES, value, step);
-        if (lane >= step)
-            value = max(value, other);
-    }
-    __syncthreads();
-    if (lane == WARP - 1)
-        shared[warp] = value;
-    __syncthreads();
-    for (unsigned before = 0; before < warp; before++)
-        value = max(value, shared[before]);
-    return value;
-}
-
-// How many threads before this one have the flag set, and how many there are in all. `shared` has an entry for each warp.
-DEVICE unsigned flags_before(bool flag, unsigned *shared, unsigned &all) {
-    const unsigned lane = lane_of_thread(), warp = threadIdx.x / WARP;
-    const unsigned flags = __ballot_sync(ALL_LANES, flag);
-    __syncthreads();
-    if (lane == 0)
-        shared[warp] = __popc(flags);
-    __syncthreads();
-    unsigned before = __popc(flags & lanes_below(lane));
-    all = 0;
-    for (unsigned other = 0; other < TILE / WARP; other++) {
-        before += other < warp ? shared[other] : 0;
-        all += shared[other];
-    }
-    return before;
 }
 
 DEVICE void group_points_of_tile(const GroupCells &args) {

@@ -33,7 +33,7 @@ fn mirrored(material: Material, normals: Option<Vec3>, list: &RayList) -> RayLis
 fn rays(weights: Vec<Vec3>) -> RayList {
     let ray = |direction: Vec3| Ray { origin: Vec3::new(0.5, 2.0, 0.25), direction, t_max: f32::INFINITY };
     let directions = [Vec3::new(0.6, -0.8, 0.0), Vec3::Y, Vec3::new(0.0, -0.8, -0.6)];
-    RayList { rays: directions.map(ray).to_vec(), pixels: vec![4, 5, 7], weights, probes: Vec::new() }
+    RayList { rays: directions.map(ray).to_vec(), pixels: vec![4, 5, 7], weights, ..RayList::default() }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use lightmesh_layout::constants::TILE_SIDE;
 use rayon::prelude::*;
 
 use crate::accel::{Hit, Ray};
@@ -17,22 +18,24 @@ const BATCH: usize = 2048;
 pub(crate) fn camera_rays(view: &View, rows: Range<u32>) -> RayList {
     let pixels = blocks_of_pixels(view.size()[0], rows);
     let rays: Vec<Ray> = pixels.par_iter().map(|&pixel| view.ray(pixel)).collect();
-    RayList { rays, pixels, ..RayList::default() }
+    RayList { rays, pixels, spacing: view.spacing(), ..RayList::default() }
 }
 
-/// The pixels of some rows in blocks of 4×2 within 8×8, so that consecutive rays are coherent.
+/// The pixels of some rows in blocks of 4×2 within 8×8 within 32×32, so that consecutive rays are coherent.
 fn blocks_of_pixels(width: u32, rows: Range<u32>) -> Vec<u32> {
     let mut pixels = Vec::with_capacity((width * (rows.end - rows.start)) as usize);
     let cut = |range: Range<u32>, size: u32| {
         range.clone().step_by(size as usize).map(move |first| first..range.end.min(first + size))
     };
-    for tile_rows in cut(rows, 8) {
-        for tile_columns in cut(0..width, 8) {
-            for block_rows in cut(tile_rows.clone(), 2) {
-                for block_columns in cut(tile_columns.clone(), 4) {
-                    for y in block_rows.clone() {
-                        pixels.extend(block_columns.clone().map(|x| y * width + x));
-                    }
+    let blocks = |rows: Range<u32>, columns: Range<u32>, size: [u32; 2]| {
+        cut(rows, size[1])
+            .flat_map(move |rows| cut(columns.clone(), size[0]).map(move |columns| (rows.clone(), columns)))
+    };
+    for (rows, columns) in blocks(rows, 0..width, [TILE_SIDE; 2]) {
+        for (rows, columns) in blocks(rows, columns, [8, 8]) {
+            for (rows, columns) in blocks(rows, columns, [4, 2]) {
+                for y in rows {
+                    pixels.extend(columns.clone().map(|x| y * width + x));
                 }
             }
         }

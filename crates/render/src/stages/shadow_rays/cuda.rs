@@ -1,15 +1,16 @@
 //! Shadow rays on a CUDA device.
 
-use lightmesh_layout::stages::ShadowRays;
+use lightmesh_layout::stages::{ShadowRays, Shadows};
 
-use crate::cuda::Runtime;
+use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
-use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, PerStructure, Work, blocks_for, per_structure, sampling, slices_of_rays};
+use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, PerStructure, Work, blocks_for, per_structure, slices_of_rays};
 use crate::shadow::Aim;
+use crate::shadow::launch::SampleSets;
 
-const HARD: PerStructure = per_structure!("shadow_rays", "shadow_rays");
-const AREA: PerStructure = per_structure!("shadow_rays", "area_shadows");
+const TO_CENTERS: PerStructure = per_structure!("shadow_rays", "shadow_rays");
+const TO_SAMPLES: PerStructure = per_structure!("shadow_rays", "sample_rays");
 
 /// The visible share of each light, by shadow rays from each surface point.
 pub(crate) fn shadow_rays<R: Runtime>(
@@ -17,15 +18,19 @@ pub(crate) fn shadow_rays<R: Runtime>(
     wave: &DeviceWave<R>,
     aim: &Aim,
 ) -> Result<DeviceVisibility<R>, RenderError> {
-    let (kernels, samples) = match aim {
-        Aim::Middle => (HARD, 1),
-        Aim::Extent(sampling) => (AREA, sampling.samples),
-    };
     let lights = wave.scene.host.scene.lights.len();
-    let slices = slices_of_rays(lights as u64 * u64::from(samples));
+    let share = cuda.pool().zeros("shares of lights", wave.rays.len() * lights)?;
+    match aim {
+        Aim::Middle => to_centers(cuda, wave, &share)?,
+        Aim::Extent(_) => to_samples(cuda, wave, aim, &share)?,
+    }
+    Ok(DeviceVisibility { rays: wave.rays.len(), share, used: None })
+}
+
+fn to_centers<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>, share: &Buffer<R, f32>) -> Result<(), RenderError> {
+    let slices = slices_of_rays(wave.scene.host.scene.lights.len() as u64);
     let progress = |slices_done: usize| (wave.rays.len() * slices_done / slices.len()) as u64;
-    let kernel = kernels.of(wave.scene.structure);
-    let share = cuda.pool().room("shares of lights", wave.rays.len() * lights)?;
+    let kernel = TO_CENTERS.of(wave.scene.structure);
     for (index, slice) in slices.iter().enumerate() {
         let work = Work::of_rays(wave.rays.blocks(BLOCK_SIDE), slice, progress(index + 1) - progress(index));
         cuda.in_pieces(wave.job, kernel, work, |piece| {
@@ -34,14 +39,38 @@ pub(crate) fn shadow_rays<R: Runtime>(
                 rays: wave.rays.record,
                 hits: wave.hits.hits.input(),
                 share: share.output(),
-                sampling: sampling(wave.job.sampling),
                 tally: cuda.tally()?,
                 first_block: piece.start,
-                first_sample: slice.start,
-                sample_count: slice.end - slice.start,
+                first_light: slice.start as u32,
+                light_count: (slice.end - slice.start) as u32,
             };
             cuda.launch(kernel, blocks_for(&piece, BLOCK), &arguments)
         })?;
     }
-    Ok(DeviceVisibility { rays: wave.rays.len(), share, used: None })
+    Ok(())
+}
+
+/// Light by light and set by set, so that no thread casts more rays than a launch may take.
+fn to_samples<R: Runtime>(
+    cuda: &Cuda<R>,
+    wave: &DeviceWave<R>,
+    aim: &Aim,
+    share: &Buffer<R, f32>,
+) -> Result<(), RenderError> {
+    let lights = wave.scene.host.scene.lights.len() as u64;
+    let kernel = TO_SAMPLES.of(wave.scene.structure);
+    let sets = SampleSets::new(aim);
+    let slices = u64::from(sets.count) * lights;
+    let progress = |slices_done: u64| wave.rays.len() as u64 * slices_done / slices;
+    for slice in 0..slices {
+        let (set, light) = ((slice / lights) as u32, (slice % lights) as u32);
+        let record = Shadows { first_light: light, end_light: light + 1, ..sets.record(cuda, wave, share, set)? };
+        let work =
+            Work::of_rays(wave.rays.blocks(BLOCK_SIDE), &(0..sets.most(set)), progress(slice + 1) - progress(slice));
+        cuda.in_pieces(wave.job, kernel, work, |piece| {
+            let arguments = Shadows { first: piece.start, count: piece.end - piece.start, ..record };
+            cuda.launch(kernel, blocks_for(&piece, BLOCK), &arguments)
+        })?;
+    }
+    Ok(())
 }

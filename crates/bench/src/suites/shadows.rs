@@ -1,0 +1,187 @@
+//! Shadows of lights with a size: occluder lists, against the ways to compute the same shadows without them.
+//!
+//! Every light of a scene becomes a ball. Rows of the experiment `shadows` have the keys scene, emitter (the balls' radius as a part of
+//! their distance from the middle of the scene; `own` for the scene's own sizes), size, samples, method, accel, device and threads:
+//!
+//! * `lists`: light-mesh mode by occluder lists;
+//! * `rows`: area mode, each surface point on its own, whose bits the lists must equal;
+//! * `rays`: an ordinary shadow ray to each of the same samples.
+//!
+//! Times are those of all stages; `shadows` is the sum of those between primary rays and shading. Values: `differing_pixels`, pixels
+//! times lights whose visibility is not that of `rows`, and `differing_samples`, the samples by which they differ, as a part of
+//! all; rows of `lists` and `rays` have them.
+
+use lightmesh::render::{PreparedScene, ShadowTests};
+use lightmesh::scene::LightKind;
+use lightmesh::{Acceleration, Lookup, Mode, Observer, Scene, Settings};
+
+use super::subjects::{self, Subject};
+use super::turns::Turns;
+use crate::engine::{self, Engine};
+use crate::measure::{Silent, Variant};
+use crate::{BenchError, Findings, Key, Plan, Row, SHADOWS, Samples};
+
+/// Pixels along a side, and in the short version.
+const SIDES: [u32; 2] = [2048, 512];
+/// Numbers of samples.
+const SAMPLES: [u32; 2] = [16, 64];
+/// Radii of the lights as parts of their distances.
+const EMITTERS: [f32; 3] = [0.016, 0.042, 0.107];
+/// The stages between primary rays and shading.
+const STAGES: [&str; 2] = ["cells", "long_tests"];
+
+/// A way to compute the shadows.
+struct Method {
+    name: &'static str,
+    choose: fn(Settings) -> Settings,
+}
+
+const METHODS: [Method; 3] = [
+    Method { name: "lists", choose: |settings| settings.with_mode(Mode::LightMesh).with_lookup(Lookup::Lists) },
+    Method { name: "rows", choose: |settings| settings.with_mode(Mode::Area) },
+    Method { name: "rays", choose: |settings| settings.with_mode(Mode::Area).with_shadow_tests(ShadowTests::Rays) },
+];
+
+pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings) -> Result<(), BenchError> {
+    let engines = engine::engines(plan)?;
+    findings.devices = engines.iter().map(|engine| engine.device.clone()).collect();
+    let side = plan.side_or(SIDES);
+    subjects::each(plan, observer, |subject, share| {
+        let emitters: Vec<Option<f32>> = std::iter::once(None).chain(EMITTERS.map(Some)).collect();
+        let parts = (emitters.len() * SAMPLES.len() * engines.len()) as u32;
+        let own = PreparedScene::new(&with_emitters(subject, None), &Acceleration::Auto, &Silent(observer))?;
+        for engine in &engines {
+            for &emitter in &emitters {
+                let scene = own.with_lights(with_emitters(subject, emitter).lights);
+                for samples in SAMPLES {
+                    let settings = Settings::default().with_size([side; 2]).with_samples(samples);
+                    let case = Case { subject, engine, scene: &scene, emitter, settings };
+                    case.measure(plan, share / parts, observer, findings)?;
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
+/// The scene with balls as lights: of a radius that is a part of their distance from its middle, or their own.
+fn with_emitters(subject: &Subject, emitter: Option<f32>) -> Scene {
+    let Some(part) = emitter else { return subject.with_balls() };
+    let mut scene = subject.scene.clone();
+    let middle = scene.geometry.mesh.bounds().center();
+    for light in &mut scene.lights {
+        if let Some(position) = light.position() {
+            light.kind = LightKind::Sphere { position, radius: part * position.distance(middle) };
+        }
+    }
+    scene
+}
+
+/// A scene with some lights and a number of samples.
+struct Case<'a> {
+    subject: &'a Subject,
+    engine: &'a Engine,
+    scene: &'a PreparedScene,
+    emitter: Option<f32>,
+    settings: Settings,
+}
+
+impl Case<'_> {
+    fn variant(&self, method: &Method, layers: bool) -> Variant<'_> {
+        let settings = (method.choose)(self.settings.clone()).with_layers(layers);
+        Variant { renderer: &self.engine.renderer, scene: self.scene, settings }
+    }
+
+    fn measure(
+        &self,
+        plan: &Plan,
+        share: std::time::Duration,
+        observer: &dyn Observer,
+        findings: &mut Findings,
+    ) -> Result<(), BenchError> {
+        let variants: Vec<Variant> = METHODS.iter().map(|method| self.variant(method, false)).collect();
+        let turns = Turns::take(&variants, plan.repetitions, share, observer)?;
+        let what =
+            format!("{} with emitters {:?}, {:?} samples", self.subject.name, self.emitter, self.settings.samples);
+        findings.notes.extend(turns.notes(&what, plan.repetitions));
+        let mut reference = None;
+        for (method, measured) in METHODS.iter().zip(&turns.measured) {
+            let mut row = self.row(method);
+            measured.fill(&mut row);
+            let sums = (0..measured.seconds["render"].0.len()).map(|round| {
+                STAGES.iter().filter_map(|stage| row.seconds.get(*stage)).map(|samples| samples.0[round]).sum()
+            });
+            let sums = Samples(sums.collect());
+            row.seconds.insert("shadows".to_owned(), sums);
+            if method.name != "rows" {
+                if reference.is_none() {
+                    reference = Some(self.visibility(&METHODS[1], observer)?);
+                }
+                let own = self.visibility(method, observer)?;
+                let (pixels, samples) = differences(reference.as_deref().unwrap_or_default(), &own);
+                row.values.insert("differing_pixels".to_owned(), pixels);
+                row.values.insert("differing_samples".to_owned(), samples);
+            }
+            findings.rows.push(row);
+        }
+        Ok(())
+    }
+
+    /// The visibility of each light at each pixel.
+    fn visibility(&self, method: &Method, observer: &dyn Observer) -> Result<Vec<f32>, BenchError> {
+        let Variant { renderer, scene, settings } = self.variant(method, true);
+        let frame = renderer.render_prepared(scene, &settings, &Silent(observer))?;
+        Ok(frame.layers().map(|layers| layers.visibility.concat()).unwrap_or_default())
+    }
+
+    fn row(&self, method: &Method) -> Row {
+        let emitter = self.emitter.map_or_else(|| "own".into(), Key::from);
+        let keys = [
+            ("scene", self.subject.name.as_str().into()),
+            ("emitter", emitter),
+            ("size", f64::from(self.settings.size[0]).into()),
+            ("samples", f64::from(self.settings.samples.unwrap_or_default()).into()),
+            ("method", method.name.into()),
+            ("accel", self.scene.geometry.accelerator.name().into()),
+        ];
+        Row::new(SHADOWS, keys.into_iter().chain(self.engine.keys()))
+    }
+}
+
+/// How many values differ, and the mean difference.
+fn differences(a: &[f32], b: &[f32]) -> (f64, f64) {
+    let differing = a.iter().zip(b).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+    let sum: f64 = a.iter().zip(b).map(|(a, b)| f64::from((a - b).abs())).sum();
+    (differing as f64, sum / a.len().max(1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use lightmesh::Device;
+    use lightmesh::render::Unobserved;
+
+    use super::*;
+
+    #[test]
+    fn lists_give_the_bits_of_the_reference_and_rays_nearly() {
+        let scenes = vec![PathBuf::from("builtin:gazebo")];
+        let plan =
+            Plan { device: Device::Cpu, threads: Some(2), repetitions: 1, scenes, size: Some(48), ..Plan::new(true) };
+        let mut findings = Findings::default();
+        run(&plan, &Unobserved, &mut findings).unwrap();
+        assert_eq!(findings.rows.len(), (EMITTERS.len() + 1) * SAMPLES.len() * METHODS.len());
+        for row in &findings.rows {
+            assert!(row.seconds["shadows"].0.iter().all(|seconds| *seconds > 0.0), "{}", row.id);
+            let differing = row.values.get("differing_samples").copied().unwrap_or(0.0);
+            let allowed = if row.keys["method"] == "rays".into() { 1e-4 } else { 0.0 };
+            assert!(differing <= allowed, "{}: {differing}", row.id);
+        }
+    }
+
+    #[test]
+    fn differences_count_values_and_average_them() {
+        assert_eq!(differences(&[0.0, 1.0, 0.5, 0.5], &[0.0, 0.5, 0.5, 1.0]), (2.0, 0.25));
+    }
+}

@@ -1,0 +1,13 @@
+//! Surface points in small groups, on a device.
+
+use crate::cuda::{Buffer, Runtime};
+
+/// The surface points of a wave in items of up to 32 that lie close together, the work of one warp.
+pub struct DeviceItems<R: Runtime> {
+    /// Ray numbers by slot, 1024 slots for each tile.
+    pub(crate) members: Buffer<R, u32>,
+    /// The first slot of each item, and how many follow: slot · 64 + number.
+    pub(crate) items: Buffer<R, u64>,
+    /// Number of items.
+    pub(crate) count: usize,
+}

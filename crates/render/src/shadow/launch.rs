@@ -1,0 +1,108 @@
+//! What the launches of kernels that test samples share.
+
+use bytemuck::Zeroable;
+use lightmesh_layout::constants::WARP;
+use lightmesh_layout::scene::SampleRows;
+use lightmesh_layout::stages::Shadows;
+
+use super::Aim;
+use super::rows::Rows;
+use crate::cuda::{Buffer, Runtime};
+use crate::error::RenderError;
+use crate::gpu::rays::{DeviceVisibility, DeviceWave};
+use crate::gpu::{Cuda, PerStructure, Work, sampling, warps_for};
+
+/// The samples of an image, set by set.
+pub(crate) struct SampleSets {
+    rows: Rows,
+    /// Number of sets.
+    pub(crate) count: u32,
+}
+
+impl SampleSets {
+    pub(crate) fn new(aim: &Aim) -> SampleSets {
+        let rows = Rows::new(match aim {
+            Aim::Middle => 1,
+            Aim::Extent(sampling) => sampling.samples,
+        });
+        let count = rows.disc.len().max(rows.rectangle.len()) as u32;
+        SampleSets { rows, count }
+    }
+
+    /// Those of discs and of rectangles in a set.
+    fn of(&self, set: u32) -> [SampleRows; 2] {
+        let of = |rows: &[SampleRows]| rows.get(set as usize).copied().unwrap_or_else(SampleRows::zeroed);
+        [of(&self.rows.disc), of(&self.rows.rectangle)]
+    }
+
+    /// The largest number of samples in a set.
+    pub(crate) fn most(&self, set: u32) -> u64 {
+        self.of(set).iter().map(|set| set.count.iter().map(|&count| u64::from(count)).sum()).max().unwrap_or(0)
+    }
+
+    /// The arguments of kernels for a set, and all lights.
+    pub(crate) fn record<R: Runtime>(
+        &self,
+        cuda: &Cuda<R>,
+        wave: &DeviceWave<R>,
+        share: &Buffer<R, f32>,
+        set: u32,
+    ) -> Result<Shadows, RenderError> {
+        Ok(Shadows {
+            scene: wave.scene.record,
+            rays: wave.rays.record,
+            hits: wave.hits.hits.input(),
+            share: share.output(),
+            sampling: sampling(wave.job.sampling),
+            tally: cuda.tally()?,
+            sets: self.of(set),
+            set,
+            set_count: self.count,
+            end_light: wave.scene.host.scene.lights.len() as u32,
+            ..Shadows::zeroed()
+        })
+    }
+}
+
+/// Kernels by the largest number of words of samples.
+pub(crate) type ByWords = [(u32, PerStructure); 3];
+
+/// The work of warps that test samples row by row.
+pub(crate) struct WarpWork {
+    /// Number of warps.
+    pub(crate) warps: u64,
+    /// Those of the very first launch.
+    pub(crate) first: u64,
+    /// Words of shared memory of a warp, apart from a search and the rows of samples.
+    pub(crate) words: u32,
+}
+
+/// Launches `kernels` for each set of samples. `complete` adds arguments.
+pub(crate) fn test_samples<R: Runtime>(
+    cuda: &Cuda<R>,
+    wave: &DeviceWave<R>,
+    aim: &Aim,
+    (kernels, work): (&ByWords, WarpWork),
+    complete: impl Fn(Shadows) -> Shadows,
+) -> Result<DeviceVisibility<R>, RenderError> {
+    let scene = wave.scene;
+    let lights = scene.host.scene.lights.len();
+    let share: Buffer<R, f32> = cuda.pool().zeros("shares of lights", wave.rays.len() * lights)?;
+    let sets = SampleSets::new(aim);
+    let progress = |done: u32| work.warps * u64::from(done) / u64::from(sets.count);
+    for set in 0..sets.count {
+        let record = complete(sets.record(cuda, wave, &share, set)?);
+        let most = |number: fn(&SampleRows) -> u32| record.sets.iter().map(number).max().unwrap_or(0);
+        let (words, rows) = (most(|set| set.words), most(|set| set.rows));
+        let (_, kernels) = kernels.iter().find(|(room, _)| *room >= words).unwrap_or(&kernels[2]);
+        let kernel = kernels.of(scene.structure);
+        let progress = progress(set + 1) - progress(set);
+        let pieces = Work { units: work.warps, cost: lights.max(1) as u64, first: work.first, progress };
+        cuda.in_pieces(wave.job, kernel, pieces, |piece| {
+            let shared = work.words + scene.search_words() + WARP * rows;
+            let arguments = Shadows { first: piece.start, count: piece.end - piece.start, ..record };
+            cuda.launch(kernel, warps_for(&piece, 1, shared), &arguments)
+        })?;
+    }
+    Ok(DeviceVisibility { rays: wave.rays.len(), share, used: None })
+}

@@ -1,0 +1,61 @@
+// What kernels that test samples row by row share: the samples still seen, and the share that they make up.
+#pragma once
+
+#include "shadow/occlusion.cuh"
+
+// The samples of a light that a lane still sees: rows of bits, or the centre alone.
+template <unsigned WORDS>
+struct Seen {
+    unsigned bits[WORDS];
+};
+
+template <unsigned WORDS>
+DEVICE bool any(const Seen<WORDS> &seen) {
+    unsigned all = 0;
+    UNROLL
+    for (unsigned word = 0; word < WORDS; ++word)
+        all |= seen.bits[word];
+    return all != 0;
+}
+
+template <unsigned WORDS>
+DEVICE unsigned number(const Seen<WORDS> &seen) {
+    unsigned sum = 0;
+    UNROLL
+    for (unsigned word = 0; word < WORDS; ++word)
+        sum += __popc(seen.bits[word]);
+    return sum;
+}
+
+// The samples in front of a surface, before anything hides them; none unless the lane `has` a surface point. `offsets` receives the place
+// of x = 0 in each row, WARP apart.
+template <unsigned WORDS>
+DEVICE Seen<WORDS> seen_unhidden(bool has, const SurfacePoint &point, const Sight &sight, Shape shape, const SampleRows &set,
+                                 float *offsets) {
+    Seen<WORDS> seen = {};
+    if (shape == SHAPE_POINT) {
+        seen.bits[0] = has && center_above_horizon(point, sight);
+        return seen;
+    }
+    for (unsigned row = 0; row < set.rows; ++row)
+        offsets[row * WARP] = row_offset(sight, set, row);
+    samples_above_horizon<WORDS, WARP>(point, sight, set, offsets, seen.bits);
+    UNROLL
+    for (unsigned word = 0; word < WORDS; ++word)
+        seen.bits[word] = has ? seen.bits[word] : 0;
+    return seen;
+}
+
+// Adds what a lane sees of a light with this set of samples to its share.
+DEVICE void add_seen(const Shadows &args, Shape shape, unsigned light, unsigned ray, unsigned seen) {
+    float &share = args.share[(unsigned long long)light * args.rays.count + ray];
+    if (shape == SHAPE_POINT) {
+        share = (float)seen;
+        return;
+    }
+    const unsigned all = seen + (args.set == 0 ? 0 : (unsigned)share), samples = args.sampling.samples;
+    if (args.set + 1 < args.set_count)
+        share = (float)all;
+    else
+        share = all == samples ? 1.0f : (float)all / (float)samples;
+}

@@ -1,0 +1,326 @@
+//! What one surface point sees of one light: the emitter as a flat shape on which samples lie in [rows](super::rows). Twin:
+//! `sight.cuh`.
+//!
+//! Seen from a point, a ball is the disc through its centre that faces the point, evenly bright; so is a point light with a spread, and a
+//! sun of an angular size. Disks and rectangles are what they are. A light without a size is a single sample.
+//!
+//! All vectors are multiplied by a power of two, [`scale`], so that products with triangles, three lengths each, stay in the middle of
+//! the range of single precision.
+
+use glam::Vec3;
+use lightmesh_layout::constants::{GAMMA_32, SHADOW_MARGIN, SHIFTS};
+use lightmesh_layout::scene::SampleRows;
+use lightmesh_scene::{Bounds, Light, LightKind};
+
+use super::Aim;
+use super::rows::Rows;
+use crate::accel::Region;
+use crate::data::wave::HostWave;
+use crate::prepared::PreparedGeometry;
+use crate::sampling::{light_center, random_bits};
+use crate::surface::SurfacePoint;
+
+/// The form of a light's samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// The centre alone.
+    Point,
+    /// Rows of a disc.
+    Disc,
+    /// Rows of a rectangle.
+    Rectangle,
+}
+
+impl Shape {
+    /// Of a light that rays are aimed at.
+    pub(crate) fn of(aim: &Aim, light: &Light) -> Shape {
+        match light.kind {
+            _ if !aim.is_spread_over(light) => Shape::Point,
+            LightKind::Rectangle { .. } => Shape::Rectangle,
+            _ => Shape::Disc,
+        }
+    }
+
+    /// Its sets of samples; none for a point.
+    pub(crate) fn sets(self, rows: &Rows) -> &[SampleRows] {
+        match self {
+            Shape::Point => &[],
+            Shape::Disc => &rows.disc,
+            Shape::Rectangle => &rows.rectangle,
+        }
+    }
+}
+
+/// A light, and how its samples are arranged.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Emitter<'a> {
+    index: usize,
+    light: &'a Light,
+    shape: Shape,
+    /// Its samples; none for a point.
+    pub(crate) sets: &'a [SampleRows],
+    scale: f32,
+    samples: u32,
+    seed: u64,
+}
+
+impl<'a> Emitter<'a> {
+    /// All lights of a wave that rays are aimed at.
+    pub(crate) fn all(wave: &HostWave<'a>, aim: &Aim, rows: &'a Rows) -> Vec<Emitter<'a>> {
+        let geometry = &wave.scene.geometry;
+        let emitter = |(index, light): (usize, &'a Light)| {
+            let shape = Shape::of(aim, light);
+            let sets = shape.sets(rows);
+            let (samples, seed) = (aim.samples(light), wave.job.sampling.seed);
+            Emitter { index, light, shape, sets, scale: scale(geometry, light), samples, seed }
+        };
+        wave.lights().iter().enumerate().map(emitter).collect()
+    }
+
+    /// Whether its centre is the only sample.
+    pub(crate) fn is_point(&self) -> bool {
+        self.shape == Shape::Point
+    }
+
+    /// As the surface point of ray number `ray` sees it.
+    #[inline(always)]
+    pub(crate) fn sight(&self, wave: &HostWave, ray: usize, point: &SurfacePoint) -> Sight {
+        let reach = wave.scene.geometry.reach(point.origin);
+        let lines = self.sets.first().map_or(1, |set| set.lines);
+        let random = (self.seed, wave.rays.key(ray));
+        Sight::new((self.index, self.light), (self.shape, lines), point, random, (reach, self.scale))
+    }
+
+    /// Calls `take` with each sample as the surface point of ray number `ray` sees it.
+    #[inline(always)]
+    pub(crate) fn each_target(&self, wave: &HostWave, ray: usize, point: &SurfacePoint, mut take: impl FnMut(Vec3)) {
+        if self.is_point() {
+            take(light_center(self.light, point.origin, wave.scene.geometry.reach(point.origin)));
+            return;
+        }
+        let sight = self.sight(wave, ray, point);
+        for set in self.sets {
+            for row in 0..set.rows as usize {
+                let mut rest = sight.valid(set, row);
+                while rest != 0 {
+                    take(point.origin + sight.sample(set, row, rest.trailing_zeros(), self.scale));
+                    rest &= rest - 1;
+                }
+            }
+        }
+    }
+
+    /// Where everything is that may hide it from a point of `origins`.
+    ///
+    /// A triangle that is found to hide a sample comes within about 16 ε of the segment's length of that segment, unless an edge of it
+    /// passes by the surface point at a small fraction of that; the margin is two hundred times as large.
+    pub(crate) fn region(&self, geometry: &PreparedGeometry, origins: &Bounds) -> Region {
+        let emitter = self.bounds(geometry, origins);
+        let all = Bounds { min: origins.min.min(emitter.min), max: origins.max.max(emitter.max) };
+        let margin = SHADOW_MARGIN * all.extent().max_element();
+        let grown = |bounds: &Bounds| Bounds { min: bounds.min - margin, max: bounds.max + margin };
+        Region::shaft(grown(origins), grown(&emitter))
+    }
+
+    /// A box around its samples as seen from `origins`. A directional light is as far away as from the point where it is farthest.
+    pub(crate) fn bounds(&self, geometry: &PreparedGeometry, origins: &Bounds) -> Bounds {
+        let half = if self.is_point() { Vec3::ZERO } else { half_extent(self.light) };
+        let middle = match self.light.kind {
+            LightKind::Directional { direction } => {
+                let (center, far) = geometry.reach_parameters();
+                let apart = (origins.min - center).abs().max((origins.max - center).abs());
+                let way = (far + 2.0 * apart.element_sum()) * direction;
+                Bounds { min: origins.min - way, max: origins.max - way }
+            }
+            _ => {
+                let center = light_center(self.light, origins.min, 0.0);
+                Bounds { min: center, max: center }
+            }
+        };
+        Bounds { min: middle.min - half, max: middle.max + half }
+    }
+
+    /// No sample that a point of `origins` may see is farther from the middle of the box; infinite if the box says more.
+    pub(crate) fn radius(&self, _: &PreparedGeometry, _: &Bounds) -> f32 {
+        match self.light.kind {
+            LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } => radius,
+            _ => f32::INFINITY,
+        }
+    }
+
+    /// The share of `seen` of its samples: exactly 1 for all of them.
+    #[inline(always)]
+    pub(crate) fn share(&self, seen: u32) -> f32 {
+        if seen == self.samples { 1.0 } else { seen as f32 / self.samples as f32 }
+    }
+}
+
+/// Half the edges of the box around a light.
+fn half_extent(light: &Light) -> Vec3 {
+    match light.kind {
+        LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } => Vec3::splat(radius),
+        // The disc's shadow on an axis: the radius times the sine of the angle between them.
+        LightKind::Disk { normal, radius, .. } => radius * (Vec3::ONE - normal * normal).max(Vec3::ZERO).map(f32::sqrt),
+        LightKind::Rectangle { half_u, half_v, .. } => half_u.abs() + half_v.abs(),
+        LightKind::Directional { .. } | LightKind::Spot { .. } => Vec3::ZERO,
+    }
+}
+
+/// A light as one surface point sees it: samples are at `center + x · along + y · across`, seen from the point and scaled.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sight {
+    pub(crate) center: Vec3,
+    pub(crate) along: Vec3,
+    pub(crate) across: Vec3,
+    /// The scale over the parameter at which segments to the light end: less than 1, to spare what lies at the light.
+    pub(crate) end: f32,
+    /// By how much of their distance samples are shifted along their rows; in [0, 1).
+    pub(crate) shift: f32,
+    /// The part of the last line that lies inside of a rectangle; in (0, 1].
+    pub(crate) inside: f32,
+    /// Selects the samples that are left out where a row has too many.
+    pub(crate) choice: u32,
+}
+
+impl Sight {
+    /// Of light number `index` from `point`; `key` selects the random pattern, `reach` is the distance of a directional light.
+    #[inline(always)]
+    pub(crate) fn new(
+        (index, light): (usize, &Light),
+        (shape, lines): (Shape, u32),
+        point: &SurfacePoint,
+        (seed, key): (u64, u64),
+        (reach, scale): (f32, f32),
+    ) -> Sight {
+        let target = light_center(light, point.origin, reach);
+        let center = target - point.origin;
+        // As for rays: see `long_segment`.
+        let length = center.abs().max_element();
+        let error = GAMMA_32 * point.origin.abs().max(target.abs()).max_element();
+        let spared = if error < 0.5 * length { error / length } else { 0.5 };
+        let mut sight = Sight { center: scale * center, end: scale / (1.0 - spared), inside: 1.0, ..Sight::default() };
+        if shape == Shape::Point {
+            return sight;
+        }
+        let random = random_bits(seed, key, index);
+        sight.shift = (random as u32 & 0xffff) as f32 / SHIFTS;
+        sight.choice = (random >> 16) as u32 & 0xffff;
+        let aside = sight.choice as f32 / SHIFTS;
+        if let (Shape::Rectangle, LightKind::Rectangle { half_u, half_v, .. }) = (shape, &light.kind) {
+            let (u, v) = longest_first(scale * *half_u, scale * *half_v);
+            let step = v / lines as f32;
+            sight.inside = 1.0 - aside;
+            sight.center += 2.0 * aside * step;
+            (sight.along, sight.across) = (u + step, v);
+            return sight;
+        }
+        let (tangent, bitangent, radius) = disc_of(light, center);
+        // A quarter turn to either side: rows look the same from both ends.
+        let turn = ((random >> 32) as u32 & 0xffff) as f32 / (0.5 * SHIFTS) - 1.0;
+        let square = turn * turn;
+        let (cos, sin) = ((1.0 - square) / (1.0 + square), 2.0 * turn / (1.0 + square));
+        let radius = scale * radius;
+        sight.along = radius * (cos * tangent + sin * bitangent);
+        sight.across = radius * (cos * bitangent - sin * tangent);
+        if lines == 1 {
+            let y = middle_row(2.0 * aside - 1.0);
+            sight.center += y * sight.across;
+            sight.along *= (1.0 - y * y).max(0.0).sqrt();
+        }
+        sight
+    }
+
+    /// The sample at place `place` of row number `row`, seen from the point and not scaled.
+    #[inline(always)]
+    pub(crate) fn sample(&self, rows: &SampleRows, row: usize, place: u32, scale: f32) -> Vec3 {
+        let x = (place as f32 - self.offset(rows, row)) / rows.density[row];
+        (self.center + x * self.along + rows.y[row] * self.across) / scale
+    }
+
+    /// The place of x = 0 in a row of samples.
+    #[inline(always)]
+    pub(crate) fn offset(&self, rows: &SampleRows, row: usize) -> f32 {
+        rows.half[row] - self.shift_of(rows, row)
+    }
+
+    #[inline(always)]
+    fn shift_of(&self, rows: &SampleRows, row: usize) -> f32 {
+        let shift = self.shift + rows.shift[row];
+        if shift >= 1.0 { shift - 1.0 } else { shift }
+    }
+
+    /// The samples of a word that count.
+    #[inline(always)]
+    pub(crate) fn valid_word(&self, rows: &SampleRows, word: usize) -> u32 {
+        let first = if word == 0 { 0 } else { rows.ends[word - 1] as usize };
+        (first..rows.ends[word] as usize).fold(0, |bits, row| bits | self.valid(rows, row) << rows.place[row])
+    }
+
+    /// The samples of a row that count, as the lowest bits.
+    #[inline(always)]
+    pub(crate) fn valid(&self, rows: &SampleRows, row: usize) -> u32 {
+        let count = rows.count[row];
+        let mut bits = (1u32 << count) - 1;
+        // What enters a rectangle, and what leaves it.
+        if row as u32 == rows.entering || row as u32 == rows.leaving {
+            let inside = (self.inside * count as f32 - self.shift_of(rows, row)).ceil().max(0.0) as u32;
+            let before = (1u32 << inside.min(count)) - 1;
+            bits &= if row as u32 == rows.leaving { before } else { !before };
+        }
+        // Some rows, one after the other from any, have a sample less.
+        if (rows.line[row] + self.choice) % rows.lines < rows.surplus {
+            bits &= !(1 << ((rows.line[row] + self.choice / rows.lines) % count));
+        }
+        bits
+    }
+}
+
+/// The longer of two half sides first: rows lie along it.
+#[inline(always)]
+fn longest_first(u: Vec3, v: Vec3) -> (Vec3, Vec3) {
+    if u.length_squared() >= v.length_squared() { (u, v) } else { (v, u) }
+}
+
+/// Two perpendicular unit vectors in the plane of a light's disc, and its radius. `center` is the way to its centre.
+#[inline(always)]
+fn disc_of(light: &Light, center: Vec3) -> (Vec3, Vec3, f32) {
+    match light.kind {
+        LightKind::Disk { normal, radius, .. } => {
+            let (tangent, bitangent) = normal.any_orthonormal_pair();
+            (tangent, bitangent, radius)
+        }
+        LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } => {
+            let (tangent, bitangent) = facing(center);
+            (tangent, bitangent, radius)
+        }
+        LightKind::Directional { .. } | LightKind::Spot { .. } | LightKind::Rectangle { .. } => (Vec3::X, Vec3::Y, 0.0),
+    }
+}
+
+/// Two unit vectors perpendicular to `way` and to each other (Duff et al.: *Building an Orthonormal Basis, Revisited*, JCGT 2017).
+#[inline(always)]
+fn facing(way: Vec3) -> (Vec3, Vec3) {
+    let length = way.length();
+    let n = if length > 0.0 { way / length } else { Vec3::Z };
+    let sign = if n.z < 0.0 { -1.0 } else { 1.0 };
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    (Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), Vec3::new(b, sign + n.y * n.y * a, -n.y))
+}
+
+/// The place of a disc's only row that is as likely to be below `share` of the disc as above, for `share` in [−1, 1]: the quantile of
+/// the length of chords, within 0.01.
+#[inline(always)]
+fn middle_row(share: f32) -> f32 {
+    let square = share * share;
+    share * (0.79 + square * (0.05 + 0.15 * square * square))
+}
+
+/// The power of two by which vectors to `light` are multiplied.
+pub(crate) fn scale(geometry: &PreparedGeometry, light: &Light) -> f32 {
+    let (center, far) = geometry.reach_parameters();
+    let away = light.position().map_or(4.0 * far, |position| (position - center).abs().max_element() + far);
+    let exponent = |length: f32| (length.max(f32::MIN_POSITIVE).to_bits() >> 23) as i32 - 127;
+    let exponent = (-2 * exponent(far) - exponent(away)).clamp(-120, 120);
+    f32::from_bits(((exponent + 127) as u32) << 23)
+}

@@ -1,0 +1,160 @@
+//! The reference on the CPU: lanes are triangles.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, u32x8};
+use lightmesh_layout::constants::{MOST_ROWS, MOST_WORDS};
+use lightmesh_layout::scene::SampleRows;
+use lightmesh_scene::Bounds;
+use rayon::prelude::*;
+
+use crate::accel::TangentPlanes;
+use crate::counters::Tally;
+use crate::data::visibility::Visibility;
+use crate::data::wave::HostWave;
+use crate::shadow::Aim;
+use crate::shadow::occlusion::{Bits, Offsets, Sights};
+use crate::shadow::rows::Rows;
+use crate::shadow::sight::{Emitter, Sight};
+use crate::simd::{Axes, LANES, dispatch};
+use crate::surface::SurfacePoint;
+
+/// Maximum number of surface points per task.
+const BATCH: usize = 256;
+
+/// The visible share of each light from each surface point.
+pub(crate) fn area_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
+    let rows = Rows::new(wave.job.sampling.samples);
+    let emitters = Emitter::all(wave, aim, &rows);
+    let mut visibility = Visibility::dark(emitters.len(), wave.hits.len());
+    let level = Level::new();
+    visibility.parts(BATCH).into_par_iter().enumerate().for_each(|(number, mut shares)| {
+        let first = number * BATCH;
+        let rays = first..wave.hits.len().min(first + BATCH);
+        wave.job.piece(rays.len(), || {
+            let (mut found, mut asked) = (Found::default(), 0);
+            for ray in rays.filter(|&ray| wave.sees(ray)) {
+                let point = wave.surface_point(ray);
+                for (emitter, shares) in emitters.iter().zip(&mut shares) {
+                    let sight = emitter.sight(wave, ray, &point);
+                    let seen =
+                        dispatch!(level, simd => seen(simd, wave, emitter, &point, &sight, &mut found, &mut asked));
+                    shares[ray - first] = emitter.share(seen);
+                }
+            }
+            Tally::add(&wave.job.tally.shadow_rays, asked);
+        });
+    });
+    visibility
+}
+
+/// Triangles of a region, buffers.
+#[derive(Default)]
+struct Found {
+    indices: Vec<u32>,
+    /// Corners by axis, in groups of lanes.
+    corners: Vec<[[[f32; LANES]; 3]; 3]>,
+}
+
+impl Found {
+    /// Finds all triangles that may hide an emitter from a point.
+    fn search(&mut self, wave: &HostWave, emitter: &Emitter, point: &SurfacePoint) {
+        let geometry = &wave.scene.geometry;
+        let origin = Bounds { min: point.origin, max: point.origin };
+        let planes = TangentPlanes::new(point.origin, [(point.origin, point.normal)], 0.0);
+        let region = emitter.region(geometry, &origin).above(planes);
+        geometry.accelerator.triangles_in(&region, &mut self.indices);
+        self.corners.clear();
+        for indices in self.indices.chunks(LANES) {
+            let mut corners = [[[0.0; LANES]; 3]; 3];
+            for lane in 0..LANES {
+                let index = indices[lane.min(indices.len() - 1)];
+                for (axes, corner) in corners.iter_mut().zip(geometry.triangles[index as usize].corners()) {
+                    (axes[0][lane], axes[1][lane], axes[2][lane]) = (corner.x, corner.y, corner.z);
+                }
+            }
+            self.corners.push(corners);
+        }
+    }
+
+    #[inline(always)]
+    fn group<S: Simd>(simd: S, corners: &[[[f32; LANES]; 3]; 3]) -> [Axes<S>; 3] {
+        let load = |axes: &[[f32; LANES]; 3]| {
+            [
+                fearless_simd::f32x8::from_slice(simd, &axes[0]),
+                fearless_simd::f32x8::from_slice(simd, &axes[1]),
+                fearless_simd::f32x8::from_slice(simd, &axes[2]),
+            ]
+        };
+        [load(&corners[0]), load(&corners[1]), load(&corners[2])]
+    }
+}
+
+/// The number of samples of an emitter that a surface point sees. Adds to `asked` how many are in front of the surface.
+#[inline(always)]
+fn seen<S: Simd>(
+    simd: S,
+    wave: &HostWave,
+    emitter: &Emitter,
+    point: &SurfacePoint,
+    sight: &Sight,
+    found: &mut Found,
+    asked: &mut u64,
+) -> u32 {
+    let sights = Sights::splat(simd, point, sight);
+    if emitter.is_point() {
+        if sights.center_above_horizon(simd).to_bitmask() & 1 == 0 {
+            return 0;
+        }
+        *asked += 1;
+        found.search(wave, emitter, point);
+        let hidden = |corners| sights.hides_center(simd, Found::group(simd, corners), 0xff) != 0;
+        return u32::from(!found.corners.iter().any(hidden));
+    }
+    let mut searched = false;
+    let mut count = 0;
+    for set in emitter.sets {
+        let offsets = offsets(simd, set, sight);
+        let mut bits = initial(simd, &sights, set, &offsets, sight);
+        let unhidden = words(&bits, set).map(u32::count_ones).sum::<u32>();
+        if unhidden == 0 {
+            continue;
+        }
+        *asked += u64::from(unhidden);
+        if !searched {
+            found.search(wave, emitter, point);
+            searched = true;
+        }
+        for corners in &found.corners {
+            sights.hide(simd, Found::group(simd, corners), (set, &offsets), 0xff, &mut bits);
+        }
+        count += words(&bits, set).map(u32::count_ones).sum::<u32>();
+    }
+    count
+}
+
+#[inline(always)]
+fn offsets<S: Simd>(simd: S, set: &SampleRows, sight: &Sight) -> Offsets<S> {
+    let mut offsets = [fearless_simd::f32x8::splat(simd, 0.0); MOST_ROWS as usize];
+    for (row, offset) in offsets.iter_mut().enumerate().take(set.rows as usize) {
+        *offset = fearless_simd::f32x8::splat(simd, sight.offset(set, row));
+    }
+    offsets
+}
+
+/// The samples that count and are above the horizon.
+#[inline(always)]
+fn initial<S: Simd>(simd: S, sights: &Sights<S>, set: &SampleRows, offsets: &Offsets<S>, sight: &Sight) -> Bits<S> {
+    let mut bits = sights.above_horizon(simd, set, offsets);
+    for (word, bits) in bits.iter_mut().enumerate().take(set.words as usize) {
+        *bits &= u32x8::splat(simd, sight.valid_word(set, word));
+    }
+    bits
+}
+
+/// The samples that no lane's triangle hides, by word.
+#[inline(always)]
+fn words<S: Simd>(bits: &Bits<S>, set: &SampleRows) -> impl Iterator<Item = u32> {
+    let words: [u32; MOST_WORDS as usize] =
+        bits.map(|word| <[u32; LANES]>::from(word).into_iter().fold(!0, |a, b| a & b));
+    words.into_iter().take(set.words as usize)
+}

@@ -1,0 +1,29 @@
+//! The reference on a CUDA device: a warp for 32 surface points, one after the other.
+
+use lightmesh_layout::constants::{FOUND_TRIANGLES, MOST_WORDS, PLANE_WORDS, WARP};
+
+use crate::cuda::Runtime;
+use crate::error::RenderError;
+use crate::gpu::rays::{DeviceVisibility, DeviceWave};
+use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, per_structure};
+use crate::shadow::Aim;
+use crate::shadow::launch::{ByWords, WarpWork, test_samples};
+
+const KERNELS: ByWords = [
+    (1, per_structure!("area_shadows", "area_shadows_1")),
+    (3, per_structure!("area_shadows", "area_shadows_3")),
+    (MOST_WORDS, per_structure!("area_shadows", "area_shadows_10")),
+];
+/// Warps of the very first launches.
+const FIRST_WARPS: u64 = 4096;
+
+/// The visible share of each light from each surface point.
+pub(crate) fn area_shadows<R: Runtime>(
+    cuda: &Cuda<R>,
+    wave: &DeviceWave<R>,
+    aim: &Aim,
+) -> Result<DeviceVisibility<R>, RenderError> {
+    let warps = wave.rays.blocks(BLOCK_SIDE) * u64::from(BLOCK / WARP);
+    let work = WarpWork { warps, first: FIRST_WARPS, words: PLANE_WORDS + FOUND_TRIANGLES };
+    test_samples(cuda, wave, aim, (&KERNELS, work), |record| record)
+}

@@ -1,0 +1,114 @@
+// The reference on a CUDA device: twin of cpu.rs. A warp takes 32 surface points, one after the other; lanes are triangles.
+// `area_shadows_N_*`: samples in up to N words of bits.
+#include "cuda/prelude.cuh"
+
+#include "accel/search.cuh"
+#include "cuda/rays.cuh"
+#include "cuda/tally.cuh"
+#include "shadow/seen.cuh"
+
+// The value of one lane.
+DEVICE Sight broadcast(const Sight &sight, unsigned lane) {
+    Sight result = sight;
+    result.center = warp_broadcast(sight.center, lane);
+    result.along = warp_broadcast(sight.along, lane);
+    result.across = warp_broadcast(sight.across, lane);
+    result.end = __shfl_sync(ALL_LANES, sight.end, lane);
+    return result;
+}
+
+// What a lane's triangle, if it has one, leaves of the samples.
+template <unsigned WORDS>
+DEVICE void test_triangle(const SurfacePoint &point, const Sight &sight, Shape shape, const SampleRows &set, const float *offsets,
+                          const Triangle *triangle, bool has, Seen<WORDS> &seen) {
+    const Occluding own = occluding(load_corners(triangle));
+    if (shape == SHAPE_POINT)
+        seen.bits[0] &= has && hides_center(point, sight, own) ? 0 : 1;
+    else
+        hide<WORDS, WARP>(point, sight, own, set, offsets, has, seen.bits);
+}
+
+// The samples that the surface point of lane `owner` sees: `seen` without those that any triangle hides. `offsets` are that lane's.
+template <unsigned WORDS, class Structure>
+DEVICE void test_point(const Shadows &args, const Structure &structure, const Light &light, Shape shape, const SampleRows &set,
+                       const SurfacePoint &point, const Sight &sight, const float *offsets, PlanesMemory *planes, unsigned *found,
+                       unsigned *memory, Seen<WORDS> &seen) {
+    const unsigned lane = lane_of_thread();
+    const Bounds origin = {point.origin, point.origin};
+    const TangentPlanes plane = tangent_planes(point.origin, lane == 0, point.origin, point.normal, planes);
+    const auto region = region_above(shadow_region(origin, emitter_bounds(args.scene, light, shape, origin)), plane, 0.0f);
+    auto search = begin_search(structure, region, memory);
+    unsigned count = 0;
+    while (goes_on(structure, search) || count != 0) {
+        while (goes_on(structure, search) && count < WARP)
+            next_triangles<true>(structure, region, search, found, count);
+        const unsigned taken = min(count, WARP);
+        count -= taken;
+        if (taken != 0) {
+            const unsigned place = found[count + (lane < taken ? lane : 0)];
+            test_triangle<WORDS>(point, sight, shape, set, offsets, structure.triangles + place, lane < taken, seen);
+        }
+        __syncwarp();
+    }
+}
+
+template <unsigned WORDS, class Structure>
+DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
+    DYNAMIC_SHARED(unsigned, shared);
+    PlanesMemory *planes = reinterpret_cast<PlanesMemory *>(shared);
+    unsigned *found = shared + PLANE_WORDS, *memory = found + FOUND_TRIANGLES;
+    float *offsets = reinterpret_cast<float *>(memory + search_words(structure));
+    const unsigned lane = lane_of_thread();
+    const unsigned long long warp = args.first + blockIdx.x;
+    const unsigned warps = BLOCK / WARP;
+    unsigned ray = 0;
+    const bool has = ray_of_thread(args.rays, (unsigned)(warp / warps), (unsigned)(warp % warps) * WARP + lane, ray) &&
+                     load_hit(args.hits, ray).triangle != Hit::NONE;
+    SurfacePoint point = {};
+    if (has)
+        point = surface_point_of(args.scene, args.rays, args.hits, ray);
+    for (unsigned light = args.first_light; light < args.end_light; ++light) {
+        const Light &emitter = args.scene.lights[light];
+        const Shape shape = shape_of(args.sampling, emitter);
+        const SampleRows &set = args.sets[shape == SHAPE_RECTANGLE ? SHAPE_RECTANGLE : SHAPE_DISC];
+        if (shape == SHAPE_POINT && args.set != 0)
+            continue;
+        Sight sight = {};
+        if (has)
+            sight = sight_of(args.scene, args.sampling, light, shape, set.lines, point, ray_key(args.rays, ray));
+        Seen<WORDS> seen = seen_unhidden<WORDS>(has, point, sight, shape, set, offsets + lane);
+        count(tally_shard(args.tally).shadow_rays, number(seen));
+        for (unsigned rest = __ballot_sync(ALL_LANES, any(seen)); rest != 0; rest &= rest - 1) {
+            const unsigned owner = __ffs(rest) - 1;
+            const SurfacePoint asked = {warp_broadcast(point.position, owner), warp_broadcast(point.origin, owner),
+                                        warp_broadcast(point.normal, owner)};
+            Seen<WORDS> left;
+            UNROLL
+            for (unsigned word = 0; word < WORDS; ++word)
+                left.bits[word] = __shfl_sync(ALL_LANES, seen.bits[word], owner);
+            test_point<WORDS>(args, structure, emitter, shape, set, asked, broadcast(sight, owner), offsets + owner, planes, found,
+                              memory, left);
+            UNROLL
+            for (unsigned word = 0; word < WORDS; ++word) {
+                const unsigned bits = ~warp_or(~left.bits[word]);
+                seen.bits[word] = lane == owner ? bits : seen.bits[word];
+            }
+        }
+        if (has)
+            add_seen(args, shape, light, ray, number(seen));
+        __syncwarp();
+    }
+}
+
+template <class Structure>
+DEVICE void area_shadows_1(const Shadows &args, const Structure &structure) { shadows_of_points<1>(args, structure); }
+
+template <class Structure>
+DEVICE void area_shadows_3(const Shadows &args, const Structure &structure) { shadows_of_points<3>(args, structure); }
+
+template <class Structure>
+DEVICE void area_shadows_10(const Shadows &args, const Structure &structure) { shadows_of_points<MOST_WORDS>(args, structure); }
+
+KERNEL_PER_STRUCTURE(area_shadows_1, Shadows, WARP, 16)
+KERNEL_PER_STRUCTURE(area_shadows_3, Shadows, WARP, 16)
+KERNEL_PER_STRUCTURE(area_shadows_10, Shadows, WARP, 16)

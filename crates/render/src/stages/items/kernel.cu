@@ -1,0 +1,96 @@
+// Items on a CUDA device: twin of cpu.rs, a block for each tile.
+//
+// 1. to 3. `group_items`: the items of each tile.
+// 4. `gather_items`: those of all tiles in one list.
+#include "cuda/prelude.cuh"
+
+#include "cuda/rays.cuh"
+#include "cuda/tile.cuh"
+#include "surface.cuh"
+
+// The word of a thread without a surface point; behind all others.
+#define NO_POINT 0xffffffffu
+
+// One coordinate in cells: which, and in which quarter of it.
+DEVICE unsigned cell_coordinate(float coordinate, unsigned &quarter) {
+    const float cell = floorf(coordinate);
+    quarter = (unsigned)__float2int_rd(4.0f * (coordinate - cell)) & 3;
+    return (unsigned)__float2int_rd(cell);
+}
+
+DEVICE unsigned long long joined(unsigned long long key, unsigned part) {
+    key = (key ^ part) * GOLDEN_RATIO;
+    return key << 29 | key >> 35;
+}
+
+// The digits of a quarter, two places apart.
+DEVICE unsigned spread(unsigned quarter) { return (quarter & 1) | (quarter & 2) << 2; }
+
+// 16 bits of a hash of a surface point's cell, 6 bits of its place in the cell, 10 bits of its thread.
+DEVICE unsigned sort_word(const GroupItems &args, unsigned ray, unsigned thread) {
+    const float width = CELL_PIXELS * (args.spacing[0] + args.spacing[1] * load_hit(args.hits, ray).t);
+    // A power of two, so that neighbours at different distances have the same cells.
+    const float step = __uint_as_float((__float_as_uint(width) & F32_INFINITY_BITS) + F32_EXPONENT_STEP);
+    if (!(width >= F32_MIN_POSITIVE && is_finite(step)))
+        return thread;
+    const Vec3 position = surface_point_of(args.scene, args.rays, args.hits, ray).position / step;
+    unsigned x, y, z;
+    unsigned long long key = joined(0, cell_coordinate(position.x, x));
+    key = joined(key, cell_coordinate(position.y, y));
+    key = joined(key, cell_coordinate(position.z, z));
+    key = joined(key, __float_as_uint(step));
+    // All ones is reserved for threads without a surface point.
+    const unsigned hash = min((unsigned)(key >> 32) & 0xffff, LAST_HASH);
+    return hash << 16 | (spread(x) << 2 | spread(y) << 1 | spread(z)) << 10 | thread;
+}
+
+KERNEL(group_items, GroupItems, TILE, 2) {
+    SHARED(unsigned, rays, [TILE]);
+    SHARED(unsigned, words, [TILE]);
+    SHARED(unsigned, warps, [TILE / WARP]);
+    const unsigned thread = threadIdx.x;
+    const unsigned long long tile = args.first_block + blockIdx.x;
+
+    // 1. The cell of each surface point, and its place there.
+    unsigned ray = 0, word = NO_POINT;
+    if (tile_ray_of_thread(args.rays, (unsigned)tile, thread, ray) && args.hits[ray].triangle != Hit::NONE) {
+        rays[thread] = ray;
+        word = sort_word(args, ray, thread);
+    }
+    __syncthreads();
+
+    // 2. Sort by cell, within a cell along the curve.
+    word = sorted(word, words);
+    const bool is_point = word != NO_POINT;
+    __syncthreads();
+    words[thread] = word;
+    __syncthreads();
+    const bool first_of_cell = is_point && (thread == 0 || words[thread - 1] >> 16 != word >> 16);
+
+    // 3. Every cell begins an item, and so does every 32nd point after its first.
+    const unsigned start = largest_before(first_of_cell ? thread : 0, warps);
+    const bool first_of_item = is_point && (thread - start) % WARP == 0;
+    unsigned items, points;
+    const unsigned item = flags_before(first_of_item, warps, items);
+    flags_before(is_point, warps, points);
+    const unsigned long long place = tile * TILE;
+    if (is_point)
+        args.members[place + thread] = rays[word & (TILE - 1)];
+    __syncthreads();
+    if (first_of_item)
+        words[item] = thread;
+    __syncthreads();
+    if (first_of_item)
+        args.ends[place + item] = (unsigned short)(item + 1 < items ? words[item + 1] : points);
+    if (thread == 0)
+        args.counts[tile] = items;
+}
+
+KERNEL(gather_items, GroupItems, TILE, 1) {
+    const unsigned first = args.counts[blockIdx.x], count = args.counts[blockIdx.x + 1] - first;
+    if (threadIdx.x >= count)
+        return;
+    const unsigned long long place = (unsigned long long)blockIdx.x * TILE;
+    const unsigned start = threadIdx.x == 0 ? 0 : args.ends[place + threadIdx.x - 1], end = args.ends[place + threadIdx.x];
+    args.items[first + threadIdx.x] = (place + start) << 6 | (end - start);
+}

@@ -1,0 +1,133 @@
+//! Which triangles can hide an emitter from a box of surface points, eight triangles at a time.
+//!
+//! With a, b, c relative to the middle of the box, e = c − b and x = b × c = ½ (b + c) × e, an edge function for a point p and a sample s is
+//!
+//! ```text
+//! f(p, s) = (s − p) · ((b − p) × (c − p)) = s · x − p · (e × s + x)
+//! ```
+//!
+//! bilinear in p and s. With s = m + r, m the middle of the emitter's box, it differs from m · x by r · x − p · (e × m + x) − p · (e × r).
+//! Half the edges of both boxes bound each term.
+//!
+//! # What is rounded
+//!
+//! Here as in [`Sights`](crate::shadow::occlusion::Sights), whose decisions the bounds must cover, a function is off by less than 16 ε times
+//! the product of the three lengths in it; 64 ε bound both.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, mask32x8};
+use glam::Vec3;
+use lightmesh_layout::constants::{GROWN, UNIT_ROUNDOFF};
+use lightmesh_scene::Bounds;
+
+use crate::simd::{Axes, cross, difference, dot, scaled, splat, sum};
+
+/// The boxes of an item and an emitter.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shaft {
+    /// The middle of the box around the surface points.
+    middle: Vec3,
+    /// Half the edges of that box.
+    half: Vec3,
+    /// The middle of the emitter's box, relative to the other.
+    emitter: Vec3,
+    /// Half the edges of the emitter's box.
+    emitter_half: Vec3,
+    /// No sample is farther from the middle.
+    radius: f32,
+}
+
+/// What becomes of eight triangles, a bit each.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Chosen {
+    /// May hide something.
+    pub(super) kept: u32,
+    /// Hide everything from all points.
+    pub(super) dark: u32,
+}
+
+impl Shaft {
+    pub(super) fn new(origins: &Bounds, (emitter, radius): (&Bounds, f32)) -> Shaft {
+        let middle = origins.center();
+        let grown = |bounds: &Bounds| 0.5 * GROWN * bounds.extent() + 4.0 * UNIT_ROUNDOFF * bounds.center().abs();
+        Shaft {
+            middle,
+            half: grown(origins),
+            emitter: emitter.center() - middle,
+            emitter_half: grown(emitter),
+            radius: GROWN * radius,
+        }
+    }
+
+    /// Chooses among triangles, one in each lane.
+    #[inline(always)]
+    pub(super) fn choose<S: Simd>(&self, simd: S, [a, b, c]: [Axes<S>; 3]) -> Chosen {
+        let (half, emitter, emitter_half) =
+            (splat(simd, self.half), splat(simd, self.emitter), splat(simd, self.emitter_half));
+        let reach = self.half.element_sum();
+        let far = self.emitter.abs().element_sum() + self.emitter_half.element_sum();
+        let middle = splat(simd, self.middle);
+        let edges = [difference(c, b), difference(a, c), difference(b, a)];
+        let (a, b, c) = (difference(a, middle), difference(b, middle), difference(c, middle));
+        let lengths = [length(edges[0]), length(edges[1]), length(edges[2])];
+        let away = [length(a), length(b), length(c)];
+
+        // The triangle's plane: on which side are the points, and the samples?
+        let plane = cross(edges[1], edges[2]);
+        let rounding = lengths[1] * lengths[2] * (64.0 * UNIT_ROUNDOFF);
+        let side = dot(plane, a);
+        let room = extent(plane, half) + rounding * (away[0] + reach);
+        let (points_above, points_below) = (side.simd_gt(room), side.simd_lt(-room));
+        let side = dot(plane, difference(a, emitter));
+        let room = self.extent_of_samples(plane, emitter_half) + rounding * (away[0] + far);
+        let (samples_above, samples_below) = (side.simd_gt(room), side.simd_lt(-room));
+        let mut dropped = (points_above & samples_above) | (points_below & samples_below);
+
+        // Its edges.
+        let never = mask32x8::splat(simd, false);
+        let (mut outside, mut inside) = (never, never);
+        let (mut all_inside, mut all_outside) = (!never, !never);
+        for (edge, (from, to, from_length, to_length)) in
+            [(b, c, away[1], away[2]), (c, a, away[2], away[0]), (a, b, away[0], away[1])].into_iter().enumerate()
+        {
+            let (e, e_length) = (edges[edge], lengths[edge]);
+            let x = scaled(f32x8::splat(simd, 0.5), cross(sum(from, to), e));
+            let f = dot(emitter, x);
+            let turned = cross(e, emitter);
+            let turned = [turned[0] + x[0], turned[1] + x[1], turned[2] + x[2]];
+            let room = self.extent_of_samples(x, emitter_half)
+                + extent(turned, half)
+                + e_length * (self.half.length() * self.emitter_half.length())
+                + e_length * (from_length + to_length + 2.0 * reach) * (64.0 * UNIT_ROUNDOFF * (far + reach));
+            let (negative, positive) = (f.simd_lt(-room), f.simd_gt(room));
+            outside |= negative;
+            inside |= positive;
+            all_inside &= positive;
+            all_outside &= negative;
+        }
+        dropped |= outside & inside;
+        dropped |= (points_above & outside) | (points_below & inside);
+        let dark = (points_above & samples_below & all_inside) | (points_below & samples_above & all_outside);
+        Chosen { kept: (!dropped).to_bitmask() as u32, dark: dark.to_bitmask() as u32 }
+    }
+}
+
+impl Shaft {
+    /// The largest product of `v` and the way from the middle of the emitter to a sample: a ball's box is larger than the ball.
+    #[inline(always)]
+    fn extent_of_samples<S: Simd>(&self, v: Axes<S>, half: Axes<S>) -> f32x8<S> {
+        extent(v, half).min(dot(v, v).sqrt() * self.radius)
+    }
+}
+
+/// The largest product of `v` and a vector in a box of these half edges.
+#[inline(always)]
+fn extent<S: Simd>(v: Axes<S>, half: Axes<S>) -> f32x8<S> {
+    v[0].abs() * half[0] + v[1].abs() * half[1] + v[2].abs() * half[2]
+}
+
+/// The sum of absolute components.
+#[inline(always)]
+fn length<S: Simd>(v: Axes<S>) -> f32x8<S> {
+    v[0].abs() + v[1].abs() + v[2].abs()
+}

@@ -1,0 +1,54 @@
+//! Exact area shadows by occluder lists: the triangles that can hide a light are found once for surface points that lie close together. The
+//! same bits as [area mode](super::area).
+
+use super::{Request, Visible};
+use crate::backend::run::Run;
+use crate::backend::{Backend, WaveOf};
+use crate::error::RenderError;
+use crate::plan::Footprint;
+use crate::prepared::PreparedScene;
+use crate::settings::{Lookup, Settings};
+use crate::shadow::Aim;
+use crate::stage::Stage;
+use crate::stats::SettingsStats;
+
+/// Occluder lists.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lists;
+
+impl Visible for Lists {
+    const SAMPLES: u32 = 64;
+
+    fn resolve(_: &Request) -> Result<Lists, RenderError> {
+        Ok(Lists)
+    }
+
+    fn stages(&self) -> &'static [Stage] {
+        &[Stage::Cells, Stage::LongTests]
+    }
+
+    fn visibility<B: Backend>(&self, run: &Run<B>, wave: &WaveOf<B>) -> Result<B::Visibility, RenderError> {
+        let n = run.backend.ray_count(wave.rays);
+
+        // Which surface points lie close together?
+        let items = run.stage(Stage::Cells, [n; 2], |backend| backend.items(wave))?;
+        let pieces = run.backend.item_pieces(&items);
+
+        // What stands between them and each light?
+        let aim = Aim::Extent(wave.job.sampling);
+        run.stage(Stage::LongTests, [n, pieces], |backend| backend.occluder_lists(wave, &items, &aim))
+    }
+
+    fn footprint(&self, _: u64) -> Footprint {
+        // The ray of each surface point twice, and the share of an item.
+        Footprint { host: 12, device: 8 }
+    }
+
+    fn spreads_points(&self) -> bool {
+        true
+    }
+
+    fn describe(&self, _: &PreparedScene, _: &Settings, stats: &mut SettingsStats) {
+        stats.lookup = Some(Lookup::Lists.name());
+    }
+}
