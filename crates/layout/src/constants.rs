@@ -217,8 +217,12 @@ constants! {
     F32_EXPONENT_STEP: u32 = 1 << (f32::MANTISSA_DIGITS - 1);
     /// The largest hash of a cell.
     LAST_HASH: u32 = 0xfffe;
-    /// Words of a candidate that may hide a light: corners, edges and normal.
-    OCCLUDER_WORDS: u32 = 24;
+    /// Parts of four words of a candidate that may hide a light: three corners with the normal.
+    OCCLUDER_PARTS: u32 = 3;
+    /// Words that describe where such candidates are searched for.
+    SEARCHED_WORDS: u32 = 56;
+    /// Words of the rows of samples in shared memory, of one shape: four a row, and the end of each word's rows.
+    ROW_TABLE_WORDS: u32 = 4 * MOST_ROWS + 12;
     /// The margin of searches for what may hide a light, 2^-16 of the size of the searched space.
     SHADOW_MARGIN: f32 = 1.0 / (1u32 << 16) as f32;
 

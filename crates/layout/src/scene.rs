@@ -162,6 +162,8 @@ records! {
         line: [u32; MOST_ROWS as usize],
         /// The end of each word's rows, by word.
         ends: [u32; MOST_WORDS as usize],
+        /// All bits, by word.
+        full: [u32; MOST_WORDS as usize],
         /// Number of rows.
         rows: u32,
         /// Number of words.

@@ -117,6 +117,15 @@ struct ShaftForm {
     Faces low, high;
 };
 
+// The same shaft in shared memory: it is the same for all lanes, and too much for their registers.
+struct SharedShaftForm {
+    enum { SLANTED = true };
+    const ShaftForm *shaft;
+};
+
+DEVICE const ShaftForm &shaft_of_form(const ShaftForm &form) { return form; }
+DEVICE const ShaftForm &shaft_of_form(const SharedShaftForm &form) { return *form.shaft; }
+
 // For which parameters a shaft may overlap a box on one axis.
 DEVICE void narrow_shaft(float low_from, float low_inverse, float high_from, float high_inverse, float low, float high,
                          float &first, float &last) {
@@ -140,6 +149,8 @@ DEVICE bool form_meets(const ShaftForm &shaft, const Vec3 &low, const Vec3 &high
     narrow_shaft(lower.from.z, lower.inverse.z, upper.from.z, upper.inverse.z, low.z, high.z, first, last);
     return first <= last + REGION_ROUNDING;
 }
+
+DEVICE bool form_meets(const SharedShaftForm &form, const Vec3 &low, const Vec3 &high) { return form_meets(*form.shaft, low, high); }
 
 // ---- Regions ----
 
@@ -178,6 +189,14 @@ DEVICE Region<ShaftForm> region_shaft(const Bounds &origins, const Bounds &emitt
     return Region<ShaftForm>{form, no_planes(), Bounds{min(origins.low, emitter.low), max(origins.high, emitter.high)}};
 }
 
+// The same shaft with its faces in shared memory.
+DEVICE Region<SharedShaftForm> region_in_memory(const Region<ShaftForm> &region, ShaftForm *memory) {
+    if (lane_of_thread() == 0)
+        *memory = region.form;
+    __syncwarp();
+    return Region<SharedShaftForm>{SharedShaftForm{memory}, region.planes, region.bounds};
+}
+
 // The part of a region that does not lie below all the planes lowered by `slack`; everything if there are none.
 template <class Form>
 DEVICE Region<Form> region_above(Region<Form> region, const TangentPlanes &planes, float slack) {
@@ -200,8 +219,10 @@ DEVICE bool meets(const Region<Form> &region, const Vec3 &low, const Vec3 &high,
 }
 
 // A box around all points of a shaft whose coordinate on `axis` lies between `low` and `high`; false if there are none.
-DEVICE bool region_between(const Region<ShaftForm> &region, unsigned axis, float low, float high, Bounds &bounds) {
-    const Faces &lower = region.form.low, &upper = region.form.high;
+template <class Form>
+DEVICE bool region_between(const Region<Form> &region, unsigned axis, float low, float high, Bounds &bounds) {
+    const ShaftForm &shaft = shaft_of_form(region.form);
+    const Faces &lower = shaft.low, &upper = shaft.high;
     float first = 0.0f, last = 1.0f;
     narrow_shaft(component(axis, lower.from), component(axis, lower.inverse), component(axis, upper.from),
                  component(axis, upper.inverse), low, high, first, last);

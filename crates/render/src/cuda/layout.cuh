@@ -121,8 +121,12 @@
 #define F32_EXPONENT_STEP 0x00800000u
 // The largest hash of a cell.
 #define LAST_HASH 65534u
-// Words of a candidate that may hide a light: corners, edges and normal.
-#define OCCLUDER_WORDS 24u
+// Parts of four words of a candidate that may hide a light: three corners with the normal.
+#define OCCLUDER_PARTS 3u
+// Words that describe where such candidates are searched for.
+#define SEARCHED_WORDS 56u
+// Words of the rows of samples in shared memory, of one shape: four a row, and the end of each word's rows.
+#define ROW_TABLE_WORDS 92u
 // The margin of searches for what may hide a light, 2^-16 of the size of the searched space.
 #define SHADOW_MARGIN 0x1p-16f
 // Maximum number of tangent planes that a region distinguishes.
@@ -547,6 +551,7 @@ struct alignas(4) SampleRows {
     unsigned place[20];
     unsigned line[20];
     unsigned ends[10];
+    unsigned full[10];
     unsigned rows;
     unsigned words;
     unsigned lines;
@@ -554,7 +559,7 @@ struct alignas(4) SampleRows {
     unsigned entering;
     unsigned leaving;
 };
-static_assert(sizeof(SampleRows) == 624, "size of SampleRows");
+static_assert(sizeof(SampleRows) == 664, "size of SampleRows");
 static_assert(PLACE_OF(SampleRows, y) == 0, "place of SampleRows::y");
 static_assert(PLACE_OF(SampleRows, density) == 80, "place of SampleRows::density");
 static_assert(PLACE_OF(SampleRows, half) == 160, "place of SampleRows::half");
@@ -563,12 +568,13 @@ static_assert(PLACE_OF(SampleRows, count) == 320, "place of SampleRows::count");
 static_assert(PLACE_OF(SampleRows, place) == 400, "place of SampleRows::place");
 static_assert(PLACE_OF(SampleRows, line) == 480, "place of SampleRows::line");
 static_assert(PLACE_OF(SampleRows, ends) == 560, "place of SampleRows::ends");
-static_assert(PLACE_OF(SampleRows, rows) == 600, "place of SampleRows::rows");
-static_assert(PLACE_OF(SampleRows, words) == 604, "place of SampleRows::words");
-static_assert(PLACE_OF(SampleRows, lines) == 608, "place of SampleRows::lines");
-static_assert(PLACE_OF(SampleRows, surplus) == 612, "place of SampleRows::surplus");
-static_assert(PLACE_OF(SampleRows, entering) == 616, "place of SampleRows::entering");
-static_assert(PLACE_OF(SampleRows, leaving) == 620, "place of SampleRows::leaving");
+static_assert(PLACE_OF(SampleRows, full) == 600, "place of SampleRows::full");
+static_assert(PLACE_OF(SampleRows, rows) == 640, "place of SampleRows::rows");
+static_assert(PLACE_OF(SampleRows, words) == 644, "place of SampleRows::words");
+static_assert(PLACE_OF(SampleRows, lines) == 648, "place of SampleRows::lines");
+static_assert(PLACE_OF(SampleRows, surplus) == 652, "place of SampleRows::surplus");
+static_assert(PLACE_OF(SampleRows, entering) == 656, "place of SampleRows::entering");
+static_assert(PLACE_OF(SampleRows, leaving) == 660, "place of SampleRows::leaving");
 
 // DO(structure, …) for each acceleration structure, by the name of its field in `Scene`.
 #define PER_STRUCTURE(DO, ...) DO(bvh, __VA_ARGS__) DO(grid, __VA_ARGS__) DO(brute_force, __VA_ARGS__)
@@ -716,7 +722,7 @@ struct alignas(8) Shadows {
     unsigned first_light;
     unsigned end_light;
 };
-static_assert(sizeof(Shadows) == 1720, "size of Shadows");
+static_assert(sizeof(Shadows) == 1800, "size of Shadows");
 static_assert(PLACE_OF(Shadows, scene) == 0, "place of Shadows::scene");
 static_assert(PLACE_OF(Shadows, rays) == 304, "place of Shadows::rays");
 static_assert(PLACE_OF(Shadows, hits) == 384, "place of Shadows::hits");
@@ -728,10 +734,10 @@ static_assert(PLACE_OF(Shadows, tally) == 432, "place of Shadows::tally");
 static_assert(PLACE_OF(Shadows, first) == 440, "place of Shadows::first");
 static_assert(PLACE_OF(Shadows, count) == 448, "place of Shadows::count");
 static_assert(PLACE_OF(Shadows, sets) == 456, "place of Shadows::sets");
-static_assert(PLACE_OF(Shadows, set) == 1704, "place of Shadows::set");
-static_assert(PLACE_OF(Shadows, set_count) == 1708, "place of Shadows::set_count");
-static_assert(PLACE_OF(Shadows, first_light) == 1712, "place of Shadows::first_light");
-static_assert(PLACE_OF(Shadows, end_light) == 1716, "place of Shadows::end_light");
+static_assert(PLACE_OF(Shadows, set) == 1784, "place of Shadows::set");
+static_assert(PLACE_OF(Shadows, set_count) == 1788, "place of Shadows::set_count");
+static_assert(PLACE_OF(Shadows, first_light) == 1792, "place of Shadows::first_light");
+static_assert(PLACE_OF(Shadows, end_light) == 1796, "place of Shadows::end_light");
 
 struct alignas(8) PrimaryRays {
     Scene scene;

@@ -4,18 +4,21 @@
 #include "accel/triangle.cuh"
 #include "shadow/sight.cuh"
 
-// A triangle with what is the same for all surface points.
+// A triangle with what is the same for all surface points: three corners, and in their last words the normal.
 struct Occluding {
-    Vec3 a, b, c;
-    // Opposite to each corner.
-    Vec3 edge_a, edge_b, edge_c;
-    Vec3 plane;
+    float4 parts[3];
 };
 
+DEVICE Vec3 corner_of(const float4 *triangle, unsigned k) { return Vec3{triangle[k].x, triangle[k].y, triangle[k].z}; }
+
+// The edge opposite to a corner.
+DEVICE Vec3 edge_of(const float4 *triangle, unsigned k) { return corner_of(triangle, (k + 2) % 3) - corner_of(triangle, (k + 1) % 3); }
+
+DEVICE Vec3 plane_of(const float4 *triangle) { return Vec3{triangle[0].w, triangle[1].w, triangle[2].w}; }
+
 DEVICE Occluding occluding(const Corners &corners) {
-    const Vec3 &a = corners.a, &b = corners.b, &c = corners.c;
-    const Vec3 edge_b = a - c, edge_c = b - a;
-    return Occluding{a, b, c, c - b, edge_b, edge_c, fused_cross(edge_b, edge_c)};
+    const Vec3 &a = corners.a, &b = corners.b, &c = corners.c, plane = fused_cross(a - c, b - a);
+    return Occluding{float4{a.x, a.y, a.z, plane.x}, float4{b.x, b.y, b.z, plane.y}, float4{c.x, c.y, c.z, plane.z}};
 }
 
 // `start + x · (step in x) + y · (step in y)`.
@@ -31,36 +34,35 @@ DEVICE Linear linear(const Sight &sight, const Vec3 &n) {
 // More than a function changes from the middle of the emitter to any sample.
 DEVICE float range_of(const Linear &f) { return (fabsf(f.x) + fabsf(f.y) + fabsf(f.y)) * 1.01f; }
 
-// The planes through a surface point and the edges of a triangle, and its own.
-struct Facets {
-    Linear sides[3];
-    Linear beyond;
-    // Whether positive functions are inside.
-    bool outer;
-    // Whether the triangle may hide anything.
+// A triangle as a surface point sees it.
+struct Seeing {
+    // The corners.
+    Vec3 a, b, c;
+    float volume;
+    // Whether it may hide anything.
     bool matters;
 };
 
-DEVICE Facets facets_of(const SurfacePoint &point, const Sight &sight, const Occluding &triangle) {
-    const Vec3 a = triangle.a - point.origin, b = triangle.b - point.origin, c = triangle.c - point.origin;
+DEVICE Seeing seeing(const SurfacePoint &point, const float4 *triangle) {
+    const Vec3 a = corner_of(triangle, 0) - point.origin, b = corner_of(triangle, 1) - point.origin,
+               c = corner_of(triangle, 2) - point.origin;
     const Vec3 &n = point.normal;
     const bool above = fused_dot(n, a) > 0.0f || fused_dot(n, b) > 0.0f || fused_dot(n, c) > 0.0f;
-    const float volume = fused_dot(triangle.plane, a);
-    Facets facets;
-    facets.outer = volume > 0.0f;
-    facets.matters = above && (volume > 0.0f || volume < 0.0f);
-    facets.sides[0] = linear(sight, fused_cross(b + c, triangle.edge_a));
-    facets.sides[1] = linear(sight, fused_cross(c + a, triangle.edge_b));
-    facets.sides[2] = linear(sight, fused_cross(a + b, triangle.edge_c));
-    facets.beyond = linear(sight, triangle.plane);
-    facets.beyond.start = fmaf(-volume, sight.end, facets.beyond.start);
-    return facets;
+    const float volume = fused_dot(plane_of(triangle), a);
+    return Seeing{a, b, c, volume, above && (volume > 0.0f || volume < 0.0f)};
 }
 
-// Bounds of x on a row at y: the largest `low_start + y low_step` and the smallest of `high`.
+// The normals of the planes through the surface point and an edge.
+DEVICE Vec3 side(const Seeing &seen, const float4 *triangle, unsigned k) {
+    const Vec3 sum = k == 0 ? seen.b + seen.c : k == 1 ? seen.c + seen.a : seen.a + seen.b;
+    return fused_cross(sum, edge_of(triangle, k));
+}
+
+// Bounds of x on a row at y: the largest `low + y step` and the smallest `high + y step`. An edge bounds one side only; on the other its
+// start lies far beyond, whatever the step.
 template <unsigned COUNT>
 struct RowBounds {
-    float low_start[COUNT], low_step[COUNT], high_start[COUNT], high_step[COUNT];
+    float low[COUNT], high[COUNT], step[COUNT];
 };
 
 // Cuts off where the function is negative, or positive if not `outer`.
@@ -68,51 +70,79 @@ template <unsigned COUNT>
 DEVICE void cut(RowBounds<COUNT> &bounds, unsigned k, const Linear &f, bool outer) {
     const float slope = fabsf(f.x) < LEAST_SLOPE ? copysignf(LEAST_SLOPE, f.x) : f.x;
     const float inverse = -1.0f / slope;
-    const float start = f.start * inverse, step = f.y * inverse;
+    const float start = f.start * inverse;
     const bool low = (slope > 0.0f) == outer;
-    bounds.low_start[k] = low ? start : -BEYOND;
-    bounds.low_step[k] = low ? step : 0.0f;
-    bounds.high_start[k] = low ? BEYOND : start;
-    bounds.high_step[k] = low ? 0.0f : step;
+    bounds.low[k] = low ? start : -BEYOND;
+    bounds.high[k] = low ? BEYOND : start;
+    bounds.step[k] = f.y * inverse;
 }
 
 // All bits from `first` on; none from 32 on.
 DEVICE unsigned bits_from(unsigned first) { return __funnelshift_lc(0u, ~0u, first); }
 
-// The samples of a row within the bounds, as its lowest bits. `offset` is the place of x = 0.
-template <unsigned COUNT>
-DEVICE unsigned row_bits(const RowBounds<COUNT> &bounds, const SampleRows &set, unsigned row, float offset) {
-    const float y = set.y[row], density = set.density[row];
-    float low = fmaf(bounds.low_step[0], y, bounds.low_start[0]), high = fmaf(bounds.high_step[0], y, bounds.high_start[0]);
-    UNROLL
-    for (unsigned k = 1; k < COUNT; ++k) {
-        low = fmaxf(low, fmaf(bounds.low_step[k], y, bounds.low_start[k]));
-        high = fminf(high, fmaf(bounds.high_step[k], y, bounds.high_start[k]));
+// Rows of samples in shared memory.
+struct RowTable {
+    // y, density, the bits of all samples, and the place of the first in its word.
+    const float4 *rows;
+    // The end of each word's rows.
+    const unsigned *ends;
+    // The place of x = 0 in each row of a surface point's samples, WARP apart.
+    float *offsets;
+};
+
+// Fills the table of a shape; `shared` has ROW_TABLE_WORDS.
+DEVICE void fill_row_table(const SampleRows &set, unsigned *shared) {
+    const unsigned lane = lane_of_thread();
+    if (lane < MOST_ROWS) {
+        const unsigned samples = (1u << set.count[lane]) - 1;
+        reinterpret_cast<float4 *>(shared)[lane] =
+            float4{set.y[lane], set.density[lane], __uint_as_float(samples), __uint_as_float(set.place[lane])};
     }
-    const unsigned first = __float2uint_ru(fmaf(low, density, offset)), end = __float2uint_rd(fmaf(high, density, offset + 1.0f));
-    return bits_from(first) & ~bits_from(end) & ~bits_from(set.count[row]);
+    if (lane < MOST_WORDS)
+        shared[4 * MOST_ROWS + lane] = set.ends[lane];
+    __syncwarp();
 }
 
-// The samples within the bounds. `offsets` has those of the rows, STRIDE apart.
-template <unsigned WORDS, unsigned STRIDE, unsigned COUNT>
-DEVICE void set_bits(const RowBounds<COUNT> &bounds, const SampleRows &set, const float *offsets, unsigned *bits) {
+// The table of a shape, of the tables of discs and rectangles.
+DEVICE RowTable row_table(const unsigned *tables, Shape shape, float *offsets) {
+    const unsigned *own = tables + (shape == SHAPE_RECTANGLE ? ROW_TABLE_WORDS : 0);
+    return RowTable{reinterpret_cast<const float4 *>(own), own + 4 * MOST_ROWS, offsets};
+}
+
+// The samples of a row within the bounds, in their places. `offset` is the place of x = 0.
+template <unsigned COUNT>
+DEVICE unsigned row_bits(const RowBounds<COUNT> &bounds, const float4 &row, float offset) {
+    const float y = row.x, density = row.y;
+    float low = fmaf(bounds.step[0], y, bounds.low[0]), high = fmaf(bounds.step[0], y, bounds.high[0]);
+    UNROLL
+    for (unsigned k = 1; k < COUNT; ++k) {
+        low = fmaxf(low, fmaf(bounds.step[k], y, bounds.low[k]));
+        high = fminf(high, fmaf(bounds.step[k], y, bounds.high[k]));
+    }
+    const unsigned first = __float2uint_ru(fmaf(low, density, offset)), end = __float2uint_rd(fmaf(high, density, offset + 1.0f));
+    return (bits_from(first) & ~bits_from(end) & __float_as_uint(row.z)) << __float_as_uint(row.w);
+}
+
+// The samples within the bounds.
+template <unsigned WORDS, unsigned COUNT>
+DEVICE void set_bits(const RowBounds<COUNT> &bounds, const RowTable &table, unsigned *bits) {
     unsigned row = 0;
     UNROLL
     for (unsigned word = 0; word < WORDS; ++word) {
         unsigned all = 0;
-        for (; row < set.ends[word]; ++row)
-            all |= row_bits(bounds, set, row, offsets[row * STRIDE]) << set.place[row];
+        for (const unsigned end = table.ends[word]; row < end; ++row)
+            all |= row_bits(bounds, table.rows[row], table.offsets[row * WARP]);
         bits[word] = all;
     }
 }
 
 // The samples that count and are in front of the surface, before anything hides them.
-template <unsigned WORDS, unsigned STRIDE>
-DEVICE void samples_above_horizon(const SurfacePoint &point, const Sight &sight, const SampleRows &set, const float *offsets,
+template <unsigned WORDS>
+DEVICE void samples_above_horizon(const SurfacePoint &point, const Sight &sight, const SampleRows &set, const RowTable &table,
                                   unsigned *bits) {
     RowBounds<1> bounds;
     cut(bounds, 0, linear(sight, point.normal), true);
-    set_bits<WORDS, STRIDE>(bounds, set, offsets, bits);
+    set_bits<WORDS>(bounds, table, bits);
     unsigned row = 0;
     UNROLL
     for (unsigned word = 0; word < WORDS; ++word) {
@@ -131,32 +161,41 @@ DEVICE bool center_above_horizon(const SurfacePoint &point, const Sight &sight) 
 // Whether a function is certainly negative on the whole emitter; positive if not `outer`.
 DEVICE bool never(const Linear &f, bool outer) { return (outer ? f.start : -f.start) < -range_of(f); }
 
-// Clears the bits of the samples that a triangle hides. The lanes of a warp come together; only those that are `alive` matter.
-template <unsigned WORDS, unsigned STRIDE>
-DEVICE void hide(const SurfacePoint &point, const Sight &sight, const Occluding &triangle, const SampleRows &set,
-                 const float *offsets, bool alive, unsigned *seen) {
-    const Facets facets = facets_of(point, sight, triangle);
-    const bool passed =
-        never(facets.sides[0], facets.outer) || never(facets.sides[1], facets.outer) || never(facets.sides[2], facets.outer);
-    const bool matters = alive && facets.matters && !passed;
+// Clears the bits of the samples that a triangle, given by its parts, hides. The lanes of a warp come together; only those that are `alive`
+// matter.
+template <unsigned WORDS>
+DEVICE void hide(const SurfacePoint &point, const Sight &sight, const float4 *triangle, const RowTable &table, bool alive,
+                 unsigned *seen) {
+    const Seeing own = seeing(point, triangle);
+    const bool outer = own.volume > 0.0f;
+    // Most triangles are passed by on the outer side of an edge.
+    Linear sides[3];
+    bool matters = alive && own.matters;
+    UNROLL
+    for (unsigned k = 0; k < 3; ++k) {
+        sides[k] = linear(sight, side(own, triangle, k));
+        matters = matters && !never(sides[k], outer);
+    }
     if (!__any_sync(ALL_LANES, matters))
         return;
-    unsigned hidden[WORDS];
+    Linear beyond = linear(sight, plane_of(triangle));
+    beyond.start = fmaf(-own.volume, sight.end, beyond.start);
     // All of most emitters lies beyond the plane; then that bounds no row.
-    const bool clear = (facets.outer ? facets.beyond.start : -facets.beyond.start) > range_of(facets.beyond);
+    const bool clear = (outer ? beyond.start : -beyond.start) > range_of(beyond);
+    unsigned hidden[WORDS];
     if (__any_sync(ALL_LANES, matters && !clear)) {
         RowBounds<4> bounds;
         UNROLL
         for (unsigned k = 0; k < 3; ++k)
-            cut(bounds, k, facets.sides[k], facets.outer);
-        cut(bounds, 3, facets.beyond, facets.outer);
-        set_bits<WORDS, STRIDE>(bounds, set, offsets, hidden);
+            cut(bounds, k, sides[k], outer);
+        cut(bounds, 3, beyond, outer);
+        set_bits<WORDS>(bounds, table, hidden);
     } else {
         RowBounds<3> bounds;
         UNROLL
         for (unsigned k = 0; k < 3; ++k)
-            cut(bounds, k, facets.sides[k], facets.outer);
-        set_bits<WORDS, STRIDE>(bounds, set, offsets, hidden);
+            cut(bounds, k, sides[k], outer);
+        set_bits<WORDS>(bounds, table, hidden);
     }
     UNROLL
     for (unsigned word = 0; word < WORDS; ++word)
@@ -164,9 +203,15 @@ DEVICE void hide(const SurfacePoint &point, const Sight &sight, const Occluding 
 }
 
 // Whether a triangle hides the centre.
-DEVICE bool hides_center(const SurfacePoint &point, const Sight &sight, const Occluding &triangle) {
-    const Facets facets = facets_of(point, sight, triangle);
-    const float u = facets.sides[0].start, v = facets.sides[1].start, w = facets.sides[2].start, q = facets.beyond.start;
-    const float least = fminf(fminf(u, v), fminf(w, q)), most = fmaxf(fmaxf(u, v), fmaxf(w, q));
-    return facets.matters && (facets.outer ? least >= 0.0f : most <= 0.0f);
+DEVICE bool hides_center(const SurfacePoint &point, const Sight &sight, const float4 *triangle) {
+    const Seeing own = seeing(point, triangle);
+    const float beyond = fmaf(-own.volume, sight.end, fused_dot(plane_of(triangle), sight.center));
+    float least = beyond, most = beyond;
+    UNROLL
+    for (unsigned k = 0; k < 3; ++k) {
+        const float f = fused_dot(side(own, triangle, k), sight.center);
+        least = fminf(least, f);
+        most = fmaxf(most, f);
+    }
+    return own.matters && (own.volume > 0.0f ? least >= 0.0f : most <= 0.0f);
 }

@@ -216,18 +216,20 @@ impl<S: Simd> Linear<S> {
     }
 }
 
-/// Bounds of x on a row at y: the largest `low[0][k] + y low[1][k]` and the smallest of `high`.
+/// Bounds of x on a row at y: the largest `low[k] + y step[k]` and the smallest `high[k] + y step[k]`. An edge bounds one side only; on
+/// the other its start lies far beyond, whatever the step.
 struct Bounds<S: Simd> {
     count: usize,
-    low: [[f32x8<S>; 4]; 2],
-    high: [[f32x8<S>; 4]; 2],
+    low: [f32x8<S>; 4],
+    high: [f32x8<S>; 4],
+    step: [f32x8<S>; 4],
 }
 
 impl<S: Simd> Bounds<S> {
     #[inline(always)]
     fn none(simd: S) -> Bounds<S> {
         let zero = f32x8::splat(simd, 0.0);
-        Bounds { count: 0, low: [[zero; 4]; 2], high: [[zero; 4]; 2] }
+        Bounds { count: 0, low: [zero; 4], high: [zero; 4], step: [zero; 4] }
     }
 
     /// Cuts off where the function is negative, or positive in lanes that are not `outer`.
@@ -236,14 +238,13 @@ impl<S: Simd> Bounds<S> {
         let (zero, least) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, LEAST_SLOPE));
         let slope = f.x.abs().simd_lt(least).select(least.copysign(f.x), f.x);
         let inverse = f32x8::splat(simd, -1.0) / slope;
-        let (start, step) = (f.start * inverse, f.y * inverse);
+        let start = f.start * inverse;
         let rises = slope.simd_gt(zero);
         let low = (rises & outer) | (!rises & !outer);
         let beyond = f32x8::splat(simd, BEYOND);
-        self.low[0][self.count] = low.select(start, -beyond);
-        self.low[1][self.count] = low.select(step, zero);
-        self.high[0][self.count] = low.select(beyond, start);
-        self.high[1][self.count] = low.select(zero, step);
+        self.low[self.count] = low.select(start, -beyond);
+        self.high[self.count] = low.select(beyond, start);
+        self.step[self.count] = f.y * inverse;
         self.count += 1;
     }
 
@@ -265,11 +266,11 @@ impl<S: Simd> Bounds<S> {
     #[inline(always)]
     fn row(&self, simd: S, set: &SampleRows, row: usize, offset: f32x8<S>) -> u32x8<S> {
         let y = f32x8::splat(simd, set.y[row]);
-        let mut low = self.low[1][0].mul_add_precise(y, self.low[0][0]);
-        let mut high = self.high[1][0].mul_add_precise(y, self.high[0][0]);
+        let mut low = self.step[0].mul_add_precise(y, self.low[0]);
+        let mut high = self.step[0].mul_add_precise(y, self.high[0]);
         for k in 1..self.count {
-            low = low.max_precise(self.low[1][k].mul_add_precise(y, self.low[0][k]));
-            high = high.min_precise(self.high[1][k].mul_add_precise(y, self.high[0][k]));
+            low = low.max_precise(self.step[k].mul_add_precise(y, self.low[k]));
+            high = high.min_precise(self.step[k].mul_add_precise(y, self.high[k]));
         }
         let density = f32x8::splat(simd, set.density[row]);
         let (zero, count) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, set.count[row] as f32));

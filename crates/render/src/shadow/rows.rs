@@ -170,6 +170,7 @@ fn set(words: &[Vec<Row>], common: SampleRows) -> SampleRows {
             if row.leaving {
                 set.leaving = number as u32;
             }
+            set.full[word] |= ((1 << row.count) - 1) << place;
             place += row.count;
             number += 1;
         }

@@ -27,19 +27,18 @@ DEVICE unsigned number(const Seen<WORDS> &seen) {
     return sum;
 }
 
-// The samples in front of a surface, before anything hides them; none unless the lane `has` a surface point. `offsets` receives the place
-// of x = 0 in each row, WARP apart.
+// The samples in front of a surface, before anything hides them; none unless the lane `has` a surface point.
 template <unsigned WORDS>
 DEVICE Seen<WORDS> seen_unhidden(bool has, const SurfacePoint &point, const Sight &sight, Shape shape, const SampleRows &set,
-                                 float *offsets) {
+                                 const RowTable &table) {
     Seen<WORDS> seen = {};
     if (shape == SHAPE_POINT) {
         seen.bits[0] = has && center_above_horizon(point, sight);
         return seen;
     }
     for (unsigned row = 0; row < set.rows; ++row)
-        offsets[row * WARP] = row_offset(sight, set, row);
-    samples_above_horizon<WORDS, WARP>(point, sight, set, offsets, seen.bits);
+        table.offsets[row * WARP] = row_offset(sight, set, row);
+    samples_above_horizon<WORDS>(point, sight, set, table, seen.bits);
     UNROLL
     for (unsigned word = 0; word < WORDS; ++word)
         seen.bits[word] = has ? seen.bits[word] : 0;

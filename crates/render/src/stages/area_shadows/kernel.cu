@@ -19,20 +19,20 @@ DEVICE Sight broadcast(const Sight &sight, unsigned lane) {
 
 // What a lane's triangle, if it has one, leaves of the samples.
 template <unsigned WORDS>
-DEVICE void test_triangle(const SurfacePoint &point, const Sight &sight, Shape shape, const SampleRows &set, const float *offsets,
+DEVICE void test_triangle(const SurfacePoint &point, const Sight &sight, Shape shape, const RowTable &table,
                           const Triangle *triangle, bool has, Seen<WORDS> &seen) {
     const Occluding own = occluding(load_corners(triangle));
     if (shape == SHAPE_POINT)
-        seen.bits[0] &= has && hides_center(point, sight, own) ? 0 : 1;
+        seen.bits[0] &= has && hides_center(point, sight, own.parts) ? 0 : 1;
     else
-        hide<WORDS, WARP>(point, sight, own, set, offsets, has, seen.bits);
+        hide<WORDS>(point, sight, own.parts, table, has, seen.bits);
 }
 
-// The samples that the surface point of lane `owner` sees: `seen` without those that any triangle hides. `offsets` are that lane's.
+// The samples that the surface point of lane `owner` sees: `seen` without those that any triangle hides. `table` has that lane's offsets.
 template <unsigned WORDS, class Structure>
-DEVICE void test_point(const Shadows &args, const Structure &structure, const Light &light, Shape shape, const SampleRows &set,
-                       const SurfacePoint &point, const Sight &sight, const float *offsets, PlanesMemory *planes, unsigned *found,
-                       unsigned *memory, Seen<WORDS> &seen) {
+DEVICE void test_point(const Shadows &args, const Structure &structure, const Light &light, Shape shape,
+                       const SurfacePoint &point, const Sight &sight, const RowTable &table, PlanesMemory *planes,
+                       unsigned *found, unsigned *memory, Seen<WORDS> &seen) {
     const unsigned lane = lane_of_thread();
     const Bounds origin = {point.origin, point.origin};
     const TangentPlanes plane = tangent_planes(point.origin, lane == 0, point.origin, point.normal, planes);
@@ -46,7 +46,7 @@ DEVICE void test_point(const Shadows &args, const Structure &structure, const Li
         count -= taken;
         if (taken != 0) {
             const unsigned place = found[count + (lane < taken ? lane : 0)];
-            test_triangle<WORDS>(point, sight, shape, set, offsets, structure.triangles + place, lane < taken, seen);
+            test_triangle<WORDS>(point, sight, shape, table, structure.triangles + place, lane < taken, seen);
         }
         __syncwarp();
     }
@@ -57,8 +57,11 @@ DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
     DYNAMIC_SHARED(unsigned, shared);
     PlanesMemory *planes = reinterpret_cast<PlanesMemory *>(shared);
     unsigned *found = shared + PLANE_WORDS, *memory = found + FOUND_TRIANGLES;
-    float *offsets = reinterpret_cast<float *>(memory + search_words(structure));
+    unsigned *tables = memory + search_words(structure);
+    float *offsets = reinterpret_cast<float *>(tables + 2 * ROW_TABLE_WORDS);
     const unsigned lane = lane_of_thread();
+    fill_row_table(args.sets[SHAPE_DISC], tables);
+    fill_row_table(args.sets[SHAPE_RECTANGLE], tables + ROW_TABLE_WORDS);
     const unsigned long long warp = args.first + blockIdx.x;
     const unsigned warps = BLOCK / WARP;
     unsigned ray = 0;
@@ -76,7 +79,9 @@ DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
         Sight sight = {};
         if (has)
             sight = sight_of(args.scene, args.sampling, light, shape, set.lines, point, ray_key(args.rays, ray));
-        Seen<WORDS> seen = seen_unhidden<WORDS>(has, point, sight, shape, set, offsets + lane);
+        const RowTable own = row_table(tables, shape, offsets + lane);
+        Seen<WORDS> seen = seen_unhidden<WORDS>(has, point, sight, shape, set, own);
+        __syncwarp();
         count(tally_shard(args.tally).shadow_rays, number(seen));
         for (unsigned rest = __ballot_sync(ALL_LANES, any(seen)); rest != 0; rest &= rest - 1) {
             const unsigned owner = __ffs(rest) - 1;
@@ -86,8 +91,8 @@ DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
             UNROLL
             for (unsigned word = 0; word < WORDS; ++word)
                 left.bits[word] = __shfl_sync(ALL_LANES, seen.bits[word], owner);
-            test_point<WORDS>(args, structure, emitter, shape, set, asked, broadcast(sight, owner), offsets + owner, planes, found,
-                              memory, left);
+            test_point<WORDS>(args, structure, emitter, shape, asked, broadcast(sight, owner),
+                              row_table(tables, shape, offsets + owner), planes, found, memory, left);
             UNROLL
             for (unsigned word = 0; word < WORDS; ++word) {
                 const unsigned bits = ~warp_or(~left.bits[word]);

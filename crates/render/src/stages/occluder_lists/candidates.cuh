@@ -46,12 +46,14 @@ enum Choice { DROPPED, KEPT, DARK };
 
 // What becomes of a triangle: it hides nothing, may hide something, or hides everything from all points.
 DEVICE Choice choose(const Shaft &shaft, const Occluding &triangle) {
-    const Vec3 corners[3] = {triangle.a - shaft.middle, triangle.b - shaft.middle, triangle.c - shaft.middle};
-    const Vec3 edges[3] = {triangle.edge_a, triangle.edge_b, triangle.edge_c};
+    const float4 *parts = triangle.parts;
+    const Vec3 corners[3] = {corner_of(parts, 0) - shaft.middle, corner_of(parts, 1) - shaft.middle,
+                             corner_of(parts, 2) - shaft.middle};
+    const Vec3 edges[3] = {edge_of(parts, 0), edge_of(parts, 1), edge_of(parts, 2)};
     const float slack = 64.0f * UNIT_ROUNDOFF;
 
     // The triangle's plane: on which side are the points, and the samples?
-    const Vec3 &plane = triangle.plane;
+    const Vec3 plane = plane_of(parts);
     const float rounding = slack * element_sum(abs(edges[1])) * element_sum(abs(edges[2])), away = element_sum(abs(corners[0]));
     const float points = fused_dot(plane, corners[0]), samples = fused_dot(plane, corners[0] - shaft.emitter);
     const float points_room = extent_along(plane, shaft.half) + rounding * (away + shaft.reach);

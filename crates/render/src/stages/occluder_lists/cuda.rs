@@ -1,6 +1,8 @@
 //! Occluder lists on a CUDA device: a warp for each item.
 
-use lightmesh_layout::constants::{FOUND_TRIANGLES, MOST_WORDS, OCCLUDER_WORDS, PLANE_WORDS, WARP};
+use lightmesh_layout::constants::{
+    FOUND_TRIANGLES, MOST_WORDS, OCCLUDER_PARTS, PLANE_WORDS, ROW_TABLE_WORDS, SEARCHED_WORDS, WARP,
+};
 use lightmesh_layout::stages::Shadows;
 
 use crate::cuda::Runtime;
@@ -26,7 +28,7 @@ pub(crate) fn occluder_lists<R: Runtime>(
     aim: &Aim,
 ) -> Result<DeviceVisibility<R>, RenderError> {
     // See `ListMemory` in item.cuh.
-    let words = OCCLUDER_WORDS * WARP + PLANE_WORDS + FOUND_TRIANGLES;
+    let words = 4 * OCCLUDER_PARTS * WARP + SEARCHED_WORDS + PLANE_WORDS + FOUND_TRIANGLES + 2 * ROW_TABLE_WORDS;
     let work = WarpWork { warps: items.count as u64, first: FIRST_ITEMS, words };
     test_samples(cuda, wave, aim, (&KERNELS, work), |record| Shadows {
         members: items.members.input(),

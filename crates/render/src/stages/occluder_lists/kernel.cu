@@ -12,6 +12,6 @@ DEVICE void shadows_3(const Shadows &args, const Structure &structure) { shadows
 template <class Structure>
 DEVICE void shadows_10(const Shadows &args, const Structure &structure) { shadows_of_item<MOST_WORDS>(args, structure); }
 
-KERNEL_PER_STRUCTURE(shadows_1, Shadows, WARP, 24)
-KERNEL_PER_STRUCTURE(shadows_3, Shadows, WARP, 24)
+KERNEL_PER_STRUCTURE(shadows_1, Shadows, WARP, 28)
+KERNEL_PER_STRUCTURE(shadows_3, Shadows, WARP, 28)
 KERNEL_PER_STRUCTURE(shadows_10, Shadows, WARP, 16)
