@@ -14,11 +14,12 @@ records! {
         kind: u32,
         /// Direction of a directional light or a spot, or the normal of a disk.
         direction: Vec3,
-        /// Radius of a sphere or disk, spread of a point light.
+        /// Radius of a sphere or disk, spread of a point light. Of the disk that a directional light comes from: at distance 1.
         radius: f32,
-        /// Half edge of a rectangle, or a tangent of a disk.
+        /// Half edge of a rectangle, or a tangent of a disk or of a directional light's disk.
         half_u: Vec3,
-        /// The largest distance of a point of the light from its centre; 0 for lights without an area.
+        /// The largest distance of a point of the light from its centre, for a directional light at distance 1; 0 for lights without an
+        /// area.
         size: f32,
         /// The other half edge or tangent.
         half_v: Vec3,
@@ -112,7 +113,8 @@ records! {
         materials: In<Material>,
         /// Lights.
         lights: In<Light>,
-        /// [`LIGHT_TARGETS`](crate::constants::LIGHT_TARGETS) points on each light, from which its unshadowed light is computed.
+        /// [`LIGHT_TARGETS`](crate::constants::LIGHT_TARGETS) points on each light, from which its unshadowed light is computed; of a
+        /// directional light at distance 1 from the origin.
         light_targets: In<Vec3>,
         /// The regular grid.
         grid: Grid,

@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// The light that would arrive at a surface if nothing were in between.
 fn arriving(light: &Light, position: Vec3, normal: Vec3) -> Vec3 {
     let way = match light.kind {
-        LightKind::Directional { direction } => -direction,
+        LightKind::Directional { direction, .. } => -direction,
         _ => light.position().unwrap_or_default() - position,
     };
     let falloff = if light.falloff == Falloff::InverseSquare { 1.0 / way.length_squared() } else { 1.0 };

@@ -84,27 +84,29 @@ DEVICE Vec3 in_ball(Vec3 u) {
 }
 
 // Whether the light is an area light.
-DEVICE bool has_size(const Light &light) { return light.kind >= Light::SPHERE; }
-
-// The point of a light that the numbers `u` in [0, 1)³ select; a directional light lies `reach` away from `from`.
-DEVICE Vec3 light_point(const Light &light, Vec3 from, float reach, Vec3 u) {
-    if (light.kind == Light::DIRECTIONAL)
-        return from - reach * light.direction;
-    if (light.kind == Light::POINT || light.kind == Light::SPHERE)
-        return light.position + light.radius * in_ball(u);
-    if (light.kind == Light::DISK) {
-        float sine, cosine;
-        sincosf(TAU * u.x, &sine, &cosine);
-        return light.position + light.radius * sqrtf(u.y) * (cosine * light.half_u + sine * light.half_v);
-    }
-    if (light.kind == Light::RECTANGLE)
-        return light.position + (2.0f * u.x - 1.0f) * light.half_u + (2.0f * u.y - 1.0f) * light.half_v;
-    return light.position;
+DEVICE bool has_size(const Light &light) {
+    return light.kind >= Light::SPHERE || (light.kind == Light::DIRECTIONAL && light.radius > 0.0f);
 }
 
 // The centre of a light; a directional light lies `reach` away from `from`.
 DEVICE Vec3 light_center(const Light &light, Vec3 from, float reach) {
     return light.kind == Light::DIRECTIONAL ? from - reach * light.direction : light.position;
+}
+
+// The point of a light that the numbers `u` in [0, 1)³ select; a directional light lies `reach` away from `from`.
+DEVICE Vec3 light_point(const Light &light, Vec3 from, float reach, Vec3 u) {
+    if (light.kind == Light::POINT || light.kind == Light::SPHERE)
+        return light.position + light.radius * in_ball(u);
+    if (light.kind == Light::DISK || light.kind == Light::DIRECTIONAL) {
+        // A directional light comes from a disk, too. One branch, since the sine takes many instructions.
+        const float radius = light.kind == Light::DIRECTIONAL ? reach * light.radius : light.radius;
+        float sine, cosine;
+        sincosf(TAU * u.x, &sine, &cosine);
+        return light_center(light, from, reach) + radius * sqrtf(u.y) * (cosine * light.half_u + sine * light.half_v);
+    }
+    if (light.kind == Light::RECTANGLE)
+        return light.position + (2.0f * u.x - 1.0f) * light.half_u + (2.0f * u.y - 1.0f) * light.half_v;
+    return light.position;
 }
 
 // The distance of a directional light from `from`: twin of prepared.rs.

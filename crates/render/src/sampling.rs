@@ -110,20 +110,18 @@ const fn sobol_2_by_bytes() -> [[u32; 256]; 4] {
 
 /// The point of `light` that the numbers `u` in [0, 1)³ select; a directional light lies `reach` away from `from`.
 ///
-/// A ball is sampled uniformly in its volume, as the thesis distributes its point lights; disks and rectangles are sampled
-/// uniformly.
+/// A ball is sampled uniformly in its volume, as the thesis distributes its point lights; disks, among them that of a directional light,
+/// and rectangles are sampled uniformly.
 #[inline(always)]
 pub fn light_point(light: &Light, from: Vec3, reach: f32, u: Vec3) -> Vec3 {
     match light.kind {
         LightKind::Point { position, spread } => position + spread * in_ball(u),
         LightKind::Sphere { position, radius } => position + radius * in_ball(u),
         LightKind::Spot { position, .. } => position,
-        LightKind::Directional { direction } => from - reach * direction,
-        LightKind::Disk { position, normal, radius } => {
-            let (tangent, bitangent) = normal.any_orthonormal_pair();
-            let (sin, cos) = (std::f32::consts::TAU * u.x).sin_cos();
-            position + radius * u.y.sqrt() * (cos * tangent + sin * bitangent)
+        LightKind::Directional { direction, angle } => {
+            from - reach * direction + in_disk(direction, reach * disk_radius(angle), u)
         }
+        LightKind::Disk { position, normal, radius } => position + in_disk(normal, radius, u),
         LightKind::Rectangle { position, half_u, half_v } => {
             position + (2.0 * u.x - 1.0) * half_u + (2.0 * u.y - 1.0) * half_v
         }
@@ -134,9 +132,24 @@ pub fn light_point(light: &Light, from: Vec3, reach: f32, u: Vec3) -> Vec3 {
 #[inline(always)]
 pub fn light_center(light: &Light, from: Vec3, reach: f32) -> Vec3 {
     match light.kind {
-        LightKind::Directional { direction } => from - reach * direction,
+        LightKind::Directional { direction, .. } => from - reach * direction,
         _ => light.position().unwrap_or(from),
     }
+}
+
+/// The radius of the disk that a directional light of this angular diameter comes from, at distance 1.
+#[inline(always)]
+pub(crate) fn disk_radius(angle: f32) -> f32 {
+    // Kernels tell by it whether the light has a size, so that it is above 0 exactly if the light has one.
+    if angle > 0.0 { (0.5 * angle).tan().max(f32::MIN_POSITIVE) } else { 0.0 }
+}
+
+/// An area-preserving map from the square to a disk about the origin.
+#[inline(always)]
+fn in_disk(normal: Vec3, radius: f32, u: Vec3) -> Vec3 {
+    let (tangent, bitangent) = normal.any_orthonormal_pair();
+    let (sin, cos) = (std::f32::consts::TAU * u.x).sin_cos();
+    radius * u.y.sqrt() * (cos * tangent + sin * bitangent)
 }
 
 /// A volume-preserving map from the cube to the unit ball.
@@ -204,6 +217,37 @@ mod tests {
         assert_eq!(reference, first(0, 0, 0));
         for other in [first(1, 0, 0), first(0, 1, 0), first(0, 0, 1)] {
             assert_ne!(reference, other);
+        }
+    }
+
+    #[test]
+    fn a_directional_light_fills_a_disk_of_its_angle_evenly() {
+        let (direction, from) = (Vec3::new(0.48, -0.8, 0.36), Vec3::new(3.0, -2.0, 1.0));
+        let pattern = Pattern::new(0, 0, 0);
+        for angle in [0.0093f32, 0.5, 3.0] {
+            let sun = Light::directional(direction).unwrap().with_angle(angle);
+            let shifts: Vec<Vec3> = (0..4096)
+                .map(|index| light_point(&sun, from, 50.0, pattern.point(index)) - light_center(&sun, from, 50.0))
+                .collect();
+            let radius = 50.0 * (0.5 * angle).tan();
+            let farthest = shifts.iter().map(|shift| shift.length()).fold(0.0, f32::max);
+            assert!((0.99..1.001).contains(&(farthest / radius)), "{angle}: {farthest}, not {radius}");
+            let mean = shifts.iter().sum::<Vec3>() / 4096.0;
+            let inner = shifts.iter().filter(|shift| shift.length() < 0.5 * radius).count();
+            assert!(
+                mean.length() < 0.01 * radius && (inner as f32 / 4096.0 - 0.25).abs() < 0.005,
+                "{angle}: {mean}, {inner}"
+            );
+            assert!(shifts.iter().all(|shift| shift.dot(direction).abs() < 1e-4 * radius.max(1.0)), "{angle}");
+        }
+    }
+
+    #[test]
+    fn a_disk_has_a_radius_exactly_if_the_light_has_a_size() {
+        let angles = [0.0, -0.0, -1.0, f32::NAN, 1e-45, 1e-40, 0.0093, 3.0, std::f32::consts::PI, 4.0, f32::INFINITY];
+        for angle in angles {
+            let sun = Light::new(LightKind::Directional { direction: Vec3::NEG_Y, angle });
+            assert_eq!(disk_radius(angle) > 0.0, sun.has_size(), "{angle}");
         }
     }
 

@@ -60,6 +60,9 @@ pub struct LightInfo {
     /// Of a point light that area mode distributes over a ball: its radius.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spread: Option<f64>,
+    /// Of a directional light that comes from a disk: its angular diameter, degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle: Option<f64>,
     /// Of a rectangle: its edges.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size: Option<[f64; 2]>,
@@ -122,13 +125,17 @@ fn light_info(scene: &Scene, light: &Light) -> LightInfo {
         falloff: light.falloff.name(),
         radius: None,
         spread: None,
+        angle: None,
         size: None,
         inner: None,
         outer: None,
     };
     match light.kind {
         LightKind::Point { spread, .. } => info.spread = (spread > 0.0).then(|| shortest(spread)),
-        LightKind::Directional { direction } => info.direction = Some(direction.to_array().map(shortest)),
+        LightKind::Directional { direction, angle } => {
+            info.direction = Some(direction.to_array().map(shortest));
+            info.angle = (angle > 0.0).then(|| shortest(angle.to_degrees()));
+        }
         LightKind::Spot { direction, inner, outer, .. } => {
             info.direction = Some(direction.to_array().map(shortest));
             info.inner = Some(shortest(inner.to_degrees()));
@@ -203,7 +210,13 @@ impl fmt::Display for LightInfo {
             write!(f, ", {word} {}", triple(vector))?;
         }
         write!(f, ", intensity {}, falloff {}", triple(&self.intensity), self.falloff)?;
-        let numbers = [("radius", self.radius), ("spread", self.spread), ("inner", self.inner), ("outer", self.outer)];
+        let numbers = [
+            ("radius", self.radius),
+            ("spread", self.spread),
+            ("angle", self.angle),
+            ("inner", self.inner),
+            ("outer", self.outer),
+        ];
         for (word, number) in numbers.iter().filter_map(|(word, number)| Some((word, (*number)?))) {
             write!(f, ", {word} {}", rounded(number))?;
         }

@@ -40,6 +40,9 @@ impl Falloff {
 
 parse_by_name!(Falloff, "falloff");
 
+/// The largest angular diameter of a directional light, degrees: at 180 its disk would be infinite.
+pub(crate) const LARGEST_ANGLE: f64 = 179.0;
+
 /// The shape of a light. Positions and lengths are in the scene's local frame and units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LightKind {
@@ -51,10 +54,13 @@ pub enum LightKind {
         /// Every other mode uses the point alone. 0: a point in every mode.
         spread: f32,
     },
-    /// Parallel light from infinity.
+    /// Light from infinity, such as the sun's.
     Directional {
-        /// The way the light travels; unit length.
+        /// The way the light travels; unit length. From a light with an angle, the way from its centre.
         direction: Vec3,
+        /// Angular diameter in radians, below π: the light comes evenly from a disk that appears this wide, centred on where
+        /// `direction` comes from. The sun's is 0.0093. 0: parallel light.
+        angle: f32,
     },
     /// A point light with a cone; between the two angles it fades to zero.
     Spot {
@@ -138,14 +144,14 @@ impl Light {
         Light::new(LightKind::Point { position, spread: 0.0 })
     }
 
-    /// Parallel light that travels along `direction`, of any length.
+    /// Parallel light that travels along `direction`, of any length; see [`Light::with_angle`].
     ///
     /// # Errors
     ///
     /// [`LightError`] if `direction` has no length.
     pub fn directional(direction: Vec3) -> Result<Light, LightError> {
         let direction = unit("directional", "direction", direction)?;
-        Ok(Light::new(LightKind::Directional { direction }))
+        Ok(Light::new(LightKind::Directional { direction, angle: 0.0 }))
     }
 
     /// A point light with a cone around `direction`, of any length: full strength up to the half-angle `inner`, zero beyond `outer`,
@@ -236,6 +242,25 @@ impl Light {
         }
     }
 
+    /// The same directional light, coming from a disk of this angular diameter in radians, which is limited to the range from 0 to
+    /// 179 degrees; NaN counts as 0. Lights of other kinds have no angle and stay unchanged.
+    ///
+    /// ```
+    /// use lightmesh_scene::{Light, glam::Vec3};
+    ///
+    /// let sun = Light::directional(Vec3::new(-1.0, -2.0, 0.5))?.with_angle(0.53f32.to_radians());
+    /// assert!(sun.has_size());
+    /// # Ok::<(), lightmesh_scene::LightError>(())
+    /// ```
+    pub fn with_angle(self, radians: f32) -> Light {
+        match self.kind {
+            LightKind::Directional { direction, .. } => {
+                Light { kind: LightKind::Directional { direction, angle: usable_angle(radians) }, ..self }
+            }
+            _ => self,
+        }
+    }
+
     /// The centre of the light; `None` for a directional light.
     pub fn position(&self) -> Option<Vec3> {
         match self.kind {
@@ -262,8 +287,18 @@ impl Light {
 
     /// Whether the light is an area light, so that a point can see a share of it.
     pub fn has_size(&self) -> bool {
-        matches!(self.kind, LightKind::Sphere { .. } | LightKind::Disk { .. } | LightKind::Rectangle { .. })
+        match self.kind {
+            LightKind::Sphere { .. } | LightKind::Disk { .. } | LightKind::Rectangle { .. } => true,
+            LightKind::Directional { angle, .. } => angle > 0.0,
+            LightKind::Point { .. } | LightKind::Spot { .. } => false,
+        }
     }
+}
+
+/// The nearest angular diameter that a directional light can have.
+pub(crate) fn usable_angle(radians: f32) -> f32 {
+    // Not `clamp`, which keeps NaN.
+    radians.max(0.0).min(LARGEST_ANGLE.to_radians() as f32)
 }
 
 fn unit(kind: &'static str, what: &'static str, vector: Vec3) -> Result<Vec3, LightError> {

@@ -123,7 +123,7 @@ fn lights_have_the_places_directions_and_strengths_of_the_remarks() {
     assert!((inner - 0.556).abs() < 6e-4 && (outer - 0.654).abs() < 6e-4, "{inner} {outer}");
 
     let scene = open("complete/complete.glb");
-    let LightKind::Directional { direction } = scene.lights[0].kind else { panic!("{:?}", scene.lights) };
+    let LightKind::Directional { direction, .. } = scene.lights[0].kind else { panic!("{:?}", scene.lights) };
     assert_near("sun", direction, [-0.447, -0.894, 0.0], 0.001);
 
     let lamp = &open("cubes/Cubes.glb").lights[0];

@@ -121,7 +121,7 @@ fn cameras_stand_where_the_file_says() {
 fn a_directional_light_points_where_the_file_says_and_lines_are_left_out() {
     let scene = open("complete/complete.glb");
     assert_eq!(scene.geometry.mesh.triangles.len(), 19_930);
-    let LightKind::Directional { direction } = scene.lights[0].kind else { panic!("{:?}", scene.lights) };
+    let LightKind::Directional { direction, .. } = scene.lights[0].kind else { panic!("{:?}", scene.lights) };
     assert_near("direction", direction, [-0.447, -0.894, 0.0], 0.001);
     assert!(scene.warnings.iter().any(|warning| warning.contains("points or lines")), "{:?}", scene.warnings);
 }

@@ -25,7 +25,7 @@ segments = 8
 "#;
 
 /// Lines of the room, their replacements, and the expected outcome.
-const LINES: [(&str, &str, Expected); 46] = [
+const LINES: [(&str, &str, Expected); 49] = [
     ("vfov = 45", "vfov = nan", Refused),
     ("vfov = 45", "vfov = 0", Refused),
     ("vfov = 45", "vfov = 180", Refused),
@@ -48,6 +48,13 @@ const LINES: [(&str, &str, Expected); 46] = [
     ("kind = \"point\"", "kind = \"point\"\nintensity = 1e300", Refused),
     ("kind = \"point\"", "kind = \"point\"\nspread = 1e17", Opens),
     ("kind = \"point\"", "kind = \"sphere\"\nradius = 1e-300", Refused),
+    ("kind = \"point\"\nposition = [3, 5, 2]", "kind = \"directional\"\ndirection = [0, -1, 0]\nangle = 179", Opens),
+    ("kind = \"point\"\nposition = [3, 5, 2]", "kind = \"directional\"\ndirection = [0, -1, 0]\nangle = 1e-43", Opens),
+    (
+        "kind = \"point\"\nposition = [3, 5, 2]",
+        "kind = \"directional\"\ndirection = [0, -1, 0]\nangle = 179.5",
+        Refused,
+    ),
     ("kd = 0.8", "kd = [0.8]", Refused),
     ("kd = 0.8", "kd = 0.8\nshininess = -1", Either),
     ("kd = 0.8", "kd = 0.8\nshininess = 1e17", Opens),

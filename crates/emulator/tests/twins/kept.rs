@@ -47,7 +47,7 @@ fn scenes(subject: &'static Subject) -> [PreparedScene; 4] {
 
 fn move_light(light: &mut Light) {
     match &mut light.kind {
-        LightKind::Directional { direction } => *direction = Vec3::new(0.6, -0.8, 0.0),
+        LightKind::Directional { direction, .. } => *direction = Vec3::new(0.6, -0.8, 0.0),
         LightKind::Point { position, .. }
         | LightKind::Spot { position, .. }
         | LightKind::Sphere { position, .. }

@@ -80,9 +80,12 @@ fn still_life() -> Scene {
 fn all_lights() -> Scene {
     let position = Vec3::new(-1.5, 3.0, 1.0);
     let (down, slanted) = (Vec3::NEG_Y, Vec3::new(0.6, -0.8, 0.0));
+    // Its disk crosses the horizon of the boxes' sides.
+    let grazing = Vec3::new(0.6, -0.8, -0.05).normalize();
     let kinds = [
         LightKind::Point { position, spread: 0.2 },
-        LightKind::Directional { direction: slanted },
+        LightKind::Directional { direction: slanted, angle: 0.0 },
+        LightKind::Directional { direction: grazing, angle: 0.2 },
         LightKind::Spot { position: Vec3::new(1.0, 3.0, 0.5), direction: down, inner: 0.2, outer: 0.6 },
         LightKind::Sphere { position: Vec3::new(2.0, 2.5, -1.0), radius: 0.3 },
         LightKind::Disk { position: Vec3::new(-2.0, 2.0, -2.0), normal: slanted, radius: 0.4 },

@@ -15,6 +15,7 @@ use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::job::Job;
 use crate::prepared::{PreparedGeometry, PreparedScene};
+use crate::sampling::disk_radius;
 use crate::shading::tint::is_tinted;
 use crate::shading::{DEFAULT_AMBIENT, LightTargets};
 use crate::stage::Stage;
@@ -223,15 +224,18 @@ fn light(geometry: &PreparedGeometry, light: &lightmesh_scene::Light) -> Light {
         position: vec3(light.position().unwrap_or_default()),
         intensity: vec3(light.intensity),
         inverse_square: u32::from(light.falloff == Falloff::InverseSquare),
-        size: crate::shadow::size(light),
+        size: crate::shadow::size(light, 1.0),
         scale: crate::shadow::sight::scale(geometry, light),
         ..bytemuck::Zeroable::zeroed()
     };
     match light.kind {
         LightKind::Point { spread, .. } => (record.kind, record.radius) = (Light::POINT, spread),
         LightKind::Sphere { radius, .. } => (record.kind, record.radius) = (Light::SPHERE, radius),
-        LightKind::Directional { direction } => {
+        LightKind::Directional { direction, angle } => {
+            let (tangent, bitangent) = direction.any_orthonormal_pair();
             (record.kind, record.direction) = (Light::DIRECTIONAL, vec3(direction));
+            record.radius = disk_radius(angle);
+            (record.half_u, record.half_v) = (vec3(tangent), vec3(bitangent));
         }
         LightKind::Spot { direction, inner, outer, .. } => {
             (record.kind, record.direction) = (Light::SPOT, vec3(direction));

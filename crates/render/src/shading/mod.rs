@@ -75,10 +75,12 @@ impl Surface {
         strength(light, direction, distance) * answer
     }
 
-    /// The same for the whole light, averaged over `targets`.
+    /// The same for the whole light, averaged over `targets`; those of a directional light are seen from the surface, at distance 1.
     #[inline(always)]
-    pub(crate) fn reflected_from_all(&self, light: &Light, targets: &[Vec3]) -> Vec3 {
-        let sum: Vec3 = targets.iter().map(|&target| self.reflected(light, target)).sum();
+    pub(crate) fn reflected_from_all(&self, light: &Light, targets: &[Vec3], reach: f32) -> Vec3 {
+        let directional = matches!(light.kind, LightKind::Directional { .. });
+        let place = |target: Vec3| if directional { self.point.origin + reach * target } else { target };
+        let sum: Vec3 = targets.iter().map(|&target| self.reflected(light, place(target))).sum();
         sum / targets.len() as f32
     }
 
@@ -111,7 +113,8 @@ fn cone(light: &Light, direction: Vec3) -> f32 {
     linear * linear
 }
 
-/// The points of each light from which its unshadowed light is computed: its centre, or several distributed over it.
+/// The points of each light from which its unshadowed light is computed: its centre, or several distributed over it. Those of a directional
+/// light are at distance 1 from the origin.
 pub(crate) struct LightTargets {
     points: Vec<Vec<Vec3>>,
 }
@@ -121,8 +124,8 @@ impl LightTargets {
         let pattern = Pattern::new(0, 0, 0);
         // In pairs on either side of the centre: what falls off linearly over the light is averaged exactly.
         let pair = |light: &Light, index: u32| {
-            let point = light_point(light, Vec3::ZERO, 0.0, pattern.point(index));
-            [point, 2.0 * light_center(light, Vec3::ZERO, 0.0) - point]
+            let point = light_point(light, Vec3::ZERO, 1.0, pattern.point(index));
+            [point, 2.0 * light_center(light, Vec3::ZERO, 1.0) - point]
         };
         let spread = |light: &Light| (0..LIGHT_TARGETS / 2).flat_map(|index| pair(light, index)).collect();
         LightTargets {
@@ -143,7 +146,7 @@ impl LightTargets {
     pub(crate) fn unshadowed(&self, surface: &Surface, light: &Light, index: usize, reach: f32) -> Vec3 {
         match self.points[index].as_slice() {
             [] => surface.reflected(light, light_center(light, surface.point.origin, reach)),
-            points => surface.reflected_from_all(light, points),
+            points => surface.reflected_from_all(light, points, reach),
         }
     }
 }

@@ -65,8 +65,10 @@ DEVICE Vec3 unshadowed(const Surface &surface, const Scene &scene, unsigned inde
         return reflected(surface, light, light_center(light, surface.point.origin, reach));
     const Vec3 *targets = scene.light_targets + index * LIGHT_TARGETS;
     Vec3 sum = splat(0.0f);
+    // Those of a directional light are seen from the surface, at distance 1.
+    const bool directional = light.kind == Light::DIRECTIONAL;
     for (unsigned i = 0; i < LIGHT_TARGETS; ++i)
-        sum = sum + reflected(surface, light, targets[i]);
+        sum = sum + reflected(surface, light, directional ? surface.point.origin + reach * targets[i] : targets[i]);
     return sum / (float)LIGHT_TARGETS;
 }
 

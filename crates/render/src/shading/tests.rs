@@ -56,3 +56,14 @@ fn only_lights_with_a_size_are_spread() {
     let mean = targets.points[1].iter().sum::<Vec3>() / LIGHT_TARGETS as f32;
     assert!(mean.distance(Vec3::Y) < 0.1, "{mean}");
 }
+
+#[test]
+fn a_directional_light_with_an_angle_is_spread_over_its_disk() {
+    let sun = Light::directional(Vec3::NEG_Y).unwrap();
+    let targets = LightTargets::new(&[sun.clone(), sun.with_angle(0.2)]);
+    assert!(targets.points[0].is_empty());
+    assert_eq!(targets.points[1].len(), LIGHT_TARGETS as usize);
+    for target in &targets.points[1] {
+        assert!((target.y - 1.0).abs() < 1e-6 && target.distance(Vec3::Y) < 1.001 * 0.1f32.tan(), "{target}");
+    }
+}

@@ -16,7 +16,7 @@ use crate::accel::Ray;
 use crate::counters::Tally;
 use crate::data::wave::HostWave;
 use crate::job::Sampling;
-use crate::sampling::{Pattern, light_center, light_point};
+use crate::sampling::{Pattern, disk_radius, light_center, light_point};
 use crate::surface::{SurfacePoint, long_segment};
 
 /// Maximum number of segments passed on at once: they stay in a core's cache.
@@ -116,7 +116,7 @@ pub(crate) fn each_shadow_ray(point: &SurfacePoint, targets: &Targets, samples: 
 #[inline(always)]
 pub(crate) fn above_horizon(point: &SurfacePoint, light: &Light, reach: f32) -> f32 {
     let height = point.normal.dot(light_center(light, point.origin, reach) - point.origin);
-    if height.abs() >= size(light) {
+    if height.abs() >= size(light, reach) {
         return if height > 0.0 { 1.0 } else { 0.0 };
     }
     let pattern = Pattern::new(0, 0, 0);
@@ -127,13 +127,15 @@ pub(crate) fn above_horizon(point: &SurfacePoint, light: &Light, reach: f32) -> 
     above as f32 / HORIZON_SAMPLES as f32
 }
 
-/// The largest distance of any point of `light` from its centre; 0 for lights without an area.
+/// The largest distance of any point of `light` from its centre, for a directional light at the distance `reach`; 0 for lights without an
+/// area.
 #[inline(always)]
-pub(crate) fn size(light: &Light) -> f32 {
+pub(crate) fn size(light: &Light, reach: f32) -> f32 {
     match light.kind {
         LightKind::Sphere { radius, .. } | LightKind::Disk { radius, .. } => radius,
         LightKind::Rectangle { half_u, half_v, .. } => (half_u.length_squared() + half_v.length_squared()).sqrt(),
-        LightKind::Point { .. } | LightKind::Directional { .. } | LightKind::Spot { .. } => 0.0,
+        LightKind::Directional { angle, .. } => reach * disk_radius(angle),
+        LightKind::Point { .. } | LightKind::Spot { .. } => 0.0,
     }
 }
 

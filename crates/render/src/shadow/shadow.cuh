@@ -20,7 +20,7 @@ COLD float share_above_horizon(SurfacePoint point, const Light *light, float rea
 // χ of formula (3) for a light: 1 if it is in front of the surface at `point`, 0 if it is behind.
 DEVICE float above_horizon(const SurfacePoint &point, const Light &light, float reach) {
     const float height = dot(point.normal, light_center(light, point.origin, reach) - point.origin);
-    if (fabsf(height) >= light.size)
+    if (fabsf(height) >= (light.kind == Light::DIRECTIONAL ? reach * light.size : light.size))
         return height > 0.0f ? 1.0f : 0.0f;
     return share_above_horizon(point, &light, reach);
 }

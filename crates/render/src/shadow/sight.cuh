@@ -66,13 +66,13 @@ DEVICE void rectangle_sight(Sight &sight, const Light &light, unsigned lines, fl
 }
 
 // The samples of a disc about the `center` of a light.
-DEVICE void disc_sight(Sight &sight, const Light &light, Vec3 center, unsigned lines, float turn, float aside) {
+DEVICE void disc_sight(Sight &sight, const Light &light, Vec3 center, float reach, unsigned lines, float turn, float aside) {
     Vec3 tangent = light.half_u, bitangent = light.half_v;
     if (light.kind == Light::POINT || light.kind == Light::SPHERE)
         facing(center, tangent, bitangent);
     const float square = turn * turn;
     const float cosine = (1.0f - square) / (1.0f + square), sine = 2.0f * turn / (1.0f + square);
-    const float radius = light.scale * light.radius;
+    const float radius = light.scale * (light.kind == Light::DIRECTIONAL ? reach * light.radius : light.radius);
     sight.along = radius * (cosine * tangent + sine * bitangent);
     sight.across = radius * (cosine * bitangent - sine * tangent);
     if (lines == 1) {
@@ -86,7 +86,8 @@ DEVICE void disc_sight(Sight &sight, const Light &light, Vec3 center, unsigned l
 DEVICE Sight sight_of(const Scene &scene, const Sampling &sampling, unsigned index, Shape shape, unsigned lines,
                       const SurfacePoint &point, unsigned long long key) {
     const Light &light = scene.lights[index];
-    const Vec3 target = light_center(light, point.origin, scene_reach(scene, point.origin));
+    const float reach = scene_reach(scene, point.origin);
+    const Vec3 target = light_center(light, point.origin, reach);
     const Vec3 center = target - point.origin;
     const float length = max_element(abs(center));
     const float error = GAMMA_32 * max_element(max(abs(point.origin), abs(target)));
@@ -104,7 +105,7 @@ DEVICE Sight sight_of(const Scene &scene, const Sampling &sampling, unsigned ind
     if (shape == SHAPE_RECTANGLE)
         rectangle_sight(sight, light, lines, aside);
     else
-        disc_sight(sight, light, center, lines, turn, aside);
+        disc_sight(sight, light, center, reach, lines, turn, aside);
     return sight;
 }
 
@@ -142,26 +143,27 @@ DEVICE unsigned valid_samples(const Sight &sight, const SampleRows &set, unsigne
 
 // ---- Searches ----
 
-// Half the edges of the box around a light.
-DEVICE Vec3 half_extent(const Light &light) {
+// Half the edges of the box around a light, if a directional one is `reach` away.
+DEVICE Vec3 half_extent(const Light &light, float reach) {
     if (light.kind == Light::RECTANGLE)
         return abs(light.half_u) + abs(light.half_v);
-    if (light.kind == Light::DISK) {
+    if (light.kind == Light::DISK || light.kind == Light::DIRECTIONAL) {
         const Vec3 rest = max(Vec3{1.0f, 1.0f, 1.0f} - light.direction * light.direction, splat(0.0f));
-        return light.radius * Vec3{sqrtf(rest.x), sqrtf(rest.y), sqrtf(rest.z)};
+        return (light.kind == Light::DISK ? light.radius : reach * light.radius) * Vec3{sqrtf(rest.x), sqrtf(rest.y), sqrtf(rest.z)};
     }
     return splat(light.kind == Light::POINT || light.kind == Light::SPHERE ? light.radius : 0.0f);
 }
 
 // A box around the samples of a light as seen from `origins`.
 DEVICE Bounds emitter_bounds(const Scene &scene, const Light &light, Shape shape, const Bounds &origins) {
+    const Vec3 apart = max(abs(origins.low - scene.center), abs(origins.high - scene.center));
+    const float reach = scene.far + 2.0f * element_sum(apart);
     Bounds middle = {light.position, light.position};
     if (light.kind == Light::DIRECTIONAL) {
-        const Vec3 apart = max(abs(origins.low - scene.center), abs(origins.high - scene.center));
-        const Vec3 way = (scene.far + 2.0f * element_sum(apart)) * light.direction;
+        const Vec3 way = reach * light.direction;
         middle = Bounds{origins.low - way, origins.high - way};
     }
-    const Vec3 half = shape == SHAPE_POINT ? splat(0.0f) : half_extent(light);
+    const Vec3 half = shape == SHAPE_POINT ? splat(0.0f) : half_extent(light, reach);
     return Bounds{middle.low - half, middle.high + half};
 }
 

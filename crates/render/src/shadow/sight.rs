@@ -17,7 +17,7 @@ use super::rows::Rows;
 use crate::accel::Region;
 use crate::data::wave::HostWave;
 use crate::prepared::PreparedGeometry;
-use crate::sampling::{light_center, random_bits};
+use crate::sampling::{disk_radius, light_center, random_bits};
 use crate::surface::SurfacePoint;
 
 /// The form of a light's samples.
@@ -124,12 +124,13 @@ impl<'a> Emitter<'a> {
 
     /// A box around its samples as seen from `origins`. A directional light is as far away as from the point where it is farthest.
     pub(crate) fn bounds(&self, geometry: &PreparedGeometry, origins: &Bounds) -> Bounds {
-        let half = if self.is_point() { Vec3::ZERO } else { half_extent(self.light) };
+        let (center, far) = geometry.reach_parameters();
+        let apart = (origins.min - center).abs().max((origins.max - center).abs());
+        let reach = far + 2.0 * apart.element_sum();
+        let half = if self.is_point() { Vec3::ZERO } else { half_extent(self.light, reach) };
         let middle = match self.light.kind {
-            LightKind::Directional { direction } => {
-                let (center, far) = geometry.reach_parameters();
-                let apart = (origins.min - center).abs().max((origins.max - center).abs());
-                let way = (far + 2.0 * apart.element_sum()) * direction;
+            LightKind::Directional { direction, .. } => {
+                let way = reach * direction;
                 Bounds { min: origins.min - way, max: origins.max - way }
             }
             _ => {
@@ -140,8 +141,8 @@ impl<'a> Emitter<'a> {
         Bounds { min: middle.min - half, max: middle.max + half }
     }
 
-    /// No sample that a point of `origins` may see is farther from the middle of the box; infinite if the box says more.
-    pub(crate) fn radius(&self, _: &PreparedGeometry, _: &Bounds) -> f32 {
+    /// No sample is farther from the middle of the box; infinite if the box says more.
+    pub(crate) fn radius(&self) -> f32 {
         match self.light.kind {
             LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } => radius,
             _ => f32::INFINITY,
@@ -155,15 +156,20 @@ impl<'a> Emitter<'a> {
     }
 }
 
-/// Half the edges of the box around a light.
-fn half_extent(light: &Light) -> Vec3 {
+/// Half the edges of the box around a light, if a directional one is `reach` away.
+fn half_extent(light: &Light, reach: f32) -> Vec3 {
     match light.kind {
         LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } => Vec3::splat(radius),
-        // The disc's shadow on an axis: the radius times the sine of the angle between them.
-        LightKind::Disk { normal, radius, .. } => radius * (Vec3::ONE - normal * normal).max(Vec3::ZERO).map(f32::sqrt),
+        LightKind::Disk { normal, radius, .. } => radius * shadow_of_disc(normal),
         LightKind::Rectangle { half_u, half_v, .. } => half_u.abs() + half_v.abs(),
-        LightKind::Directional { .. } | LightKind::Spot { .. } => Vec3::ZERO,
+        LightKind::Directional { direction, angle } => reach * disk_radius(angle) * shadow_of_disc(direction),
+        LightKind::Spot { .. } => Vec3::ZERO,
     }
+}
+
+/// Half the length of a unit disc's shadow on each axis: the sine of the angle between the axis and the disc's.
+fn shadow_of_disc(normal: Vec3) -> Vec3 {
+    (Vec3::ONE - normal * normal).max(Vec3::ZERO).map(f32::sqrt)
 }
 
 /// A light as one surface point sees it: samples are at `center + x · along + y · across`, seen from the point and scaled.
@@ -214,7 +220,7 @@ impl Sight {
             (sight.along, sight.across) = (u + step, v);
             return sight;
         }
-        let (tangent, bitangent, radius) = disc_of(light, center);
+        let (tangent, bitangent, radius) = disc_of(light, center, reach);
         // A quarter turn to either side: rows look the same from both ends.
         let turn = ((random >> 32) as u32 & 0xffff) as f32 / (0.5 * SHIFTS) - 1.0;
         let square = turn * turn;
@@ -283,7 +289,7 @@ fn longest_first(u: Vec3, v: Vec3) -> (Vec3, Vec3) {
 
 /// Two perpendicular unit vectors in the plane of a light's disc, and its radius. `center` is the way to its centre.
 #[inline(always)]
-fn disc_of(light: &Light, center: Vec3) -> (Vec3, Vec3, f32) {
+fn disc_of(light: &Light, center: Vec3, reach: f32) -> (Vec3, Vec3, f32) {
     match light.kind {
         LightKind::Disk { normal, radius, .. } => {
             let (tangent, bitangent) = normal.any_orthonormal_pair();
@@ -293,7 +299,11 @@ fn disc_of(light: &Light, center: Vec3) -> (Vec3, Vec3, f32) {
             let (tangent, bitangent) = facing(center);
             (tangent, bitangent, radius)
         }
-        LightKind::Directional { .. } | LightKind::Spot { .. } | LightKind::Rectangle { .. } => (Vec3::X, Vec3::Y, 0.0),
+        LightKind::Directional { direction, angle } => {
+            let (tangent, bitangent) = direction.any_orthonormal_pair();
+            (tangent, bitangent, reach * disk_radius(angle))
+        }
+        LightKind::Spot { .. } | LightKind::Rectangle { .. } => (Vec3::X, Vec3::Y, 0.0),
     }
 }
 

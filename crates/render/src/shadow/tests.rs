@@ -15,6 +15,21 @@ fn a_light_counts_as_far_as_it_stands_above_the_horizon() {
     let sun = |y| Light::directional(Vec3::new(0.6, y, 0.0)).unwrap();
     assert_eq!((above_horizon(&point, &sun(-0.8), 10.0), above_horizon(&point, &sun(0.8), 10.0)), (1.0, 0.0));
 
+    // A chord at distance t from the centre of a disk of radius 1 cuts off (acos t − t √(1 − t²)) / π of it.
+    let disk = |elevation: f32| {
+        let direction = Vec3::new(elevation.cos(), -elevation.sin(), 0.0);
+        Light::directional(direction).unwrap().with_angle(10f32.to_radians())
+    };
+    for degrees in [80.0f32, 6.0, 4.0, 2.0, 0.5, -0.5, -3.0, -6.0] {
+        let chord = (-degrees.to_radians().tan() / 5f32.to_radians().tan()).clamp(-1.0, 1.0);
+        let expected = (chord.acos() - chord * (1.0 - chord * chord).sqrt()) / std::f32::consts::PI;
+        for reach in [0.1, 10.0, 1e6] {
+            let found = above_horizon(&point, &disk(degrees.to_radians()), reach);
+            assert!((found - expected).abs() < 0.04, "at {degrees}°, {reach}: {found}, not {expected}");
+            assert!((5.0 < degrees.abs()) <= (found == expected), "at {degrees}°, {reach}: {found}");
+        }
+    }
+
     // A cap of height t of a ball of radius 1 holds t²(3 − t)/4 of it.
     let ball = |height| Light::sphere(Vec3::Y * height, 1.0).unwrap();
     for height in [2.0, 1.0, 0.6, 0.1, -0.1, -0.6, -1.0, -1.1] {

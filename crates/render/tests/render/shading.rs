@@ -1,6 +1,6 @@
 //! Formula (1) with known answers: one pixel, on the camera's axis.
 
-use std::f32::consts::{FRAC_1_PI, PI};
+use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 
 use glam::Vec3;
 use lightmesh_render::{Frame, Mode, Settings};
@@ -73,10 +73,20 @@ fn falloff_is_photometric_or_none() {
     let lit = |falloff| grey(|| floor(matt(1.0)).light_of(point([0.0, 5.0, 0.0]), 30.0, falloff));
     assert_near(lit(Falloff::None), 30.0);
     assert_near(lit(Falloff::InverseSquare), 30.0 / (PI * 25.0));
-    let sun = LightKind::Directional { direction: Vec3::new(0.6, -0.8, 0.0) };
+    let sun = LightKind::Directional { direction: Vec3::new(0.6, -0.8, 0.0), angle: 0.0 };
     let lit = |falloff| grey(|| floor(matt(1.0)).light_of(sun.clone(), 2.0, falloff));
     assert_near(lit(Falloff::None), 2.0 * 0.8);
     assert_near(lit(Falloff::InverseSquare), 2.0 * 0.8 * FRAC_1_PI);
+}
+
+#[test]
+fn a_wide_sun_shines_from_all_of_its_disk() {
+    // The cosine averaged over a disk of radius 1 at distance 1; the light is represented by 16 points of it.
+    let sun = LightKind::Directional { direction: Vec3::NEG_Y, angle: FRAC_PI_2 };
+    let lit = |falloff| grey(|| floor(matt(1.0)).light_of(sun.clone(), 2.0, falloff));
+    let mean = 2.0 * (2f32.sqrt() - 1.0);
+    assert!((lit(Falloff::None) / (2.0 * mean) - 1.0).abs() < 0.01, "{}", lit(Falloff::None));
+    assert_near(lit(Falloff::InverseSquare), lit(Falloff::None) * FRAC_1_PI);
 }
 
 #[test]
@@ -155,8 +165,10 @@ fn smooth_normals_shade_and_flat_ones_decide_sides() {
 fn an_unshadowed_area_light_is_as_bright_in_every_mode() {
     // Modes differ only in visibility: the same points of the light represent all of it.
     let ball = LightKind::Sphere { position: Vec3::new(0.0, 3.0, 0.0), radius: 1.0 };
-    for falloff in [Falloff::None, Falloff::InverseSquare] {
-        let draft = SceneDraft::new().floor(0.0, 3.0).light_of(ball.clone(), 1.0, falloff);
+    let sun = LightKind::Directional { direction: Vec3::new(0.6, -0.8, 0.0), angle: 0.5 };
+    let kinds = [&ball, &sun].into_iter();
+    for (kind, falloff) in kinds.flat_map(|kind| [(kind, Falloff::None), (kind, Falloff::InverseSquare)]) {
+        let draft = SceneDraft::new().floor(0.0, 3.0).light_of(kind.clone(), 1.0, falloff);
         let scene = draft.camera([0.0, 2.0, 4.0], [0.0, 0.0, 0.0]).finish("lamp");
         let colors = [Mode::RayTrace, Mode::Area].map(|mode| {
             let frame = render(&scene, &Settings::default().with_mode(mode).with_size([32, 32]));
@@ -165,7 +177,7 @@ fn an_unshadowed_area_light_is_as_bright_in_every_mode() {
         });
         assert!(colors[0].len() > 500);
         for (traced, area) in colors[0].iter().zip(&colors[1]) {
-            assert!(*area > 0.0 && traced == area, "{falloff:?}: {traced} and {area}");
+            assert!(*area > 0.0 && traced == area, "{kind:?}, {falloff:?}: {traced} and {area}");
         }
     }
 }

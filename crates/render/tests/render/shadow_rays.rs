@@ -1,11 +1,13 @@
 //! Shadow rays from surface points whose visibility follows from the geometry.
 
+use std::f32::consts::PI;
+
 use glam::{DVec3, Vec3};
 use lightmesh_render::Mode;
 use lightmesh_scene::LightKind;
-use lightmesh_testkit::{BALL_LIGHT, Picture, SceneDraft, open_floor, pile, render};
+use lightmesh_testkit::{BALL_LIGHT, Picture, SceneDraft, open_floor, pile, render, rms_difference};
 
-use crate::mode as settings;
+use crate::{light_mesh, mode as settings};
 
 const SIZE: [u32; 2] = [48, 48];
 
@@ -34,6 +36,53 @@ fn spread_lights_are_strewn_in_area_mode_alone() {
     let soft = shares(Mode::Area, 0.5);
     assert!(soft.iter().filter(|&&share| share > 0.0 && share < 1.0).count() > soft.len() / 50);
     assert!(shares(Mode::Area, 0.0).iter().all(|&share| share == 0.0 || share == 1.0));
+}
+
+#[test]
+fn the_penumbra_of_a_post_is_as_wide_as_the_sun() {
+    // A square post, 2 high, under a sun 45 degrees high; its far upper edge, at x = 0.5, ends the shadow. From the floor's point
+    // (x, 0, z) that edge is a line across the sun's disk. In the strip that the camera sees, the post's sides are too far to matter.
+    let (elevation, angle) = (45f32.to_radians(), 10f32.to_radians());
+    let sun = LightKind::Directional { direction: Vec3::new(elevation.cos(), -elevation.sin(), 0.0), angle };
+    let scene = SceneDraft::new()
+        .floor(0.0, 8.0)
+        .cuboid([-0.5, -0.1, -0.5], [0.5, 2.0, 0.5])
+        .light(sun)
+        .orthographic([2.5, 5.0, 0.0], [2.5, 0.0, 0.0], 0.25)
+        .finish("post");
+    let size @ [width, height] = [160, 20];
+    let half_angle = 0.5 * angle;
+    let [start, end] = [half_angle, -half_angle].map(|rim| 0.5 + 2.0 / (elevation + rim).tan());
+    let share = |x: f32| {
+        let line = (((2.0 / (x - 0.5)).atan() - elevation).tan() / half_angle.tan()).clamp(-1.0, 1.0);
+        (line.acos() - line * (1.0 - line * line).sqrt()) / PI
+    };
+
+    let frame = render(&scene, &settings(Mode::Area, size).with_samples(1024));
+    let picture = Picture::new(&frame);
+    let shares = picture.visibilities(0);
+    assert_eq!(shares.len(), (width * height) as usize);
+    let expected: Vec<f32> = picture.hits().map(|pixel| share(picture.position(pixel).x)).collect();
+    let worst = shares.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(worst < 0.01, "{worst}");
+    let pixel = 4.0 * 0.5 / width as f32;
+    for (row, shares) in shares.chunks(width as usize).enumerate() {
+        let partial = |share: &f32| *share > 0.0 && *share < 1.0;
+        let first = shares.iter().position(partial).expect("a penumbra");
+        let last = shares.iter().rposition(partial).expect("a penumbra");
+        let [first, last] = [first, last].map(|column| picture.position(column).x);
+        assert!(
+            (first - start).abs() < 2.0 * pixel && (last - end).abs() < 2.0 * pixel,
+            "row {row}: {first} to {last}"
+        );
+    }
+
+    let error = |step| {
+        let frame = render(&scene, &light_mesh(size, step, 2.1).with_samples(16));
+        rms_difference(&Picture::new(&frame).visibilities(0), &expected)
+    };
+    let errors = [0.1, 0.05, 0.025].map(error);
+    assert!(errors.is_sorted_by(|coarse, fine| coarse > fine) && errors[2] < 0.015, "{errors:?}");
 }
 
 #[test]

@@ -320,12 +320,16 @@ fn light_entry(light: &Light) -> Value {
         LightKind::Point { spread, .. } if spread > 0.0 => Some(spread),
         _ => None,
     };
+    let angle = match light.kind {
+        LightKind::Directional { angle, .. } if angle > 0.0 => Some(angle),
+        _ => None,
+    };
     let kind = match light.kind {
         LightKind::Directional { .. } => "directional",
         LightKind::Spot { .. } => "spot",
         _ => "point",
     };
-    let extras = LightExtras { shape, spread, no_falloff: light.falloff == Falloff::None };
+    let extras = LightExtras { shape, spread, angle, no_falloff: light.falloff == Falloff::None };
     let mut entry = json!({"name": light.name, "type": kind, "color": color.to_array(), "intensity": strongest});
     if extras != LightExtras::default() {
         entry["extras"] = json!({"lightmesh": extras});
@@ -341,7 +345,7 @@ fn light_node(scene: &Scene, index: usize, light: &Light) -> Value {
     let world = light.position().map_or(DVec3::ZERO, |position| scene.to_world(position));
     let mut node = json!({"name": light.name, "extensions": {"KHR_lights_punctual": {"light": index}}});
     match light.kind {
-        LightKind::Directional { direction } | LightKind::Spot { direction, .. } => {
+        LightKind::Directional { direction, .. } | LightKind::Spot { direction, .. } => {
             let direction = direction.as_dvec3();
             node["matrix"] = json!(look(world, direction, tangents(direction).1));
         }

@@ -57,7 +57,9 @@ fn scene(offset: DVec3) -> Scene {
     scene.lights.list = vec![
         light(LightKind::Point { position, spread: 0.0 }, Falloff::InverseSquare),
         light(LightKind::Point { position, spread: 0.35 }, Falloff::None),
-        light(LightKind::Directional { direction }, Falloff::None),
+        light(LightKind::Directional { direction, angle: 0.0 }, Falloff::None),
+        light(LightKind::Directional { direction, angle: 0.0093 }, Falloff::InverseSquare),
+        Light::directional(Vec3::NEG_Z).unwrap().with_angle(std::f32::consts::PI).with_intensity(Vec3::splat(0.2)),
         light(LightKind::Spot { position, direction, inner: 0.3, outer: 0.7 }, Falloff::InverseSquare),
         light(LightKind::Spot { position, direction, inner: 0.0, outer: std::f32::consts::FRAC_PI_2 }, Falloff::None),
         light(LightKind::Sphere { position, radius: 0.33 }, Falloff::None),

@@ -13,6 +13,7 @@ use crate::{
         upright,
     },
     info::shortest,
+    light::LARGEST_ANGLE,
 };
 
 /// The text of a scene file whose triangles are in `mesh_file`.
@@ -93,6 +94,7 @@ fn light_entry(scene: &Scene, light: &Light) -> LightEntry {
         normal: None,
         radius: None,
         spread: None,
+        angle: None,
         inner: None,
         outer: None,
         u: None,
@@ -107,9 +109,11 @@ fn light_entry(scene: &Scene, light: &Light) -> LightEntry {
     };
     match light.kind {
         LightKind::Point { spread, .. } => entry.spread = (spread > 0.0).then(|| number(spread)),
-        LightKind::Directional { direction } => {
+        LightKind::Directional { direction, angle } => {
             entry.kind = anywhere(LightKindName::Directional);
             entry.direction = Some(vector(direction));
+            // The largest angle in `f32` radians may be a little more than that in degrees.
+            entry.angle = (angle > 0.0).then(|| anywhere(f64::from(angle).to_degrees().min(LARGEST_ANGLE)));
         }
         LightKind::Spot { direction, inner, outer, .. } => {
             // A right angle in `f32` radians is a little more than 90 degrees.

@@ -8,8 +8,9 @@ fn scene() -> Scene {
     scene.geometry_mut().origin = DVec3::new(1000.0, 0.0, 0.0);
     scene.geometry_mut().mesh.positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
     scene.geometry_mut().mesh.triangles = vec![[0, 1, 2]];
+    let sun = Light::directional(Vec3::NEG_Y).unwrap();
     scene.lights.list =
-        vec![Light::point(Vec3::Z).with_intensity(Vec3::splat(0.1)), Light::directional(Vec3::NEG_Y).unwrap()];
+        vec![Light::point(Vec3::Z).with_intensity(Vec3::splat(0.1)), sun.clone(), sun.with_angle(0.5f32.to_radians())];
     let camera = Camera {
         name: "main".into(),
         position: Vec3::Z,
@@ -33,6 +34,8 @@ fn the_json_is_in_world_coordinates_and_degrees() {
              "falloff": "none"},
             {"kind": "directional", "position": null, "direction": [0.0, -1.0, 0.0], "intensity": [1.0, 1.0, 1.0],
              "falloff": "none"},
+            {"kind": "directional", "position": null, "direction": [0.0, -1.0, 0.0], "intensity": [1.0, 1.0, 1.0],
+             "falloff": "none", "angle": 0.5},
         ],
         "cameras": [
             {"name": "main", "position": [1000.0, 0.0, 1.0], "direction": [0.0, 0.0, -1.0], "up": [0.0, 1.0, 0.0],
@@ -51,7 +54,8 @@ fn the_json_is_in_world_coordinates_and_degrees() {
 #[test]
 fn people_read_the_same() {
     let text = scene().info().to_string();
-    assert!(text.contains("light   point, at 1000 0 1, intensity 0.1 0.1 0.1, falloff none"), "{text}");
+    assert!(text.contains("light   point, at 1000 0 1, intensity 0.1 0.1 0.1, falloff none\n"), "{text}");
+    assert!(text.contains("light   directional, along 0 -1 0, intensity 1 1 1, falloff none, angle 0.5\n"), "{text}");
     assert!(text.contains("camera  `main` at 1000 0 1, along 0 0 -1, vfov 50°"), "{text}");
     assert!(text.contains("0 materials\n") && text.contains("up      y: its cameras are oriented that way"), "{text}");
 }

@@ -6,9 +6,45 @@ fn a_light_is_built_in_one_expression() {
     assert_eq!(lamp.kind, LightKind::Point { position: Vec3::Y, spread: 0.5 });
     assert_eq!((lamp.name.as_str(), lamp.intensity), ("lamp", Vec3::new(1.0, 2.0, 3.0)));
     let sun = Light::directional(Vec3::new(0.0, -2.0, 0.0)).unwrap().with_falloff(Falloff::InverseSquare);
-    assert_eq!((sun.kind, sun.falloff), (LightKind::Directional { direction: Vec3::NEG_Y }, Falloff::InverseSquare));
+    let parallel = LightKind::Directional { direction: Vec3::NEG_Y, angle: 0.0 };
+    assert_eq!((&sun.kind, sun.falloff), (&parallel, Falloff::InverseSquare));
+    assert_eq!(sun.with_angle(0.1).kind, LightKind::Directional { direction: Vec3::NEG_Y, angle: 0.1 });
     let ball = Light::sphere(Vec3::Y, 0.5).unwrap();
     assert_eq!(ball.clone().with_spread(2.0), ball);
+    assert_eq!(ball.clone().with_angle(0.1), ball);
+}
+
+#[test]
+fn area_lights_have_a_size() {
+    let sun = |angle| Light::directional(Vec3::NEG_Y).unwrap().with_angle(angle);
+    for light in
+        [sun(0.1), sun(1e-40), Light::sphere(Vec3::Y, 0.5).unwrap(), Light::disk(Vec3::Y, Vec3::X, 0.5).unwrap()]
+    {
+        assert!(light.has_size(), "{light:?}");
+    }
+    let points = [sun(0.0), Light::point(Vec3::Y).with_spread(0.5), Light::spot(Vec3::Y, Vec3::X, 0.1, 0.2).unwrap()];
+    for light in points {
+        assert!(!light.has_size(), "{light:?}");
+    }
+}
+
+#[test]
+fn an_angle_without_sense_becomes_the_nearest_with_some() {
+    let largest = 179f64.to_radians() as f32;
+    assert!(largest < std::f32::consts::PI);
+    let cases = [
+        (-0.1, 0.0),
+        (f32::NAN, 0.0),
+        (f32::NEG_INFINITY, 0.0),
+        (0.0093, 0.0093),
+        (largest, largest),
+        (std::f32::consts::PI, largest),
+        (f32::INFINITY, largest),
+    ];
+    for (radians, expected) in cases {
+        let light = Light::directional(Vec3::NEG_Y).unwrap().with_angle(radians);
+        assert_eq!(light.kind, LightKind::Directional { direction: Vec3::NEG_Y, angle: expected }, "{radians}");
+    }
 }
 
 #[test]

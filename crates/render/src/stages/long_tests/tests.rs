@@ -23,7 +23,7 @@ const SAMPLES: u32 = 6;
 fn lights(radius: f32) -> [LightKind; 3] {
     [
         LightKind::Point { position: CENTER, spread: 0.5 },
-        LightKind::Directional { direction: Vec3::new(0.6, -0.8, 0.0) },
+        LightKind::Directional { direction: Vec3::new(0.6, -0.8, 0.0), angle: 0.0 },
         LightKind::Sphere { position: CENTER, radius },
     ]
 }

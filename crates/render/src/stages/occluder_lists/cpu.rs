@@ -214,7 +214,7 @@ impl ItemShadows {
         let planes = TangentPlanes::new(origins.min, living().map(|point| (point.origin, point.normal)), 0.0);
         let region = emitter.region(geometry, &origins).above(planes);
         geometry.accelerator.triangles_in(&region, &mut self.found);
-        (emitter.bounds(geometry, &origins), emitter.radius(geometry, &origins))
+        (emitter.bounds(geometry, &origins), emitter.radius())
     }
 }
 

@@ -64,8 +64,9 @@ DEVICE void look(const Shadows &args, ItemSight &item, unsigned light, const Sam
 template <unsigned WORDS>
 DEVICE Seen<WORDS> unhidden(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set, const RowTable &table) {
     const Light &emitter = args.scene.lights[light];
-    const Vec3 way = light_center(emitter, item.point.origin, scene_reach(args.scene, item.point.origin)) - item.point.origin;
-    const float height = dot(item.point.normal, way), size = larger(emitter.size, emitter.radius);
+    const float reach = scene_reach(args.scene, item.point.origin), largest = larger(emitter.size, emitter.radius);
+    const Vec3 way = light_center(emitter, item.point.origin, reach) - item.point.origin;
+    const float height = dot(item.point.normal, way), size = emitter.kind == Light::DIRECTIONAL ? reach * largest : largest;
     const float room = GROWN * size + (GROWN - 1.0f) * element_sum(abs(way));
     const bool above = height > room, below = height < -room;
     Seen<WORDS> seen = {};

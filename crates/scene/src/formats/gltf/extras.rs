@@ -57,6 +57,9 @@ pub(crate) struct LightExtras {
     /// Radius of the ball in which area mode distributes the points of a point light.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) spread: Option<f32>,
+    /// Angular diameter of a directional light, radians.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) angle: Option<f32>,
     /// Falloff `none`; else inverse-square, as in glTF.
     #[serde(default)]
     pub(crate) no_falloff: bool,

@@ -14,7 +14,7 @@ use super::{
     extras::{LightExtras, ShapeExtras},
     nodes::Placed,
 };
-use crate::{Falloff, Light, LightKind, LoadError, formats::toml::unit};
+use crate::{Falloff, Light, LightKind, LoadError, formats::toml::unit, light::usable_angle};
 
 /// Light number `index` of the document in its node, at the local frame's origin, still without a name. `None` if its type is
 /// unknown.
@@ -35,7 +35,10 @@ pub(super) fn placed(
         (_, Some(shape)) => shaped(shape, &placed.transform).ok_or_else(|| {
             malformed(axes.path, format!("extras.lightmesh of light {index} does not give it a valid size"))
         })?,
-        ("directional", None) => LightKind::Directional { direction: axes.forward(placed)?.as_vec3() },
+        ("directional", None) => LightKind::Directional {
+            direction: axes.forward(placed)?.as_vec3(),
+            angle: usable_angle(own.angle.unwrap_or(0.0)),
+        },
         ("spot", None) => {
             let (inner, outer) = cone(axes, index, light.spot.as_deref().unwrap_or(&Spot::default()))?;
             LightKind::Spot { position, direction: axes.forward(placed)?.as_vec3(), inner, outer }

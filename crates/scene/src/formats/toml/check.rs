@@ -74,7 +74,7 @@ impl Source<'_> {
             Ok(number)
         } else {
             let problem = format!("is not between {low} and {high}");
-            Err(self.refuse(key, value, &problem, &format!("give a {key} from {low} to {high}")))
+            Err(self.refuse(key, value, &problem, &format!("give a number from {low} to {high}")))
         }
     }
 

@@ -7,7 +7,7 @@ use super::{
     schema::{FalloffName, LightEntry, LightKindName, Number},
     spanned::Spanned,
 };
-use crate::{Falloff, Light, LightKind, LoadError};
+use crate::{Falloff, Light, LightKind, LoadError, light::LARGEST_ANGLE};
 
 /// Default half-angle of a spot light, degrees.
 const DEFAULT_OUTER: f64 = 45.0;
@@ -42,7 +42,10 @@ fn kind(source: &Source, table: &Spanned<LightEntry>, position: DVec3) -> Result
             LightKind::Point { position: local, spread: spread as f32 }
         }
         LightKindName::Directional => {
-            LightKind::Directional { direction: direction(source, table, position)?.as_vec3() }
+            let angle = entry.angle.as_ref();
+            let angle = angle.map_or(Ok(0.0), |angle| source.between("angle", angle, 0.0, LARGEST_ANGLE))?;
+            let direction = direction(source, table, position)?.as_vec3();
+            LightKind::Directional { direction, angle: angle.to_radians() as f32 }
         }
         LightKindName::Spot => {
             let (inner, outer) = cone(source, entry)?;
@@ -71,6 +74,7 @@ fn refuse_foreign_keys(source: &Source, table: &Spanned<LightEntry>) -> Result<(
         ("normal", entry.normal.is_some()),
         ("radius", entry.radius.is_some()),
         ("spread", entry.spread.is_some()),
+        ("angle", entry.angle.is_some()),
         ("inner", entry.inner.is_some()),
         ("outer", entry.outer.is_some()),
         ("u", entry.u.is_some()),
@@ -80,7 +84,7 @@ fn refuse_foreign_keys(source: &Source, table: &Spanned<LightEntry>) -> Result<(
     ]);
     let taken: &[&str] = match entry.kind.get_ref() {
         LightKindName::Point => &["position", "spread"],
-        LightKindName::Directional => &["direction"],
+        LightKindName::Directional => &["direction", "angle"],
         LightKindName::Spot => &["position", "direction", "target", "inner", "outer"],
         LightKindName::Sphere => &["position", "radius"],
         LightKindName::Disk => &["position", "direction", "target", "normal", "radius"],

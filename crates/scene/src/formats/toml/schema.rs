@@ -129,6 +129,10 @@ pub(crate) struct LightEntry {
     /// Point: radius of the ball in which area mode distributes the points that replace it. Default: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) spread: Option<Number>,
+    /// Directional: angular diameter of the disk that the light comes from, degrees; the sun's is 0.53. At most 179. Default: 0,
+    /// parallel light.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) angle: Option<Number>,
     /// Spot: half-angle of the full-strength cone. Default: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) inner: Option<Number>,

@@ -120,6 +120,10 @@ fn lights_of_all_kinds() {
         kind = "directional"
         direction = [0, -2, 0]
         [[light]]
+        kind = "directional"
+        direction = [0, -2, 0]
+        angle = 0.53
+        [[light]]
         kind = "spot"
         position = [0, 5, 0]
         target = [0, 0, 0]
@@ -153,16 +157,18 @@ fn lights_of_all_kinds() {
     );
     let position = Vec3::new(1.0, 2.0, 3.0);
     let kinds: Vec<&LightKind> = scene.lights.iter().map(|light| &light.kind).collect();
-    assert_eq!(*kinds[0], LightKind::Directional { direction: Vec3::NEG_Y });
+    assert_eq!(*kinds[0], LightKind::Directional { direction: Vec3::NEG_Y, angle: 0.0 });
+    let angle = 0.53f64.to_radians() as f32;
+    assert_eq!(*kinds[1], LightKind::Directional { direction: Vec3::NEG_Y, angle });
     let (inner, outer) = (20f64.to_radians() as f32, 30f64.to_radians() as f32);
     let up = Vec3::new(0.0, 5.0, 0.0);
-    assert_eq!(*kinds[1], LightKind::Spot { position: up, direction: Vec3::NEG_Y, inner, outer });
-    assert_eq!(scene.lights[1].intensity, Vec3::new(1.0, 2.0, 3.0));
-    assert_eq!(scene.lights[1].falloff, Falloff::InverseSquare);
-    assert_eq!(*kinds[2], LightKind::Sphere { position, radius: 0.5 });
-    assert_eq!(*kinds[3], LightKind::Disk { position, normal: Vec3::Z, radius: 0.5 });
-    assert_eq!(*kinds[4], LightKind::Rectangle { position, half_u: Vec3::X, half_v: 2.0 * Vec3::Z });
-    assert_eq!(*kinds[5], LightKind::Rectangle { position: up, half_u: Vec3::X, half_v: 2.0 * Vec3::Y });
+    assert_eq!(*kinds[2], LightKind::Spot { position: up, direction: Vec3::NEG_Y, inner, outer });
+    assert_eq!(scene.lights[2].intensity, Vec3::new(1.0, 2.0, 3.0));
+    assert_eq!(scene.lights[2].falloff, Falloff::InverseSquare);
+    assert_eq!(*kinds[3], LightKind::Sphere { position, radius: 0.5 });
+    assert_eq!(*kinds[4], LightKind::Disk { position, normal: Vec3::Z, radius: 0.5 });
+    assert_eq!(*kinds[5], LightKind::Rectangle { position, half_u: Vec3::X, half_v: 2.0 * Vec3::Z });
+    assert_eq!(*kinds[6], LightKind::Rectangle { position: up, half_u: Vec3::X, half_v: 2.0 * Vec3::Y });
 }
 
 #[test]
@@ -234,7 +240,7 @@ fn a_mirrored_mesh_keeps_its_front() {
 
 /// Text with one mistake, and the expected message. Each names the line and a remedy after the semicolon.
 #[rustfmt::skip]
-const MISTAKES: [(&str, &str); 32] = [
+const MISTAKES: [(&str, &str); 37] = [
     ("[[sphere]]\ncenter = [0, 1, 0]\nradius = -1", "radius = -1 is not positive, room.toml:3; give a radius above 0"),
     ("[[sphere]]\ncenter = [0, 1, 0]\nradius = nan", "radius = nan is not finite, room.toml:3; "),
     ("[[sphere]]\ncenter = [0, inf, 0]\nradius = 1", "center = [0, inf, 0] is not finite, room.toml:2; "),
@@ -258,6 +264,11 @@ const MISTAKES: [(&str, &str); 32] = [
     ("[[light]]\nkind = \"lamp\"\nposition = [0, 0, 0]", "room.toml:2; use a value that is valid for `kind`"),
     ("[[light]]\nkind = \"point\"", "key `position` is missing, room.toml:1; "),
     ("[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\nradius = 1", "kind = \"point\" does not take `radius`, room.toml:2; it takes position, spread"),
+    ("[[light]]\nkind = \"directional\"\ndirection = [0, -1, 0]\nangle = 180", "angle = 180 is not between 0 and 179, room.toml:4; give a number from 0 to 179"),
+    ("[[light]]\nkind = \"directional\"\nangle = -0.5\ndirection = [0, -1, 0]", "angle = -0.5 is not between 0 and 179, room.toml:3; "),
+    ("[[light]]\nkind = \"directional\"\ndirection = [0, -1, 0]\nangle = nan", "angle = nan is not finite, room.toml:4; "),
+    ("[[light]]\nkind = \"spot\"\nposition = [0, 0, 0]\nangle = 5", "kind = \"spot\" does not take `angle`, room.toml:2; it takes position, direction, target, inner, outer"),
+    ("[[light]]\nkind = \"directional\"\ndirection = [0, -1, 0]\nspread = 5", "kind = \"directional\" does not take `spread`, room.toml:2; it takes direction, angle, name"),
     ("[[light]]\nkind = \"sphere\"\nposition = [0, 0, 0]", "key `radius` is missing, room.toml:1; "),
     ("[[light]]\nkind = \"spot\"\nposition = [0, 0, 0]\ndirection = [0, 1, 0]\ninner = 50", "inner = 50 is above outer = 45, room.toml:5; "),
     ("[[light]]\nkind = \"rectangle\"\nposition = [0, 0, 0]\nu = [1, 0, 0]\nv = [1, 1, 0]", "v = [1, 1, 0] is not at a right angle to `u`, room.toml:5; "),

@@ -19,8 +19,8 @@ fn cameras_and_lights_follow_their_nodes() {
     let [point, sun, spot] = &scene.lights[..] else { panic!("{:?}", scene.lights) };
     assert_eq!(point.kind, LightKind::Point { position, spread: 0.0 });
     assert_eq!(point.intensity, Vec3::new(40.0, 20.0, 10.0));
-    let LightKind::Directional { direction } = sun.kind else { panic!("{sun:?}") };
-    assert!(direction.distance(Vec3::NEG_Y) < 1e-6);
+    let LightKind::Directional { direction, angle } = sun.kind else { panic!("{sun:?}") };
+    assert!(direction.distance(Vec3::NEG_Y) < 1e-6 && angle == 0.0);
     assert_eq!(spot.kind, LightKind::Spot { position, direction: Vec3::NEG_Z, inner: 0.25, outer: 0.5 });
 }
 
@@ -111,6 +111,17 @@ fn a_light_of_an_unknown_type_is_counted() {
     lights(&mut document)[0]["type"] = json!("area");
     assert_eq!(open(&document).lights.len(), 2);
     assert!(warnings(&document).contains("1 light of an unknown type: ignored"));
+}
+
+#[test]
+fn a_directional_light_may_have_an_angle() {
+    let largest = 179f64.to_radians() as f32;
+    for (written, expected) in [(0.1, 0.1), (-1.0, 0.0), (7.0, largest), (1e300, largest)] {
+        let mut document = furnished();
+        lights(&mut document)[1]["extras"] = json!({"lightmesh": {"angle": written}});
+        let sun = &open(&document).lights[1];
+        assert!(matches!(sun.kind, LightKind::Directional { angle, .. } if angle == expected), "{written}: {sun:?}");
+    }
 }
 
 #[test]
