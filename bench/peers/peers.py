@@ -38,8 +38,9 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             scene = Scene.open(plan.lightmesh, source, Path(folder))
             print(f"{scene.name}: {len(scene.triangles)} triangles, {len(scene.lights)} lights", file=sys.stderr)
-            rows += ray_rows(plan, scene, Path(folder), notes)
-            if not plan.only_rays:
+            if plan.only != "images":
+                rows += ray_rows(plan, scene, Path(folder), notes)
+            if plan.only != "rays":
                 rows += shadow_rows(plan, scene, Path(folder), notes)
     version = subprocess.run([plan.lightmesh, "--version"], check=True, stdout=subprocess.PIPE, text=True).stdout.split()[1]
     results = {
@@ -67,7 +68,7 @@ def arguments():
     parser.add_argument("--reference", type=int, default=1024, metavar="N", help="samples of the references, default %(default)s")
     parser.add_argument("--repetitions", type=int, default=5, metavar="N", help="counted rounds, default %(default)s")
     parser.add_argument("--threads", type=int, default=os.cpu_count(), help="for images, default: all")
-    parser.add_argument("--only-rays", action="store_true", help="rays per second, no images")
+    parser.add_argument("--only", choices=["rays", "images"], help="rays per second, or soft shadows; default: both")
     parser.add_argument("--ray-size", type=int, metavar="N", help="pixels per side for rays, default: the same")
     parser.add_argument("--ray-threads", type=int, nargs="+", default=[1], metavar="N", help="threads for rays, default: 1")
     parser.add_argument("--embree", type=Path, metavar="LIBRARY", help="libembree4.so, default: that of the wheel embreex")
