@@ -26,7 +26,7 @@ class Embree:
 
     def __init__(self, scene, plan, samples, folder):
         self.scene, self.folder, self.process = scene, folder, None
-        self.command = [compiled(plan.embree or library(), folder), folder / "scene.bin", str(plan.ray_size), str(samples)]
+        self.command = [compiled((plan.embree or library()).resolve(), folder), folder / "scene.bin", str(plan.ray_size), str(samples)]
         self.config = [plan.embree_config] if plan.embree_config else []
         write(scene, plan.ray_size, folder / "scene.bin")
         self.start("fast")
@@ -95,7 +95,7 @@ class Packets:
 def library():
     """Embree 4 as a wheel contains it."""
     files = importlib.metadata.files("embreex")
-    return next(Path(file.locate()).resolve() for file in files if file.name.startswith("libembree4"))
+    return next(Path(file.locate()) for file in files if file.name.startswith("libembree4"))
 
 
 def compiled(library, folder):
