@@ -21,6 +21,8 @@ from pathlib import Path
 import flip_evaluator
 import numpy as np
 
+import agreement
+import native
 import rays
 import renderers
 from scene import Scene
@@ -36,8 +38,10 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             scene = Scene.open(plan.lightmesh, source, Path(folder))
             print(f"{scene.name}: {len(scene.triangles)} triangles, {len(scene.lights)} lights", file=sys.stderr)
-            rows += ray_rows(plan, scene, Path(folder), notes)
-            rows += shadow_rows(plan, scene, Path(folder), notes)
+            if plan.only != "images":
+                rows += ray_rows(plan, scene, Path(folder), notes)
+            if plan.only != "rays":
+                rows += shadow_rows(plan, scene, Path(folder), notes)
     version = subprocess.run([plan.lightmesh, "--version"], check=True, stdout=subprocess.PIPE, text=True).stdout.split()[1]
     results = {
         "version": 1,
@@ -63,10 +67,17 @@ def arguments():
     parser.add_argument("--samples", type=int, nargs="+", default=[1, 4, 16, 64], help="default: 1 4 16 64")
     parser.add_argument("--reference", type=int, default=1024, metavar="N", help="samples of the references, default %(default)s")
     parser.add_argument("--repetitions", type=int, default=5, metavar="N", help="counted rounds, default %(default)s")
-    parser.add_argument("--threads", type=int, default=os.cpu_count(), help="for images; rays use one; default: all")
+    parser.add_argument("--threads", type=int, default=os.cpu_count(), help="for images, default: all")
+    parser.add_argument("--only", choices=["rays", "images"], help="rays per second, or soft shadows; default: both")
+    parser.add_argument("--ray-size", type=int, metavar="N", help="pixels per side for rays, default: the same")
+    parser.add_argument("--ray-threads", type=int, nargs="+", default=[1], metavar="N", help="threads for rays, default: 1")
+    parser.add_argument("--embree", type=Path, metavar="LIBRARY", help="libembree4.so, default: that of the wheel embreex")
+    parser.add_argument("--embree-config", metavar="CONFIG", help="Embree's own, such as isa=avx2")
     parser.add_argument("--device", choices=["cpu", "cuda"], default="cpu", help="cuda: lightmesh and Mitsuba on a GPU, OptiX for rays")
     parser.add_argument("--without", nargs="+", default=[], choices=["embree", "optix", "mitsuba", "cycles"], help="peers to skip")
-    return parser.parse_args()
+    plan = parser.parse_args()
+    plan.ray_size = plan.ray_size or plan.size
+    return plan
 
 
 def peer(plan, notes, name, make):
@@ -85,19 +96,64 @@ def peer(plan, notes, name, make):
 
 def ray_rows(plan, scene, folder, notes):
     """Million rays per second of each program and kind of rays."""
-    casters = [rays.Lightmesh(plan.lightmesh, scene, plan, folder)]
     if plan.device == "cuda":
+        embree, casters = [], [rays.Lightmesh(plan, scene, folder, 1)]
         casters += peer(plan, notes, "optix", lambda: rays.Optix(scene, plan))
     else:
-        casters += peer(plan, notes, "embree", lambda: rays.Embree(scene, plan))
-    tasks = {(caster.name, kind): (lambda caster=caster, kind=kind: caster.cast(kind)) for kind in rays.KINDS for caster in casters}
-    rows = []
-    for (program, kind), runs in in_turn(plan, lambda _, task: task(), tasks).items():
-        keys = {"scene": scene.name, "program": program, "rays": kind, "size": plan.size, **place(plan, 1)}
-        seconds = [seconds for _, seconds in runs]
-        values = {"rays": runs[0][0], "million_per_second": runs[0][0] / statistics.median(seconds) / 1e6}
-        rows.append(row("rays", keys, {"render": seconds}, values))
-    return rows
+        embree = peer(plan, notes, "embree", lambda: native.Embree(scene, plan, rays.SOFT_SAMPLES, folder))
+        for one in embree:
+            agreement.check(plan, scene, folder, one, notes)
+        packets = [(one, width) for one in embree for width in native.WIDTHS]
+        casters = []
+        for threads in plan.ray_threads:
+            casters.append(rays.Lightmesh(plan, scene, folder, threads))
+            casters += [native.Packets(one, width, threads) for one, width in packets]
+    tasks = {(kind, caster): (lambda caster=caster, kind=kind: caster.cast(kind)) for kind in rays.KINDS for caster in casters}
+    results = in_turn(plan, lambda _, task: task(), tasks)
+    rows = [ray_row(plan, scene, kind, caster, runs) for (kind, caster), runs in results.items()]
+    for one in embree:
+        one.close()
+    packets = [row("packets", one["keys"], one["seconds"], one["values"]) for one in rows if "width" in one["keys"]]
+    best = fastest(rows)
+    add_ratios(best)
+    return best + packets
+
+
+def ray_row(plan, scene, kind, caster, runs):
+    keys = {"scene": scene.name, "program": caster.name, "rays": kind, "size": plan.ray_size, **place(plan, caster.threads)}
+    seconds = [seconds for _, seconds in runs]
+    count, median = runs[0][0], statistics.median(seconds)
+    values = {"rays": count, "million_per_second": count / median / 1e6}
+    if isinstance(caster, native.Packets):
+        keys["width"] = caster.width
+        values |= caster.values(kind, count, median)
+    return row("rays", keys, {"render": seconds}, values)
+
+
+def fastest(rows):
+    """Of rows that differ in the width of packets, the fastest one."""
+    best = {}
+    for one in rows:
+        keys = {name: key for name, key in one["keys"].items() if name != "width"}
+        one = row("rays", keys, one["seconds"], one["values"])
+        best[one["id"]] = max(best.get(one["id"], one), one, key=lambda row: row["values"]["million_per_second"])
+    return list(best.values())
+
+
+def add_ratios(rows):
+    """Adds lightmesh's rate relative to that of each peer, the median over rounds, and shows it."""
+    key = lambda row: (row["keys"]["rays"], row["keys"].get("threads"))
+    own = {key(one): one for one in rows if one["keys"]["program"] == rays.Lightmesh.name}
+    for one in rows:
+        mine, values = own[key(one)], one["values"]
+        if one is mine:
+            continue
+        rounds = zip(one["seconds"]["render"], mine["seconds"]["render"])
+        ratio = statistics.median(peer / values["rays"] * mine["values"]["rays"] / seconds for peer, seconds in rounds)
+        values["lightmesh_ratio"] = ratio
+        rates = [f"{each['keys']['program']} {each['values']['million_per_second']:.3g}" for each in (mine, one)]
+        where = f"{one['keys']['scene']}, {one['keys']['rays']} rays, {one['keys'].get('threads', 'all')} threads"
+        print(f"  {where}: {' : '.join(rates)} million per second, ratio {ratio:.2f}", file=sys.stderr)
 
 
 def shadow_rows(plan, scene, folder, notes):

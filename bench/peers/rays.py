@@ -1,7 +1,6 @@
-"""Rays of the same camera and lights through Embree and through lightmesh, on one thread each; or through OptiX and lightmesh on a GPU.
+"""Rays of the same camera and lights through lightmesh, and on a GPU through OptiX. Embree is in native.py.
 
-Embree gets rays one by one, in arrays without Python in between, OptiX gets all of them in one launch; lightmesh forms its own, of the
-same pixels and lights, which is part of its time for shadow rays.
+OptiX gets all rays in one launch; lightmesh forms its own, of the same pixels and lights, which is part of its time for shadow rays.
 """
 
 import json
@@ -15,36 +14,7 @@ KINDS = {"primary": "ray-trace", "hard shadow": "ray-trace", "soft shadow": "are
 SOFT_SAMPLES = 16
 """Rays per light and pixel for soft shadows."""
 OFFSET = 1e-4
-"""Offset of Embree's shadow rays from the surface, as a fraction of their length."""
-
-
-class Embree:
-    def __init__(self, scene, plan):
-        from importlib.metadata import version
-
-        from embreex.mesh_construction import TriangleMesh
-        from embreex.rtcore_scene import EmbreeScene
-
-        self.name, self.version = "Embree", f"embreex {version('embreex')}"
-        self.scene = EmbreeScene()
-        TriangleMesh(self.scene, scene.positions[scene.triangles])
-        self.primary = scene.camera.rays(plan.size)
-        triangle = self.scene.run(*self.primary, query="INTERSECT")
-        distance = self.scene.run(*self.primary, query="DISTANCE")
-        self.rays = rays_to_lights(scene, self.primary, triangle, distance)
-
-    def cast(self, kind):
-        """Rays and seconds."""
-        start = time.perf_counter()
-        if kind == "primary":
-            count = len(self.primary[0])
-            self.scene.run(*self.primary, query="INTERSECT")
-        else:
-            origins, directions = self.rays[kind]
-            count = len(origins)
-            # The end of a segment is its direction away.
-            self.scene.run(origins, directions, dists=np.full(count, 1 - OFFSET, np.float32), query="OCCLUDED")
-        return count, time.perf_counter() - start
+"""Offset of OptiX's shadow rays from the surface, as a fraction of their length."""
 
 
 class Optix:
@@ -54,12 +24,12 @@ class Optix:
         import drjit
         import mitsuba
 
-        self.name, self.drjit, self.mitsuba = "OptiX", drjit, mitsuba
+        self.name, self.threads, self.drjit, self.mitsuba = "OptiX", 1, drjit, mitsuba
         mitsuba.set_variant("cuda_ad_rgb")
         self.version = f"Mitsuba {mitsuba.__version__}"
         ply = {"type": "ply", "filename": str(scene.file.with_suffix(".ply")), "face_normals": True}
         self.scene = mitsuba.load_dict({"type": "scene", "mesh": ply})
-        primary = scene.camera.rays(plan.size)
+        primary = scene.camera.rays(plan.ray_size)
         found = self.scene.ray_intersect_preliminary(self.ray(*primary), coherent=True)
         distance = np.array(found.t)
         triangle = np.where(np.isfinite(distance), np.array(found.prim_index).astype(np.int64), -1)
@@ -87,20 +57,27 @@ class Optix:
 
 
 class Lightmesh:
-    def __init__(self, program, scene, plan, folder):
-        self.name, self.stats = "lightmesh", folder / "rays.json"
-        self.on_gpu = plan.device == "cuda"
-        threads = [] if self.on_gpu else ["--threads", "1"]
-        self.command = [program, "render", scene.file, "-q", "--device", plan.device, *threads, "--size", f"{plan.size}x{plan.size}"]
-        self.command += ["--samples", str(SOFT_SAMPLES), "-o", folder / "rays.png", "--stats", self.stats]
-        self.suite = [program, "bench", "rays", "--device", plan.device, "--scene", scene.file, "--json", self.stats, "-q"]
+    name = "lightmesh"
+
+    def __init__(self, plan, scene, folder, threads):
+        self.stats, self.picture, self.threads = folder / "rays.json", folder / "rays.png", threads
+        self.on_gpu, size = plan.device == "cuda", plan.ray_size
+        limit = [] if self.on_gpu else ["--threads", str(threads)]
+        self.command = [plan.lightmesh, "render", scene.file, "-q", "--device", plan.device, *limit, "--size", f"{size}x{size}"]
+        self.command += ["--samples", str(SOFT_SAMPLES), "--stats", self.stats]
+        self.suite = [plan.lightmesh, "bench", "rays", "--device", plan.device, "--scene", scene.file, "--json", self.stats, "-q"]
+
+    def render(self, kind, picture=None):
+        """The statistics of an image."""
+        subprocess.run([*self.command, "--mode", KINDS[kind], "-o", picture or self.picture], check=True)
+        return json.loads(self.stats.read_text())
 
     def cast(self, kind):
+        """Rays and seconds."""
         # The first image of a process starts with small launches, which would distort the rate of few rays.
         if self.on_gpu and kind != "soft shadow":
             return self.warm(kind)
-        subprocess.run([*self.command, "--mode", KINDS[kind]], check=True)
-        stats = json.loads(self.stats.read_text())
+        stats = self.render(kind)
         rays, stage = ("rays", "primary_rays") if kind == "primary" else ("shadow_rays", "long_tests")
         return stats["counts"][rays], stats["seconds"][stage]
 
