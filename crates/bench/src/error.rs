@@ -25,7 +25,7 @@ pub enum BenchError {
     #[error(transparent)]
     Compare(#[from] CompareError),
     /// There is no suite of this name.
-    #[error("there is no suite `{0}`: choose thesis, quality, rays or stages")]
+    #[error("there is no suite `{0}`: choose thesis, quality, rays, shadows or stages")]
     UnknownSuite(String),
     /// The suite does not accept scenes and sizes.
     #[error("suite {0} has its own scenes and sizes; omit them, or use the suite quality, rays or stages")]

@@ -58,7 +58,9 @@ pub use plan::{Footprint, Plan};
 pub use prepared::{PreparedGeometry, PreparedScene};
 pub use probes::{GivenPoints, PointVisibility, Probes};
 pub use renderer::{Frame, Renderer, render_on, render_on_with, visibility_on};
-pub use settings::{Acceleration, Lookup, Mode, Setting, Settings, ShadowTests, ShortTests, Step, UnknownStep};
+pub use settings::{
+    Acceleration, Lookup, Mode, Quality, Setting, Settings, ShadowTests, ShortTests, Step, UnknownStep,
+};
 pub use stage::{Seconds, Stage};
 pub use stats::{CameraStats, DeviceStats, LatticeStats, MemoryStats, SceneStats, SettingsStats, Stats};
 pub use surface::SurfacePoint;

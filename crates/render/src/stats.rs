@@ -87,6 +87,7 @@ pub struct SettingsStats {
     pub radius: Option<f32>,
     pub weight: Option<&'static str>,
     pub lookup: Option<&'static str>,
+    pub quality: Option<&'static str>,
     pub short_tests: Option<&'static str>,
     pub samples: u32,
     pub accel: &'static str,

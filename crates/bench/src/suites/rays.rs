@@ -6,7 +6,7 @@
 //! method's own short tests by cell cast no rays. Brute force is included for tiny scenes, as a measure of the triangle test.
 
 use lightmesh::render::{Counts, PreparedScene, ShortTests};
-use lightmesh::{Acceleration, Mode, Observer, Settings, Stage, Step};
+use lightmesh::{Acceleration, Lookup, Mode, Observer, Settings, Stage, Step};
 
 use super::subjects::{self, Subject};
 use super::turns::Turns;
@@ -102,6 +102,7 @@ impl Case<'_> {
         let mut settings = Settings::default()
             .with_mode(self.mode)
             .with_size([self.side; 2])
+            .with_lookup(Lookup::HalfBall)
             .with_short_tests(ShortTests::Plain)
             .with_acceleration(self.scene.geometry.acceleration().clone());
         settings.step = subject.step.map(Step::Fixed);

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lightmesh::render::ShortTests;
+use lightmesh::render::{Quality, ShortTests};
 use lightmesh::scene::{Falloff, Weight};
 use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
 
@@ -40,15 +40,20 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_parser = words::weight(), help_heading = "Method")]
     pub(crate) weight: Option<Weight>,
 
-    /// How light-mesh mode looks up the visibility of a light
+    /// How light-mesh mode finds the visibility of a light
     #[arg(long, value_parser = words::lookup(), default_value_t = Lookup::Auto, help_heading = "Method")]
     pub(crate) lookup: Lookup,
+
+    /// Samples of each light with a size: how smooth soft shadows are
+    #[arg(long, value_parser = words::quality(), default_value_t = Quality::Good, help_heading = "Method")]
+    pub(crate) quality: Quality,
 
     /// How short tests are evaluated; the image is the same
     #[arg(long, value_parser = words::short_tests(), default_value_t = ShortTests::Cells, help_heading = "Method")]
     pub(crate) short_tests: ShortTests,
 
-    /// Number of shadow rays per light (area), or per light point and area light (light-mesh) [default: 225 / 4]
+    /// Number of samples of each light with a size, at a surface point (lists, area) or a light point (half-ball) [default: by
+    /// --quality / 225 / 4]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65535), help_heading = "Method")]
     pub(crate) samples: Option<u32>,
 

@@ -6,7 +6,11 @@ use std::str::FromStr;
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use lightmesh::scene::{Falloff, Weight};
-use lightmesh::{Acceleration, Lookup, Mode, Transfer, render::ShortTests, scene};
+use lightmesh::{
+    Acceleration, Lookup, Mode, Transfer,
+    render::{Quality, ShortTests},
+    scene,
+};
 
 /// Parses one of these names, each of which has a help text.
 fn one_of<T>(names: impl Iterator<Item = (&'static str, &'static str)>) -> impl TypedValueParser<Value = T>
@@ -27,6 +31,10 @@ pub(super) fn weight() -> impl TypedValueParser<Value = Weight> {
 
 pub(super) fn lookup() -> impl TypedValueParser<Value = Lookup> {
     one_of(Lookup::ALL.iter().map(|lookup| (lookup.name(), lookup.help())))
+}
+
+pub(super) fn quality() -> impl TypedValueParser<Value = Quality> {
+    one_of(Quality::ALL.iter().map(|quality| (quality.name(), quality.help())))
 }
 
 pub(super) fn short_tests() -> impl TypedValueParser<Value = ShortTests> {

@@ -13,6 +13,7 @@ pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
         .with_size(args.size.0)
         .with_up(args.up.of(&args.scene.scene))
         .with_lookup(args.lookup)
+        .with_quality(args.quality)
         .with_short_tests(args.short_tests)
         .with_acceleration(acceleration(args)?)
         .with_seed(args.seed)

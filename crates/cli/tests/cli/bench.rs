@@ -30,11 +30,11 @@ fn suites_are_listed() {
     let place = Place::new();
     let list = place.good(&["bench", "--list"]).stdout;
     let names: Vec<&str> = list.lines().filter_map(|line| line.split(' ').next()).collect();
-    assert_eq!(names, ["thesis", "quality", "rays", "stages"]);
+    assert_eq!(names, ["thesis", "quality", "rays", "shadows", "stages"]);
     assert!(
         place
             .refused(&["bench", "speed"])
-            .contains("there is no suite `speed`: choose thesis, quality, rays or stages")
+            .contains("there is no suite `speed`: choose thesis, quality, rays, shadows or stages")
     );
     assert!(place.refused(&["bench", "thesis", "--budget", "soon"]).contains("for instance 15m"));
     assert!(place.refused(&["bench", "thesis", "--json", "no/a.json"]).contains("the directory no does not exist"));

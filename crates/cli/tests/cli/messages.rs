@@ -64,7 +64,8 @@ fn an_unknown_word_is_answered_with_the_known() {
     let cases = [
         ("--mode", "light-mesh, ray-trace, area"),
         ("--weight", "constant, quadratic, smooth"),
-        ("--lookup", "auto, half-ball"),
+        ("--lookup", "auto, lists, half-ball"),
+        ("--quality", "draft, good, final"),
         ("--short-tests", "cells, plain"),
         ("--accel", "auto, grid, bvh"),
         ("--up", "auto, y, z"),
@@ -168,7 +169,8 @@ fn what_is_wrong_in_a_render_names_value_remedy_and_flag() {
         let message = message(flags);
         assert!(parts.iter().all(|part| message.contains(part)), "{flags:?}: {message}");
     }
-    let chosen = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16"]).stderr;
+    let flags = ["--size", "16x16", "--lookup", "half-ball"];
+    let chosen = place.good(&[&["render", "room.toml", "-o", "a.png"], &flags[..]].concat()).stderr;
     assert!(chosen.contains("chosen for this image (--step sets another)"), "{chosen}");
 }
 

@@ -27,8 +27,10 @@ fn choices_made_for_the_user_are_said_and_quiet_is_quiet() {
         done.stderr.contains("the scene has no lights: using a key light above the camera and a weaker fill light"),
         "{done:?}"
     );
-    assert!(done.stderr.contains("chosen for this image (--step sets another)"), "{done:?}");
+    assert!(done.stderr.contains("64 samples of each light, quality good (--quality sets another)"), "{done:?}");
     assert!(!done.stderr.contains("no camera"), "{done:?}");
+    let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16", "--lookup", "half-ball"]);
+    assert!(done.stderr.contains("chosen for this image (--step sets another)"), "{done:?}");
     let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16", "-q"]);
     assert_eq!(done.stderr, "");
 }
@@ -80,7 +82,22 @@ fn modes_and_their_settings_reach_the_renderer() {
     let area = settings(&["--mode", "area", "--samples", "9", "--seed", "7"]);
     assert_eq!((&area["mode"], &area["samples"], &area["seed"]), (&json!("area"), &json!(9), &json!(7)));
     assert_eq!(settings(&["--mode", "area"])["samples"], 225);
-    assert_eq!(settings(&[])["samples"], 4);
+    assert_eq!(settings(&["--lookup", "half-ball"])["samples"], 4);
+    for (flags, quality, samples) in [
+        (&[][..], json!("good"), 64),
+        (&["--quality", "draft"], json!("draft"), 16),
+        (&["--quality", "final", "--lookup", "lists"], json!("final"), 256),
+        (&["--quality", "final", "--samples", "5"], json!(null), 5),
+    ] {
+        let lists = settings(flags);
+        assert_eq!((&lists["lookup"], &lists["quality"]), (&json!("lists"), &quality), "{flags:?}");
+        assert_eq!(lists["samples"], samples, "{flags:?}");
+    }
+    for flags in [["--step", "auto"], ["--radius", "1.5"], ["--weight", "constant"]] {
+        assert_eq!(settings(&flags)["lookup"], "half-ball", "{flags:?}");
+        let lists = settings(&[&flags[..], &["--lookup", "lists"]].concat());
+        assert_eq!((&lists["lookup"], &lists["step"]), (&json!("lists"), &json!(null)), "{flags:?}");
+    }
 }
 
 #[test]
@@ -180,7 +197,8 @@ fn transfer_is_of_8_bit_files() {
 #[test]
 fn progress_is_one_json_object_a_line() {
     let place = Place::new();
-    let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "32x32", "--progress", "json"]);
+    let flags = ["--size", "32x32", "--progress", "json", "--lookup", "half-ball"];
+    let done = place.good(&[&["render", "room.toml", "-o", "a.png"], &flags[..]].concat());
     let events: Vec<serde_json::Value> = done.stderr.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let stages = |event: &str| -> Vec<String> {
         let of_kind = events.iter().filter(|it| it["event"] == event);

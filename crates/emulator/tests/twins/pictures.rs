@@ -4,7 +4,7 @@ use glam::Vec3;
 use lightmesh_image::{Layers, Transfer};
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{
-    Counts, Frame, GivenPoints, Mode, PointVisibility, Settings, Step, Unobserved, render_on, visibility_on,
+    Counts, Frame, GivenPoints, Lookup, Mode, PointVisibility, Settings, Step, Unobserved, render_on, visibility_on,
 };
 use lightmesh_scene::Bounds;
 use lightmesh_testkit::Random;
@@ -15,27 +15,39 @@ use crate::trials::{Case, Target};
 
 const SIZE: [u32; 2] = [45, 37];
 
+/// A technique: its name, and the mode and lookup that select it.
+type Way = (&'static str, Mode, Lookup);
+
+const WAYS: [Way; 4] = [
+    ("lists", Mode::LightMesh, Lookup::Lists),
+    ("light-mesh", Mode::LightMesh, Lookup::HalfBall),
+    ("ray-trace", Mode::RayTrace, Lookup::Auto),
+    ("area", Mode::Area, Lookup::Auto),
+];
+
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     let mut cases = Vec::new();
     for subject in SUBJECTS.iter().chain([&TEXTURED]) {
-        for mode in [Mode::LightMesh, Mode::RayTrace, Mode::Area] {
-            let name = format!("{}::picture::{}", subject.name, mode.name());
-            cases.push(Case::new(name, move |cuda| same_picture(cuda, subject, mode)));
-            let name = format!("{}::points::{}", subject.name, mode.name());
-            cases.push(Case::new(name, move |cuda| same_at_points(cuda, subject, mode)));
+        for way in WAYS {
+            let (name, ..) = way;
+            let picture = format!("{}::picture::{name}", subject.name);
+            cases.push(Case::new(picture, move |cuda| same_picture(cuda, subject, way)));
+            let points = format!("{}::points::{name}", subject.name);
+            cases.push(Case::new(points, move |cuda| same_at_points(cuda, subject, way)));
         }
     }
     cases
 }
 
-fn settings(subject: &Subject, mode: Mode) -> Settings {
-    let settings = Settings::default().with_mode(mode).with_size(SIZE).with_bounces(2).with_layers(true);
+fn settings(subject: &Subject, (_, mode, lookup): Way) -> Settings {
+    let settings =
+        Settings::default().with_mode(mode).with_lookup(lookup).with_size(SIZE).with_bounces(2).with_layers(true);
     settings.with_samples(4).with_step(Step::Fixed(subject.step)).with_radius(2.1)
 }
 
-fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, mode: Mode) {
+fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, way: Way) {
     let scene = subject.prepared(0);
-    let settings = settings(subject, mode);
+    let settings = settings(subject, way);
     let host = render_on(&Cpu, scene, &settings, &Unobserved).unwrap();
     let device = render_on(cuda, scene, &settings, &Unobserved).unwrap();
     same_colors::<R>(&host, &device);
@@ -48,7 +60,7 @@ fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, mode: Mode
 }
 
 /// Given points, all over the scene and a little outside of it, see the same.
-fn same_at_points<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, mode: Mode) {
+fn same_at_points<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, way: Way) {
     let scene = subject.prepared(0);
     let unit = Bounds { min: Vec3::ZERO, max: Vec3::ONE };
     let bounds = if scene.geometry.bounds.is_empty() { unit } else { scene.geometry.bounds };
@@ -57,7 +69,7 @@ fn same_at_points<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, mode: Mo
     let points: Vec<Vec3> = (0..1500).map(|_| bounds.center() + 0.6 * signed() * bounds.extent()).collect();
     let normals: Vec<Vec3> = points.iter().map(|_| signed()).collect();
     let given = GivenPoints::new(scene, &points, &normals).unwrap();
-    let settings = settings(subject, mode);
+    let settings = settings(subject, way);
     let host = visibility_on(&Cpu, &given, &settings, &Unobserved).unwrap();
     let device = visibility_on(cuda, &given, &settings, &Unobserved).unwrap();
     let counted = |seen: &PointVisibility| counts(&seen.stats.counts);

@@ -62,6 +62,7 @@ fn settings(resolved: &Resolved, device: &'static str, rows_per_band: u32) -> Se
         radius: None,
         weight: None,
         lookup: None,
+        quality: None,
         short_tests: None,
         samples: sampling.samples,
         accel: scene.geometry.accelerator.name(),

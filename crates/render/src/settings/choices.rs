@@ -44,7 +44,7 @@ macro_rules! words {
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #[non_exhaustive]
         pub enum Lookup {
-            /// The best available.
+            /// Occluder lists, or a half-ball if step, radius or weight are set, which only that has.
             #[default]
             Auto,
             $($(#[doc = $lookup_help])* $lookup,)*
@@ -65,7 +65,7 @@ macro_rules! words {
             /// A short description.
             pub fn help(self) -> &'static str {
                 match self {
-                    Lookup::Auto => "The best available.",
+                    Lookup::Auto => "Lists, or half-ball if step, radius or weight are set.",
                     $(Lookup::$lookup => concat!($($lookup_help),*).trim_ascii_start(),)*
                 }
             }
@@ -189,6 +189,53 @@ impl ShadowTests {
 
 parse_by_name!(ShadowTests, "shadow-test method");
 
+/// How good the shadows of lights with a size are, and how much time they may take.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Quality {
+    /// 16 samples of a light at each surface point.
+    Draft,
+    /// 64 samples.
+    #[default]
+    Good,
+    /// 256 samples.
+    Final,
+}
+
+impl Quality {
+    /// All of them.
+    pub const ALL: &'static [Quality] = &[Quality::Draft, Quality::Good, Quality::Final];
+
+    /// Its name, also in statistics.
+    pub fn name(self) -> &'static str {
+        match self {
+            Quality::Draft => "draft",
+            Quality::Good => "good",
+            Quality::Final => "final",
+        }
+    }
+
+    /// A short description.
+    pub fn help(self) -> &'static str {
+        match self {
+            Quality::Draft => "16 samples of a light: for a quick look",
+            Quality::Good => "64 samples: hardly any noise",
+            Quality::Final => "256 samples: no visible noise",
+        }
+    }
+
+    /// Samples of a light with a size at each surface point.
+    pub fn samples(self) -> u32 {
+        match self {
+            Quality::Draft => 16,
+            Quality::Good => 64,
+            Quality::Final => 256,
+        }
+    }
+}
+
+parse_by_name!(Quality, "quality");
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -198,6 +245,8 @@ mod tests {
         Mode::ALL.iter().for_each(|mode| assert_eq!(mode.to_string().parse(), Ok(*mode)));
         Lookup::ALL.iter().for_each(|lookup| assert_eq!(lookup.to_string().parse(), Ok(*lookup)));
         ShortTests::ALL.iter().for_each(|tests| assert_eq!(tests.to_string().parse(), Ok(*tests)));
+        ShadowTests::ALL.iter().for_each(|tests| assert_eq!(tests.to_string().parse(), Ok(*tests)));
+        Quality::ALL.iter().for_each(|quality| assert_eq!(quality.to_string().parse(), Ok(*quality)));
         assert_eq!(
             "soft".parse::<Mode>().unwrap_err().to_string(),
             "there is no mode `soft`; available: light-mesh, ray-trace, area"

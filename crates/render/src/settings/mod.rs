@@ -7,7 +7,7 @@ mod setting;
 use lightmesh_scene::{Camera, Up, Weight};
 
 pub use acceleration::Acceleration;
-pub use choices::{Lookup, Mode, ShadowTests, ShortTests, Step, UnknownStep};
+pub use choices::{Lookup, Mode, Quality, ShadowTests, ShortTests, Step, UnknownStep};
 pub use setting::Setting;
 
 /// All settings of an image, apart from the scene. Fields can be set, or methods chained; more may be added.
@@ -39,11 +39,13 @@ pub struct Settings {
     pub weight: Option<Weight>,
     /// How light-mesh mode looks up visibility.
     pub lookup: Lookup,
+    /// How good soft shadows are: the number of samples, unless `samples` is set.
+    pub quality: Quality,
     /// How short tests are evaluated.
     pub short_tests: ShortTests,
     /// How area mode tests the samples of a light.
     pub shadow_tests: ShadowTests,
-    /// Shadow rays per area light; `None`: 225 in area mode, 4 per light point in light-mesh mode.
+    /// Samples of a light with a size; `None`: by `quality`, 225 in area mode, 4 per light point of a half-ball.
     pub samples: Option<u32>,
     /// The acceleration structure.
     pub acceleration: Acceleration,
@@ -67,6 +69,7 @@ impl Default for Settings {
             radius: None,
             weight: None,
             lookup: Lookup::Auto,
+            quality: Quality::Good,
             short_tests: ShortTests::Cells,
             shadow_tests: ShadowTests::Rows,
             samples: None,
@@ -129,6 +132,11 @@ impl Settings {
     /// How light-mesh mode looks up visibility.
     pub fn with_lookup(self, lookup: Lookup) -> Settings {
         Settings { lookup, ..self }
+    }
+
+    /// How good soft shadows are: the number of samples, unless that is set.
+    pub fn with_quality(self, quality: Quality) -> Settings {
+        Settings { quality, ..self }
     }
 
     /// How short tests are evaluated.

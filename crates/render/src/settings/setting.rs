@@ -17,6 +17,8 @@ pub enum Setting {
     Mode,
     /// [`Settings::lookup`](crate::Settings::lookup).
     Lookup,
+    /// [`Settings::quality`](crate::Settings::quality).
+    Quality,
     /// [`Settings::samples`](crate::Settings::samples).
     Samples,
     /// [`Settings::acceleration`](crate::Settings::acceleration).
@@ -37,6 +39,7 @@ impl Setting {
         Setting::Radius,
         Setting::Mode,
         Setting::Lookup,
+        Setting::Quality,
         Setting::Samples,
         Setting::Acceleration,
         Setting::MemoryLimit,
@@ -52,6 +55,7 @@ impl Setting {
             Setting::Radius => "radius",
             Setting::Mode => "mode",
             Setting::Lookup => "lookup",
+            Setting::Quality => "quality",
             Setting::Samples => "samples",
             Setting::Acceleration => "acceleration",
             Setting::MemoryLimit => "memory_limit",

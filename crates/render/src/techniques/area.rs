@@ -16,7 +16,9 @@ use crate::stats::SettingsStats;
 pub(crate) struct Area;
 
 impl Visible for Area {
-    const SAMPLES: u32 = 225;
+    fn default_samples(_: &Settings) -> u32 {
+        225
+    }
 
     fn resolve(_: &Request) -> Result<Area, RenderError> {
         Ok(Area)

@@ -26,7 +26,9 @@ pub(crate) struct HalfBall {
 }
 
 impl Visible for HalfBall {
-    const SAMPLES: u32 = 4;
+    fn default_samples(_: &Settings) -> u32 {
+        4
+    }
 
     fn resolve(request: &Request) -> Result<HalfBall, RenderError> {
         let Request { scene, settings, view, observer, bounds } = *request;

@@ -1,13 +1,15 @@
 //! Exact area shadows by occluder lists: the triangles that can hide a light are found once for surface points that lie close together. The
 //! same bits as [area mode](super::area).
 
+use lightmesh_scene::{Light, LightKind};
+
 use super::{Request, Visible};
 use crate::backend::run::Run;
 use crate::backend::{Backend, WaveOf};
 use crate::error::RenderError;
 use crate::plan::Footprint;
 use crate::prepared::PreparedScene;
-use crate::settings::{Lookup, Settings};
+use crate::settings::{Lookup, Setting, Settings};
 use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stats::SettingsStats;
@@ -17,9 +19,17 @@ use crate::stats::SettingsStats;
 pub(crate) struct Lists;
 
 impl Visible for Lists {
-    const SAMPLES: u32 = 64;
+    fn default_samples(settings: &Settings) -> u32 {
+        settings.quality.samples()
+    }
 
-    fn resolve(_: &Request) -> Result<Lists, RenderError> {
+    fn resolve(request: &Request) -> Result<Lists, RenderError> {
+        let Settings { quality, samples, .. } = request.settings;
+        let has_size = |light: &Light| light.has_size() || matches!(light.kind, LightKind::Point { spread, .. } if spread > 0.0);
+        if samples.is_none() && request.scene.scene.lights.iter().any(has_size) {
+            let number = quality.samples();
+            request.observer.chose(Setting::Quality, &format!("{number} samples of each light, quality {}", quality.name()));
+        }
         Ok(Lists)
     }
 
@@ -48,7 +58,8 @@ impl Visible for Lists {
         true
     }
 
-    fn describe(&self, _: &PreparedScene, _: &Settings, stats: &mut SettingsStats) {
+    fn describe(&self, _: &PreparedScene, settings: &Settings, stats: &mut SettingsStats) {
+        stats.quality = settings.samples.is_none().then(|| settings.quality.name());
         stats.lookup = Some(Lookup::Lists.name());
     }
 }

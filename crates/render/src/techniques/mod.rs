@@ -31,8 +31,8 @@ pub(crate) struct Request<'a> {
 
 /// The interface of a technique.
 pub(crate) trait Visible: Sized {
-    /// Default number of shadow rays per area light.
-    const SAMPLES: u32;
+    /// Default number of samples of a light with a size.
+    fn default_samples(settings: &Settings) -> u32;
 
     /// Resolves the settings that the technique needs, and tells the observer what was chosen.
     fn resolve(request: &Request) -> Result<Self, RenderError>;
@@ -82,7 +82,7 @@ macro_rules! techniques {
             /// Shadow rays per area light.
             pub(crate) fn samples(settings: &Settings) -> u32 {
                 $(if chosen(settings, Mode::$mode, techniques!(@lookup $lookup)) {
-                    return settings.samples.unwrap_or($file::$name::SAMPLES);
+                    return settings.samples.unwrap_or_else(|| $file::$name::default_samples(settings));
                 })*
                 settings.samples.unwrap_or(1)
             }
@@ -126,11 +126,19 @@ macro_rules! techniques {
 
 technique_table!(techniques);
 
-/// Whether the settings select the technique of `mode` and `lookup`. Without a chosen lookup, the first of the table is used; a mode that
-/// looks nothing up ignores it.
+/// Whether the settings select the technique of `mode` and `lookup`; a mode that looks nothing up ignores it.
 fn chosen(settings: &Settings, mode: Mode, lookup: Option<Lookup>) -> bool {
-    let looked_up = |lookup| settings.lookup == Lookup::Auto || settings.lookup == lookup;
-    settings.mode == mode && lookup.is_none_or(looked_up)
+    settings.mode == mode && lookup.is_none_or(|lookup| lookup == resolved_lookup(settings))
+}
+
+/// Without a chosen lookup, settings that mean something to one lookup alone select it.
+fn resolved_lookup(settings: &Settings) -> Lookup {
+    let of_half_ball = settings.step.is_some() || settings.radius.is_some() || settings.weight.is_some();
+    match settings.lookup {
+        Lookup::Auto if of_half_ball => Lookup::HalfBall,
+        Lookup::Auto => Lookup::Lists,
+        chosen => chosen,
+    }
 }
 
 fn no_technique(settings: &Settings) -> RenderError {

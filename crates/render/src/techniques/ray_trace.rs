@@ -16,7 +16,9 @@ use crate::stats::SettingsStats;
 pub(crate) struct RayTrace;
 
 impl Visible for RayTrace {
-    const SAMPLES: u32 = 4;
+    fn default_samples(_: &Settings) -> u32 {
+        4
+    }
 
     fn resolve(_: &Request) -> Result<RayTrace, RenderError> {
         Ok(RayTrace)

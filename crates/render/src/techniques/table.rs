@@ -1,8 +1,8 @@
 //! The table of techniques. To add one, write its file next to this one and add its line here, with a mode or a lookup if it has a new
-//! name.
+//! name; `resolved_lookup` in the module above says which lookup is used if none is chosen.
 
 /// Calls a macro with the table: the modes with their names, the lookups of light-mesh mode with theirs, and the techniques as
-/// `file::Type for Mode by Lookup`. Without a chosen lookup, the first technique of a mode is used.
+/// `file::Type for Mode by Lookup`.
 macro_rules! technique_table {
     ($use:ident) => {
         $use! {
@@ -15,14 +15,14 @@ macro_rules! technique_table {
                 Area = "area",
             }
             lookups {
-                /// Formula (3): the mean over the light points of a half-ball.
-                HalfBall = "half-ball",
                 /// Exact area shadows: the triangles that can hide a light, found once for neighbouring surface points.
                 Lists = "lists",
+                /// Formula (3), the thesis: the mean over the light points of a half-ball.
+                HalfBall = "half-ball",
             }
             techniques {
-                half_ball::HalfBall for LightMesh by HalfBall,
                 lists::Lists for LightMesh by Lists,
+                half_ball::HalfBall for LightMesh by HalfBall,
                 ray_trace::RayTrace for RayTrace by None,
                 area::Area for Area by None,
             }

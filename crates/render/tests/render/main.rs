@@ -6,6 +6,7 @@ mod determinism;
 mod fallback;
 mod figures;
 mod kept;
+mod lists;
 mod lives;
 mod mirrors;
 mod placement;
