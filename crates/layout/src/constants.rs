@@ -220,7 +220,7 @@ constants! {
     /// Parts of four words of a candidate that may hide a light: three corners with the normal.
     OCCLUDER_PARTS: u32 = 3;
     /// Words that describe where such candidates are searched for.
-    SEARCHED_WORDS: u32 = 56;
+    SEARCHED_WORDS: u32 = 64;
     /// Words of the rows of samples in shared memory, of one shape: four a row, and the end of each word's rows.
     ROW_TABLE_WORDS: u32 = 4 * MOST_ROWS + 12;
     /// The margin of searches for what may hide a light, 2^-16 of the size of the searched space.

@@ -189,12 +189,21 @@ DEVICE Region<ShaftForm> region_shaft(const Bounds &origins, const Bounds &emitt
     return Region<ShaftForm>{form, no_planes(), Bounds{min(origins.low, emitter.low), max(origins.high, emitter.high)}};
 }
 
-// The same shaft with its faces in shared memory.
-DEVICE Region<SharedShaftForm> region_in_memory(const Region<ShaftForm> &region, ShaftForm *memory) {
-    if (lane_of_thread() == 0)
-        *memory = region.form;
+// The same with its faces in shared memory. Each of six lanes computes a face.
+DEVICE Region<SharedShaftForm> region_shaft(const Bounds &origins, const Bounds &emitter, ShaftForm *memory) {
+    static_assert(sizeof(ShaftForm) == 18 * sizeof(float), "lower faces: from, to, inverse; the same of upper faces");
+    const unsigned lane = lane_of_thread(), axis = lane % 3;
+    if (lane < 6) {
+        const bool upper = lane >= 3;
+        const float from = component(axis, upper ? origins.high : origins.low), to = component(axis, upper ? emitter.high : emitter.low);
+        float *face = reinterpret_cast<float *>(memory) + (upper ? 9 : 0) + axis;
+        face[0] = from;
+        face[3] = to;
+        face[6] = inverse_way(from, to, upper ? 1.0f : -1.0f);
+    }
     __syncwarp();
-    return Region<SharedShaftForm>{SharedShaftForm{memory}, region.planes, region.bounds};
+    const Bounds bounds = {min(origins.low, emitter.low), max(origins.high, emitter.high)};
+    return Region<SharedShaftForm>{SharedShaftForm{memory}, no_planes(), bounds};
 }
 
 // The part of a region that does not lie below all the planes lowered by `slack`; everything if there are none.

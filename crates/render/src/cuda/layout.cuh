@@ -124,7 +124,7 @@
 // Parts of four words of a candidate that may hide a light: three corners with the normal.
 #define OCCLUDER_PARTS 3u
 // Words that describe where such candidates are searched for.
-#define SEARCHED_WORDS 56u
+#define SEARCHED_WORDS 64u
 // Words of the rows of samples in shared memory, of one shape: four a row, and the end of each word's rows.
 #define ROW_TABLE_WORDS 92u
 // The margin of searches for what may hide a light, 2^-16 of the size of the searched space.

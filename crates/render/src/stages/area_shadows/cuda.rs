@@ -1,6 +1,6 @@
 //! The reference on a CUDA device: a warp for 32 surface points, one after the other.
 
-use lightmesh_layout::constants::{FOUND_TRIANGLES, MOST_WORDS, PLANE_WORDS, ROW_TABLE_WORDS, WARP};
+use lightmesh_layout::constants::{FOUND_TRIANGLES, MOST_WORDS, PLANE_WORDS, ROW_TABLE_WORDS, SEARCHED_WORDS, WARP};
 
 use crate::cuda::Runtime;
 use crate::error::RenderError;
@@ -24,6 +24,10 @@ pub(crate) fn area_shadows<R: Runtime>(
     aim: &Aim,
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let warps = wave.rays.blocks(BLOCK_SIDE) * u64::from(BLOCK / WARP);
-    let work = WarpWork { warps, first: FIRST_WARPS, words: PLANE_WORDS + FOUND_TRIANGLES + 2 * ROW_TABLE_WORDS };
+    let work = WarpWork {
+        warps,
+        first: FIRST_WARPS,
+        words: PLANE_WORDS + SEARCHED_WORDS + FOUND_TRIANGLES + 2 * ROW_TABLE_WORDS,
+    };
     test_samples(cuda, wave, aim, (&KERNELS, work), |record| record)
 }

@@ -7,12 +7,22 @@
 #include "shadow/seen.cuh"
 #include "stages/occluder_lists/candidates.cuh"
 
+// What is known of the surface points that see anything of a light. Often it is the same for the next one.
+struct Around {
+    Bounds origins;
+    // Number of tangent planes.
+    unsigned planes;
+    // The points.
+    unsigned lanes;
+};
+
 // The shared memory of a warp.
 struct ListMemory {
     float4 *candidates;
     // What is searched: the same for all lanes, and too much for their registers.
     ShaftForm *form;
     Shaft *shaft;
+    Around *around;
     PlanesMemory *planes;
     unsigned *found, *search;
     // The rows of discs and rectangles.
@@ -21,7 +31,7 @@ struct ListMemory {
     float *offsets;
 };
 
-static_assert(sizeof(ShaftForm) + sizeof(Shaft) <= 4 * SEARCHED_WORDS, "words of what is searched");
+static_assert(sizeof(ShaftForm) + sizeof(Shaft) + sizeof(Around) <= 4 * SEARCHED_WORDS, "words of what is searched");
 
 DEVICE ListMemory list_memory(unsigned *shared, unsigned search_words) {
     ListMemory memory;
@@ -29,6 +39,7 @@ DEVICE ListMemory list_memory(unsigned *shared, unsigned search_words) {
     shared += 4 * OCCLUDER_PARTS * WARP;
     memory.form = reinterpret_cast<ShaftForm *>(shared);
     memory.shaft = reinterpret_cast<Shaft *>(shared + sizeof(ShaftForm) / 4);
+    memory.around = reinterpret_cast<Around *>(shared + (sizeof(ShaftForm) + sizeof(Shaft)) / 4);
     shared += SEARCHED_WORDS;
     memory.planes = reinterpret_cast<PlanesMemory *>(shared);
     shared += PLANE_WORDS;
@@ -52,6 +63,8 @@ struct ItemSight {
     // Whether the view is computed.
     bool looked;
     unsigned long long key;
+    // The samples of all lights in front of the lane's surface.
+    unsigned asked;
 };
 
 // The view of a light is computed when it is needed: most items find nothing between them and a light.
@@ -133,6 +146,21 @@ DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, con
     return test_candidates(item, table, memory.candidates, __popc(dark | kept), seen);
 }
 
+// 2. The box around the surface points that are `alive`, and their tangent planes.
+DEVICE void look_around(const ItemSight &item, bool alive, const ListMemory &memory) {
+    const unsigned lanes = __ballot_sync(ALL_LANES, alive);
+    if (memory.around->lanes == lanes)
+        return;
+    const Vec3 &origin = item.point.origin;
+    const Bounds origins = {
+        Vec3{warp_min(alive ? origin.x : F32_MAX), warp_min(alive ? origin.y : F32_MAX), warp_min(alive ? origin.z : F32_MAX)},
+        Vec3{warp_max(alive ? origin.x : -F32_MAX), warp_max(alive ? origin.y : -F32_MAX), warp_max(alive ? origin.z : -F32_MAX)}};
+    const TangentPlanes planes = tangent_planes(origins.low, alive, origin, item.point.normal, memory.planes);
+    if (lane_of_thread() == 0)
+        *memory.around = Around{origins, planes.count, lanes};
+    __syncwarp();
+}
+
 // The number of samples of a light that each lane sees.
 template <unsigned WORDS, class Structure>
 DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, ItemSight &item, unsigned light,
@@ -143,17 +171,15 @@ DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, I
     const bool alive = any(seen);
     if (!__any_sync(ALL_LANES, alive))
         return 0;
-    count(tally_shard(args.tally).shadow_rays, number(seen));
+    item.asked += number(seen);
 
     // 2. Search.
     const Light &emitter = args.scene.lights[light];
-    const Vec3 &origin = item.point.origin;
-    const Bounds origins = {
-        Vec3{warp_min(alive ? origin.x : F32_MAX), warp_min(alive ? origin.y : F32_MAX), warp_min(alive ? origin.z : F32_MAX)},
-        Vec3{warp_max(alive ? origin.x : -F32_MAX), warp_max(alive ? origin.y : -F32_MAX), warp_max(alive ? origin.z : -F32_MAX)}};
+    look_around(item, alive, memory);
+    const Bounds origins = memory.around->origins;
     const Bounds bounds = emitter_bounds(args.scene, emitter, item.shape, origins);
-    const TangentPlanes planes = tangent_planes(origins.low, alive, origin, item.point.normal, memory.planes);
-    const auto region = region_in_memory(region_above(shadow_region(origins, bounds), planes, 0.0f), memory.form);
+    const TangentPlanes planes = {memory.around->planes, origins.low, memory.planes};
+    const auto region = region_above(shadow_region(origins, bounds, memory.form), planes, 0.0f);
     const bool ball = emitter.kind == Light::POINT || emitter.kind == Light::SPHERE;
     if (lane_of_thread() == 0)
         *memory.shaft = shaft_of(origins, bounds, ball ? emitter.radius : INFINITE);
@@ -186,6 +212,10 @@ DEVICE void shadows_of_item(const Shadows &args, const Structure &structure) {
     const unsigned ray = args.members[(entry >> 6) + (item.has ? lane : 0)];
     item.point = surface_point_of(args.scene, args.rays, args.hits, ray);
     item.key = ray_key(args.rays, ray);
+    item.asked = 0;
+    if (lane == 0)
+        memory.around->lanes = 0;
+    __syncwarp();
     for (unsigned light = args.first_light; light < args.end_light; ++light) {
         item.shape = shape_of(args.sampling, args.scene.lights[light]);
         item.looked = false;
@@ -197,4 +227,5 @@ DEVICE void shadows_of_item(const Shadows &args, const Structure &structure) {
             add_seen(args, item.shape, light, ray, seen);
         __syncwarp();
     }
+    ::count(tally_shard(args.tally).shadow_rays, item.asked);
 }
