@@ -108,10 +108,12 @@ impl Case<'_> {
         for (method, measured) in METHODS.iter().zip(&turns.measured) {
             let mut row = self.row(method);
             measured.fill(&mut row);
-            let sums = (0..measured.seconds["render"].0.len()).map(|round| {
-                STAGES.iter().filter_map(|stage| row.seconds.get(*stage)).map(|samples| samples.0[round]).sum()
-            });
-            let sums = Samples(sums.collect());
+            let mut sums = Samples::default();
+            for round in 0..turns.repetitions {
+                sums.push(
+                    STAGES.iter().filter_map(|stage| row.seconds.get(*stage)).map(|samples| samples.0[round]).sum(),
+                );
+            }
             row.seconds.insert("shadows".to_owned(), sums);
             if method.name != "rows" {
                 if reference.is_none() {
