@@ -50,8 +50,8 @@ pub enum LightKind {
     Point {
         /// Its position.
         position: Vec3,
-        /// For area shadows the thesis replaces each point light by many near it: they are distributed in a sphere of this radius.
-        /// Every other mode uses the point alone. 0: a point in every mode.
+        /// For area shadows the thesis replaces each point light by many near it: they are distributed in a sphere of this radius, in
+        /// area mode and by occluder lists. Hard shadows and light points use the point alone. 0: a point always.
         spread: f32,
     },
     /// Light from infinity, such as the sun's.
@@ -233,7 +233,7 @@ impl Light {
         Light { name: name.into(), ..self }
     }
 
-    /// The same point light, distributed by area mode over a ball of this radius. Lights of other kinds have no spread and stay
+    /// The same point light, distributed over a ball of this radius where shadows are soft. Lights of other kinds have no spread and stay
     /// unchanged.
     pub fn with_spread(self, spread: f32) -> Light {
         match self.kind {

@@ -49,9 +49,9 @@ impl Visible for Lists {
         run.stage(Stage::LongTests, [n, pieces], |backend| backend.occluder_lists(wave, &items, &aim))
     }
 
-    fn footprint(&self, _: u64) -> Footprint {
-        // The ray of each surface point twice, and the share of an item.
-        Footprint { host: 12, device: 8 }
+    fn footprint(&self, lights: u64) -> Footprint {
+        // The ray of each surface point, by tile and in one list; its part of an item; on the host its shares in the order of items, too.
+        Footprint { host: 12 + 4 * lights, device: 8 }
     }
 
     fn spreads_points(&self) -> bool {

@@ -126,7 +126,7 @@ pub(crate) struct LightEntry {
     /// Sphere and disk.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) radius: Option<Number>,
-    /// Point: radius of the ball in which area mode distributes the points that replace it. Default: 0.
+    /// Point: radius of the ball over which soft shadows distribute the points that replace it. Default: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) spread: Option<Number>,
     /// Directional: angular diameter of the disk that the light comes from, degrees; the sun's is 0.53. At most 179. Default: 0,
