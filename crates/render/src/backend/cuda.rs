@@ -77,7 +77,7 @@ impl<R: Runtime> Backend for Cuda<R> {
         let [width, _] = view.size();
         let count = width * rows.len() as u32;
         let record = Rays { view: view.record(), list: In::NULL, first_pixel: rows.start * width, count };
-        Ok(DeviceRays { record, list: None })
+        Ok(DeviceRays { record, list: None, spacing: view.spacing() })
     }
 
     fn ray_count(&self, rays: &DeviceRays<R>) -> usize {

@@ -16,6 +16,8 @@ pub struct DeviceRays<R: Runtime> {
     pub(crate) record: Rays,
     /// Keeps the list alive that the record points to.
     pub(crate) list: Option<Buffer<R, ListedRay>>,
+    /// As in [`RayList`](crate::data::rays::RayList).
+    pub(crate) spacing: [f32; 2],
 }
 
 /// Hits on a device, one per ray.
@@ -62,17 +64,6 @@ impl<R: Runtime> DeviceRays<R> {
     /// Number of rays.
     pub(crate) fn len(&self) -> usize {
         self.record.count as usize
-    }
-
-    /// The distance between the surface points of neighbouring pixels that face the camera: a constant, and a multiple of the distance.
-    /// Zero if the rays are not a camera's. As [`View::spacing`](crate::view::View).
-    pub(crate) fn spacing(&self) -> [f32; 2] {
-        if !self.is_from_camera() {
-            return [0.0; 2];
-        }
-        let right = self.record.view.right;
-        let pixel = glam::Vec3::new(right.x, right.y, right.z).length();
-        if self.record.view.perspective != 0 { [0.0, pixel] } else { [pixel, 0.0] }
     }
 
     /// Number of blocks of `edge`² threads with one ray per thread: tiles of a camera's rows, runs of a list.

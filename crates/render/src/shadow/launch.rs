@@ -21,10 +21,7 @@ pub(crate) struct SampleSets {
 
 impl SampleSets {
     pub(crate) fn new(aim: &Aim) -> SampleSets {
-        let rows = Rows::new(match aim {
-            Aim::Middle => 1,
-            Aim::Extent(sampling) => sampling.samples,
-        });
+        let rows = Rows::of(aim);
         let count = rows.disc.len().max(rows.rectangle.len()) as u32;
         SampleSets { rows, count }
     }

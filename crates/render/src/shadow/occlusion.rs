@@ -22,10 +22,12 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8, mask32x8, u32x8};
+use glam::Vec3;
 use lightmesh_layout::constants::{BEYOND, LEAST_SLOPE, MOST_ROWS, MOST_WORDS};
 use lightmesh_layout::scene::SampleRows;
 
 use super::sight::Sight;
+use crate::accel::Triangle;
 use crate::simd::{Axes, LANES, difference, fused_cross, fused_dot, splat, sum};
 use crate::surface::SurfacePoint;
 
@@ -287,4 +289,20 @@ fn power_of_two<S: Simd>(simd: S, k: f32x8<S>) -> u32x8<S> {
     let exponent = (k + 127.0) * f32x8::splat(simd, (1u32 << 23) as f32);
     let power: f32x8<S> = exponent.to_int::<i32x8<S>>().bitcast();
     power.to_int::<i32x8<S>>().bitcast()
+}
+
+/// Up to eight triangles, one in each lane; the last is repeated.
+#[inline(always)]
+pub(crate) fn gathered<S: Simd>(simd: S, triangles: &[Triangle], indices: &[u32]) -> [Axes<S>; 3] {
+    let mut corners = [[[0.0; LANES]; 3]; 3];
+    for lane in 0..LANES {
+        let index = indices[lane.min(indices.len() - 1)];
+        for (axes, Vec3 { x, y, z }) in corners.iter_mut().zip(triangles[index as usize].corners()) {
+            (axes[0][lane], axes[1][lane], axes[2][lane]) = (x, y, z);
+        }
+    }
+    let load = |axes: &[[f32; LANES]; 3]| {
+        [f32x8::from_slice(simd, &axes[0]), f32x8::from_slice(simd, &axes[1]), f32x8::from_slice(simd, &axes[2])]
+    };
+    [load(&corners[0]), load(&corners[1]), load(&corners[2])]
 }

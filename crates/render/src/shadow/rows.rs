@@ -19,6 +19,8 @@ use bytemuck::Zeroable;
 use lightmesh_layout::constants::{MOST_OF_ROW, MOST_ROWS, MOST_WORDS, SHIFTS};
 use lightmesh_layout::scene::SampleRows;
 
+use super::Aim;
+
 const ROWS: usize = MOST_ROWS as usize;
 const WORDS: usize = MOST_WORDS as usize;
 /// Bits of a word.
@@ -46,8 +48,16 @@ struct Row {
 }
 
 impl Rows {
+    /// Those of the lights that rays are aimed at.
+    pub(crate) fn of(aim: &Aim) -> Rows {
+        Rows::new(match aim {
+            Aim::Middle => 1,
+            Aim::Extent(sampling) => sampling.samples,
+        })
+    }
+
     /// `samples` samples, at least 1.
-    pub(crate) fn new(samples: u32) -> Rows {
+    fn new(samples: u32) -> Rows {
         Rows { disc: disc(samples), rectangle: rectangle(samples) }
     }
 }

@@ -1,12 +1,11 @@
 //! Exact area shadows by occluder lists: the triangles that can hide a light are found once for surface points that lie close together. The
 //! same bits as [area mode](super::area).
 
-use lightmesh_scene::{Light, LightKind};
-
 use super::{Request, Visible};
 use crate::backend::run::Run;
 use crate::backend::{Backend, WaveOf};
 use crate::error::RenderError;
+use crate::job::Sampling;
 use crate::plan::Footprint;
 use crate::prepared::PreparedScene;
 use crate::settings::{Lookup, Setting, Settings};
@@ -24,10 +23,10 @@ impl Visible for Lists {
     }
 
     fn resolve(request: &Request) -> Result<Lists, RenderError> {
-        let Settings { quality, samples, .. } = request.settings;
-        let has_size = |light: &Light| light.has_size() || matches!(light.kind, LightKind::Point { spread, .. } if spread > 0.0);
-        if samples.is_none() && request.scene.scene.lights.iter().any(has_size) {
-            let number = quality.samples();
+        let Settings { quality, samples, seed, .. } = *request.settings;
+        let number = quality.samples();
+        let aim = Aim::Extent(Sampling { samples: number, seed, spread: true });
+        if samples.is_none() && request.scene.scene.lights.iter().any(|light| aim.samples(light) > 1) {
             request.observer.chose(Setting::Quality, &format!("{number} samples of each light, quality {}", quality.name()));
         }
         Ok(Lists)

@@ -12,10 +12,10 @@ use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
 use crate::shadow::Aim;
-use crate::shadow::occlusion::{Bits, Offsets, Sights};
+use crate::shadow::occlusion::{Bits, Offsets, Sights, gathered};
 use crate::shadow::rows::Rows;
 use crate::shadow::sight::{Emitter, Sight};
-use crate::simd::{Axes, LANES, dispatch};
+use crate::simd::{LANES, dispatch};
 use crate::surface::SurfacePoint;
 
 /// Maximum number of surface points per task.
@@ -23,7 +23,7 @@ const BATCH: usize = 256;
 
 /// The visible share of each light from each surface point.
 pub(crate) fn area_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
-    let rows = Rows::new(wave.job.sampling.samples);
+    let rows = Rows::of(aim);
     let emitters = Emitter::all(wave, aim, &rows);
     let mut visibility = Visibility::dark(emitters.len(), wave.hits.len());
     let level = Level::new();
@@ -31,7 +31,7 @@ pub(crate) fn area_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
         let first = number * BATCH;
         let rays = first..wave.hits.len().min(first + BATCH);
         wave.job.piece(rays.len(), || {
-            let (mut found, mut asked) = (Found::default(), 0);
+            let (mut found, mut asked) = (Vec::new(), 0);
             for ray in rays.filter(|&ray| wave.sees(ray)) {
                 let point = wave.surface_point(ray);
                 for (emitter, shares) in emitters.iter().zip(&mut shares) {
@@ -47,46 +47,12 @@ pub(crate) fn area_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
     visibility
 }
 
-/// Triangles of a region, buffers.
-#[derive(Default)]
-struct Found {
-    indices: Vec<u32>,
-    /// Corners by axis, in groups of lanes.
-    corners: Vec<[[[f32; LANES]; 3]; 3]>,
-}
-
-impl Found {
-    /// Finds all triangles that may hide an emitter from a point.
-    fn search(&mut self, wave: &HostWave, emitter: &Emitter, point: &SurfacePoint) {
-        let geometry = &wave.scene.geometry;
-        let origin = Bounds { min: point.origin, max: point.origin };
-        let planes = TangentPlanes::new(point.origin, [(point.origin, point.normal)], 0.0);
-        let region = emitter.region(geometry, &origin).above(planes);
-        geometry.accelerator.triangles_in(&region, &mut self.indices);
-        self.corners.clear();
-        for indices in self.indices.chunks(LANES) {
-            let mut corners = [[[0.0; LANES]; 3]; 3];
-            for lane in 0..LANES {
-                let index = indices[lane.min(indices.len() - 1)];
-                for (axes, corner) in corners.iter_mut().zip(geometry.triangles[index as usize].corners()) {
-                    (axes[0][lane], axes[1][lane], axes[2][lane]) = (corner.x, corner.y, corner.z);
-                }
-            }
-            self.corners.push(corners);
-        }
-    }
-
-    #[inline(always)]
-    fn group<S: Simd>(simd: S, corners: &[[[f32; LANES]; 3]; 3]) -> [Axes<S>; 3] {
-        let load = |axes: &[[f32; LANES]; 3]| {
-            [
-                fearless_simd::f32x8::from_slice(simd, &axes[0]),
-                fearless_simd::f32x8::from_slice(simd, &axes[1]),
-                fearless_simd::f32x8::from_slice(simd, &axes[2]),
-            ]
-        };
-        [load(&corners[0]), load(&corners[1]), load(&corners[2])]
-    }
+/// Finds all triangles that may hide an emitter from a point.
+fn search(wave: &HostWave, emitter: &Emitter, point: &SurfacePoint, found: &mut Vec<u32>) {
+    let geometry = &wave.scene.geometry;
+    let origin = Bounds { min: point.origin, max: point.origin };
+    let planes = TangentPlanes::new(point.origin, [(point.origin, point.normal)], 0.0);
+    geometry.accelerator.triangles_in(&emitter.region(geometry, &origin).above(planes), found);
 }
 
 /// The number of samples of an emitter that a surface point sees. Adds to `asked` how many are in front of the surface.
@@ -97,18 +63,19 @@ fn seen<S: Simd>(
     emitter: &Emitter,
     point: &SurfacePoint,
     sight: &Sight,
-    found: &mut Found,
+    found: &mut Vec<u32>,
     asked: &mut u64,
 ) -> u32 {
     let sights = Sights::splat(simd, point, sight);
+    let triangles = &wave.scene.geometry.triangles;
     if emitter.is_point() {
         if sights.center_above_horizon(simd).to_bitmask() & 1 == 0 {
             return 0;
         }
         *asked += 1;
-        found.search(wave, emitter, point);
-        let hidden = |corners| sights.hides_center(simd, Found::group(simd, corners), 0xff) != 0;
-        return u32::from(!found.corners.iter().any(hidden));
+        search(wave, emitter, point, found);
+        let hidden = |indices| sights.hides_center(simd, gathered(simd, triangles, indices), 0xff) != 0;
+        return u32::from(!found.chunks(LANES).any(hidden));
     }
     let mut searched = false;
     let mut count = 0;
@@ -121,11 +88,11 @@ fn seen<S: Simd>(
         }
         *asked += u64::from(unhidden);
         if !searched {
-            found.search(wave, emitter, point);
+            search(wave, emitter, point, found);
             searched = true;
         }
-        for corners in &found.corners {
-            sights.hide(simd, Found::group(simd, corners), (set, &offsets), 0xff, &mut bits);
+        for indices in found.chunks(LANES) {
+            sights.hide(simd, gathered(simd, triangles, indices), (set, &offsets), 0xff, &mut bits);
         }
         count += words(&bits, set).map(u32::count_ones).sum::<u32>();
     }

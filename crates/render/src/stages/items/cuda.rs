@@ -28,7 +28,7 @@ pub(crate) fn items<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> Result<
         members: members.output(),
         ends: ends.output(),
         counts: counts.output(),
-        spacing: wave.rays.spacing(),
+        spacing: wave.rays.spacing,
         ..GroupItems::zeroed()
     };
     // 1. to 3. Each tile sorts its surface points and splits them into items.

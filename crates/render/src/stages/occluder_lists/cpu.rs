@@ -2,23 +2,22 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, f32x8, u32x8};
-use glam::Vec3;
 use lightmesh_layout::constants::{MOST_ROWS, MOST_WORDS, WARP};
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::Bounds;
 use rayon::prelude::*;
 
 use super::candidates::{Chosen, Shaft};
-use crate::accel::{TangentPlanes, Triangle};
+use crate::accel::TangentPlanes;
 use crate::counters::Tally;
 use crate::data::items::Items;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
 use crate::shadow::Aim;
-use crate::shadow::occlusion::{Bits, Offsets, Sights};
+use crate::shadow::occlusion::{Bits, Offsets, Sights, gathered};
 use crate::shadow::rows::Rows;
 use crate::shadow::sight::{Emitter, Sight};
-use crate::simd::{Axes, LANES, dispatch, splat};
+use crate::simd::{LANES, dispatch, splat};
 use crate::surface::SurfacePoint;
 
 /// Items per task.
@@ -28,7 +27,7 @@ const GROUPS: usize = WARP as usize / LANES;
 
 /// The visible share of each light from each surface point.
 pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, aim: &Aim) -> Visibility {
-    let rows = Rows::new(wave.job.sampling.samples);
+    let rows = Rows::of(aim);
     let emitters = Emitter::all(wave, aim, &rows);
     let lights = emitters.len();
     let level = Level::new();
@@ -259,20 +258,4 @@ fn lanes_of<S: Simd>(simd: S, bits: &[u32x8<S>; MOST_WORDS as usize], set: &Samp
         any |= *bits;
     }
     (!any.simd_eq(u32x8::splat(simd, 0))).to_bitmask() as u32
-}
-
-/// Up to eight triangles, one in each lane; the last is repeated.
-#[inline(always)]
-fn gathered<S: Simd>(simd: S, triangles: &[Triangle], indices: &[u32]) -> [Axes<S>; 3] {
-    let mut corners = [[[0.0; LANES]; 3]; 3];
-    for lane in 0..LANES {
-        let index = indices[lane.min(indices.len() - 1)];
-        for (axes, Vec3 { x, y, z }) in corners.iter_mut().zip(triangles[index as usize].corners()) {
-            (axes[0][lane], axes[1][lane], axes[2][lane]) = (x, y, z);
-        }
-    }
-    let load = |axes: &[[f32; LANES]; 3]| {
-        [f32x8::from_slice(simd, &axes[0]), f32x8::from_slice(simd, &axes[1]), f32x8::from_slice(simd, &axes[2])]
-    };
-    [load(&corners[0]), load(&corners[1]), load(&corners[2])]
 }

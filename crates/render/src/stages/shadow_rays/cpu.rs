@@ -16,7 +16,7 @@ const BATCH: usize = 1024;
 
 /// The visible share of each light, by shadow rays from each surface point.
 pub(crate) fn shadow_rays(wave: &HostWave, aim: &Aim) -> Visibility {
-    let rows = Rows::new(wave.job.sampling.samples);
+    let rows = Rows::of(aim);
     let emitters = Emitter::all(wave, aim, &rows);
     let most = wave.lights().iter().map(|light| aim.samples(light)).max().unwrap_or(1);
     let batch = (SEGMENTS / most as usize).clamp(1, BATCH);
