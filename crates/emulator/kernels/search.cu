@@ -51,7 +51,8 @@ DEVICE void search_region(const Search &args, const Structure &structure, const 
 template <class Structure>
 DEVICE void search_regions(const Search &args, const Structure &structure) {
     DYNAMIC_SHARED(unsigned, shared);
-    unsigned *list = shared + PLANE_WORDS, *memory = list + FOUND_TRIANGLES;
+    ShaftFaces *faces = reinterpret_cast<ShaftFaces *>(shared + PLANE_WORDS);
+    unsigned *list = shared + PLANE_WORDS + SHAFT_WORDS, *memory = list + FOUND_TRIANGLES;
     const Asked &asked = args.regions[blockIdx.x];
     const unsigned lane = lane_of_thread(), known = lane < asked.point_count ? lane : 0;
     const TangentPlanes planes = tangent_planes(asked.low, lane < asked.point_count, asked.points[known], asked.normals[known],
@@ -63,7 +64,7 @@ DEVICE void search_regions(const Search &args, const Structure &structure) {
         search_region(args, structure, region_above(region_near(origins, asked.reach), planes, asked.slack), list, memory);
     else
         search_region(args, structure,
-                      region_above(region_shaft(origins, Bounds{asked.emitter_low, asked.emitter_high}), planes, asked.slack), list,
+                      region_above(region_shaft(origins, Bounds{asked.emitter_low, asked.emitter_high}, faces), planes, asked.slack), list,
                       memory);
 }
 

@@ -232,6 +232,8 @@ constants! {
     TANGENT_PLANES: u32 = 4;
     /// Words of a region's tangent planes in shared memory.
     PLANE_WORDS: u32 = 5 * TANGENT_PLANES;
+    /// Words of a shaft's faces in shared memory, a multiple of four.
+    SHAFT_WORDS: u32 = 20;
     /// Number of entries of a search's node stack up to which a round takes four nodes.
     STACK_OF_ROUNDS: u32 = 64;
     /// Additional stack entries per level of the tree.

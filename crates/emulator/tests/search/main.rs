@@ -10,7 +10,7 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use lightmesh_emulator::Emulator;
-use lightmesh_layout::constants::{FOUND_TRIANGLES, PLANE_WORDS};
+use lightmesh_layout::constants::{FOUND_TRIANGLES, PLANE_WORDS, SHAFT_WORDS};
 use lightmesh_layout::names_per_structure;
 use lightmesh_layout::scene;
 use lightmesh_render::accel::{Region, TangentPlanes, Triangle};
@@ -115,7 +115,7 @@ fn search(prepared: &PreparedScene, regions: &[Asked]) -> Vec<Vec<u32>> {
         spare: 0,
     };
     let name = names_per_structure!("search_regions")[scene.structure() as usize];
-    let shared = 4 * (PLANE_WORDS + FOUND_TRIANGLES + scene.search_words());
+    let shared = 4 * (PLANE_WORDS + SHAFT_WORDS + FOUND_TRIANGLES + scene.search_words());
     let launch = Launch { blocks: regions.len() as u32, threads: 32, shared };
     emulator.launch(Kernel { module: "search", name }, launch, bytemuck::bytes_of(&arguments)).unwrap();
     let (found, counts) = (found.read().unwrap(), counts.read().unwrap());

@@ -104,27 +104,20 @@ DEVICE float inverse_way(float from, float to, float still) {
     return 1.0f / (fabsf(way) >= F32_MIN_POSITIVE ? way : still * F32_MIN_POSITIVE);
 }
 
-DEVICE Faces faces_of(const Vec3 &from, const Vec3 &to, float still) {
-    const Vec3 inverse = {inverse_way(from.x, to.x, still), inverse_way(from.y, to.y, still), inverse_way(from.z, to.z, still)};
-    return Faces{from, to, inverse};
-}
-
 DEVICE Vec3 faces_at(const Faces &faces, float t) { return faces.from + t * (faces.to - faces.from); }
+
+// The faces of a shaft, in shared memory: they are the same for all lanes, and too much for their registers.
+struct ShaftFaces {
+    Faces low, high;
+};
+
+static_assert(sizeof(ShaftFaces) <= 4 * SHAFT_WORDS, "words of the faces of a shaft");
 
 // The space between two boxes: twin of region/shaft.rs.
 struct ShaftForm {
     enum { SLANTED = true };
-    Faces low, high;
+    const ShaftFaces *faces;
 };
-
-// The same shaft in shared memory: it is the same for all lanes, and too much for their registers.
-struct SharedShaftForm {
-    enum { SLANTED = true };
-    const ShaftForm *shaft;
-};
-
-DEVICE const ShaftForm &shaft_of_form(const ShaftForm &form) { return form; }
-DEVICE const ShaftForm &shaft_of_form(const SharedShaftForm &form) { return *form.shaft; }
 
 // For which parameters a shaft may overlap a box on one axis.
 DEVICE void narrow_shaft(float low_from, float low_inverse, float high_from, float high_inverse, float low, float high,
@@ -142,15 +135,13 @@ DEVICE void narrow_shaft(float low_from, float low_inverse, float high_from, flo
 }
 
 DEVICE bool form_meets(const ShaftForm &shaft, const Vec3 &low, const Vec3 &high) {
-    const Faces &lower = shaft.low, &upper = shaft.high;
+    const Faces &lower = shaft.faces->low, &upper = shaft.faces->high;
     float first = 0.0f, last = 1.0f;
     narrow_shaft(lower.from.x, lower.inverse.x, upper.from.x, upper.inverse.x, low.x, high.x, first, last);
     narrow_shaft(lower.from.y, lower.inverse.y, upper.from.y, upper.inverse.y, low.y, high.y, first, last);
     narrow_shaft(lower.from.z, lower.inverse.z, upper.from.z, upper.inverse.z, low.z, high.z, first, last);
     return first <= last + REGION_ROUNDING;
 }
-
-DEVICE bool form_meets(const SharedShaftForm &form, const Vec3 &low, const Vec3 &high) { return form_meets(*form.shaft, low, high); }
 
 // ---- Regions ----
 
@@ -183,27 +174,19 @@ DEVICE Region<NearForm> region_near(const Bounds &origins, float reach) {
     return Region<NearForm>{NearForm{origins, square}, no_planes(), bounds};
 }
 
-// All points of all segments from a point of `origins` to a point of `emitter`; neither is empty.
-DEVICE Region<ShaftForm> region_shaft(const Bounds &origins, const Bounds &emitter) {
-    const ShaftForm form = {faces_of(origins.low, emitter.low, -1.0f), faces_of(origins.high, emitter.high, 1.0f)};
-    return Region<ShaftForm>{form, no_planes(), Bounds{min(origins.low, emitter.low), max(origins.high, emitter.high)}};
-}
-
-// The same with its faces in shared memory. Each of six lanes computes a face.
-DEVICE Region<SharedShaftForm> region_shaft(const Bounds &origins, const Bounds &emitter, ShaftForm *memory) {
-    static_assert(sizeof(ShaftForm) == 18 * sizeof(float), "lower faces: from, to, inverse; the same of upper faces");
+// All points of all segments from a point of `origins` to a point of `emitter`; neither is empty. Each of six lanes computes a face.
+DEVICE Region<ShaftForm> region_shaft(const Bounds &origins, const Bounds &emitter, ShaftFaces *memory) {
     const unsigned lane = lane_of_thread(), axis = lane % 3;
     if (lane < 6) {
         const bool upper = lane >= 3;
         const float from = component(axis, upper ? origins.high : origins.low), to = component(axis, upper ? emitter.high : emitter.low);
-        float *face = reinterpret_cast<float *>(memory) + (upper ? 9 : 0) + axis;
+        float *face = reinterpret_cast<float *>(memory) + (upper ? sizeof(Faces) / sizeof(float) : 0) + axis;
         face[0] = from;
         face[3] = to;
         face[6] = inverse_way(from, to, upper ? 1.0f : -1.0f);
     }
     __syncwarp();
-    const Bounds bounds = {min(origins.low, emitter.low), max(origins.high, emitter.high)};
-    return Region<SharedShaftForm>{SharedShaftForm{memory}, no_planes(), bounds};
+    return Region<ShaftForm>{ShaftForm{memory}, no_planes(), Bounds{min(origins.low, emitter.low), max(origins.high, emitter.high)}};
 }
 
 // The part of a region that does not lie below all the planes lowered by `slack`; everything if there are none.
@@ -228,10 +211,8 @@ DEVICE bool meets(const Region<Form> &region, const Vec3 &low, const Vec3 &high,
 }
 
 // A box around all points of a shaft whose coordinate on `axis` lies between `low` and `high`; false if there are none.
-template <class Form>
-DEVICE bool region_between(const Region<Form> &region, unsigned axis, float low, float high, Bounds &bounds) {
-    const ShaftForm &shaft = shaft_of_form(region.form);
-    const Faces &lower = shaft.low, &upper = shaft.high;
+DEVICE bool region_between(const Region<ShaftForm> &region, unsigned axis, float low, float high, Bounds &bounds) {
+    const Faces &lower = region.form.faces->low, &upper = region.form.faces->high;
     float first = 0.0f, last = 1.0f;
     narrow_shaft(component(axis, lower.from), component(axis, lower.inverse), component(axis, upper.from),
                  component(axis, upper.inverse), low, high, first, last);

@@ -6,8 +6,7 @@
 
 // Whether the region may meet the bounding box of a triangle.
 template <class Form>
-DEVICE bool meets_triangle(const Region<Form> &region, const Triangle *triangle) {
-    const Corners corners = load_corners(triangle);
+DEVICE bool meets_triangle(const Region<Form> &region, const Corners &corners) {
     const Vec3 low = min(min(corners.a, corners.b), corners.c), high = max(max(corners.a, corners.b), corners.c);
     return meets(region, low, high, REGION_ROUNDING * element_sum(high - low));
 }
@@ -17,5 +16,5 @@ DEVICE bool meets_triangle(const Region<Form> &region, const Triangle *triangle)
 template <bool SIEVED, class Form>
 DEVICE void sieve(const Region<Form> &region, const Triangle *triangles, bool has, unsigned place, unsigned *list,
                   unsigned &count) {
-    warp_append(has && (!SIEVED || meets_triangle(region, triangles + place)), place, list, count);
+    warp_append(has && (!SIEVED || meets_triangle(region, load_corners(triangles + place))), place, list, count);
 }

@@ -22,19 +22,7 @@ DEVICE Hit closest_hit(const Structure &structure, const Tally &tally, const Ray
     return hit;
 }
 
-// Whether anything blocks a segment.
-template <class Structure>
-DEVICE bool occluded(const Structure &structure, const Tally &tally, const Ray &segment) {
-    const NearRay near = near_ray(structure.approach, segment);
-    if (near.scale == 0.0)
-        return false;
-    Any any = find_any(near.ray);
-    walk(structure, tally, near.ray, any);
-    return any.hit != Hit::NONE;
-}
-
-// The same for segments that are likely to be blocked by the same triangle: `last` is the position of that which blocked an earlier
-// one, or Hit::NONE.
+// Whether anything blocks a segment. `last` is the position of a triangle that blocked a similar one and is tested first, or Hit::NONE.
 template <class Structure>
 DEVICE bool occluded(const Structure &structure, const Tally &tally, const Ray &segment, unsigned &last) {
     const NearRay near = near_ray(structure.approach, segment);
@@ -47,6 +35,13 @@ DEVICE bool occluded(const Structure &structure, const Tally &tally, const Ray &
         return false;
     last = any.hit;
     return true;
+}
+
+// The same for a segment on its own.
+template <class Structure>
+DEVICE bool occluded(const Structure &structure, const Tally &tally, const Ray &segment) {
+    unsigned last = Hit::NONE;
+    return occluded(structure, tally, segment, last);
 }
 
 // Whether a triangle blocks the segment from the origin of a short test along `direction`. Triangles whose bounding box comes as

@@ -133,6 +133,8 @@
 #define TANGENT_PLANES 4u
 // Words of a region's tangent planes in shared memory.
 #define PLANE_WORDS 20u
+// Words of a shaft's faces in shared memory, a multiple of four.
+#define SHAFT_WORDS 20u
 // Number of entries of a search's node stack up to which a round takes four nodes.
 #define STACK_OF_ROUNDS 64u
 // Additional stack entries per level of the tree.

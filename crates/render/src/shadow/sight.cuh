@@ -167,8 +167,8 @@ DEVICE Bounds emitter_bounds(const Scene &scene, const Light &light, Shape shape
     return Bounds{middle.low - half, middle.high + half};
 }
 
-// Where everything is that may hide an emitter from a point of `origins`. `memory` is shared memory for its faces.
-DEVICE Region<SharedShaftForm> shadow_region(const Bounds &origins, const Bounds &emitter, ShaftForm *memory) {
+// Where everything is that may hide an emitter from a point of `origins`. `memory` is for its faces.
+DEVICE Region<ShaftForm> shadow_region(const Bounds &origins, const Bounds &emitter, ShaftFaces *memory) {
     const Vec3 extent = max(origins.high, emitter.high) - min(origins.low, emitter.low);
     const Vec3 margin = splat(SHADOW_MARGIN * max_element(extent));
     return region_shaft(Bounds{origins.low - margin, origins.high + margin}, Bounds{emitter.low - margin, emitter.high + margin},

@@ -220,7 +220,7 @@ DEVICE void next_listed(const Grid &grid, const Region<Form> &region, GridSearch
     for (unsigned i = 0; i < 3 && search.next < search.all; i++) {
         const unsigned number = search.next + lane_of_thread();
         const unsigned place = number + __shfl_sync(ALL_LANES, search.shift, warp_owner(search.end, number));
-        bool has = number < search.all && (!SIEVED || meets_triangle(region, grid.triangles + place));
+        bool has = number < search.all && (!SIEVED || meets_triangle(region, load_corners(grid.triangles + place)));
         has = is_new(search, has, has ? triangle_index(grid.triangles + place) : 0);
         warp_append(has, place, found, count);
         search.next += WARP;

@@ -1,6 +1,6 @@
 //! The reference on a CUDA device: a warp for 32 surface points, one after the other.
 
-use lightmesh_layout::constants::{FOUND_TRIANGLES, MOST_WORDS, PLANE_WORDS, ROW_TABLE_WORDS, SEARCHED_WORDS, WARP};
+use lightmesh_layout::constants::{FOUND_TRIANGLES, MOST_WORDS, PLANE_WORDS, ROW_TABLE_WORDS, SHAFT_WORDS, WARP};
 
 use crate::cuda::Runtime;
 use crate::error::RenderError;
@@ -27,7 +27,7 @@ pub(crate) fn area_shadows<R: Runtime>(
     let work = WarpWork {
         warps,
         first: FIRST_WARPS,
-        words: PLANE_WORDS + SEARCHED_WORDS + FOUND_TRIANGLES + 2 * ROW_TABLE_WORDS,
+        words: PLANE_WORDS + SHAFT_WORDS + FOUND_TRIANGLES + 2 * ROW_TABLE_WORDS,
     };
     test_samples(cuda, wave, aim, (&KERNELS, work), |record| record)
 }

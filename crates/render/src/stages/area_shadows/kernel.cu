@@ -30,13 +30,13 @@ DEVICE void test_triangle(const SurfacePoint &point, const Sight &sight, Shape s
 
 // The samples that the surface point of lane `owner` sees: `seen` without those that any triangle hides. `table` has that lane's offsets.
 template <unsigned WORDS, class Structure>
-DEVICE void test_point(const Shadows &args, const Structure &structure, const Light &light, Shape shape, ShaftForm *form,
+DEVICE void test_point(const Shadows &args, const Structure &structure, const Light &light, Shape shape, ShaftFaces *faces,
                        const SurfacePoint &point, const Sight &sight, const RowTable &table, PlanesMemory *planes,
                        unsigned *found, unsigned *memory, Seen<WORDS> &seen) {
     const unsigned lane = lane_of_thread();
     const Bounds origin = {point.origin, point.origin};
     const TangentPlanes plane = tangent_planes(point.origin, lane == 0, point.origin, point.normal, planes);
-    const auto region = region_above(shadow_region(origin, emitter_bounds(args.scene, light, shape, origin), form), plane, 0.0f);
+    const auto region = region_above(shadow_region(origin, emitter_bounds(args.scene, light, shape, origin), faces), plane, 0.0f);
     auto search = begin_search(structure, region, memory);
     unsigned count = 0;
     while (goes_on(structure, search) || count != 0) {
@@ -56,8 +56,8 @@ template <unsigned WORDS, class Structure>
 DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
     DYNAMIC_SHARED(unsigned, shared);
     PlanesMemory *planes = reinterpret_cast<PlanesMemory *>(shared);
-    ShaftForm *form = reinterpret_cast<ShaftForm *>(shared + PLANE_WORDS);
-    unsigned *found = shared + PLANE_WORDS + SEARCHED_WORDS, *memory = found + FOUND_TRIANGLES;
+    ShaftFaces *faces = reinterpret_cast<ShaftFaces *>(shared + PLANE_WORDS);
+    unsigned *found = shared + PLANE_WORDS + SHAFT_WORDS, *memory = found + FOUND_TRIANGLES;
     unsigned *tables = memory + search_words(structure);
     float *offsets = reinterpret_cast<float *>(tables + 2 * ROW_TABLE_WORDS);
     const unsigned lane = lane_of_thread();
@@ -92,7 +92,7 @@ DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
             UNROLL
             for (unsigned word = 0; word < WORDS; ++word)
                 left.bits[word] = __shfl_sync(ALL_LANES, seen.bits[word], owner);
-            test_point<WORDS>(args, structure, emitter, shape, form, asked, broadcast(sight, owner),
+            test_point<WORDS>(args, structure, emitter, shape, faces, asked, broadcast(sight, owner),
                               row_table(tables, shape, offsets + owner), planes, found, memory, left);
             UNROLL
             for (unsigned word = 0; word < WORDS; ++word) {

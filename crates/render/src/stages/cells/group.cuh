@@ -10,12 +10,10 @@
 // The sort key of a surface point: 16 bits of its cell's hash, 6 bits of its triangle's, 10 bits of its thread. Points of one
 // triangle are adjacent, so that items have few normals and small boxes. Cells with equal hashes may be interleaved; then they are
 // split into more items, and nothing else changes.
-#define NO_POINT 0xffffffffu
-
 DEVICE unsigned sort_word(unsigned long long cell, unsigned triangle, unsigned thread) {
     const unsigned hash = (unsigned)((cell * GOLDEN_RATIO) >> 48);
     // All ones is reserved for threads without a surface point.
-    return (hash < 0xffff ? hash : 0xfffe) << 16 | triangle * (unsigned)(GOLDEN_RATIO >> 32) >> 26 << 10 | thread;
+    return min(hash, LAST_HASH) << 16 | triangle * (unsigned)(GOLDEN_RATIO >> 32) >> 26 << 10 | thread;
 }
 
 DEVICE void group_points_of_tile(const GroupCells &args) {
@@ -51,24 +49,14 @@ DEVICE void group_points_of_tile(const GroupCells &args) {
         is_point && (thread == 0 || cells[words[thread - 1] & (TILE - 1)] != cell);
 
     // 3. Every cell begins an item, and so does every 32nd point after its first.
-    const unsigned start = largest_before(first_of_cell ? thread : 0, warps);
-    const bool first_of_item = is_point && (thread - start) % WARP == 0;
-    unsigned items, points;
-    const unsigned item = flags_before(first_of_item, warps, items);
-    flags_before(is_point, warps, points);
+    const TileItem item = item_of_thread(is_point, first_of_cell, words, warps);
     const unsigned long long place = tile * TILE;
     if (is_point)
         args.members[place + thread] = rays[source];
-    __syncthreads();
-    if (first_of_item)
-        words[item] = thread;
-    __syncthreads();
-    if (first_of_item) {
-        const unsigned end = item + 1 < items ? words[item + 1] : points;
-        args.tile_items[place + item] = Item{cell, (unsigned)(place + thread), end - thread};
-    }
+    if (item.begins)
+        args.tile_items[place + item.number] = Item{cell, (unsigned)(place + thread), item.end - thread};
     if (thread == 0)
-        args.counts[tile] = items;
+        args.counts[tile] = item.count;
 }
 
 // 4. Copies the items of a tile to their place in the list.

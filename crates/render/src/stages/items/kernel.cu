@@ -8,9 +8,6 @@
 #include "cuda/tile.cuh"
 #include "surface.cuh"
 
-// The word of a thread without a surface point; behind all others.
-#define NO_POINT 0xffffffffu
-
 // One coordinate in cells: which, and in which quarter of it.
 DEVICE unsigned cell_coordinate(float coordinate, unsigned &quarter) {
     const float cell = floorf(coordinate);
@@ -68,22 +65,14 @@ KERNEL(group_items, GroupItems, TILE, 2) {
     const bool first_of_cell = is_point && (thread == 0 || words[thread - 1] >> 16 != word >> 16);
 
     // 3. Every cell begins an item, and so does every 32nd point after its first.
-    const unsigned start = largest_before(first_of_cell ? thread : 0, warps);
-    const bool first_of_item = is_point && (thread - start) % WARP == 0;
-    unsigned items, points;
-    const unsigned item = flags_before(first_of_item, warps, items);
-    flags_before(is_point, warps, points);
+    const TileItem item = item_of_thread(is_point, first_of_cell, words, warps);
     const unsigned long long place = tile * TILE;
     if (is_point)
         args.members[place + thread] = rays[word & (TILE - 1)];
-    __syncthreads();
-    if (first_of_item)
-        words[item] = thread;
-    __syncthreads();
-    if (first_of_item)
-        args.ends[place + item] = (unsigned short)(item + 1 < items ? words[item + 1] : points);
+    if (item.begins)
+        args.ends[place + item.number] = (unsigned short)item.end;
     if (thread == 0)
-        args.counts[tile] = items;
+        args.counts[tile] = item.count;
 }
 
 KERNEL(gather_items, GroupItems, TILE, 1) {

@@ -20,7 +20,7 @@ struct Around {
 struct ListMemory {
     float4 *candidates;
     // What is searched: the same for all lanes, and too much for their registers.
-    ShaftForm *form;
+    ShaftFaces *faces;
     Shaft *shaft;
     Around *around;
     PlanesMemory *planes;
@@ -31,15 +31,15 @@ struct ListMemory {
     float *offsets;
 };
 
-static_assert(sizeof(ShaftForm) + sizeof(Shaft) + sizeof(Around) <= 4 * SEARCHED_WORDS, "words of what is searched");
+static_assert(sizeof(ShaftFaces) + sizeof(Shaft) + sizeof(Around) <= 4 * SEARCHED_WORDS, "words of what is searched");
 
 DEVICE ListMemory list_memory(unsigned *shared, unsigned search_words) {
     ListMemory memory;
     memory.candidates = reinterpret_cast<float4 *>(shared);
     shared += 4 * OCCLUDER_PARTS * WARP;
-    memory.form = reinterpret_cast<ShaftForm *>(shared);
-    memory.shaft = reinterpret_cast<Shaft *>(shared + sizeof(ShaftForm) / 4);
-    memory.around = reinterpret_cast<Around *>(shared + (sizeof(ShaftForm) + sizeof(Shaft)) / 4);
+    memory.faces = reinterpret_cast<ShaftFaces *>(shared);
+    memory.shaft = reinterpret_cast<Shaft *>(shared + sizeof(ShaftFaces) / 4);
+    memory.around = reinterpret_cast<Around *>(shared + (sizeof(ShaftFaces) + sizeof(Shaft)) / 4);
     shared += SEARCHED_WORDS;
     memory.planes = reinterpret_cast<PlanesMemory *>(shared);
     shared += PLANE_WORDS;
@@ -112,17 +112,16 @@ DEVICE bool test_candidates(const ItemSight &item, const RowTable &table, const 
 }
 
 // 3. Chooses among up to 32 of the triangles found, one per lane, and tests them. Returns whether anything is still seen.
-template <unsigned WORDS, class Form>
+template <unsigned WORDS>
 DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set, const RowTable &table,
-                       const Region<Form> &region,
-                       const Triangle *triangles, const ListMemory &memory, unsigned first, unsigned count, Seen<WORDS> &seen) {
+                       const Region<ShaftForm> &region, const Triangle *triangles, const ListMemory &memory, unsigned first, unsigned count, Seen<WORDS> &seen) {
     const unsigned lane = lane_of_thread();
     Occluding own;
     Choice choice = DROPPED;
     if (lane < count) {
-        const Triangle *triangle = triangles + memory.found[first + lane];
-        if (meets_triangle(region, triangle)) {
-            own = occluding(load_corners(triangle));
+        const Corners corners = load_corners(triangles + memory.found[first + lane]);
+        if (meets_triangle(region, corners)) {
+            own = occluding(corners);
             choice = choose(*memory.shaft, own);
         }
     }
@@ -179,7 +178,7 @@ DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, I
     const Bounds origins = memory.around->origins;
     const Bounds bounds = emitter_bounds(args.scene, emitter, item.shape, origins);
     const TangentPlanes planes = {memory.around->planes, origins.low, memory.planes};
-    const auto region = region_above(shadow_region(origins, bounds, memory.form), planes, 0.0f);
+    const auto region = region_above(shadow_region(origins, bounds, memory.faces), planes, 0.0f);
     const bool ball = emitter.kind == Light::POINT || emitter.kind == Light::SPHERE;
     if (lane_of_thread() == 0)
         *memory.shaft = shaft_of(origins, bounds, ball ? emitter.radius : INFINITE);
