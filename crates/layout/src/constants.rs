@@ -226,6 +226,23 @@ constants! {
     /// The margin of searches for what may hide a light, 2^-16 of the size of the searched space.
     SHADOW_MARGIN: f32 = 1.0 / (1u32 << 16) as f32;
 
+    // Adaptive shadow rays.
+
+    /// Pixels on each side of a pixel that belong to its neighbourhood.
+    AROUND: u32 = 2;
+    /// Edge of a neighbourhood.
+    NEIGHBORHOOD: u32 = 2 * AROUND + 1;
+    /// Pixels of a neighbourhood, and points of a light that their first rays are cast to.
+    FIRST_TARGETS: u32 = NEIGHBORHOOD * NEIGHBORHOOD;
+    /// Answer of a surface point's first ray: it arrives.
+    ANSWER_LIT: u32 = 1;
+    /// It does not arrive.
+    ANSWER_DARK: u32 = 2;
+    /// Both.
+    ANSWER_BOTH: u32 = ANSWER_LIT | ANSWER_DARK;
+    /// Added to the answer: the light is partly behind the surface.
+    ANSWER_STRADDLES: u32 = 4;
+
     // Searches by region.
 
     /// Maximum number of tangent planes that a region distinguishes.

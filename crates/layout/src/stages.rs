@@ -1,5 +1,6 @@
 //! The arguments of every kernel: one record for the kernels of a stage.
 
+use crate::constants::FIRST_TARGETS;
 use crate::geometry::{Hit, ListedRay, Rays, Tally, Vec3};
 use crate::mesh::{BrickTable, Item, KeptBy, LightMesh, LitBy, UsedPoints};
 use crate::record::records;
@@ -61,6 +62,32 @@ records! {
         first_light: u32,
         /// The last, and one.
         end_light: u32,
+    }
+
+    /// `first_rays`: one thread per ray; `find_open` and `list_open`: one block per light and 256 rays; `open_rays`: one thread per entry.
+    AdaptiveShadows {
+        /// The scene.
+        scene: Scene,
+        /// What other kernels that test samples need. For rows next to a band without shares.
+        shadows: Shadows,
+        /// Answers of first rays, by light of this slice, then pixel of the band and the rows next to it.
+        answers: Out<u8>,
+        /// Number of these pixels.
+        answer_count: u64,
+        /// The first ray's place among them.
+        first_answer: u64,
+        /// Number of entries of each block; after the scan, of all blocks before it.
+        counts: Out<u32>,
+        /// The surface points whose neighbours disagree on a light: light · 2^32 + ray.
+        entries: Out<u64>,
+        /// Their number.
+        entry_count: u64,
+        /// Where first rays end: on discs, then on rectangles.
+        places: [[[f32; 2]; FIRST_TARGETS as usize]; 2],
+        /// Number of blocks of a light.
+        tiles: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
     }
 
     /// `primary_rays`: one thread per ray.

@@ -26,6 +26,8 @@ macro_rules! stage_table {
             shadow_rays(wave: &WaveOf<Self>, aim: &Aim) -> Self::Visibility;
             /// Finds which samples of each light each surface point sees, by what stands between the two: the reference.
             area_shadows(wave: &WaveOf<Self>, aim: &Aim) -> Self::Visibility;
+            /// Casts one ray from each surface point to each light, and all that `shadow_rays` casts where neighbours disagree.
+            adaptive_shadows(wave: &WaveOf<Self>, aim: &Aim) -> Self::Visibility;
             /// Puts surface points that are close together into items.
             items(wave: &WaveOf<Self>) -> Self::Items;
             /// Finds the same as `area_shadows`, by what stands between an item and the light.

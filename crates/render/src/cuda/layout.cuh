@@ -129,6 +129,20 @@
 #define ROW_TABLE_WORDS 92u
 // The margin of searches for what may hide a light, 2^-16 of the size of the searched space.
 #define SHADOW_MARGIN 0x1p-16f
+// Pixels on each side of a pixel that belong to its neighbourhood.
+#define AROUND 2u
+// Edge of a neighbourhood.
+#define NEIGHBORHOOD 5u
+// Pixels of a neighbourhood, and points of a light that their first rays are cast to.
+#define FIRST_TARGETS 25u
+// Answer of a surface point's first ray: it arrives.
+#define ANSWER_LIT 1u
+// It does not arrive.
+#define ANSWER_DARK 2u
+// Both.
+#define ANSWER_BOTH 3u
+// Added to the answer: the light is partly behind the surface.
+#define ANSWER_STRADDLES 4u
 // Maximum number of tangent planes that a region distinguishes.
 #define TANGENT_PLANES 4u
 // Words of a region's tangent planes in shared memory.
@@ -740,6 +754,32 @@ static_assert(PLACE_OF(Shadows, set) == 1784, "place of Shadows::set");
 static_assert(PLACE_OF(Shadows, set_count) == 1788, "place of Shadows::set_count");
 static_assert(PLACE_OF(Shadows, first_light) == 1792, "place of Shadows::first_light");
 static_assert(PLACE_OF(Shadows, end_light) == 1796, "place of Shadows::end_light");
+
+struct alignas(8) AdaptiveShadows {
+    Scene scene;
+    Shadows shadows;
+    unsigned char *answers;
+    unsigned long long answer_count;
+    unsigned long long first_answer;
+    unsigned *counts;
+    unsigned long long *entries;
+    unsigned long long entry_count;
+    float places[2][25][2];
+    unsigned tiles;
+    unsigned spare;
+};
+static_assert(sizeof(AdaptiveShadows) == 2560, "size of AdaptiveShadows");
+static_assert(PLACE_OF(AdaptiveShadows, scene) == 0, "place of AdaptiveShadows::scene");
+static_assert(PLACE_OF(AdaptiveShadows, shadows) == 304, "place of AdaptiveShadows::shadows");
+static_assert(PLACE_OF(AdaptiveShadows, answers) == 2104, "place of AdaptiveShadows::answers");
+static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2112, "place of AdaptiveShadows::answer_count");
+static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2120, "place of AdaptiveShadows::first_answer");
+static_assert(PLACE_OF(AdaptiveShadows, counts) == 2128, "place of AdaptiveShadows::counts");
+static_assert(PLACE_OF(AdaptiveShadows, entries) == 2136, "place of AdaptiveShadows::entries");
+static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2144, "place of AdaptiveShadows::entry_count");
+static_assert(PLACE_OF(AdaptiveShadows, places) == 2152, "place of AdaptiveShadows::places");
+static_assert(PLACE_OF(AdaptiveShadows, tiles) == 2552, "place of AdaptiveShadows::tiles");
+static_assert(PLACE_OF(AdaptiveShadows, spare) == 2556, "place of AdaptiveShadows::spare");
 
 struct alignas(8) PrimaryRays {
     Scene scene;

@@ -5,6 +5,7 @@ use glam::Vec3;
 use crate::accel::{Hit, Ray, Triangle};
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
+use crate::view::View;
 
 /// Rays with the pixels that they contribute to. Each pixel has at most one ray in a list.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +19,8 @@ pub struct RayList {
     /// The distance between the surface points of neighbouring pixels that face the camera: a constant, and a multiple of the distance from
     /// the camera. Zero if the rays are not a camera's.
     pub spacing: [f32; 2],
+    /// The camera and its image, all pixels of some rows; `None` if the rays are not a camera's.
+    pub view: Option<View>,
     /// The triangles that the rays hit in place of the scene's, if they come from given points; else empty.
     pub probes: Vec<Triangle>,
 }

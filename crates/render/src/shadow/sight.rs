@@ -77,6 +77,11 @@ impl<'a> Emitter<'a> {
         wave.lights().iter().enumerate().map(emitter).collect()
     }
 
+    /// The light, and the form of its samples.
+    pub(crate) fn light(&self) -> (&'a Light, Shape) {
+        (self.light, self.shape)
+    }
+
     /// Whether its centre is the only sample.
     pub(crate) fn is_point(&self) -> bool {
         self.shape == Shape::Point
@@ -289,7 +294,7 @@ fn longest_first(u: Vec3, v: Vec3) -> (Vec3, Vec3) {
 
 /// Two perpendicular unit vectors in the plane of a light's disc, and its radius. `center` is the way to its centre.
 #[inline(always)]
-fn disc_of(light: &Light, center: Vec3, reach: f32) -> (Vec3, Vec3, f32) {
+pub(crate) fn disc_of(light: &Light, center: Vec3, reach: f32) -> (Vec3, Vec3, f32) {
     match light.kind {
         LightKind::Disk { normal, radius, .. } => {
             let (tangent, bitangent) = normal.any_orthonormal_pair();

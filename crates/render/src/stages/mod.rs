@@ -1,6 +1,7 @@
 //! The stages of an image: one folder each, with its contract in `mod.rs` and a file for each kind of device next to it:
 //! `cpu.rs`, and `cuda.rs` with the kernels in `kernel.cu`. All have the same numbered steps.
 
+pub(crate) mod adaptive_shadows;
 pub(crate) mod area_shadows;
 pub(crate) mod cells;
 pub(crate) mod interpolate;

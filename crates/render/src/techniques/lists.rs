@@ -5,10 +5,9 @@ use super::{Request, Visible};
 use crate::backend::run::Run;
 use crate::backend::{Backend, WaveOf};
 use crate::error::RenderError;
-use crate::job::Sampling;
 use crate::plan::Footprint;
 use crate::prepared::PreparedScene;
-use crate::settings::{Lookup, Setting, Settings};
+use crate::settings::{Lookup, Settings};
 use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stats::SettingsStats;
@@ -23,12 +22,7 @@ impl Visible for Lists {
     }
 
     fn resolve(request: &Request) -> Result<Lists, RenderError> {
-        let Settings { quality, samples, seed, .. } = *request.settings;
-        let number = quality.samples();
-        let aim = Aim::Extent(Sampling { samples: number, seed, spread: true });
-        if samples.is_none() && request.scene.scene.lights.iter().any(|light| aim.samples(light) > 1) {
-            request.observer.chose(Setting::Quality, &format!("{number} samples of each light, quality {}", quality.name()));
-        }
+        request.tell_samples();
         Ok(Lists)
     }
 

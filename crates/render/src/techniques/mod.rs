@@ -10,10 +10,12 @@ use lightmesh_scene::Bounds;
 use crate::backend::run::Run;
 use crate::backend::{Backend, WaveOf};
 use crate::error::RenderError;
+use crate::job::Sampling;
 use crate::observer::Observer;
 use crate::plan::Footprint;
 use crate::prepared::PreparedScene;
 use crate::settings::{Lookup, Mode, Setting, Settings};
+use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stats::SettingsStats;
 use crate::view::View;
@@ -27,6 +29,18 @@ pub(crate) struct Request<'a> {
     pub(crate) observer: &'a dyn Observer,
     /// A box around the scene's triangles, and around all points that are not theirs.
     pub(crate) bounds: Bounds,
+}
+
+impl Request<'_> {
+    /// Tells the observer how many samples of each light the quality stands for, unless their number is set or no light has a size.
+    fn tell_samples(&self) {
+        let Settings { quality, samples, seed, .. } = *self.settings;
+        let number = quality.samples();
+        let aim = Aim::Extent(Sampling { samples: number, seed, spread: true });
+        if samples.is_none() && self.scene.scene.lights.iter().any(|light| aim.samples(light) > 1) {
+            self.observer.chose(Setting::Quality, &format!("{number} samples of each light, quality {}", quality.name()));
+        }
+    }
 }
 
 /// The interface of a technique.

@@ -19,10 +19,13 @@ macro_rules! technique_table {
                 Lists = "lists",
                 /// Formula (3), the thesis: the mean over the light points of a half-ball.
                 HalfBall = "half-ball",
+                /// One shadow ray per light and pixel, all samples where a neighbourhood of 5x5 pixels disagrees.
+                Adaptive = "adaptive",
             }
             techniques {
                 lists::Lists for LightMesh by Lists,
                 half_ball::HalfBall for LightMesh by HalfBall,
+                adaptive::Adaptive for LightMesh by Adaptive,
                 ray_trace::RayTrace for RayTrace by None,
                 area::Area for Area by None,
             }

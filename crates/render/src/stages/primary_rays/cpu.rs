@@ -18,7 +18,7 @@ const BATCH: usize = 2048;
 pub(crate) fn camera_rays(view: &View, rows: Range<u32>) -> RayList {
     let pixels = blocks_of_pixels(view.size()[0], rows);
     let rays: Vec<Ray> = pixels.par_iter().map(|&pixel| view.ray(pixel)).collect();
-    RayList { rays, pixels, spacing: view.spacing(), ..RayList::default() }
+    RayList { rays, pixels, spacing: view.spacing(), view: Some(*view), ..RayList::default() }
 }
 
 /// The pixels of some rows in blocks of 4×2 within 8×8 within 32×32, so that consecutive rays are coherent.
@@ -44,16 +44,26 @@ fn blocks_of_pixels(width: u32, rows: Range<u32>) -> Vec<u32> {
 }
 
 pub(crate) fn primary_rays(job: &Job, scene: &PreparedScene, list: &RayList) -> Vec<Hit> {
-    let mut hits = vec![Hit::MISS; list.rays.len()];
-    list.rays.par_chunks(BATCH).zip(hits.par_chunks_mut(BATCH)).for_each(|(rays, hits)| {
-        job.piece(rays.len(), || scene.geometry.accelerator.closest_hits(rays, hits));
-    });
+    let hits = closest_hits(scene, list, |rays, trace| job.piece(rays, trace));
     let found = hits.par_iter().filter(|hit| hit.is_some()).count() as u64;
     Tally::add(&job.tally.rays, list.rays.len() as u64);
     Tally::add(&job.tally.surface_points, found);
     if list.from_camera() {
         Tally::add(&job.tally.hits, found);
     }
+    hits
+}
+
+/// The hits of rays, which `piece` computes run by run.
+pub(crate) fn closest_hits(
+    scene: &PreparedScene,
+    list: &RayList,
+    piece: impl Fn(usize, &mut dyn FnMut()) + Sync,
+) -> Vec<Hit> {
+    let mut hits = vec![Hit::MISS; list.rays.len()];
+    list.rays.par_chunks(BATCH).zip(hits.par_chunks_mut(BATCH)).for_each(|(rays, hits)| {
+        piece(rays.len(), &mut || scene.geometry.accelerator.closest_hits(rays, hits));
+    });
     hits
 }
 

@@ -1,5 +1,6 @@
 //! Step 1 on a CUDA device.
 
+use lightmesh_layout::geometry as layout;
 use lightmesh_layout::stages::PrimaryRays;
 
 use crate::counters::Tally;
@@ -19,20 +20,32 @@ pub(crate) fn primary_rays<R: Runtime>(
     scene: &DeviceScene<R>,
     rays: &DeviceRays<R>,
 ) -> Result<DeviceHits<R>, RenderError> {
+    let hits = closest_hits(cuda, job, scene, rays, (cuda.tally()?, rays.len() as u64))?;
+    Tally::add(&job.tally.rays, rays.len() as u64);
+    Ok(hits)
+}
+
+/// The hits of rays, with other counters and progress.
+pub(crate) fn closest_hits<R: Runtime>(
+    cuda: &Cuda<R>,
+    job: &Job,
+    scene: &DeviceScene<R>,
+    rays: &DeviceRays<R>,
+    (tally, progress): (layout::Tally, u64),
+) -> Result<DeviceHits<R>, RenderError> {
     let kernel = KERNELS.of(scene.structure);
     let hits = cuda.pool().room("hits", rays.len())?;
-    let work = Work { units: rays.blocks(BLOCK_SIDE), cost: 1, first: FIRST, progress: rays.len() as u64 };
+    let work = Work { units: rays.blocks(BLOCK_SIDE), cost: 1, first: FIRST, progress };
     cuda.in_pieces(job, kernel, work, |piece| {
         let arguments = PrimaryRays {
             scene: scene.record,
             rays: rays.record,
             hits: hits.output(),
-            tally: cuda.tally()?,
+            tally,
             first_block: piece.start,
         };
         let launch = blocks_for(&piece, BLOCK);
         cuda.launch(kernel, launch, &arguments)
     })?;
-    Tally::add(&job.tally.rays, rays.len() as u64);
     Ok(DeviceHits { hits })
 }

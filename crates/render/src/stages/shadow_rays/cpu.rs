@@ -25,11 +25,10 @@ pub(crate) fn shadow_rays(wave: &HostWave, aim: &Aim) -> Visibility {
         let first = number * batch;
         let rays = first..wave.hits.len().min(first + batch);
         wave.job.piece(rays.len(), || {
-            let seen = rays.filter(|&ray| wave.sees(ray));
-            let points = seen.map(|ray| (ray, wave.surface_point(ray))).collect();
-            let mut batch = Batch { wave, first, points, segments: Vec::new(), owners: Vec::new() };
+            let mut batch = Batch::new(wave);
+            batch.take(rays);
             for (emitter, share) in emitters.iter().zip(shares) {
-                batch.light(emitter, share);
+                batch.shares(emitter, |ray, seen| share[ray - first] = seen);
             }
         });
     });
@@ -37,33 +36,48 @@ pub(crate) fn shadow_rays(wave: &HostWave, aim: &Aim) -> Visibility {
 }
 
 /// Some surface points, and buffers for their rays to one light.
-struct Batch<'a> {
+pub(crate) struct Batch<'a> {
     wave: &'a HostWave<'a>,
-    /// The ray that the first share belongs to.
-    first: usize,
+    /// Rays and the surface points that they see.
     points: Vec<(usize, SurfacePoint)>,
     segments: Vec<Ray>,
-    /// The share that each segment contributes to.
+    /// The number of the surface point that each segment belongs to.
     owners: Vec<usize>,
+    /// The number of samples that each of them sees.
+    seen: Vec<u32>,
 }
 
-impl Batch<'_> {
-    /// Computes the shares of one light.
-    fn light(&mut self, emitter: &Emitter, share: &mut [f32]) {
+impl<'a> Batch<'a> {
+    /// An empty batch.
+    pub(crate) fn new(wave: &'a HostWave<'a>) -> Batch<'a> {
+        Batch { wave, points: Vec::new(), segments: Vec::new(), owners: Vec::new(), seen: Vec::new() }
+    }
+
+    /// Replaces the surface points by those of `rays`.
+    pub(crate) fn take(&mut self, rays: impl Iterator<Item = usize>) {
+        let wave = self.wave;
+        self.points.clear();
+        self.points.extend(rays.filter(|&ray| wave.sees(ray)).map(|ray| (ray, wave.surface_point(ray))));
+    }
+
+    /// Hands the share of a light that each surface point sees to `put`, with its ray.
+    pub(crate) fn shares(&mut self, emitter: &Emitter, mut put: impl FnMut(usize, f32)) {
         self.segments.clear();
         self.owners.clear();
-        for (ray, point) in &self.points {
+        for (owner, (ray, point)) in self.points.iter().enumerate() {
             emitter.each_target(self.wave, *ray, point, |target| {
                 if point.normal.dot(target - point.origin) > 0.0 {
                     self.segments.push(long_segment(point.origin, target));
-                    self.owners.push(ray - self.first);
+                    self.owners.push(owner);
                 }
             });
         }
         Tally::add(&self.wave.job.tally.shadow_rays, self.segments.len() as u64);
-        for (&owner, _) in self.owners.iter().zip(hidden(self.wave, &self.segments)).filter(|(_, hidden)| !hidden) {
-            share[owner] += 1.0;
+        self.seen.clear();
+        self.seen.resize(self.points.len(), 0);
+        for (&owner, hidden) in self.owners.iter().zip(hidden(self.wave, &self.segments)) {
+            self.seen[owner] += u32::from(!hidden);
         }
-        share.iter_mut().for_each(|share| *share = emitter.share(*share as u32));
+        self.points.iter().zip(&self.seen).for_each(|((ray, _), &seen)| put(*ray, emitter.share(seen)));
     }
 }

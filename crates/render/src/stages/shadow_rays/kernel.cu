@@ -6,6 +6,7 @@
 #include "cuda/rays.cuh"
 #include "shadow/seen.cuh"
 #include "shadow/shadow.cuh"
+#include "stages/shadow_rays/samples.cuh"
 
 // The share of a light for a ray.
 DEVICE float &share_of(const ShadowRays &args, unsigned light, unsigned ray) {
@@ -36,39 +37,6 @@ DEVICE void shadow_rays(const ShadowRays &args, const Structure &structure) {
     count(tally_shard(args.tally).shadow_rays, cast);
 }
 
-// Casts a ray to each sample of a row. Returns how many arrive.
-template <class Structure>
-DEVICE unsigned trace_row(const Shadows &args, const Structure &structure, const SurfacePoint &point, const Sight &sight,
-                          const SampleRows &set, unsigned row, float scale, unsigned &last, unsigned &cast) {
-    unsigned seen = 0;
-    for (unsigned rest = valid_samples(sight, set, row); rest != 0; rest &= rest - 1) {
-        const Vec3 target = point.origin + sample_at(sight, set, row, __ffs(rest) - 1, scale);
-        if (!(dot(point.normal, target - point.origin) > 0.0f))
-            continue;
-        ++cast;
-        seen += !occluded(structure, args.tally, long_segment(point.origin, target), last);
-    }
-    return seen;
-}
-
-// Casts a ray from a surface point to each sample of a light. Returns how many arrive.
-template <class Structure>
-DEVICE unsigned trace_samples(const Shadows &args, const Structure &structure, const SurfacePoint &point, unsigned ray,
-                              Shape shape, unsigned &cast) {
-    const Light &light = args.scene.lights[args.first_light];
-    if (shape == SHAPE_POINT) {
-        const Vec3 middle = light_center(light, point.origin, scene_reach(args.scene, point.origin));
-        cast = dot(point.normal, middle - point.origin) > 0.0f;
-        return cast && !hidden(structure, args.tally, point.origin, middle);
-    }
-    const SampleRows &set = args.sets[shape];
-    const Sight sight = sight_of(args.scene, args.sampling, args.first_light, shape, set.lines, point, ray_key(args.rays, ray));
-    unsigned seen = 0, last = Hit::NONE;
-    for (unsigned row = 0; row < set.rows; ++row)
-        seen += trace_row(args, structure, point, sight, set, row, light.scale, last, cast);
-    return seen;
-}
-
 template <class Structure>
 DEVICE void sample_rays(const Shadows &args, const Structure &structure) {
     unsigned ray, cast = 0;
@@ -77,7 +45,7 @@ DEVICE void sample_rays(const Shadows &args, const Structure &structure) {
                      load_hit(args.hits, ray).triangle != Hit::NONE;
     if (has) {
         const SurfacePoint point = surface_point_of(args.scene, args.rays, args.hits, ray);
-        add_seen(args, shape, args.first_light, ray, trace_samples(args, structure, point, ray, shape, cast));
+        add_seen(args, shape, args.first_light, ray, trace_samples(args, structure, point, args.first_light, ray, shape, cast));
     }
     count(tally_shard(args.tally).shadow_rays, cast);
 }

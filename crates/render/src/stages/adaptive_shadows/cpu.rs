@@ -1,0 +1,174 @@
+//! Adaptive shadow rays on the CPU: light by light, a task per run of rays.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use lightmesh_layout::constants::{ANSWER_BOTH, ANSWER_DARK, ANSWER_LIT, ANSWER_STRADDLES, AROUND};
+use rayon::prelude::*;
+
+use super::first::{Extent, Places, place_of, places};
+use crate::counters::Tally;
+use crate::data::visibility::Visibility;
+use crate::data::wave::HostWave;
+use crate::shadow::rows::Rows;
+use crate::shadow::sight::Emitter;
+use crate::shadow::{Aim, SEGMENTS, hidden};
+use crate::stages::primary_rays::cpu::{camera_rays, closest_hits};
+use crate::stages::shadow_rays::cpu::{Batch, shadow_rays};
+use crate::surface::long_segment;
+use crate::view::View;
+
+/// Maximum number of rays per task.
+const RUN: usize = 1024;
+
+/// The visible share of each light from each surface point.
+pub(crate) fn adaptive_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
+    let Some(view) = wave.rays.view.filter(|_| !wave.hits.is_empty()) else { return shadow_rays(wave, aim) };
+    let rows = Rows::of(aim);
+    let band = Band::new(wave, &view);
+    let mut visibility = Visibility::dark(wave.lights().len(), wave.hits.len());
+    let planes = visibility.share.chunks_exact_mut(wave.hits.len());
+    for (emitter, shares) in Emitter::all(wave, aim, &rows).iter().zip(planes) {
+        if emitter.is_point() {
+            band.all_samples(emitter, shares);
+        } else {
+            band.adapt(emitter, shares);
+        }
+    }
+    visibility
+}
+
+/// The rows of a wave, with those next to it that belong to the neighbourhoods of its pixels.
+struct Band<'a> {
+    wave: &'a HostWave<'a>,
+    width: usize,
+    /// All rows.
+    rows: Range<u32>,
+    /// Rays and hits of the rows next to the wave's.
+    margins: Vec<(crate::data::rays::RayList, Vec<crate::accel::Hit>)>,
+    places: Places,
+}
+
+impl<'a> Band<'a> {
+    fn new(wave: &'a HostWave<'a>, view: &View) -> Band<'a> {
+        let [width, height] = view.size();
+        let first = wave.rays.pixels[0] / width;
+        let end = first + wave.hits.len() as u32 / width;
+        let rows = first.saturating_sub(AROUND)..height.min(end + AROUND);
+        let margins = [rows.start..first, end..rows.end].map(|rows| {
+            let rays = camera_rays(view, rows);
+            let hits = closest_hits(wave.scene, &rays, |_, trace| trace());
+            (rays, hits)
+        });
+        Band { wave, width: width as usize, rows, margins: margins.into(), places: places() }
+    }
+
+    /// The shares of a light of which all samples are tested.
+    fn all_samples(&self, emitter: &Emitter, shares: &mut [f32]) {
+        shares.par_chunks_mut(RUN).enumerate().for_each(|(run, shares)| {
+            let first = run * RUN;
+            self.wave.job.piece(2 * shares.len(), || {
+                let mut batch = Batch::new(self.wave);
+                batch.take(first..first + shares.len());
+                batch.shares(emitter, |ray, share| shares[ray - first] = share);
+            });
+        });
+    }
+
+    /// The shares of a light with a size.
+    fn adapt(&self, emitter: &Emitter, shares: &mut [f32]) {
+        // 1. The first rays, those of the wave and of the rows next to it.
+        let answers: Vec<AtomicU8> = (0..self.width * self.rows.len()).map(|_| AtomicU8::new(0)).collect();
+        for (rays, hits) in &self.margins {
+            let wave = HostWave { rays, hits, ..*self.wave };
+            self.first_rays(&wave, emitter, &answers);
+        }
+        let (wave, job) = (self.wave, self.wave.job);
+        Tally::add(&job.tally.shadow_rays, self.first_rays(wave, emitter, &answers));
+        let wide = self.widened(&answers);
+
+        // 2. and 3. Where neighbours agree, the share is theirs; elsewhere all samples are tested.
+        let most = emitter.sets.iter().flat_map(|set| set.count).sum::<u32>().max(1) as usize;
+        shares.par_chunks_mut(RUN).enumerate().for_each(|(run, shares)| {
+            let first = run * RUN;
+            job.piece(shares.len(), || {
+                let mut open = Vec::new();
+                for (ray, share) in (first..).zip(shares.iter_mut()) {
+                    let place = self.place(wave.rays.pixels[ray]);
+                    let own = u32::from(answers[place].load(Ordering::Relaxed));
+                    if own & ANSWER_STRADDLES != 0 || own != 0 && self.around(&wide, place) == ANSWER_BOTH {
+                        open.push(ray);
+                    } else {
+                        *share = (own & ANSWER_LIT) as f32;
+                    }
+                }
+                let mut batch = Batch::new(wave);
+                for rays in open.chunks((SEGMENTS / most).max(1)) {
+                    batch.take(rays.iter().copied());
+                    batch.shares(emitter, |ray, share| shares[ray - first] = share);
+                }
+            });
+        });
+    }
+
+    /// Where the answer of a pixel is.
+    fn place(&self, pixel: u32) -> usize {
+        pixel as usize - self.rows.start as usize * self.width
+    }
+
+    /// Casts a ray from each surface point of a wave to a light, and notes the answers. Returns the number of rays.
+    fn first_rays(&self, wave: &HostWave, emitter: &Emitter, answers: &[AtomicU8]) -> u64 {
+        let is_own = std::ptr::eq(wave.hits, self.wave.hits);
+        let runs = (0..wave.hits.len().div_ceil(RUN)).into_par_iter().map(|run| {
+            let rays = run * RUN..wave.hits.len().min((run + 1) * RUN);
+            let mut cast = 0;
+            let trace = || cast = self.first_rays_of(wave, emitter, rays.clone(), answers);
+            if is_own { wave.job.piece(rays.len(), trace) } else { wave.job.piece(0, trace) }
+            cast
+        });
+        runs.sum()
+    }
+
+    fn first_rays_of(&self, wave: &HostWave, emitter: &Emitter, rays: Range<usize>, answers: &[AtomicU8]) -> u64 {
+        let (mut segments, mut owners) = (Vec::with_capacity(RUN), Vec::with_capacity(RUN));
+        for ray in rays.filter(|&ray| wave.sees(ray)) {
+            let (point, pixel) = (wave.surface_point(ray), wave.rays.pixels[ray]);
+            let extent = Extent::new(emitter, &point, wave.scene.geometry.reach(point.origin));
+            let Some(known) = extent.at_horizon(point.normal) else { continue };
+            let target = extent.target(point.origin, &self.places, place_of(pixel, self.width as u32));
+            if point.normal.dot(target - point.origin) > 0.0 {
+                segments.push(long_segment(point.origin, target));
+                owners.push((pixel, known));
+            } else {
+                answers[self.place(pixel)].store(ANSWER_STRADDLES as u8, Ordering::Relaxed);
+            }
+        }
+        for (&(pixel, known), hidden) in owners.iter().zip(hidden(wave, &segments)) {
+            let answer = known | if hidden { ANSWER_DARK } else { ANSWER_LIT };
+            answers[self.place(pixel)].store(answer as u8, Ordering::Relaxed);
+        }
+        segments.len() as u64
+    }
+
+    /// The answers of each pixel's neighbours in its row.
+    fn widened(&self, answers: &[AtomicU8]) -> Vec<u8> {
+        let mut wide = vec![0; answers.len()];
+        let around = AROUND as usize;
+        answers.par_chunks(self.width).zip(wide.par_chunks_mut(self.width)).for_each(|(answers, wide)| {
+            for (x, wide) in wide.iter_mut().enumerate() {
+                let near = &answers[x.saturating_sub(around)..answers.len().min(x + around + 1)];
+                *wide = near.iter().fold(0, |all, answer| all | answer.load(Ordering::Relaxed));
+            }
+        });
+        wide
+    }
+
+    /// The answers in the neighbourhood of a place.
+    fn around(&self, wide: &[u8], place: usize) -> u32 {
+        let (row, column) = (place / self.width, place % self.width);
+        let around = AROUND as usize;
+        let rows = row.saturating_sub(around)..self.rows.len().min(row + around + 1);
+        let all = rows.fold(0, |all, row| all | wide[row * self.width + column]);
+        u32::from(all) & ANSWER_BOTH
+    }
+}

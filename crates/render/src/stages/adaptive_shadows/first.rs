@@ -1,0 +1,104 @@
+//! The first ray from a surface point to a light. Twin: `first.cuh`.
+
+use glam::Vec3;
+use lightmesh_layout::constants::{ANSWER_STRADDLES, AROUND, FIRST_TARGETS, NEIGHBORHOOD};
+use lightmesh_scene::LightKind;
+
+use crate::shadow::sight::{Emitter, Shape, disc_of};
+use crate::surface::SurfacePoint;
+
+/// The outermost points that first rays are cast to, as a part of a light's half width. Shadows that hide less than what lies beyond
+/// would rarely hide a sample.
+const RIM: f32 = 0.95;
+
+/// Points of a light that first rays are cast to, for discs, then for rectangles: coordinates in [−1, 1].
+pub(super) type Places = [[[f32; 2]; FIRST_TARGETS as usize]; 2];
+
+/// A lattice in the square, and the same mapped to the disc, line by line.
+pub(super) fn places() -> Places {
+    let [mut discs, mut rectangles] = [[[0.0; 2]; FIRST_TARGETS as usize]; 2];
+    for (number, (disc, rectangle)) in (0..).zip(discs.iter_mut().zip(&mut rectangles)) {
+        let coordinate = |line: u32| (line as f32 - AROUND as f32) / AROUND as f32;
+        let (x, y) = (coordinate(number % NEIGHBORHOOD), coordinate(number / NEIGHBORHOOD));
+        *rectangle = [RIM * x, RIM * y];
+        *disc = [RIM * x * (1.0 - 0.5 * y * y).sqrt(), RIM * y * (1.0 - 0.5 * x * x).sqrt()];
+    }
+    [discs, rectangles]
+}
+
+/// The place of a pixel's ray.
+#[inline(always)]
+pub(super) fn place_of(pixel: u32, width: u32) -> u32 {
+    pixel / width % NEIGHBORHOOD * NEIGHBORHOOD + pixel % width % NEIGHBORHOOD
+}
+
+/// A light as a surface point sees it: its points are at `center + x · u + y · v`.
+pub(super) struct Extent {
+    shape: Shape,
+    center: Vec3,
+    u: Vec3,
+    v: Vec3,
+}
+
+impl Extent {
+    /// `reach` is the distance of a directional light.
+    #[inline(always)]
+    pub(super) fn new(emitter: &Emitter, point: &SurfacePoint, reach: f32) -> Extent {
+        let (light, shape) = emitter.light();
+        let center = crate::sampling::light_center(light, point.origin, reach) - point.origin;
+        let (u, v) = match light.kind {
+            LightKind::Rectangle { half_u, half_v, .. } => (half_u, half_v),
+            _ => {
+                let (tangent, bitangent, radius) = disc_of(light, center, reach);
+                (radius * tangent, radius * bitangent)
+            }
+        };
+        Extent { shape, center, u, v }
+    }
+
+    /// What is known before any ray: nothing, that the light straddles the horizon, or `None` if all of it is behind the surface.
+    #[inline(always)]
+    pub(super) fn at_horizon(&self, normal: Vec3) -> Option<u32> {
+        let (height, a, b) = (normal.dot(self.center), normal.dot(self.u), normal.dot(self.v));
+        let half = if self.shape == Shape::Rectangle { a.abs() + b.abs() } else { (a * a + b * b).sqrt() };
+        if height <= -half {
+            return None;
+        }
+        Some(if height < half { ANSWER_STRADDLES } else { 0 })
+    }
+
+    /// The point of the light at place number `place`.
+    #[inline(always)]
+    pub(super) fn target(&self, origin: Vec3, places: &Places, place: u32) -> Vec3 {
+        let [x, y] = places[usize::from(self.shape == Shape::Rectangle)][place as usize];
+        origin + (self.center + x * self.u + y * self.v)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_neighborhood_has_all_places() {
+        for (x, y) in [(0, 0), (3, 1), (7, 12)] {
+            let pixels = (0..NEIGHBORHOOD).flat_map(|row| (0..NEIGHBORHOOD).map(move |column| (x + column, y + row)));
+            let found: BTreeSet<u32> = pixels.map(|(x, y)| place_of(y * 23 + x, 23)).collect();
+            assert!(found.into_iter().eq(0..FIRST_TARGETS), "{x}, {y}");
+        }
+    }
+
+    #[test]
+    fn sixteen_places_are_at_the_rim() {
+        let [discs, rectangles] = places();
+        let at_rim = |lengths: Vec<f32>| {
+            assert!(lengths.iter().all(|length| *length < RIM + 1e-6), "{lengths:?}");
+            lengths.iter().filter(|length| **length > RIM - 1e-6).count()
+        };
+        assert_eq!(at_rim(discs.iter().map(|[x, y]| x.hypot(*y)).collect()), 16);
+        assert_eq!(at_rim(rectangles.iter().map(|[x, y]| x.abs().max(y.abs())).collect()), 16);
+        assert_eq!(discs[FIRST_TARGETS as usize / 2], [0.0; 2]);
+    }
+}

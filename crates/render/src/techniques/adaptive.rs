@@ -1,0 +1,57 @@
+//! Adaptive shadow rays: one per light, and all samples where those of neighbouring pixels disagree. What [occluder lists](super::lists)
+//! are compared with.
+
+use super::{Request, Visible};
+use crate::backend::run::Run;
+use crate::backend::{Backend, WaveOf};
+use crate::error::RenderError;
+use crate::plan::Footprint;
+use crate::prepared::PreparedScene;
+use crate::settings::{Lookup, Settings};
+use crate::shadow::Aim;
+use crate::stage::Stage;
+use crate::stages::adaptive_shadows::cuda::LIGHTS;
+use crate::stats::SettingsStats;
+
+/// One shadow ray per light, or many.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Adaptive {
+    lights: usize,
+}
+
+impl Visible for Adaptive {
+    fn default_samples(settings: &Settings) -> u32 {
+        settings.quality.samples()
+    }
+
+    fn resolve(request: &Request) -> Result<Adaptive, RenderError> {
+        request.tell_samples();
+        Ok(Adaptive { lights: request.scene.scene.lights.len() })
+    }
+
+    fn stages(&self) -> &'static [Stage] {
+        &[Stage::LongTests]
+    }
+
+    fn visibility<B: Backend>(&self, run: &Run<B>, wave: &WaveOf<B>) -> Result<B::Visibility, RenderError> {
+        let n = run.backend.ray_count(wave.rays);
+        let aim = Aim::Extent(wave.job.sampling);
+        // Each surface point twice for each light: its first ray, and what follows from the answers.
+        let pieces = 2 * n * self.lights;
+        run.stage(Stage::LongTests, [n, pieces], |backend| backend.adaptive_shadows(wave, &aim))
+    }
+
+    fn footprint(&self, lights: u64) -> Footprint {
+        // The answers, and on the host those of whole rows; on a device half of all samples to be tested, of a slice of lights.
+        Footprint { host: 2, device: 5 * lights.min(LIGHTS as u64) }
+    }
+
+    fn spreads_points(&self) -> bool {
+        true
+    }
+
+    fn describe(&self, _: &PreparedScene, settings: &Settings, stats: &mut SettingsStats) {
+        stats.quality = settings.samples.is_none().then(|| settings.quality.name());
+        stats.lookup = Some(Lookup::Adaptive.name());
+    }
+}
