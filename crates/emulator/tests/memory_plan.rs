@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use lightmesh_emulator::{Emulator, Traffic};
 use lightmesh_render::backend::Cuda;
 use lightmesh_render::{
-    Acceleration, Frame, Kept, Mode, Observer, PreparedScene, RenderError, Settings, Stage, Step, Unobserved,
+    Acceleration, Frame, Kept, Lookup, Mode, Observer, PreparedScene, RenderError, Settings, Stage, Step, Unobserved,
     render_on, render_on_with,
 };
 use lightmesh_scene::{Geometry, LightKind, Scene, Up};
@@ -45,6 +45,15 @@ fn bits(frame: &Frame) -> (Vec<[u32; 3]>, Vec<u32>) {
 
 #[test]
 fn a_picture_in_bands_is_the_same_picture() {
+    same_in_bands(settings);
+}
+
+#[test]
+fn pixels_see_neighbors_in_other_bands() {
+    same_in_bands(|| settings().with_lookup(Lookup::Adaptive).with_samples(9));
+}
+
+fn same_in_bands(settings: impl Fn() -> Settings) {
     let scene = scene();
     let (whole, _, peak) = render(&scene, Emulator::new(), &settings());
     let whole = whole.unwrap();

@@ -64,7 +64,7 @@ fn an_unknown_word_is_answered_with_the_known() {
     let cases = [
         ("--mode", "light-mesh, ray-trace, area"),
         ("--weight", "constant, quadratic, smooth"),
-        ("--lookup", "auto, lists, half-ball"),
+        ("--lookup", "auto, lists, half-ball, adaptive"),
         ("--quality", "draft, good, final"),
         ("--short-tests", "cells, plain"),
         ("--accel", "auto, grid, bvh"),

@@ -18,8 +18,9 @@ const SIZE: [u32; 2] = [45, 37];
 /// A technique: its name, and the mode and lookup that select it.
 type Way = (&'static str, Mode, Lookup);
 
-const WAYS: [Way; 4] = [
+const WAYS: [Way; 5] = [
     ("lists", Mode::LightMesh, Lookup::Lists),
+    ("adaptive", Mode::LightMesh, Lookup::Adaptive),
     ("light-mesh", Mode::LightMesh, Lookup::HalfBall),
     ("ray-trace", Mode::RayTrace, Lookup::Auto),
     ("area", Mode::Area, Lookup::Auto),

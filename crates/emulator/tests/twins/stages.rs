@@ -39,6 +39,9 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
                 add("occluder_lists", |cuda, subject, index| {
                     Twins { samples: 16, ..Twins::new(cuda, subject, index, SIZE) }.occluder_lists();
                 });
+                add("adaptive_shadows", |cuda, subject, index| {
+                    Twins { samples: 16, ..Twins::new(cuda, subject, index, SIZE) }.adaptive_shadows();
+                });
                 add("light_mesh_2.1", |cuda, subject, index| {
                     Twins::new(cuda, subject, index, SIZE).light_mesh(2.1, Weight::Smooth);
                 });
@@ -51,7 +54,9 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
                     let twins = Twins { samples: MANY_SAMPLES, ..Twins::new(cuda, subject, index, TINY) };
                     twins.shadow_rays();
                     for samples in [1, 2, 13, 64, 256, MANY_SAMPLES] {
-                        Twins { samples, ..Twins::new(cuda, subject, index, SMALL) }.occluder_lists();
+                        let twins = Twins { samples, ..Twins::new(cuda, subject, index, SMALL) };
+                        twins.occluder_lists();
+                        twins.adaptive_shadows();
                     }
                     twins.light_mesh(0.5, Weight::Constant);
                 });
@@ -72,6 +77,7 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
 struct Twins<'a, R: Target> {
     cuda: &'a Cuda<R>,
     subject: &'static Subject,
+    size: [u32; 2],
     scene: &'static lightmesh_render::PreparedScene,
     rays: RayList,
     hits: Vec<Hit>,
@@ -106,6 +112,7 @@ impl<'a, R: Target> Twins<'a, R> {
         Twins {
             cuda,
             subject,
+            size,
             scene,
             rays,
             hits,
@@ -154,6 +161,27 @@ impl<'a, R: Target> Twins<'a, R> {
         let items = self.cuda.items(&device).unwrap();
         let found = self.cuda.occluder_lists(&device, &items, &aim).unwrap();
         self.same_shares("occluder lists", &expected, &found.read().unwrap(), 0.0, 0);
+    }
+
+    /// One ray and more, of the whole image and of rows in its middle: the same bits.
+    fn adaptive_shadows(&self) {
+        let job = self.job();
+        let aim = Aim::Extent(job.sampling);
+        let host = Cpu.adaptive_shadows(&self.on_host(&job), &aim).unwrap();
+        let device = self.cuda.adaptive_shadows(&self.on_device(&job), &aim).unwrap().read().unwrap();
+        let allowed = R::allowed(host.share.len(), 1000);
+        self.same_shares("adaptive shadow rays", &host, &device, 0.0, allowed);
+
+        let [width, height] = self.size;
+        let rows = height / 3..height / 3 + 2;
+        let rays = self.cuda.camera_rays(&self.subject.view(self.size), rows.clone()).unwrap();
+        let hits = self.cuda.primary_rays(&job, &self.device_scene, &rays).unwrap();
+        let wave = Wave { job: &job, scene: &self.device_scene, rays: &rays, hits: &hits };
+        let band = self.cuda.adaptive_shadows(&wave, &aim).unwrap().read().unwrap();
+        let planes = device.chunks_exact(self.rays.pixels.len()).zip(band.chunks_exact((2 * width) as usize));
+        for (light, (whole, band)) in planes.enumerate() {
+            assert_eq!(band, &whole[(rows.start * width) as usize..][..band.len()], "rows of light {light}");
+        }
     }
 
     /// Steps 2 to 5.

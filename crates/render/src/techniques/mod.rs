@@ -38,7 +38,8 @@ impl Request<'_> {
         let number = quality.samples();
         let aim = Aim::Extent(Sampling { samples: number, seed, spread: true });
         if samples.is_none() && self.scene.scene.lights.iter().any(|light| aim.samples(light) > 1) {
-            self.observer.chose(Setting::Quality, &format!("{number} samples of each light, quality {}", quality.name()));
+            self.observer
+                .chose(Setting::Quality, &format!("{number} samples of each light, quality {}", quality.name()));
         }
     }
 }

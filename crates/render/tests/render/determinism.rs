@@ -1,7 +1,7 @@
 //! The same image, whatever the threads and bands; a different one for another seed.
 
 use glam::{DVec3, Vec3};
-use lightmesh_render::{Device, Frame, Mode, RenderError, Renderer, Settings};
+use lightmesh_render::{Device, Frame, Lookup, Mode, RenderError, Renderer, Settings};
 use lightmesh_scene::{LightKind, Scene};
 use lightmesh_testkit::{MODES, Picture, pile};
 
@@ -19,6 +19,12 @@ fn scene() -> Scene {
     scene
 }
 
+/// All modes, and adaptive shadow rays, whose pixels depend on their neighbours.
+fn ways() -> Vec<Settings> {
+    let adaptive = settings(Mode::LightMesh).with_lookup(Lookup::Adaptive);
+    MODES.into_iter().map(settings).chain([adaptive]).collect()
+}
+
 fn settings(which: Mode) -> Settings {
     let settings = if which == Mode::LightMesh { light_mesh(SIZE, 0.15, 2.1) } else { mode(which, SIZE) };
     settings.with_samples(7).with_bounces(1).with_layers(true)
@@ -30,27 +36,29 @@ fn render(threads: usize, settings: &Settings) -> Result<Frame, RenderError> {
 
 #[test]
 fn threads_do_not_change_a_bit() {
-    for which in MODES {
-        let one = render(1, &settings(which)).unwrap();
+    for settings in ways() {
+        let one = render(1, &settings).unwrap();
         for threads in [2, 3] {
-            let many = render(threads, &settings(which)).unwrap();
-            assert!(Picture::new(&many).bits() == Picture::new(&one).bits(), "{which:?} on {threads} threads");
+            let many = render(threads, &settings).unwrap();
+            assert!(Picture::new(&many).bits() == Picture::new(&one).bits(), "{settings:?} on {threads} threads");
         }
     }
 }
 
 #[test]
 fn bands_do_not_change_a_bit() {
-    for which in MODES {
-        let whole = render(2, &settings(which)).unwrap();
+    for settings in ways() {
+        let whole = render(2, &settings).unwrap();
         assert_eq!(whole.stats.settings.rows_per_band, SIZE[1]);
-        let limited = |limit| render(2, &settings(which).with_memory_limit(limit));
+        let limited = |limit| render(2, &settings.clone().with_memory_limit(limit));
         let Err(RenderError::Memory { needed, .. }) = limited(1) else { panic!("one byte must not suffice") };
         // Just enough for one row, then for some.
         for limit in [needed, needed + 100_000] {
             let banded = limited(limit).unwrap();
-            assert!(banded.stats.settings.rows_per_band < SIZE[1], "{which:?}");
-            assert!(Picture::new(&banded).bits() == Picture::new(&whole).bits(), "{which:?} in bands");
+            assert!(banded.stats.settings.rows_per_band < SIZE[1], "{settings:?}");
+            assert!(Picture::new(&banded).bits() == Picture::new(&whole).bits(), "{settings:?} in bands");
+            let counts = |frame: &Frame| (frame.stats.counts.shadow_rays, frame.stats.counts.rays);
+            assert_eq!(counts(&banded), counts(&whole), "{settings:?} in bands");
         }
         assert!(matches!(limited(needed - 1), Err(RenderError::Memory { .. })));
     }

@@ -10,7 +10,7 @@ use crate::{LAMP, POINT, mode};
 const SIZE: [u32; 2] = [70, 45];
 
 /// A light of every kind, some of them crossing the horizon of surfaces or touching them.
-fn kinds() -> Vec<LightKind> {
+pub(crate) fn kinds() -> Vec<LightKind> {
     let (position, slanted) = (Vec3::new(-1.5, 3.0, 1.0), Vec3::new(0.6, -0.8, 0.0));
     vec![
         LAMP,
@@ -34,7 +34,7 @@ fn area(samples: u32) -> Settings {
 }
 
 /// The visibility of every light at every pixel.
-fn visibilities(frame: &Frame) -> Vec<f32> {
+pub(crate) fn visibilities(frame: &Frame) -> Vec<f32> {
     frame.layers().expect("asked for").visibility.concat()
 }
 

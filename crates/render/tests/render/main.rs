@@ -1,5 +1,6 @@
 //! Whole images with known answers.
 
+mod adaptive;
 mod convergence;
 mod degenerate;
 mod determinism;

@@ -123,7 +123,11 @@ impl<'a> Band<'a> {
             let rays = run * RUN..wave.hits.len().min((run + 1) * RUN);
             let mut cast = 0;
             let trace = || cast = self.first_rays_of(wave, emitter, rays.clone(), answers);
-            if is_own { wave.job.piece(rays.len(), trace) } else { wave.job.piece(0, trace) }
+            if is_own {
+                wave.job.piece(rays.len(), trace)
+            } else {
+                wave.job.piece(0, trace)
+            }
             cast
         });
         runs.sum()

@@ -66,7 +66,8 @@ impl<'a, R: Runtime> Band<'a, R> {
         let [width, height] = record.view.size;
         let (start, end) = (record.first_pixel / width, (record.first_pixel + record.count) / width);
         let rows = start.saturating_sub(AROUND)..height.min(end.saturating_add(AROUND));
-        let uncounted: Buffer<R, Counters> = cuda.pool().zeros("counters of rows next to a band", Tally::SHARDS as usize)?;
+        let uncounted: Buffer<R, Counters> =
+            cuda.pool().zeros("counters of rows next to a band", Tally::SHARDS as usize)?;
         let mut margins = Vec::new();
         for part in [rows.start..start, end..rows.end] {
             let record = Rays { first_pixel: part.start * width, count: part.len() as u32 * width, ..record };
@@ -87,8 +88,7 @@ impl<'a, R: Runtime> Band<'a, R> {
         let tiles = wave.rays.blocks(BLOCK_SIDE);
         let blocks = tiles * lights.len() as u64;
         let counts = pool.room("number of pixels whose neighbours disagree", blocks as usize + 1)?;
-        let of_lights =
-            |shadows| Shadows { first_light: lights.start as u32, end_light: lights.end as u32, ..shadows };
+        let of_lights = |shadows| Shadows { first_light: lights.start as u32, end_light: lights.end as u32, ..shadows };
         let record = AdaptiveShadows {
             scene: wave.scene.record,
             shadows: of_lights(sets.record(cuda, wave, share, 0)?),

@@ -9,7 +9,7 @@ use crate::surface::SurfacePoint;
 
 /// The outermost points that first rays are cast to, as a part of a light's half width. Shadows that hide less than what lies beyond
 /// would rarely hide a sample.
-const RIM: f32 = 0.95;
+const RIM: f32 = 0.9;
 
 /// Points of a light that first rays are cast to, for discs, then for rectangles: coordinates in [−1, 1].
 pub(super) type Places = [[[f32; 2]; FIRST_TARGETS as usize]; 2];

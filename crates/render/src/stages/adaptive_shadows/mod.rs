@@ -15,7 +15,7 @@
 //! A light without a size is the ray to its centre. Rays that are not a camera's have no neighbours: all their samples are tested.
 //!
 //! The picture does not depend on how it is split into bands: steps 1 and 2 include the rows next to a band, whose rays are not counted.
-//! What all 25 rays miss stays unseen: a shadow of less than about a fiftieth of a light, or one smaller than a pixel.
+//! What all 25 rays miss stays unseen: an edge that hides or shows less than a fortieth of a light, an occluder narrower than their distance.
 
 pub(crate) mod cpu;
 pub(crate) mod cuda;
