@@ -101,6 +101,9 @@ pub(crate) const STAGES: &str = "stages";
 /// The experiment that compares ways to compute shadows.
 pub(crate) const SHADOWS: &str = "shadows";
 
+/// The experiment that compares defaults.
+pub(crate) const WHOLE_FRAMES: &str = "whole frames";
+
 /// A setting: a number or a word.
 #[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[serde(untagged)]

@@ -5,16 +5,25 @@
 //!
 //! * `lists`: light-mesh mode by occluder lists;
 //! * `rows`: area mode, each surface point on its own, whose bits the lists must equal;
-//! * `rays`: an ordinary shadow ray to each of the same samples.
+//! * `rays`: an ordinary shadow ray to each of the same samples;
+//! * `adaptive`: one such ray, all of them where the answers of neighbouring pixels disagree.
 //!
 //! Times are those of all stages; `shadows` is the sum of those between primary rays and shading. Values: `differing_pixels`, pixels
 //! times lights whose visibility is not that of `rows`, and `differing_samples`, the samples by which they differ, as a part of
-//! all; rows of `lists` and `rays` have them.
+//! all; all rows but those of `rows` have them. `visibility_rmse` is the error relative to a converged reference, and
+//! `lists_by_adaptive`, of rows of `adaptive`, the time of the lists' shadows by that of adaptive ones.
+//!
+//! Rows of `whole frames` compare the program's defaults ([`frames`]).
+
+mod frames;
+
+use std::time::Duration;
 
 use lightmesh::render::{PreparedScene, ShadowTests};
 use lightmesh::scene::LightKind;
-use lightmesh::{Acceleration, Lookup, Mode, Observer, Scene, Settings};
+use lightmesh::{Acceleration, Lookup, Mode, Observer, Scene, Settings, image};
 
+use super::quality::visibility_rmse;
 use super::subjects::{self, Subject};
 use super::turns::Turns;
 use crate::engine::{self, Engine};
@@ -29,6 +38,10 @@ const SAMPLES: [u32; 2] = [16, 64];
 const EMITTERS: [f32; 3] = [0.016, 0.042, 0.107];
 /// The stages between primary rays and shading.
 const STAGES: [&str; 2] = ["cells", "long_tests"];
+/// Samples of the reference, and in the short version.
+const CONVERGED: [u32; 2] = [1024, 256];
+/// Different from seed 0, which all measurements use.
+const SEED: u64 = 1;
 
 /// A way to compute the shadows.
 struct Method {
@@ -36,10 +49,11 @@ struct Method {
     choose: fn(Settings) -> Settings,
 }
 
-const METHODS: [Method; 3] = [
+const METHODS: [Method; 4] = [
     Method { name: "lists", choose: |settings| settings.with_mode(Mode::LightMesh).with_lookup(Lookup::Lists) },
     Method { name: "rows", choose: |settings| settings.with_mode(Mode::Area) },
     Method { name: "rays", choose: |settings| settings.with_mode(Mode::Area).with_shadow_tests(ShadowTests::Rays) },
+    Method { name: "adaptive", choose: |settings| settings.with_mode(Mode::LightMesh).with_lookup(Lookup::Adaptive) },
 ];
 
 pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings) -> Result<(), BenchError> {
@@ -48,16 +62,20 @@ pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings)
     let side = plan.side_or(SIDES);
     subjects::each(plan, observer, |subject, share| {
         let emitters: Vec<Option<f32>> = std::iter::once(None).chain(EMITTERS.map(Some)).collect();
-        let parts = (emitters.len() * SAMPLES.len() * engines.len()) as u32;
+        // Whole frames are measured like one more number of samples.
+        let parts = (emitters.len() * (SAMPLES.len() + 1) * engines.len()) as u32;
         let own = PreparedScene::new(&with_emitters(subject, None), &Acceleration::Auto, &Silent(observer))?;
         for engine in &engines {
             for &emitter in &emitters {
                 let scene = own.with_lights(with_emitters(subject, emitter).lights);
+                let settings = Settings::default().with_size([side; 2]);
+                let case = Case { subject, engine, scene: &scene, emitter, settings };
+                let reference = case.converged(plan, observer)?;
                 for samples in SAMPLES {
-                    let settings = Settings::default().with_size([side; 2]).with_samples(samples);
-                    let case = Case { subject, engine, scene: &scene, emitter, settings };
-                    case.measure(plan, share / parts, observer, findings)?;
+                    let case = Case { settings: case.settings.clone().with_samples(samples), ..case };
+                    case.measure(plan, (share / parts, &reference), observer, findings)?;
                 }
+                frames::measure(&case, plan, (share / parts, &reference), observer, findings)?;
             }
         }
         Ok(())
@@ -95,7 +113,7 @@ impl Case<'_> {
     fn measure(
         &self,
         plan: &Plan,
-        share: std::time::Duration,
+        (share, converged): (Duration, &image::Frame),
         observer: &dyn Observer,
         findings: &mut Findings,
     ) -> Result<(), BenchError> {
@@ -104,7 +122,7 @@ impl Case<'_> {
         let what =
             format!("{} with emitters {:?}, {:?} samples", self.subject.name, self.emitter, self.settings.samples);
         findings.notes.extend(turns.notes(&what, plan.repetitions));
-        let mut reference = None;
+        let (mut reference, mut of_lists) = (None, None);
         for (method, measured) in METHODS.iter().zip(&turns.measured) {
             let mut row = self.row(method);
             measured.fill(&mut row);
@@ -114,40 +132,61 @@ impl Case<'_> {
                     STAGES.iter().filter_map(|stage| row.seconds.get(*stage)).map(|samples| samples.0[round]).sum(),
                 );
             }
+            if method.name == "lists" {
+                of_lists = sums.median();
+            }
+            let ratio = of_lists.zip(sums.median()).filter(|_| method.name == "adaptive").map(|(a, b)| a / b);
+            row.values.extend(ratio.map(|ratio| ("lists_by_adaptive".to_owned(), ratio)));
             row.seconds.insert("shadows".to_owned(), sums);
             if method.name != "rows" {
                 if reference.is_none() {
-                    reference = Some(self.visibility(&METHODS[1], observer)?);
+                    reference = Some(visibility(&self.layered(&METHODS[1], observer)?));
                 }
-                let own = self.visibility(method, observer)?;
-                let (pixels, samples) = differences(reference.as_deref().unwrap_or_default(), &own);
+                let own = self.layered(method, observer)?;
+                let (pixels, samples) = differences(reference.as_deref().unwrap_or_default(), &visibility(&own));
                 row.values.insert("differing_pixels".to_owned(), pixels);
                 row.values.insert("differing_samples".to_owned(), samples);
+                row.values.insert("visibility_rmse".to_owned(), visibility_rmse(converged, &own));
             }
             findings.rows.push(row);
         }
         Ok(())
     }
 
-    /// The visibility of each light at each pixel.
-    fn visibility(&self, method: &Method, observer: &dyn Observer) -> Result<Vec<f32>, BenchError> {
+    /// With enough samples to count as converged.
+    fn converged(&self, plan: &Plan, observer: &dyn Observer) -> Result<image::Frame, BenchError> {
+        let settings = self.settings.clone().with_samples(CONVERGED[usize::from(plan.quick)]).with_seed(SEED);
+        Case { settings, ..*self }.layered(&METHODS[0], observer)
+    }
+
+    /// An image with layers, which timed ones do not have.
+    fn layered(&self, method: &Method, observer: &dyn Observer) -> Result<image::Frame, BenchError> {
         let Variant { renderer, scene, settings } = self.variant(method, true);
-        let frame = renderer.render_prepared(scene, &settings, &Silent(observer))?;
-        Ok(frame.layers().map(|layers| layers.visibility.concat()).unwrap_or_default())
+        Ok(renderer.render_prepared(scene, &settings, &Silent(observer))?.image)
     }
 
     fn row(&self, method: &Method) -> Row {
+        let samples = ("samples", f64::from(self.settings.samples.unwrap_or_default()).into());
+        self.row_of(SHADOWS, method.name, [samples])
+    }
+
+    /// A row of an experiment with keys of its own.
+    fn row_of<const N: usize>(&self, experiment: &str, method: &str, own: [(&'static str, Key); N]) -> Row {
         let emitter = self.emitter.map_or_else(|| "own".into(), Key::from);
         let keys = [
             ("scene", self.subject.name.as_str().into()),
             ("emitter", emitter),
             ("size", f64::from(self.settings.size[0]).into()),
-            ("samples", f64::from(self.settings.samples.unwrap_or_default()).into()),
-            ("method", method.name.into()),
+            ("method", method.into()),
             ("accel", self.scene.geometry.accelerator.name().into()),
         ];
-        Row::new(SHADOWS, keys.into_iter().chain(self.engine.keys()))
+        Row::new(experiment, keys.into_iter().chain(own).chain(self.engine.keys()))
     }
+}
+
+/// The visibility of each light at each pixel.
+fn visibility(frame: &image::Frame) -> Vec<f32> {
+    frame.layers().map(|layers| layers.visibility.concat()).unwrap_or_default()
 }
 
 /// How many values differ, and the mean difference.
@@ -165,21 +204,44 @@ mod tests {
     use lightmesh::render::Unobserved;
 
     use super::*;
+    use crate::WHOLE_FRAMES;
 
-    #[test]
-    fn lists_give_the_bits_of_the_reference_and_rays_nearly() {
+    fn found(plan: Plan) -> Findings {
         let scenes = vec![PathBuf::from("builtin:gazebo")];
-        let plan =
-            Plan { device: Device::Cpu, threads: Some(2), repetitions: 1, scenes, size: Some(48), ..Plan::new(true) };
+        let plan = Plan { device: Device::Cpu, threads: Some(2), repetitions: 1, scenes, size: Some(48), ..plan };
         let mut findings = Findings::default();
         run(&plan, &Unobserved, &mut findings).unwrap();
-        assert_eq!(findings.rows.len(), (EMITTERS.len() + 1) * SAMPLES.len() * METHODS.len());
-        for row in &findings.rows {
+        findings
+    }
+
+    #[test]
+    fn lists_give_the_bits_of_the_reference_and_the_others_nearly() {
+        let findings = found(Plan::new(true));
+        let rows = |experiment| findings.rows.iter().filter(move |row| row.experiment == experiment);
+        let cases = EMITTERS.len() + 1;
+        assert_eq!(rows(SHADOWS).count(), cases * SAMPLES.len() * METHODS.len());
+        for row in rows(SHADOWS) {
             assert!(row.seconds["shadows"].0.iter().all(|seconds| *seconds > 0.0), "{}", row.id);
             let differing = row.values.get("differing_samples").copied().unwrap_or(0.0);
-            let allowed = if row.keys["method"] == "rays".into() { 1e-4 } else { 0.0 };
-            assert!(differing <= allowed, "{}: {differing}", row.id);
+            let is = |method: &str| row.keys["method"] == method.into();
+            let allowed = if is("rays") { 1e-4 } else { 0.0 };
+            assert!(differing <= if is("adaptive") { 0.02 } else { allowed }, "{}: {differing}", row.id);
+            assert_eq!(row.values.contains_key("visibility_rmse"), !is("rows"), "{}", row.id);
+            assert_eq!(row.values.contains_key("lists_by_adaptive"), is("adaptive"), "{}", row.id);
+            let error = row.values.get("visibility_rmse").copied().unwrap_or(0.0);
+            assert!(error < if row.keys["samples"] == 64.0.into() { 0.03 } else { 0.06 }, "{}: {error}", row.id);
         }
+        let ids: std::collections::BTreeSet<&str> = findings.rows.iter().map(|row| row.id.as_str()).collect();
+        assert_eq!(ids.len(), findings.rows.len(), "ids repeat");
+        assert_eq!(rows(WHOLE_FRAMES).count(), 3 * cases);
+    }
+
+    #[test]
+    fn without_time_the_lists_are_measured_and_what_is_missing_is_said() {
+        let findings = found(Plan { budget: Duration::ZERO, ..Plan::new(true) });
+        assert!(findings.rows.iter().all(|row| row.keys["method"] == "lists".into()));
+        assert_eq!(findings.rows.len(), (EMITTERS.len() + 1) * (SAMPLES.len() + 1));
+        assert_eq!(findings.notes.len(), 2 * findings.rows.len(), "{:#?}", findings.notes);
     }
 
     #[test]

@@ -4,6 +4,7 @@ mod generic;
 pub(super) mod lights;
 pub(super) mod quality;
 mod rays;
+mod shadows;
 mod tables;
 pub(super) mod thesis;
 
@@ -11,7 +12,7 @@ use super::document::{Block, Column};
 use super::numbers;
 use super::runs::{Measured, Runs, distinct};
 use crate::Key;
-pub(crate) use crate::{STAGES, WHOLE};
+pub(crate) use crate::{SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};
 
 /// Time against the number of lights, and the break-even.
 pub(crate) const LIGHTS: &str = "figure 11";
@@ -52,6 +53,9 @@ pub(crate) fn of(experiment: &str, runs: &Runs) -> (String, Vec<Block>) {
         "equal time" => quality::equal_time(&rows),
         "rays" => rays::rates(&rows),
         STAGES => thesis::by_stage(&rows),
+        // It has errors, but they are not what it is about.
+        SHADOWS => generic::blocks(experiment, &rows),
+        WHOLE_FRAMES => shadows::whole_frames(&rows),
         _ if quality::fits(&rows) => quality::errors(experiment, &rows),
         _ => generic::blocks(experiment, &rows),
     };
@@ -74,6 +78,7 @@ pub(crate) fn title(experiment: &str) -> String {
         "equal time" => "Error in equal time",
         "rays" => "Rays per second",
         STAGES => "Time by stage",
+        WHOLE_FRAMES => "Whole frames: the default, the half-ball, adaptive shadow rays",
         "soft shadows" => "Soft shadows with other renderers",
         "peers" => "Other renderers",
         _ => "",

@@ -110,7 +110,7 @@ impl Errors {
 }
 
 /// 0 if there is no surface point or light.
-fn visibility_rmse(reference: &image::Frame, test: &image::Frame) -> f64 {
+pub(in crate::suites) fn visibility_rmse(reference: &image::Frame, test: &image::Frame) -> f64 {
     let (Some(reference), Some(test)) = (reference.layers(), test.layers()) else { return 0.0 };
     let (mut sum, mut count) = (0.0, 0_usize);
     for (reference_plane, test_plane) in reference.visibility.iter().zip(&test.visibility) {

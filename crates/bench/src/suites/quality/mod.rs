@@ -25,6 +25,7 @@ use lightmesh::render::PreparedScene;
 use lightmesh::{Mode, Observer, Settings, Step};
 
 use self::cases::{Case, Emitter};
+pub(super) use self::errors::visibility_rmse;
 use self::errors::{Errors, Reference};
 use super::subjects::{self, Subject};
 use super::turns::Turns;
