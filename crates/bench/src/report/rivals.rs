@@ -50,7 +50,7 @@ pub(crate) fn findings(rows: &[Measured], mode: &str) -> Vec<Finding> {
 
 /// A competitor's image and each corresponding image of the method.
 fn duels<'a>(rival: &Measured, rows: &[Measured<'a>]) -> Vec<Duel<'a>> {
-    let mesh = rows.iter().filter(|row| row.is("mode", "light-mesh") && same_picture(row, rival));
+    let mesh = rows.iter().filter(|row| row.is_half_ball() && same_picture(row, rival));
     let duel = |mesh: &Measured<'a>| {
         let errors = mesh.value("mean_flip").map(|error| (error, rival.value("mean_flip").unwrap_or(0.0)));
         Some(Duel { mesh: *mesh, ratio: whole(mesh)? / whole(rival)?, errors })

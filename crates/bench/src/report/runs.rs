@@ -50,6 +50,11 @@ impl<'a> Measured<'a> {
         matches!(self.key(name), Some(Key::Word(key)) if key == word)
     }
 
+    /// Whether it is an image with light points: light-mesh mode, with no other lookup.
+    pub(crate) fn is_half_ball(&self) -> bool {
+        self.is("mode", "light-mesh") && (self.key("lookup").is_none() || self.is("lookup", "half-ball"))
+    }
+
     pub(crate) fn value(&self, name: &str) -> Option<f64> {
         self.row.values.get(name).copied()
     }

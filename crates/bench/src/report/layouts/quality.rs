@@ -67,15 +67,15 @@ fn plot(experiment: &str, (error, title): (&str, &str), subject: &str, rows: &[M
     })
 }
 
-/// Points by method, each in order of time. Shadow rays differ only in number, which makes a line; light meshes differ in various
-/// settings.
+/// Points by method, each in order of time. Shadow rays and samples of occluder lists differ only in number, which makes a line; light
+/// meshes differ in various settings.
 fn curves(rows: &[Measured], point: impl Fn(&Measured) -> Option<(f64, f64)>) -> Vec<Curve> {
     let names = distinct(rows.iter().map(method));
     let curves = names.into_iter().map(|name| {
         let of_method: Vec<&Measured> = rows.iter().filter(|row| method(row) == name).collect();
         let mut points: Vec<(f64, f64)> = of_method.iter().copied().filter_map(&point).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let scattered = of_method.iter().any(|row| row.is("mode", "light-mesh"));
+        let scattered = of_method.iter().any(|row| row.is_half_ball());
         Curve { name, points, scattered }
     });
     curves.filter(|curve| !curve.points.is_empty()).collect()
@@ -85,6 +85,8 @@ fn curves(rows: &[Measured], point: impl Fn(&Measured) -> Option<(f64, f64)>) ->
 fn method(row: &Measured) -> String {
     let name = METHOD.into_iter().map(|key| row.text(key)).find(|name| !name.is_empty()).unwrap_or_default();
     let name = match name.as_str() {
+        "light-mesh" if row.is("lookup", "lists") => "occluder lists".to_owned(),
+        "light-mesh" if row.is("lookup", "adaptive") => "adaptive shadow rays".to_owned(),
         "light-mesh" => "light mesh".to_owned(),
         "area" => "shadow rays".to_owned(),
         "ray-trace" => "hard shadows".to_owned(),
@@ -96,26 +98,36 @@ fn method(row: &Measured) -> String {
 /// Cost at equal error for each measure, scene and device: the method's time over that of shadow rays.
 pub(crate) fn findings(runs: &Runs) -> Vec<Finding> {
     let rows = runs.rows(EQUAL_ERROR);
-    let name = |row: &Measured| (subject(row), row.text("measure"));
+    let name = |row: &Measured| (subject(row), row.text("measure"), contender(row));
     distinct(rows.iter().map(name))
         .into_iter()
         .filter_map(|wanted| {
             let rows: Vec<&Measured> = rows.iter().filter(|row| name(row) == wanted).collect();
-            equal_error(&wanted.0, &wanted.1, &rows)
+            equal_error(&wanted.0, &wanted.1, wanted.2, &rows)
         })
         .collect()
 }
 
-fn equal_error(subject: &str, measure: &str, rows: &[&Measured]) -> Option<Finding> {
+/// What is compared with shadow rays, as the subject of a sentence, and whether that is plural.
+fn contender(row: &Measured) -> (&'static str, bool) {
+    match row.text("lookup").as_str() {
+        "lists" => ("occluder lists", true),
+        "adaptive" => ("adaptive shadow rays", true),
+        _ => ("the light mesh", false),
+    }
+}
+
+fn equal_error(subject: &str, measure: &str, (contender, plural): (&str, bool), rows: &[&Measured]) -> Option<Finding> {
     let range = Spread::of(rows.iter().filter_map(|row| ratio(row)))?;
     let errors = Spread::of(rows.iter().filter_map(|row| row.value("error")))?;
     let name = ERRORS.iter().find(|(name, _)| *name == measure).map_or(measure, |(_, title)| title);
     let with = |name: &str| -> Vec<&&Measured> { rows.iter().filter(|row| row.value(name).is_some()).collect() };
     let (bounds, never, all) = (with("upper_bound"), with("not_reached").len(), rows.len());
     let mut text = format!(
-        "{}: at equal error ({name}, {}) the light mesh takes {} the time of shadow rays, over {all} settings.",
+        "{}: at equal error ({name}, {}) {contender} {} {} the time of shadow rays, over {all} settings.",
         title(subject),
         errors.text(|error| numbers::significant(error, 2)),
+        if plural { "take" } else { "takes" },
         range.text(numbers::ratio)
     );
     if !bounds.is_empty() {
@@ -133,7 +145,8 @@ fn equal_error(subject: &str, measure: &str, rows: &[&Measured]) -> Option<Findi
     let verdicts = distinct(rows.iter().map(|row| outcome(row)));
     if verdicts.len() > 1 {
         let count = |wanted| rows.iter().filter(|row| outcome(row) == wanted).count();
-        text += &format!(" It wins in {} and loses in {}.", count(Verdict::Wins), count(Verdict::Loses));
+        let [wins, loses] = if plural { ["They win", "lose"] } else { ["It wins", "loses"] };
+        text += &format!(" {wins} in {} and {loses} in {}.", count(Verdict::Wins), count(Verdict::Loses));
     }
     Some(Finding::new(if let [one] = verdicts[..] { one } else { Verdict::Depends }, text))
 }
@@ -156,7 +169,7 @@ fn outcome(row: &Measured) -> Verdict {
 pub(super) fn equal_errors(rows: &[Measured]) -> Vec<Block> {
     let values = [
         ("error", "error"),
-        ("seconds", "light mesh, s"),
+        ("seconds", "s"),
         ("area_seconds", "shadow rays, s"),
         ("faster_than_area", "speed-up"),
         ("rays", "rays"),
@@ -164,7 +177,7 @@ pub(super) fn equal_errors(rows: &[Measured]) -> Vec<Block> {
         ("area_samples", "shadow rays per pixel and light"),
         ("area_rays", "shadow rays"),
     ];
-    let caption = "The cost of a light mesh, and of shadow rays with the same error. Speed-up: below 1 the light mesh is slower. Rows \
+    let caption = "The cost of a light mesh, occluder lists or adaptive shadow rays, and of shadow rays with the same error. Speed-up: below 1 the former are slower. Rows \
                    without values for shadow rays: no measured number of them has an error this small.";
     vec![generic::chosen(EQUAL_ERROR, caption, rows, &[], &values)]
 }
@@ -213,6 +226,28 @@ mod tests {
             "Garden: at equal error (mean FLIP, 0.10) the light mesh takes 2.0× to 3.0× the time of shadow rays, over 2 settings. In 1 \
              of them a single shadow ray already has a smaller error."
         );
+    }
+
+    #[test]
+    fn lookups_have_findings_of_their_own() {
+        let results = crate::report::tests::results("quality", |rows| {
+            for (lookup, samples, seconds) in [(None, 4, 0.8), (Some("lists"), 4, 0.1), (Some("lists"), 16, 0.2)] {
+                let keys =
+                    [("scene", "garden".into()), ("mode", "light-mesh".into()), ("samples", f64::from(samples).into())];
+                let keys = keys.into_iter().chain(lookup.map(|lookup| ("lookup", lookup.into())));
+                let mut row = crate::Row::new(EQUAL_ERROR, keys);
+                let values = [("error", 0.1), ("seconds", seconds), ("area_seconds", 0.4)];
+                row.values.extend(values.map(|(name, value)| (name.to_owned(), value)));
+                rows.push(row);
+            }
+        });
+        let runs = crate::report::named(vec![("a.json".into(), results)]);
+        let findings = findings(&runs);
+        let verdicts: Vec<Verdict> = findings.iter().map(|finding| finding.verdict).collect();
+        assert_eq!(verdicts, [Verdict::Loses, Verdict::Wins]);
+        assert!(findings[1].text.contains("occluder lists take 0.25× to 0.50× the time"), "{}", findings[1].text);
+        let names: Vec<String> = runs.rows(EQUAL_ERROR).iter().map(method).collect();
+        assert_eq!(names, ["light mesh", "occluder lists", "occluder lists"]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The cases that are compared with the reference.
 
+use lightmesh::render::ShadowTests;
 use lightmesh::scene::Weight;
 use lightmesh::{Lookup, Mode, Settings, Step};
 
@@ -7,6 +8,8 @@ use crate::Key;
 
 /// Numbers of shadow rays per pixel and light.
 pub(super) const AREA_SAMPLES: [u32; 4] = [1, 4, 16, 64];
+/// Other lookups of light-mesh mode, with the numbers of samples of a light at each surface point.
+const LOOKUPS: [(Lookup, &[u32]); 2] = [(Lookup::Lists, &[4, 16, 64]), (Lookup::Adaptive, &[16, 64])];
 /// The thesis' larger radius.
 const THESIS_RADIUS: f32 = 3.1;
 
@@ -39,8 +42,9 @@ struct Mesh {
     samples: u32,
 }
 
-/// Shadow rays first, hard ones and n per light; then the light mesh with step `h`, which is used for images; then others that
-/// differ from it in one setting; then the thesis' own. With `automatic` also the automatic step.
+/// Shadow rays first, hard ones and n per light; then the light mesh with step `h`, which is used for images; then occluder lists and
+/// adaptive shadow rays; then light meshes that differ from the first in one setting; then the thesis' own. With `automatic` also the
+/// automatic step.
 pub(super) fn cases(h: f32, side: u32, automatic: bool) -> Vec<Case> {
     let usual = Mesh {
         step: Step::Fixed(h),
@@ -60,16 +64,31 @@ pub(super) fn cases(h: f32, side: u32, automatic: bool) -> Vec<Case> {
 
     let mut cases = vec![Case::shadow_rays(Mode::RayTrace, 1, side)];
     cases.extend(AREA_SAMPLES.map(|samples| Case::shadow_rays(Mode::Area, samples, side)));
-    cases.extend(meshes.iter().map(|mesh| mesh.case(side)));
+    let mut meshes = meshes.iter().map(|mesh| mesh.case(side));
+    cases.extend(meshes.next());
+    cases.extend(LOOKUPS.iter().flat_map(|(lookup, samples)| samples.iter().map(|&n| Case::lookup(*lookup, n, side))));
+    cases.extend(meshes);
     cases
 }
 
 impl Case {
     /// Number of shadow rays to each light.
     pub(super) fn shadow_rays(mode: Mode, samples: u32, side: u32) -> Case {
-        let settings = Settings::default().with_mode(mode).with_size([side; 2]).with_samples(samples);
+        let settings = Settings::default()
+            .with_mode(mode)
+            .with_shadow_tests(ShadowTests::Rays)
+            .with_size([side; 2])
+            .with_samples(samples);
         let keys = vec![("mode", mode.name().into()), ("samples", f64::from(samples).into())];
         Case { keys, settings, emitter: Emitter::Ball }
+    }
+
+    /// Light-mesh mode with a lookup other than the half-ball.
+    fn lookup(lookup: Lookup, samples: u32, side: u32) -> Case {
+        let settings = Settings::default().with_lookup(lookup).with_size([side; 2]).with_samples(samples);
+        let keys = [("mode", settings.mode.name()), ("lookup", lookup.name()), ("emitter", "ball")];
+        let keys = keys.map(|(name, word)| (name, word.into())).into_iter();
+        Case { keys: keys.chain([("samples", f64::from(samples).into())]).collect(), settings, emitter: Emitter::Ball }
     }
 }
 

@@ -27,8 +27,9 @@ fn every_experiment_has_rows_of_their_own() {
     let ids: BTreeSet<&str> = findings.rows.iter().map(|row| row.id.as_str()).collect();
     assert_eq!(ids.len(), findings.rows.len(), "ids repeat");
     let count = |experiment: &str| findings.rows.iter().filter(|row| row.experiment == experiment).count();
-    // Hard shadows, four numbers of shadow rays and 14 light meshes, each with two measures.
-    assert_eq!(["reference", "errors", "equal error", "equal time"].map(count), [1, 19, 28, 1]);
+    // Hard shadows, four numbers of shadow rays; 14 light meshes, three numbers of samples with occluder lists and two with adaptive rays,
+    // each with two measures.
+    assert_eq!(["reference", "errors", "equal error", "equal time"].map(count), [1, 24, 38, 1]);
     assert_eq!(findings.pictures.len(), 3);
     assert!(findings.pictures[1..].iter().all(|picture| picture.reference.as_ref() == Some(&findings.pictures[0].id)));
 }
@@ -42,6 +43,13 @@ fn more_shadow_rays_come_nearer_to_the_reference_which_has_converged() {
     };
     let errors = cases::AREA_SAMPLES.map(area);
     assert!(errors.is_sorted_by(|a, b| a > b), "{errors:?}");
+    // Lists test the same samples, and so do adaptive rays but for what is thinner than a pixel, here a large one.
+    for (lookup, samples, most) in [("lists", 16, 1.01), ("lists", 64, 1.01), ("adaptive", 16, 2.5)] {
+        let keys = [("lookup", lookup.into()), ("samples", f64::from(samples).into())];
+        let found = value(&findings, "errors", &keys, "visibility_rmse");
+        let rays = area(samples);
+        assert!((0.99 * rays..most * rays).contains(&found), "{lookup}, {samples}: {found}, {rays}");
+    }
     let residue = value(&findings, "reference", &[], "visibility_rmse");
     assert!(0.0 < residue && residue < errors[3], "{residue} {errors:?}");
 }

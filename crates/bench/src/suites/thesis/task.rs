@@ -82,6 +82,12 @@ impl Picture<'_> {
         self.case(area, [("samples", f64::from(samples).into())])
     }
 
+    /// With another lookup of light-mesh mode and `samples` samples of each light.
+    pub(super) fn lookup(&self, lookup: Lookup, samples: u32) -> Case {
+        let settings = settings(self.side, Mode::LightMesh).with_lookup(lookup).with_samples(samples);
+        self.case(settings, [("lookup", lookup.name().into()), ("samples", f64::from(samples).into())])
+    }
+
     fn case<const N: usize>(&self, settings: Settings, own: [(&'static str, Key); N]) -> Case {
         let common = [
             ("scene", self.scene.into()),

@@ -1,5 +1,7 @@
 //! All measurements of the suite, most important first: those that get no time are at the end.
 
+use lightmesh::Lookup;
+
 use super::published::{
     AREA_SAMPLES, FIGURE_SCENE, GARDEN_LIGHTS, LIGHTS_RADIUS, PICTURE_RADII, RADII, SCENES, SIZES, STEP_PARTS,
     SceneOfThesis,
@@ -77,7 +79,8 @@ fn lights(plan: &Plan, engines: &[Engine], engine: usize) -> Vec<Task> {
     counts.iter().map(task).collect()
 }
 
-/// Figure 1: area shadows. The one with the most samples, the reference of all images, is a separate, first task.
+/// Figure 1: area shadows. The one with the most samples, the reference of all images, is a separate, first task. Occluder lists and
+/// adaptive shadow rays have as many.
 fn area_shadows(plan: &Plan, engines: &[Engine], engine: usize) -> Vec<Task> {
     let picture = kept_picture(plan, engines, engine, AREA_SHADOWS);
     let cases = AREA_SAMPLES.map(|samples| {
@@ -87,9 +90,15 @@ fn area_shadows(plan: &Plan, engines: &[Engine], engine: usize) -> Vec<Task> {
     });
     let scene = scene_with_lights(picture.scene, picture.lights);
     let [reference, few, more] = cases;
+    let [lists, adaptive] =
+        [(Lookup::Lists, "occluder lists"), (Lookup::Adaptive, "adaptive shadow rays")].map(|(lookup, title)| {
+            let mut case = picture.lookup(lookup, AREA_SAMPLES[0]);
+            case.title = Some(format!("{title}, {} samples per light", AREA_SAMPLES[0]));
+            case
+        });
     // It takes long, and only its image is needed.
     let once = Task { scene: scene.clone(), engine, repetitions: 1, cases: vec![reference] };
-    vec![once, Task { scene, engine, repetitions: plan.repetitions, cases: vec![few, more] }]
+    vec![once, Task { scene, engine, repetitions: plan.repetitions, cases: vec![few, more, lists, adaptive] }]
 }
 
 /// Figures 12 to 15: images for growing R.
