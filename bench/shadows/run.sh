@@ -1,5 +1,5 @@
 #!/bin/sh
-# Measures occluder lists against their rivals in five scenes: the built-in ones, Sponza, and the Stanford bunny on a plane.
+# Measures occluder lists, and whole frames with the default settings, against their rivals in five scenes: the built-in ones, Sponza, and the Stanford bunny on a plane.
 #
 #     bench/shadows/run.sh MODELS [flags of `lightmesh bench shadows`]
 #

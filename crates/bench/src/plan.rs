@@ -46,7 +46,7 @@ impl Suite {
             Suite::Quality => "errors relative to converged area shadows, and the cost of shadow rays with equal error",
             Suite::Rays => "primary, shadow and short rays per second with BVH and grid, on any scene",
             Suite::Shadows => {
-                "seconds and exactness of the shadows of lights with a size, by occluder lists and without, on any scene"
+                "seconds and errors of the shadows of lights with a size, by occluder lists and their rivals, on any scene"
             }
             Suite::Stages => {
                 "seconds of each stage by acceleration structure, kind of short tests and radius, on any scene"

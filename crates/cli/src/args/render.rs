@@ -52,8 +52,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_parser = words::short_tests(), default_value_t = ShortTests::Cells, help_heading = "Method")]
     pub(crate) short_tests: ShortTests,
 
-    /// Number of samples of each light with a size, at a surface point (lists, area) or a light point (half-ball) [default: by
-    /// --quality / 225 / 4]
+    /// Number of samples of each light with a size, at a surface point (lists, adaptive, area) or a light point (half-ball)
+    /// [default: by --quality, but 225 for area and 4 for half-ball]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65535), help_heading = "Method")]
     pub(crate) samples: Option<u32>,
 

@@ -93,6 +93,9 @@ fn modes_and_their_settings_reach_the_renderer() {
         assert_eq!((&lists["lookup"], &lists["quality"]), (&json!("lists"), &quality), "{flags:?}");
         assert_eq!(lists["samples"], samples, "{flags:?}");
     }
+    let adaptive = settings(&["--lookup", "adaptive", "--quality", "draft"]);
+    assert_eq!((&adaptive["lookup"], &adaptive["quality"]), (&json!("adaptive"), &json!("draft")));
+    assert_eq!(adaptive["samples"], 16);
     for flags in [["--step", "auto"], ["--radius", "1.5"], ["--weight", "constant"]] {
         assert_eq!(settings(&flags)["lookup"], "half-ball", "{flags:?}");
         let lists = settings(&[&flags[..], &["--lookup", "lists"]].concat());

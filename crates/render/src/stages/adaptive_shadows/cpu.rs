@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use lightmesh_layout::constants::{ANSWER_BOTH, ANSWER_DARK, ANSWER_LIT, ANSWER_STRADDLES, AROUND};
 use rayon::prelude::*;
 
-use super::first::{Extent, Places, place_of, places};
+use super::first::{Extent, Places, all_are_points, place_of, places};
 use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
@@ -23,6 +23,9 @@ const RUN: usize = 1024;
 
 /// The visible share of each light from each surface point.
 pub(crate) fn adaptive_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
+    if all_are_points(aim, wave.lights()) {
+        return shadow_rays(wave, &Aim::Middle);
+    }
     let Some(view) = wave.rays.view.filter(|_| !wave.hits.is_empty()) else { return shadow_rays(wave, aim) };
     let rows = Rows::of(aim);
     let band = Band::new(wave, &view);

@@ -9,7 +9,7 @@ use lightmesh_layout::counters::Counters;
 use lightmesh_layout::geometry::{Rays, Tally};
 use lightmesh_layout::stages::{AdaptiveShadows, Shadows};
 
-use super::first::places;
+use super::first::{all_are_points, places};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceHits, DeviceRays, DeviceVisibility, DeviceWave};
@@ -32,6 +32,9 @@ pub(crate) fn adaptive_shadows<R: Runtime>(
     wave: &DeviceWave<R>,
     aim: &Aim,
 ) -> Result<DeviceVisibility<R>, RenderError> {
+    if all_are_points(aim, &wave.scene.host.scene.lights) {
+        return shadow_rays(cuda, wave, &Aim::Middle);
+    }
     if !wave.rays.is_from_camera() {
         return shadow_rays(cuda, wave, aim);
     }

@@ -2,10 +2,16 @@
 
 use glam::Vec3;
 use lightmesh_layout::constants::{ANSWER_STRADDLES, AROUND, FIRST_TARGETS, NEIGHBORHOOD};
-use lightmesh_scene::LightKind;
+use lightmesh_scene::{Light, LightKind};
 
+use crate::shadow::Aim;
 use crate::shadow::sight::{Emitter, Shape, disc_of};
 use crate::surface::SurfacePoint;
+
+/// Whether no light has a size: then there is one ray to each, and nothing to disagree on.
+pub(super) fn all_are_points(aim: &Aim, lights: &[Light]) -> bool {
+    lights.iter().all(|light| Shape::of(aim, light) == Shape::Point)
+}
 
 /// The outermost points that first rays are cast to, as a part of a light's half width. Shadows that hide less than what lies beyond
 /// would rarely hide a sample.

@@ -7,7 +7,7 @@
 //!
 //! 1. Each surface point casts one ray to it. Which point of the light it ends at depends on the pixel, so that the rays of any 5 × 5
 //!    pixels together cover the light: a lattice of 5 × 5 points that reaches nearly to its rim, where most shadows enter. Rays to random
-//!    points would leave gaps, and rays to the centre would find no penumbra wider than the neighbourhood.
+//!    points would leave gaps, and rays to the centre would find no wide penumbra but for its middle.
 //! 2. Where the answers of a pixel's 5 × 5 neighbours are the same, that answer is the share. A surface that is turned away from all of a
 //!    light is dark, and has no answer. A light that straddles the horizon of a surface point counts as disagreement there.
 //! 3. Elsewhere the share is that of [`shadow_rays`](super::shadow_rays), of the same samples.
