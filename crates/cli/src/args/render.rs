@@ -53,7 +53,7 @@ pub(crate) struct RenderArgs {
     pub(crate) short_tests: ShortTests,
 
     /// Number of samples of each light with a size, at a surface point (lists, adaptive, area) or a light point (half-ball)
-    /// [default: by --quality, but 225 for area and 4 for half-ball]
+    /// [default: by --quality / 225 / 4]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65535), help_heading = "Method")]
     pub(crate) samples: Option<u32>,
 
