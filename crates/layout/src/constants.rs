@@ -255,6 +255,12 @@ constants! {
     STACK_OF_ROUNDS: u32 = 64;
     /// Additional stack entries per level of the tree.
     STACK_PER_LEVEL: u32 = 7;
+    /// Maximum number of boxes from which the searches of a tile's items start.
+    MOST_STARTS: u32 = 48;
+    /// Marks a box that is a leaf.
+    LEAF_START: u32 = 1 << 31;
+    /// The number of such boxes that means "start at the root".
+    FROM_ROOT: u32 = u32::MAX;
     /// Maximum number of recently found triangles that a search through a grid remembers.
     RECENT_TRIANGLES: u32 = 512;
     /// Words that describe the part of a grid that is searched.

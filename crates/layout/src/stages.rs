@@ -8,6 +8,14 @@ use crate::scene::{SampleRows, Sampling, Scene};
 use crate::{In, Out};
 
 records! {
+    /// The box around the origins of a tile's surface points; empty, with the corners exchanged, if there are none.
+    TileBox {
+        /// The lowest corner.
+        low: Vec3,
+        /// The highest corner.
+        high: Vec3,
+    }
+
     /// `group_items` and `gather_items`: one block per tile of 1024 rays.
     GroupItems {
         /// The scene.
@@ -24,13 +32,16 @@ records! {
         counts: Out<u32>,
         /// All items, one tile after another: slot of the first member · 64 + their number.
         items: Out<u64>,
+        /// The boxes around the surface points of each tile.
+        tiles: Out<TileBox>,
         /// The first block of this launch among all blocks.
         first_block: u64,
         /// The distance between the surface points of neighbouring pixels: a constant, and a multiple of their distance.
         spacing: [f32; 2],
     }
 
-    /// `area_shadows`: one warp per 32 rays; `occluder_lists`: one warp per item; `sample_rays`: one thread per ray.
+    /// `area_shadows`: one warp per 32 rays; `find_starts`: one warp per tile and light; `occluder_lists`: one warp per item; `sample_rays`:
+    /// one thread per ray.
     Shadows {
         /// The scene.
         scene: Scene,
@@ -42,6 +53,13 @@ records! {
         members: In<u32>,
         /// Slot of the first member · 64 + their number, by item.
         items: In<u64>,
+        /// The boxes around the surface points of each tile.
+        tiles: In<TileBox>,
+        /// By tile, then light, MOST_STARTS + 1 words each: the number of boxes from which searches start, then these; see
+        /// `accel/search.cuh`.
+        starts: Out<u32>,
+        /// Number of items of this launch that are taken.
+        taken: Out<u32>,
         /// Share of each light by light, then ray; the number of samples seen until the last set.
         share: Out<f32>,
         /// How area lights are sampled.

@@ -7,6 +7,7 @@
 mod canvas;
 mod half_ball;
 mod occluders;
+mod rows;
 mod segments;
 mod template;
 mod world;
@@ -18,11 +19,12 @@ use std::process::ExitCode;
 
 type Draw = fn() -> Result<String, Box<dyn Error>>;
 
-const DRAWINGS: [(&str, Draw); 4] = [
+const DRAWINGS: [(&str, Draw); 5] = [
     ("half-ball.svg", half_ball::draw),
     ("template.svg", template::draw),
     ("tests.svg", segments::draw),
     ("occluders.svg", occluders::draw),
+    ("rows.svg", rows::draw),
 ];
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {

@@ -23,6 +23,14 @@ DEVICE unsigned search_words(const BruteForce &) { return 0; }
 template <class Form>
 DEVICE ListSearch begin_search(const BruteForce &, const Region<Form> &, unsigned *) { return ListSearch{0}; }
 
+template <class Form>
+DEVICE unsigned find_starts(const BruteForce &, const Region<Form> &, unsigned *) { return FROM_ROOT; }
+
+template <class Form>
+DEVICE ListSearch begin_search_at(const BruteForce &all, const Region<Form> &region, unsigned *memory, const unsigned *, unsigned) {
+    return begin_search(all, region, memory);
+}
+
 DEVICE bool goes_on(const BruteForce &all, const ListSearch &search) { return search.next < all.count; }
 
 // One round: each lane takes three triangles.

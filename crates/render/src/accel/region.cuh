@@ -37,6 +37,7 @@ DEVICE TangentPlanes tangent_planes(const Vec3 &corner, bool alive, const Vec3 &
     TangentPlanes result = {0, corner, memory};
     // Points of one normal have one plane: that through the lowest of them.
     unsigned rest = __ballot_sync(ALL_LANES, alive);
+    ROLLED
     for (; rest != 0 && result.count < TANGENT_PLANES; result.count++) {
         const Vec3 shared = warp_broadcast(normal, __ffs(rest) - 1);
         const bool same = alive && normal == shared;
@@ -54,6 +55,7 @@ DEVICE TangentPlanes tangent_planes(const Vec3 &corner, bool alive, const Vec3 &
 // Whether a box may reach above one of the planes.
 DEVICE bool reached(const TangentPlanes &planes, const Vec3 &low, const Vec3 &high, float loose) {
     bool reached = false;
+    ROLLED
     for (unsigned i = 0; i < planes.count; i++) {
         const float4 plane = planes.memory->planes[i];
         float top = loose;
@@ -94,14 +96,14 @@ DEVICE bool form_meets(const NearForm &near, const Vec3 &low, const Vec3 &high) 
 // The lower or the upper faces of a shaft.
 struct Faces {
     Vec3 from, to;
-    // Reciprocals of how far they move; never infinite, never zero.
+    // Reciprocals of how far they move, to two units of roundoff; never infinite, never zero.
     Vec3 inverse;
 };
 
 // One axis: a face that does not move, or moves less than the smallest normal number, has the sign of `still`: outward.
 DEVICE float inverse_way(float from, float to, float still) {
     const float way = to - from;
-    return 1.0f / (fabsf(way) >= F32_MIN_POSITIVE ? way : still * F32_MIN_POSITIVE);
+    return rough_reciprocal(fabsf(way) >= F32_MIN_POSITIVE ? way : still * F32_MIN_POSITIVE);
 }
 
 DEVICE Vec3 faces_at(const Faces &faces, float t) { return faces.from + t * (faces.to - faces.from); }

@@ -6,6 +6,8 @@
 //     auto search = begin_search(structure, region, memory);  // `memory`: so many words
 //     while (goes_on(structure, search))
 //         next_triangles<SIEVED>(structure, region, search, found, count);
+//     unsigned find_starts(structure, region, list);          // where searches in parts of a region start
+//     auto search = begin_search_at(structure, region, memory, starts, count);
 //
 // The whole warp takes part in every round. It adds places of triangles in `structure.triangles` to the list `found` of `count`
 // entries: 96 at most, often none. A grid may find a triangle several times. Where SIEVED, the result is the twin's: nothing that meets

@@ -153,6 +153,12 @@
 #define STACK_OF_ROUNDS 64u
 // Additional stack entries per level of the tree.
 #define STACK_PER_LEVEL 7u
+// Maximum number of boxes from which the searches of a tile's items start.
+#define MOST_STARTS 48u
+// Marks a box that is a leaf.
+#define LEAF_START 0x80000000u
+// The number of such boxes that means "start at the root".
+#define FROM_ROOT 0xffffffffu
 // Maximum number of recently found triangles that a search through a grid remembers.
 #define RECENT_TRIANGLES 512u
 // Words that describe the part of a grid that is searched.
@@ -699,6 +705,14 @@ static_assert(PLACE_OF(UsedPoints, used) == 16, "place of UsedPoints::used");
 static_assert(PLACE_OF(UsedPoints, rank) == 24, "place of UsedPoints::rank");
 static_assert(PLACE_OF(UsedPoints, points) == 32, "place of UsedPoints::points");
 
+struct alignas(4) TileBox {
+    Vec3 low;
+    Vec3 high;
+};
+static_assert(sizeof(TileBox) == 24, "size of TileBox");
+static_assert(PLACE_OF(TileBox, low) == 0, "place of TileBox::low");
+static_assert(PLACE_OF(TileBox, high) == 12, "place of TileBox::high");
+
 struct alignas(8) GroupItems {
     Scene scene;
     Rays rays;
@@ -707,10 +721,11 @@ struct alignas(8) GroupItems {
     unsigned short *ends;
     unsigned *counts;
     unsigned long long *items;
+    TileBox *tiles;
     unsigned long long first_block;
     float spacing[2];
 };
-static_assert(sizeof(GroupItems) == 440, "size of GroupItems");
+static_assert(sizeof(GroupItems) == 448, "size of GroupItems");
 static_assert(PLACE_OF(GroupItems, scene) == 0, "place of GroupItems::scene");
 static_assert(PLACE_OF(GroupItems, rays) == 304, "place of GroupItems::rays");
 static_assert(PLACE_OF(GroupItems, hits) == 384, "place of GroupItems::hits");
@@ -718,8 +733,9 @@ static_assert(PLACE_OF(GroupItems, members) == 392, "place of GroupItems::member
 static_assert(PLACE_OF(GroupItems, ends) == 400, "place of GroupItems::ends");
 static_assert(PLACE_OF(GroupItems, counts) == 408, "place of GroupItems::counts");
 static_assert(PLACE_OF(GroupItems, items) == 416, "place of GroupItems::items");
-static_assert(PLACE_OF(GroupItems, first_block) == 424, "place of GroupItems::first_block");
-static_assert(PLACE_OF(GroupItems, spacing) == 432, "place of GroupItems::spacing");
+static_assert(PLACE_OF(GroupItems, tiles) == 424, "place of GroupItems::tiles");
+static_assert(PLACE_OF(GroupItems, first_block) == 432, "place of GroupItems::first_block");
+static_assert(PLACE_OF(GroupItems, spacing) == 440, "place of GroupItems::spacing");
 
 struct alignas(8) Shadows {
     Scene scene;
@@ -727,6 +743,9 @@ struct alignas(8) Shadows {
     const Hit *hits;
     const unsigned *members;
     const unsigned long long *items;
+    const TileBox *tiles;
+    unsigned *starts;
+    unsigned *taken;
     float *share;
     Sampling sampling;
     Tally tally;
@@ -738,22 +757,25 @@ struct alignas(8) Shadows {
     unsigned first_light;
     unsigned end_light;
 };
-static_assert(sizeof(Shadows) == 1800, "size of Shadows");
+static_assert(sizeof(Shadows) == 1824, "size of Shadows");
 static_assert(PLACE_OF(Shadows, scene) == 0, "place of Shadows::scene");
 static_assert(PLACE_OF(Shadows, rays) == 304, "place of Shadows::rays");
 static_assert(PLACE_OF(Shadows, hits) == 384, "place of Shadows::hits");
 static_assert(PLACE_OF(Shadows, members) == 392, "place of Shadows::members");
 static_assert(PLACE_OF(Shadows, items) == 400, "place of Shadows::items");
-static_assert(PLACE_OF(Shadows, share) == 408, "place of Shadows::share");
-static_assert(PLACE_OF(Shadows, sampling) == 416, "place of Shadows::sampling");
-static_assert(PLACE_OF(Shadows, tally) == 432, "place of Shadows::tally");
-static_assert(PLACE_OF(Shadows, first) == 440, "place of Shadows::first");
-static_assert(PLACE_OF(Shadows, count) == 448, "place of Shadows::count");
-static_assert(PLACE_OF(Shadows, sets) == 456, "place of Shadows::sets");
-static_assert(PLACE_OF(Shadows, set) == 1784, "place of Shadows::set");
-static_assert(PLACE_OF(Shadows, set_count) == 1788, "place of Shadows::set_count");
-static_assert(PLACE_OF(Shadows, first_light) == 1792, "place of Shadows::first_light");
-static_assert(PLACE_OF(Shadows, end_light) == 1796, "place of Shadows::end_light");
+static_assert(PLACE_OF(Shadows, tiles) == 408, "place of Shadows::tiles");
+static_assert(PLACE_OF(Shadows, starts) == 416, "place of Shadows::starts");
+static_assert(PLACE_OF(Shadows, taken) == 424, "place of Shadows::taken");
+static_assert(PLACE_OF(Shadows, share) == 432, "place of Shadows::share");
+static_assert(PLACE_OF(Shadows, sampling) == 440, "place of Shadows::sampling");
+static_assert(PLACE_OF(Shadows, tally) == 456, "place of Shadows::tally");
+static_assert(PLACE_OF(Shadows, first) == 464, "place of Shadows::first");
+static_assert(PLACE_OF(Shadows, count) == 472, "place of Shadows::count");
+static_assert(PLACE_OF(Shadows, sets) == 480, "place of Shadows::sets");
+static_assert(PLACE_OF(Shadows, set) == 1808, "place of Shadows::set");
+static_assert(PLACE_OF(Shadows, set_count) == 1812, "place of Shadows::set_count");
+static_assert(PLACE_OF(Shadows, first_light) == 1816, "place of Shadows::first_light");
+static_assert(PLACE_OF(Shadows, end_light) == 1820, "place of Shadows::end_light");
 
 struct alignas(8) AdaptiveShadows {
     Scene scene;
@@ -768,18 +790,18 @@ struct alignas(8) AdaptiveShadows {
     unsigned tiles;
     unsigned spare;
 };
-static_assert(sizeof(AdaptiveShadows) == 2560, "size of AdaptiveShadows");
+static_assert(sizeof(AdaptiveShadows) == 2584, "size of AdaptiveShadows");
 static_assert(PLACE_OF(AdaptiveShadows, scene) == 0, "place of AdaptiveShadows::scene");
 static_assert(PLACE_OF(AdaptiveShadows, shadows) == 304, "place of AdaptiveShadows::shadows");
-static_assert(PLACE_OF(AdaptiveShadows, answers) == 2104, "place of AdaptiveShadows::answers");
-static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2112, "place of AdaptiveShadows::answer_count");
-static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2120, "place of AdaptiveShadows::first_answer");
-static_assert(PLACE_OF(AdaptiveShadows, counts) == 2128, "place of AdaptiveShadows::counts");
-static_assert(PLACE_OF(AdaptiveShadows, entries) == 2136, "place of AdaptiveShadows::entries");
-static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2144, "place of AdaptiveShadows::entry_count");
-static_assert(PLACE_OF(AdaptiveShadows, places) == 2152, "place of AdaptiveShadows::places");
-static_assert(PLACE_OF(AdaptiveShadows, tiles) == 2552, "place of AdaptiveShadows::tiles");
-static_assert(PLACE_OF(AdaptiveShadows, spare) == 2556, "place of AdaptiveShadows::spare");
+static_assert(PLACE_OF(AdaptiveShadows, answers) == 2128, "place of AdaptiveShadows::answers");
+static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2136, "place of AdaptiveShadows::answer_count");
+static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2144, "place of AdaptiveShadows::first_answer");
+static_assert(PLACE_OF(AdaptiveShadows, counts) == 2152, "place of AdaptiveShadows::counts");
+static_assert(PLACE_OF(AdaptiveShadows, entries) == 2160, "place of AdaptiveShadows::entries");
+static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2168, "place of AdaptiveShadows::entry_count");
+static_assert(PLACE_OF(AdaptiveShadows, places) == 2176, "place of AdaptiveShadows::places");
+static_assert(PLACE_OF(AdaptiveShadows, tiles) == 2576, "place of AdaptiveShadows::tiles");
+static_assert(PLACE_OF(AdaptiveShadows, spare) == 2580, "place of AdaptiveShadows::spare");
 
 struct alignas(8) PrimaryRays {
     Scene scene;

@@ -30,8 +30,11 @@
 #define CONSTANT(type, name, dims) extern "C" { __constant__ type name dims; }
 // Before a loop with constant bounds: it is fully unrolled.
 #define UNROLL _Pragma("unroll")
+// Before a loop that is not unrolled: instructions that do not fit into the cache cost more than a few jumps.
+#define ROLLED _Pragma("unroll 1")
 #else
 #define UNROLL
+#define ROLLED
 #include "shim.h"
 #endif
 

@@ -1,5 +1,7 @@
 //! Surface points in small groups, on a device.
 
+use lightmesh_layout::stages::TileBox;
+
 use crate::cuda::{Buffer, Runtime};
 
 /// The surface points of a wave in items of up to 32 that lie close together, the work of one warp.
@@ -10,4 +12,6 @@ pub struct DeviceItems<R: Runtime> {
     pub(crate) items: Buffer<R, u64>,
     /// Number of items.
     pub(crate) count: usize,
+    /// The boxes around the surface points of each tile.
+    pub(crate) tiles: Buffer<R, TileBox>,
 }

@@ -45,30 +45,37 @@ impl SampleSets {
         share: &Buffer<R, f32>,
         set: u32,
     ) -> Result<Shadows, RenderError> {
-        Ok(Shadows {
-            scene: wave.scene.record,
-            rays: wave.rays.record,
-            hits: wave.hits.hits.input(),
-            share: share.output(),
-            sampling: sampling(wave.job.sampling),
-            tally: cuda.tally()?,
-            sets: self.of(set),
-            set,
-            set_count: self.count,
-            end_light: wave.scene.host.scene.lights.len() as u32,
-            ..Shadows::zeroed()
-        })
+        let sets = self.of(set);
+        Ok(Shadows { share: share.output(), sets, set, set_count: self.count, ..arguments(cuda, wave)? })
     }
+}
+
+/// The arguments of kernels for all lights, without samples.
+pub(crate) fn arguments<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> Result<Shadows, RenderError> {
+    Ok(Shadows {
+        scene: wave.scene.record,
+        rays: wave.rays.record,
+        hits: wave.hits.hits.input(),
+        sampling: sampling(wave.job.sampling),
+        tally: cuda.tally()?,
+        end_light: wave.scene.host.scene.lights.len() as u32,
+        ..Shadows::zeroed()
+    })
 }
 
 /// Kernels by the largest number of words of samples.
 pub(crate) type ByWords = [(u32, PerStructure); 3];
 
+/// Warps of a launch that take one unit of work after another: several times as many as run at once.
+const TAKERS: u64 = 8192;
+
 /// The work of warps that test samples row by row.
-pub(crate) struct WarpWork {
-    /// Number of warps.
-    pub(crate) warps: u64,
-    /// Those of the very first launch.
+pub(crate) struct WarpWork<'a, R: Runtime> {
+    /// Number of units of work: warps, unless warps take them.
+    pub(crate) units: u64,
+    /// Where warps count what they take; `None`: each warp has a unit of its own.
+    pub(crate) taken: Option<&'a Buffer<R, u32>>,
+    /// Units of the very first launch.
     pub(crate) first: u64,
     /// Words of shared memory of a warp, apart from a search and the rows of samples.
     pub(crate) words: u32,
@@ -79,14 +86,14 @@ pub(crate) fn test_samples<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
     aim: &Aim,
-    (kernels, work): (&ByWords, WarpWork),
+    (kernels, work): (&ByWords, WarpWork<R>),
     complete: impl Fn(Shadows) -> Shadows,
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let scene = wave.scene;
     let lights = scene.host.scene.lights.len();
     let share: Buffer<R, f32> = cuda.pool().zeros("shares of lights", wave.rays.len() * lights)?;
     let sets = SampleSets::new(aim);
-    let progress = |done: u32| work.warps * u64::from(done) / u64::from(sets.count);
+    let progress = |done: u32| work.units * u64::from(done) / u64::from(sets.count);
     for set in 0..sets.count {
         let record = complete(sets.record(cuda, wave, &share, set)?);
         let most = |number: fn(&SampleRows) -> u32| record.sets.iter().map(number).max().unwrap_or(0);
@@ -94,11 +101,19 @@ pub(crate) fn test_samples<R: Runtime>(
         let (_, kernels) = kernels.iter().find(|(room, _)| *room >= words).unwrap_or(&kernels[2]);
         let kernel = kernels.of(scene.structure);
         let progress = progress(set + 1) - progress(set);
-        let pieces = Work { units: work.warps, cost: lights.max(1) as u64, first: work.first, progress };
+        let pieces = Work { units: work.units, cost: lights.max(1) as u64, first: work.first, progress };
         cuda.in_pieces(wave.job, kernel, pieces, |piece| {
             let shared = work.words + scene.search_words() + WARP * rows;
-            let arguments = Shadows { first: piece.start, count: piece.end - piece.start, ..record };
-            cuda.launch(kernel, warps_for(&piece, 1, shared), &arguments)
+            let count = piece.end - piece.start;
+            let warps = match work.taken {
+                Some(taken) => {
+                    taken.clear()?;
+                    count.min(TAKERS)
+                }
+                None => count,
+            };
+            let arguments = Shadows { first: piece.start, count, ..record };
+            cuda.launch(kernel, warps_for(&(0..warps), 1, shared), &arguments)
         })?;
     }
     Ok(DeviceVisibility { rays: wave.rays.len(), share, used: None })

@@ -69,7 +69,7 @@ struct RowBounds {
 template <unsigned COUNT>
 DEVICE void cut(RowBounds<COUNT> &bounds, unsigned k, const Linear &f, bool outer) {
     const float slope = fabsf(f.x) < LEAST_SLOPE ? copysignf(LEAST_SLOPE, f.x) : f.x;
-    const float inverse = -1.0f / slope;
+    const float inverse = -(1.0f / slope);
     const float start = f.start * inverse;
     const bool low = (slope > 0.0f) == outer;
     bounds.low[k] = low ? start : -BEYOND;
@@ -109,9 +109,9 @@ DEVICE RowTable row_table(const unsigned *tables, Shape shape, float *offsets) {
     return RowTable{reinterpret_cast<const float4 *>(own), own + 4 * MOST_ROWS, offsets};
 }
 
-// The samples of a row within the bounds, in their places. `offset` is the place of x = 0.
-template <unsigned COUNT>
-DEVICE unsigned row_bits(const RowBounds<COUNT> &bounds, const float4 &row, float offset) {
+// The samples of a row within the first COUNT bounds, in their places. `offset` is the place of x = 0.
+template <unsigned COUNT, class Bounds>
+DEVICE unsigned row_bits(const Bounds &bounds, const float4 &row, float offset) {
     const float y = row.x, density = row.y;
     float low = fmaf(bounds.step[0], y, bounds.low[0]), high = fmaf(bounds.step[0], y, bounds.high[0]);
     UNROLL
@@ -123,15 +123,16 @@ DEVICE unsigned row_bits(const RowBounds<COUNT> &bounds, const float4 &row, floa
     return (bits_from(first) & ~bits_from(end) & __float_as_uint(row.z)) << __float_as_uint(row.w);
 }
 
-// The samples within the bounds.
-template <unsigned WORDS, unsigned COUNT>
-DEVICE void set_bits(const RowBounds<COUNT> &bounds, const RowTable &table, unsigned *bits) {
+// The samples within the first COUNT bounds.
+template <unsigned WORDS, unsigned COUNT, class Bounds>
+DEVICE void set_bits(const Bounds &bounds, const RowTable &table, unsigned *bits) {
     unsigned row = 0;
     UNROLL
     for (unsigned word = 0; word < WORDS; ++word) {
         unsigned all = 0;
+        ROLLED
         for (const unsigned end = table.ends[word]; row < end; ++row)
-            all |= row_bits(bounds, table.rows[row], table.offsets[row * WARP]);
+            all |= row_bits<COUNT>(bounds, table.rows[row], table.offsets[row * WARP]);
         bits[word] = all;
     }
 }
@@ -142,11 +143,12 @@ DEVICE void samples_above_horizon(const SurfacePoint &point, const Sight &sight,
                                   unsigned *bits) {
     RowBounds<1> bounds;
     cut(bounds, 0, linear(sight, point.normal), true);
-    set_bits<WORDS>(bounds, table, bits);
+    set_bits<WORDS, 1>(bounds, table, bits);
     unsigned row = 0;
     UNROLL
     for (unsigned word = 0; word < WORDS; ++word) {
         unsigned valid = 0;
+        ROLLED
         for (; row < set.ends[word]; ++row)
             valid |= valid_samples(sight, set, row) << set.place[row];
         bits[word] &= valid;
@@ -183,19 +185,15 @@ DEVICE void hide(const SurfacePoint &point, const Sight &sight, const float4 *tr
     // All of most emitters lies beyond the plane; then that bounds no row.
     const bool clear = (outer ? beyond.start : -beyond.start) > range_of(beyond);
     unsigned hidden[WORDS];
+    RowBounds<4> bounds;
+    UNROLL
+    for (unsigned k = 0; k < 3; ++k)
+        cut(bounds, k, sides[k], outer);
     if (__any_sync(ALL_LANES, matters && !clear)) {
-        RowBounds<4> bounds;
-        UNROLL
-        for (unsigned k = 0; k < 3; ++k)
-            cut(bounds, k, sides[k], outer);
         cut(bounds, 3, beyond, outer);
-        set_bits<WORDS>(bounds, table, hidden);
+        set_bits<WORDS, 4>(bounds, table, hidden);
     } else {
-        RowBounds<3> bounds;
-        UNROLL
-        for (unsigned k = 0; k < 3; ++k)
-            cut(bounds, k, sides[k], outer);
-        set_bits<WORDS>(bounds, table, hidden);
+        set_bits<WORDS, 3>(bounds, table, hidden);
     }
     UNROLL
     for (unsigned word = 0; word < WORDS; ++word)

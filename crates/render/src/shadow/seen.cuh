@@ -36,6 +36,7 @@ DEVICE Seen<WORDS> seen_unhidden(bool has, const SurfacePoint &point, const Sigh
         seen.bits[0] = has && center_above_horizon(point, sight);
         return seen;
     }
+    ROLLED
     for (unsigned row = 0; row < set.rows; ++row)
         table.offsets[row * WARP] = row_offset(sight, set, row);
     samples_above_horizon<WORDS>(point, sight, set, table, seen.bits);
@@ -56,5 +57,5 @@ DEVICE void add_seen(const Shadows &args, Shape shape, unsigned light, unsigned 
     if (args.set + 1 < args.set_count)
         share = (float)all;
     else
-        share = all == samples ? 1.0f : (float)all / (float)samples;
+        share = all == 0 ? 0.0f : all == samples ? 1.0f : (float)all / (float)samples;
 }

@@ -149,7 +149,8 @@ DEVICE Vec3 half_extent(const Light &light, float reach) {
         return abs(light.half_u) + abs(light.half_v);
     if (light.kind == Light::DISK || light.kind == Light::DIRECTIONAL) {
         const Vec3 rest = max(Vec3{1.0f, 1.0f, 1.0f} - light.direction * light.direction, splat(0.0f));
-        return (light.kind == Light::DISK ? light.radius : reach * light.radius) * Vec3{sqrtf(rest.x), sqrtf(rest.y), sqrtf(rest.z)};
+        const float radius = GROWN * (light.kind == Light::DISK ? light.radius : reach * light.radius);
+        return radius * Vec3{rough_root(rest.x), rough_root(rest.y), rough_root(rest.z)};
     }
     return splat(light.kind == Light::POINT || light.kind == Light::SPHERE ? light.radius : 0.0f);
 }

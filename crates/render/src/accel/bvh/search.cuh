@@ -7,6 +7,9 @@
 struct BvhSearch {
     unsigned *stack;
     unsigned height;
+    // Children of nodes that were not looked at, node · 8 + slot, and their number.
+    const unsigned *starts;
+    unsigned start_count;
 };
 
 // If the stack might grow beyond STACK_OF_ROUNDS, a round takes a single node. From then on it grows by at most seven entries per
@@ -18,38 +21,87 @@ DEVICE BvhSearch begin_search(const Bvh &bvh, const Region<Form> &, unsigned *me
     if (lane_of_thread() == 0)
         memory[0] = 0;
     __syncwarp();
-    return BvhSearch{memory, bvh.node_count != 0 ? 1u : 0u};
+    return BvhSearch{memory, bvh.node_count != 0 ? 1u : 0u, memory, 0};
 }
 
-DEVICE bool goes_on(const Bvh &, const BvhSearch &search) { return search.height != 0; }
-
-// Whether the region may meet the box of a slot.
 template <class Form>
-DEVICE bool meets_child(const Region<Form> &region, const BvhNode &node, unsigned slot) {
-    const Vec3 extent = {__uint_as_float((unsigned)node.e[0] << 23), __uint_as_float((unsigned)node.e[1] << 23),
-                         __uint_as_float((unsigned)node.e[2] << 23)};
-    const Vec3 margin = BVH_MARGIN * (abs(node.p) + 256.0f * extent);
-    const Vec3 low = node.p + extent * Vec3{(float)node.min_x[slot], (float)node.min_y[slot], (float)node.min_z[slot]} - margin;
-    const Vec3 high = node.p + extent * Vec3{(float)node.max_x[slot], (float)node.max_y[slot], (float)node.max_z[slot]} + margin;
-    return meets(region, low, high, 0.0f);
+DEVICE BvhSearch begin_search_at(const Bvh &bvh, const Region<Form> &region, unsigned *memory, const unsigned *starts, unsigned count) {
+    return count == FROM_ROOT ? begin_search(bvh, region, memory) : BvhSearch{memory, 0, starts, count};
 }
 
-// One round: takes up to four nodes off the stack; each gets eight lanes, one per child.
+DEVICE bool goes_on(const Bvh &, const BvhSearch &search) { return (search.height | search.start_count) != 0; }
+
+// A slot of a node, loaded sixteen bytes at once.
+struct Slot {
+    // Content, as in the node; nothing if zero.
+    unsigned meta;
+    bool inner;
+    // The node, or the first triangle.
+    unsigned child, first;
+    // The box, with its margin.
+    Vec3 low, high;
+};
+
+// Byte number `slot` of two words.
+DEVICE float plane_of_slot(unsigned a, unsigned b, unsigned slot) { return (float)(__byte_perm(a, b, slot) & 0xff); }
+
+DEVICE Slot load_slot(const BvhNode *node, unsigned slot) {
+    const uint4 *words = reinterpret_cast<const uint4 *>(node);
+    const uint4 frame = __ldg(words), links = __ldg(words + 1), x = __ldg(words + 2), y = __ldg(words + 3), z = __ldg(words + 4);
+    const Vec3 corner = {__uint_as_float(frame.x), __uint_as_float(frame.y), __uint_as_float(frame.z)};
+    const Vec3 extent = {__uint_as_float(frame.w << 23 & F32_INFINITY_BITS), __uint_as_float(frame.w << 15 & F32_INFINITY_BITS),
+                         __uint_as_float(frame.w << 7 & F32_INFINITY_BITS)};
+    const Vec3 margin = BVH_MARGIN * (abs(corner) + 256.0f * extent);
+    const unsigned nodes = frame.w >> 24;
+    Slot result;
+    result.meta = __byte_perm(links.z, links.w, slot) & 0xff;
+    result.inner = nodes >> slot & 1;
+    result.child = links.x + __popc(nodes & ((1u << slot) - 1));
+    result.first = links.y + (result.meta & 31);
+    const Vec3 low = corner - margin, high = corner + margin;
+    result.low = Vec3{fmaf(extent.x, plane_of_slot(x.x, x.y, slot), low.x), fmaf(extent.y, plane_of_slot(y.x, y.y, slot), low.y),
+                      fmaf(extent.z, plane_of_slot(z.x, z.y, slot), low.z)};
+    result.high = Vec3{fmaf(extent.x, plane_of_slot(x.z, x.w, slot), high.x), fmaf(extent.y, plane_of_slot(y.z, y.w, slot), high.y),
+                       fmaf(extent.z, plane_of_slot(z.z, z.w, slot), high.z)};
+    return result;
+}
+
+// Whether there is something in a slot that the region may meet.
+template <class Form>
+DEVICE bool meets_slot(const Region<Form> &region, const Slot &slot) {
+    return slot.meta != 0 && meets(region, slot.low, slot.high, 0.0f);
+}
+
+// One round: takes up to four nodes off the stack; each gets eight lanes, one per child. Or takes up to 32 starts, while the stack is
+// so short that it holds them.
 template <bool SIEVED, class Form>
 DEVICE void next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch &search, unsigned *found, unsigned &count) {
-    const unsigned lane = lane_of_thread(), slot = lane % 8;
-    const unsigned taken = search.height + 4 * STACK_PER_LEVEL <= STACK_OF_ROUNDS ? min(search.height, 4u) : 1;
-    search.height -= taken;
+    const unsigned lane = lane_of_thread();
+    unsigned number = 0, slot = lane % 8;
+    bool active;
+    if (search.start_count != 0 && search.height < 4) {
+        const unsigned taken = min(search.start_count, WARP);
+        search.start_count -= taken;
+        active = lane < taken;
+        const unsigned start = search.starts[search.start_count + (active ? lane : 0)] & ~LEAF_START;
+        number = start / 8;
+        slot = start % 8;
+    } else {
+        const unsigned taken = search.height + 4 * STACK_PER_LEVEL <= STACK_OF_ROUNDS ? min(search.height, 4u) : 1;
+        search.height -= taken;
+        active = lane / 8 < taken;
+        if (active)
+            number = search.stack[search.height + lane / 8];
+    }
     bool inner = false;
     unsigned child = 0, first = 0, triangles = 0;
-    if (lane / 8 < taken) {
-        const BvhNode &node = bvh.nodes[search.stack[search.height + lane / 8]];
-        const unsigned meta = node.meta[slot];
-        if (meta != 0 && meets_child(region, node, slot)) {
-            inner = node.imask >> slot & 1;
-            child = node.child_base + __popc(node.imask & ((1u << slot) - 1));
-            first = node.triangle_base + (meta & 31);
-            triangles = inner ? 0 : __popc(meta >> 5);
+    if (active) {
+        const Slot box = load_slot(bvh.nodes + number, slot);
+        if (meets_slot(region, box)) {
+            inner = box.inner;
+            child = box.child;
+            first = box.first;
+            triangles = inner ? 0 : __popc(box.meta >> 5);
         }
     }
     __syncwarp();
@@ -57,4 +109,50 @@ DEVICE void next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch
     for (unsigned i = 0; i < 3; i++)
         sieve<SIEVED>(region, bvh.triangles, triangles > i, first + i, found, count);
     __syncwarp();
+}
+
+// Finds up to MOST_STARTS boxes that hold all triangles that a region may meet: what the root's children are, then, as long as there is
+// room, their children. Returns their number. `list` has WARP words more.
+template <class Form>
+DEVICE unsigned find_starts(const Bvh &bvh, const Region<Form> &region, unsigned *list) {
+    const unsigned lane = lane_of_thread(), slot = lane % 8;
+    // A start holds a node's number in 28 bits.
+    if (bvh.node_count >> 28 != 0)
+        return FROM_ROOT;
+    unsigned count = 0;
+    // The places of up to four boxes that are replaced by their children, and the nodes there.
+    unsigned opened = 0, node = 0;
+    unsigned long long places = 0;
+    bool begins = bvh.node_count != 0;
+    while (begins || opened != 0) {
+        const bool active = lane / 8 < (begins ? 1 : opened);
+        bool met = false, leaf = false;
+        if (active) {
+            const Slot box = load_slot(bvh.nodes + node, slot);
+            met = meets_slot(region, box);
+            leaf = !box.inner;
+        }
+        if (count - opened + __popc(__ballot_sync(ALL_LANES, met)) > MOST_STARTS)
+            return count;
+        // Close the gaps and append the children.
+        const unsigned low = list[lane], high = list[WARP + lane], before = count;
+        __syncwarp();
+        count = 0;
+        warp_append(lane < before && !(places >> lane & 1), low, list, count);
+        warp_append(WARP + lane < before && !(places >> (WARP + lane) & 1), high, list, count);
+        warp_append(met, node * 8 + slot + (leaf ? LEAF_START : 0), list, count);
+        __syncwarp();
+        // The next boxes: the first that are nodes.
+        unsigned long long rest = __ballot_sync(ALL_LANES, lane < count && !(list[lane] & LEAF_START)) |
+                                  (unsigned long long)__ballot_sync(ALL_LANES, WARP + lane < count && !(list[WARP + lane] & LEAF_START)) << WARP;
+        begins = false;
+        places = 0;
+        for (opened = 0; opened < 4 && rest != 0; ++opened, rest &= rest - 1) {
+            const unsigned place = __ffsll(rest) - 1;
+            places |= 1ull << place;
+            if (lane / 8 == opened)
+                node = load_slot(bvh.nodes + list[place] / 8, list[place] % 8).child;
+        }
+    }
+    return count;
 }

@@ -78,6 +78,15 @@ DEVICE GridSearch begin_search(const Grid &grid, const Region<Form> &region, uns
     return search;
 }
 
+// Searches through a grid begin in the cells around a region: there is nothing to start from.
+template <class Form>
+DEVICE unsigned find_starts(const Grid &, const Region<Form> &, unsigned *) { return FROM_ROOT; }
+
+template <class Form>
+DEVICE GridSearch begin_search_at(const Grid &grid, const Region<Form> &region, unsigned *memory, const unsigned *, unsigned) {
+    return begin_search(grid, region, memory);
+}
+
 // Goes on with the next part of the region, if any.
 template <class Form>
 DEVICE void next_part(const Grid &grid, const Region<Form> &region, GridSearch &search) {

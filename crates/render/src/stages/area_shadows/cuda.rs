@@ -25,7 +25,8 @@ pub(crate) fn area_shadows<R: Runtime>(
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let warps = wave.rays.blocks(BLOCK_SIDE) * u64::from(BLOCK / WARP);
     let work = WarpWork {
-        warps,
+        units: warps,
+        taken: None,
         first: FIRST_WARPS,
         words: PLANE_WORDS + SHAFT_WORDS + FOUND_TRIANGLES + 2 * ROW_TABLE_WORDS,
     };

@@ -21,6 +21,7 @@ pub(crate) fn items<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> Result<
     let members = pool.room("surface points by item", tiles as usize * TILE as usize)?;
     let ends = pool.room::<u16>("ends of items", tiles as usize * TILE as usize)?;
     let counts = pool.room("number of items", tiles as usize + 1)?;
+    let around = pool.room("boxes of tiles", tiles as usize)?;
     let record = GroupItems {
         scene: wave.scene.record,
         rays: wave.rays.record,
@@ -28,6 +29,7 @@ pub(crate) fn items<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> Result<
         members: members.output(),
         ends: ends.output(),
         counts: counts.output(),
+        tiles: around.output(),
         spacing: wave.rays.spacing,
         ..GroupItems::zeroed()
     };
@@ -40,5 +42,5 @@ pub(crate) fn items<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> Result<
     let count = cuda.scan_total(&counts)?;
     let items = pool.room("items", count)?;
     cuda.launch(GATHER, blocks_for(&(0..tiles), TILE), &GroupItems { items: items.output(), ..record })?;
-    Ok(DeviceItems { members, items, count })
+    Ok(DeviceItems { members, items, count, tiles: around })
 }

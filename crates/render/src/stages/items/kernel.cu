@@ -24,13 +24,13 @@ DEVICE unsigned long long joined(unsigned long long key, unsigned part) {
 DEVICE unsigned spread(unsigned quarter) { return (quarter & 1) | (quarter & 2) << 2; }
 
 // 16 bits of a hash of a surface point's cell, 6 bits of its place in the cell, 10 bits of its thread.
-DEVICE unsigned sort_word(const GroupItems &args, unsigned ray, unsigned thread) {
+DEVICE unsigned sort_word(const GroupItems &args, unsigned ray, const SurfacePoint &point, unsigned thread) {
     const float width = CELL_PIXELS * (args.spacing[0] + args.spacing[1] * load_hit(args.hits, ray).t);
     // A power of two, so that neighbours at different distances have the same cells.
     const float step = __uint_as_float((__float_as_uint(width) & F32_INFINITY_BITS) + F32_EXPONENT_STEP);
     if (!(width >= F32_MIN_POSITIVE && is_finite(step)))
         return thread;
-    const Vec3 position = surface_point_of(args.scene, args.rays, args.hits, ray).position / step;
+    const Vec3 position = point.position / step;
     unsigned x, y, z;
     unsigned long long key = joined(0, cell_coordinate(position.x, x));
     key = joined(key, cell_coordinate(position.y, y));
@@ -41,19 +41,48 @@ DEVICE unsigned sort_word(const GroupItems &args, unsigned ray, unsigned thread)
     return hash << 16 | (spread(x) << 2 | spread(y) << 1 | spread(z)) << 10 | thread;
 }
 
+// The lowest corner of each warp's points, and the highest, negated.
+struct Corner {
+    float coordinates[6][TILE / WARP];
+};
+
+static_assert(TILE / WARP == WARP, "a lane for each warp of a block");
+
+// Writes the box around the origins of the threads that have one.
+DEVICE void box_tile(bool has, const Vec3 &origin, Corner &corner, TileBox &tile) {
+    const unsigned lane = lane_of_thread(), warp = threadIdx.x / WARP;
+    for (unsigned k = 0; k < 6; ++k) {
+        const float coordinate = component(k % 3, origin);
+        const float lowest = warp_min(!has ? F32_MAX : k < 3 ? coordinate : -coordinate);
+        if (lane == 0)
+            corner.coordinates[k][warp] = lowest;
+    }
+    __syncthreads();
+    if (warp < 6) {
+        const float lowest = warp_min(corner.coordinates[warp][lane]);
+        if (lane == 0)
+            (warp < 3 ? &tile.low.x : &tile.high.x)[warp % 3] = warp < 3 ? lowest : -lowest;
+    }
+}
+
 KERNEL(group_items, GroupItems, TILE, 2) {
     SHARED(unsigned, rays, [TILE]);
     SHARED(unsigned, words, [TILE]);
     SHARED(unsigned, warps, [TILE / WARP]);
+    SHARED(Corner, corner, );
     const unsigned thread = threadIdx.x;
     const unsigned long long tile = args.first_block + blockIdx.x;
 
     // 1. The cell of each surface point, and its place there.
     unsigned ray = 0, word = NO_POINT;
-    if (tile_ray_of_thread(args.rays, (unsigned)tile, thread, ray) && args.hits[ray].triangle != Hit::NONE) {
+    const bool has = tile_ray_of_thread(args.rays, (unsigned)tile, thread, ray) && args.hits[ray].triangle != Hit::NONE;
+    SurfacePoint point = {};
+    if (has) {
+        point = surface_point_of(args.scene, args.rays, args.hits, ray);
         rays[thread] = ray;
-        word = sort_word(args, ray, thread);
+        word = sort_word(args, ray, point, thread);
     }
+    box_tile(has, point.origin, corner, args.tiles[tile]);
     __syncthreads();
 
     // 2. Sort by cell, within a cell along the curve.

@@ -21,6 +21,9 @@ DEVICE Vec3 grown_half(const Bounds &bounds) {
     return 0.5f * GROWN * (bounds.high - bounds.low) + 2.0f * UNIT_ROUNDOFF * abs(bounds.low + bounds.high);
 }
 
+// The length of a vector, rounded up.
+DEVICE float length_bound(const Vec3 &v) { return GROWN * rough_root(fused_dot(v, v)); }
+
 DEVICE Shaft shaft_of(const Bounds &origins, const Bounds &emitter, float radius) {
     Shaft shaft;
     shaft.middle = 0.5f * (origins.low + origins.high);
@@ -30,7 +33,7 @@ DEVICE Shaft shaft_of(const Bounds &origins, const Bounds &emitter, float radius
     shaft.radius = GROWN * radius;
     shaft.reach = element_sum(shaft.half);
     shaft.far = element_sum(abs(shaft.emitter)) + element_sum(shaft.emitter_half);
-    shaft.diagonals = length(shaft.half) * length(shaft.emitter_half);
+    shaft.diagonals = length_bound(shaft.half) * length_bound(shaft.emitter_half);
     return shaft;
 }
 
@@ -39,7 +42,28 @@ DEVICE float extent_along(const Vec3 &v, const Vec3 &half) { return fused_dot(ab
 
 // The largest product of `v` and the way from the middle of the emitter to a sample.
 DEVICE float to_samples(const Shaft &shaft, const Vec3 &v) {
-    return fminf(extent_along(v, shaft.emitter_half), sqrtf(fused_dot(v, v)) * shaft.radius);
+    return fminf(extent_along(v, shaft.emitter_half), length_bound(v) * shaft.radius);
+}
+
+// Whether a shaft may meet the bounding box of a triangle.
+DEVICE bool in_shaft(const ShaftForm &shaft, const Corners &corners) {
+    return form_meets(shaft, min(min(corners.a, corners.b), corners.c), max(max(corners.a, corners.b), corners.c));
+}
+
+// Whether a corner of a triangle may lie above the tangent plane of any of the points, which are not farther than `extent` from the
+// lowest corner of their box.
+DEVICE bool above_planes(const TangentPlanes &planes, const Vec3 &extent, const Corners &corners) {
+    const Vec3 a = corners.a - planes.corner, b = corners.b - planes.corner, c = corners.c - planes.corner;
+    const Vec3 far = max(max(abs(a), abs(b)), abs(c)) + extent;
+    bool above = planes.count == 0;
+    ROLLED
+    for (unsigned k = 0; k < planes.count; ++k) {
+        const float4 plane = planes.memory->planes[k];
+        const Vec3 n = {plane.x, plane.y, plane.z};
+        const float top = fmaxf(fmaxf(fused_dot(n, a), fused_dot(n, b)), fused_dot(n, c));
+        above |= top + REGION_ROUNDING * fused_dot(abs(n), far) > plane.w;
+    }
+    return above;
 }
 
 enum Choice { DROPPED, KEPT, DARK };

@@ -1,7 +1,7 @@
 //! Occluder lists on a CUDA device: a warp for each item.
 
 use lightmesh_layout::constants::{
-    FOUND_TRIANGLES, MOST_WORDS, OCCLUDER_PARTS, PLANE_WORDS, ROW_TABLE_WORDS, SEARCHED_WORDS, WARP,
+    FOUND_TRIANGLES, MOST_STARTS, MOST_WORDS, OCCLUDER_PARTS, PLANE_WORDS, ROW_TABLE_WORDS, SEARCHED_WORDS, WARP,
 };
 use lightmesh_layout::stages::Shadows;
 
@@ -9,15 +9,18 @@ use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::gpu::items::DeviceItems;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
-use crate::gpu::{Cuda, per_structure};
+use crate::gpu::{Cuda, PerStructure, Work, blocks_for, per_structure};
 use crate::shadow::Aim;
-use crate::shadow::launch::{ByWords, WarpWork, test_samples};
+use crate::shadow::launch::{ByWords, WarpWork, arguments, test_samples};
 
 const KERNELS: ByWords = [
     (1, per_structure!("occluder_lists", "shadows_1")),
     (3, per_structure!("occluder_lists", "shadows_3")),
     (MOST_WORDS, per_structure!("occluder_lists", "shadows_10")),
 ];
+const STARTS: PerStructure = per_structure!("occluder_lists", "find_starts");
+/// Tiles times lights in the very first launch.
+const FIRST_STARTS: u64 = 4096;
 /// Items of the very first launches.
 const FIRST_ITEMS: u64 = 4096;
 
@@ -27,12 +30,28 @@ pub(crate) fn occluder_lists<R: Runtime>(
     items: &DeviceItems<R>,
     aim: &Aim,
 ) -> Result<DeviceVisibility<R>, RenderError> {
-    // See `ListMemory` in item.cuh.
-    let words = 4 * OCCLUDER_PARTS * WARP + SEARCHED_WORDS + PLANE_WORDS + FOUND_TRIANGLES + 2 * ROW_TABLE_WORDS;
-    let work = WarpWork { warps: items.count as u64, first: FIRST_ITEMS, words };
-    test_samples(cuda, wave, aim, (&KERNELS, work), |record| Shadows {
+    let pool = cuda.pool();
+    let lights = wave.scene.host.scene.lights.len() as u64;
+    let units = items.tiles.len() as u64 * lights;
+    let starts = pool.room::<u32>("starts of searches", units as usize * (MOST_STARTS as usize + 1))?;
+    let taken = pool.room::<u32>("taken items", 1)?;
+    let complete = |record| Shadows {
         members: items.members.input(),
         items: items.items.input(),
+        tiles: items.tiles.input(),
+        starts: starts.output(),
+        taken: taken.output(),
         ..record
-    })
+    };
+    // Where the searches of a tile's items start.
+    let record = complete(arguments(cuda, wave)?);
+    let kernel = STARTS.of(wave.scene.structure);
+    cuda.in_pieces(wave.job, kernel, Work { units, cost: 1, first: FIRST_STARTS, progress: 0 }, |piece| {
+        cuda.launch(kernel, blocks_for(&piece, WARP), &Shadows { first: piece.start, ..record })
+    })?;
+    // The items. See `ListMemory` in item.cuh.
+    let words =
+        4 * OCCLUDER_PARTS * WARP + SEARCHED_WORDS + PLANE_WORDS + FOUND_TRIANGLES + MOST_STARTS + 2 * ROW_TABLE_WORDS;
+    let work = WarpWork { units: items.count as u64, taken: Some(&taken), first: FIRST_ITEMS, words };
+    test_samples(cuda, wave, aim, (&KERNELS, work), complete)
 }

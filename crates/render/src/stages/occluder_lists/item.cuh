@@ -24,7 +24,7 @@ struct ListMemory {
     Shaft *shaft;
     Around *around;
     PlanesMemory *planes;
-    unsigned *found, *search;
+    unsigned *found, *starts, *search;
     // The rows of discs and rectangles.
     unsigned *tables;
     // The place of x = 0 in each row of the lane's samples, WARP apart.
@@ -45,6 +45,8 @@ DEVICE ListMemory list_memory(unsigned *shared, unsigned search_words) {
     shared += PLANE_WORDS;
     memory.found = shared;
     shared += FOUND_TRIANGLES;
+    memory.starts = shared;
+    shared += MOST_STARTS;
     memory.search = shared;
     shared += search_words;
     memory.tables = shared;
@@ -67,10 +69,21 @@ struct ItemSight {
     unsigned asked;
 };
 
-// The view of a light is computed when it is needed: most items find nothing between them and a light.
+// The view of a light is computed when it is needed: most items find nothing between them and a light. This and what follows are calls,
+// so that the instructions that all items need fit into the cache.
+COLD Sight view_of(const Shadows &args, unsigned light, Shape shape, unsigned lines, SurfacePoint point, unsigned long long key) {
+    return sight_of(args.scene, args.sampling, light, shape, lines, point, key);
+}
+
 DEVICE void look(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set) {
-    item.sight = sight_of(args.scene, args.sampling, light, item.shape, set.lines, item.point, item.key);
+    item.sight = view_of(args, light, item.shape, set.lines, item.point, item.key);
     item.looked = true;
+}
+
+// The samples in front of a surface that the emitter may reach below.
+template <unsigned WORDS>
+COLD Seen<WORDS> partly_unhidden(bool has, SurfacePoint point, Sight sight, Shape shape, const SampleRows &set, RowTable table) {
+    return seen_unhidden<WORDS>(has, point, sight, shape, set, table);
 }
 
 // 1. The samples in front of the surface. Where all or none of the emitter is in front of all surfaces, that needs no view of it.
@@ -87,7 +100,7 @@ DEVICE Seen<WORDS> unhidden(const Shadows &args, ItemSight &item, unsigned light
         return seen;
     if (item.shape != SHAPE_DISC || __any_sync(ALL_LANES, item.has && !above && !below)) {
         look(args, item, light, set);
-        return seen_unhidden<WORDS>(item.has, item.point, item.sight, item.shape, set, table);
+        return partly_unhidden<WORDS>(item.has, item.point, item.sight, item.shape, set, table);
     }
     UNROLL
     for (unsigned word = 0; word < WORDS; ++word)
@@ -99,6 +112,7 @@ DEVICE Seen<WORDS> unhidden(const Shadows &args, ItemSight &item, unsigned light
 template <unsigned WORDS>
 DEVICE bool test_candidates(const ItemSight &item, const RowTable &table, const float4 *candidates, unsigned count,
                             Seen<WORDS> &seen) {
+    ROLLED
     for (unsigned k = 0; k < count; ++k) {
         const float4 *triangle = candidates + OCCLUDER_PARTS * k;
         if (item.shape == SHAPE_POINT)
@@ -120,7 +134,7 @@ DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, con
     Choice choice = DROPPED;
     if (lane < count) {
         const Corners corners = load_corners(triangles + memory.found[first + lane]);
-        if (meets_triangle(region, corners)) {
+        if (in_shaft(region.form, corners) && above_planes(region.planes, 2.0f * memory.shaft->half, corners)) {
             own = occluding(corners);
             choice = choose(*memory.shaft, own);
         }
@@ -131,6 +145,7 @@ DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, con
         return true;
     if (!item.looked) {
         look(args, item, light, set);
+        ROLLED
         for (unsigned row = 0; row < set.rows; ++row)
             table.offsets[row * WARP] = row_offset(item.sight, set, row);
     }
@@ -160,9 +175,14 @@ DEVICE void look_around(const ItemSight &item, bool alive, const ListMemory &mem
     __syncwarp();
 }
 
-// The number of samples of a light that each lane sees.
+// Where the searches of a tile's items for what hides a light start: their number, then these.
+DEVICE unsigned *starts_of(const Shadows &args, unsigned long long tile, unsigned light) {
+    return args.starts + (tile * args.scene.light_count + light) * (MOST_STARTS + 1);
+}
+
+// The number of samples of a light that each lane sees; `tile` is that of the item.
 template <unsigned WORDS, class Structure>
-DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, ItemSight &item, unsigned light,
+DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, ItemSight &item, unsigned tile, unsigned light,
                               const SampleRows &set, const ListMemory &memory) {
     // 1. The samples in front of the surface.
     const RowTable table = row_table(memory.tables, item.shape, memory.offsets);
@@ -173,6 +193,14 @@ DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, I
     item.asked += number(seen);
 
     // 2. Search.
+    const unsigned *starts = starts_of(args, tile, light);
+    const unsigned start_count = __ldg(starts);
+    if (start_count == 0)
+        return number(seen);
+    if (start_count != FROM_ROOT)
+        ROLLED
+        for (unsigned start = lane_of_thread(); start < start_count; start += WARP)
+            memory.starts[start] = __ldg(starts + 1 + start);
     const Light &emitter = args.scene.lights[light];
     look_around(item, alive, memory);
     const Bounds origins = memory.around->origins;
@@ -183,9 +211,11 @@ DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, I
     if (lane_of_thread() == 0)
         *memory.shaft = shaft_of(origins, bounds, ball ? emitter.radius : INFINITE);
     __syncwarp();
-    auto search = begin_search(structure, region, memory.search);
+    auto search = begin_search_at(structure, region, memory.search, memory.starts, start_count);
     unsigned found = 0;
+    ROLLED
     while (goes_on(structure, search) || found != 0) {
+        ROLLED
         while (goes_on(structure, search) && found < WARP)
             next_triangles<false>(structure, region, search, memory.found, found);
         const unsigned count = min(found, WARP);
@@ -198,33 +228,75 @@ DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, I
     return number(seen);
 }
 
+// The shadows of an item. Returns the samples of all lights in front of the lane's surface.
 template <unsigned WORDS, class Structure>
-DEVICE void shadows_of_item(const Shadows &args, const Structure &structure) {
-    DYNAMIC_SHARED(unsigned, shared);
-    const ListMemory memory = list_memory(shared, search_words(structure));
-    fill_row_table(args.sets[SHAPE_DISC], memory.tables);
-    fill_row_table(args.sets[SHAPE_RECTANGLE], memory.tables + ROW_TABLE_WORDS);
-    const unsigned long long entry = args.items[args.first + (args.count - 1 - blockIdx.x)];
+DEVICE unsigned shadows_of_item(const Shadows &args, const Structure &structure, const ListMemory &memory, unsigned long long entry) {
     const unsigned lane = lane_of_thread(), count = (unsigned)entry & 63;
+    const unsigned long long slot = entry >> 6;
     ItemSight item;
     item.has = lane < count;
-    const unsigned ray = args.members[(entry >> 6) + (item.has ? lane : 0)];
+    const unsigned ray = args.members[slot + (item.has ? lane : 0)];
     item.point = surface_point_of(args.scene, args.rays, args.hits, ray);
     item.key = ray_key(args.rays, ray);
     item.asked = 0;
     if (lane == 0)
         memory.around->lanes = 0;
     __syncwarp();
+    ROLLED
     for (unsigned light = args.first_light; light < args.end_light; ++light) {
         item.shape = shape_of(args.sampling, args.scene.lights[light]);
         item.looked = false;
         const SampleRows &set = args.sets[item.shape == SHAPE_RECTANGLE ? SHAPE_RECTANGLE : SHAPE_DISC];
         if (item.shape == SHAPE_POINT && args.set != 0)
             continue;
-        const unsigned seen = seen_of_light<WORDS>(args, structure, item, light, set, memory);
+        const unsigned seen = seen_of_light<WORDS>(args, structure, item, (unsigned)(slot / TILE), light, set, memory);
         if (item.has)
             add_seen(args, item.shape, light, ray, seen);
         __syncwarp();
     }
-    ::count(tally_shard(args.tally).shadow_rays, item.asked);
+    return item.asked;
+}
+
+// Takes items until none is left.
+template <unsigned WORDS, class Structure>
+DEVICE void shadows_of_items(const Shadows &args, const Structure &structure) {
+    DYNAMIC_SHARED(unsigned, shared);
+    const ListMemory memory = list_memory(shared, search_words(structure));
+    fill_row_table(args.sets[SHAPE_DISC], memory.tables);
+    fill_row_table(args.sets[SHAPE_RECTANGLE], memory.tables + ROW_TABLE_WORDS);
+    unsigned asked = 0;
+    while (true) {
+        unsigned taken = 0;
+        if (lane_of_thread() == 0)
+            taken = atomicAdd(args.taken, 1u);
+        taken = __shfl_sync(ALL_LANES, taken, 0);
+        if (taken >= args.count)
+            break;
+        // What is far down in an image often takes longest.
+        asked += shadows_of_item<WORDS>(args, structure, memory, args.items[args.first + (args.count - 1 - taken)]);
+        __syncwarp();
+    }
+    count(tally_shard(args.tally).shadow_rays, asked);
+}
+
+// Where the searches of the items of a tile start.
+template <class Structure>
+DEVICE void starts_of_tile(const Shadows &args, const Structure &structure) {
+    SHARED(ShaftFaces, faces, );
+    SHARED(unsigned, list, [2 * WARP]);
+    const unsigned long long unit = args.first + blockIdx.x, number = unit / args.scene.light_count;
+    const unsigned index = (unsigned)(unit % args.scene.light_count);
+    const TileBox &tile = args.tiles[number];
+    unsigned *starts = starts_of(args, number, index);
+    unsigned count = 0;
+    if (tile.low.x <= tile.high.x) {
+        const Light &light = args.scene.lights[index];
+        const Bounds origins = {tile.low, tile.high};
+        const Bounds emitter = emitter_bounds(args.scene, light, shape_of(args.sampling, light), origins);
+        count = find_starts(structure, shadow_region(origins, emitter, &faces), list);
+    }
+    if (lane_of_thread() == 0)
+        starts[0] = count;
+    for (unsigned start = lane_of_thread(); count != FROM_ROOT && start < count; start += WARP)
+        starts[1 + start] = list[start];
 }
