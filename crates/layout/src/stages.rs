@@ -55,7 +55,7 @@ records! {
         items: In<u64>,
         /// The boxes around the surface points of each tile.
         tiles: In<TileBox>,
-        /// By tile, then light, MOST_STARTS + 1 words each: the number of boxes from which searches start, then these; see
+        /// By tile, then light of the group, MOST_STARTS + 1 words each: the number of boxes from which searches start, then these; see
         /// `accel/search.cuh`.
         starts: Out<u32>,
         /// Number of items of this launch that are taken.
@@ -158,6 +158,8 @@ records! {
         film_pixel: u64,
         /// Radiance by pixel of the film, which is added to.
         color: Out<Vec3>,
+        /// While groups of lights follow, the radiance of each ray so far; null if that has its place in `color`.
+        sums: Out<Vec3>,
         /// Distance by pixel; null if no layers are kept, like all fields that follow.
         depth: Out<f32>,
         /// Geometric normal by pixel.
@@ -172,6 +174,10 @@ records! {
         film_pixels: u64,
         /// The first block of this launch among all blocks.
         first_block: u64,
+        /// The first light of the group.
+        first_light: u32,
+        /// The last, and one.
+        end_light: u32,
     }
 
     /// `mirror_rays_count` and `mirror_rays_emit`: one thread per ray.

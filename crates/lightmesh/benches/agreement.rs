@@ -11,7 +11,9 @@ use lightmesh::render::accel::Hit;
 use lightmesh::render::backend::{Backend, Cpu, Cuda, Wave};
 use lightmesh::render::cuda::{Driver, open_cuda};
 use lightmesh::render::light_mesh::{Lattice, LightMesh, Template};
-use lightmesh::render::{Job, PreparedScene, RenderError, Sampling, ShortTests, Unobserved, View, render_on};
+use lightmesh::render::{
+    Job, LightGroup, PreparedScene, RenderError, Sampling, ShortTests, Unobserved, View, render_on,
+};
 use lightmesh::scene::Weight;
 use lightmesh::{Acceleration, Frame, Mode, Scene, Settings, Step, Transfer};
 use lightmesh_testkit::MODELS;
@@ -144,14 +146,15 @@ fn stages(
             radius: radius * case.step,
             weight: Weight::Smooth,
         };
-        let wave = Wave { job: &by_cell, scene, rays: &rays, hits: &hits };
+        let wave = Wave { job: &by_cell, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL };
         let cells = Cpu.cells(&wave, &mesh)?;
         let masks = Cpu.short_tests(&wave, &cells, &mesh)?;
         let mut expected = vec![Vec::new(); hits.len()];
         for (slot, &ray) in cells.members().iter().enumerate() {
             expected[rays.pixels[ray as usize] as usize] = masks.mask(slot).to_vec();
         }
-        let on_device = |job| Wave { job, scene: &device_scene, rays: &device_rays, hits: &device_hits };
+        let on_device =
+            |job| Wave { job, scene: &device_scene, rays: &device_rays, hits: &device_hits, lights: LightGroup::ALL };
         let device_cells = cuda.cells(&on_device(&by_cell), &mesh)?;
         let masks_of = |job| cuda.short_tests(&on_device(job), &device_cells, &mesh)?.read(&device_cells);
         let (device, oracle) = (masks_of(&by_cell)?, masks_of(&plain)?);

@@ -11,22 +11,21 @@ const RESERVE: u64 = 64 << 20;
 
 /// Number of rows that can be rendered at once on the host.
 pub(crate) fn rows_on_host(scene: &PreparedScene, plan: &Plan) -> Result<u32, RenderError> {
-    let lights = scene.scene.lights.len() as u64;
     let picture = plan.pixels() * plan.film_bytes();
     match plan.memory_limit {
         // The limit applies to the process: what it already holds counts.
-        Some(limit) => rows_per_band(plan, lights, scene.geometry.memory() as u64 + plan.kept + picture, Some(limit)),
-        None => rows_per_band(plan, lights, picture, memory::available().map(|bytes| bytes - bytes / 8)),
+        Some(limit) => rows_per_band(plan, scene.geometry.memory() as u64 + plan.kept + picture, Some(limit)),
+        None => rows_per_band(plan, picture, memory::available().map(|bytes| bytes - bytes / 8)),
     }
 }
 
 /// Number of rows that fit under `limit` bytes in addition to the `resident` bytes of scene and image.
 ///
 /// The estimate is an upper bound per pixel, taken at the stage that holds most; see the sum.
-fn rows_per_band(plan: &Plan, lights: u64, resident: u64, limit: Option<u64>) -> Result<u32, RenderError> {
+fn rows_per_band(plan: &Plan, resident: u64, limit: Option<u64>) -> Result<u32, RenderError> {
     let size = plan.size;
     let Some(limit) = limit else { return Ok(size[1]) };
-    let row = u64::from(size[0]) * (bytes_per_ray(plan, lights) + plan.film_bytes());
+    let row = u64::from(size[0]) * (bytes_per_ray(plan) + plan.film_bytes());
     let free = limit.saturating_sub(resident).saturating_sub(RESERVE);
     match free / row {
         0 => Err(RenderError::Memory {
@@ -38,24 +37,25 @@ fn rows_per_band(plan: &Plan, lights: u64, resident: u64, limit: Option<u64>) ->
     }
 }
 
-fn bytes_per_ray(plan: &Plan, lights: u64) -> u64 {
+fn bytes_per_ray(plan: &Plan) -> u64 {
     // A ray with pixel and weight, twice (mirrors make the next list from this one), and its hit and radiance.
     let ray = 2 * (size_of::<Ray>() as u64 + 4 + 12) + size_of::<Hit>() as u64 + 12;
-    // Shares by cell and by ray, and light points used.
-    let visibility = 2 * 4 * lights + 4;
-    ray + visibility + plan.footprint.host
+    ray + plan.footprint.host
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::lights::LightGroups;
     use crate::plan::Footprint;
 
     #[test]
     fn a_limit_splits_the_picture_and_none_does_not() {
         let footprint = Footprint::default();
-        let plan = Plan { size: [1000, 1000], bounces: 0, layers: None, memory_limit: None, kept: 0, footprint };
-        let rows = |limit| rows_per_band(&plan, 3, 0, limit);
+        let lights = LightGroups { lights: 3, at_once: 3 };
+        let plan =
+            Plan { size: [1000, 1000], bounces: 0, layers: None, lights, memory_limit: None, kept: 0, footprint };
+        let rows = |limit| rows_per_band(&plan, 0, limit);
         assert_eq!(rows(None).unwrap(), 1000);
         assert_eq!(rows(Some(u64::MAX)).unwrap(), 1000);
         let some = rows(Some(RESERVE + (20 << 20))).unwrap();

@@ -45,6 +45,7 @@ mod view;
 pub use cache::{DeviceTable, HostTable, Kept, MeshCache, Table};
 pub use counters::{Counts, Tally};
 pub use data::cells::CellGroups;
+pub use data::lights::{LightGroup, LightGroups};
 pub use data::lit::{Lit, LitBy};
 pub use data::masks::Masks;
 pub use data::picture::Picture;

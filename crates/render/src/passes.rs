@@ -8,6 +8,7 @@ use std::ops::Range;
 use crate::backend::run::Run;
 use crate::backend::{Backend, WaveOf};
 use crate::counters::Tally;
+use crate::data::lights::LightGroup;
 use crate::data::picture::Picture;
 use crate::data::visibility::Visibility;
 use crate::error::RenderError;
@@ -31,17 +32,23 @@ impl<B: Backend> Baking<'_, B> {
         let Baking { run, scene, technique, plan } = self;
         run.job.work.expect(points.len() as u64 * technique.stages().len() as u64);
         let at_once = run.or_forget(|backend| backend.rows_at_once(scene, plan))?;
-        let mut all = Visibility::dark(points.scene.scene.lights.len(), points.len());
+        let mut all = Visibility::dark(0..plan.lights.lights, points.len());
         let at_once = in_bands(run, points.rows(), at_once, |rows| {
             let range = points.range(&rows);
             let probes = points.part(&rows);
             let (scene, rays, hits) = run.on_host(Stage::Upload, |backend| backend.probes(scene, &probes))?;
-            let wave = WaveOf::<B> { job: run.job, scene: &scene, rays: &rays, hits: &hits };
-            let visibility = technique.visibility(run, &wave)?;
+            let wave = WaveOf::<B> { job: run.job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL };
+            let mut seen = None;
+            technique.visibility(run, &wave, plan.lights, &mut |visibility| {
+                seen = Some(visibility);
+                Ok(())
+            })?;
             run.backend.finish(run.job)?;
-            let part = run.on_host(Stage::Download, |backend| backend.visibility(visibility))?;
-            all.put(range, &part);
-            Tally::add(&run.job.tally.surface_points, part.rays as u64);
+            if let Some(visibility) = seen {
+                let part = run.on_host(Stage::Download, |backend| backend.visibility(visibility))?;
+                all.put(range, &part);
+                Tally::add(&run.job.tally.surface_points, part.rays as u64);
+            }
             Ok(())
         })?;
         Ok((all, at_once))
@@ -80,9 +87,10 @@ impl<B: Backend> Passes<'_, B> {
                 run.job.work.expect(self.pieces_of_wave(depth, n as u64));
             }
             let hits = run.stage(Stage::PrimaryRays, [n; 2], |backend| backend.primary_rays(run.job, scene, &rays))?;
-            let wave = WaveOf::<B> { job: run.job, scene, rays: &rays, hits: &hits };
-            let visibility = technique.visibility(run, &wave)?;
-            run.stage(Stage::Shade, [n; 2], |backend| backend.shade(&wave, &visibility, &mut film))?;
+            let wave = WaveOf::<B> { job: run.job, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL };
+            technique.visibility(run, &wave, plan.lights, &mut |visibility| {
+                run.stage(Stage::Shade, [n; 2], |backend| backend.shade(&wave, &visibility, &mut film))
+            })?;
             if depth < plan.bounces {
                 rays = run.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
             }
@@ -94,8 +102,9 @@ impl<B: Backend> Passes<'_, B> {
     /// Pieces of work of a wave of `rays` rays in all of its stages.
     fn pieces_of_wave(&self, depth: u32, rays: u64) -> u64 {
         let (from_camera, to_mirrors) = (u64::from(depth == 0), u64::from(depth < self.plan.bounces));
-        // Camera rays, primary rays, the technique's stages, shading, mirror rays.
-        rays * (from_camera + 1 + self.technique.stages().len() as u64 + 1 + to_mirrors)
+        // Camera rays, primary rays, the technique's stages, shading, mirror rays; long tests and shading again for each further group.
+        let further = self.plan.lights.iter().len() as u64 - 1;
+        rays * (from_camera + 1 + self.technique.stages().len() as u64 + 1 + to_mirrors + 2 * further)
     }
 }
 

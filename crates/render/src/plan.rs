@@ -1,6 +1,8 @@
 //! The image to render, and the memory limits.
 
-/// Bytes that a technique needs per ray at its peak, on the host and on a device.
+use crate::data::lights::LightGroups;
+
+/// Bytes that a technique needs per ray at its peak, on the host and on a device, with the shares of lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Footprint {
     /// If the host computes.
@@ -18,6 +20,8 @@ pub struct Plan {
     pub bounces: u32,
     /// Number of lights whose layers are kept; `None`: no layers.
     pub layers: Option<usize>,
+    /// Groups of lights whose visibility is held at the same time.
+    pub lights: LightGroups,
     /// Memory limit in bytes; `None`: what is free, less a reserve.
     pub memory_limit: Option<u64>,
     /// Bytes that the caller keeps from image to image, in the backend's memory.

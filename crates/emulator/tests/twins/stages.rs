@@ -7,7 +7,7 @@ use lightmesh_render::backend::{
     Aim, Backend, Cpu, Cuda, DeviceHits, DeviceLit, DevicePoints, DeviceRays, DeviceScene, Seen, Wave, WaveOf,
 };
 use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, UsedPoints};
-use lightmesh_render::{Job, Lit, LitBy, RayList, Sampling, ShortTests, Unobserved, Visibility};
+use lightmesh_render::{Job, LightGroup, Lit, LitBy, RayList, Sampling, ShortTests, Unobserved, Visibility};
 use lightmesh_scene::Weight;
 
 use crate::scenes::{SUBJECTS, Subject};
@@ -128,11 +128,17 @@ impl<'a, R: Target> Twins<'a, R> {
     }
 
     fn on_host<'b>(&'b self, job: &'b Job<'b>) -> WaveOf<'b, Cpu> {
-        Wave { job, scene: self.scene, rays: &self.rays, hits: &self.hits }
+        Wave { job, scene: self.scene, rays: &self.rays, hits: &self.hits, lights: LightGroup::ALL }
     }
 
     fn on_device<'b>(&'b self, job: &'b Job<'b>) -> WaveOf<'b, Cuda<R>> {
-        Wave { job, scene: &self.device_scene, rays: &self.device_rays, hits: &self.device_hits }
+        Wave {
+            job,
+            scene: &self.device_scene,
+            rays: &self.device_rays,
+            hits: &self.device_hits,
+            lights: LightGroup::ALL,
+        }
     }
 
     /// Shadow rays, one and many per light.
@@ -176,7 +182,7 @@ impl<'a, R: Target> Twins<'a, R> {
         let rows = height / 3..height / 3 + 2;
         let rays = self.cuda.camera_rays(&self.subject.view(self.size), rows.clone()).unwrap();
         let hits = self.cuda.primary_rays(&job, &self.device_scene, &rays).unwrap();
-        let wave = Wave { job: &job, scene: &self.device_scene, rays: &rays, hits: &hits };
+        let wave = Wave { job: &job, scene: &self.device_scene, rays: &rays, hits: &hits, lights: LightGroup::ALL };
         let band = self.cuda.adaptive_shadows(&wave, &aim).unwrap().read().unwrap();
         let planes = device.chunks_exact(self.rays.pixels.len()).zip(band.chunks_exact((2 * width) as usize));
         for (light, (whole, band)) in planes.enumerate() {

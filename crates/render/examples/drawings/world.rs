@@ -8,7 +8,7 @@ use lightmesh_render::accel::{Hit, Ray};
 use lightmesh_render::backend::{Backend, Cpu, Wave};
 use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, UsedPoints, point_bit};
 use lightmesh_render::{
-    Acceleration, CellGroups, Job, LitBy, Masks, PreparedScene, RayList, Sampling, SurfacePoint, Unobserved,
+    Acceleration, CellGroups, Job, LightGroup, LitBy, Masks, PreparedScene, RayList, Sampling, SurfacePoint, Unobserved,
 };
 use lightmesh_scene::{Scene, Weight};
 use lightmesh_testkit::SceneDraft;
@@ -85,7 +85,7 @@ impl World {
         if !hits.iter().all(Hit::is_some) {
             return Err(format!("{}: there is no surface below some eye", scene.scene.name).into());
         }
-        let wave = Wave { job: &job, scene: &scene, rays: &list, hits: &hits };
+        let wave = Wave { job: &job, scene: &scene, rays: &list, hits: &hits, lights: LightGroup::ALL };
         let cells = Cpu.cells(&wave, &mesh)?;
         let masks = Cpu.short_tests(&wave, &cells, &mesh)?;
         Ok(World { scene, mesh, job, list, hits, cells, masks })
@@ -119,7 +119,8 @@ impl World {
 
     /// Steps 3 and 4: the used light points in the plane z = 0, and whether each sees the scene's only light.
     pub(crate) fn long_tests(&self) -> Result<Vec<(Vec2, bool)>, Box<dyn Error>> {
-        let wave = Wave { job: &self.job, scene: &self.scene, rays: &self.list, hits: &self.hits };
+        let wave =
+            Wave { job: &self.job, scene: &self.scene, rays: &self.list, hits: &self.hits, lights: LightGroup::ALL };
         let points: UsedPoints = Cpu.light_points(&self.job, &self.cells, &self.masks, &self.mesh)?;
         let lit = Cpu.long_tests(&wave, &points, &self.mesh, None)?;
         let Some(LitBy::Bits(words)) = lit.lights.first() else { return Err("the world has no point light".into()) };

@@ -64,8 +64,8 @@ impl<R: Runtime> Backend for Cuda<R> {
         self.device_scene(job, scene)
     }
 
-    fn rows_at_once(&self, scene: &DeviceScene<R>, plan: &Plan) -> Result<u32, RenderError> {
-        self.rows_that_fit(scene, plan)
+    fn rows_at_once(&self, _: &DeviceScene<R>, plan: &Plan) -> Result<u32, RenderError> {
+        self.rows_that_fit(plan)
     }
 
     fn film(&self, plan: &Plan, rows: Range<u32>) -> Result<DeviceFilm<R>, RenderError> {

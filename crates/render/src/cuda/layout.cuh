@@ -845,6 +845,7 @@ struct alignas(8) Shade {
     const unsigned *used;
     unsigned long long film_pixel;
     Vec3 *color;
+    Vec3 *sums;
     float *depth;
     Vec3 *normal;
     Vec3 *position;
@@ -852,8 +853,10 @@ struct alignas(8) Shade {
     unsigned *light_points;
     unsigned long long film_pixels;
     unsigned long long first_block;
+    unsigned first_light;
+    unsigned end_light;
 };
-static_assert(sizeof(Shade) == 480, "size of Shade");
+static_assert(sizeof(Shade) == 496, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
 static_assert(PLACE_OF(Shade, rays) == 304, "place of Shade::rays");
 static_assert(PLACE_OF(Shade, hits) == 384, "place of Shade::hits");
@@ -861,13 +864,16 @@ static_assert(PLACE_OF(Shade, share) == 392, "place of Shade::share");
 static_assert(PLACE_OF(Shade, used) == 400, "place of Shade::used");
 static_assert(PLACE_OF(Shade, film_pixel) == 408, "place of Shade::film_pixel");
 static_assert(PLACE_OF(Shade, color) == 416, "place of Shade::color");
-static_assert(PLACE_OF(Shade, depth) == 424, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 432, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 440, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 448, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 456, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, film_pixels) == 464, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 472, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, sums) == 424, "place of Shade::sums");
+static_assert(PLACE_OF(Shade, depth) == 432, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 440, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 448, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 456, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 464, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, film_pixels) == 472, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 480, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, first_light) == 488, "place of Shade::first_light");
+static_assert(PLACE_OF(Shade, end_light) == 492, "place of Shade::end_light");
 
 struct alignas(8) MirrorRays {
     Scene scene;

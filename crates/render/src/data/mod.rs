@@ -5,6 +5,7 @@
 
 pub(crate) mod cells;
 pub(crate) mod items;
+pub(crate) mod lights;
 pub(crate) mod lit;
 pub(crate) mod masks;
 pub(crate) mod picture;

@@ -15,6 +15,8 @@ pub struct Picture {
     pub color: Vec<[f32; 3]>,
     /// What each of these pixels sees.
     pub layers: Option<Layers>,
+    /// While groups of lights follow: the radiance of each ray of a wave so far.
+    pub(crate) sums: Vec<glam::Vec3>,
 }
 
 impl Picture {
@@ -33,7 +35,7 @@ impl Picture {
             visibility: vec![vec![0.0; pixels]; lights],
             used: vec![0; pixels],
         });
-        Picture { size, rows, color: vec![[0.0; 3]; pixels], layers }
+        Picture { size, rows, color: vec![[0.0; 3]; pixels], layers, sums: Vec::new() }
     }
 
     /// The index of pixel y · width + x of the whole image in the planes.

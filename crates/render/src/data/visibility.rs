@@ -9,6 +9,8 @@ use std::ops::Range;
 pub struct Visibility {
     /// Number of rays.
     pub rays: usize,
+    /// The numbers of the lights.
+    pub lights: Range<usize>,
     /// Shares in [0, 1] by light, then ray; 0 for rays that missed.
     pub share: Vec<f32>,
     /// Number of light points that each ray's surface point used; empty if the technique uses none.
@@ -16,15 +18,15 @@ pub struct Visibility {
 }
 
 impl Visibility {
-    /// No visibility of `lights` lights from `rays` rays.
-    pub(crate) fn dark(lights: usize, rays: usize) -> Visibility {
-        Visibility { rays, share: vec![0.0; lights * rays], used: Vec::new() }
+    /// No visibility of the lights numbered `lights` from `rays` rays.
+    pub(crate) fn dark(lights: Range<usize>, rays: usize) -> Visibility {
+        Visibility { rays, share: vec![0.0; lights.len() * rays], lights, used: Vec::new() }
     }
 
     /// The share of light number `light` that ray number `ray` sees.
     #[inline(always)]
     pub fn of(&self, light: usize, ray: usize) -> f32 {
-        self.share[light * self.rays + ray]
+        self.share[(light - self.lights.start) * self.rays + ray]
     }
 
     /// Takes over what `part` knows of the rays in `range`.
@@ -35,7 +37,7 @@ impl Visibility {
         }
     }
 
-    /// The planes of all lights, split into parts of `size` rays: for each part a slice of every plane.
+    /// The planes of the lights, split into parts of `size` rays: for each part a slice of every plane.
     pub(crate) fn parts(&mut self, size: usize) -> Vec<Vec<&mut [f32]>> {
         let mut parts: Vec<Vec<&mut [f32]>> = (0..self.rays.div_ceil(size)).map(|_| Vec::new()).collect();
         for plane in self.share.chunks_exact_mut(self.rays.max(1)) {

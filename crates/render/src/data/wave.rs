@@ -1,8 +1,11 @@
 //! The data that the stages of an image work on.
 
+use std::ops::Range;
+
 use lightmesh_scene::Lights;
 
 use super::cells::CellGroups;
+use super::lights::LightGroup;
 use super::lit::Lit;
 use super::masks::Masks;
 use super::rays::{RayList, surface_point_of};
@@ -22,6 +25,8 @@ pub struct Wave<'a, Scene, Rays, Hits> {
     pub rays: &'a Rays,
     /// What each of them hit.
     pub hits: &'a Hits,
+    /// The lights whose visibility is asked for; light points have that of all.
+    pub lights: LightGroup,
 }
 
 impl<Scene, Rays, Hits> Clone for Wave<'_, Scene, Rays, Hits> {
@@ -63,6 +68,12 @@ impl<'a> HostWave<'a> {
     #[inline(always)]
     pub(crate) fn sees(&self, ray: usize) -> bool {
         self.hits[ray].is_some()
+    }
+
+    /// The numbers of the lights whose visibility is asked for.
+    #[inline(always)]
+    pub(crate) fn group(&self) -> Range<usize> {
+        self.lights.of(self.lights().len())
     }
 
     /// The scene's lights.

@@ -19,6 +19,8 @@ pub struct DeviceFilm<R: Runtime> {
     width: u32,
     color: Buffer<R, Vec3>,
     layers: Option<DeviceLayers<R>>,
+    /// While groups of lights follow: the radiance of each ray of a wave of mirrors so far.
+    sums: Option<Buffer<R, Vec3>>,
 }
 
 struct DeviceLayers<R: Runtime> {
@@ -44,7 +46,18 @@ impl<R: Runtime> DeviceFilm<R> {
             })
         });
         let layers = layers.transpose()?;
-        Ok(DeviceFilm { rows, width: plan.size[0], color: pool.zeros("radiance", pixels)?, layers })
+        Ok(DeviceFilm { rows, width: plan.size[0], color: pool.zeros("radiance", pixels)?, layers, sums: None })
+    }
+
+    /// Makes room for the sums of a wave of `rays` rays if they have to wait for other groups of lights, where there is none yet.
+    pub(crate) fn begin_sums(&mut self, cuda: &Cuda<R>, rays: usize, wait: bool) -> Result<(), RenderError> {
+        if !wait || self.sums.as_ref().is_some_and(|sums| sums.len() < rays) {
+            self.sums = None;
+        }
+        if wait && self.sums.is_none() {
+            self.sums = Some(cuda.pool.room("radiance of mirror rays", rays)?);
+        }
+        Ok(())
     }
 
     /// Writes the film's addresses into the arguments of `shade`. Layers contain what the camera sees.
@@ -52,6 +65,7 @@ impl<R: Runtime> DeviceFilm<R> {
         arguments.film_pixel = u64::from(self.rows.start) * u64::from(self.width);
         arguments.film_pixels = self.color.len() as u64;
         arguments.color = self.color.output();
+        arguments.sums = self.sums.as_ref().map_or(Out::NULL, Buffer::output);
         let layers = self.layers.as_ref().filter(|_| from_camera);
         arguments.depth = layers.map_or(Out::NULL, |layers| layers.depth.output());
         arguments.normal = layers.map_or(Out::NULL, |layers| layers.normal.output());

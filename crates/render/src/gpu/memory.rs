@@ -1,10 +1,9 @@
 //! The memory plan: the size of every buffer, before the first is allocated.
 
-use lightmesh_layout::geometry::{Hit, ListedRay};
+use lightmesh_layout::geometry::{Hit, ListedRay, Vec3};
 use lightmesh_layout::mesh::Item;
 
 use super::device::Cuda;
-use super::scene::DeviceScene;
 use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::plan::Plan;
@@ -19,7 +18,7 @@ impl<R: Runtime> Cuda<R> {
     ///
     /// The estimate of light points and items is an expectation. If an image has more, allocation fails and the band is
     /// restarted with half of its rows.
-    pub(crate) fn rows_that_fit(&self, scene: &DeviceScene<R>, plan: &Plan) -> Result<u32, RenderError> {
+    pub(crate) fn rows_that_fit(&self, plan: &Plan) -> Result<u32, RenderError> {
         let free = self.pool.runtime().free_memory().map(|free| free - free / RESERVE);
         let free = match plan.memory_limit {
             Some(limit) => {
@@ -29,7 +28,7 @@ impl<R: Runtime> Cuda<R> {
             None => free,
         };
         let Some(free) = free else { return Ok(plan.size[1]) };
-        let row = u64::from(plan.size[0]) * bytes_per_ray(plan, scene.host.scene.lights.len() as u64);
+        let row = u64::from(plan.size[0]) * bytes_per_ray(plan);
         match free / row {
             0 => Err(RenderError::DeviceMemory {
                 device: self.pool.runtime().name(),
@@ -43,9 +42,11 @@ impl<R: Runtime> Cuda<R> {
 }
 
 /// Bytes per ray when memory use is highest.
-fn bytes_per_ray(plan: &Plan, lights: u64) -> u64 {
-    let listed = if plan.bounces > 0 { 2 * size_of::<ListedRay>() as u64 } else { 0 };
-    plan.film_bytes() + listed + size_of::<Hit>() as u64 + 4 * lights + plan.footprint.device
+fn bytes_per_ray(plan: &Plan) -> u64 {
+    // With more than one group of lights, mirror rays have sums of their own.
+    let sum = if plan.lights.iter().len() > 1 { size_of::<Vec3>() as u64 } else { 0 };
+    let listed = if plan.bounces > 0 { 2 * size_of::<ListedRay>() as u64 + sum } else { 0 };
+    plan.film_bytes() + listed + size_of::<Hit>() as u64 + plan.footprint.device
 }
 
 /// What the light mesh method adds per ray, for a template with masks of `words` words and `bricks` bricks around a cell.
@@ -55,6 +56,6 @@ pub(crate) fn bytes_of_light_mesh(words: usize, bricks: usize, lights: u64) -> u
     let items = (size_of::<Item>() + 32 * 4 * words + (8 + 4) * bricks) as u64 / POINTS_PER_ITEM;
     // Half a light point per pixel: its entry and share, and its part of a brick that is a quarter full.
     let points = (8 + 2 * lights + 2 * (8 + 8 + 4 + 8 * lights) / 16) / 2;
-    // Light points used, and the list of rays that fall back.
-    grouping + items + points + 4 + 4
+    // Shares, light points used, and the list of rays that fall back.
+    grouping + items + points + 4 * lights + 4 + 4
 }

@@ -47,6 +47,6 @@ impl<R: Runtime> DeviceVisibility<R> {
     /// [`RenderError::DeviceFault`] if the device fails.
     pub(crate) fn to_host(&self) -> Result<Visibility, RenderError> {
         let used = self.used.as_ref().map_or(Ok(Vec::new()), |used| used.read())?;
-        Ok(Visibility { rays: self.rays, share: self.read()?, used })
+        Ok(Visibility { rays: self.rays, lights: self.lights.clone(), share: self.read()?, used })
     }
 }

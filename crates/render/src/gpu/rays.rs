@@ -1,7 +1,11 @@
 //! Rays, hits and visibility on a device.
 
+use std::ops::Range;
+
+use lightmesh_layout::Out;
 use lightmesh_layout::geometry::{Hit, ListedRay, Rays};
 
+use super::device::Cuda;
 use super::scene::DeviceScene;
 use crate::accel;
 use crate::cuda::{Buffer, Runtime};
@@ -29,6 +33,8 @@ pub struct DeviceHits<R: Runtime> {
 pub struct DeviceVisibility<R: Runtime> {
     /// Number of rays.
     pub(crate) rays: usize,
+    /// The numbers of the lights.
+    pub(crate) lights: Range<usize>,
     /// By light, then ray.
     pub(crate) share: Buffer<R, f32>,
     /// Number of light points used by each ray.
@@ -45,7 +51,26 @@ impl<R: Runtime> DeviceHits<R> {
     }
 }
 
+impl<R: Runtime> DeviceWave<'_, R> {
+    /// The numbers of the lights whose visibility is asked for.
+    pub(crate) fn group(&self) -> Range<usize> {
+        self.lights.of(self.scene.host.scene.lights.len())
+    }
+}
+
 impl<R: Runtime> DeviceVisibility<R> {
+    /// No visibility of the lights numbered `lights`.
+    pub(crate) fn dark(cuda: &Cuda<R>, rays: usize, lights: Range<usize>) -> Result<DeviceVisibility<R>, RenderError> {
+        let share = cuda.pool().zeros("shares of lights", rays * lights.len())?;
+        Ok(DeviceVisibility { rays, lights, share, used: None })
+    }
+
+    /// Where the shares of light 0 would be: kernels find those of a light by its number.
+    pub(crate) fn planes(&self) -> Out<f32> {
+        let before = self.lights.start as u64 * self.rays as u64 * size_of::<f32>() as u64;
+        Out::to(self.share.output().address().wrapping_sub(before))
+    }
+
     /// Reads the shares, by light, then ray.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 
 use lightmesh_scene::{Bounds, Camera};
 
+use crate::data::lights::LightGroups;
 use crate::error::RenderError;
 use crate::job::{Job, Sampling};
 use crate::observer::Observer;
@@ -45,9 +46,12 @@ impl<'a> Resolved<'a> {
         observer: &dyn Observer,
     ) -> Result<Resolved<'a>, RenderError> {
         let mut resolved = Resolved::within(points.bounds, points.scene, settings, observer)?;
-        let Footprint { host, device } = resolved.plan.footprint;
+        // What is asked for is the visibility of all lights.
+        let lights = LightGroups { at_once: usize::MAX, ..resolved.plan.lights };
+        let Footprint { host, device } = resolved.technique.footprint(lights.held() as u64);
         let footprint = Footprint { host: host + Probes::BYTES, device: device + Probes::BYTES };
-        resolved.plan = Plan { size: [ROW, points.rows()], bounces: 0, layers: None, footprint, ..resolved.plan };
+        resolved.plan =
+            Plan { size: [ROW, points.rows()], bounces: 0, layers: None, lights, footprint, ..resolved.plan };
         resolved.pixels = points.len() as u64;
         Ok(resolved)
     }
@@ -64,14 +68,15 @@ impl<'a> Resolved<'a> {
         let camera = camera(scene, settings);
         let view = View::new(&camera, settings.size);
         let technique = Technique::resolve(&Request { scene, settings, view: &view, observer, bounds })?;
-        let lights = scene.scene.lights.len();
+        let lights = LightGroups { lights: scene.scene.lights.len(), at_once: technique.lights_at_once() };
         let plan = Plan {
             size: settings.size,
             bounces: settings.bounces,
-            layers: settings.layers.then_some(lights),
+            layers: settings.layers.then_some(lights.lights),
+            lights,
             memory_limit: settings.memory_limit,
             kept: 0,
-            footprint: technique.footprint(lights as u64),
+            footprint: technique.footprint(lights.held() as u64),
         };
         let samples = Technique::samples(settings);
         let sampling = Sampling { samples, seed: settings.seed, spread: technique.spreads_points() };

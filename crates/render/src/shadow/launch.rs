@@ -37,28 +37,30 @@ impl SampleSets {
         self.of(set).iter().map(|set| set.count.iter().map(|&count| u64::from(count)).sum()).max().unwrap_or(0)
     }
 
-    /// The arguments of kernels for a set, and all lights.
+    /// The arguments of kernels for a set, and the lights of the wave.
     pub(crate) fn record<R: Runtime>(
         &self,
         cuda: &Cuda<R>,
         wave: &DeviceWave<R>,
-        share: &Buffer<R, f32>,
+        visibility: &DeviceVisibility<R>,
         set: u32,
     ) -> Result<Shadows, RenderError> {
         let sets = self.of(set);
-        Ok(Shadows { share: share.output(), sets, set, set_count: self.count, ..arguments(cuda, wave)? })
+        Ok(Shadows { share: visibility.planes(), sets, set, set_count: self.count, ..arguments(cuda, wave)? })
     }
 }
 
-/// The arguments of kernels for all lights, without samples.
+/// The arguments of kernels for the lights of a wave, without samples.
 pub(crate) fn arguments<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> Result<Shadows, RenderError> {
+    let lights = wave.group();
     Ok(Shadows {
         scene: wave.scene.record,
         rays: wave.rays.record,
         hits: wave.hits.hits.input(),
         sampling: sampling(wave.job.sampling),
         tally: cuda.tally()?,
-        end_light: wave.scene.host.scene.lights.len() as u32,
+        first_light: lights.start as u32,
+        end_light: lights.end as u32,
         ..Shadows::zeroed()
     })
 }
@@ -90,18 +92,18 @@ pub(crate) fn test_samples<R: Runtime>(
     complete: impl Fn(Shadows) -> Shadows,
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let scene = wave.scene;
-    let lights = scene.host.scene.lights.len();
-    let share: Buffer<R, f32> = cuda.pool().zeros("shares of lights", wave.rays.len() * lights)?;
+    let visibility = DeviceVisibility::dark(cuda, wave.rays.len(), wave.group())?;
     let sets = SampleSets::new(aim);
     let progress = |done: u32| work.units * u64::from(done) / u64::from(sets.count);
     for set in 0..sets.count {
-        let record = complete(sets.record(cuda, wave, &share, set)?);
+        let record = complete(sets.record(cuda, wave, &visibility, set)?);
         let most = |number: fn(&SampleRows) -> u32| record.sets.iter().map(number).max().unwrap_or(0);
         let (words, rows) = (most(|set| set.words), most(|set| set.rows));
         let (_, kernels) = kernels.iter().find(|(room, _)| *room >= words).unwrap_or(&kernels[2]);
         let kernel = kernels.of(scene.structure);
         let progress = progress(set + 1) - progress(set);
-        let pieces = Work { units: work.units, cost: lights.max(1) as u64, first: work.first, progress };
+        let pieces =
+            Work { units: work.units, cost: visibility.lights.len().max(1) as u64, first: work.first, progress };
         cuda.in_pieces(wave.job, kernel, pieces, |piece| {
             let shared = work.words + scene.search_words() + WARP * rows;
             let count = piece.end - piece.start;
@@ -116,5 +118,5 @@ pub(crate) fn test_samples<R: Runtime>(
             cuda.launch(kernel, warps_for(&(0..warps), 1, shared), &arguments)
         })?;
     }
-    Ok(DeviceVisibility { rays: wave.rays.len(), share, used: None })
+    Ok(visibility)
 }

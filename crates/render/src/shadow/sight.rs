@@ -65,7 +65,7 @@ pub(crate) struct Emitter<'a> {
 }
 
 impl<'a> Emitter<'a> {
-    /// All lights of a wave that rays are aimed at.
+    /// The lights of a wave that rays are aimed at.
     pub(crate) fn all(wave: &HostWave<'a>, aim: &Aim, rows: &'a Rows) -> Vec<Emitter<'a>> {
         let geometry = &wave.scene.geometry;
         let emitter = |(index, light): (usize, &'a Light)| {
@@ -74,7 +74,8 @@ impl<'a> Emitter<'a> {
             let (samples, seed) = (aim.samples(light), wave.job.sampling.seed);
             Emitter { index, light, shape, sets, scale: scale(geometry, light), samples, seed }
         };
-        wave.lights().iter().enumerate().map(emitter).collect()
+        let lights = wave.group();
+        wave.lights().iter().enumerate().take(lights.end).skip(lights.start).map(emitter).collect()
     }
 
     /// The light, and the form of its samples.

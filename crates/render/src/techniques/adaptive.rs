@@ -1,9 +1,10 @@
 //! Adaptive shadow rays: one per light, and all samples where those of neighbouring pixels disagree. What [occluder lists](super::lists)
 //! are compared with.
 
-use super::{Request, Visible};
+use super::{Request, Taker, Visible, each_group};
 use crate::backend::run::Run;
 use crate::backend::{Backend, WaveOf};
+use crate::data::lights::LightGroups;
 use crate::error::RenderError;
 use crate::plan::Footprint;
 use crate::prepared::PreparedScene;
@@ -15,9 +16,7 @@ use crate::stats::SettingsStats;
 
 /// One shadow ray per light, or many.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Adaptive {
-    lights: usize,
-}
+pub(crate) struct Adaptive;
 
 impl Visible for Adaptive {
     fn default_samples(settings: &Settings) -> u32 {
@@ -26,24 +25,32 @@ impl Visible for Adaptive {
 
     fn resolve(request: &Request) -> Result<Adaptive, RenderError> {
         request.tell_samples();
-        Ok(Adaptive { lights: request.scene.scene.lights.len() })
+        Ok(Adaptive)
     }
 
     fn stages(&self) -> &'static [Stage] {
         &[Stage::LongTests]
     }
 
-    fn visibility<B: Backend>(&self, run: &Run<B>, wave: &WaveOf<B>) -> Result<B::Visibility, RenderError> {
+    fn visibility<B: Backend>(
+        &self,
+        run: &Run<B>,
+        wave: &WaveOf<B>,
+        groups: LightGroups,
+        taker: &mut Taker<B>,
+    ) -> Result<(), RenderError> {
         let n = run.backend.ray_count(wave.rays);
         let aim = Aim::Extent(wave.job.sampling);
-        // Each surface point twice for each light: its first ray, and what follows from the answers.
-        let pieces = 2 * n * self.lights;
-        run.stage(Stage::LongTests, [n, pieces], |backend| backend.adaptive_shadows(wave, &aim))
+        each_group::<B>(wave, groups, taker, |wave| {
+            // Each surface point twice for each light: its first ray, and what follows from the answers.
+            let pieces = 2 * n * wave.lights.of(groups.lights).len();
+            run.stage(Stage::LongTests, [n, pieces], |backend| backend.adaptive_shadows(wave, &aim))
+        })
     }
 
     fn footprint(&self, lights: u64) -> Footprint {
         // The answers, and on the host those of whole rows; on a device half of all samples to be tested, of a slice of lights.
-        Footprint { host: 2, device: 5 * lights.min(LIGHTS as u64) }
+        Footprint { host: 2 + 4 * lights, device: 4 * lights + 5 * lights.min(LIGHTS as u64) }
     }
 
     fn spreads_points(&self) -> bool {

@@ -1,8 +1,9 @@
 //! Area shadows: what each surface point on its own sees of many samples of each light. The reference.
 
-use super::{Request, Visible};
+use super::{Request, Taker, Visible, each_group};
 use crate::backend::run::Run;
 use crate::backend::{Backend, WaveOf};
+use crate::data::lights::LightGroups;
 use crate::error::RenderError;
 use crate::plan::Footprint;
 use crate::prepared::PreparedScene;
@@ -28,17 +29,25 @@ impl Visible for Area {
         &[Stage::LongTests]
     }
 
-    fn visibility<B: Backend>(&self, run: &Run<B>, wave: &WaveOf<B>) -> Result<B::Visibility, RenderError> {
+    fn visibility<B: Backend>(
+        &self,
+        run: &Run<B>,
+        wave: &WaveOf<B>,
+        groups: LightGroups,
+        taker: &mut Taker<B>,
+    ) -> Result<(), RenderError> {
         let rays = run.backend.ray_count(wave.rays);
         let aim = Aim::Extent(wave.job.sampling);
-        run.stage(Stage::LongTests, [rays; 2], |backend| match wave.job.shadow_tests {
-            ShadowTests::Rows => backend.area_shadows(wave, &aim),
-            ShadowTests::Rays => backend.shadow_rays(wave, &aim),
+        each_group::<B>(wave, groups, taker, |wave| {
+            run.stage(Stage::LongTests, [rays; 2], |backend| match wave.job.shadow_tests {
+                ShadowTests::Rows => backend.area_shadows(wave, &aim),
+                ShadowTests::Rays => backend.shadow_rays(wave, &aim),
+            })
         })
     }
 
-    fn footprint(&self, _: u64) -> Footprint {
-        Footprint::default()
+    fn footprint(&self, lights: u64) -> Footprint {
+        Footprint { host: 4 * lights, device: 4 * lights }
     }
 
     fn spreads_points(&self) -> bool {

@@ -5,9 +5,10 @@
 
 use lightmesh_scene::Weight;
 
-use super::{Request, Visible};
+use super::{Request, Taker, Visible};
 use crate::backend::run::Run;
 use crate::backend::{Backend, SeenOf, WaveOf};
+use crate::data::lights::LightGroups;
 use crate::error::RenderError;
 use crate::gpu::memory::bytes_of_light_mesh;
 use crate::light_mesh::{Lattice, LightMesh, Template, auto_step, window_bricks};
@@ -54,7 +55,13 @@ impl Visible for HalfBall {
         &[Stage::Cells, Stage::ShortTests, Stage::Collect, Stage::LongTests, Stage::Interpolate]
     }
 
-    fn visibility<B: Backend>(&self, run: &Run<B>, wave: &WaveOf<B>) -> Result<B::Visibility, RenderError> {
+    fn visibility<B: Backend>(
+        &self,
+        run: &Run<B>,
+        wave: &WaveOf<B>,
+        _: LightGroups,
+        taker: &mut Taker<B>,
+    ) -> Result<(), RenderError> {
         let (mesh, n) = (&self.mesh, run.backend.ray_count(wave.rays));
 
         // Which surface points share a cell?
@@ -75,7 +82,12 @@ impl Visible for HalfBall {
 
         // The weighted mean of what a surface point's light points see.                                       (3)
         let seen = SeenOf::<B> { mesh, cells: &cells, masks: &masks, points: &points, lit: &lit };
-        run.stage(Stage::Interpolate, [n, pieces], |backend| backend.interpolate(wave, &seen))
+        taker(run.stage(Stage::Interpolate, [n, pieces], |backend| backend.interpolate(wave, &seen))?)
+    }
+
+    /// What light points see is kept for all lights.
+    fn lights_at_once(&self) -> usize {
+        usize::MAX
     }
 
     fn footprint(&self, lights: u64) -> Footprint {
@@ -83,7 +95,8 @@ impl Visible for HalfBall {
         // Sorting by cell, members and starts; the mask; and the light points, at most a half-ball per pixel but in
         // practice fewer than two, each with its share of a brick and its visibility.
         let points = 2 * (16 + 16 + 2 * lights + lights.div_ceil(8) * 8);
-        let host = 2 * 16 + 4 + 16 + 4 * words as u64 + points;
+        // Shares by cell and by ray, and light points used.
+        let host = 2 * 16 + 4 + 16 + 4 * words as u64 + points + 2 * 4 * lights + 4;
         let bricks = window_bricks(self.mesh.template.reach()) as usize;
         Footprint { host, device: bytes_of_light_mesh(words, bricks, lights) }
     }

@@ -1,9 +1,12 @@
 //! Exact area shadows by occluder lists: the triangles that can hide a light are found once for surface points that lie close together. The
 //! same bits as [area mode](super::area).
 
-use super::{Request, Visible};
+use lightmesh_layout::constants::{MOST_STARTS, TILE};
+
+use super::{Request, Taker, Visible, each_group};
 use crate::backend::run::Run;
 use crate::backend::{Backend, WaveOf};
+use crate::data::lights::LightGroups;
 use crate::error::RenderError;
 use crate::plan::Footprint;
 use crate::prepared::PreparedScene;
@@ -30,7 +33,13 @@ impl Visible for Lists {
         &[Stage::Cells, Stage::LongTests]
     }
 
-    fn visibility<B: Backend>(&self, run: &Run<B>, wave: &WaveOf<B>) -> Result<B::Visibility, RenderError> {
+    fn visibility<B: Backend>(
+        &self,
+        run: &Run<B>,
+        wave: &WaveOf<B>,
+        groups: LightGroups,
+        taker: &mut Taker<B>,
+    ) -> Result<(), RenderError> {
         let n = run.backend.ray_count(wave.rays);
 
         // Which surface points lie close together?
@@ -39,12 +48,15 @@ impl Visible for Lists {
 
         // What stands between them and each light?
         let aim = Aim::Extent(wave.job.sampling);
-        run.stage(Stage::LongTests, [n, pieces], |backend| backend.occluder_lists(wave, &items, &aim))
+        each_group::<B>(wave, groups, taker, |wave| {
+            run.stage(Stage::LongTests, [n, pieces], |backend| backend.occluder_lists(wave, &items, &aim))
+        })
     }
 
     fn footprint(&self, lights: u64) -> Footprint {
-        // The ray of each surface point, by tile and in one list; its part of an item; on the host its shares in the order of items, too.
-        Footprint { host: 12 + 4 * lights, device: 8 }
+        // The ray of each surface point, by tile and in one list; its part of an item, and of where a tile's searches start.
+        let starts = (size_of::<u32>() as u64 * u64::from(MOST_STARTS + 1) * lights).div_ceil(u64::from(TILE));
+        Footprint { host: 12 + 4 * lights, device: 8 + starts + 4 * lights }
     }
 
     fn spreads_points(&self) -> bool {

@@ -9,6 +9,7 @@ use lightmesh_scene::Bounds;
 
 use crate::backend::run::Run;
 use crate::backend::{Backend, WaveOf};
+use crate::data::lights::LightGroups;
 use crate::error::RenderError;
 use crate::job::Sampling;
 use crate::observer::Observer;
@@ -44,6 +45,19 @@ impl Request<'_> {
     }
 }
 
+/// Takes the visibility of a group of lights.
+pub(crate) type Taker<'a, B> = dyn FnMut(<B as Backend>::Visibility) -> Result<(), RenderError> + 'a;
+
+/// Hands what `see` finds of each group of lights to `taker`.
+fn each_group<B: Backend>(
+    wave: &WaveOf<B>,
+    groups: LightGroups,
+    taker: &mut Taker<B>,
+    see: impl Fn(&WaveOf<B>) -> Result<B::Visibility, RenderError>,
+) -> Result<(), RenderError> {
+    groups.iter().try_for_each(|lights| taker(see(&WaveOf::<B> { lights, ..*wave })?))
+}
+
 /// The interface of a technique.
 pub(crate) trait Visible: Sized {
     /// Default number of samples of a light with a size.
@@ -55,10 +69,21 @@ pub(crate) trait Visible: Sized {
     /// The stages between primary rays and shading, in order.
     fn stages(&self) -> &'static [Stage];
 
-    /// What each surface point of a wave sees of each light.
-    fn visibility<B: Backend>(&self, run: &Run<B>, wave: &WaveOf<B>) -> Result<B::Visibility, RenderError>;
+    /// Hands what each surface point of a wave sees of each light to `taker`, group by group of lights.
+    fn visibility<B: Backend>(
+        &self,
+        run: &Run<B>,
+        wave: &WaveOf<B>,
+        groups: LightGroups,
+        taker: &mut Taker<B>,
+    ) -> Result<(), RenderError>;
 
-    /// Bytes that it needs per ray in a scene of `lights` lights.
+    /// Number of lights in a group. A group is shaded before the next: memory does not grow with the number of groups.
+    fn lights_at_once(&self) -> usize {
+        4
+    }
+
+    /// Bytes that it needs per ray for `lights` lights at once, with their shares.
     fn footprint(&self, lights: u64) -> Footprint;
 
     /// Whether point lights are distributed over their spread.
@@ -104,6 +129,7 @@ macro_rules! techniques {
 
             techniques!(@each $($name)*;
                 stages() -> &'static [Stage];
+                lights_at_once() -> usize;
                 footprint(lights: u64) -> Footprint;
                 spreads_points() -> bool;
                 template() -> u64;
@@ -114,9 +140,11 @@ macro_rules! techniques {
                 &self,
                 run: &Run<B>,
                 wave: &WaveOf<B>,
-            ) -> Result<B::Visibility, RenderError> {
+                groups: LightGroups,
+                taker: &mut Taker<B>,
+            ) -> Result<(), RenderError> {
                 match self {
-                    $(Technique::$name(technique) => technique.visibility(run, wave),)*
+                    $(Technique::$name(technique) => technique.visibility(run, wave, groups, taker),)*
                 }
             }
         }

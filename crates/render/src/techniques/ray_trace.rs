@@ -1,8 +1,9 @@
 //! Hard-shadow ray tracing: one shadow ray from each surface point to the middle of each light.
 
-use super::{Request, Visible};
+use super::{Request, Taker, Visible, each_group};
 use crate::backend::run::Run;
 use crate::backend::{Backend, WaveOf};
+use crate::data::lights::LightGroups;
 use crate::error::RenderError;
 use crate::plan::Footprint;
 use crate::prepared::PreparedScene;
@@ -28,13 +29,21 @@ impl Visible for RayTrace {
         &[Stage::LongTests]
     }
 
-    fn visibility<B: Backend>(&self, run: &Run<B>, wave: &WaveOf<B>) -> Result<B::Visibility, RenderError> {
+    fn visibility<B: Backend>(
+        &self,
+        run: &Run<B>,
+        wave: &WaveOf<B>,
+        groups: LightGroups,
+        taker: &mut Taker<B>,
+    ) -> Result<(), RenderError> {
         let rays = run.backend.ray_count(wave.rays);
-        run.stage(Stage::LongTests, [rays; 2], |backend| backend.shadow_rays(wave, &Aim::Middle))
+        each_group::<B>(wave, groups, taker, |wave| {
+            run.stage(Stage::LongTests, [rays; 2], |backend| backend.shadow_rays(wave, &Aim::Middle))
+        })
     }
 
-    fn footprint(&self, _: u64) -> Footprint {
-        Footprint::default()
+    fn footprint(&self, lights: u64) -> Footprint {
+        Footprint { host: 4 * lights, device: 4 * lights }
     }
 
     fn describe(&self, _: &PreparedScene, _: &Settings, _: &mut SettingsStats) {}

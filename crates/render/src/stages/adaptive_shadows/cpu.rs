@@ -29,7 +29,7 @@ pub(crate) fn adaptive_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
     let Some(view) = wave.rays.view.filter(|_| !wave.hits.is_empty()) else { return shadow_rays(wave, aim) };
     let rows = Rows::of(aim);
     let band = Band::new(wave, &view);
-    let mut visibility = Visibility::dark(wave.lights().len(), wave.hits.len());
+    let mut visibility = Visibility::dark(wave.group(), wave.hits.len());
     let planes = visibility.share.chunks_exact_mut(wave.hits.len());
     for (emitter, shares) in Emitter::all(wave, aim, &rows).iter().zip(planes) {
         if emitter.is_point() {

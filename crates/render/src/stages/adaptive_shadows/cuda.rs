@@ -38,15 +38,15 @@ pub(crate) fn adaptive_shadows<R: Runtime>(
     if !wave.rays.is_from_camera() {
         return shadow_rays(cuda, wave, aim);
     }
-    let (rays, lights) = (wave.rays.len(), wave.scene.host.scene.lights.len());
-    let share = cuda.pool().zeros("shares of lights", rays * lights)?;
+    let (rays, lights) = (wave.rays.len(), wave.group());
+    let visibility = DeviceVisibility::dark(cuda, rays, lights.clone())?;
     let band = Band::new(cuda, wave, SampleSets::new(aim))?;
     // Entries are numbered with 32 bits.
     let at_once = LIGHTS.min(u32::MAX as usize / rays.max(1)).max(1);
-    for first in (0..lights).step_by(at_once) {
-        band.adapt(&share, first..lights.min(first + at_once))?;
+    for first in lights.clone().step_by(at_once) {
+        band.adapt(&visibility, first..lights.end.min(first + at_once))?;
     }
-    Ok(DeviceVisibility { rays, share, used: None })
+    Ok(visibility)
 }
 
 /// The rows of a wave, with those next to it that belong to the neighbourhoods of its pixels.
@@ -84,7 +84,7 @@ impl<'a, R: Runtime> Band<'a, R> {
     }
 
     /// Computes the shares of some lights.
-    fn adapt(&self, share: &Buffer<R, f32>, lights: Range<usize>) -> Result<(), RenderError> {
+    fn adapt(&self, visibility: &DeviceVisibility<R>, lights: Range<usize>) -> Result<(), RenderError> {
         let Band { cuda, wave, sets, .. } = self;
         let pool = cuda.pool();
         let answers = pool.room("answers of first rays", self.pixels as usize * lights.len())?;
@@ -94,7 +94,7 @@ impl<'a, R: Runtime> Band<'a, R> {
         let of_lights = |shadows| Shadows { first_light: lights.start as u32, end_light: lights.end as u32, ..shadows };
         let record = AdaptiveShadows {
             scene: wave.scene.record,
-            shadows: of_lights(sets.record(cuda, wave, share, 0)?),
+            shadows: of_lights(sets.record(cuda, wave, visibility, 0)?),
             answers: answers.output(),
             answer_count: self.pixels,
             first_answer: self.first,
@@ -129,7 +129,7 @@ impl<'a, R: Runtime> Band<'a, R> {
         let kernel = OPEN_RAYS.of(wave.scene.structure);
         let progress = |done: u32| progress * u64::from(done) / u64::from(sets.count);
         for set in 0..sets.count {
-            let shadows = of_lights(sets.record(cuda, wave, share, set)?);
+            let shadows = of_lights(sets.record(cuda, wave, visibility, set)?);
             let blocks = (count as u64).div_ceil(u64::from(BLOCK));
             let work = Work::of_rays(blocks, &(0..sets.most(set)), progress(set + 1) - progress(set));
             cuda.in_pieces(wave.job, kernel, work, |piece| {

@@ -25,7 +25,7 @@ const BATCH: usize = 256;
 pub(crate) fn area_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
     let rows = Rows::of(aim);
     let emitters = Emitter::all(wave, aim, &rows);
-    let mut visibility = Visibility::dark(emitters.len(), wave.hits.len());
+    let mut visibility = Visibility::dark(wave.group(), wave.hits.len());
     let level = Level::new();
     visibility.parts(BATCH).into_par_iter().enumerate().for_each(|(number, mut shares)| {
         let first = number * BATCH;

@@ -51,7 +51,7 @@ impl Interpolation<'_> {
         for (slot, &ray) in members.iter().enumerate() {
             slots[ray as usize] = Some(slot as u32);
         }
-        let mut visibility = Visibility::dark(lights, slots.len());
+        let mut visibility = Visibility::dark(0..lights, slots.len());
         for (light, plane) in visibility.share.chunks_exact_mut(slots.len().max(1)).enumerate() {
             plane.par_iter_mut().zip(&slots).with_min_len(RUN).for_each(|(share, slot)| {
                 *share = slot.map_or(0.0, |slot| shares[slot as usize * lights + light]);

@@ -30,7 +30,7 @@ pub(crate) fn interpolate<R: Runtime>(
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let Seen { mesh, cells, masks, points, lit } = *seen;
     let lights = wave.scene.host.scene.lights.len();
-    let share = cuda.pool().zeros("shares of lights", wave.rays.len() * lights)?;
+    let visibility = DeviceVisibility::dark(cuda, wave.rays.len(), 0..lights)?;
     let used = cuda.pool().zeros("light points used", wave.rays.len())?;
     let fallback_rays = cuda.pool().room("rays that fall back", wave.rays.len())?;
     let fallback_count = cuda.pool().zeros("number of rays that fall back", 1)?;
@@ -45,7 +45,7 @@ pub(crate) fn interpolate<R: Runtime>(
         points: points.record(),
         slots: points.slots.input(),
         lit: lit.lit.input(),
-        share: share.output(),
+        share: visibility.planes(),
         used: used.output(),
         fallback_rays: fallback_rays.output(),
         fallback_count: fallback_count.output(),
@@ -73,5 +73,5 @@ pub(crate) fn interpolate<R: Runtime>(
         let count = piece.end - piece.start;
         cuda.launch(kernel, blocks_for(&piece, BLOCK), &Interpolate { first: piece.start, count, ..record })
     })?;
-    Ok(DeviceVisibility { rays: wave.rays.len(), share, used: Some(used) })
+    Ok(DeviceVisibility { used: Some(used), ..visibility })
 }

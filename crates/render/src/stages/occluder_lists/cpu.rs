@@ -1,5 +1,7 @@
 //! Occluder lists on the CPU: lanes are surface points, a triangle is the same for all of them.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, f32x8, u32x8};
 use lightmesh_layout::constants::{MOST_ROWS, MOST_WORDS, WARP};
@@ -29,44 +31,31 @@ const GROUPS: usize = WARP as usize / LANES;
 pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, aim: &Aim) -> Visibility {
     let rows = Rows::of(aim);
     let emitters = Emitter::all(wave, aim, &rows);
-    let lights = emitters.len();
     let level = Level::new();
-    let runs: Vec<Vec<f32>> = (0..items.len().div_ceil(RUN))
-        .into_par_iter()
-        .map(|run| {
-            let run = run * RUN..items.len().min((run + 1) * RUN);
-            let points = run.clone().map(|item| items.members(item).len()).sum();
-            wave.job.piece(points, || {
-                let mut shares = Vec::with_capacity(points * lights);
-                let mut item = ItemShadows::default();
-                for members in run.map(|item| items.members(item)) {
-                    item.points.clear();
-                    item.points.extend(members.iter().map(|&ray| wave.surface_point(ray as usize)));
-                    for emitter in &emitters {
-                        let seen = dispatch!(level, simd => item.seen(simd, wave, members, emitter));
-                        shares.extend(seen[..members.len()].iter().map(|&seen| emitter.share(seen)));
+    // Each share has one writer.
+    let rays = wave.hits.len();
+    let shares: Vec<AtomicU32> = (0..emitters.len() * rays).map(|_| AtomicU32::new(0)).collect();
+    (0..items.len().div_ceil(RUN)).into_par_iter().for_each(|run| {
+        let run = run * RUN..items.len().min((run + 1) * RUN);
+        let points = run.clone().map(|item| items.members(item).len()).sum();
+        wave.job.piece(points, || {
+            let mut item = ItemShadows::default();
+            for members in run.map(|item| items.members(item)) {
+                item.points.clear();
+                item.points.extend(members.iter().map(|&ray| wave.surface_point(ray as usize)));
+                for (emitter, shares) in emitters.iter().zip(shares.chunks_exact(rays)) {
+                    let seen = dispatch!(level, simd => item.seen(simd, wave, members, emitter));
+                    for (&ray, &seen) in members.iter().zip(&seen) {
+                        shares[ray as usize].store(emitter.share(seen).to_bits(), Ordering::Relaxed);
                     }
                 }
-                Tally::add(&wave.job.tally.shadow_rays, item.asked);
-                shares
-            })
-        })
-        .collect();
-
-    // From the order of items back to the order of rays.
-    let mut visibility = Visibility::dark(lights, wave.hits.len());
-    let rays = visibility.rays;
-    for (run, shares) in runs.iter().enumerate() {
-        let mut shares = shares.iter();
-        for members in (run * RUN..items.len().min((run + 1) * RUN)).map(|item| items.members(item)) {
-            for light in 0..lights {
-                for (&ray, &share) in members.iter().zip(&mut shares) {
-                    visibility.share[light * rays + ray as usize] = share;
-                }
             }
-        }
-    }
-    visibility
+            Tally::add(&wave.job.tally.shadow_rays, item.asked);
+        });
+    });
+    // In the same memory.
+    let share = shares.into_iter().map(|share| f32::from_bits(share.into_inner())).collect();
+    Visibility { rays, lights: wave.group(), share, used: Vec::new() }
 }
 
 /// The surface points of an item, and buffers.

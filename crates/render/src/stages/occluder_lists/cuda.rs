@@ -31,8 +31,7 @@ pub(crate) fn occluder_lists<R: Runtime>(
     aim: &Aim,
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let pool = cuda.pool();
-    let lights = wave.scene.host.scene.lights.len() as u64;
-    let units = items.tiles.len() as u64 * lights;
+    let units = items.tiles.len() as u64 * wave.group().len() as u64;
     let starts = pool.room::<u32>("starts of searches", units as usize * (MOST_STARTS as usize + 1))?;
     let taken = pool.room::<u32>("taken items", 1)?;
     let complete = |record| Shadows {

@@ -177,7 +177,7 @@ DEVICE void look_around(const ItemSight &item, bool alive, const ListMemory &mem
 
 // Where the searches of a tile's items for what hides a light start: their number, then these.
 DEVICE unsigned *starts_of(const Shadows &args, unsigned long long tile, unsigned light) {
-    return args.starts + (tile * args.scene.light_count + light) * (MOST_STARTS + 1);
+    return args.starts + (tile * (args.end_light - args.first_light) + light - args.first_light) * (MOST_STARTS + 1);
 }
 
 // The number of samples of a light that each lane sees; `tile` is that of the item.
@@ -284,8 +284,9 @@ template <class Structure>
 DEVICE void starts_of_tile(const Shadows &args, const Structure &structure) {
     SHARED(ShaftFaces, faces, );
     SHARED(unsigned, list, [2 * WARP]);
-    const unsigned long long unit = args.first + blockIdx.x, number = unit / args.scene.light_count;
-    const unsigned index = (unsigned)(unit % args.scene.light_count);
+    const unsigned lights = args.end_light - args.first_light;
+    const unsigned long long unit = args.first + blockIdx.x, number = unit / lights;
+    const unsigned index = args.first_light + (unsigned)(unit % lights);
     const TileBox &tile = args.tiles[number];
     unsigned *starts = starts_of(args, number, index);
     unsigned count = 0;

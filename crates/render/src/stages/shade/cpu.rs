@@ -13,42 +13,47 @@ const BATCH: usize = 2048;
 
 pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, picture: &mut Picture) {
     let targets = LightTargets::new(wave.lights());
-    let radiance = |ray: usize| {
-        wave.rays.weight(ray)
-            * match wave.sees(ray) {
-                true => surface_radiance(wave, visibility, &targets, ray),
-                false => wave.lights().background.unwrap_or(Vec3::ZERO),
-            }
+    let mut sums = match visibility.lights.start {
+        0 => vec![wave.lights().background.unwrap_or(Vec3::ZERO); wave.hits.len()],
+        _ => std::mem::take(&mut picture.sums),
     };
-    let mut radiances = vec![Vec3::ZERO; wave.hits.len()];
-    radiances.par_chunks_mut(BATCH).enumerate().for_each(|(batch, radiances)| {
-        wave.job.piece(radiances.len(), || {
-            for (index, value) in radiances.iter_mut().enumerate() {
-                *value = radiance(batch * BATCH + index);
+    sums.par_chunks_mut(BATCH).enumerate().for_each(|(batch, sums)| {
+        wave.job.piece(sums.len(), || {
+            for (index, sum) in sums.iter_mut().enumerate().filter(|(index, _)| wave.sees(batch * BATCH + index)) {
+                add_group(wave, visibility, &targets, batch * BATCH + index, sum);
             }
         });
     });
-    for (&pixel, radiance) in wave.rays.pixels.iter().zip(radiances) {
-        picture.add(pixel, radiance);
+    if visibility.lights.end == wave.lights().len() {
+        for (ray, (&pixel, sum)) in wave.rays.pixels.iter().zip(sums).enumerate() {
+            picture.add(pixel, wave.rays.weight(ray) * sum);
+        }
+    } else {
+        picture.sums = sums;
     }
     if wave.rays.from_camera() {
         fill_layers(wave, visibility, picture);
     }
 }
 
-/// Formula (1) without its last term.
-fn surface_radiance(wave: &HostWave, visibility: &Visibility, targets: &LightTargets, ray: usize) -> Vec3 {
+/// Formula (1) without its last term: the terms of a group of lights are added to those before.
+fn add_group(wave: &HostWave, visibility: &Visibility, targets: &LightTargets, ray: usize, radiance: &mut Vec3) {
+    let is_first = visibility.lights.start == 0;
+    if !is_first && visibility.lights.clone().all(|light| visibility.of(light, ray) <= 0.0) {
+        return;
+    }
     let surface = Surface::new(wave, ray);
-    let ambient = wave.lights().ambient.unwrap_or(DEFAULT_AMBIENT);
-    let mut radiance = ambient * surface.coefficients.ka + surface.coefficients.emission;
+    if is_first {
+        let ambient = wave.lights().ambient.unwrap_or(DEFAULT_AMBIENT);
+        *radiance = ambient * surface.coefficients.ka + surface.coefficients.emission;
+    }
     let reach = wave.scene.geometry.reach(surface.point.origin);
-    for (index, light) in wave.lights().iter().enumerate() {
+    for index in visibility.lights.clone() {
         let share = visibility.of(index, ray);
         if share > 0.0 {
-            radiance += share * targets.unshadowed(&surface, light, index, reach);
+            *radiance += share * targets.unshadowed(&surface, &wave.lights()[index], index, reach);
         }
     }
-    radiance
 }
 
 /// Stores what each pixel sees.
@@ -62,8 +67,8 @@ fn fill_layers(wave: &HostWave, visibility: &Visibility, picture: &mut Picture) 
         layers.normal[pixel] = point.normal.to_array();
         layers.position[pixel] = wave.scene.scene.to_world(point.position).as_vec3().to_array();
         layers.used[pixel] = visibility.used.get(ray).copied().unwrap_or(0);
-        for (light, plane) in layers.visibility.iter_mut().enumerate() {
-            plane[pixel] = visibility.of(light, ray);
+        for light in visibility.lights.clone() {
+            layers.visibility[light][pixel] = visibility.of(light, ray);
         }
     }
 }

@@ -18,19 +18,25 @@ pub(crate) fn shade<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
     visibility: &DeviceVisibility<R>,
-    film: &DeviceFilm<R>,
+    film: &mut DeviceFilm<R>,
 ) -> Result<(), RenderError> {
     let rays = wave.rays;
-    let cost = wave.scene.host.scene.lights.len().max(1) as u64;
+    let lights = &visibility.lights;
+    let cost = lights.len().max(1) as u64;
+    // A wave of the camera has a ray per pixel, which takes the sum until it is complete.
+    let all = wave.scene.host.scene.lights.len();
+    film.begin_sums(cuda, rays.len(), !rays.is_from_camera() && lights.len() < all)?;
     let work = Work { units: rays.blocks(BLOCK_SIDE), cost, first: FIRST, progress: rays.len() as u64 };
     cuda.in_pieces(wave.job, KERNEL, work, |piece| {
         let mut arguments = Shade {
             scene: wave.scene.record,
             rays: rays.record,
             hits: wave.hits.hits.input(),
-            share: visibility.share.input(),
+            share: In::to(visibility.planes().address()),
             used: visibility.used.as_ref().map_or(In::NULL, Buffer::input),
             first_block: piece.start,
+            first_light: lights.start as u32,
+            end_light: lights.end as u32,
             ..Shade::zeroed()
         };
         film.expose(rays.is_from_camera(), &mut arguments);

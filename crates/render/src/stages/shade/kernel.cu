@@ -3,12 +3,26 @@
 
 #include "shading/shading.cuh"
 
-// Formula (1) without its last term.
-DEVICE Vec3 surface_radiance(const Shade &args, unsigned ray, const Surface &surface) {
-    Vec3 radiance = args.scene.ambient * surface.material->ka + surface.material->emission;
+// The share of a light for a ray.
+DEVICE float share_of(const Shade &args, unsigned light, unsigned ray) {
+    return __ldg(args.share + (unsigned long long)light * args.rays.count + ray);
+}
+
+// Whether a ray gets anything from the lights of this group.
+DEVICE bool sees_any(const Shade &args, unsigned ray) {
+    for (unsigned light = args.first_light; light < args.end_light; ++light)
+        if (share_of(args, light, ray) > 0.0f)
+            return true;
+    return false;
+}
+
+// Formula (1) without its last term: the terms of a group of lights are added to those before.
+DEVICE Vec3 add_group(const Shade &args, unsigned ray, const Surface &surface, Vec3 radiance) {
+    if (args.first_light == 0)
+        radiance = args.scene.ambient * surface.material->ka + surface.material->emission;
     const float reach = scene_reach(args.scene, surface.point.origin);
-    for (unsigned light = 0; light < args.scene.light_count; ++light) {
-        const float share = __ldg(args.share + (unsigned long long)light * args.rays.count + ray);
+    for (unsigned light = args.first_light; light < args.end_light; ++light) {
+        const float share = share_of(args, light, ray);
         if (share > 0.0f)
             radiance = radiance + share * unshadowed(surface, args.scene, light, reach);
     }
@@ -21,8 +35,8 @@ DEVICE void fill_layers(const Shade &args, unsigned ray, const Surface &surface,
     args.normal[place] = surface.point.normal;
     args.position[place] = surface.point.position;
     args.light_points[place] = args.used != nullptr ? args.used[ray] : 0;
-    for (unsigned light = 0; light < args.scene.light_count; ++light)
-        args.visibility[light * args.film_pixels + place] = args.share[(unsigned long long)light * args.rays.count + ray];
+    for (unsigned light = args.first_light; light < args.end_light; ++light)
+        args.visibility[light * args.film_pixels + place] = share_of(args, light, ray);
 }
 
 KERNEL(shade, Shade, BLOCK, 4) {
@@ -30,13 +44,21 @@ KERNEL(shade, Shade, BLOCK, 4) {
     if (!ray_of_thread(args.rays, args.first_block + blockIdx.x, threadIdx.x, ray))
         return;
     const unsigned long long place = pixel_of(args.rays, ray) - args.film_pixel;
-    Vec3 radiance = args.scene.background;
-    if (load_hit(args.hits, ray).triangle != Hit::NONE) {
+    // Without a place of its own, the sum of a ray is its pixel's until it is complete.
+    const bool first = args.first_light == 0, last = args.end_light == args.scene.light_count;
+    Vec3 &sum = args.sums != nullptr ? args.sums[ray] : args.color[place];
+    Vec3 radiance = first ? args.scene.background : sum;
+    if (load_hit(args.hits, ray).triangle != Hit::NONE && (first || args.depth != nullptr || sees_any(args, ray))) {
         Material own;
         const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
-        radiance = surface_radiance(args, ray, surface);
+        radiance = add_group(args, ray, surface, radiance);
         if (args.depth != nullptr)
             fill_layers(args, ray, surface, place);
     }
-    args.color[place] = args.color[place] + weight_of(args.rays, ray) * radiance;
+    if (!last) {
+        sum = radiance;
+        return;
+    }
+    const Vec3 before = first || args.sums != nullptr ? args.color[place] : Vec3{};
+    args.color[place] = before + weight_of(args.rays, ray) * radiance;
 }

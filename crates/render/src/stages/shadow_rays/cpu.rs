@@ -20,7 +20,7 @@ pub(crate) fn shadow_rays(wave: &HostWave, aim: &Aim) -> Visibility {
     let emitters = Emitter::all(wave, aim, &rows);
     let most = wave.lights().iter().map(|light| aim.samples(light)).max().unwrap_or(1);
     let batch = (SEGMENTS / most as usize).clamp(1, BATCH);
-    let mut visibility = Visibility::dark(wave.lights().len(), wave.hits.len());
+    let mut visibility = Visibility::dark(wave.group(), wave.hits.len());
     visibility.parts(batch).into_par_iter().enumerate().for_each(|(number, shares)| {
         let first = number * batch;
         let rays = first..wave.hits.len().min(first + batch);

@@ -2,7 +2,7 @@
 
 use lightmesh_layout::stages::{ShadowRays, Shadows};
 
-use crate::cuda::{Buffer, Runtime};
+use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, PerStructure, Work, blocks_for, per_structure, slices_of_rays};
@@ -18,17 +18,21 @@ pub(crate) fn shadow_rays<R: Runtime>(
     wave: &DeviceWave<R>,
     aim: &Aim,
 ) -> Result<DeviceVisibility<R>, RenderError> {
-    let lights = wave.scene.host.scene.lights.len();
-    let share = cuda.pool().zeros("shares of lights", wave.rays.len() * lights)?;
+    let visibility = DeviceVisibility::dark(cuda, wave.rays.len(), wave.group())?;
     match aim {
-        Aim::Middle => to_centers(cuda, wave, &share)?,
-        Aim::Extent(_) => to_samples(cuda, wave, aim, &share)?,
+        Aim::Middle => to_centers(cuda, wave, &visibility)?,
+        Aim::Extent(_) => to_samples(cuda, wave, aim, &visibility)?,
     }
-    Ok(DeviceVisibility { rays: wave.rays.len(), share, used: None })
+    Ok(visibility)
 }
 
-fn to_centers<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>, share: &Buffer<R, f32>) -> Result<(), RenderError> {
-    let slices = slices_of_rays(wave.scene.host.scene.lights.len() as u64);
+fn to_centers<R: Runtime>(
+    cuda: &Cuda<R>,
+    wave: &DeviceWave<R>,
+    visibility: &DeviceVisibility<R>,
+) -> Result<(), RenderError> {
+    let lights = &visibility.lights;
+    let slices = slices_of_rays(lights.len() as u64);
     let progress = |slices_done: usize| (wave.rays.len() * slices_done / slices.len()) as u64;
     let kernel = TO_CENTERS.of(wave.scene.structure);
     for (index, slice) in slices.iter().enumerate() {
@@ -38,10 +42,10 @@ fn to_centers<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>, share: &Buffer<R
                 scene: wave.scene.record,
                 rays: wave.rays.record,
                 hits: wave.hits.hits.input(),
-                share: share.output(),
+                share: visibility.planes(),
                 tally: cuda.tally()?,
                 first_block: piece.start,
-                first_light: slice.start as u32,
+                first_light: lights.start as u32 + slice.start as u32,
                 light_count: (slice.end - slice.start) as u32,
             };
             cuda.launch(kernel, blocks_for(&piece, BLOCK), &arguments)
@@ -55,16 +59,16 @@ fn to_samples<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
     aim: &Aim,
-    share: &Buffer<R, f32>,
+    visibility: &DeviceVisibility<R>,
 ) -> Result<(), RenderError> {
-    let lights = wave.scene.host.scene.lights.len() as u64;
+    let lights = visibility.lights.len() as u64;
     let kernel = TO_SAMPLES.of(wave.scene.structure);
     let sets = SampleSets::new(aim);
     let slices = u64::from(sets.count) * lights;
     let progress = |slices_done: u64| wave.rays.len() as u64 * slices_done / slices;
     for slice in 0..slices {
-        let (set, light) = ((slice / lights) as u32, (slice % lights) as u32);
-        let record = Shadows { first_light: light, end_light: light + 1, ..sets.record(cuda, wave, share, set)? };
+        let (set, light) = ((slice / lights) as u32, visibility.lights.start as u32 + (slice % lights) as u32);
+        let record = Shadows { first_light: light, end_light: light + 1, ..sets.record(cuda, wave, visibility, set)? };
         let work =
             Work::of_rays(wave.rays.blocks(BLOCK_SIDE), &(0..sets.most(set)), progress(slice + 1) - progress(slice));
         cuda.in_pieces(wave.job, kernel, work, |piece| {

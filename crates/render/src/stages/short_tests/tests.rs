@@ -7,6 +7,7 @@ use lightmesh_testkit::soup;
 use crate::accel::Hit;
 use crate::backend::{Backend, Cpu};
 use crate::data::cells::CellGroups;
+use crate::data::lights::LightGroup;
 use crate::data::masks::Masks;
 use crate::data::rays::RayList;
 use crate::data::wave::Wave;
@@ -45,7 +46,7 @@ fn masks(
     short_tests: ShortTests,
 ) -> (CellGroups, Masks) {
     let job = job().with_short_tests(short_tests);
-    let wave = Wave { job: &job, scene, rays, hits };
+    let wave = Wave { job: &job, scene, rays, hits, lights: LightGroup::ALL };
     let cells = Cpu.cells(&wave, mesh).unwrap();
     let masks = Cpu.short_tests(&wave, &cells, mesh).unwrap();
     (cells, masks)

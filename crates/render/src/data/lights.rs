@@ -1,0 +1,62 @@
+//! Groups of lights: what surface points see is held for a group at a time, so that memory does not grow with the number of lights.
+
+use std::ops::Range;
+
+/// Consecutive lights of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightGroup {
+    first: usize,
+    end: usize,
+}
+
+impl LightGroup {
+    /// All lights.
+    pub const ALL: LightGroup = LightGroup { first: 0, end: usize::MAX };
+
+    /// Their numbers in a scene of `lights` lights.
+    pub fn of(self, lights: usize) -> Range<usize> {
+        self.first..self.end.min(lights)
+    }
+}
+
+/// All lights of a scene, `at_once` in a group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightGroups {
+    /// Number of lights.
+    pub lights: usize,
+    /// Number of lights in each group but the last; at least 1.
+    pub at_once: usize,
+}
+
+impl LightGroups {
+    /// The groups in order: an empty one if there are no lights.
+    pub fn iter(self) -> impl ExactSizeIterator<Item = LightGroup> {
+        let LightGroups { lights, at_once } = self;
+        (0..lights.max(1)).step_by(at_once).map(move |first| LightGroup { first, end: lights.min(first + at_once) })
+    }
+
+    /// Number of lights of which shares are held.
+    pub fn held(self) -> usize {
+        self.lights.min(self.at_once)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_light_is_in_one_group() {
+        let ranges = |lights, at_once| {
+            let groups = LightGroups { lights, at_once };
+            assert!(groups.iter().all(|group| group.of(lights).len() <= groups.held()));
+            groups.iter().map(|group| group.of(lights)).collect::<Vec<_>>()
+        };
+        assert_eq!(ranges(0, 4), [0..0]);
+        assert_eq!(ranges(3, 4), [0..3]);
+        assert_eq!(ranges(8, 4), [0..4, 4..8]);
+        assert_eq!(ranges(9, 4), [0..4, 4..8, 8..9]);
+        assert_eq!(ranges(9, usize::MAX), [0..9]);
+        assert_eq!(LightGroup::ALL.of(9), 0..9);
+    }
+}
