@@ -53,9 +53,36 @@ fn pixels_see_neighbors_in_other_bands() {
     same_in_bands(|| settings().with_lookup(Lookup::Adaptive).with_samples(9));
 }
 
+#[test]
+fn many_lights_need_no_more_memory_and_no_bands() {
+    let settings = || settings().with_lookup(Lookup::Lists).with_samples(9).with_bounces(1);
+    let lights = |count: usize| {
+        let ball = |index: usize| {
+            let (z, x) = (index as f32).sin_cos();
+            LightKind::Sphere { position: Vec3::new(2.0 * x, 2.5, 2.0 * z), radius: 0.3 }
+        };
+        let mut scene = pile(DVec3::ZERO, &(0..count).map(ball).collect::<Vec<_>>());
+        let material = scene.geometry.materials[0].clone().with_ks([0.4, 0.3, 0.2]);
+        scene.geometry_mut().materials.fill(material);
+        scene
+    };
+    // Layers are what the user asks for; without them memory does not grow but by the lights themselves.
+    let peak = |count: usize| {
+        let (frame, _, peak) = render(&lights(count), Emulator::new(), &settings().with_layers(false));
+        assert_eq!(frame.unwrap().stats.settings.rows_per_band, ROWS);
+        peak
+    };
+    let (few, many) = (peak(5), peak(33));
+    assert!(many < few + 28 * 1024, "{few} bytes with 5 lights, {many} with 33");
+    same_bands_of(&lights(6), settings);
+}
+
 fn same_in_bands(settings: impl Fn() -> Settings) {
-    let scene = scene();
-    let (whole, _, peak) = render(&scene, Emulator::new(), &settings());
+    same_bands_of(&scene(), settings);
+}
+
+fn same_bands_of(scene: &Scene, settings: impl Fn() -> Settings) {
+    let (whole, _, peak) = render(scene, Emulator::new(), &settings());
     let whole = whole.unwrap();
     assert_eq!(whole.stats.settings.rows_per_band, ROWS);
     let mut bands = Vec::new();
@@ -63,7 +90,7 @@ fn same_in_bands(settings: impl Fn() -> Settings) {
         let bytes = peak * percent / 100;
         let limited = settings().with_memory_limit(bytes);
         for (device, settings) in [(Emulator::with_memory(bytes), settings()), (Emulator::new(), limited)] {
-            let (frame, _, used) = render(&scene, device, &settings);
+            let (frame, _, used) = render(scene, device, &settings);
             let Ok(frame) = frame else { continue };
             assert!(bits(&frame) == bits(&whole), "{percent} %: another image");
             assert!(used <= bytes, "{used} bytes were used of {bytes}");

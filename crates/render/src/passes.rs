@@ -139,3 +139,92 @@ pub(crate) fn in_bands<B: Backend>(
     }
     Ok(at_once)
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, Vec3};
+    use lightmesh_scene::{Bounds, LightKind};
+    use lightmesh_testkit::pile;
+
+    use super::*;
+    use crate::backend::Cpu;
+    use crate::data::lights::LightGroups;
+    use crate::job::{Job, Sampling};
+    use crate::observer::Unobserved;
+    use crate::prepared::PreparedScene;
+    use crate::settings::{Acceleration, Lookup, Mode, Settings};
+    use crate::techniques::Request;
+
+    const LIGHTS: usize = 9;
+
+    /// A pile of mirrors under a ring of lights.
+    fn scene() -> PreparedScene {
+        let ball = |index: usize| {
+            let (z, x) = (index as f32).sin_cos();
+            LightKind::Sphere { position: Vec3::new(2.0 * x, 2.5, 2.0 * z), radius: 0.3 }
+        };
+        let mut scene = pile(DVec3::ZERO, &std::array::from_fn::<_, LIGHTS, _>(ball));
+        let material = scene.geometry.materials[0].clone().with_ks([0.4, 0.3, 0.2]);
+        scene.geometry_mut().materials.fill(material);
+        PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap()
+    }
+
+    #[test]
+    fn groups_of_lights_give_the_same_picture() {
+        let scene = scene();
+        for (mode, lookup) in [
+            (Mode::LightMesh, Lookup::Lists),
+            (Mode::LightMesh, Lookup::Adaptive),
+            (Mode::Area, Lookup::Auto),
+            (Mode::RayTrace, Lookup::Auto),
+        ] {
+            let settings = Settings::default().with_mode(mode).with_lookup(lookup).with_size([24, 18]);
+            let view = View::new(&scene.scene.cameras[0], settings.size);
+            let bounds: Bounds = scene.geometry.bounds;
+            let request = Request { scene: &scene, settings: &settings, view: &view, observer: &Unobserved, bounds };
+            let technique = Technique::resolve(&request).unwrap();
+            let picture = |at_once| {
+                let lights = LightGroups { lights: LIGHTS, at_once };
+                let footprint = technique.footprint(lights.held() as u64);
+                let (size, layers) = (settings.size, Some(LIGHTS));
+                let plan = Plan { size, bounces: 2, layers, lights, memory_limit: None, kept: 0, footprint };
+                let job = Job::new(&Unobserved, Sampling { samples: 9, seed: 0, spread: true });
+                let run = Run::new(&Cpu, &job, None);
+                let mut picture = Picture::new(size, layers);
+                let passes = Passes { run, scene: &scene, technique: &technique, view: &view, plan: &plan };
+                passes.render(&mut picture).unwrap();
+                assert_eq!(job.work.done(), job.work.total(), "{mode:?} {lookup:?}: progress");
+                let layers = picture.layers.take().unwrap();
+                (bytemuck::cast_vec::<[f32; 3], [u32; 3]>(picture.color), layers.visibility.concat(), layers.position)
+            };
+            let whole = picture(usize::MAX);
+            assert!(whole.1.iter().any(|share| *share > 0.0 && *share < 1.0) || mode == Mode::RayTrace);
+            for at_once in [1, 4] {
+                assert!(picture(at_once) == whole, "{mode:?} {lookup:?}: {at_once} lights at once");
+            }
+        }
+    }
+
+    #[test]
+    fn memory_does_not_grow_with_lights() {
+        let scene = scene();
+        for (mode, lookup, most) in [
+            (Mode::LightMesh, Lookup::Lists, 32),
+            (Mode::LightMesh, Lookup::Adaptive, 40),
+            (Mode::Area, Lookup::Auto, 32),
+            (Mode::RayTrace, Lookup::Auto, 32),
+        ] {
+            let settings = Settings::default().with_mode(mode).with_lookup(lookup);
+            let view = View::new(&scene.scene.cameras[0], settings.size);
+            let bounds = scene.geometry.bounds;
+            let request = Request { scene: &scene, settings: &settings, view: &view, observer: &Unobserved, bounds };
+            let technique = Technique::resolve(&request).unwrap();
+            for lights in [1, 4, 16, 64, 256] {
+                let groups = LightGroups { lights, at_once: technique.lights_at_once() };
+                let footprint = technique.footprint(groups.held() as u64);
+                assert!(footprint.host.max(footprint.device) <= most, "{mode:?} {lookup:?}: {footprint:?}");
+                assert!(footprint.host.min(footprint.device) >= 4, "{mode:?} {lookup:?}: {footprint:?}");
+            }
+        }
+    }
+}
