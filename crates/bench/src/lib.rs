@@ -29,5 +29,5 @@ pub use findings::Findings;
 pub use output::{OutputError, prepare_folder};
 pub use plan::{Plan, Suite};
 pub use results::{Gpu, Key, Machine, Picture, Program, Results, Row, Samples};
-pub(crate) use results::{SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};
+pub(crate) use results::{MANY_LIGHTS, SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};
 pub use suites::run;

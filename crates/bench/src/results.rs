@@ -104,6 +104,9 @@ pub(crate) const SHADOWS: &str = "shadows";
 /// The experiment that compares defaults.
 pub(crate) const WHOLE_FRAMES: &str = "whole frames";
 
+/// The experiment that adds lights.
+pub(crate) const MANY_LIGHTS: &str = "many lights";
+
 /// A setting: a number or a word.
 #[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[serde(untagged)]

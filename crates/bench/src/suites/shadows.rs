@@ -13,9 +13,10 @@
 //! all; all rows but those of `rows` have them. `visibility_rmse` is the error relative to a converged reference, and
 //! `lists_by_adaptive`, of rows of `adaptive`, the time of the lists' shadows by that of adaptive ones.
 //!
-//! Rows of `whole frames` compare the program's defaults ([`frames`]).
+//! Rows of `whole frames` compare the program's defaults ([`frames`]), those of `many lights` numbers of lights ([`many_lights`]).
 
 mod frames;
+mod many_lights;
 
 use std::time::Duration;
 
@@ -63,7 +64,8 @@ pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings)
     subjects::each(plan, observer, |subject, share| {
         let emitters: Vec<Option<f32>> = std::iter::once(None).chain(EMITTERS.map(Some)).collect();
         // Whole frames are measured like one more number of samples.
-        let parts = (emitters.len() * (SAMPLES.len() + 1) * engines.len()) as u32;
+        let cases = emitters.len() * (SAMPLES.len() + 1) + many_lights::parts(&subject.name);
+        let parts = (cases * engines.len()) as u32;
         let own = PreparedScene::new(&with_emitters(subject, None), &Acceleration::Auto, &Silent(observer))?;
         for engine in &engines {
             for &emitter in &emitters {
@@ -77,6 +79,8 @@ pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings)
                 }
                 frames::measure(&case, plan, (share / parts, &reference), observer, findings)?;
             }
+            let scene = (subject.name.as_str(), &own);
+            many_lights::measure(scene, engine, side, (plan, share / parts), observer, findings)?;
         }
         Ok(())
     })
@@ -126,12 +130,7 @@ impl Case<'_> {
         for (method, measured) in METHODS.iter().zip(&turns.measured) {
             let mut row = self.row(method);
             measured.fill(&mut row);
-            let mut sums = Samples::default();
-            for round in 0..turns.repetitions {
-                sums.push(
-                    STAGES.iter().filter_map(|stage| row.seconds.get(*stage)).map(|samples| samples.0[round]).sum(),
-                );
-            }
+            let sums = shadow_seconds(&row, turns.repetitions);
             if method.name == "lists" {
                 of_lists = sums.median();
             }
@@ -182,6 +181,15 @@ impl Case<'_> {
         ];
         Row::new(experiment, keys.into_iter().chain(own).chain(self.engine.keys()))
     }
+}
+
+/// The seconds between primary rays and shading, by repetition.
+fn shadow_seconds(row: &Row, repetitions: usize) -> Samples {
+    let mut sums = Samples::default();
+    for round in 0..repetitions {
+        sums.push(STAGES.iter().filter_map(|stage| row.seconds.get(*stage)).map(|samples| samples.0[round]).sum());
+    }
+    sums
 }
 
 /// The visibility of each light at each pixel.

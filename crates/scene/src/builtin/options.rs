@@ -6,14 +6,14 @@ use crate::LoadError;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct BuiltinOptions {
-    /// Number of point lights, 1 to 64; values outside are clamped. The sum of intensities does not change.
+    /// Number of point lights, 1 to 256; values outside are clamped. The sum of intensities does not change.
     pub lights: Option<usize>,
     /// Radius in scene units over which area shadows distribute each point light; a negative one counts as 0.
     pub spread: Option<f32>,
 }
 
 /// The maximum number of lights.
-const MAX_LIGHTS: usize = 64;
+const MAX_LIGHTS: usize = 256;
 
 impl BuiltinOptions {
     /// Parses `lights=N&spread=S` after the name of a scene, in any order, each at most once; the text may be empty.
@@ -62,7 +62,7 @@ fn refuse<T>(problem: String, remedy: &str) -> Result<T, Refusal> {
 fn parse_lights(value: &str) -> Result<usize, Refusal> {
     match value.parse() {
         Ok(count) if (1..=MAX_LIGHTS).contains(&count) => Ok(count),
-        _ => refuse(format!("`{value}` is not a number of lights"), "use a whole number from 1 to 64"),
+        _ => refuse(format!("`{value}` is not a number of lights"), "use a whole number from 1 to 256"),
     }
 }
 

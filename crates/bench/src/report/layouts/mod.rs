@@ -12,7 +12,7 @@ use super::document::{Block, Column};
 use super::numbers;
 use super::runs::{Measured, Runs, distinct};
 use crate::Key;
-pub(crate) use crate::{SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};
+pub(crate) use crate::{MANY_LIGHTS, SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};
 
 /// Time against the number of lights, and the break-even.
 pub(crate) const LIGHTS: &str = "figure 11";
@@ -56,6 +56,7 @@ pub(crate) fn of(experiment: &str, runs: &Runs) -> (String, Vec<Block>) {
         // It has errors, but they are not what it is about.
         SHADOWS => generic::blocks(experiment, &rows),
         WHOLE_FRAMES => shadows::whole_frames(&rows),
+        MANY_LIGHTS => shadows::many_lights(&rows),
         _ if quality::fits(&rows) => quality::errors(experiment, &rows),
         _ => generic::blocks(experiment, &rows),
     };
@@ -79,6 +80,7 @@ pub(crate) fn title(experiment: &str) -> String {
         "rays" => "Rays per second",
         STAGES => "Time by stage",
         WHOLE_FRAMES => "Whole frames: the default, the half-ball, adaptive shadow rays",
+        MANY_LIGHTS => "Many lights: time and memory of occluder lists",
         "soft shadows" => "Soft shadows with other renderers",
         "peers" => "Other renderers",
         _ => "",

@@ -1,8 +1,9 @@
 //! Whole frames with soft shadows: a row for each scene, emitter and device, with the default, the half-ball and adaptive shadow rays
-//! side by side.
+//! side by side. Many lights: a row for each number of lights and samples.
 
 use super::generic::figure;
-use super::{WHOLE_FRAMES, key_column, whole};
+use super::{MANY_LIGHTS, WHOLE_FRAMES, key_column, whole};
+use crate::Key;
 use crate::report::document::{Block, Cell, Column, Table, Verdict};
 use crate::report::numbers;
 use crate::report::runs::{Measured, distinct};
@@ -48,6 +49,37 @@ pub(super) fn whole_frames(rows: &[Measured]) -> Vec<Block> {
             cells.extend(ratios.map(|ratio| Cell::number(ratio, numbers::ratio)));
             cells.push(words(ratios).into());
         }
+        table.rows.push(cells);
+    }
+    vec![Block::Table(table.without_empty_columns())]
+}
+
+/// Time and memory by number of lights.
+pub(super) fn many_lights(rows: &[Measured]) -> Vec<Block> {
+    let keys = ["scene", "size", "samples", "lights", "accel"];
+    let mut columns: Vec<Column> = keys.iter().map(|key| key_column(key, rows)).collect();
+    columns.push(Column::words("place", "device"));
+    columns.push(Column::numbers("frame ms", "whole frame").below("ms"));
+    columns.push(Column::numbers("shadows ms", "shadows").below("ms"));
+    columns.push(Column::numbers("light ms", "per light").below("ms"));
+    columns.push(Column::numbers("by one", "per light").below("by one light"));
+    columns.push(Column::numbers("bytes", "peak memory").below("bytes per pixel"));
+    let caption = "Occluder lists with growing numbers of lights. Shadows: the stages between primary rays and shading. By one light: above \
+                   1 each of many lights costs more than a single one. Memory is that of the GPU, or of the whole process.";
+    let mut table = Table::new(MANY_LIGHTS, caption, columns);
+    for row in rows {
+        let shadows = row.row.seconds.get("shadows").and_then(|samples| samples.median());
+        let lights = match row.key("lights") {
+            Some(Key::Number(lights)) => Some(*lights),
+            _ => None,
+        };
+        let mut cells: Vec<Cell> = keys.iter().map(|key| row.text(key).into()).collect();
+        cells.push(row.place().into());
+        cells.push(Cell::number(whole(row), numbers::milliseconds));
+        cells.push(Cell::number(shadows, numbers::milliseconds));
+        cells.push(Cell::number(shadows.zip(lights).map(|(time, lights)| time / lights), numbers::milliseconds));
+        cells.push(Cell::number(row.value("per_light_by_one"), numbers::ratio));
+        cells.push(Cell::number(row.value("peak_bytes_per_pixel"), numbers::setting));
         table.rows.push(cells);
     }
     vec![Block::Table(table.without_empty_columns())]
@@ -101,6 +133,33 @@ mod tests {
         assert_eq!([text("lists ms"), text("half-ball ms"), text("adaptive rmse")], ["5.00", "10.0", "0.0500"]);
         assert_eq!([text("lists is"), text("adaptive is")], ["faster, nearer", "slower, as near"]);
         assert_eq!(text("lists faster"), "2.0×");
+    }
+
+    #[test]
+    fn many_lights_are_compared_with_one() {
+        let results = crate::report::tests::results("shadows", |rows| {
+            for (lights, seconds, ratio) in [(1.0, 0.002, 1.0), (64.0, 0.064, 0.5)] {
+                let keys = [("scene", "childpark".into()), ("lights", lights.into()), ("device", "cuda".into())];
+                let mut row = Row::new(MANY_LIGHTS, keys);
+                row.seconds.entry("render".to_owned()).or_default().push(2.0 * seconds);
+                row.seconds.entry("shadows".to_owned()).or_default().push(seconds);
+                row.values.insert("per_light_by_one".to_owned(), ratio);
+                row.values.insert("peak_bytes_per_pixel".to_owned(), 52.0);
+                rows.push(row);
+            }
+        });
+        let runs = crate::report::named(vec![("a.json".into(), results)]);
+        let blocks = many_lights(&runs.rows(MANY_LIGHTS));
+        let [Block::Table(table)] = &blocks[..] else { panic!("{blocks:?}") };
+        let text = |row: usize, name: &str| {
+            let column = table.columns.iter().position(|column| column.name == name);
+            table.rows[row][column.unwrap_or_else(|| panic!("{name}"))].text.clone()
+        };
+        assert_eq!(
+            ["lights", "shadows ms", "light ms", "by one"].map(|name| text(1, name)),
+            ["64", "64.0", "1.00", "0.50×"]
+        );
+        assert_eq!([text(0, "light ms"), text(0, "by one"), text(0, "bytes")], ["2.00", "1.0×", "52"]);
     }
 
     #[test]
