@@ -7,7 +7,7 @@ use lightmesh_scene::Mesh;
 use crate::accel::{Hit, Ray, Triangle};
 
 /// A surface point P.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct SurfacePoint {
     /// P itself, interpolated from the triangle's corners: more accurate than `origin + t · direction`.
     pub position: Vec3,

@@ -5,7 +5,7 @@ use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
 use super::approach::{Approach, NearRay, usable};
-use super::sieve::Sieve;
+use super::sieve::{Sieve, Take};
 use super::triangle::RayShear;
 use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Triangle};
 use crate::simd::dispatch;
@@ -63,8 +63,8 @@ impl Accelerator for BruteForce {
         segments.ask(self.triangles.iter(), blocked);
     }
 
-    fn triangles_in(&self, region: &Region, found: &mut Vec<u32>) {
-        dispatch!(Level::new(), simd => triangles_in(simd, &self.triangles, region, found));
+    fn search(&self, region: &Region, take: Take) {
+        dispatch!(Level::new(), simd => search(simd, &self.triangles, region, take));
     }
 
     fn name(&self) -> &'static str {
@@ -81,10 +81,12 @@ impl Accelerator for BruteForce {
 }
 
 #[simd]
-fn triangles_in<S: Simd>(simd: S, triangles: &[Triangle], region: &Region, found: &mut Vec<u32>) {
-    let mut sieve = Sieve::new(simd, region, found);
+fn search<S: Simd>(simd: S, triangles: &[Triangle], region: &Region, take: Take) {
+    let mut sieve = Sieve::new(simd, region, take);
     for triangle in triangles {
-        sieve.take(triangle);
+        if !sieve.take(triangle) {
+            return;
+        }
     }
     sieve.finish();
 }

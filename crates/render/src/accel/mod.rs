@@ -34,7 +34,9 @@ pub use brute_force::BruteForce;
 pub use bvh::Bvh;
 pub use grid::{Grid, GridError, GridFault, GridFileError, GridOptions, GridSaveError, Levels};
 pub use region::{Region, TangentPlanes};
+pub use sieve::{PIECE, Take};
 pub use triangle::{ShortTest, Triangle};
+pub(crate) use visit::Visitor;
 
 /// A ray or segment: the points `origin + t · direction` with `0 < t < t_max`. The direction need not be unit length; a
 /// segment has `t_max` 1 (or a little less, to spare its end) and the difference of its ends as direction.
@@ -134,10 +136,21 @@ pub trait Accelerator: Send + Sync {
     /// is overwritten.
     fn short_segments(&self, segments: &ShortSegments, blocked: &mut [bool]);
 
-    /// Replaces the content of `found` with all triangles that meet `region`, each once, in ascending order of index. May return
-    /// others as well, but only those whose bounding box the region [may meet](Region). A list and a BVH return all of those; a
+    /// Hands all triangles that meet `region` to `take`, up to [`PIECE`] at once, in no order and perhaps twice, until it returns false.
+    /// May find others as well, but only those whose bounding box the region [may meet](Region). A list and a BVH find all of those; a
     /// grid need not find a triangle that stays away from the region's cells although its bounding box does not.
-    fn triangles_in(&self, region: &Region, found: &mut Vec<u32>);
+    fn search(&self, region: &Region, take: Take);
+
+    /// Replaces the content of `found` with what a [search](Accelerator::search) finds, each once, in ascending order of index.
+    fn triangles_in(&self, region: &Region, found: &mut Vec<u32>) {
+        found.clear();
+        self.search(region, &mut |piece| {
+            found.extend_from_slice(piece);
+            true
+        });
+        found.sort_unstable();
+        found.dedup();
+    }
 
     /// Its name in settings and statistics: `grid`, `bvh` or `brute-force`.
     fn name(&self) -> &'static str;

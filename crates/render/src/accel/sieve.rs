@@ -10,11 +10,19 @@ use super::region::{Boxes, Region};
 /// Boxes that are tested against a region at once.
 const LANES: usize = 8;
 
-/// Accepts triangles, and lists those whose bounding boxes a region may meet.
+/// Maximum number of triangles that are handed over at once.
+pub const PIECE: usize = 32;
+
+/// Takes pieces of what a search finds, in no order; `false` ends the search.
+pub type Take<'a> = &'a mut dyn FnMut(&[u32]) -> bool;
+
+/// Accepts triangles, and hands over those whose bounding boxes a region may meet.
 pub(super) struct Sieve<'a, S: Simd> {
     simd: S,
     region: &'a Region,
-    found: &'a mut Vec<u32>,
+    take: Take<'a>,
+    found: [u32; PIECE],
+    count: usize,
     /// How many wait until there are eight.
     waiting: usize,
     low: [[f32; LANES]; 3],
@@ -24,16 +32,16 @@ pub(super) struct Sieve<'a, S: Simd> {
 }
 
 impl<'a, S: Simd> Sieve<'a, S> {
-    /// Begins a list in `found`, whose content is discarded.
     #[inline(always)]
-    pub(super) fn new(simd: S, region: &'a Region, found: &'a mut Vec<u32>) -> Sieve<'a, S> {
-        found.clear();
+    pub(super) fn new(simd: S, region: &'a Region, take: Take<'a>) -> Sieve<'a, S> {
         let (low, high) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
-        Sieve { simd, region, found, waiting: 0, low, high, loose: [0.0; LANES], indices: [0; LANES] }
+        let (loose, indices) = ([0.0; LANES], [0; LANES]);
+        Sieve { simd, region, take, found: [0; PIECE], count: 0, waiting: 0, low, high, loose, indices }
     }
 
+    /// False ends the search.
     #[inline(always)]
-    pub(super) fn take(&mut self, triangle: &Triangle) {
+    pub(super) fn take(&mut self, triangle: &Triangle) -> bool {
         let [a, b, c] = triangle.corners();
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let lane = self.waiting & (LANES - 1);
@@ -44,9 +52,17 @@ impl<'a, S: Simd> Sieve<'a, S> {
         self.loose[lane] = REGION_ROUNDING * (high - low).element_sum();
         self.indices[lane] = triangle.index();
         self.waiting += 1;
-        if self.waiting == LANES {
-            self.ask();
+        if self.waiting < LANES {
+            return true;
         }
+        self.ask();
+        self.count <= PIECE - LANES || self.hand_over()
+    }
+
+    #[inline(always)]
+    fn hand_over(&mut self) -> bool {
+        let count = std::mem::take(&mut self.count);
+        (self.take)(&self.found[..count])
     }
 
     #[inline(always)]
@@ -59,19 +75,21 @@ impl<'a, S: Simd> Sieve<'a, S> {
         };
         let mut met = self.region.meets(self.simd, &boxes) & ((1 << self.waiting) - 1);
         while met != 0 {
-            self.found.push(self.indices[met.trailing_zeros() as usize & (LANES - 1)]);
+            self.found[self.count] = self.indices[met.trailing_zeros() as usize & (LANES - 1)];
+            self.count += 1;
             met &= met - 1;
         }
         self.waiting = 0;
     }
 
-    /// Ends the list: each triangle once, in ascending order of index.
+    /// Hands over the rest.
     #[inline(always)]
     pub(super) fn finish(mut self) {
         if self.waiting > 0 {
             self.ask();
         }
-        self.found.sort_unstable();
-        self.found.dedup();
+        if self.count > 0 {
+            self.hand_over();
+        }
     }
 }

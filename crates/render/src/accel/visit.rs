@@ -7,7 +7,7 @@ use super::triangle::RayShear;
 use super::{Hit, ShortTest, Triangle};
 
 /// Tests triangles and says how far it is still worth walking.
-pub(super) trait Visitor {
+pub(crate) trait Visitor {
     /// Tests a triangle; false ends the walk.
     fn triangle(&mut self, triangle: &Triangle) -> bool;
 

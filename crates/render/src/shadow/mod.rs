@@ -4,6 +4,7 @@
 pub(crate) mod launch;
 pub(crate) mod occlusion;
 pub(crate) mod rows;
+pub(crate) mod sample_ray;
 pub(crate) mod sight;
 #[cfg(test)]
 mod tests;

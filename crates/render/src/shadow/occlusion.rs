@@ -114,9 +114,13 @@ impl<S: Simd> Sights<S> {
         let edges = [difference(c, b), difference(a, c), difference(b, a)];
         let (a, b, c) = (difference(a, self.origin), difference(b, self.origin), difference(c, self.origin));
         let n = self.normal;
-        let above = fused_dot(n, a).simd_gt(zero) | fused_dot(n, b).simd_gt(zero) | fused_dot(n, c).simd_gt(zero);
-        if above.to_bitmask() as u32 & lanes == 0 {
-            return None;
+        let mut above = fused_dot(n, a).simd_gt(zero);
+        // Mostly one corner is enough.
+        if !above.to_bitmask() as u32 & lanes != 0 {
+            above = above | fused_dot(n, b).simd_gt(zero) | fused_dot(n, c).simd_gt(zero);
+            if above.to_bitmask() as u32 & lanes == 0 {
+                return None;
+            }
         }
         let plane = fused_cross(edges[1], edges[2]);
         let volume = fused_dot(plane, a);

@@ -7,8 +7,10 @@
 //! All vectors are multiplied by a power of two, [`scale`], so that products with triangles, three lengths each, stay in the middle of
 //! the range of single precision.
 
+use fearless_simd::f32x8;
+use fearless_simd::prelude::*;
 use glam::Vec3;
-use lightmesh_layout::constants::{GAMMA_32, SHADOW_MARGIN, SHIFTS};
+use lightmesh_layout::constants::{GAMMA_32, GROWN, SHADOW_MARGIN, SHIFTS};
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::{Bounds, Light, LightKind};
 
@@ -18,6 +20,7 @@ use crate::accel::Region;
 use crate::data::wave::HostWave;
 use crate::prepared::PreparedGeometry;
 use crate::sampling::{disk_radius, light_center, random_bits};
+use crate::simd::{Axes, difference, dot, scaled, splat};
 use crate::surface::SurfacePoint;
 
 /// The form of a light's samples.
@@ -60,6 +63,8 @@ pub(crate) struct Emitter<'a> {
     /// Its samples; none for a point.
     pub(crate) sets: &'a [SampleRows],
     scale: f32,
+    /// No sample of a disc is farther from the centre; of a directional light, at distance 1.
+    spread: f32,
     samples: u32,
     seed: u64,
 }
@@ -72,7 +77,7 @@ impl<'a> Emitter<'a> {
             let shape = Shape::of(aim, light);
             let sets = shape.sets(rows);
             let (samples, seed) = (aim.samples(light), wave.job.sampling.seed);
-            Emitter { index, light, shape, sets, scale: scale(geometry, light), samples, seed }
+            Emitter { index, light, shape, sets, scale: scale(geometry, light), spread: spread(light), samples, seed }
         };
         let lights = wave.group();
         wave.lights().iter().enumerate().take(lights.end).skip(lights.start).map(emitter).collect()
@@ -88,6 +93,16 @@ impl<'a> Emitter<'a> {
         self.shape == Shape::Point
     }
 
+    /// The power of two by which vectors to it are multiplied.
+    pub(crate) fn scale(&self) -> f32 {
+        self.scale
+    }
+
+    /// Whether its samples are those of a disc.
+    pub(crate) fn is_disc(&self) -> bool {
+        self.shape == Shape::Disc
+    }
+
     /// As the surface point of ray number `ray` sees it.
     #[inline(always)]
     pub(crate) fn sight(&self, wave: &HostWave, ray: usize, point: &SurfacePoint) -> Sight {
@@ -95,6 +110,32 @@ impl<'a> Emitter<'a> {
         let lines = self.sets.first().map_or(1, |set| set.lines);
         let random = (self.seed, wave.rays.key(ray));
         Sight::new((self.index, self.light), (self.shape, lines), point, random, (reach, self.scale))
+    }
+
+    /// Which of eight surface points all of a disc is in front of, and which it is behind: a bit each, none where neither is certain.
+    #[inline(always)]
+    pub(crate) fn heights<S: Simd>(
+        &self,
+        simd: S,
+        geometry: &PreparedGeometry,
+        origin: Axes<S>,
+        normal: Axes<S>,
+    ) -> (u32, u32) {
+        let (way, spread) = match self.light.kind {
+            LightKind::Directional { direction, .. } => {
+                let (center, far) = geometry.reach_parameters();
+                let away = difference(origin, splat(simd, center));
+                let reach = (away[0].abs() + away[1].abs() + away[2].abs()) * 2.0 + far;
+                (scaled(reach, splat(simd, -direction)), reach * self.spread)
+            }
+            _ => {
+                let center = light_center(self.light, Vec3::ZERO, 0.0);
+                (difference(splat(simd, center), origin), f32x8::splat(simd, self.spread))
+            }
+        };
+        let height = dot(normal, way);
+        let room = spread * GROWN + (way[0].abs() + way[1].abs() + way[2].abs()) * (GROWN - 1.0);
+        (height.simd_gt(room).to_bitmask() as u32, height.simd_lt(-room).to_bitmask() as u32)
     }
 
     /// Calls `take` with each sample as the surface point of ray number `ray` sees it.
@@ -159,6 +200,16 @@ impl<'a> Emitter<'a> {
     #[inline(always)]
     pub(crate) fn share(&self, seen: u32) -> f32 {
         if seen == self.samples { 1.0 } else { seen as f32 / self.samples as f32 }
+    }
+}
+
+/// See [`Emitter::spread`].
+fn spread(light: &Light) -> f32 {
+    match light.kind {
+        LightKind::Point { spread, .. } => spread,
+        LightKind::Directional { angle, .. } => disk_radius(angle),
+        LightKind::Sphere { radius, .. } | LightKind::Disk { radius, .. } => radius,
+        LightKind::Rectangle { .. } | LightKind::Spot { .. } => 0.0,
     }
 }
 

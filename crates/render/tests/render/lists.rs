@@ -1,9 +1,11 @@
 //! Occluder lists give the bits of the reference, and ordinary rays to the same samples nearly so.
 
+use std::f64::consts::{PI, TAU};
+
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Acceleration, Frame, Lookup, Mode, Quality, Settings, ShadowTests};
 use lightmesh_scene::{LightKind, Scene};
-use lightmesh_testkit::{Picture, open_floor, pile, render, soup};
+use lightmesh_testkit::{Picture, SceneDraft, open_floor, pile, render, soup};
 
 use crate::{LAMP, POINT, mode};
 
@@ -71,6 +73,37 @@ fn every_structure_gives_the_same_bits() {
             let frame = render(&scene, &settings.with_acceleration(structure.clone()));
             assert!(same_bits(&frame, &reference), "{structure:?}");
         }
+    }
+}
+
+/// A ball of many small triangles on a floor, under a light as wide as itself.
+fn fine_ball() -> Scene {
+    const RINGS: u32 = 96;
+    let corner = |k: u32| {
+        let (latitude, longitude) =
+            (PI * f64::from(k / RINGS) / f64::from(RINGS), TAU * f64::from(k % RINGS) / f64::from(RINGS));
+        DVec3::new(latitude.sin() * longitude.cos(), 1.0 + latitude.cos(), latitude.sin() * longitude.sin())
+    };
+    let corners: Vec<DVec3> = (0..RINGS * (RINGS + 1)).map(corner).collect();
+    let square = |k: u32| {
+        let next = k / RINGS * RINGS + (k + 1) % RINGS;
+        [[k, next, next + RINGS], [k, next + RINGS, k + RINGS]]
+    };
+    let triangles: Vec<[u32; 3]> = (0..RINGS * RINGS).flat_map(square).collect();
+    SceneDraft::new()
+        .floor(0.0, 5.0)
+        .triangles(&corners, &triangles)
+        .light(LightKind::Sphere { position: Vec3::new(1.0, 4.0, 0.5), radius: 1.5 })
+        .camera([2.5, 3.1, 4.2], [0.0, 0.4, 0.0])
+        .finish("fine ball")
+}
+
+#[test]
+fn rays_that_replace_long_lists_give_the_same_bits() {
+    let scene = fine_ball();
+    for samples in [16, 64, 300] {
+        let (lists, area) = (lists(samples), area(samples));
+        assert!(same_bits(&render(&scene, &lists), &render(&scene, &area)), "{samples} samples");
     }
 }
 

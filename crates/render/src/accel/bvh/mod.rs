@@ -10,12 +10,12 @@ mod packet;
 mod search;
 mod walk;
 
-use fearless_simd::Level;
+use fearless_simd::{Level, Simd};
 use glam::Vec3;
 use obvhs::cwbvh::node::CwBvhNode as Node;
 
 use super::approach::Approach;
-use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Triangle};
+use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Take, Triangle, Visitor};
 use crate::simd::dispatch;
 
 /// A compressed wide bounding volume hierarchy.
@@ -57,6 +57,20 @@ impl Bvh {
         self.approach.parts()
     }
 
+    /// Visits the triangles of all leaves whose boxes come as close as `slack` to the segment from `origin` along `direction`, near octants
+    /// first.
+    #[inline(always)]
+    pub(crate) fn visit_segment<S: Simd>(
+        &self,
+        simd: S,
+        (origin, direction): (Vec3, Vec3),
+        slack: f32,
+        visitor: &mut impl Visitor,
+    ) {
+        let slabs = walk::Slabs::new(origin, direction, slack);
+        walk::walk(simd, self, 0, &slabs, walk::Stack::new(self.depth).entries(), visitor);
+    }
+
     /// The same tree traversed at another SIMD level; every level gives the same bits.
     #[cfg(test)]
     pub(crate) fn at_level(mut self, level: Level) -> Bvh {
@@ -86,8 +100,8 @@ impl Accelerator for Bvh {
         dispatch!(self.level, simd => walk::short_segments(simd, self, segments, blocked));
     }
 
-    fn triangles_in(&self, region: &Region, found: &mut Vec<u32>) {
-        dispatch!(self.level, simd => search::triangles_in(simd, self, region, found));
+    fn search(&self, region: &Region, take: Take) {
+        dispatch!(self.level, simd => search::search(simd, self, region, take));
     }
 
     fn name(&self) -> &'static str {

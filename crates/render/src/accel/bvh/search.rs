@@ -11,18 +11,19 @@ use fearless_simd_macros::simd;
 use glam::Vec3A;
 use lightmesh_layout::constants::BVH_MARGIN;
 
-use super::walk::{Guide, Stack, descend, planes};
+use super::walk::{Guide, Stack, descend, octant_of, planes};
 use super::{Bvh, Node};
 use crate::accel::region::Boxes;
-use crate::accel::sieve::Sieve;
+use crate::accel::sieve::{Sieve, Take};
 use crate::accel::{Region, Triangle};
 
-/// All triangles whose bounding boxes the region may meet, in ascending order.
+/// Hands over all triangles whose bounding boxes the region may meet; those of a shaft roughly by their distance from where it begins.
 #[simd]
-pub(super) fn triangles_in<S: Simd>(simd: S, bvh: &Bvh, region: &Region, found: &mut Vec<u32>) {
-    let mut search = Search { simd, region, sieve: Sieve::new(simd, region, found) };
-    descend(bvh, 0, 0, Stack::new(bvh.depth).entries(), &mut search);
-    search.sieve.finish();
+pub(super) fn search<S: Simd>(simd: S, bvh: &Bvh, region: &Region, take: Take) {
+    let mut search = Search { simd, region, sieve: Sieve::new(simd, region, take) };
+    if descend(bvh, 0, octant_of(region.heading()), Stack::new(bvh.depth).entries(), &mut search) {
+        search.sieve.finish();
+    }
 }
 
 /// Passes to a sieve the triangles of all leaves whose boxes the region may meet.
@@ -40,8 +41,7 @@ impl<S: Simd> Guide for Search<'_, S> {
 
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle) -> bool {
-        self.sieve.take(triangle);
-        true
+        self.sieve.take(triangle)
     }
 }
 

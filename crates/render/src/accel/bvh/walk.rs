@@ -58,10 +58,16 @@ impl Slabs {
         let least = LEAST_COMPONENT * direction.abs().max_element();
         let direction = direction.abs().max(Vec3::splat(least)).copysign(direction);
         let (origin, inverse) = (Vec3A::from(origin), Vec3A::from(direction.recip()));
-        let onward = |component: f32| u32::from(component >= 0.0);
-        let octant = onward(direction.x) << 2 | onward(direction.y) << 1 | onward(direction.z);
+        let octant = octant_of(direction);
         Slabs { origin, inverse, margin: BVH_MARGIN * inverse.abs(), slack: slack / BVH_MARGIN, octant }
     }
+}
+
+/// The octant that a direction points into: in the order of slot xor this, near children come first.
+#[inline(always)]
+pub(super) fn octant_of(direction: Vec3) -> u32 {
+    let onward = |component: f32| u32::from(component >= 0.0);
+    onward(direction.x) << 2 | onward(direction.y) << 1 | onward(direction.z)
 }
 
 #[simd]
@@ -140,11 +146,12 @@ impl<S: Simd, V: Visitor> Guide for RayGuide<'_, S, V> {
     }
 }
 
-/// Visits the triangles of all leaves below `root` that the guide enters, in the order of slot xor `octant`.
+/// Visits the triangles of all leaves below `root` that the guide enters, in the order of slot xor `octant`. Returns whether the guide has
+/// taken all of them.
 #[inline(always)]
-pub(super) fn descend(bvh: &Bvh, root: u32, octant: u32, stack: &mut [Group], guide: &mut impl Guide) {
+pub(super) fn descend(bvh: &Bvh, root: u32, octant: u32, stack: &mut [Group], guide: &mut impl Guide) -> bool {
     if bvh.nodes.is_empty() {
-        return;
+        return true;
     }
     // 1. Begin with the root, as if it were the only child in the slot entered first.
     let mut nodes = Group { base: root, bits: ROOT_HIT };
@@ -172,14 +179,14 @@ pub(super) fn descend(bvh: &Bvh, root: u32, octant: u32, stack: &mut [Group], gu
             let triangle = node.primitive_base_idx + triangles.trailing_zeros();
             triangles &= triangles - 1;
             if !guide.triangle(&bvh.triangles[triangle as usize]) {
-                return;
+                return false;
             }
         }
 
         // 5. No child left to enter: continue with the group most recently set aside.
         if nodes.bits <= TRIANGLE_HITS {
             if height == 0 {
-                return;
+                return true;
             }
             height -= 1;
             nodes = stack[height];

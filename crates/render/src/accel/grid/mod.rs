@@ -31,7 +31,7 @@ use fearless_simd::Level;
 
 use super::approach::{Approach, overlap};
 use super::visit::{Any, Closest};
-use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Triangle};
+use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Take, Triangle};
 use crate::simd::dispatch;
 pub use file::{GridFault, GridFileError, GridSaveError};
 use lattice::Lattice;
@@ -212,8 +212,8 @@ impl Accelerator for Grid {
         segments.ask(triangles.into_iter(), blocked);
     }
 
-    fn triangles_in(&self, region: &Region, found: &mut Vec<u32>) {
-        dispatch!(Level::new(), simd => search::triangles_in(simd, self, region, found));
+    fn search(&self, region: &Region, take: Take) {
+        dispatch!(Level::new(), simd => search::search(simd, self, region, take));
     }
 
     fn name(&self) -> &'static str {

@@ -10,18 +10,25 @@ use glam::UVec3;
 
 use super::lattice::{Lattice, cells_between};
 use super::{Cell, Grid};
-use crate::accel::sieve::Sieve;
-use crate::accel::{Region, Triangle};
+use crate::accel::sieve::{Sieve, Take};
+use crate::accel::{Hit, Region, Triangle};
 
-/// All triangles of the region's cells whose bounding boxes it may meet, in ascending order.
+/// A triangle that lies in several cells is mostly found once: so many are remembered.
+const RECENT: usize = 256;
+
+/// Hands over the triangles of the region's cells whose bounding boxes it may meet.
 #[simd]
-pub(super) fn triangles_in<S: Simd>(simd: S, grid: &Grid, region: &Region, found: &mut Vec<u32>) {
+pub(super) fn search<S: Simd>(simd: S, grid: &Grid, region: &Region, take: Take) {
     let mut leaves = Vec::new();
     grid.visit_region(region, &mut |triangles| leaves.push(triangles));
-    let mut sieve = Sieve::new(simd, region, found);
+    let mut sieve = Sieve::new(simd, region, take);
+    let mut recent = [Hit::NONE; RECENT];
     for &triangles in &leaves {
         for triangle in triangles {
-            sieve.take(triangle);
+            let before = &mut recent[triangle.index() as usize % RECENT];
+            if std::mem::replace(before, triangle.index()) != triangle.index() && !sieve.take(triangle) {
+                return;
+            }
         }
     }
     sieve.finish();

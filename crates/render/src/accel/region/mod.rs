@@ -84,6 +84,14 @@ impl Region {
         &self.bounds
     }
 
+    /// The way from the middle of a shaft's first box to that of its second; zero for other forms.
+    pub(super) fn heading(&self) -> Vec3 {
+        match &self.form {
+            Form::Shaft(shaft) => shaft.heading(),
+            Form::Box | Form::Near { .. } => Vec3::ZERO,
+        }
+    }
+
     /// Whether its bounds may be far larger than the region itself, so that parts of it should be bounded [one by one](Self::between).
     pub(super) fn is_slanted(&self) -> bool {
         matches!(self.form, Form::Shaft(_))

@@ -56,7 +56,17 @@ impl TangentPlanes {
         planes
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    /// Where heights are measured from.
+    pub(crate) fn corner(&self) -> Vec3 {
+        self.corner
+    }
+
+    /// The normals and heights.
+    pub(crate) fn each(&self) -> impl Iterator<Item = (Vec3, f32)> + '_ {
+        self.normals.into_iter().zip(self.heights).take(self.count)
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
         self.count == 0
     }
 

@@ -55,6 +55,11 @@ impl Shaft {
         Shaft { low: Faces::new(from.min, to.min, -1.0), high: Faces::new(from.max, to.max, 1.0) }
     }
 
+    /// The way from the middle of the first box to that of the second.
+    pub(super) fn heading(&self) -> Vec3 {
+        0.5 * (self.low.to - self.low.from + self.high.to - self.high.from)
+    }
+
     /// Bit k: the shaft may meet box k.
     #[inline(always)]
     pub(super) fn meets<S: Simd>(&self, simd: S, boxes: &Boxes<S>) -> u32 {

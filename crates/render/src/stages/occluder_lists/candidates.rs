@@ -1,5 +1,9 @@
 //! Which triangles can hide an emitter from a box of surface points, eight triangles at a time.
 //!
+//! A triangle hides nothing from a point unless a corner of it lies above the point's tangent plane. A region knows only the planes of
+//! all points, lowered by the rounding of its largest box; a triangle is compared with its own, so that those of the surface that the
+//! points lie on are dropped.
+//!
 //! With a, b, c relative to the middle of the box, e = c − b and x = b × c = ½ (b + c) × e, an edge function for a point p and a sample s is
 //!
 //! ```text
@@ -13,17 +17,22 @@
 //!
 //! Here as in [`Sights`](crate::shadow::occlusion::Sights), whose decisions the bounds must cover, a function is off by less than 16 ε times
 //! the product of the three lengths in it; 64 ε bound both.
+//!
+//! The height of a corner above the plane through a point, along n, is off by 4.1 ε Σ |nᵢ| Dᵢ, D being its way from where heights are
+//! measured; that of the point by 4.1 ε Σ |nᵢ| eᵢ, e being the edges of the points' box; and what decides by the way between the two by
+//! as much as both. So [`REGION_ROUNDING`], 16 ε, times Σ |nᵢ| (Dᵢ + eᵢ) bounds all.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, mask32x8};
 use glam::Vec3;
-use lightmesh_layout::constants::{GROWN, UNIT_ROUNDOFF};
+use lightmesh_layout::constants::{GROWN, REGION_ROUNDING, UNIT_ROUNDOFF};
 use lightmesh_scene::Bounds;
 
-use crate::simd::{Axes, cross, difference, dot, scaled, splat, sum};
+use crate::accel::{PIECE, TangentPlanes};
+use crate::simd::{Axes, cross, difference, dot, fused_dot, load, scaled, splat, sum};
 
 /// The boxes of an item and an emitter.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shaft {
     /// The middle of the box around the surface points.
     middle: Vec3,
@@ -130,4 +139,65 @@ fn extent<S: Simd>(v: Axes<S>, half: Axes<S>) -> f32x8<S> {
 #[inline(always)]
 fn length<S: Simd>(v: Axes<S>) -> f32x8<S> {
     v[0].abs() + v[1].abs() + v[2].abs()
+}
+
+/// Bit k: a corner of triangle k may lie above the tangent plane of any of the points, which are not farther than `extent` from the lowest
+/// corner of their box.
+#[inline(always)]
+pub(super) fn above_planes<S: Simd>(simd: S, planes: &TangentPlanes, extent: Vec3, [a, b, c]: [Axes<S>; 3]) -> u32 {
+    let corner = splat(simd, planes.corner());
+    let (a, b, c) = (difference(a, corner), difference(b, corner), difference(c, corner));
+    let far = [
+        a[0].abs().max(b[0].abs()).max(c[0].abs()) + extent.x,
+        a[1].abs().max(b[1].abs()).max(c[1].abs()) + extent.y,
+        a[2].abs().max(b[2].abs()).max(c[2].abs()) + extent.z,
+    ];
+    let mut above = if planes.is_empty() { 0xff } else { 0 };
+    for (normal, height) in planes.each() {
+        let n = splat(simd, normal);
+        let top = fused_dot(n, a).max(fused_dot(n, b)).max(fused_dot(n, c));
+        let reached = top + fused_dot(splat(simd, normal.abs()), far) * REGION_ROUNDING;
+        above |= reached.simd_gt(f32x8::splat(simd, height)).to_bitmask() as u32;
+    }
+    above
+}
+
+/// Up to [`PIECE`] triangles that may hide something, side by side.
+pub(super) struct Candidates {
+    corners: [[f32; PIECE]; 9],
+    pub(super) count: usize,
+}
+
+impl Candidates {
+    pub(super) fn new() -> Candidates {
+        Candidates { corners: [[0.0; PIECE]; 9], count: 0 }
+    }
+
+    #[inline(always)]
+    pub(super) fn push(&mut self, corners: [Vec3; 3]) {
+        for (corner, axes) in corners.iter().zip(self.corners.chunks_exact_mut(3)) {
+            (axes[0][self.count], axes[1][self.count], axes[2][self.count]) = (corner.x, corner.y, corner.z);
+        }
+        self.count += 1;
+    }
+
+    /// Eight of them, one in each lane.
+    #[inline(always)]
+    pub(super) fn eight<S: Simd>(&self, simd: S, first: usize) -> [Axes<S>; 3] {
+        let [ax, ay, az, bx, by, bz, cx, cy, cz] = &self.corners;
+        [
+            [load(simd, ax, first), load(simd, ay, first), load(simd, az, first)],
+            [load(simd, bx, first), load(simd, by, first), load(simd, bz, first)],
+            [load(simd, cx, first), load(simd, cy, first), load(simd, cz, first)],
+        ]
+    }
+
+    /// One of them, in all lanes.
+    #[inline(always)]
+    pub(super) fn splat<S: Simd>(&self, simd: S, number: usize) -> [Axes<S>; 3] {
+        let number = number & (PIECE - 1);
+        let corner = |axes: &[[f32; PIECE]]| Vec3::new(axes[0][number], axes[1][number], axes[2][number]);
+        let (a, b, c) = (corner(&self.corners[..3]), corner(&self.corners[3..6]), corner(&self.corners[6..]));
+        [splat(simd, a), splat(simd, b), splat(simd, c)]
+    }
 }

@@ -2,30 +2,51 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use fearless_simd::Level;
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, f32x8, u32x8};
-use lightmesh_layout::constants::{MOST_ROWS, MOST_WORDS, WARP};
+use lightmesh_layout::constants::WARP;
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::Bounds;
 use rayon::prelude::*;
 
-use super::candidates::{Chosen, Shaft};
-use crate::accel::TangentPlanes;
+use super::candidates::{Candidates, above_planes};
+use super::group::{Group, View};
+use crate::accel::{Bvh, Form, TangentPlanes};
 use crate::counters::Tally;
 use crate::data::items::Items;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
 use crate::shadow::Aim;
-use crate::shadow::occlusion::{Bits, Offsets, Sights, gathered};
+use crate::shadow::occlusion::gathered;
 use crate::shadow::rows::Rows;
-use crate::shadow::sight::{Emitter, Sight};
-use crate::simd::{LANES, dispatch, splat};
+use crate::shadow::sample_ray::SampleRays;
+use crate::shadow::sight::Emitter;
+use crate::simd::{LANES, dispatch};
 use crate::surface::SurfacePoint;
 
 /// Items per task.
 const RUN: usize = 16;
+/// Number of candidates after which lists are compared with rays for the first time.
+const FIRST_CHECK: u32 = 48;
 /// Groups of lanes of an item.
 const GROUPS: usize = WARP as usize / LANES;
+
+// What steps cost on a core with AVX2, nanoseconds; only their ratios matter.
+
+/// To find a triangle.
+const FOUND_COST: u32 = 35;
+/// To test a candidate against eight surface points.
+const CANDIDATE_COST: u32 = 40;
+/// The same for each row of samples.
+const ROW_COST: u32 = 6;
+/// A ray at a node.
+const NODE_COST: u32 = 25;
+/// A ray at a triangle.
+const TRIANGLE_COST: u32 = 15;
+/// No ray costs less.
+const LEAST_RAY_COST: u32 = 50;
+/// Rays are considered when this many times what was spent exceeds their price.
+const LEAST_SPENT: f64 = 4.0;
 
 /// The visible share of each light from each surface point.
 pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, aim: &Aim) -> Visibility {
@@ -39,18 +60,8 @@ pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, aim: &Aim) -> Visib
         let run = run * RUN..items.len().min((run + 1) * RUN);
         let points = run.clone().map(|item| items.members(item).len()).sum();
         wave.job.piece(points, || {
-            let mut item = ItemShadows::default();
-            for members in run.map(|item| items.members(item)) {
-                item.points.clear();
-                item.points.extend(members.iter().map(|&ray| wave.surface_point(ray as usize)));
-                for (emitter, shares) in emitters.iter().zip(shares.chunks_exact(rays)) {
-                    let seen = dispatch!(level, simd => item.seen(simd, wave, members, emitter));
-                    for (&ray, &seen) in members.iter().zip(&seen) {
-                        shares[ray as usize].store(emitter.share(seen).to_bits(), Ordering::Relaxed);
-                    }
-                }
-            }
-            Tally::add(&wave.job.tally.shadow_rays, item.asked);
+            let run = run.map(|item| items.members(item));
+            dispatch!(level, simd => shares_of_run(simd, wave, &emitters, run, &shares));
         });
     });
     // In the same memory.
@@ -58,193 +69,257 @@ pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, aim: &Aim) -> Visib
     Visibility { rays, lights: wave.group(), share, used: Vec::new() }
 }
 
-/// The surface points of an item, and buffers.
-#[derive(Default)]
-struct ItemShadows {
+/// Writes the visible shares of all emitters from the surface points of some items.
+#[inline(always)]
+fn shares_of_run<'a, S: Simd>(
+    simd: S,
+    wave: &'a HostWave<'a>,
+    emitters: &[Emitter],
+    run: impl Iterator<Item = &'a [u32]>,
+    shares: &[AtomicU32],
+) {
+    let mut item = Item::new(simd, wave, emitters.len());
+    for members in run {
+        item.take(members);
+        let lights = shares.chunks_exact(wave.hits.len());
+        for ((number, emitter), shares) in emitters.iter().enumerate().zip(lights) {
+            let seen = item.seen(number, emitter);
+            for (&ray, &seen) in members.iter().zip(&seen) {
+                shares[ray as usize].store(emitter.share(seen).to_bits(), Ordering::Relaxed);
+            }
+        }
+    }
+    Tally::add(&wave.job.tally.shadow_rays, item.asked);
+}
+
+/// The surface points of an item.
+struct Item<'a, S: Simd> {
+    simd: S,
+    wave: &'a HostWave<'a>,
+    members: &'a [u32],
     points: Vec<SurfacePoint>,
-    sights: Vec<Sight>,
-    found: Vec<u32>,
+    groups: [Group<S>; GROUPS],
+    around: Around,
+    /// What rays to each emitter cost; 0 if that is not known.
+    prices: Vec<f64>,
     /// The number of samples in front of their surfaces.
     asked: u64,
 }
 
-/// Eight surface points of an item.
-struct Group<S: Simd> {
-    sights: Sights<S>,
-    offsets: Offsets<S>,
-    /// The samples still seen.
-    bits: Bits<S>,
-    /// The lanes that still see any.
-    lanes: u32,
+/// How far a search has come.
+struct Progress {
+    /// The number of samples seen before it.
+    before: u32,
+    /// Number of triangles found.
+    found: u32,
+    /// Number of candidates tested, each counted for each group.
+    tested: u32,
+    /// How many of them are compared with rays the next time.
+    check: u32,
 }
 
-impl ItemShadows {
+/// What a ray has cost; not 0.
+fn price(rays: &SampleRays) -> f64 {
+    f64::from(rays.nodes * NODE_COST + rays.triangles * TRIANGLE_COST).max(1.0) / f64::from(rays.cast.max(1))
+}
+
+/// What is known of the surface points that see anything of an emitter. Often it is the same for the next one.
+struct Around {
+    /// The points, a bit each.
+    lanes: u32,
+    origins: Bounds,
+    planes: TangentPlanes,
+}
+
+impl<'a, S: Simd> Item<'a, S> {
+    #[inline(always)]
+    fn new(simd: S, wave: &'a HostWave<'a>, emitters: usize) -> Item<'a, S> {
+        let groups = std::array::from_fn(
+            #[inline(always)]
+            |_| Group::new(simd),
+        );
+        let around = Around { lanes: 0, origins: Bounds::EMPTY, planes: TangentPlanes::NONE };
+        Item {
+            simd,
+            wave,
+            members: &[],
+            points: Vec::with_capacity(WARP as usize),
+            groups,
+            around,
+            prices: vec![0.0; emitters],
+            asked: 0,
+        }
+    }
+
+    /// Replaces the surface points.
+    #[inline(always)]
+    fn take(&mut self, members: &'a [u32]) {
+        self.members = members;
+        self.points.clear();
+        self.points.extend(members.iter().map(|&ray| self.wave.surface_point(ray as usize)));
+        self.around.lanes = 0;
+        for (number, group) in self.groups.iter_mut().enumerate() {
+            group.take(self.simd, &self.points[self.points.len().min(number * LANES)..]);
+        }
+    }
+
     /// How many samples of an emitter each surface point sees.
     #[inline(always)]
-    fn seen<S: Simd>(&mut self, simd: S, wave: &HostWave, members: &[u32], emitter: &Emitter) -> [u32; WARP as usize] {
+    fn seen(&mut self, number: usize, emitter: &Emitter) -> [u32; WARP as usize] {
         let mut seen = [0; WARP as usize];
-        self.sights.clear();
-        let sights = members.iter().zip(&self.points).map(|(&ray, point)| emitter.sight(wave, ray as usize, point));
-        self.sights.extend(sights);
         if emitter.is_point() {
-            self.center(simd, wave, emitter, &mut seen);
+            self.samples(&View { wave: self.wave, number, emitter, set: None }, &mut seen);
         }
         for set in emitter.sets {
-            self.samples(simd, wave, emitter, set, &mut seen);
+            self.samples(&View { wave: self.wave, number, emitter, set: Some(set) }, &mut seen);
         }
         seen
     }
 
-    /// Adds the samples of a set that each surface point sees.
+    /// Adds the samples that each surface point sees.
     #[inline(always)]
-    fn samples<S: Simd>(&mut self, simd: S, wave: &HostWave, emitter: &Emitter, set: &SampleRows, seen: &mut [u32]) {
+    fn samples(&mut self, view: &View, seen: &mut [u32; WARP as usize]) {
         // 1. The samples in front of the surface.
-        let mut groups: [Option<Group<S>>; GROUPS] = [const { None }; GROUPS];
-        for ((group, points), sights) in groups.iter_mut().zip(self.points.chunks(LANES)).zip(self.sights.chunks(LANES))
-        {
-            let unhidden = Group::new(simd, set, points, sights);
-            self.asked += unhidden.seen(set).iter().map(|&seen| u64::from(seen)).sum::<u64>();
-            *group = Some(unhidden);
+        let mut lanes = 0;
+        for (number, group) in self.groups.iter_mut().enumerate() {
+            let first = self.points.len().min(number * LANES);
+            group.begin(self.simd, view, &self.members[first..], &self.points[first..]);
+            lanes |= group.lanes << (number * LANES);
         }
-        let lanes = |groups: &[Option<Group<S>>; GROUPS]| {
-            let lanes =
-                |(at, group): (usize, &Option<Group<S>>)| group.as_ref().map_or(0, |group| group.lanes) << (at * LANES);
-            groups.iter().enumerate().map(lanes).sum::<u32>()
-        };
-        let alive = lanes(&groups);
-        if alive == 0 {
+        let before = self.left(view);
+        self.asked += u64::from(before);
+        if lanes == 0 {
             return;
         }
         // 2. Search.
-        let emitter_box = self.search(wave, emitter, alive);
-        let triangles = &wave.scene.geometry.triangles;
-        for (group, points) in
-            groups.iter_mut().flatten().zip(self.points.chunks(LANES)).filter(|(group, _)| group.lanes != 0)
-        {
-            // 3. Candidates.
-            let living = points.iter().enumerate().filter(|(lane, _)| group.lanes >> lane & 1 != 0);
-            let shaft =
-                Shaft::new(&Bounds::around(living.map(|(_, point)| point.origin)), (&emitter_box.0, emitter_box.1));
-            for indices in self.found.chunks(LANES) {
-                let Chosen { mut kept, dark } = shaft.choose(simd, gathered(simd, triangles, indices));
-                kept &= (1 << indices.len()) - 1;
-                // A triangle that hides everything comes first; then there is nothing left to ask.
-                let mut first = dark & kept;
-                // 4. What they hide.
-                while kept != 0 && group.lanes != 0 {
-                    let next = if first != 0 { first.trailing_zeros() } else { kept.trailing_zeros() };
-                    let corners = triangles[indices[next as usize] as usize].corners();
-                    (first, kept) = (first & !(1 << next), kept & !(1 << next));
-                    group.sights.hide(
-                        simd,
-                        corners.map(|corner| splat(simd, corner)),
-                        (set, &group.offsets),
-                        group.lanes,
-                        &mut group.bits,
-                    );
-                    group.lanes = lanes_of(simd, &group.bits, set);
-                }
-                if group.lanes == 0 {
-                    break;
-                }
-            }
+        self.look_around(lanes);
+        let geometry = &self.wave.scene.geometry;
+        let (origins, planes) = (self.around.origins, self.around.planes);
+        let region = view.emitter.region(geometry, &origins).above(planes);
+        let emitter = (&view.emitter.bounds(geometry, &origins), view.emitter.radius());
+        for (number, group) in self.groups.iter_mut().enumerate().filter(|(_, group)| group.lanes != 0) {
+            group.bound(&self.points[number * LANES..], emitter);
         }
-        for (group, seen) in groups.iter().flatten().zip(seen.chunks_mut(LANES)) {
-            seen.iter_mut().zip(group.seen(set)).for_each(|(seen, more)| *seen += more);
+        let simd = self.simd;
+        let mut progress = Progress { before, found: 0, tested: 0, check: FIRST_CHECK * GROUPS as u32 };
+        geometry.accelerator.search(&region, &mut |piece| {
+            simd.vectorize(
+                #[inline(always)]
+                || self.piece(view, piece, &mut progress),
+            )
+        });
+        for (group, seen) in self.groups.iter().zip(seen.chunks_mut(LANES)) {
+            seen.iter_mut().zip(group.seen(view)).for_each(|(seen, more)| *seen += more);
         }
     }
 
-    /// Finds which surface points see the centre.
+    /// The box around the surface points of some lanes, and their tangent planes.
     #[inline(always)]
-    fn center<S: Simd>(&mut self, simd: S, wave: &HostWave, emitter: &Emitter, seen: &mut [u32]) {
-        let mut groups: [Option<Sights<S>>; GROUPS] = [const { None }; GROUPS];
-        let mut alive = 0;
-        for (at, (points, sights)) in self.points.chunks(LANES).zip(self.sights.chunks(LANES)).enumerate() {
-            let sights = Sights::gather(simd, points, sights);
-            let lanes = sights.center_above_horizon(simd).to_bitmask() as u32 & ((1 << points.len()) - 1);
-            self.asked += u64::from(lanes.count_ones());
-            alive |= lanes << (at * LANES);
-            groups[at] = Some(sights);
-        }
-        if alive == 0 {
+    fn look_around(&mut self, lanes: u32) {
+        if self.around.lanes == lanes {
             return;
         }
-        let emitter_box = self.search(wave, emitter, alive);
-        let living = self.points.iter().enumerate().filter(|(lane, _)| alive >> lane & 1 != 0);
-        let shaft = Shaft::new(&Bounds::around(living.map(|(_, point)| point.origin)), (&emitter_box.0, emitter_box.1));
-        let triangles = &wave.scene.geometry.triangles;
-        for indices in self.found.chunks(LANES) {
-            let mut kept = shaft.choose(simd, gathered(simd, triangles, indices)).kept & ((1 << indices.len()) - 1);
-            while kept != 0 && alive != 0 {
-                let index = indices[kept.trailing_zeros() as usize];
-                kept &= kept - 1;
-                let corners = triangles[index as usize].corners().map(|corner| splat(simd, corner));
-                for (at, sights) in groups.iter().flatten().enumerate() {
-                    let lanes = alive >> (at * LANES) & 0xff;
-                    if lanes != 0 {
-                        alive &= !(sights.hides_center(simd, corners, lanes) << (at * LANES));
-                    }
-                }
-            }
-            if alive == 0 {
-                return;
-            }
-        }
-        seen.iter_mut().enumerate().for_each(|(lane, seen)| *seen = alive >> lane & 1);
-    }
-
-    /// Finds the triangles that may hide an emitter from those surface points that are `alive`.
-    fn search(&mut self, wave: &HostWave, emitter: &Emitter, alive: u32) -> (Bounds, f32) {
-        let geometry = &wave.scene.geometry;
         let living =
-            || self.points.iter().enumerate().filter(|(lane, _)| alive >> lane & 1 != 0).map(|(_, point)| point);
+            || self.points.iter().enumerate().filter(|(lane, _)| lanes >> lane & 1 != 0).map(|(_, point)| point);
         let origins = Bounds::around(living().map(|point| point.origin));
         let planes = TangentPlanes::new(origins.min, living().map(|point| (point.origin, point.normal)), 0.0);
-        let region = emitter.region(geometry, &origins).above(planes);
-        geometry.accelerator.triangles_in(&region, &mut self.found);
-        (emitter.bounds(geometry, &origins), emitter.radius())
+        self.around = Around { lanes, origins, planes };
     }
-}
 
-impl<S: Simd> Group<S> {
-    /// Some surface points, with the samples in front of their surfaces.
+    /// Takes a piece of what was found. Returns whether more is wanted.
     #[inline(always)]
-    fn new(simd: S, set: &SampleRows, points: &[SurfacePoint], sights: &[Sight]) -> Group<S> {
-        let gathered = Sights::gather(simd, points, sights);
-        let mut offsets = [f32x8::splat(simd, 0.0); MOST_ROWS as usize];
-        for (row, offset) in offsets.iter_mut().enumerate().take(set.rows as usize) {
-            let mut lanes = [0.0; LANES];
-            lanes.iter_mut().zip(sights).for_each(|(lane, sight)| *lane = sight.offset(set, row));
-            *offset = f32x8::from_slice(simd, &lanes);
+    fn piece(&mut self, view: &View, piece: &[u32], progress: &mut Progress) -> bool {
+        if !self.test(view, piece, progress) {
+            return false;
         }
-        let mut bits = gathered.above_horizon(simd, set, &offsets);
-        for (word, bits) in bits.iter_mut().enumerate().take(set.words as usize) {
-            let mut lanes = [0; LANES];
-            lanes.iter_mut().zip(sights).for_each(|(lane, sight)| *lane = sight.valid_word(set, word));
-            *bits &= u32x8::from_slice(simd, &lanes);
+        // 5. Rays instead of the rest.
+        if progress.tested < progress.check {
+            return true;
         }
-        let lanes = lanes_of(simd, &bits, set);
-        Group { sights: gathered, offsets, bits, lanes }
+        progress.check = 2 * progress.tested;
+        let geometry = &self.wave.scene.geometry;
+        match (view.set, geometry.accelerator.form()) {
+            (Some(set), Form::Bvh(bvh)) => !self.rays_instead(view, set, bvh, progress),
+            _ => true,
+        }
     }
 
-    /// The number of samples that each lane sees.
+    /// Whether rays are cheaper than going on; if so, they have been cast.
     #[inline(always)]
-    fn seen(&self, set: &SampleRows) -> [u32; LANES] {
-        let mut seen = [0; LANES];
-        for bits in &self.bits[..set.words as usize] {
-            let bits: [u32; LANES] = (*bits).into();
-            seen.iter_mut().zip(bits).for_each(|(seen, bits)| *seen += bits.count_ones());
+    fn rays_instead(&mut self, view: &View, set: &SampleRows, bvh: &Bvh, progress: &Progress) -> bool {
+        let left = self.left(view);
+        let tested = f64::from(progress.tested) * f64::from(CANDIDATE_COST + ROW_COST * set.rows);
+        let spent = f64::from(progress.found) * f64::from(FOUND_COST) + tested;
+        // The estimate assumes that candidates go on hiding samples at the same rate until none is left. If they hide few, the search may
+        // soon end, so part of the price of the rays must have been spent.
+        let going_on = spent * f64::from(left) / f64::from(progress.before - left + 1);
+        let dearer = |ray: f64| going_on.min(LEAST_SPENT * spent) > ray * f64::from(left);
+        if !dearer(f64::from(LEAST_RAY_COST)) {
+            return false;
         }
-        seen
+        // What a ray costs is found by casting a few, once for several items.
+        let mut rays = SampleRays::default();
+        if self.prices[view.number] == 0.0 {
+            self.cast(view, bvh, (&mut rays, 1), 1);
+            self.prices[view.number] = price(&rays);
+        }
+        if !dearer(self.prices[view.number]) {
+            return false;
+        }
+        self.cast(view, bvh, (&mut rays, u32::MAX), LANES);
+        self.prices[view.number] = price(&rays);
+        true
     }
-}
 
-/// The lanes that have any bits.
-#[inline(always)]
-fn lanes_of<S: Simd>(simd: S, bits: &[u32x8<S>; MOST_WORDS as usize], set: &SampleRows) -> u32 {
-    let mut any = u32x8::splat(simd, 0);
-    for bits in &bits[..set.words as usize] {
-        any |= *bits;
+    /// Casts up to `most` rays from `asking` points of each group to samples still seen.
+    #[inline(always)]
+    fn cast(&mut self, view: &View, bvh: &Bvh, (rays, most): (&mut SampleRays, u32), asking: usize) {
+        let simd = self.simd;
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for (number, group) in self.groups.iter_mut().enumerate().filter(|(_, group)| group.lanes != 0) {
+                    let from = number * LANES;
+                    group.cast(simd, (view, bvh), (&self.members[from..], &self.points[from..]), (rays, most), asking);
+                }
+            },
+        );
     }
-    (!any.simd_eq(u32x8::splat(simd, 0))).to_bitmask() as u32
+
+    /// The number of samples still seen.
+    #[inline(always)]
+    fn left(&self, view: &View) -> u32 {
+        self.groups.iter().map(|group| group.seen(view).iter().sum::<u32>()).sum()
+    }
+
+    /// Tests a piece of what was found. Returns whether anything is still seen.
+    #[inline(always)]
+    fn test(&mut self, view: &View, piece: &[u32], progress: &mut Progress) -> bool {
+        // 3. Candidates of all, from which each group chooses.
+        progress.found += piece.len() as u32;
+        let simd = self.simd;
+        let triangles = &self.wave.scene.geometry.triangles;
+        let mut candidates = Candidates::new();
+        let extent = self.around.origins.extent();
+        for indices in piece.chunks(LANES) {
+            let corners = gathered(simd, triangles, indices);
+            let mut above = above_planes(simd, &self.around.planes, extent, corners) & ((1 << indices.len()) - 1);
+            while above != 0 {
+                candidates.push(triangles[indices[above.trailing_zeros() as usize & (LANES - 1)] as usize].corners());
+                above &= above - 1;
+            }
+        }
+        if candidates.count == 0 {
+            return true;
+        }
+        // 4. What they hide.
+        let mut lanes = 0;
+        for (number, group) in self.groups.iter_mut().enumerate().filter(|(_, group)| group.lanes != 0) {
+            let from = number * LANES;
+            let tested = group.hide(simd, view, (&self.members[from..], &self.points[from..]), &candidates);
+            progress.tested += tested;
+            lanes |= group.lanes;
+        }
+        lanes != 0
+    }
 }
