@@ -46,7 +46,7 @@ const TRIANGLE_COST: u32 = 15;
 /// No ray costs less.
 const LEAST_RAY_COST: u32 = 50;
 /// Rays are considered when this many times what was spent exceeds their price.
-const LEAST_SPENT: f64 = 4.0;
+const LEAST_SPENT: f64 = 2.0;
 
 /// The visible share of each light from each surface point.
 pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, aim: &Aim) -> Visibility {
