@@ -111,8 +111,8 @@ DEVICE void next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch
     __syncwarp();
 }
 
-// Finds up to MOST_STARTS boxes that hold all triangles that a region may meet: what the root's children are, then, as long as there is
-// room, their children. Returns their number. `list` has WARP words more.
+// Finds up to MOST_STARTS boxes that hold all triangles that a region may meet: the root's children, then, as long as there is room,
+// children in place of their parents. Returns their number. `list` has twice WARP words.
 template <class Form>
 DEVICE unsigned find_starts(const Bvh &bvh, const Region<Form> &region, unsigned *list) {
     const unsigned lane = lane_of_thread(), slot = lane % 8;
