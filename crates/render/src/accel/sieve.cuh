@@ -4,11 +4,15 @@
 #include "accel/region.cuh"
 #include "accel/triangle.cuh"
 
+DEVICE Bounds bounds_of(const Corners &corners) {
+    return Bounds{min(min(corners.a, corners.b), corners.c), max(max(corners.a, corners.b), corners.c)};
+}
+
 // Whether the region may meet the bounding box of a triangle.
 template <class Form>
 DEVICE bool meets_triangle(const Region<Form> &region, const Corners &corners) {
-    const Vec3 low = min(min(corners.a, corners.b), corners.c), high = max(max(corners.a, corners.b), corners.c);
-    return meets(region, low, high, REGION_ROUNDING * element_sum(high - low));
+    const Bounds bounds = bounds_of(corners);
+    return meets(region, bounds.low, bounds.high, REGION_ROUNDING * element_sum(bounds.high - bounds.low));
 }
 
 // Lists the positions of those of the lanes' triangles whose bounding boxes the region may meet, or of all unless SIEVED. Not every

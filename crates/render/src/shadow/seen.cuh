@@ -27,6 +27,13 @@ DEVICE unsigned number(const Seen<WORDS> &seen) {
     return sum;
 }
 
+// Fills in the places of x = 0 in the rows of a lane's samples.
+DEVICE void fill_row_offsets(const Sight &sight, const SampleRows &set, const RowTable &table) {
+    ROLLED
+    for (unsigned row = 0; row < set.rows; ++row)
+        table.offsets[row * WARP] = row_offset(sight, set, row);
+}
+
 // The samples in front of a surface, before anything hides them; none unless the lane `has` a surface point.
 template <unsigned WORDS>
 DEVICE Seen<WORDS> seen_unhidden(bool has, const SurfacePoint &point, const Sight &sight, Shape shape, const SampleRows &set,
@@ -36,9 +43,7 @@ DEVICE Seen<WORDS> seen_unhidden(bool has, const SurfacePoint &point, const Sigh
         seen.bits[0] = has && center_above_horizon(point, sight);
         return seen;
     }
-    ROLLED
-    for (unsigned row = 0; row < set.rows; ++row)
-        table.offsets[row * WARP] = row_offset(sight, set, row);
+    fill_row_offsets(sight, set, table);
     samples_above_horizon<WORDS>(point, sight, set, table, seen.bits);
     UNROLL
     for (unsigned word = 0; word < WORDS; ++word)

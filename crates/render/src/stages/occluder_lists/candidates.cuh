@@ -2,6 +2,7 @@
 // derived.
 #pragma once
 
+#include "accel/sieve.cuh"
 #include "shadow/occlusion.cuh"
 
 // The boxes of an item and an emitter.
@@ -47,7 +48,8 @@ DEVICE float to_samples(const Shaft &shaft, const Vec3 &v) {
 
 // Whether a shaft may meet the bounding box of a triangle.
 DEVICE bool in_shaft(const ShaftForm &shaft, const Corners &corners) {
-    return form_meets(shaft, min(min(corners.a, corners.b), corners.c), max(max(corners.a, corners.b), corners.c));
+    const Bounds bounds = bounds_of(corners);
+    return form_meets(shaft, bounds.low, bounds.high);
 }
 
 // Whether a corner of a triangle may lie above the tangent plane of any of the points, which are not farther than `extent` from the

@@ -145,9 +145,7 @@ DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, con
         return true;
     if (!item.looked) {
         look(args, item, light, set);
-        ROLLED
-        for (unsigned row = 0; row < set.rows; ++row)
-            table.offsets[row * WARP] = row_offset(item.sight, set, row);
+        fill_row_offsets(item.sight, set, table);
     }
     __syncwarp();
     if (choice != DROPPED) {
