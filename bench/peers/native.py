@@ -51,13 +51,11 @@ class Embree:
             raise RuntimeError(f"{self.command[0]} ended with exit code {self.process.wait()}")
         return json.loads(line)
 
-    def surface(self):
-        """For each pixel the surface point, its normal, and how many rays of the last kind reached each light."""
-        path = self.folder / "surface.bin"
+    def reached(self):
+        """For each light and pixel how many rays of the last kind reached it."""
+        path = self.folder / "reached.bin"
         self.ask("save", path)
-        lights = len(self.scene.lights)
-        values = np.fromfile(path, "<f4").reshape(-1, 6 + lights)
-        return values[:, :3], values[:, 3:6], values[:, 6:]
+        return np.fromfile(path, "<u2").reshape(len(self.scene.lights), -1)
 
     def close(self):
         if self.process:

@@ -22,11 +22,15 @@ import flip_evaluator
 import numpy as np
 
 import agreement
+import equal_error
+import lightmesh
 import native
 import rays
 import renderers
+from results import row
 from scene import Scene
 
+LIBRARY = Path("target/release/examples/libc_interface.so")
 REFERENCE_SEED = 1000
 """Different from the seeds of the measured images, which are their rounds."""
 
@@ -41,7 +45,7 @@ def main():
             if plan.only != "images":
                 rows += ray_rows(plan, scene, Path(folder), notes)
             if plan.only != "rays":
-                rows += shadow_rows(plan, scene, Path(folder), notes)
+                rows += image_rows(plan, scene, Path(folder), notes)
     version = subprocess.run([plan.lightmesh, "--version"], check=True, stdout=subprocess.PIPE, text=True).stdout.split()[1]
     results = {
         "version": 1,
@@ -63,8 +67,9 @@ def arguments():
     parser.add_argument("scenes", nargs="+", metavar="SCENE", help="a scene that lightmesh can open")
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE", help="output file for the results, as JSON")
     parser.add_argument("--lightmesh", default="target/release/lightmesh", metavar="PROGRAM", help="default: %(default)s")
+    parser.add_argument("--library", type=Path, default=LIBRARY, metavar="FILE", help="its C interface, default: %(default)s")
     parser.add_argument("--size", type=int, default=256, help="pixels per side, default %(default)s")
-    parser.add_argument("--samples", type=int, nargs="+", default=[1, 4, 16, 64], help="default: 1 4 16 64")
+    parser.add_argument("--samples", type=int, nargs="+", default=[1, 4, 16, 64, 256], help="default: 1 4 16 64 256")
     parser.add_argument("--reference", type=int, default=1024, metavar="N", help="samples of the references, default %(default)s")
     parser.add_argument("--repetitions", type=int, default=5, metavar="N", help="counted rounds, default %(default)s")
     parser.add_argument("--threads", type=int, default=os.cpu_count(), help="for images, default: all")
@@ -97,17 +102,16 @@ def peer(plan, notes, name, make):
 def ray_rows(plan, scene, folder, notes):
     """Million rays per second of each program and kind of rays."""
     if plan.device == "cuda":
-        embree, casters = [], [rays.Lightmesh(plan, scene, folder, 1)]
+        embree, casters = [], [rays.Lightmesh(lightmesh.Opened(plan, scene, 1), plan.ray_size, 1)]
         casters += peer(plan, notes, "optix", lambda: rays.Optix(scene, plan))
     else:
         embree = peer(plan, notes, "embree", lambda: native.Embree(scene, plan, rays.SOFT_SAMPLES, folder))
-        for one in embree:
-            agreement.check(plan, scene, folder, one, notes)
-        packets = [(one, width) for one in embree for width in native.WIDTHS]
         casters = []
         for threads in plan.ray_threads:
-            casters.append(rays.Lightmesh(plan, scene, folder, threads))
-            casters += [native.Packets(one, width, threads) for one, width in packets]
+            own = rays.Lightmesh(lightmesh.Opened(plan, scene, threads), plan.ray_size, threads)
+            casters += [own, *(native.Packets(one, width, threads) for one in embree for width in native.WIDTHS)]
+        for one in embree:
+            agreement.check(scene, own, one, notes)
     tasks = {(kind, caster): (lambda caster=caster, kind=kind: caster.cast(kind)) for kind in rays.KINDS for caster in casters}
     results = in_turn(plan, lambda _, task: task(), tasks)
     rows = [ray_row(plan, scene, kind, caster, runs) for (kind, caster), runs in results.items()]
@@ -156,25 +160,29 @@ def add_ratios(rows):
         print(f"  {where}: {' : '.join(rates)} million per second, ratio {ratio:.2f}", file=sys.stderr)
 
 
-def shadow_rows(plan, scene, folder, notes):
-    """Seconds and errors of each program and number of samples."""
-    area, mesh = (renderers.Lightmesh(plan.lightmesh, scene, mode, plan, folder) for mode in ("area", "light-mesh"))
+def image_rows(plan, scene, folder, notes):
+    """Seconds and errors of each program and number of samples, and seconds at equal error."""
+    opened = lightmesh.Opened(plan, scene, plan.threads)
+    own = [renderers.Lightmesh(opened, method, plan.size) for method in ("lists", "area", "adaptive", "half-ball")]
     others = peer(plan, notes, "mitsuba", lambda: renderers.Mitsuba(scene, plan))
-    if plan.device == "cpu":
-        others += peer(plan, notes, "cycles", lambda: renderers.Cycles(scene, plan, folder))
-    references = {renderer.name: renderer.render(plan.reference, REFERENCE_SEED)[1] for renderer in [area, *others]}
-    # The light mesh is compared with what it approximates.
-    references[mesh.name] = references[area.name]
-    # The difference between two references indicates their remaining error.
-    left = {renderer.name: errors(references[renderer.name], renderer.render(plan.reference, REFERENCE_SEED + 1)[1])[0] for renderer in [area, *others]}
-    tasks = {(renderer.name, n): (lambda seed, r=renderer, n=n: r.render(n, seed)) for n in plan.samples for renderer in [area, mesh, *others]}
-    rows = []
-    for (program, samples), runs in in_turn(plan, lambda seed, task: task(seed), tasks).items():
-        keys = {"scene": scene.name, "program": program, "samples": samples, "size": plan.size, **place(plan, "all")}
-        found = np.mean([errors(references[program], picture) for _, picture in runs], axis=0)
-        values = {"rmse": found[0], "mean_flip": found[1], "reference_rmse": left.get(program, left[area.name])}
+    others += peer(plan, notes, "cycles", lambda: renderers.Cycles(scene, plan, folder))
+    # Each is compared with its own reference; what Lightmesh's methods approximate is the same.
+    references, rows = {}, []
+    denoised = [renderers.Denoised(one) for one in others if one.denoiser]
+    notes += [f"{one.name}'s denoiser is skipped: there is none for this device." for one in others if not one.denoiser]
+    for group in [own, *([one] for one in [*others, *denoised])]:
+        picture, again = (group[0].reference(plan.reference, seed)[1] for seed in (REFERENCE_SEED, REFERENCE_SEED + 1))
+        # The difference between two references indicates their remaining error.
+        left = rmse_of(picture, again)
+        references |= {renderer: (picture, left) for renderer in group}
+    tasks = {(renderer, n): (lambda seed, r=renderer, n=n: r.render(n, seed)) for n in plan.samples for renderer in references}
+    for (renderer, samples), runs in in_turn(plan, lambda seed, task: task(seed), tasks).items():
+        picture, left = references[renderer]
+        keys = {"scene": scene.name, "program": renderer.name, "samples": samples, "size": plan.size, **place(plan, plan.threads)}
+        rmse, mean_flip = np.mean([rmse_of(picture, other) for _, other in runs]), flip_of(picture, runs[0][1])
+        values = {"rmse": rmse, "mean_flip": mean_flip, "reference_rmse": left}
         rows.append(row("soft shadows", keys, {"render": [seconds for seconds, _ in runs]}, values))
-    return rows
+    return rows + equal_error.rows(rows)
 
 
 def place(plan, threads):
@@ -193,18 +201,19 @@ def in_turn(plan, run, tasks):
     return results
 
 
-def errors(reference, picture):
-    """RMSE of linear values and mean FLIP, both clamped to the range of a screen."""
-    shown = [np.clip(image, 0, 1).astype(np.float32) for image in (reference, picture)]
-    curved = [np.where(image <= 0.0031308, 12.92 * image, 1.055 * image ** (1 / 2.4) - 0.055) for image in shown]
-    flip = flip_evaluator.evaluate(*curved, "LDR", applyMagma=False)[1]
-    return float(np.sqrt(np.mean((shown[0] - shown[1]) ** 2))), float(flip)
+def rmse_of(reference, picture):
+    """RMSE of linear values, clamped to the range of a screen."""
+    return float(np.sqrt(np.mean((shown(reference) - shown(picture)) ** 2)))
 
 
-def row(experiment, keys, seconds, values):
-    words = " ".join(f"{name}={key}" for name, key in sorted(keys.items()))
-    values = {name: float(value) for name, value in values.items()}
-    return {"id": f"{experiment}: {words}", "experiment": experiment, "keys": keys, "seconds": seconds, "values": values}
+def flip_of(reference, picture):
+    """Mean FLIP. It takes longer than the image."""
+    curved = [np.where(image <= 0.0031308, 12.92 * image, 1.055 * image ** (1 / 2.4) - 0.055) for image in map(shown, (reference, picture))]
+    return float(flip_evaluator.evaluate(*curved, "LDR", applyMagma=False)[1])
+
+
+def shown(image):
+    return np.clip(image, 0, 1).astype(np.float32)
 
 
 def machine(plan):

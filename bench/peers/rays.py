@@ -3,14 +3,10 @@
 OptiX gets all rays in one launch; lightmesh forms its own, of the same pixels and lights, which is part of its time for shadow rays.
 """
 
-import json
-import subprocess
-import time
-
 import numpy as np
 
 KINDS = {"primary": "ray-trace", "hard shadow": "ray-trace", "soft shadow": "area"}
-"""Kinds of rays, and the mode of lightmesh that casts them."""
+"""Kinds of rays, and the method of lightmesh that casts them."""
 SOFT_SAMPLES = 16
 """Rays per light and pixel for soft shadows."""
 OFFSET = 1e-4
@@ -59,34 +55,18 @@ class Optix:
 class Lightmesh:
     name = "lightmesh"
 
-    def __init__(self, plan, scene, folder, threads):
-        self.stats, self.picture, self.threads = folder / "rays.json", folder / "rays.png", threads
-        self.on_gpu, size = plan.device == "cuda", plan.ray_size
-        limit = [] if self.on_gpu else ["--threads", str(threads)]
-        self.command = [plan.lightmesh, "render", scene.file, "-q", "--device", plan.device, *limit, "--size", f"{size}x{size}"]
-        self.command += ["--samples", str(SOFT_SAMPLES), "--stats", self.stats]
-        self.suite = [plan.lightmesh, "bench", "rays", "--device", plan.device, "--scene", scene.file, "--json", self.stats, "-q"]
+    def __init__(self, opened, size, threads):
+        self.opened, self.size, self.threads = opened, size, threads
 
-    def render(self, kind, picture=None):
-        """The statistics of an image."""
-        subprocess.run([*self.command, "--mode", KINDS[kind], "-o", picture or self.picture], check=True)
-        return json.loads(self.stats.read_text())
+    def render(self, kind, with_visibility=False):
+        """What an image takes, and the visibility of each light."""
+        report, _, visibility = self.opened.render(KINDS[kind], self.size, SOFT_SAMPLES, with_visibility=with_visibility)
+        return report, visibility
 
     def cast(self, kind):
         """Rays and seconds."""
-        # The first image of a process starts with small launches, which would distort the rate of few rays.
-        if self.on_gpu and kind != "soft shadow":
-            return self.warm(kind)
-        stats = self.render(kind)
-        rays, stage = ("rays", "primary_rays") if kind == "primary" else ("shadow_rays", "long_tests")
-        return stats["counts"][rays], stats["seconds"][stage]
-
-    def warm(self, kind):
-        """The suite `rays`: medians after a warm-up, 1024 x 1024 pixels."""
-        subprocess.run(self.suite, check=True, stdout=subprocess.DEVNULL)
-        rows = json.loads(self.stats.read_text())["rows"]
-        values = next(row["values"] for row in rows if row["keys"]["accel"] == "bvh" and row["keys"]["rays"] == kind)
-        return values["rays"], values["rays"] / values["million_per_second"] / 1e6
+        report, _ = self.render(kind)
+        return (report.rays, report.primary_seconds) if kind == "primary" else (report.shadow_rays, report.shadow_seconds)
 
 
 def rays_to_lights(scene, primary, triangle, distance):

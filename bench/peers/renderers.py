@@ -3,10 +3,9 @@
 All look through the middle of each pixel: what differs is the shadows alone, not how edges are smoothed.
 """
 
-import json
 import math
-import subprocess
 import time
+from pathlib import Path
 
 import flip_evaluator
 import numpy as np
@@ -15,25 +14,42 @@ from scene import KD
 
 
 class Lightmesh:
-    """Area mode: `samples` stratified shadow rays per light and pixel. Light-mesh mode: as many per light point."""
+    """`samples` shadow rays per light and pixel, or what a lookup makes of that number."""
 
-    def __init__(self, program, scene, mode, plan, folder):
-        size, threads = plan.size, plan.threads
-        self.name, self.folder = f"lightmesh {mode}", folder
-        self.version = subprocess.run([program, "--version"], check=True, stdout=subprocess.PIPE, text=True).stdout.split()[1]
-        self.command = [program, "render", scene.file, "-q", "--device", plan.device, "--mode", mode, "--threads", str(threads)]
-        self.command += ["--size", f"{size}x{size}", "-o", folder / "picture.exr", "--stats", folder / "stats.json"]
+    def __init__(self, opened, method, size):
+        self.name = f"lightmesh {'rays' if method == 'area' else method}"
+        self.opened, self.method, self.size = opened, method, size
 
     def render(self, samples, seed):
-        subprocess.run([*self.command, "--samples", str(samples), "--seed", str(seed)], check=True)
-        seconds = json.loads((self.folder / "stats.json").read_text())["seconds"]
-        # The other renderers' times do not include uploading the scene to a GPU either.
-        return seconds["render"] - seconds["upload"], flip_evaluator.load(str(self.folder / "picture.exr"))
+        report, color, _ = self.opened.render(self.method, self.size, samples, seed)
+        return report.seconds, color
+
+    reference = render
+
+
+class Denoised:
+    """A renderer with its denoiser, which expects edges without stairs: samples cover the pixel. The reference has no denoiser."""
+
+    def __init__(self, renderer):
+        self.name, self.version, self.renderer = f"{renderer.name} denoised", renderer.version, renderer
+
+    def render(self, samples, seed):
+        return self.renderer.render(samples, seed, smooth=True, denoise=True)
+
+    def reference(self, samples, seed):
+        return self.renderer.render(samples, seed, smooth=True)
+
+
+# Only emitters are sampled, as by shadow rays: with material sampling, half of the rays would miss small lights.
+DIRECT = {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0, "hide_emitters": True}
+
+# Of OptiX's denoiser, as the driver installs them. Without them it ends the process.
+WEIGHTS = Path("/usr/share/nvidia/nvoptix.bin")
 
 
 class Mitsuba:
     """The `direct` integrator, compiled by LLVM or for OptiX, with the sampler `multijitter`: the default one, `independent`, has far
-    more noise."""
+    more noise. What it compiles is kept for each number of samples. Its denoiser is OptiX's, which gets albedo and normals."""
 
     def __init__(self, scene, plan):
         import drjit
@@ -48,18 +64,27 @@ class Mitsuba:
         sampler = centred(mitsuba) if compiled else "multijitter"
         if compiled and not on_gpu:
             drjit.set_thread_count(plan.threads)
-        self.scene = mitsuba.load_dict(self.describe(scene, plan.size, sampler))
+        self.scene = mitsuba.load_dict(self.describe(scene))
+        self.compiled, self.kept = compiled, {}
+        self.centred, self.smooth = (self.sensor(scene, plan.size, kind) for kind in (sampler, "multijitter"))
+        layers = {"type": "aov", "aovs": "albedo:albedo,normal:sh_normal", "image": DIRECT}
+        self.direct, self.with_layers = mitsuba.load_dict(DIRECT), mitsuba.load_dict(layers)
+        usable = on_gpu and WEIGHTS.exists()
+        self.denoiser = mitsuba.OptixDenoiser([plan.size] * 2, albedo=True, normals=True) if usable else None
 
-    def describe(self, scene, size, sampler):
-        transform, camera = self.mitsuba.ScalarTransform4f, scene.camera
-        grey = {"type": "diffuse", "reflectance": {"type": "rgb", "value": KD}}
+    def sensor(self, scene, size, sampler):
         film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
-        view = transform().look_at(*(v.tolist() for v in (camera.position, camera.position + camera.direction, camera.up)))
+        camera = scene.camera
+        corners = (v.tolist() for v in (camera.position, camera.position + camera.direction, camera.up))
+        view = self.mitsuba.ScalarTransform4f().look_at(*corners)
+        sensor = {"type": "perspective", "fov": camera.vfov, "to_world": view, "film": film, "sampler": {"type": sampler}}
+        return self.mitsuba.load_dict(sensor)
+
+    def describe(self, scene):
+        transform = self.mitsuba.ScalarTransform4f
+        grey = {"type": "diffuse", "reflectance": {"type": "rgb", "value": KD}}
         parts = {
             "type": "scene",
-            # Only emitters are sampled, as in area mode: with material sampling, half of the rays would miss small lights.
-            "integrator": {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0, "hide_emitters": True},
-            "sensor": {"type": "perspective", "fov": camera.vfov, "to_world": view, "film": film, "sampler": {"type": sampler}},
             "mesh": {
                 "type": "ply",
                 "filename": str(scene.file.with_suffix(".ply")),
@@ -77,13 +102,30 @@ class Mitsuba:
             parts[f"light{number}"] = {"type": "rectangle", "to_world": transform(columns), "emitter": emitter}
         return parts
 
-    def render(self, samples, seed):
+    def render(self, samples, seed, smooth=False, denoise=False):
+        key = (samples, smooth, denoise)
+        if key not in self.kept:
+            integrator = self.with_layers if denoise else self.direct
+            image = lambda scene, sensor, seed: self.mitsuba.render(scene, sensor=sensor, integrator=integrator, spp=samples, seed=seed)
+            self.kept[key] = self.drjit.freeze(image) if self.compiled else image
         start = time.perf_counter()
-        picture = self.mitsuba.render(self.scene, spp=samples, seed=seed)
-        if self.drjit.is_jit_v(picture):
+        picture = self.kept[key](self.scene, self.smooth if smooth else self.centred, self.mitsuba.UInt32(seed))
+        if self.compiled:
             self.drjit.eval(picture)
             self.drjit.sync_thread()
+        # OptiX's denoiser is no part of what is compiled.
+        if denoise:
+            picture = self.denoised(picture)
         return time.perf_counter() - start, np.array(picture)[..., :3]
+
+    reference = render
+
+    def denoised(self, layers):
+        to_sensor = self.smooth.world_transform().inverse()
+        picture = self.denoiser(layers[..., :3], albedo=layers[..., -6:-3], normals=layers[..., -3:], to_sensor=to_sensor)
+        self.drjit.eval(picture)
+        self.drjit.sync_thread()
+        return picture
 
 
 def centred(mitsuba):
@@ -130,16 +172,19 @@ def centred(mitsuba):
 
 
 class Cycles:
-    """Blender's path tracer, without bounces, denoising or adaptive sampling. Its times include the set-up of each image."""
+    """Blender's path tracer, without bounces or adaptive sampling, on a GPU through OptiX. Its times include the set-up of each image. Its
+    denoiser is Open Image Denoise, which gets albedo and normals."""
 
     def __init__(self, scene, plan, folder):
         import bpy
 
-        self.name, self.bpy, self.version = "Cycles", bpy, bpy.app.version_string
+        self.name, self.bpy, self.version, self.denoiser = "Cycles", bpy, bpy.app.version_string, "Open Image Denoise"
         self.path = str(folder / "cycles.exr")
         bpy.ops.wm.read_factory_settings(use_empty=True)
         self.context = bpy.context.scene
         self.set_up(plan.size, plan.threads)
+        if plan.device == "cuda":
+            self.move_to_gpu()
         self.add_mesh(scene)
         self.add_camera(scene.camera)
         for light in scene.lights:
@@ -148,15 +193,23 @@ class Cycles:
     def set_up(self, size, threads):
         render, cycles = self.context.render, self.context.cycles
         render.engine = "CYCLES"
-        cycles.device, cycles.max_bounces = "CPU", 0
-        cycles.use_adaptive_sampling = cycles.use_denoising = False
-        # The narrowest filter available: a hundredth of a pixel.
-        cycles.pixel_filter_type, cycles.filter_width = "GAUSSIAN", 0.01
+        cycles.device, cycles.max_bounces, cycles.use_adaptive_sampling = "CPU", 0, False
+        cycles.denoiser, cycles.denoising_input_passes = "OPENIMAGEDENOISE", "RGB_ALBEDO_NORMAL"
         render.resolution_x = render.resolution_y = size
         render.threads_mode, render.threads = "FIXED", threads
         # Keeps the acceleration structure between images.
         render.use_persistent_data = True
         render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
+
+    def move_to_gpu(self):
+        preferences = self.bpy.context.preferences.addons["cycles"].preferences
+        preferences.compute_device_type = "OPTIX"
+        preferences.refresh_devices()
+        for device in preferences.devices:
+            device.use = device.type == "OPTIX"
+        if not any(device.use for device in preferences.devices):
+            raise ImportError("it finds no GPU")
+        self.context.cycles.device, self.context.cycles.denoising_use_gpu = "GPU", True
 
     def add(self, name, data, vectors, place):
         """Places an object with these axes, as columns, at a position."""
@@ -198,8 +251,11 @@ class Cycles:
         thing = self.add("light", data, [across, np.cross(-light.direction, across), -light.direction], light.position)
         thing.visible_camera = False
 
-    def render(self, samples, seed):
-        self.context.cycles.samples, self.context.cycles.seed = samples, seed
+    def render(self, samples, seed, smooth=False, denoise=False):
+        cycles = self.context.cycles
+        cycles.samples, cycles.seed, cycles.use_denoising = samples, seed, denoise
+        # Its default, or the narrowest filter available: a hundredth of a pixel.
+        cycles.pixel_filter_type, cycles.filter_width = ("BLACKMAN_HARRIS", 1.5) if smooth else ("GAUSSIAN", 0.01)
         # Without this the previous image is returned: Blender does not notice that these settings changed.
         self.context.update_tag()
         start = time.perf_counter()
@@ -207,3 +263,5 @@ class Cycles:
         seconds = time.perf_counter() - start
         self.bpy.data.images["Render Result"].save_render(self.path)
         return seconds, flip_evaluator.load(self.path)
+
+    reference = render

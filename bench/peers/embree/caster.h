@@ -65,7 +65,7 @@ class Caster {
 
     const Scene& scene;
     Image& image;
-    uint32_t samples;
+    const Rows& rows;
     bool tracing;
     Arguments arguments = {};
     RaysAndHits<N> packet = {};
@@ -73,8 +73,8 @@ class Caster {
 public:
     Counts counts;
 
-    Caster(const Scene& scene, Image& image, uint32_t samples, bool tracing)
-        : scene(scene), image(image), samples(samples), tracing(tracing) {
+    Caster(const Scene& scene, Image& image, const Rows& rows, bool tracing)
+        : scene(scene), image(image), rows(rows), tracing(tracing) {
         std::fill_n(packet.rays.mask, N, ~0u);
     }
 
@@ -115,19 +115,21 @@ public:
             const auto points = surface_points<N>(scene, image, start);
             for (int lane = 0; lane < N; lane++)
                 if (image.triangles[start + lane] != NONE)
-                    soft(start + lane, spread(lane_of(points.origin, lane)), spread(lane_of(points.normal, lane)));
+                    soft(start + lane, lane_of(points.origin, lane), lane_of(points.normal, lane));
         }
     }
 
 private:
-    void soft(uint32_t ray, Vec<Floats> origin, Vec<Floats> normal) {
-        start_at(origin);
+    void soft(uint32_t ray, Vec3 origin, Vec3 normal) {
+        const Vec<Floats> start = spread(origin);
+        const uint32_t samples = rows.lines * rows.lines;
+        start_at(start);
         for (size_t light = 0; light < scene.lights.size(); light++) {
-            const Pattern pattern(image.pixels[ray], light);
+            const Pattern pattern(rows, scene.lights[light], origin, image.pixels[ray], light);
             int lit = 0;
             for (uint32_t sample = 0; sample < samples; sample += N) {
                 const Mask some = Lanes<N>::count_from(sample) < samples;
-                lit += lanes(trace(origin, normal, pattern.template targets<N>(scene.lights[light], sample), some));
+                lit += lanes(trace(start, spread(normal), start + pattern.template ways<N>(sample), some));
             }
             image.lit[light * image.pixels.size() + ray] = uint16_t(lit);
         }

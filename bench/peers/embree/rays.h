@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <cstring>
 #include <numeric>
+#include <stdexcept>
+#include <vector>
 
 template <typename T>
 T load(const void* from) {
@@ -152,59 +154,67 @@ inline uint64_t mix(uint64_t value) {
     return value ^ value >> 31;
 }
 
-template <typename W>
-W reversed(W x) {
-    x = x >> 16 | x << 16;
-    x = (x & 0xff00ff00) >> 8 | (x & 0x00ff00ff) << 8;
-    x = (x & 0xf0f0f0f0) >> 4 | (x & 0x0f0f0f0f) << 4;
-    x = (x & 0xcccccccc) >> 2 | (x & 0x33333333) << 2;
-    return (x & 0xaaaaaaaa) >> 1 | (x & 0x55555555) << 1;
-}
+// The samples of a rectangle that do not depend on the pixel: rows along its longer side, n rows of n samples for n² in all. The last row
+// is cut in two: what leaves the rectangle at one side enters it at the other.
+class Rows {
+    static constexpr float SHIFTS = 0x1p16f;
+    static constexpr double GOLDEN = 0.6180339887498949;
 
-// Owen scrambling, the first binary digit being the least significant bit.
-template <typename W>
-W scramble(W x, uint32_t seed) {
-    x += seed;
-    x ^= x * 0x6c50b47c;
-    x ^= x * 0xb82f1e52;
-    x ^= x * 0xc7afe638;
-    return x ^ x * 0x8d22f6e6;
-}
+public:
+    uint32_t lines;
+    // For each sample its place in its row, by how much of their distance the row is shifted, and the height of the row; the last row
+    // has two.
+    std::vector<float> places, shifts, heights, entering;
 
-// The second dimension of Sobol's sequence; the first is the index itself.
-template <typename W>
-W sobol_1(W x) {
-    x ^= x >> 16;
-    x ^= (x & 0xff00ff00) >> 8;
-    x ^= (x & 0xf0f0f0f0) >> 4;
-    x ^= (x & 0xcccccccc) >> 2;
-    return x ^ (x & 0xaaaaaaaa) >> 1;
-}
+    explicit Rows(uint32_t samples) : lines(uint32_t(std::lround(std::sqrt(samples)))) {
+        if (lines * lines != samples)
+            throw std::runtime_error("the number of samples is no square");
+        const auto height = [&](uint32_t line) { return float((2.0 * line - 1) / lines - 1); };
+        for (uint32_t sample = 0; sample < samples; sample++) {
+            const uint32_t row = sample / lines;
+            const double share = row * GOLDEN;
+            places.push_back(float(sample % lines));
+            shifts.push_back(float(std::floor((share - std::floor(share)) * SHIFTS)) / SHIFTS);
+            heights.push_back(height(row + 1));
+            entering.push_back(row + 1 == lines ? height(0) : height(row + 1));
+        }
+        // Room for a packet that is not full.
+        for (std::vector<float>* numbers : {&places, &shifts, &heights, &entering})
+            numbers->resize(samples + 16);
+    }
+};
 
 // The samples of one light from one pixel.
 class Pattern {
-    uint32_t seeds[3];
+    static constexpr float SHIFTS = 0x1p16f;
+
+    const Rows& rows;
+    Vec3 center, along, across;
+    float shift, inside, half;
 
 public:
-    Pattern(uint64_t pixel, uint64_t light) {
-        const uint64_t base = mix(mix(pixel << 1 ^ mix(light + 1)));
-        for (int i = 0; i < 3; i++)
-            seeds[i] = uint32_t(mix(base + i));
+    Pattern(const Rows& rows, const Light& light, Vec3 origin, uint64_t pixel, uint64_t number)
+        : rows(rows), half(0.5f * float(rows.lines)) {
+        const uint64_t random = mix(mix(pixel << 1 ^ mix(number + 1)));
+        const float aside = float(random >> 16 & 0xffff) / SHIFTS;
+        const bool ordered = dot(light.half_u, light.half_u) >= dot(light.half_v, light.half_v);
+        const Vec3 u = ordered ? light.half_u : light.half_v;
+        across = ordered ? light.half_v : light.half_u;
+        const Vec3 step = 1 / float(rows.lines) * across;
+        shift = float(random & 0xffff) / SHIFTS;
+        inside = (1 - aside) * float(rows.lines);
+        center = light.position - origin + 2 * aside * step;
+        along = u + step;
     }
 
-    // The points of a light that N samples select, from `first`.
+    // Where N samples are, from `first`, seen from the surface point.
     template <int N>
-    auto targets(const Light& light, uint32_t first) const {
-        const auto index = reversed(scramble(reversed(Lanes<N>::count_from(first)), seeds[0]));
-        const auto u = 2 * axis<N>(index, seeds[1]) - 1, v = 2 * axis<N>(sobol_1(index), seeds[2]) - 1;
-        return light.position + u * light.half_u + v * light.half_v;
-    }
-
-private:
-    // 24 digits, the first one most significant, as a number in [0, 1).
-    template <int N>
-    static auto axis(typename Lanes<N>::Words digits, uint32_t seed) {
-        const typename Lanes<N>::Mask whole = typename Lanes<N>::Mask(reversed(scramble(digits, seed)) >> 8);
-        return __builtin_convertvector(whole, typename Lanes<N>::Floats) * 0x1p-24f;
+    auto ways(uint32_t first) const {
+        using Floats = typename Lanes<N>::Floats;
+        const Floats place = load<Floats>(&rows.places[first]), moved = shift + load<Floats>(&rows.shifts[first]);
+        const Floats shifted = moved >= 1 ? moved - 1 : moved;
+        const Floats x = (place - (half - shifted)) / half;
+        const Floats y = place < inside - shifted ? load<Floats>(&rows.heights[first]) : load<Floats>(&rows.entering[first]);
+        return center + x * along + y * across;
     }
 };

@@ -2,13 +2,12 @@
 //
 //     trace SCENE SIZE SAMPLES fast|robust [CONFIG]
 //
-// SCENE is written by native.py, CONFIG is Embree's own, such as isa=avx2. Reads commands from standard input, and answers each with
-// a line of JSON:
+// SCENE is written by native.py, SAMPLES is a square, CONFIG is Embree's own, such as isa=avx2. Reads commands from standard input, and
+// answers each with a line of JSON:
 //
 //     primary|hard|soft WIDTH THREADS     casts all rays of a kind: seconds, rays, hits of primary or occluded of shadow rays
 //     form WIDTH THREADS hard|soft        the same without tracing: what it takes to form the shadow rays
-//     save FILE                           saves floats: for each pixel the surface point, its normal and how many rays of the last
-//                                         kind reached each light; zeros if it sees nothing
+//     save FILE                           saves, for each light and pixel, how many rays of the last kind reached it: 16 bits each
 //
 // Like Lightmesh, primary rays are formed before the clock starts, and shadow rays while it runs.
 
@@ -31,7 +30,7 @@ namespace {
 
 // Runs a kind of rays on some threads; the clock runs from the moment when all have started.
 template <int WIDTH>
-void cast(const Scene& scene, Image& image, uint32_t samples, const std::string& kind, bool tracing, int threads) {
+void cast(const Scene& scene, Image& image, const Rows& rows, const std::string& kind, bool tracing, int threads) {
     std::atomic<uint32_t> next = 0;
     std::atomic<uint64_t> rays = 0, found = 0;
     std::barrier together(threads);
@@ -39,7 +38,7 @@ void cast(const Scene& scene, Image& image, uint32_t samples, const std::string&
     const auto work = [&](int thread) {
         // Embree's manual recommends both for speed: flush to zero, denormals are zero.
         _mm_setcsr(_mm_getcsr() | 0x8040);
-        Caster<WIDTH> caster(scene, image, samples, tracing);
+        Caster<WIDTH> caster(scene, image, rows, tracing);
         together.arrive_and_wait();
         if (thread == 0)
             start = seconds();
@@ -68,24 +67,14 @@ void cast(const Scene& scene, Image& image, uint32_t samples, const std::string&
 }
 
 void save(const Scene& scene, const Image& image, const std::string& path) {
-    const size_t width = 6 + scene.lights.size();
-    std::vector<float> pixels(width * image.size * image.size);
-    for (uint32_t start = 0; start < image.pixels.size(); start += 8) {
-        const auto points = surface_points<8>(scene, image, start);
-        for (int lane = 0; lane < 8; lane++) {
-            const uint32_t ray = start + lane;
-            if (image.triangles[ray] == NONE)
-                continue;
-            const Vec3 origin = lane_of(points.origin, lane), normal = lane_of(points.normal, lane);
-            float* pixel = &pixels[width * image.pixels[ray]];
-            const float place[] = {origin.x, origin.y, origin.z, normal.x, normal.y, normal.z};
-            std::copy_n(place, 6, pixel);
-            for (size_t light = 0; light < scene.lights.size(); light++)
-                pixel[6 + light] = image.lit[light * image.pixels.size() + ray];
-        }
-    }
+    const size_t pixels = size_t(image.size) * image.size;
+    std::vector<uint16_t> reached(scene.lights.size() * pixels);
+    for (size_t light = 0; light < scene.lights.size(); light++)
+        for (size_t ray = 0; ray < image.pixels.size(); ray++)
+            if (image.triangles[ray] != NONE)
+                reached[light * pixels + image.pixels[ray]] = image.lit[light * image.pixels.size() + ray];
     std::ofstream file(path, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(pixels.data()), std::streamsize(pixels.size() * sizeof(float)));
+    file.write(reinterpret_cast<const char*>(reached.data()), std::streamsize(reached.size() * sizeof reached[0]));
     file.close();
     std::cout << "{}" << std::endl;
 }
@@ -112,7 +101,7 @@ int main(int count, char** words) {
     const int flags = std::string(words[4]) == "robust" ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
     const Scene scene(device, words[1], flags);
     Image image(scene, std::stoul(words[2]));
-    const uint32_t samples = std::stoul(words[3]);
+    const Rows rows(std::stoul(words[3]));
     if (const int error = rtcGetDeviceError(device)) {
         std::cerr << "Embree's error " << error << "\n";
         return 1;
@@ -131,6 +120,6 @@ int main(int count, char** words) {
         if (!tracing)
             std::cin >> kind;
         const auto run = width == 16 ? cast<16> : width == 8 ? cast<8> : cast<1>;
-        run(scene, image, samples, kind, tracing, threads);
+        run(scene, image, rows, kind, tracing, threads);
     }
 }

@@ -82,6 +82,7 @@ pub(crate) fn title(experiment: &str) -> String {
         WHOLE_FRAMES => "Whole frames: the default, the half-ball, adaptive shadow rays",
         MANY_LIGHTS => "Many lights: time and memory of occluder lists",
         "soft shadows" => "Soft shadows with other renderers",
+        "programs at equal error" => "Other renderers at the error of occluder lists",
         "peers" => "Other renderers",
         _ => "",
     };
