@@ -8,10 +8,21 @@ use lightmesh::Scene;
 use lightmesh::scene::{Mesh, Up};
 use tempfile::TempDir;
 
+/// Folder of the scene in the temporary one.
+const INNER: &str = "scene";
 /// Folder of files in memory on Linux.
 const MEMORY: &str = "/dev/shm";
 
-/// A separate folder for one input.
+/// What stands in a file outside of the scene's folder. No message may quote it.
+const SECRET: &str = "qz7-4f1e-kept-outside";
+/// Names of links to that file in the folder.
+const LINKS: [&str; 4] = ["link.obj", "link.mtl", "link.png", "link.bin"];
+/// Larger messages are no sentences.
+const LONGEST: usize = 20_000;
+/// Warnings, and one about those that are not shown.
+const MOST_WARNINGS: usize = 101;
+
+/// A separate folder for one input. Links in it lead out to another file.
 pub struct Folder(TempDir);
 
 impl Folder {
@@ -20,13 +31,20 @@ impl Folder {
     pub fn new() -> Folder {
         let mut builder = tempfile::Builder::new();
         builder.prefix("lightmesh-fuzz-");
-        let folder = builder.tempdir_in(MEMORY).or_else(|_| builder.tempdir());
-        Folder(folder.expect("a temporary folder"))
+        let folder = builder.tempdir_in(MEMORY).or_else(|_| builder.tempdir()).expect("a temporary folder");
+        let (inner, secret) = (folder.path().join(INNER), folder.path().join("secret"));
+        std::fs::create_dir(&inner).expect("a folder");
+        std::fs::write(secret, SECRET).expect("space for a small file");
+        #[cfg(unix)]
+        for link in LINKS {
+            std::os::unix::fs::symlink("../secret", inner.join(link)).expect("a link");
+        }
+        Folder(folder)
     }
 
     /// Writes a file and returns its path.
     pub fn write(&self, name: &str, bytes: &[u8]) -> PathBuf {
-        let path = self.0.path().join(name);
+        let path = self.0.path().join(INNER).join(name);
         std::fs::write(&path, bytes).expect("space for a small file");
         path
     }
@@ -45,11 +63,19 @@ pub fn read(path: &Path) {
         Err(error) => {
             let (message, folder) = (error.to_string(), path.parent().expect("a folder"));
             assert!(message.contains(&*folder.to_string_lossy()), "the file is not named: {message}");
+            check_message(&message);
         }
     }
 }
 
+/// A message is of a size to be read, and tells nothing of files outside of the folder.
+fn check_message(message: &str) {
+    assert!(message.len() <= LONGEST && !message.contains(SECRET), "{message}");
+}
+
 fn check(scene: &Scene) {
+    assert!(scene.warnings.len() <= MOST_WARNINGS, "{:?}", scene.warnings);
+    scene.warnings.iter().for_each(|warning| check_message(warning));
     check_mesh(&scene.geometry.mesh, scene.geometry.materials.len());
     for texture in &scene.geometry.textures {
         let [width, height] = texture.size.map(u64::from);

@@ -16,6 +16,8 @@
 
 use std::fmt;
 
+use lightmesh_files::visible;
+
 use serde::Serialize;
 
 use crate::{Results, Row, STAGES, Samples, WHOLE};
@@ -174,6 +176,7 @@ impl fmt::Display for RunComparison {
         for stage in self.stages.iter().filter(shown) {
             let StageComparison { id, stage: name, old, new, ratio, band, verdict, judged } = stage;
             let (band, verdict) = (format!("{:.0}%", 100.0 * band), verdict.name());
+            let (id, name) = (visible(id), visible(name));
             let remark = if *judged { "" } else { " (not judged)" };
             writeln!(f, "{old:10.4} {new:10.4} {ratio:7.3} {band:>6}  {verdict:7} {id} [{name}]{remark}")?;
         }

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use lightmesh_files::visible;
+
 use crate::measure::stage_names;
 use crate::{Results, Row, STAGES, Samples, WHOLE};
 
@@ -14,11 +16,11 @@ impl fmt::Display for Results {
         for row in &self.rows {
             if row.experiment != experiment {
                 experiment = &row.experiment;
-                writeln!(f, "{experiment}")?;
+                writeln!(f, "{}", visible(experiment))?;
             }
-            writeln!(f, "  {}", line(row))?;
+            writeln!(f, "  {}", visible(&line(row)))?;
         }
-        self.notes.iter().try_for_each(|note| writeln!(f, "note: {note}"))
+        self.notes.iter().try_for_each(|note| writeln!(f, "note: {}", visible(note)))
     }
 }
 

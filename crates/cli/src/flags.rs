@@ -24,8 +24,11 @@ pub(crate) fn that_mend(failure: &Failure) -> Vec<String> {
         Failure::Render(RenderError::Grid(_)) | Failure::Grid(_) => &["--grid"],
         Failure::Render(RenderError::GridFile(_)) => &["lightmesh grid SCENE -o FILE"],
         Failure::Render(error) => return error.settings().into_iter().map(of).collect(),
-        Failure::Load(LoadError::Outside { .. }) => &["--allow-outside"],
-        Failure::Load(LoadError::Warnings { .. }) => &["--strict"],
+        Failure::Load(error) => match error.root() {
+            LoadError::Outside { .. } => &["--allow-outside"],
+            LoadError::Warnings { .. } => &["--strict"],
+            _ => &[],
+        },
         Failure::Bench(error) => match **error {
             BenchError::OwnScenes(_) => &["--scene", "--size"],
             BenchError::Malformed { .. } | BenchError::Version { .. } => &[RESULTS],

@@ -28,8 +28,7 @@ fn main() -> ExitCode {
     let result = panic::catch_unwind(|| match Cli::try_parse() {
         Ok(cli) => interrupt::install().and_then(|()| run::run(cli.command)).unwrap_or_else(|failure| failed(&failure)),
         Err(message) => {
-            // If even this cannot be printed, there is nowhere left to report it.
-            let _ = message.print();
+            output::print_usage(&message);
             message.exit_code() as u8
         }
     });

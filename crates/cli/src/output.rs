@@ -1,10 +1,10 @@
 //! Output to standard output, standard error, and files that are written completely or not at all.
 
-use std::borrow::Cow;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use lightmesh_files::{Replacement, TargetError, resolved};
+use lightmesh_files::{Replacement, TargetError, resolved, visible, visible_json, visible_lines};
+use serde::Serialize;
 
 /// Why output cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -23,8 +23,25 @@ pub(crate) enum OutputError {
     Stdout(io::Error),
 }
 
-/// Prints to standard output. A closed pipe is not an error.
+/// Prints lines to standard output. Whatever names in them contain, it does not control the terminal; names that must not begin new lines
+/// are made [visible] before.
 pub(crate) fn print(text: &str) -> Result<(), OutputError> {
+    write_stdout(&visible_lines(text))
+}
+
+/// Prints indented JSON to standard output.
+pub(crate) fn print_json(value: &impl Serialize) -> Result<(), OutputError> {
+    write_stdout(&visible_json(&json(value)))
+}
+
+/// Indented JSON with a trailing newline.
+pub(crate) fn json(value: &impl Serialize) -> String {
+    let text = serde_json::to_string_pretty(value);
+    text.expect("all keys are strings and serialization does no I/O") + "\n"
+}
+
+/// A closed pipe is not an error.
+fn write_stdout(text: &str) -> Result<(), OutputError> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(OutputError::Stdout(error)),
@@ -32,18 +49,30 @@ pub(crate) fn print(text: &str) -> Result<(), OutputError> {
     }
 }
 
-/// Prints a line to standard error. If that fails, there is nowhere left to report it.
+/// Prints a line to standard error: names in it neither control the terminal nor begin new lines. If that fails, there is nowhere left
+/// to report it.
 pub(crate) fn complain(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", visible(text));
 }
 
-/// Escapes control characters: names in a file must not control the terminal or begin new lines.
-fn visible(text: &str) -> Cow<'_, str> {
-    if !text.contains(char::is_control) {
-        return text.into();
+/// Prints one line of JSON to standard error.
+pub(crate) fn complain_json(value: &impl Serialize) {
+    // Strings and finite numbers can always be represented in JSON.
+    if let Ok(line) = serde_json::to_string(value) {
+        let _ = writeln!(io::stderr().lock(), "{}", visible_json(&line));
     }
-    let written = |c: char| if c.is_control() { c.escape_debug().to_string() } else { c.into() };
-    text.chars().map(written).collect::<String>().into()
+}
+
+/// Prints what the parser of the command line says: help, or an error that quotes arguments.
+pub(crate) fn print_usage(message: &clap::Error) {
+    let text = message.render().to_string();
+    let text = visible_lines(&text);
+    // If even this cannot be printed, there is nowhere left to report it.
+    let _ = if message.use_stderr() {
+        io::stderr().lock().write_all(text.as_bytes())
+    } else {
+        io::stdout().lock().write_all(text.as_bytes())
+    };
 }
 
 /// Checks that a file could be written to `path`, without touching an existing one.
@@ -76,12 +105,6 @@ pub(crate) fn check_distinct(files: &[(&'static str, Option<&Path>)]) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn names_do_not_command_the_terminal() {
-        assert_eq!(visible("a \u{1b}[31mred\n\0 büro"), "a \\u{1b}[31mred\\n\\0 büro");
-        assert!(matches!(visible("büro"), Cow::Borrowed("büro")));
-    }
 
     #[test]
     fn one_file_has_many_names() {

@@ -41,9 +41,3 @@ impl<'a> Report<'a> {
         }
     }
 }
-
-/// Indented JSON with a trailing newline.
-pub(crate) fn json(value: &impl Serialize) -> String {
-    let text = serde_json::to_string_pretty(value);
-    text.expect("all keys are strings and serialization does no I/O") + "\n"
-}

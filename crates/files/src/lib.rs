@@ -1,4 +1,5 @@
-//! Output files that are written completely or not at all.
+//! The border between the program and files: output files that are written completely or not at all, input files that are
+//! [read](read_inside) only where they may lie, and text of either made [visible].
 //!
 //! A [`Replacement`] is a temporary file next to its target. It is filled, then renamed over the target: an interrupted program
 //! or a full disk leaves the previous file intact and no temporary file behind.
@@ -15,11 +16,17 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod read;
+mod visible;
+
 use std::fs;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::{Builder, NamedTempFile};
+
+pub use read::{ReadError, read, read_inside};
+pub use visible::{visible, visible_json, visible_lines};
 
 /// Why a target cannot be written.
 #[derive(Debug, thiserror::Error)]

@@ -2,17 +2,20 @@
 //! the local frame can be chosen.
 
 use std::ops::Range;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3, Vec3};
 
 use crate::{
-    Camera, Geometry, Light, LightKind, LightMeshDefaults, Lights, LoadError, LoadOptions, Material, MeshPart, Place,
+    Camera, Geometry, Light, LightKind, LightMeshDefaults, Lights, LoadError, LoadOptions, Material, MeshPart,
     Position, Scene, SceneBuilder, Texture,
+    border::Border,
     loaded_mesh::LoadedMesh,
     mesh_part::Room,
+    quote::reference,
     texture::{TextureFiles, untextured},
     usable::{is_place, keep_finite, keep_placed},
+    warnings::Warnings,
 };
 
 /// The placement of a model in the scene, and which parts of it to use.
@@ -39,7 +42,9 @@ pub(crate) const LARGEST_COORDINATE: f64 = 1e18;
 #[derive(Debug)]
 pub(crate) struct Draft {
     path: PathBuf,
-    options: LoadOptions,
+    strict: bool,
+    /// Where the scene's files may lie.
+    pub(crate) border: Border,
     builder: SceneBuilder,
     unusable_triangles: usize,
     /// Triangles of parts without texture coordinates.
@@ -54,7 +59,7 @@ pub(crate) struct Draft {
     pub(crate) ambient: Option<Vec3>,
     pub(crate) background: Option<Vec3>,
     pub(crate) light_mesh: LightMeshDefaults,
-    pub(crate) warnings: Vec<String>,
+    pub(crate) warnings: Warnings,
 }
 
 impl Draft {
@@ -62,7 +67,8 @@ impl Draft {
     pub(crate) fn new(path: &Path, options: &LoadOptions) -> Draft {
         Draft {
             path: path.to_owned(),
-            options: options.clone(),
+            strict: options.strict,
+            border: Border::new(path, options.allow_outside),
             builder: SceneBuilder::new(),
             unusable_triangles: 0,
             without_uvs: Vec::new(),
@@ -74,7 +80,7 @@ impl Draft {
             ambient: None,
             background: None,
             light_mesh: LightMeshDefaults::default(),
-            warnings: Vec::new(),
+            warnings: Warnings::default(),
         }
     }
 
@@ -169,28 +175,23 @@ impl Draft {
         }
     }
 
-    /// The path that `source`, one of the scene's files, refers to as `name`: relative to the file's own folder, with either
-    /// kind of slash.
-    ///
-    /// # Errors
-    ///
-    /// [`LoadError::Outside`] if that is a URL or outside the folder of the file that was opened, unless the options allow it.
-    pub(crate) fn path_beside(&self, source: &Path, name: &str) -> Result<PathBuf, LoadError> {
-        let outside = || LoadError::Outside { place: Place::file(source).into(), name: name.to_owned() };
-        let is_url =
-            name.split_once("://").is_some_and(|(scheme, _)| scheme.chars().all(|c| c.is_ascii_alphanumeric()));
-        let named = name.replace('\\', "/");
-        let has_drive =
-            matches!(named.as_bytes(), [letter, b':', ..] if letter.is_ascii_alphabetic()) && cfg!(not(windows));
-        if is_url || has_drive {
-            return Err(outside());
+    /// The file that `source` refers to as `name`. One that is missing or outside, as are paths of its author's computer, may lie next to
+    /// `source`: then there is a warning.
+    pub(crate) fn read_nearby(&mut self, source: &Path, name: &str) -> Result<(PathBuf, Vec<u8>), LoadError> {
+        let missing = match self.border.read_beside(source, name) {
+            Err(error @ (LoadError::Outside { .. } | LoadError::Read { .. })) => error,
+            found => return found,
+        };
+        let base = name.rsplit(['/', '\\']).next().unwrap_or_default();
+        match self.border.read_beside(source, base) {
+            Ok(found) if base != name => {
+                let (source, named) = (source.display(), reference(name));
+                self.warnings
+                    .push(format!("{source}: `{named}` cannot be used; {base} next to the file is used instead"));
+                Ok(found)
+            }
+            _ => Err(missing),
         }
-        let path = source.parent().unwrap_or(Path::new("")).join(named);
-        let folder = tidy(self.path.parent().unwrap_or(Path::new("")));
-        let in_folder = tidy(&path)
-            .strip_prefix(folder)
-            .is_ok_and(|rest| matches!(rest.components().next(), None | Some(Component::Normal(_))));
-        if self.options.allow_outside || in_folder { Ok(path) } else { Err(outside()) }
     }
 
     /// Sets the local frame that the scene was written with, if its file records it: then it is read back to the same `f32`.
@@ -228,15 +229,16 @@ impl Draft {
         self.warnings.extend(keep_placed(&mut self.cameras, "cameras"));
         self.warnings.extend(keep_placed(&mut self.lights, "lights"));
         self.warnings.extend(keep_finite(&mut self.materials));
-        self.warnings.extend(self.texture_files.warning());
+        self.warnings.extend(self.texture_files.warning(&self.path));
         if self.builder.triangle_count() == 0 {
             self.warnings.push("the scene has no triangles".to_owned());
         }
         let name = self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let (origin, mut mesh) = self.builder.finish();
         self.warnings.extend(untextured(&mut mesh, &mut self.materials, &self.without_uvs));
-        if self.options.strict && !self.warnings.is_empty() {
-            return Err(LoadError::Warnings { path: self.path, warnings: self.warnings });
+        let warnings = self.warnings.into_list();
+        if self.strict && !warnings.is_empty() {
+            return Err(LoadError::Warnings { path: self.path, warnings });
         }
         let geometry = Geometry { origin, mesh, materials: self.materials, textures: self.textures };
         let cameras = self.cameras.into_iter();
@@ -249,7 +251,7 @@ impl Draft {
             lights: Lights { list, ambient: self.ambient, background: self.background },
             cameras,
             light_mesh: self.light_mesh,
-            warnings: self.warnings,
+            warnings,
         })
     }
 }
@@ -257,21 +259,6 @@ impl Draft {
 /// Whether a vertex has usable coordinates after placement.
 fn usable_in<P: Position>(transform: &DMat4) -> impl Fn(&P) -> bool + use<'_, P> {
     |position| is_place(transform.transform_point3(position.to_double()))
-}
-
-/// The path without `.` and `..`, by its text alone.
-fn tidy(path: &Path) -> PathBuf {
-    let mut tidy = PathBuf::new();
-    for part in path.components() {
-        match part {
-            Component::CurDir => {}
-            Component::ParentDir if matches!(tidy.components().next_back(), Some(Component::Normal(_))) => {
-                tidy.pop();
-            }
-            part => tidy.push(part),
-        }
-    }
-    tidy
 }
 
 /// The light at another position.

@@ -2,6 +2,8 @@
 
 use std::{fmt, io, path::Path, path::PathBuf};
 
+use crate::quote::{self, list, quote, reference};
+
 /// The location of an error in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
@@ -41,7 +43,8 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why a scene could not be read. One line each: the problem, the location, and the remedy. Places are boxed to keep results small.
+/// Why a scene could not be read. One line each: the problem, the location, and the remedy. Fields hold what files say; messages quote
+/// little of it. Places are boxed to keep results small.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LoadError {
@@ -102,7 +105,7 @@ pub enum LoadError {
         remedy: String,
     },
     /// A key that does not exist in the table.
-    #[error("unknown key `{key}`, {place}; {}", suggestion(key, known))]
+    #[error("unknown key `{}`, {place}; {}", quote(key), suggestion(key, known))]
     UnknownKey {
         /// The location.
         place: Box<Place>,
@@ -122,7 +125,7 @@ pub enum LoadError {
         remedy: String,
     },
     /// An invalid value.
-    #[error("{key} = {value} {problem}, {place}; {remedy}")]
+    #[error("{key} = {} {problem}, {place}; {remedy}", quote::name(value))]
     Value {
         /// The location.
         place: Box<Place>,
@@ -136,7 +139,7 @@ pub enum LoadError {
         remedy: String,
     },
     /// A reference to something that does not exist.
-    #[error("there is no {kind} named `{name}`, {place}; {}", suggestion(name, known))]
+    #[error("there is no {kind} named `{}`, {place}; {}", quote::name(name), suggestion(name, known))]
     UnknownName {
         /// The location.
         place: Box<Place>,
@@ -158,7 +161,8 @@ pub enum LoadError {
         remedy: String,
     },
     /// The file requires an extension of its format that is not supported.
-    #[error("the file requires the extension {extension}, {}; export it again without it (supported: {})", path.display(), known.join(", "))]
+    #[error("the file requires the extension {}, {}; export it again without it (supported: {})",
+        quote::name(extension), path.display(), known.join(", "))]
     UnsupportedExtension {
         /// The file.
         path: PathBuf,
@@ -167,13 +171,24 @@ pub enum LoadError {
         /// Supported extensions.
         known: Vec<String>,
     },
-    /// A reference to a file outside the scene's folder.
-    #[error("`{name}` lies outside the scene's folder, {place}; move it there, or allow references outside")]
+    /// A reference to a file outside the scene's folder, or to a link that leads out of it.
+    #[error(
+        "`{}` leads outside the scene's folder, {place}; move the file there, or allow references outside",
+        reference(name)
+    )]
     Outside {
         /// The file that contains the reference.
         place: Box<Place>,
         /// The reference.
         name: String,
+    },
+    /// A file of the scene cannot be used. The message is that of the cause, which names the file, and says who refers to it.
+    #[error("{cause} (named by {place})")]
+    Referenced {
+        /// The location of the reference.
+        place: Box<Place>,
+        /// What is wrong with the file.
+        cause: Box<LoadError>,
     },
     /// There were warnings, and warnings are treated as errors.
     #[error("{}, {}; fix this, or load the scene without strict checks", warnings.join("; "), path.display())]
@@ -201,13 +216,39 @@ pub enum LoadError {
     },
 }
 
+impl LoadError {
+    /// The error without those who refer to its file.
+    pub fn root(&self) -> &LoadError {
+        match self {
+            LoadError::Referenced { cause, .. } => cause.root(),
+            error => error,
+        }
+    }
+
+    /// The error in a file that is named at `place`.
+    pub(crate) fn named_by(self, place: impl Into<Box<Place>>) -> LoadError {
+        let place = place.into();
+        match self {
+            // It names who refers to the file, perhaps without a line.
+            LoadError::Outside { place: known, name } if known.path == place.path => LoadError::Outside { place, name },
+            cause => LoadError::Referenced { place, cause: cause.into() },
+        }
+    }
+}
+
+/// Names longer than this have no typing errors: comparing them would take too long.
+const COMPARED: usize = 64;
+
 /// The nearest known name, or all of them: the remedy for a misspelt name.
 fn suggestion(name: &str, known: &[String]) -> String {
+    let is_short = |name: &str| name.len() <= COMPARED;
     let similarity = |candidate: &&String| (1e6 * strsim::jaro_winkler(name, candidate)) as u32;
-    match known.iter().max_by_key(similarity).filter(|best| similarity(best) > 800_000) {
+    let candidates = known.iter().filter(|candidate| is_short(name) && is_short(candidate));
+    let available = || list(known.iter().map(String::as_str));
+    match candidates.max_by_key(similarity).filter(|best| similarity(best) > 800_000) {
         _ if known.is_empty() => "there are none: define it first, or remove the reference".to_owned(),
-        Some(best) => format!("did you mean `{best}`? Available: {}", known.join(", ")),
-        None => format!("available: {}", known.join(", ")),
+        Some(best) => format!("did you mean `{}`? Available: {}", quote::name(best), available()),
+        None => format!("available: {}", available()),
     }
 }
 

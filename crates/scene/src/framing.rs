@@ -2,13 +2,16 @@
 
 use glam::Vec3;
 
-use crate::{Bounds, Camera, Fov, Light, Projection, Scene, Up};
+use crate::{
+    Bounds, Camera, Fov, Light, Projection, Scene, Up,
+    quote::{self, list},
+};
 
 /// No camera of the scene has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no camera named `{name}`, scene {scene}; {}", match known.is_empty() {
+#[error("there is no camera named `{}`, scene {scene}; {}", quote::name(name), match known.is_empty() {
     true => "it has no named cameras: give a position and a target instead".to_owned(),
-    false => format!("available: {}", known.join(", ")),
+    false => format!("available: {}", list(known.iter().map(String::as_str))),
 })]
 #[non_exhaustive]
 pub struct UnknownCamera {

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use lightmesh_files::visible;
 use serde::Serialize;
 
 use crate::{Camera, Fov, Light, LightKind, Projection, Scene, UpInfo};
@@ -176,6 +177,7 @@ pub(crate) fn shortest(number: f32) -> f64 {
     number.to_string().parse().unwrap_or(f64::from(number))
 }
 
+/// Lines for a terminal: names in them are made visible.
 impl fmt::Display for SceneInfo {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{} triangles, {} materials", self.triangles, self.materials)?;
@@ -193,9 +195,9 @@ impl fmt::Display for SceneInfo {
             writeln!(f, "camera  {camera}")?;
         }
         if let Some(up) = &self.up {
-            writeln!(f, "up      {}: {}", up.axis, up.reason)?;
+            writeln!(f, "up      {}: {}", up.axis, visible(&up.reason))?;
         }
-        self.warnings.iter().try_for_each(|warning| writeln!(f, "warning {warning}"))
+        self.warnings.iter().try_for_each(|warning| writeln!(f, "warning {}", visible(warning)))
     }
 }
 
@@ -203,7 +205,7 @@ impl fmt::Display for LightInfo {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{}", self.kind)?;
         if !self.name.is_empty() {
-            write!(f, " `{}`", self.name)?;
+            write!(f, " `{}`", visible(&self.name))?;
         }
         let vectors = [("at", &self.position), ("along", &self.direction)];
         for (word, vector) in vectors.iter().filter_map(|(word, vector)| Some((word, vector.as_ref()?))) {
@@ -227,7 +229,7 @@ impl fmt::Display for LightInfo {
 impl fmt::Display for CameraInfo {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         if !self.name.is_empty() {
-            write!(f, "`{}` ", self.name)?;
+            write!(f, "`{}` ", visible(&self.name))?;
         }
         write!(f, "at {}, along {}", triple(&self.position), triple(&self.direction))?;
         match (self.hfov, self.vfov, self.height) {

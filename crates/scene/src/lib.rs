@@ -9,6 +9,7 @@
 //! scene a hundred kilometres from the world's origin keeps the precision that it would have at the origin.
 #![warn(missing_docs)]
 
+mod border;
 mod builder;
 pub mod builtin;
 mod camera;
@@ -28,12 +29,14 @@ mod mesh;
 mod mesh_part;
 mod names;
 mod open;
+mod quote;
 mod scene;
 mod shapes;
 mod texture;
 mod up;
 mod usable;
 mod vertices;
+mod warnings;
 
 /// The vector and matrix types of this crate's API.
 pub use glam;

@@ -1,11 +1,12 @@
 //! Opening a scene by its name: the file extension determines the format.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use glam::DMat4;
 
 use crate::{
     LoadError, Scene,
+    border::read_scene,
     draft::{Draft, Placement},
     formats,
 };
@@ -17,7 +18,8 @@ const SCENE_FORMATS: [&str; 6] = ["toml", "obj", "gltf", "glb", "ply", "stl"];
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LoadOptions {
-    /// Follow references outside the folder of the opened file. Off by default: an untrusted scene must not read other files.
+    /// Follow references, and links in the folder of the opened file, that lead outside of it. Off by default: an untrusted scene must
+    /// not read other files.
     pub allow_outside: bool,
     /// Treat warnings as errors.
     pub strict: bool,
@@ -60,46 +62,43 @@ impl Scene {
         }
         let mut draft = Draft::new(path, options);
         if extension(path) == "toml" {
-            formats::toml::read(path, &mut draft)?;
+            formats::toml::read(path, &read_scene(path)?, &mut draft)?;
         } else {
-            read_model(path, &Placement::default(), &mut draft)?;
+            reader(path)?(path, read_scene(path)?, &Placement::default(), &mut draft)?;
         }
         draft.finish()
     }
 }
 
-/// Reads a model as a separate scene: its triangles, materials, lights and cameras.
-fn read_model(path: &Path, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
-    match extension(path).as_str() {
-        "obj" => formats::obj::read(path, placement, draft),
-        "gltf" | "glb" => formats::gltf::read(path, placement, draft),
-        "ply" => formats::ply::read(path, placement, draft),
-        "stl" => formats::stl::read(path, placement, draft),
-        extension => Err(LoadError::UnknownFormat {
-            path: path.to_owned(),
-            extension: extension.to_owned(),
-            known: SCENE_FORMATS.map(|known| format!(".{known}")).to_vec(),
-        }),
-    }
+/// Reads a model from a file's path and bytes.
+type Reader = fn(&Path, Vec<u8>, &Placement, &mut Draft) -> Result<(), LoadError>;
+
+/// The reader for this kind of file.
+fn reader(path: &Path) -> Result<Reader, LoadError> {
+    Ok(match extension(path).as_str() {
+        "obj" => formats::obj::read,
+        "gltf" | "glb" => formats::gltf::read,
+        "ply" => formats::ply::read,
+        "stl" => formats::stl::read,
+        extension => {
+            return Err(LoadError::UnknownFormat {
+                path: path.to_owned(),
+                extension: extension.to_owned(),
+                known: SCENE_FORMATS.map(|known| format!(".{known}")).to_vec(),
+            });
+        }
+    })
 }
 
 /// Reads a model as a part of a larger scene: its triangles, and its materials unless the placement has one.
 pub(crate) fn read_part(
     path: &Path,
+    bytes: Vec<u8>,
     transform: DMat4,
     material: Option<u32>,
     draft: &mut Draft,
 ) -> Result<(), LoadError> {
-    read_model(path, &Placement { transform, material, part: true }, draft)
-}
-
-/// Reads the whole file. Only regular files: a pipe or a device might never end.
-pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, LoadError> {
-    let failed = |cause| LoadError::Read { path: path.to_owned(), cause };
-    if !fs::metadata(path).map_err(failed)?.is_file() {
-        return Err(LoadError::NoFile { path: path.to_owned() });
-    }
-    fs::read(path).map_err(failed)
+    reader(path)?(path, bytes, &Placement { transform, material, part: true }, draft)
 }
 
 /// The file extension in lower case, without the dot.
@@ -109,6 +108,8 @@ fn extension(path: &Path) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn error(path: &str) -> String {

@@ -70,7 +70,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Proposed settings of the light mesh.
     pub light_mesh: LightMeshDefaults,
-    /// What a loader corrected, ignored or guessed; one sentence each.
+    /// What a loader corrected, ignored or guessed: one sentence each, at most about a hundred. Names in them are as in the files; make them
+    /// visible before they reach a terminal.
     pub warnings: Vec<String>,
 }
 

@@ -1,9 +1,9 @@
 //! Why there is no report.
 
-use std::io;
 use std::path::PathBuf;
 
 use lightmesh::image::{CompareError, DecodeError, EncodeError};
+use lightmesh_files::ReadError;
 
 use crate::BenchError;
 
@@ -51,8 +51,8 @@ pub enum PictureError {
     Read {
         /// The file.
         path: PathBuf,
-        /// The system's message.
-        reason: io::Error,
+        /// The system's message, or that it is not in the folder of the results.
+        reason: ReadError,
     },
     /// It is not a PNG file.
     #[error("it is not a PNG file")]

@@ -1,5 +1,7 @@
 //! A report as Markdown, with plots and images as separate files.
 
+use lightmesh_files::visible;
+
 use super::document::{Block, Column, Document, Finding, Pair, Shot, Table};
 use super::numbers;
 
@@ -19,14 +21,13 @@ pub(crate) fn text(document: &Document) -> String {
     out
 }
 
-/// Escapes tables, tags and emphasis.
+/// Escapes tables, tags, emphasis, and what would not be seen.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for letter in text.chars() {
+    for letter in visible(&text.replace('\n', " ")).chars() {
         match letter {
             '|' | '*' | '_' | '`' | '\\' => out.extend(['\\', letter]),
             '<' => out.push_str("&lt;"),
-            '\n' => out.push(' '),
             _ => out.push(letter),
         }
     }
@@ -78,7 +79,11 @@ fn row(shots: &[&Shot]) -> String {
     };
     let pictures = cells(&|shot| {
         let width = shot.size[0].min(WIDTH);
-        format!("<img src=\"{}\" width=\"{width}\" alt=\"{}\"/>", shot.file, super::html::escaped(&shot.title))
+        format!(
+            "<img src=\"{}\" width=\"{width}\" alt=\"{}\"/>",
+            shot.file,
+            super::html::escaped(&visible(&shot.title))
+        )
     });
     format!("{}|{}\n{pictures}", cells(&|shot| escaped(&shot.title)), "---|".repeat(shots.len()))
 }
@@ -96,7 +101,8 @@ mod tests {
     fn cells_cannot_end_a_table() {
         let columns = vec![Column::words("a", "a|b"), Column::numbers("n", "n").below("CPU")];
         let mut table = Table::new("t", "", columns);
-        table.rows.push(vec!["<i> x_y".into(), "1".into()]);
-        assert_eq!(super::table(&table), "| a\\|b | CPU: n |\n|---|--:|\n| &lt;i> x\\_y | 1 |\n");
+        table.rows.push(vec!["<i> x_y\n\u{202e}\u{1b}".into(), "1".into()]);
+        let cells = r"| &lt;i> x\_y \\u{202e}\\u{1b} | 1 |";
+        assert_eq!(super::table(&table), format!("| a\\|b | CPU: n |\n|---|--:|\n{cells}\n"));
     }
 }

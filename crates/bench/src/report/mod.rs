@@ -37,6 +37,7 @@ use assets::Assets;
 pub(crate) use assets::{free_name, slug};
 use document::{Block, Document, Section, Table};
 pub use error::{PictureError, ReportError};
+use lightmesh_files::read_inside;
 use pictures::Gallery;
 use runs::{Run, Runs};
 pub use select::{Selection, TableError};
@@ -103,7 +104,8 @@ fn opened(path: &Path) -> Result<Results, ReportError> {
     let mut results = Results::load(path)?;
     for picture in &mut results.pictures {
         let file = path.with_file_name(&picture.file);
-        picture.png = std::fs::read(&file).map_err(|reason| ReportError::Picture {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        picture.png = read_inside(folder, &file).map_err(|reason| ReportError::Picture {
             path: path.to_owned(),
             id: picture.id.clone(),
             reason: PictureError::Read { path: file, reason },

@@ -92,11 +92,11 @@ impl Json {
 
     pub(super) fn whole(&self, progress: lightmesh::render::Progress) {
         let lightmesh::render::Progress { done, seconds, left } = progress;
-        print(&Whole { event: "image", done, seconds, left });
+        output::complain_json(&Whole { event: "image", done, seconds, left });
     }
 
     pub(super) fn text(&self, event: &'static str, text: &str) {
-        print(&Text { event, text });
+        output::complain_json(&Text { event, text });
     }
 
     fn current(&self) -> MutexGuard<'_, Option<Current>> {
@@ -107,13 +107,6 @@ impl Json {
 impl Current {
     fn print(&self, event: &'static str, done: u64) {
         let (stage, total) = (self.stage.name(), self.total);
-        print(&Progress { event, stage, done, total, seconds: self.start.elapsed().as_secs_f64() });
-    }
-}
-
-fn print(event: &impl Serialize) {
-    // Strings and finite numbers can always be represented in JSON.
-    if let Ok(line) = serde_json::to_string(event) {
-        output::complain(&line);
+        output::complain_json(&Progress { event, stage, done, total, seconds: self.start.elapsed().as_secs_f64() });
     }
 }

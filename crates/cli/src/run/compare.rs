@@ -5,7 +5,6 @@ use lightmesh::image::{Comparison, Frame, check_writable, compare};
 use crate::args::CompareArgs;
 use crate::failure::Failure;
 use crate::output;
-use crate::report::json;
 
 pub(super) fn run(args: &CompareArgs) -> Result<(), Failure> {
     if let Some(diff) = &args.diff {
@@ -17,7 +16,7 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), Failure> {
     if let Some(diff) = &args.diff {
         comparison.difference.save(diff)?;
     }
-    output::print(&if args.json { json(&comparison) } else { table(&comparison) })?;
+    if args.json { output::print_json(&comparison) } else { output::print(&table(&comparison)) }?;
     check(args, &comparison)
 }
 

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use lightmesh::render::{DeviceReport, devices};
 use lightmesh::scene::{Up, UpInfo};
+use lightmesh_files::visible;
 use serde::Serialize;
 
 use super::open::read;
 use crate::args::InfoArgs;
 use crate::failure::Failure;
 use crate::output;
-use crate::report::json;
 
 #[derive(Serialize)]
 struct Devices {
@@ -18,17 +18,21 @@ struct Devices {
 }
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
-    let text = match &args.scene {
+    let printed = match &args.scene {
         Some(path) => {
             let scene = read(path, args.reading)?;
             let mut info = scene.info();
             info.up.get_or_insert_with(|| usual_up(path));
-            if args.json { json(&info) } else { format!("scene   {}\n{info}", scene.name) }
+            if args.json {
+                output::print_json(&info)
+            } else {
+                output::print(&format!("scene   {}\n{info}", visible(&scene.name)))
+            }
         }
-        None if args.json => json(&Devices { devices: devices() }),
-        None => devices().iter().map(device_line).collect(),
+        None if args.json => output::print_json(&Devices { devices: devices() }),
+        None => output::print(&devices().iter().map(device_line).collect::<String>()),
     };
-    Ok(output::print(&text)?)
+    Ok(printed?)
 }
 
 /// For scenes whose geometry does not indicate it.

@@ -1,6 +1,5 @@
 //! Opening the scene given on the command line.
 
-use std::collections::HashSet;
 use std::path::Path;
 
 use lightmesh::scene::LoadOptions;
@@ -9,11 +8,10 @@ use lightmesh::{LoadError, Scene};
 use crate::args::{ReadingArgs, SceneArg};
 use crate::progress::Watcher;
 
-/// Reads the scene, and prints each warning once.
+/// Reads the scene, and prints its warnings.
 pub(super) fn open(arg: &SceneArg, watcher: &Watcher) -> Result<Scene, LoadError> {
     let scene = read(&arg.scene, arg.reading)?;
-    let mut said = HashSet::new();
-    scene.warnings.iter().filter(|warning| said.insert(*warning)).for_each(|warning| watcher.warning(warning));
+    scene.warnings.iter().for_each(|warning| watcher.warning(warning));
     Ok(scene)
 }
 

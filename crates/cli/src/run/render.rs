@@ -11,7 +11,7 @@ use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::plan::{PictureFiles, RenderPlan};
 use crate::progress::Watcher;
-use crate::report::{Report, json};
+use crate::report::Report;
 use crate::value::Exposure;
 use crate::{interrupt, output};
 
@@ -59,7 +59,7 @@ fn write(frame: &mut Frame, scene: &Scene, files: &PictureFiles, watcher: &Watch
     if let Some(path) = &files.stats {
         let lights = scene.info().lights;
         let report = Report::new(&frame.stats, files.transfer.name(), stops, &lights);
-        output::write(path, json(&report).as_bytes())?;
+        output::write(path, output::json(&report).as_bytes())?;
     }
     Ok(())
 }

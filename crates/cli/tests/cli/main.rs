@@ -1,6 +1,7 @@
 //! The command line from a user's view: every subcommand and flag, exit codes, and messages.
 
 mod bench;
+mod border;
 mod compare;
 mod devices;
 mod help;

@@ -276,7 +276,7 @@ fn strict_reading_ends_with_the_warnings() {
         &["export", "-o", "a.glb"],
     ] {
         let message = place.refused(&[command, &["bare.toml", "--strict"]].concat());
-        assert!(message.contains("`../oak.png` lies outside the scene's folder, bare.toml"), "{message}");
+        assert!(message.contains("`../oak.png` leads outside the scene's folder, bare.toml"), "{message}");
         let message = place.refused(&[command, &["bare.toml", "--strict", "--allow-outside"]].concat());
         assert!(message.contains("../oak.png; check that it exists"), "{message}");
     }

@@ -18,6 +18,8 @@ pub(crate) fn inputs() -> Vec<Input> {
         #[cfg(unix)]
         all.extend(unix::inputs(format));
     }
+    #[cfg(unix)]
+    all.extend(unix::references());
     all.extend(names());
     all.extend(contents());
     all
@@ -72,18 +74,54 @@ fn contents() -> Vec<Input> {
 mod unix {
     use std::fs::{self, Permissions};
     use std::os::unix::fs::{PermissionsExt, symlink};
+    use std::os::unix::net::UnixListener;
     use std::path::Path;
     use std::process::Command;
 
     use super::instead;
+    use crate::input::Expected::{Opens, Refused};
     use crate::input::Input;
+
+    /// Creates something at a path.
+    type Make = fn(&Path);
+
+    const MESH: &str = "[[mesh]]\nfile = \"one.obj\"\n";
+    const TEXTURE: &str = "[[material]]\nname = \"a\"\ntexture = \"one.png\"\n\
+                           [[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"a\"\n";
+
+    /// Things in place of a mesh or a texture of a scene, which opens without its textures.
+    pub(super) fn references() -> Vec<Input> {
+        let kinds: [(&str, Make); 6] = [
+            ("a pipe", make_pipe),
+            ("a socket", |path| drop(UnixListener::bind(path).unwrap())),
+            ("a folder", |path| fs::create_dir(path).unwrap()),
+            ("a link to a device", |path| symlink("/dev/zero", path).unwrap()),
+            ("a link out of the folder", |path| symlink("/etc/passwd", path).unwrap()),
+            ("a link to itself", |path| symlink(path.file_name().unwrap(), path).unwrap()),
+        ];
+        let mut all = Vec::new();
+        for (kind, make) in kinds {
+            for (text, name, expected) in [(MESH, "one.obj", Refused), (TEXTURE, "one.png", Opens)] {
+                let write = move |folder: &Path| {
+                    fs::write(folder.join("input.toml"), text).unwrap();
+                    make(&folder.join(name));
+                };
+                all.push(Input::made("toml", format!("{kind} for {name}"), "input.toml", expected, write));
+            }
+        }
+        all
+    }
+
+    fn make_pipe(path: &Path) {
+        assert!(Command::new("mkfifo").arg(path).status().unwrap().success());
+    }
 
     pub(super) fn inputs(format: &'static str) -> [Input; 5] {
         let mut locked = instead(format, "a file without permission", lock);
         locked.ignored = !permissions_count();
         [
             locked,
-            instead(format, "a pipe", |path| assert!(Command::new("mkfifo").arg(path).status().unwrap().success())),
+            instead(format, "a pipe", make_pipe),
             instead(format, "an endless device", |path| symlink("/dev/zero", path).unwrap()),
             instead(format, "a link to nothing", |path| symlink("nothing", path).unwrap()),
             instead(format, "a link to itself", |path| symlink(path.file_name().unwrap(), path).unwrap()),

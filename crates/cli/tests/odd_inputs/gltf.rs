@@ -59,7 +59,7 @@ const VALUES: [(&str, &str, Expected); 52] = [
     ("/bufferViews/0/byteLength", "0", Refused),
     ("/bufferViews/0/byteOffset", "18446744073709551615", Refused),
     ("/bufferViews/0/byteStride", "18446744073709551615", Refused),
-    ("/bufferViews/0/byteStride", "0", Refused),
+    ("/bufferViews/0/byteStride", "0", Opens),
     ("/bufferViews/0/byteStride", "1", Refused),
     ("/buffers/0/byteLength", "4294967295", Refused),
     ("/buffers/0/byteLength", "18446744073709551615", Refused),

@@ -17,8 +17,8 @@ const FACES: [(&str, Expected); 20] = [
     ("f 1 2 4", Refused),
     ("f -4 -2 -1", Refused),
     ("f -1 -2 -3", Opens),
-    ("f 1/1 2/1 3/1", Refused),
-    ("f 1//1 2//1 3//1", Refused),
+    ("f 1/1 2/1 3/1", Opens),
+    ("f 1//1 2//1 3//1", Opens),
     ("f 1/1/1/1 2 3", Refused),
     ("f 4294967295 2 3", Refused),
     ("f 4294967297 2 3", Refused),
@@ -33,7 +33,7 @@ const FACES: [(&str, Expected); 20] = [
 ];
 
 /// Replacements for a coordinate.
-const COORDINATES: [(&str, Expected); 9] = [
+const COORDINATES: [(&str, Expected); 12] = [
     ("nan", Opens),
     ("inf", Opens),
     ("-inf", Opens),
@@ -41,6 +41,9 @@ const COORDINATES: [(&str, Expected); 9] = [
     ("1e308", Opens),
     ("1e999", Opens),
     ("1e-308", Opens),
+    ("1.0f", Opens),
+    ("-nan(ind)", Opens),
+    ("1,5", Refused),
     ("x", Refused),
     ("", Refused),
 ];
@@ -60,7 +63,7 @@ const LIBRARIES: [&str; 10] = [
 ];
 
 const LIBRARY_LINES: [(&str, Expected); 12] = [
-    ("newmtl", Refused),
+    ("newmtl", Opens),
     ("newmtl a\nKd nan 0 0", Refused),
     ("newmtl a\nKd 1 2", Refused),
     ("newmtl a\nKd 1e308 0 0", Refused),

@@ -11,7 +11,7 @@ const LITTLE: &str = "binary_little_endian";
 const BIG: &str = "binary_big_endian";
 
 /// Lines of the header, their replacements, and the expected outcome.
-const HEADERS: [(&str, &str, Expected); 22] = [
+const HEADERS: [(&str, &str, Expected); 25] = [
     ("vertex 4", "vertex 4294967295", Refused),
     ("vertex 4", "vertex 18446744073709551615", Refused),
     ("vertex 4", "vertex 99999999999999999999", Refused),
@@ -34,10 +34,13 @@ const HEADERS: [(&str, &str, Expected); 22] = [
     ("ascii 1.0", "morse 1.0", Refused),
     ("format ascii 1.0\n", "", Refused),
     ("ply\n", "PLY\n", Either),
+    ("element vertex", "made by hand\nelement vertex", Opens),
+    ("element vertex", "\u{1b}[31m\nelement vertex", Opens),
+    ("vertex 4", "vertex 4 or so", Opens),
 ];
 
 /// Faces, and the expected outcome.
-const FACES: [(&str, Expected); 16] = [
+const FACES: [(&str, Expected); 19] = [
     ("4 0 1 2 3", Opens),
     ("4 4 1 2 3", Refused),
     ("4 0 4 2 3", Refused),
@@ -49,6 +52,9 @@ const FACES: [(&str, Expected); 16] = [
     ("4 0.5 1 2 3", Refused),
     ("4 x 1 2 3", Refused),
     ("3 0 1 2", Opens),
+    ("4 0 1 2 3 255 0 0", Opens),
+    ("4 0 1 2 3 x", Opens),
+    ("4 0 1 2", Refused),
     ("2 0 1", Opens),
     ("0", Opens),
     ("-1", Refused),

@@ -11,7 +11,7 @@ const COUNT: usize = 80;
 const CORNER: usize = 96;
 
 /// Parts of the text, their replacements, and the expected outcome.
-const WORDS: [(&str, &str, Expected); 13] = [
+const WORDS: [(&str, &str, Expected); 16] = [
     ("vertex 1 0 0", "vertex nan 0 0", Opens),
     ("vertex 1 0 0", "vertex inf 0 0", Opens),
     ("vertex 1 0 0", "vertex 1e308 0 0", Opens),
@@ -25,6 +25,9 @@ const WORDS: [(&str, &str, Expected); 13] = [
     ("facet normal", "facets normal", Refused),
     ("solid a", "solid a\0b", Opens),
     ("solid a", "solid \u{1b}[31m", Opens),
+    ("solid a\n", "", Opens),
+    ("solid a\n", "\u{1b}[31m\nsolid a\n", Opens),
+    ("endfacet\n", "endfacet\ncolor 1 0 0\n", Opens),
 ];
 
 pub(crate) fn inputs() -> Vec<Input> {
@@ -54,6 +57,7 @@ fn binaries() -> Vec<Input> {
     vec![
         Input::new("stl", "one facet", &one, Opens),
         Input::new("stl", "no facets", binary(0, 0), Opens),
+        Input::new("stl", "no facets in the header", binary(0, 2), Opens),
         Input::new("stl", "2^32 - 1 facets", binary(u32::MAX, 1), Refused),
         Input::new("stl", "2^31 facets", binary(1 << 31, 1), Refused),
         Input::new("stl", "one facet too few", binary(2, 1), Refused),

@@ -3,6 +3,7 @@
 
 mod colors;
 pub(crate) mod gltf;
+mod notes;
 pub(crate) mod obj;
 pub(crate) mod ply;
 mod polygon;

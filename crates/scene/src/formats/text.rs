@@ -4,8 +4,10 @@ use std::borrow::Cow;
 
 use memchr::memchr;
 
-/// Maximum length of a quotation from a file in a message, in characters.
-const QUOTED: usize = 60;
+use crate::quote::quote;
+
+/// Number of bytes in which the characters of a quotation are found.
+const QUOTED: usize = 256;
 
 /// The text without a byte order mark, with line feeds as line endings: files with lone carriage returns, from old systems, are
 /// converted.
@@ -24,15 +26,9 @@ pub(super) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
     }
 }
 
-/// A quotation from a file for a message: printable and not too long.
+/// A quotation from a file for a message.
 pub(super) fn quoted(bytes: &[u8]) -> String {
-    // At most four bytes per character; a character that is cut is dropped anyway.
-    let text = decoded(&bytes[..bytes.len().min(4 * (QUOTED + 1))]).into_owned();
-    let mut shown: String = text.trim().chars().take(QUOTED).map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if bytes.trim_ascii().len() > shown.len() {
-        shown.push('…');
-    }
-    shown
+    quote(&decoded(&bytes[..bytes.len().min(QUOTED)]))
 }
 
 /// The first word of a line and the rest, both trimmed.
@@ -50,6 +46,23 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 /// A number in decimal notation, or one of the words for infinity and NaN that `f64` accepts.
 pub(super) fn number(word: &[u8]) -> Option<f64> {
     str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// A number as some programs write it: followed by the suffix of a C constant, or one of the words of C libraries for infinity and NaN.
+pub(super) fn odd_number(word: &[u8]) -> Option<f64> {
+    if let [digits @ .., b'f' | b'F'] = word
+        && digits.last().is_some_and(|&last| last.is_ascii_digit() || last == b'.')
+    {
+        return number(digits);
+    }
+    let word = word.to_ascii_lowercase();
+    let unsigned = word.strip_prefix(b"-").or(word.strip_prefix(b"+")).unwrap_or(&word);
+    let begins = |beginnings: &[&str]| beginnings.iter().any(|beginning| unsigned.starts_with(beginning.as_bytes()));
+    if begins(&["nan(", "1.#ind", "1.#qnan", "1.#snan"]) {
+        Some(f64::NAN)
+    } else {
+        begins(&["1.#inf"]).then_some(f64::INFINITY)
+    }
 }
 
 /// The number of the line that contains byte `at`, counted from 1.
@@ -80,14 +93,24 @@ mod tests {
 
     #[test]
     fn messages_quote_a_beginning() {
-        assert_eq!(quoted(b" v 1\t2\r"), "v 1 2");
-        assert_eq!(quoted(&[b'x'; 1000]).chars().count(), QUOTED + 1);
-        assert_eq!(quoted("ü".repeat(1000).as_bytes()).chars().count(), QUOTED + 1);
+        assert_eq!(quoted(b" v 1\t2\r"), r"v 1\t2");
+        assert_eq!(quoted(&[b'x'; 1000]).chars().count(), 25);
+        assert_eq!(quoted("ü".repeat(1000).as_bytes()), "ü".repeat(24) + "…");
+        assert_eq!(quoted(b"root:x:0:0:root:/root:/bin/bash"), "root:x:0:0:root:/root:/b…");
     }
 
     #[test]
     fn numbers_are_decimal() {
         assert_eq!([&b"1.5"[..], b"-.5e1", b"+3.", b"7"].map(number), [Some(1.5), Some(-5.0), Some(3.0), Some(7.0)]);
         assert_eq!([&b""[..], b"0x10", b"1,5", b"1\xff"].map(number), [None; 4]);
+    }
+
+    #[test]
+    fn numbers_of_c_programs_are_known() {
+        assert_eq!([&b"1.0f"[..], b"-2.F", b"1e3f"].map(odd_number), [Some(1.0), Some(-2.0), Some(1000.0)]);
+        let undefined = [&b"-nan(ind)"[..], b"1.#QNAN0", b"-1.#IND", b"nan(0x1)"].map(odd_number);
+        assert!(undefined.iter().all(|number| number.is_some_and(f64::is_nan)), "{undefined:?}");
+        assert_eq!(odd_number(b"1.#INF00"), Some(f64::INFINITY));
+        assert_eq!([&b"f"[..], b"1,5", b"x", b"", b"0x1f", b"1.0ff", b"1f0"].map(odd_number), [None; 7]);
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Texture, decode};
 use crate::draft::Draft;
-use crate::open::read_bytes;
+use crate::error::Place;
 
 /// Number of textures that a warning names with their reasons; the others are counted.
 const NAMED: usize = 3;
@@ -20,15 +20,18 @@ pub(crate) struct TextureFiles {
 }
 
 impl TextureFiles {
-    /// One sentence about all that are not available.
-    pub(crate) fn warning(&self) -> Option<String> {
+    /// One sentence about all that are not available to `scene`.
+    pub(crate) fn warning(&self, scene: &Path) -> Option<String> {
         let count = self.missing.len();
         let mut clauses = self.missing[..count.min(NAMED)].join("; ");
         if count > NAMED {
             clauses += &format!("; and {} more", count - NAMED);
         }
         let textures = if count == 1 { "1 texture" } else { &format!("{count} textures") };
-        (count > 0).then(|| format!("{textures} cannot be used, so the materials keep their plain colours: {clauses}"))
+        let scene = scene.display();
+        (count > 0).then(|| {
+            format!("{scene}: {textures} cannot be used, so the materials keep their plain colours: {clauses}")
+        })
     }
 }
 
@@ -36,28 +39,20 @@ impl Draft {
     /// Index of the texture in the file that `source`, one of the scene's files, refers to as `name`. Each file is read once. If
     /// it is not available, a warning will say so.
     pub(crate) fn texture_file(&mut self, source: &Path, name: &str) -> Option<u32> {
-        let path = match self.path_beside(source, name) {
-            Ok(path) => path,
-            Err(error) => {
-                // Keyed by its name, which is not a path: the file must not be accessed.
-                let refused = PathBuf::from(format!("{}\0{name}", source.display()));
-                if self.texture_files.read.insert(refused, None).is_none() {
-                    self.texture_files.missing.push(error.to_string());
-                }
-                return None;
-            }
-        };
-        if let Some(&known) = self.texture_files.read.get(&path) {
+        let named = self.border.path_beside(source, name);
+        // A refused name is not a path: the file must not be accessed.
+        let key = named.unwrap_or_else(|_| PathBuf::from(format!("{}\0{name}", source.display())));
+        if let Some(&known) = self.texture_files.read.get(&key) {
             return known;
         }
-        let index = match read_bytes(&path) {
-            Ok(bytes) => self.texture(&path.display().to_string(), decode(name, &bytes)),
+        let index = match self.read_nearby(source, name) {
+            Ok((path, bytes)) => self.texture(&path.display().to_string(), decode(name, &bytes)),
             Err(error) => {
-                self.texture_files.missing.push(error.to_string());
+                self.texture_files.missing.push(error.named_by(Place::file(source)).to_string());
                 None
             }
         };
-        self.texture_files.read.insert(path, index);
+        self.texture_files.read.insert(key, index);
         index
     }
 
@@ -106,7 +101,7 @@ mod tests {
         assert_eq!(draft.texture_file(&scene, "maps/blue.png"), Some(0));
         assert_eq!(draft.textures.len(), 1);
         assert_eq!(draft.textures[0].texels, [[0, 0, 255, 255]]);
-        assert_eq!(draft.texture_files.warning(), None);
+        assert_eq!(draft.texture_files.warning(&scene), None);
     }
 
     #[test]
@@ -115,9 +110,11 @@ mod tests {
         let bytes = fs::read(folder.path().join("maps/blue.png")).unwrap();
         assert_eq!(draft.texture_bytes(&scene, "image 0", &bytes), Some(0));
         assert_eq!(draft.texture_bytes(&scene, "image 1", &bytes[..30]), None);
-        let warning = draft.texture_files.warning().unwrap();
-        let start = format!("1 texture cannot be used, so the materials keep their plain colours: {}", scene.display());
-        assert!(warning.starts_with(&format!("{start}: image 1 (its PNG data is damaged")), "{warning}");
+        let warning = draft.texture_files.warning(&scene).unwrap();
+        let file = scene.display();
+        let start =
+            format!("{file}: 1 texture cannot be used, so the materials keep their plain colours: {file}: image 1");
+        assert!(warning.starts_with(&format!("{start} (its PNG data is damaged")), "{warning}");
     }
 
     #[test]
@@ -130,12 +127,12 @@ mod tests {
         let scene = draft.finish().unwrap();
         let warning = &scene.warnings[0];
         assert!(
-            warning.starts_with("5 textures cannot be used, so the materials keep their plain colours: "),
+            warning.contains("scene.mtl: 5 textures cannot be used, so the materials keep their plain colours: "),
             "{warning}"
         );
-        assert!(warning.contains("none.png; check that it exists"), "{warning}");
+        assert!(warning.contains("none.png; check that it exists and is readable (named by "), "{warning}");
         assert!(warning.contains("page.png (it is not a PNG, JPEG, BMP or TGA image)"), "{warning}");
-        assert!(warning.contains("`../a.png` lies outside the scene's folder"), "{warning}");
+        assert!(warning.contains("`../a.png` leads outside the scene's folder"), "{warning}");
         assert!(warning.ends_with("; and 2 more"), "{warning}");
     }
 }

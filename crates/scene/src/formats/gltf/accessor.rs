@@ -11,7 +11,7 @@ use super::{
     document::{Accessor, Document, Sparse},
     strided::{Component, Strided},
 };
-use crate::LoadError;
+use crate::{LoadError, quote::quote};
 
 /// Accessors and the data they refer to.
 #[derive(Clone, Copy)]
@@ -45,7 +45,7 @@ impl<'a> Accessors<'a> {
     {
         let elements = self.elements(index)?;
         if dimensions(elements.kind) != Some(N) {
-            return Err(self.broken(index, &format!("has type {} where VEC{N} is expected", elements.kind)));
+            return Err(self.broken(index, &format!("has type {} where VEC{N} is expected", quote(elements.kind))));
         }
         let is_float = elements.component == Component::F32;
         self.read(index, &elements, [0.0; N], is_float, |elements| elements.numbers())
@@ -102,8 +102,9 @@ impl<'a> Accessors<'a> {
             .get(index as usize)
             .ok_or_else(|| malformed(self.path, format!("accessor {index} is referenced, but does not exist")))?;
         let component = self.component(index, accessor.component_type)?;
-        let dimensions = dimensions(&accessor.kind)
-            .ok_or_else(|| self.broken(index, &format!("has type {}, which is not valid here", accessor.kind)))?;
+        let dimensions = dimensions(&accessor.kind).ok_or_else(|| {
+            self.broken(index, &format!("has type {}, which is not valid here", quote(&accessor.kind)))
+        })?;
         let range = |view, range, dimensions, component| {
             self.range(index, view, range, dimensions, component)
                 .map(|found| Strided { normalized: accessor.normalized, ..found })

@@ -1,19 +1,20 @@
 //! The bytes behind accessors and images; each buffer is read on first use.
 
-use std::{borrow::Cow, cell::OnceCell, path::Path, path::PathBuf};
+use std::{borrow::Cow, cell::OnceCell, path::Path};
 
 use super::{
     container::malformed,
     document::{BufferView, Document},
     uri::{self, Uri},
 };
-use crate::{LoadError, draft::Draft, open::read_bytes};
+use crate::{LoadError, border::Border, error::Place};
 
 /// All buffers of a file.
 pub(super) struct Buffers<'a> {
     path: &'a Path,
     views: &'a [BufferView],
     buffers: Vec<Buffer<'a>>,
+    border: Border,
 }
 
 struct Buffer<'a> {
@@ -27,7 +28,8 @@ enum Source<'a> {
     /// The binary chunk.
     Chunk(&'a [u8]),
     Data(&'a str),
-    File(PathBuf),
+    /// Name of a file.
+    File(Cow<'a, str>),
     Nothing,
 }
 
@@ -37,22 +39,25 @@ impl<'a> Buffers<'a> {
         path: &'a Path,
         document: &'a Document,
         bin: Option<&'a [u8]>,
-        draft: &Draft,
+        border: &Border,
     ) -> Result<Buffers<'a>, LoadError> {
         let buffer = |(index, buffer): (usize, &'a super::document::Buffer)| {
             let source = match (buffer.uri.as_deref().map(Uri::new), bin) {
                 (Some(Uri::Data(data)), _) => Source::Data(data),
-                (Some(Uri::File(name)), _) => Source::File(draft.path_beside(path, &name)?),
+                (Some(Uri::File(name)), _) => {
+                    border.path_beside(path, &name)?;
+                    Source::File(name)
+                }
                 (None, Some(bin)) if index == 0 => Source::Chunk(bin),
                 (None, _) => Source::Nothing,
             };
             Ok(Buffer { source, length: buffer.byte_length, bytes: OnceCell::new() })
         };
         let buffers = document.buffers.iter().enumerate().map(buffer).collect::<Result<_, _>>()?;
-        Ok(Buffers { path, views: &document.buffer_views, buffers })
+        Ok(Buffers { path, views: &document.buffer_views, buffers, border: border.clone() })
     }
 
-    /// The bytes of a view, with its stride.
+    /// The bytes of a view, with its stride if it has one.
     pub(super) fn view(&self, index: u32) -> Result<(&[u8], Option<u64>), LoadError> {
         let bad = |problem: String| malformed(self.path, format!("buffer view {index} {problem}"));
         let view = self.views.get(index as usize).ok_or_else(|| bad("is not there".to_owned()))?;
@@ -60,7 +65,7 @@ impl<'a> Buffers<'a> {
         let end = view.byte_offset.checked_add(view.byte_length);
         let bytes = end.and_then(|end| buffer.get(usize::try_from(view.byte_offset).ok()?..usize::try_from(end).ok()?));
         let bytes = bytes.ok_or_else(|| bad(format!("reaches beyond its buffer of {} bytes", buffer.len())))?;
-        Ok((bytes, view.byte_stride))
+        Ok((bytes, view.byte_stride.filter(|&stride| stride > 0)))
     }
 
     /// Number of bytes in all buffers that have been read so far.
@@ -76,20 +81,23 @@ impl<'a> Buffers<'a> {
         if let Some(bytes) = buffer.bytes.get() {
             return Ok(bytes);
         }
-        let bytes = buffer.read(self.path, index)?;
+        let bytes = buffer.read(self.path, index, &self.border)?;
         Ok(buffer.bytes.get_or_init(|| bytes))
     }
 }
 
 impl<'a> Buffer<'a> {
-    fn read(&self, path: &Path, index: u32) -> Result<Cow<'a, [u8]>, LoadError> {
+    fn read(&self, path: &Path, index: u32, border: &Border) -> Result<Cow<'a, [u8]>, LoadError> {
         let bytes = match &self.source {
             Source::Chunk(bytes) => Cow::Borrowed(*bytes),
             Source::Data(data) => Cow::Owned(
                 uri::decode(data)
                     .ok_or_else(|| malformed(path, format!("the data URI of buffer {index} cannot be decoded")))?,
             ),
-            Source::File(path) => Cow::Owned(read_bytes(path)?),
+            Source::File(name) => {
+                let read = border.read_beside(path, name).map_err(|error| error.named_by(Place::file(path)));
+                Cow::Owned(read?.1)
+            }
             Source::Nothing => return Err(malformed(path, format!("buffer {index} has no data"))),
         };
         let short = || {

@@ -5,7 +5,11 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::document::{Asset, Document};
-use crate::{LoadError, error::Place};
+use crate::{
+    LoadError,
+    error::Place,
+    quote::{abridged, quote},
+};
 
 const MAGIC: &[u8] = b"glTF";
 /// Magic, version, length.
@@ -79,7 +83,7 @@ impl<'a> Container<'a> {
         let problem = if self.json.is_empty() {
             "the file contains no JSON".to_owned()
         } else {
-            format!("the JSON cannot be read as glTF ({error})")
+            format!("the JSON cannot be read as glTF ({})", abridged(&error.to_string()))
         };
         let line = (!self.binary).then_some((error.line(), error.column()));
         LoadError::Syntax {
@@ -109,7 +113,7 @@ fn check_version(path: &Path, asset: &Asset) -> Result<(), LoadError> {
 fn old(path: &Path, version: &str) -> LoadError {
     LoadError::Malformed {
         place: Place::file(path).into(),
-        problem: format!("the file has glTF version `{version}`"),
+        problem: format!("the file has glTF version `{}`", quote(version)),
         remedy: "export it as glTF 2.0".to_owned(),
     }
 }

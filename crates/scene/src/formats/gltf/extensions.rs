@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::document::Document;
-use crate::{LoadError, draft::Draft};
+use crate::{LoadError, draft::Draft, quote::list};
 
 /// Extensions that are read. A file may require them.
 const KNOWN: [&str; 8] = [
@@ -30,7 +30,7 @@ pub(super) fn check(path: &Path, document: &Document, draft: &mut Draft) -> Resu
     let unknown: Vec<&str> =
         document.extensions_used.iter().filter(|name| !is_known(name)).map(String::as_str).collect();
     if !unknown.is_empty() {
-        let (path, unknown) = (path.display(), unknown.join(", "));
+        let (path, unknown) = (path.display(), list(unknown.into_iter()));
         draft.warnings.push(format!("{path}: these extensions are ignored: {unknown}"));
     }
     Ok(())

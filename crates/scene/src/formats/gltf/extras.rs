@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::value::RawValue;
 
 use super::container::malformed;
-use crate::{LoadError, Material};
+use crate::{LoadError, Material, quote::abridged};
 
 /// Of a material: the coefficients that metallic-roughness cannot represent.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
@@ -113,7 +113,7 @@ pub(super) fn read<T: DeserializeOwned>(
     }
     // Extras may have any type; ours are an object.
     let Some(extras) = extras.filter(|extras| extras.get().starts_with('{')) else { return Ok(None) };
-    serde_json::from_str::<Ours<T>>(extras.get())
-        .map(|ours| ours.lightmesh)
-        .map_err(|error| malformed(path, format!("extras.lightmesh of {what} is damaged ({error})")))
+    serde_json::from_str::<Ours<T>>(extras.get()).map(|ours| ours.lightmesh).map_err(|error| {
+        malformed(path, format!("extras.lightmesh of {what} is damaged ({})", abridged(&error.to_string())))
+    })
 }

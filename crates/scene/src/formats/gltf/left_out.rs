@@ -27,6 +27,8 @@ pub(super) struct LeftOut {
     pub(super) emissive_textures: usize,
     pub(super) specular_textures: usize,
     pub(super) missing_textures: usize,
+    /// Buffer views with a stride of 0, which older versions of the format had.
+    pub(super) strides_of_zero: usize,
 }
 
 impl LeftOut {
@@ -54,6 +56,7 @@ impl LeftOut {
             (self.emissive_textures, "emissive texture", "not shown: the surface emits no light"),
             (self.specular_textures, "specular texture", "not shown: the material's factors are used"),
             (self.missing_textures, "material", "with a texture that the file does not contain: shown in plain colour"),
+            (self.strides_of_zero, "buffer view", "with a byteStride of 0: read without gaps"),
         ];
         let path = path.display();
         for (count, what, outcome) in sentences.into_iter().filter(|(count, ..)| *count > 0) {

@@ -57,19 +57,19 @@ use self::{
 use crate::{
     LightMeshDefaults, LoadError,
     draft::{Draft, Placement},
-    open::read_bytes,
+    quote::quote,
     usable::is_place,
 };
 
 /// Reads a glTF or GLB file into `draft`.
-pub(crate) fn read(path: &Path, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
-    let bytes = read_bytes(path)?;
+pub(crate) fn read(path: &Path, bytes: Vec<u8>, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
     let container = Container::split(path, &bytes)?;
     let document = container.parse(path)?;
     extensions::check(path, &document, draft)?;
-    let buffers = Buffers::new(path, &document, container.bin, draft)?;
+    let buffers = Buffers::new(path, &document, container.bin, &draft.border)?;
     let accessors = Accessors { path, document: &document, buffers: &buffers };
-    let mut left_out = LeftOut::default();
+    let strides_of_zero = document.buffer_views.iter().filter(|view| view.byte_stride == Some(0)).count();
+    let mut left_out = LeftOut { strides_of_zero, ..LeftOut::default() };
 
     let pictures = Pictures::new(path, &document, &buffers);
     let mut materials = Materials::read(path, &document, pictures, placement, &mut left_out, draft)?;
@@ -140,7 +140,7 @@ fn read_scene_extras(path: &Path, document: &Document, draft: &mut Draft) -> Res
     draft.background = own.background.map(Vec3::from);
     let weight = match own.weight.as_deref() {
         None => None,
-        Some(name) => Some(name.parse().map_err(|_| damaged(format!("has the unknown weight `{name}`")))?),
+        Some(name) => Some(name.parse().map_err(|_| damaged(format!("has the unknown weight `{}`", quote(name))))?),
     };
     draft.light_mesh = LightMeshDefaults { step: own.step, radius: own.radius, weight };
     Ok(())

@@ -7,7 +7,7 @@ pub(super) struct Lines<'a> {
     rest: &'a [u8],
     joined: Vec<u8>,
     /// Number of lines read so far: the number of the last one.
-    pub(super) number: usize,
+    number: usize,
 }
 
 impl<'a> Lines<'a> {
@@ -15,11 +15,11 @@ impl<'a> Lines<'a> {
         Lines { rest: text, joined: Vec::new(), number: 0 }
     }
 
-    /// The next line, with its continuation lines, trimmed; `None` at the end. Comments are never continued, because their authors
+    /// The next line with its number, and with its continuation lines, trimmed; `None` at the end. Comments are never continued, because their authors
     /// do not expect that of a path in them.
-    pub(super) fn next(&mut self) -> Option<&[u8]> {
+    pub(super) fn next(&mut self) -> Option<(usize, &[u8])> {
         let line = self.take()?;
-        let Some(begun) = continued(line) else { return Some(line) };
+        let Some(begun) = continued(line) else { return Some((self.number, line)) };
         self.joined.clear();
         self.joined.extend(begun);
         while let Some(line) = self.take() {
@@ -32,7 +32,7 @@ impl<'a> Lines<'a> {
                 }
             }
         }
-        Some(self.joined.trim_ascii())
+        Some((self.number, self.joined.trim_ascii()))
     }
 
     fn take(&mut self) -> Option<&'a [u8]> {
@@ -60,10 +60,9 @@ mod tests {
     fn a_backslash_joins_lines_but_not_behind_a_comment() {
         let mut lines = Lines::new(b"f 1 \\\r\n2 \\\n 3\n# C:\\models\\\n\nv 1\\");
         let mut all = Vec::new();
-        while let Some(line) = lines.next() {
-            all.push(String::from_utf8_lossy(line).into_owned());
+        while let Some((number, line)) = lines.next() {
+            all.push(format!("{number} {}", String::from_utf8_lossy(line)));
         }
-        assert_eq!(all, ["f 1  2  3", "# C:\\models\\", "", "v 1"]);
-        assert_eq!(lines.number, 6);
+        assert_eq!(all, ["3 f 1  2  3", "4 # C:\\models\\", "5 ", "6 v 1"]);
     }
 }

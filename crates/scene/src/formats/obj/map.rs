@@ -39,8 +39,8 @@ impl Map {
             }
             .trim_start();
         }
-        map.file = rest.to_owned();
-        (!rest.is_empty()).then_some(map)
+        map.file = unquoted(rest).to_owned();
+        (!map.file.is_empty()).then_some(map)
     }
 
     /// The texture, read for `library`, the file that names it. `None` if it is not available.
@@ -73,6 +73,11 @@ fn vector<'a>(text: &'a str, value: &mut Vec2) -> &'a str {
     rest
 }
 
+/// A file's name without the quotation marks that some programs put around it.
+pub(super) fn unquoted(name: &str) -> &str {
+    name.strip_prefix('"').and_then(|name| name.strip_suffix('"')).unwrap_or(name)
+}
+
 fn skip_words(text: &str, count: usize) -> Option<&str> {
     (0..count).try_fold(text, |rest, _| rest.trim_start().split_once(char::is_whitespace).map(|(_, rest)| rest))
 }
@@ -93,6 +98,7 @@ mod tests {
         assert_eq!(Map::parse(all), map("a b.png", [2.0, 3.0], [0.5, 0.0], true));
         assert_eq!(Map::parse("-s 4 7 7.png"), map("7.png", [4.0, 7.0], [0.0; 2], false));
         assert_eq!(Map::parse("-odd.png"), plain("-odd.png"));
+        assert_eq!(Map::parse("-s 1 1 1 \"brick wall.png\""), plain("brick wall.png"));
         assert_eq!(Map::parse("-odd one.png"), plain("-odd one.png"));
         assert_eq!(
             [Map::parse(""), Map::parse("-s 1 1 1"), Map::parse("-clamp on")].map(|map| map.map(|m| m.file)),

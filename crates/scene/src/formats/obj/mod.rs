@@ -8,6 +8,8 @@
 //! - Colours after a position's coordinates (`v x y z r g b`) are treated as sRGB in [0, 1], as Blender and MeshLab write
 //!   them; if one is above 1, their range is 0 to 255. A fourth coordinate w is the weight of free-form surfaces and has
 //!   no meaning for faces.
+//! - What other programs read is read with a warning: faces above their points, indices of attributes that the file lacks, words behind
+//!   numbers. What may mean several things, such as `1,5`, is an error.
 //! - Points, lines and free-form surfaces are ignored with a warning; groups and smoothing groups have no effect.
 
 mod face;
@@ -32,16 +34,15 @@ use crate::{
     draft::{Draft, Placement},
     error::Place,
     loaded_mesh::LoadedMesh,
-    open::read_bytes,
+    quote::list,
 };
 
 /// Reads an OBJ file and its material libraries into `draft`.
-pub(crate) fn read(path: &Path, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
-    let mut bytes = read_bytes(path)?;
+pub(crate) fn read(path: &Path, mut bytes: Vec<u8>, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
     let mut content = parse::parse(path, text::with_line_feeds(&mut bytes))?;
     // From here on its memory is needed for the vertices.
     drop(bytes);
-    draft.warnings.append(&mut content.warnings);
+    draft.warnings.extend(std::mem::take(&mut content.warnings));
     let mut materials = std::mem::take(&mut content.material_of_triangle);
     match placement.material {
         Some(material) => materials.fill(material),
@@ -76,7 +77,7 @@ fn find_materials(path: &Path, content: &Content, draft: &mut Draft) -> Result<V
         .filter(|name| !name.is_empty())
         .collect();
     if !missing.is_empty() {
-        let names = missing.join(", ");
+        let names = list(missing.into_iter());
         draft.warnings.push(format!("{}: no library has the material {names}; light grey is used", path.display()));
     }
     Ok(found

@@ -1,15 +1,25 @@
 //! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke and map_Kd to the coefficients of formula (1).
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::HashSet,
+    path::{Path, PathBuf},
+};
 
 use glam::{DVec3, Vec3};
 
-use super::{lines::Lines, malformed, map::Map};
+use super::{
+    lines::Lines,
+    malformed,
+    map::{Map, unquoted},
+};
 use crate::{
     LoadError, Material,
     draft::Draft,
-    formats::text::{decoded, number, quoted, split_word, with_line_feeds, words},
-    open::read_bytes,
+    error::Place,
+    formats::{
+        notes::Notes,
+        text::{decoded, number, odd_number, quoted, split_word, with_line_feeds, words},
+    },
 };
 
 /// One material as its library describes it.
@@ -37,19 +47,26 @@ struct LeftOut {
 
 /// Reads the libraries that `mtllib` lines name, in their order. One that cannot be read is a warning, because the shape is
 /// available without it.
-pub(super) fn read_libraries(obj: &Path, lines: &[String], draft: &mut Draft) -> Result<Vec<Entry>, LoadError> {
+pub(super) fn read_libraries(
+    obj: &Path,
+    lines: &[(usize, String)],
+    draft: &mut Draft,
+) -> Result<Vec<Entry>, LoadError> {
     let mut entries = Vec::new();
-    let mut seen = Vec::new();
-    let names: Vec<String> = lines.iter().flat_map(|line| file_names(obj, line, draft)).collect();
-    for name in names {
-        if seen.contains(&name) {
-            continue;
+    let mut seen = HashSet::new();
+    for (number, line) in lines {
+        for name in file_names(obj, line, draft) {
+            if seen.contains(&name) {
+                continue;
+            }
+            let place = Place::line(obj, *number);
+            match draft.read_nearby(obj, &name) {
+                Ok((path, mut bytes)) => read_library(&path, with_line_feeds(&mut bytes), &mut entries, draft)
+                    .map_err(|error| error.named_by(place))?,
+                Err(error) => draft.warnings.push(format!("{}; light grey is used instead", error.named_by(place))),
+            }
+            seen.insert(name);
         }
-        match draft.path_beside(obj, &name).and_then(|path| Ok((read_bytes(&path)?, path))) {
-            Ok((mut bytes, path)) => read_library(&path, with_line_feeds(&mut bytes), &mut entries, draft)?,
-            Err(error) => draft.warnings.push(format!("{error}; light grey is used instead")),
-        }
-        seen.push(name);
     }
     let transparent = entries.iter().filter(|entry| entry.is_transparent()).count();
     if transparent > 0 {
@@ -60,10 +77,11 @@ pub(super) fn read_libraries(obj: &Path, lines: &[String], draft: &mut Draft) ->
     Ok(entries)
 }
 
-/// The files of an `mtllib` line: one whose name may contain blanks, or several; whichever exist. If none exists, the line is
-/// split after file extensions.
+/// The files of an `mtllib` line: one whose name may contain blanks or be in quotation marks, or several; whichever exist. If none
+/// exists, the line is split after file extensions.
 fn file_names(obj: &Path, line: &str, draft: &Draft) -> Vec<String> {
     const ENDING: &str = ".mtl";
+    let line = unquoted(line);
     let mut by_ending = Vec::new();
     let mut name = String::new();
     for word in line.split_whitespace() {
@@ -75,31 +93,36 @@ fn file_names(obj: &Path, line: &str, draft: &Draft) -> Vec<String> {
     by_ending.extend((!name.is_empty()).then_some(name));
     let whole = vec![line.to_owned()];
     let by_blank: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
-    let is_there = |name: &String| draft.path_beside(obj, name).is_ok_and(|path| path.is_file());
+    let is_there = |name: &String| draft.border.path_beside(obj, name).is_ok_and(|path| path.is_file());
     let found = [whole, by_ending.clone(), by_blank].into_iter().find(|names| names.iter().all(is_there));
     found.unwrap_or(by_ending)
 }
 
 fn read_library(path: &Path, text: &[u8], entries: &mut Vec<Entry>, draft: &mut Draft) -> Result<(), LoadError> {
     let mut left_out = LeftOut::default();
+    let mut notes = Notes::default();
     let mut lines = Lines::new(text);
-    let mut entry = None;
-    while let Some(line) = lines.next() {
+    let mut entry: Option<Entry> = None;
+    while let Some((number, line)) = lines.next() {
         let (word, rest) = split_word(line);
-        if word == b"newmtl" {
-            entries.extend(entry.take());
-            let name = decoded(rest).into_owned();
-            if name.is_empty() {
-                return Err(malformed(path, lines.number, "`newmtl` has no name".to_owned(), "name the material"));
+        let first = || (number, quoted(word));
+        match (word, &mut entry) {
+            (b"" | [b'#', ..], _) => {}
+            (b"newmtl", _) => {
+                let name = decoded(rest).into_owned();
+                if name.is_empty() {
+                    notes.add("has no name: it is for faces that name no material", first);
+                }
+                entries.extend(entry.replace(Entry { name, path: path.to_owned(), ..Entry::default() }));
             }
-            entry = Some(Entry { name, path: path.to_owned(), ..Entry::default() });
-        } else if let Some(entry) = &mut entry
-            && let Err(problem) = entry.set(word, rest, &mut left_out)
-        {
-            return Err(malformed(path, lines.number, problem, "correct the line or export the file again"));
+            (_, None) => notes.add("is above the first `newmtl`, and ignored", first),
+            (_, Some(entry)) => entry
+                .set(word, rest, &mut left_out)
+                .map_err(|problem| malformed(path, number, problem, "correct the line or export the file again"))?,
         }
     }
     entries.extend(entry);
+    draft.warnings.extend(notes.warnings(path));
     let LeftOut { maps, spectral } = left_out;
     for (count, what) in [(maps, "textures other than map_Kd"), (spectral, "spectral or CIE-XYZ colours")] {
         if count > 0 {
@@ -127,13 +150,13 @@ impl Entry {
                 }
             }
             b"Ns" => {
-                let exponent = words(rest).next().and_then(number).map(|exponent| exponent as f32);
+                let exponent = words(rest).next().and_then(value).map(|exponent| exponent as f32);
                 let usable = exponent.filter(|exponent| exponent.is_finite());
-                self.shininess = Some(usable.ok_or_else(|| not_numbers(word, rest))?);
+                self.shininess = Some(usable.ok_or("`Ns` must have a number")?);
             }
             // In `d -halo 0.5` the number comes last.
-            b"d" => self.dissolve = words(rest).last().and_then(number),
-            b"Tr" => self.transparency = words(rest).last().and_then(number),
+            b"d" => self.dissolve = words(rest).last().and_then(value),
+            b"Tr" => self.transparency = words(rest).last().and_then(value),
             b"map_Kd" => self.map = Map::parse(&decoded(rest)),
             // Exporters repeat the texture as the ambient texture.
             b"map_Ka" | b"map_aat" => {}
@@ -175,17 +198,22 @@ impl Entry {
 
 /// One number for all channels, or three.
 fn color(word: &[u8], rest: &[u8]) -> Result<Vec3, String> {
-    let values: Vec<f64> = words(rest).map_while(number).take(3).collect();
+    let values: Vec<f64> = words(rest).map_while(value).take(3).collect();
     let [r, g, b] = match (values[..].try_into(), &values[..]) {
         (Ok(channels), _) => channels,
         (_, &[grey]) if words(rest).nth(1).is_none_or(|next| next.starts_with(b"#")) => [grey; 3],
-        _ => return Err(not_numbers(word, rest)),
+        _ => return Err(not_numbers(word)),
     };
     let color = DVec3::new(r, g, b).as_vec3();
     // This comes first: the maximum of 0 and NaN is 0.
-    if color.is_finite() { Ok(color.max(Vec3::ZERO)) } else { Err(not_numbers(word, rest)) }
+    if color.is_finite() { Ok(color.max(Vec3::ZERO)) } else { Err(not_numbers(word)) }
 }
 
-fn not_numbers(word: &[u8], rest: &[u8]) -> String {
-    format!("`{} {}` must have one number or three", decoded(word), quoted(rest))
+/// A number, however it is written: colours are not so important that each odd one is told.
+fn value(word: &[u8]) -> Option<f64> {
+    number(word).or_else(|| odd_number(word))
+}
+
+fn not_numbers(word: &[u8]) -> String {
+    format!("`{}` must have one number or three", decoded(word))
 }

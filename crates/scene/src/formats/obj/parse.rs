@@ -1,15 +1,23 @@
 //! The lines of an OBJ file, one by one: points, and triangles made of vertices.
 
-use std::{collections::HashMap, path::Path};
+use std::{
+    collections::{HashMap, HashSet},
+    path::Path,
+};
 
 use glam::{DVec3, Vec2, Vec3};
 
-use super::{face, lines::Lines, malformed};
+use super::{
+    face::{self, Counts},
+    lines::Lines,
+    malformed,
+};
 use crate::{
     LoadError,
     formats::{
+        notes::Notes,
         polygon::Cutter,
-        text::{decoded, number, quoted, split_word, words},
+        text::{decoded, number, odd_number, quoted, split_word, words},
         vertices::{Corner, Vertices},
     },
 };
@@ -17,8 +25,8 @@ use crate::{
 /// Maximum number of values read from a position: three coordinates and a colour.
 const MOST_NUMBERS: usize = 6;
 
-/// Maximum length of an unknown statement in a warning, in bytes.
-const NAMED: usize = 20;
+/// First words of positions, texture coordinates and normals.
+const POINTS: [&[u8]; 3] = [b"v", b"vt", b"vn"];
 
 /// The problem with a line, and the remedy.
 pub(super) struct Fault(pub(super) String, pub(super) &'static str);
@@ -43,28 +51,36 @@ pub(super) struct Content {
     pub(super) material_of_triangle: Vec<u32>,
     /// Names in the order of their first use; the empty one means none.
     pub(super) materials: Vec<String>,
-    /// The names in `mtllib` lines, each once.
-    pub(super) libraries: Vec<String>,
+    /// The lines `mtllib`, each once: number and names.
+    pub(super) libraries: Vec<(usize, String)>,
     pub(super) warnings: Vec<String>,
 }
 
-/// Reads all lines.
+/// Reads all lines. Faces may be above what they refer to: if one cannot be read, or lacks an attribute that is found later, all points are
+/// read before all faces.
 pub(super) fn parse(path: &Path, text: &[u8]) -> Result<Content, LoadError> {
     let mut parser = Parser::default();
-    let mut lines = Lines::new(text);
-    while let Some(line) = lines.next() {
-        if let Err(Fault(problem, remedy)) = parser.statement(line) {
-            return Err(malformed(path, lines.number, problem, remedy));
-        }
-        if parser.unknown.is_some() && parser.unknown_line == 0 {
-            parser.unknown_line = lines.number;
-        }
+    let read = parser.read(path, text, |_| true);
+    if parser.refers_ahead() {
+        parser = Parser::default();
+        parser.read(path, text, is_point)?;
+        parser.above = Some([0; 3]);
+        parser.read(path, text, |_| true)?;
+    } else {
+        read?;
     }
     Ok(parser.finish(path))
 }
 
+/// Whether faces can refer to lines with this word.
+fn is_point(word: &[u8]) -> bool {
+    POINTS.contains(&word)
+}
+
 #[derive(Default)]
 struct Parser {
+    /// Number of the current line.
+    line: usize,
     points: Points,
     vertices: Vertices,
     cutter: Cutter,
@@ -73,10 +89,15 @@ struct Parser {
     /// Index of each material's name.
     materials: HashMap<String, u32>,
     material: Option<u32>,
-    libraries: Vec<String>,
+    libraries: Vec<(usize, String)>,
+    known_libraries: HashSet<String>,
     points_and_lines: usize,
-    unknown: Option<String>,
-    unknown_line: usize,
+    notes: Notes,
+    /// If all points have been read: how many are above the current line.
+    above: Option<[usize; 3]>,
+    is_face_refused: bool,
+    /// Whether a face refers to an attribute of which there was none.
+    lacks: [bool; 3],
     // Buffers for the current face, reused to avoid allocation.
     face: Vec<Corner>,
     face_vertices: Vec<u32>,
@@ -84,39 +105,67 @@ struct Parser {
 }
 
 impl Parser {
-    fn statement(&mut self, line: &[u8]) -> Result<(), Fault> {
-        let (word, rest) = split_word(line);
+    /// Reads the lines whose first words are `wanted`.
+    fn read(&mut self, path: &Path, text: &[u8], wanted: fn(&[u8]) -> bool) -> Result<(), LoadError> {
+        let mut lines = Lines::new(text);
+        while let Some((number, line)) = lines.next() {
+            let (word, rest) = split_word(line);
+            if wanted(word) {
+                self.line = number;
+                self.statement(word, rest)
+                    .map_err(|Fault(problem, remedy)| malformed(path, number, problem, remedy))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn refers_ahead(&self) -> bool {
+        let counts = self.counts();
+        self.is_face_refused || (0..counts.len()).any(|kind| self.lacks[kind] && counts[kind] > 0)
+    }
+
+    /// Numbers of positions, texture coordinates and normals so far.
+    fn counts(&self) -> [usize; 3] {
+        let Points { positions, uvs, normals, .. } = &self.points;
+        [positions.len(), uvs.len(), normals.len()]
+    }
+
+    fn statement(&mut self, word: &[u8], rest: &[u8]) -> Result<(), Fault> {
+        if let Some(above) = &mut self.above
+            && let Some(kind) = POINTS.iter().position(|&point| point == word)
+        {
+            above[kind] += 1;
+            return Ok(());
+        }
         match word {
             b"v" => self.position(rest)?,
             b"vt" => {
                 // One number is a one-dimensional texture. In the file v points upwards.
-                let ([u, v, ..], _) = numbers(word, rest, 1)?;
+                let ([u, v, ..], _) = self.numbers(word, rest, 1)?;
                 self.points.uvs.push(Vec2::new(u as f32, (1.0 - v) as f32));
             }
             b"vn" => {
-                let ([x, y, z, ..], _) = numbers(word, rest, 3)?;
+                let ([x, y, z, ..], _) = self.numbers(word, rest, 3)?;
                 self.points.normals.push(DVec3::new(x, y, z).as_vec3());
             }
             b"f" | b"fo" => self.face(rest)?,
             b"l" | b"p" => self.points_and_lines += 1,
             b"usemtl" => self.material = Some(self.material_named(&decoded(rest))),
             b"mtllib" => {
-                let names = decoded(rest);
-                if !self.libraries.iter().any(|known| *known == names) {
-                    self.libraries.push(names.into_owned());
+                let names = decoded(rest).into_owned();
+                if self.known_libraries.insert(names.clone()) {
+                    self.libraries.push((self.line, names));
                 }
             }
             b"" | b"g" | b"o" | b"s" | b"mg" | b"lod" | b"bevel" | b"c_interp" | b"d_interp" => {}
             [b'#', ..] => {}
-            _ => {
-                self.unknown.get_or_insert_with(|| quoted(&word[..word.len().min(NAMED)]));
-            }
+            _ => self.notes.add("is an unknown statement, which is ignored", || (self.line, quoted(word))),
         }
         Ok(())
     }
 
     fn position(&mut self, rest: &[u8]) -> Result<(), Fault> {
-        let ([x, y, z, r, g, b], count) = numbers(b"v", rest, 3)?;
+        let ([x, y, z, r, g, b], count) = self.numbers(b"v", rest, 3)?;
         let Points { positions, colors, .. } = &mut self.points;
         if count == MOST_NUMBERS {
             colors.resize(positions.len(), Vec3::NAN);
@@ -139,9 +188,15 @@ impl Parser {
     }
 
     fn face(&mut self, rest: &[u8]) -> Result<(), Fault> {
-        let Points { positions, uvs, normals, .. } = &self.points;
-        let counts = [positions.len(), uvs.len(), normals.len()];
-        face::read(rest, counts, &mut self.face)?;
+        let all = self.counts();
+        let counts = Counts { above: self.above.unwrap_or(all), all };
+        let Parser { line, notes, lacks, .. } = self;
+        let read = face::read(rest, counts, &mut self.face, |kind, oddity, word| {
+            lacks[kind] = true;
+            notes.add(oddity, || (*line, quoted(word)));
+        });
+        self.is_face_refused = read.is_err();
+        read?;
         if self.face.len() < 3 {
             self.points_and_lines += 1;
             return Ok(());
@@ -164,15 +219,12 @@ impl Parser {
     }
 
     fn finish(self, path: &Path) -> Content {
-        let path = path.display();
         let mut warnings = Vec::new();
         if self.points_and_lines > 0 {
-            warnings.push(format!("{path}: {} points and lines were ignored", self.points_and_lines));
+            warnings.push(format!("{}: {} points and lines were ignored", path.display(), self.points_and_lines));
         }
-        if let Some(word) = &self.unknown {
-            let line = self.unknown_line;
-            warnings.push(format!("{path}:{line}: `{word}` and other unknown statements were ignored"));
-        }
+        warnings.extend(self.notes.warnings(path));
+        let path = path.display();
         warnings.extend(self.cutter.warning().map(|warning| format!("{path}: {warning}")));
         let mut materials: Vec<(String, u32)> = self.materials.into_iter().collect();
         materials.sort_unstable_by_key(|&(_, number)| number);
@@ -186,23 +238,32 @@ impl Parser {
             warnings,
         }
     }
-}
 
-/// The numbers of a line up to a comment, padded with zeros, and how many there are: at least `least`. Further words are
-/// ignored.
-fn numbers(word: &[u8], rest: &[u8], least: usize) -> Result<([f64; MOST_NUMBERS], usize), Fault> {
-    const REMEDY: &str = "correct the line or export the file again";
-    let mut numbers = [0.0; MOST_NUMBERS];
-    let mut count = 0;
-    for text in words(rest).take_while(|word| word[0] != b'#').take(MOST_NUMBERS) {
-        let line = || format!("{} {}", decoded(word), quoted(rest));
-        numbers[count] =
-            number(text).ok_or_else(|| Fault(format!("`{}` in `{}` is not a number", quoted(text), line()), REMEDY))?;
-        count += 1;
+    /// The numbers of a line up to a comment, padded with zeros, and how many there are: at least `least`. What follows them is ignored;
+    /// but a second or third word that is no number must be damage.
+    fn numbers(&mut self, word: &[u8], rest: &[u8], least: usize) -> Result<([f64; MOST_NUMBERS], usize), Fault> {
+        const REMEDY: &str = "correct the line or export the file again";
+        const NEEDED: usize = 3;
+        let mut numbers = [0.0; MOST_NUMBERS];
+        let mut count = 0;
+        for text in words(rest).take_while(|word| word[0] != b'#').take(MOST_NUMBERS) {
+            if let Some(number) = number(text) {
+                numbers[count] = number;
+            } else if let Some(number) = odd_number(text) {
+                self.notes.add("is an odd way to write a number, but known", || (self.line, quoted(text)));
+                numbers[count] = number;
+            } else if count < NEEDED {
+                let problem = format!("`{}` in a line `{}` is not a number", quoted(text), decoded(word));
+                return Err(Fault(problem, REMEDY));
+            } else {
+                self.notes.add("behind the numbers is ignored", || (self.line, quoted(text)));
+                break;
+            }
+            count += 1;
+        }
+        if count < least {
+            return Err(Fault(format!("a line `{}` has fewer than {least} numbers", decoded(word)), REMEDY));
+        }
+        Ok((numbers, count))
     }
-    if count < least {
-        let problem = format!("`{} {}` has fewer than {least} numbers", decoded(word), quoted(rest));
-        return Err(Fault(problem, REMEDY));
-    }
-    Ok((numbers, count))
 }

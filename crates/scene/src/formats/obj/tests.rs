@@ -99,12 +99,12 @@ fn odd_but_lawful_lines_are_read() {
 fn damage_is_named_with_its_line() {
     #[rustfmt::skip]
     const MISTAKES: [(&str, &str); 8] = [
-        ("v 0 0\n", "`v 0 0` has fewer than 3 numbers, shape.obj:1; "),
-        ("v 0 0 zero\n", "`zero` in `v 0 0 zero` is not a number, shape.obj:1; "),
+        ("v 0 0\n", "a line `v` has fewer than 3 numbers, shape.obj:1; "),
+        ("v 0 0 zero\n", "`zero` in a line `v` is not a number, shape.obj:1; "),
         ("v 0 0 0\n\nf 1 1 2\n", "the face corner `2` refers to position 2 of 1, shape.obj:3; "),
         ("v 0 0 0\nf 1 1 0\n", "the face corner `0` refers to position 0 of 1, shape.obj:2; "),
         ("v 0 0 0\nf -2 1 1\n", "refers to position -2 of 1, shape.obj:2; "),
-        ("v 0 0 0\nf 1//1 1//1 1//1\n", "refers to normal 1 of 0, shape.obj:2; "),
+        ("v 0 0 0\nvn 0 0 1\nf 1//2 1//1 1//1\n", "refers to normal 2 of 1, shape.obj:3; "),
         ("v 0 0 0\nf 1 1 x\n", "the face corner `x` is not made of indices, shape.obj:2; "),
         ("v 0 0 0\nf 1/1/1/1 1 1\n", "shape.obj:2; "),
     ];
@@ -113,7 +113,8 @@ fn damage_is_named_with_its_line() {
         assert!(message.contains(expected), "{obj}: {message}");
     }
     let message = try_open("mtllib a b.mtl\nv 0 0 0\n", "newmtl a\nKd 1 x 1\n").unwrap_err();
-    assert!(message.contains("`Kd 1 x 1` must have one number or three, a b.mtl:2; "), "{message}");
+    assert!(message.contains("`Kd` must have one number or three, a b.mtl:2; "), "{message}");
+    assert!(message.ends_with(" (named by shape.obj:1)"), "{message}");
     for color in ["nan 0 0", "0 inf 0", "0 0 1e39"] {
         let message = try_open("mtllib a b.mtl\nv 0 0 0\n", &format!("newmtl a\nKd {color}\n")).unwrap_err();
         assert!(message.contains("must have one number or three, a b.mtl:2; "), "{message}");
@@ -174,7 +175,7 @@ fn names_keep_blanks_and_hashes_and_need_not_be_utf_8() {
     }
     write("../outside.mtl");
     let warnings = Scene::open(&path).unwrap().warnings;
-    assert!(warnings[0].contains("../outside.mtl` lies outside the scene's folder"), "{warnings:?}");
+    assert!(warnings[0].contains("../outside.mtl` leads outside the scene's folder"), "{warnings:?}");
 }
 
 #[test]
@@ -227,4 +228,93 @@ fn a_file_cut_short_anywhere_ends_with_a_message_or_less() {
             assert!(message.contains(", shape.obj:"), "{message}");
         }
     }
+}
+
+/// What other programs read: warned about with its line, and read as what it must mean.
+#[test]
+fn what_others_read_is_read_with_a_warning() {
+    const CASES: [(&str, &str); 9] = [
+        ("v 0 0 0\nv 1.0f 0 0\nv 0 1 0\nf 1 2 3\n", "shape.obj:2: `1.0f` is an odd way to write a number, but known"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0 see below\nf 1 2 3\n", "shape.obj:3: `see` behind the numbers is ignored"),
+        (
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//2 3//3\n",
+            "shape.obj:4: `1//1` refers to a normal, but there is none: it is ignored (the first of 3)",
+        ),
+        (
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1/-1/1 2/7/1 3/9/1\n",
+            "shape.obj:5: `1/-1/1` refers to a texture coordinate, but there is none: it is ignored (the first of 3)",
+        ),
+        (
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn -nan(ind) 1.#QNAN0 nan\nf 1//1 2//1 3//1\n",
+            "shape.obj:4: `-nan(ind)` is an odd way to write a number, but known (the first of 2)",
+        ),
+        (
+            "v 0 0 0\nhello there\nv 1 0 0\nv 0 1 0\nworld\nf 1 2 3\n",
+            "shape.obj:2: `hello` is an unknown statement, which is ignored (the first of 2)",
+        ),
+        ("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n", "shape.obj:1: `1` refers to a line below it (the first of 3)"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\nf 1 2 3\n", "shape.obj: 1 points and lines were ignored"),
+        (
+            "mtllib a b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+            "a b.mtl:3: `newmtl` has no name: it is for faces that name no material",
+        ),
+    ];
+    for (obj, expected) in CASES {
+        let scene = try_open(obj, "\nKa 1\nnewmtl\nKd 1 0 0\n").unwrap();
+        assert_eq!(scene.geometry.mesh.triangles.len(), 1, "{obj}");
+        let corners = scene.geometry.mesh.corners(0);
+        assert_eq!(corners, [Vec3::ZERO, Vec3::X, Vec3::Y], "{obj}");
+        assert!(scene.warnings.iter().any(|warning| warning.ends_with(expected)), "{obj}: {:?}", scene.warnings);
+    }
+}
+
+#[test]
+fn faces_above_their_points_are_as_below_them() {
+    let points = format!("{TETRAHEDRON}vt 0.5 0.25\nvn 0 0 1\n");
+    let faces = "f 1/1/1 2/1/1 3/1/1\nf 2 3 4\n";
+    let [below, above] =
+        [format!("{points}{faces}"), format!("{faces}{points}")].map(|text| open(&text).geometry.mesh.clone());
+    assert_eq!((&below.triangles, &below.positions), (&above.triangles, &above.positions));
+    assert_eq!((&below.normals, &below.uvs), (&above.normals, &above.uvs));
+    // Only the normals are below; indices below 0 count from the face.
+    let mixed =
+        open(&format!("{TETRAHEDRON}f -4//1 -3//1 -2//1\nv 5 5 5\nvn 0 0 1\nf -5 -4 -3\n")).geometry.mesh.clone();
+    assert_eq!([0, 1].map(|index| mixed.corners(index)), [[Vec3::ZERO, Vec3::X, Vec3::Y]; 2]);
+    assert_eq!(mixed.normals[mixed.triangles[0][0] as usize], Vec3::Z);
+}
+
+#[test]
+fn what_may_mean_several_things_is_refused() {
+    for line in ["v 1,5 0 0", "v 1.0x 0 0", "vt 0 x", "f 0 1 2", "f 1 2 x", "f 1/2/3/4 2 3", "f 1.0 2 3"] {
+        let message = try_open(&format!("{TETRAHEDRON}{line}\nf 1 2 3\n"), "").unwrap_err();
+        assert!(message.contains(", shape.obj:5; "), "{line}: {message}");
+    }
+}
+
+#[test]
+fn files_with_paths_of_another_computer_are_found_next_to_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    image::RgbImage::new(2, 2).save(folder.path().join("oak.png")).unwrap();
+    fs::write(folder.path().join("wood.mtl"), "newmtl oak\nmap_Kd \"C:\\Users\\me\\oak.png\"\n").unwrap();
+    let path = folder.path().join("shape.obj");
+    let faces = "vt 0 0\nusemtl oak\nf 1/1 2/1 3/1\n";
+    fs::write(&path, format!("mtllib /home/me/wood.mtl\n{TETRAHEDRON}{faces}")).unwrap();
+    let scene = Scene::open(&path).unwrap();
+    assert!(scene.geometry.materials[0].texture.is_some(), "{:?}", scene.warnings);
+    let found = [
+        "`/home/me/wood.mtl` cannot be used; wood.mtl next to",
+        r"`C:\Users\me\oak.png` cannot be used; oak.png next to",
+    ];
+    for part in found {
+        assert!(scene.warnings.iter().any(|warning| warning.contains(part)), "{part}: {:?}", scene.warnings);
+    }
+}
+
+#[test]
+fn very_many_lines_of_one_kind_are_one_warning_and_take_no_time() {
+    let lines: String =
+        (0..200_000).map(|i| format!("odd{i} 1\nmtllib none{i}.mtl\nusemtl gone{i}\nf 1//1 2//1 3//1\n")).collect();
+    let warnings = open(&(TETRAHEDRON.to_owned() + &lines)).warnings;
+    assert_eq!(warnings.len(), 101, "{warnings:?}");
+    assert!(warnings.iter().map(String::len).sum::<usize>() < 50_000);
 }

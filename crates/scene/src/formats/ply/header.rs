@@ -2,11 +2,19 @@
 
 use std::path::Path;
 
+use memchr::memchr;
+
 use super::malformed;
 use crate::{
     LoadError,
-    formats::text::{decoded, quoted, split_word},
+    formats::{
+        notes::Notes,
+        text::{decoded, quoted, split_word},
+    },
 };
+
+/// Some editors write it in front of a text.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// The encoding of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,10 +124,11 @@ pub(super) struct Header {
 }
 
 /// Reads the header of `bytes`.
-pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Header, LoadError> {
+pub(super) fn read(path: &Path, bytes: &[u8], notes: &mut Notes) -> Result<Header, LoadError> {
     const EXPORT: &str = "export it again as PLY";
     let refuse = |line: usize, problem: String, remedy: &str| Err(malformed(path, Some(line), problem, remedy));
-    let mut lines = Lines { bytes, at: 0, ending: line_ending(bytes) };
+    let mark = if bytes.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
+    let mut lines = Lines { bytes, at: mark, ending: line_ending(bytes) };
     if lines.next() != Some(b"ply") {
         return refuse(1, "the file does not begin with the line `ply`".to_owned(), EXPORT);
     }
@@ -145,7 +154,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Header, LoadError> {
                 });
             }
             b"element" => {
-                let Some(count) = str::from_utf8(second).ok().and_then(|count| count.parse().ok()) else {
+                let Some(count) = str::from_utf8(split_word(second).0).ok().and_then(|count| count.parse().ok()) else {
                     let problem = format!("`{}` has no usable count", quoted(line));
                     return refuse(number, problem, "write `element NAME COUNT`");
                 };
@@ -170,7 +179,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Header, LoadError> {
                 Some(encoding) => return Ok(Header { encoding, elements, texture, length: lines.at }),
                 None => return refuse(number, "the header has no line `format`".to_owned(), EXPORT),
             },
-            _ => return refuse(number, format!("`{}` is not a valid line of a PLY header", quoted(line)), EXPORT),
+            _ => notes.add("is an unknown word in the header; its line is ignored", || (number, quoted(word))),
         }
     }
     unreachable!("lines end before numbers do")
@@ -186,30 +195,31 @@ fn property(text: &[u8]) -> Option<Property> {
     } else {
         (Shape::One(Type::named(first)?), rest)
     };
+    let (name, _) = split_word(name);
     (!name.is_empty()).then(|| Property { name: decoded(name).into_owned(), shape })
 }
 
-/// The line ending of the first line: the others use the same. After `end_header` a line feed may be data.
-fn line_ending(bytes: &[u8]) -> &'static [u8] {
+/// What ends lines: carriage returns alone if the first line ends with one, else line feeds, whether or not carriage returns come before
+/// them. After `end_header` a line feed may be data.
+fn line_ending(bytes: &[u8]) -> u8 {
     match bytes.iter().position(|byte| matches!(byte, b'\r' | b'\n')).map(|at| &bytes[at..]) {
-        Some([b'\r', b'\n', ..]) => b"\r\n",
-        Some([b'\r', ..]) => b"\r",
-        _ => b"\n",
+        Some([b'\r', next, ..]) if *next != b'\n' => b'\r',
+        _ => b'\n',
     }
 }
 
 struct Lines<'a> {
     bytes: &'a [u8],
     at: usize,
-    ending: &'static [u8],
+    ending: u8,
 }
 
 impl<'a> Lines<'a> {
     /// The next line, trimmed; `None` if no line is terminated.
     fn next(&mut self) -> Option<&'a [u8]> {
         let rest = &self.bytes[self.at..];
-        let length = memchr::memmem::find(rest, self.ending)?;
-        self.at += length + self.ending.len();
+        let length = memchr(self.ending, rest)?;
+        self.at += length + 1;
         Some(rest[..length].trim_ascii())
     }
 }

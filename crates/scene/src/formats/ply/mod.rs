@@ -5,7 +5,7 @@
 //!
 //! - `vertex` with x y z, normals nx ny nz, texture coordinates (s t, u v, texture_u texture_v; v upwards) and colours, which are
 //!   treated as sRGB; `face` with vertex_indices or vertex_index; `tristrips`. Elements may come in any order; their other
-//!   properties are skipped.
+//!   properties are skipped. Values behind a row of an ASCII file are ignored with a warning, if each row has a line of its own.
 //! - A face's colour replaces that of its vertices: vertices are split where faces of different colours meet.
 //! - An image named by `comment TextureFile` colours vertices with texture coordinates.
 
@@ -26,29 +26,29 @@ use self::{
     rows::{Fault, Row, Rows},
     vertex::{Color, Layout, Points},
 };
-use super::text::line_of;
+use super::{
+    notes::Notes,
+    text::{line_of, quoted},
+};
 use crate::{
     LoadError, Material, TextureUse,
     draft::{Draft, Placement},
     error::Place,
     loaded_mesh::LoadedMesh,
-    open::read_bytes,
+    quote::{self, list},
 };
 
 /// Names of the list that contains a face's or strip's vertices.
 const INDICES: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// Reads a PLY file into `draft`.
-pub(crate) fn read(path: &Path, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
-    let bytes = read_bytes(path)?;
-    let header = header::read(path, &bytes)?;
-    let mut reader = Reader {
-        path,
-        bytes: &bytes,
-        encoding: header.encoding,
-        rows: Rows::new(&bytes, header.length, header.encoding),
-    };
+pub(crate) fn read(path: &Path, bytes: Vec<u8>, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
+    let mut notes = Notes::default();
+    let header = header::read(path, &bytes, &mut notes)?;
+    let rows = Rows::new(&bytes, &header);
+    let mut reader = Reader { path, bytes: &bytes, encoding: header.encoding, rows, notes };
     let (points, faces, warnings) = reader.elements(&header)?;
+    draft.warnings.extend(reader.notes.warnings(path));
     // From here on its memory is needed for the scene.
     drop(bytes);
     draft.warnings.extend(warnings.into_iter().map(|warning| format!("{}: {warning}", path.display())));
@@ -88,6 +88,7 @@ struct Reader<'a> {
     bytes: &'a [u8],
     encoding: Encoding,
     rows: Rows<'a>,
+    notes: Notes,
 }
 
 impl Reader<'_> {
@@ -105,7 +106,9 @@ impl Reader<'_> {
                     // Faces can be triangulated only when their vertices are known.
                     match name {
                         "face" | "tristrips" => waiting.push((self.rows.at, element)),
-                        _ if element.count > 0 => others.push(format!("{} ({})", element.name, element.count)),
+                        _ if element.count > 0 => {
+                            others.push(format!("{} ({})", quote::name(&element.name), element.count))
+                        }
                         _ => {}
                     }
                     self.each_row(element, None, |_, _| Ok(()))?;
@@ -124,15 +127,15 @@ impl Reader<'_> {
             warnings.push(format!("{} faces with fewer than three corners were ignored", faces.left_out));
         }
         if !others.is_empty() {
-            warnings.push(format!("unknown elements were ignored: {}", others.join(", ")));
+            warnings.push(format!("unknown elements were ignored: {}", list(others.iter().map(String::as_str))));
         }
         Ok((points, faces, warnings))
     }
 
     /// Stops reading before a count that the file cannot fulfil causes an allocation.
     fn check_room(&self, element: &Element) -> Result<(), LoadError> {
-        let (room, Element { name, count, .. }) = (self.rows.room(element), element);
-        if *count > room {
+        let (room, count, name) = (self.rows.room(element), element.count, quote::name(&element.name));
+        if count > room {
             let problem = format!(
                 "the header declares {count} of element `{name}`, but the rest of the file has room for only {room}"
             );
@@ -188,9 +191,11 @@ impl Reader<'_> {
             return Ok(());
         }
         let mut row = Row::default();
+        // Faces before their vertices are read twice.
+        let is_waiting = list.is_none() && matches!(element.name.as_str(), "face" | "tristrips");
         for number in 1..=element.count {
             let read = self.rows.read(element, list, &mut row).map_err(|fault| {
-                let place = format!("row {number} of {} of element `{}`", element.count, element.name);
+                let place = format!("row {number} of {} of element `{}`", element.count, quote::name(&element.name));
                 match fault {
                     Fault::Ended => format!("the file ends within {place}"),
                     Fault::NoNumber(word) => format!("`{word}` in {place} is not a number"),
@@ -198,6 +203,12 @@ impl Reader<'_> {
                 }
             });
             read.and_then(|()| take(number, &row)).map_err(|problem| self.refuse(problem))?;
+            if let Some(word) = self.rows.surplus()
+                && !is_waiting
+            {
+                let first = || (line_of(self.bytes, self.rows.at.saturating_sub(1)), quoted(word));
+                self.notes.add("is more than the header says of a row, and ignored", first);
+            }
         }
         Ok(())
     }

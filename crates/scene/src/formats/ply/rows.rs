@@ -1,7 +1,9 @@
 //! The rows after a PLY header, number by number.
 
-use super::header::{Element, Encoding, Shape, Type};
-use crate::formats::text::{number, quoted};
+use memchr::memchr2;
+
+use super::header::{Element, Encoding, Header, Shape, Type};
+use crate::formats::text::{number, odd_number, quoted, words};
 
 /// Why a row cannot be read.
 #[derive(Debug, PartialEq)]
@@ -29,11 +31,14 @@ pub(super) struct Rows<'a> {
     /// Offset of the next byte.
     pub(super) at: usize,
     encoding: Encoding,
+    header: &'a Header,
+    /// Whether each row of an ASCII file has a line of its own, and more than that, once that matters.
+    has_surplus: Option<bool>,
 }
 
 impl<'a> Rows<'a> {
-    pub(super) fn new(bytes: &'a [u8], at: usize, encoding: Encoding) -> Rows<'a> {
-        Rows { bytes, at, encoding }
+    pub(super) fn new(bytes: &'a [u8], header: &'a Header) -> Rows<'a> {
+        Rows { bytes, at: header.length, encoding: header.encoding, header, has_surplus: None }
     }
 
     /// Maximum number of rows of `element` that the rest of the file can contain.
@@ -67,6 +72,40 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
+    /// Skips what follows a row on its line in an ASCII file, and returns its first word; unless the rows are broken into lines in
+    /// another way, and that is the next row.
+    pub(super) fn surplus(&mut self) -> Option<&'a [u8]> {
+        if self.encoding != Encoding::Ascii {
+            return None;
+        }
+        let rest = &self.bytes[self.at..];
+        let line = &rest[..memchr2(b'\n', b'\r', rest).unwrap_or(rest.len())];
+        let word = words(line).next()?;
+        if self.has_surplus.is_none() {
+            self.has_surplus = Some(!self.is_complete_without_lines() && self.has_line_for_each_row());
+        }
+        self.at += if self.has_surplus == Some(true) { line.len() } else { return None };
+        Some(word)
+    }
+
+    /// Whether all rows, read one after another wherever lines end, take all words of the file.
+    fn is_complete_without_lines(&self) -> bool {
+        let mut rows = Rows::new(self.bytes, self.header);
+        let mut row = Row::default();
+        self.elements_with_rows().all(|element| (0..element.count).all(|_| rows.read(element, None, &mut row).is_ok()))
+            && rows.word().is_err()
+    }
+
+    fn has_line_for_each_row(&self) -> bool {
+        let count = self.elements_with_rows().fold(0, |sum: u64, element| sum.saturating_add(element.count));
+        let lines = self.bytes[self.header.length..].split(|&byte| byte == b'\n' || byte == b'\r');
+        lines.filter(|line| !line.trim_ascii().is_empty()).count() as u64 >= count
+    }
+
+    fn elements_with_rows(&self) -> impl Iterator<Item = &'a Element> {
+        self.header.elements.iter().filter(|element| !element.properties.is_empty())
+    }
+
     /// The number of items of a list, for which there are enough bytes.
     fn count(&mut self, count: Type, item: Type) -> Result<usize, Fault> {
         let count = self.value(count)?;
@@ -89,7 +128,7 @@ impl<'a> Rows<'a> {
     fn value(&mut self, of: Type) -> Result<f64, Fault> {
         if self.encoding == Encoding::Ascii {
             let word = self.word()?;
-            return number(word).ok_or_else(|| Fault::NoNumber(quoted(word)));
+            return number(word).or_else(|| odd_number(word)).ok_or_else(|| Fault::NoNumber(quoted(word)));
         }
         Ok(match of {
             Type::I8 => f64::from(i8::from_le_bytes(self.take()?)),

@@ -184,7 +184,6 @@ fn damage_is_named_with_its_line() {
             head("element vertex 1\nproperty half x\n"),
             "`property half x` is not a property with a known type, part.ply:4; ",
         ),
-        (head("elephant\n"), "`elephant` is not a valid line of a PLY header, part.ply:3; "),
         (ascii("element face 0\n", ""), "the file has no element `vertex`, part.ply:"),
         (ascii("element vertex 1\nproperty float x\n", "0\n"), "lacks one of the properties x, y and z, part.ply:"),
         (
@@ -226,5 +225,56 @@ fn a_file_cut_short_anywhere_is_an_error() {
             let message = try_open(&whole[..length]).map(|scene| scene.geometry.mesh.clone()).unwrap_err();
             assert!(message.contains(", part.ply"), "{message}");
         }
+    }
+}
+
+fn is_square_with(text: &str, expected: &str) {
+    let scene = open(text);
+    assert!(is_square(&scene), "{text}");
+    assert!(scene.warnings.iter().any(|warning| warning.ends_with(expected)), "{expected}: {:?}", scene.warnings);
+}
+
+/// What other programs read: warned about with its line, and read as what it must mean.
+#[test]
+fn what_others_read_is_read_with_a_warning() {
+    let plain = square("4 0 1 2 3\n");
+    is_square_with(
+        &plain.replace("1 1 0\n0 1 0\n", "1 1 0 0.5 7\n0 1 0 x\n"),
+        "part.ply:12: `0.5` is more than the header says of a row, and ignored (the first of 2)",
+    );
+    is_square_with(
+        &square("4 0 1 2 3 255 0 0\n"),
+        "part.ply:14: `255` is more than the header says of a row, and ignored",
+    );
+    is_square_with(
+        &plain.replace("element face", "Created by hand\nand more\nelement face"),
+        "part.ply:7: `Created` is an unknown word in the header; its line is ignored (the first of 2)",
+    );
+    let faces_first = ascii(
+        &format!("element face 1\n{LIST}element vertex 4\n{XYZ}"),
+        &format!("4 0 1 2 3 9\n{}", SQUARE.replace('\n', " 8\n")),
+    );
+    is_square_with(
+        &faces_first,
+        "part.ply:11: `8` is more than the header says of a row, and ignored (the first of 5)",
+    );
+    assert!(is_square(&open(plain.replace("1 1 0\n", "1.0f 1 0\n"))));
+}
+
+#[test]
+fn rows_that_share_lines_or_take_several_are_read_as_they_are() {
+    let plain = square("4 0 1 2 3\n");
+    for text in [
+        plain.replace("0 0 0\n1 0 0\n", "0 0 0 1 0 0\n"),
+        plain.replace(SQUARE, &SQUARE.replace('\n', " ")),
+        plain.replace("4 0 1", "4\n0\n\n1"),
+        plain.replace("0 0 0\n1 0 0\n", "0 0 0 1\n0 0\n"),
+        plain.trim_end().to_owned(),
+        format!("\u{feff}{plain}"),
+        plain.replacen('\n', "\r\n", 1),
+        plain.replace("end_header\n", "end_header\r\n"),
+    ] {
+        let scene = open(&text);
+        assert!(is_square(&scene) && scene.warnings.is_empty(), "{text}: {:?}", scene.warnings);
     }
 }

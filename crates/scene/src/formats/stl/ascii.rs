@@ -12,13 +12,16 @@ use super::{BEGINNING, Soup, malformed};
 use crate::{
     LoadError,
     formats::{
+        notes::Notes,
         polygon::Cutter,
-        text::{line_of, number, quoted},
+        text::{line_of, number, odd_number, quoted},
     },
 };
 
 /// A facet's first keyword.
 const FACET: &[u8] = b"facet";
+/// Its other keywords.
+const PARTS: [&[u8]; 6] = [b"normal", b"outer", b"loop", b"vertex", b"endloop", b"endfacet"];
 
 /// Reads all solids.
 pub(super) fn read(path: &Path, text: &[u8]) -> Result<Soup<DVec3>, LoadError> {
@@ -27,6 +30,7 @@ pub(super) fn read(path: &Path, text: &[u8]) -> Result<Soup<DVec3>, LoadError> {
     let mut cutter = Cutter::default();
     let mut corners = Vec::new();
     let mut left_out = 0;
+    let mut notes = Notes::default();
     while let Some(word) = reader.word() {
         if is(word, b"solid") || is(word, b"endsolid") {
             reader.skip_name();
@@ -39,12 +43,16 @@ pub(super) fn read(path: &Path, text: &[u8]) -> Result<Soup<DVec3>, LoadError> {
             let first = soup.positions.len() as u32;
             soup.positions.extend(&corners);
             cutter.cut(&corners, |triangle| soup.triangles.push(triangle.map(|corner| first + corner as u32)));
-        } else {
+        } else if PARTS.iter().any(|part| is(word, part)) {
             return Err(reader.refuse(format!("`{}` found where a facet was expected", quoted(word))));
+        } else {
+            notes.add("is not a facet; its line is ignored", || (reader.line(), quoted(word)));
+            reader.skip_line();
         }
     }
     let short = (left_out > 0).then(|| format!("{left_out} facets with fewer than three corners were ignored"));
-    soup.warning = short.or_else(|| cutter.warning());
+    let counted = short.into_iter().chain(cutter.warning()).map(|warning| format!("{}: {warning}", path.display()));
+    soup.warnings = notes.warnings(path).chain(counted).collect();
     Ok(soup)
 }
 
@@ -79,6 +87,11 @@ impl<'a> Reader<'a> {
         self.at += facet.unwrap_or(line.len());
     }
 
+    fn skip_line(&mut self) {
+        let rest = &self.text[self.at..];
+        self.at += memchr(b'\n', rest).unwrap_or(rest.len());
+    }
+
     /// The corners of a facet, whose first keyword has been read.
     fn facet(&mut self, corners: &mut Vec<DVec3>) -> Result<(), LoadError> {
         corners.clear();
@@ -108,6 +121,7 @@ impl<'a> Reader<'a> {
         for axis in 0..3 {
             let word = self.word().unwrap_or_default();
             vector[axis] = number(word)
+                .or_else(|| odd_number(word))
                 .ok_or_else(|| self.refuse(format!("`{}` found where a coordinate was expected", quoted(word))))?;
         }
         Ok(vector)
@@ -115,6 +129,11 @@ impl<'a> Reader<'a> {
 
     /// The error for the word that was read last.
     fn refuse(&self, problem: String) -> LoadError {
-        malformed(self.path, Some(line_of(self.text, self.at.saturating_sub(1))), problem)
+        malformed(self.path, Some(self.line()), problem)
+    }
+
+    /// The line of the word that was read last.
+    fn line(&self) -> usize {
+        line_of(self.text, self.at.saturating_sub(1))
     }
 }

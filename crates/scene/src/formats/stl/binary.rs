@@ -34,7 +34,9 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Soup<Vec3>, LoadError> {
         let problem = format!("{} bytes are neither ASCII STL nor binary STL, which has at least {least}", bytes.len());
         return Err(malformed(path, None, problem));
     };
-    let (whole, _) = facets.as_chunks::<FACET>();
+    let (whole, rest) = facets.as_chunks::<FACET>();
+    let is_unset = count == 0 && rest.is_empty() && u32::try_from(whole.len()).is_ok_and(|facets| facets > 0);
+    let count = if is_unset { whole.len() as u32 } else { count };
     if whole.len() < count as usize {
         let problem =
             format!("the header declares {count} facets, but the rest of the file has room for only {}", whole.len());
@@ -50,8 +52,10 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Soup<Vec3>, LoadError> {
     }
     let triangles = (0..count).map(|facet| [3 * facet, 3 * facet + 1, 3 * facet + 2]).collect();
     let surplus = facets.len() - FACET * whole.len();
-    let warning = (surplus > 0).then(|| format!("{surplus} bytes after the {count} facets of the header were ignored"));
-    Ok(Soup { positions, triangles, warning })
+    let unset = is_unset.then(|| format!("the header declares no facets, but {count} follow: they are shown"));
+    let surplus = (surplus > 0).then(|| format!("{surplus} bytes after the {count} facets of the header were ignored"));
+    let warnings = unset.into_iter().chain(surplus).map(|warning| format!("{}: {warning}", path.display())).collect();
+    Ok(Soup { positions, triangles, warnings })
 }
 
 fn vector(bytes: &[u8; VECTOR]) -> Vec3 {

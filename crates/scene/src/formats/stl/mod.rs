@@ -3,7 +3,9 @@
 //! Not based on stl_io, which treats any file starting with `solid` as ASCII, as many binary files do, and rejects text that differs
 //! from the specification in whitespace or case.
 //!
-//! A file is binary if it has exactly the length implied by the count in its header, whatever it begins with. Facet normals are not
+//! A file is binary if it has exactly the length implied by the count in its header, whatever it begins with. In text, lines between
+//! facets are ignored with a warning, unless they are parts of one; a count of 0 in front of facets, left by a program that did not know
+//! their number at the start, is corrected. Facet normals are not
 //! used: they follow from the corners, and the surface is flat. Colours in the attribute bytes, of which there are several
 //! conventions, are not used either. Corners are not merged: each facet has its own vertices.
 
@@ -20,21 +22,19 @@ use crate::{
     draft::{Draft, Placement},
     error::Place,
     loaded_mesh::LoadedMesh,
-    open::read_bytes,
 };
 
 /// Number of bytes at the start of a text in which a keyword must be found.
 const BEGINNING: usize = 4096;
 
 /// Reads an STL file into `draft`.
-pub(crate) fn read(path: &Path, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
-    let mut bytes = read_bytes(path)?;
+pub(crate) fn read(path: &Path, mut bytes: Vec<u8>, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
     if !binary::has_exact_length(&bytes) && is_text(&bytes) {
         let soup = ascii::read(path, with_line_feeds(&mut bytes))?;
-        hand_over(path, soup, bytes, placement, draft)
+        hand_over(soup, bytes, placement, draft)
     } else {
         let soup = binary::read(path, &bytes)?;
-        hand_over(path, soup, bytes, placement, draft)
+        hand_over(soup, bytes, placement, draft)
     }
 }
 
@@ -43,11 +43,11 @@ pub(crate) fn read(path: &Path, placement: &Placement, draft: &mut Draft) -> Res
 struct Soup<P> {
     positions: Vec<P>,
     triangles: Vec<[u32; 3]>,
-    warning: Option<String>,
+    /// Complete sentences.
+    warnings: Vec<String>,
 }
 
 fn hand_over<P: Position>(
-    path: &Path,
     soup: Soup<P>,
     bytes: Vec<u8>,
     placement: &Placement,
@@ -55,7 +55,7 @@ fn hand_over<P: Position>(
 ) -> Result<(), LoadError> {
     // From here on its memory is needed for the scene.
     drop(bytes);
-    draft.warnings.extend(soup.warning.map(|warning| format!("{}: {warning}", path.display())));
+    draft.warnings.extend(soup.warnings);
     let material = placement.material.unwrap_or_else(|| draft.default_material());
     let mesh = LoadedMesh {
         positions: soup.positions,
@@ -68,12 +68,16 @@ fn hand_over<P: Position>(
     draft.take(mesh, &placement.transform)
 }
 
-/// Whether it begins with `solid` and continues like text.
+/// Whether it begins with `solid` and continues like text, or has facets of text below something else.
 fn is_text(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let beginning = bytes[..bytes.len().min(BEGINNING)].to_ascii_lowercase();
     let holds = |word: &[u8]| memchr::memmem::find(&beginning, word).is_some();
-    beginning.starts_with(b"solid") && (holds(b"facet") || holds(b"endsolid") || !beginning.contains(&0))
+    if beginning.starts_with(b"solid") {
+        holds(b"facet") || holds(b"endsolid") || !beginning.contains(&0)
+    } else {
+        holds(b"facet") && holds(b"vertex") && !beginning.contains(&0)
+    }
 }
 
 fn malformed(path: &Path, line: Option<usize>, problem: String) -> LoadError {

@@ -97,7 +97,7 @@ fn damage_is_named() {
         ),
         (b"solid\nfacet normal 0 0 1\nouter loop\n", "the file ends within a facet, part.STL:3; "),
         (b"solid\nfacet outer ring", "`ring` is not a valid keyword in a facet, part.STL:2; "),
-        (b"solid\n\nfact\n", "`fact` found where a facet was expected, part.STL:3; "),
+        (b"solid\n\nfact normal 0 0 1\nouter", "`outer` found where a facet was expected, part.STL:4; "),
         (
             &binary(b"solid\0", u32::MAX),
             "the header declares 4294967295 facets, but the rest of the file has room for only 2, part.STL; ",
@@ -115,5 +115,33 @@ fn damage_is_named() {
         if let Err(message) = try_open(&text.as_bytes()[..length]) {
             assert!(message.contains("part.STL"), "{message}");
         }
+    }
+}
+
+/// What other programs read: warned about with its line, and read as what it must mean.
+#[test]
+fn what_others_read_is_read_with_a_warning() {
+    let (first, second) = (facet(&CORNERS[..3]), facet(&CORNERS[3..]));
+    let cases = [
+        (
+            format!("# made by hand\nsolid part\n{first}{second}endsolid"),
+            "part.STL:1: `#` is not a facet; its line is ignored",
+        ),
+        (format!("{first}{second}"), ""),
+        (
+            format!("solid\n{first}color 1 0 0\n{second}color 0 1 0\n"),
+            "part.STL:9: `color` is not a facet; its line is ignored (the first of 2)",
+        ),
+        (format!("solid\n{first}{second}").replace("vertex 1 ", "vertex 1.0f "), ""),
+    ];
+    for (text, expected) in cases {
+        let scene = open(text.as_bytes());
+        assert!(is_right(&scene), "{text}");
+        assert!(scene.warnings.concat().ends_with(expected), "{expected}: {:?}", scene.warnings);
+    }
+    for header in [&b"solid part"[..], b""] {
+        let scene = open(&binary(header, 0));
+        assert!(is_right(&scene), "{header:?}");
+        assert!(scene.warnings[0].ends_with("the header declares no facets, but 2 follow: they are shown"));
     }
 }

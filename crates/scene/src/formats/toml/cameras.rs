@@ -7,7 +7,7 @@ use super::{
     schema::{CameraEntry, ProjectionName},
     spanned::Spanned,
 };
-use crate::{Camera, Fov, LoadError, Projection};
+use crate::{Camera, Fov, LoadError, Projection, warnings::Warnings};
 
 /// Default vertical field of view, degrees.
 const DEFAULT_VFOV: f32 = 50.0;
@@ -16,7 +16,7 @@ const DEFAULT_VFOV: f32 = 50.0;
 pub(super) fn read(
     source: &Source,
     table: &Spanned<CameraEntry>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Result<(Camera, DVec3), LoadError> {
     let entry = table.get_ref();
     let position = source.vector("position", &entry.position)?;
@@ -57,11 +57,7 @@ fn view_direction(source: &Source, table: &Spanned<CameraEntry>, position: DVec3
     }
 }
 
-fn projection(
-    source: &Source,
-    table: &Spanned<CameraEntry>,
-    warnings: &mut Vec<String>,
-) -> Result<Projection, LoadError> {
+fn projection(source: &Source, table: &Spanned<CameraEntry>, warnings: &mut Warnings) -> Result<Projection, LoadError> {
     let entry = table.get_ref();
     let vfov = entry.vfov.as_ref().map(|angle| source.view_angle("vfov", angle)).transpose()?;
     let hfov = entry.hfov.as_ref().map(|angle| source.view_angle("hfov", angle)).transpose()?;

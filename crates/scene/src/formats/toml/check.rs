@@ -6,7 +6,11 @@ use glam::{DVec3, Vec3};
 
 use super::schema::{Color, Number, Text, Vector};
 use super::spanned::Spanned;
-use crate::{LoadError, error::Place};
+use crate::{
+    LoadError,
+    error::Place,
+    quote::{abridged, quote},
+};
 
 /// Larger numbers are treated as typing errors: their squares must fit into `f32`.
 const LARGEST: f64 = crate::draft::LARGEST_COORDINATE;
@@ -169,10 +173,10 @@ pub(super) fn syntax_error(source: &Source, error: &toml::de::Error) -> LoadErro
         return LoadError::MissingKey { place, key, remedy };
     }
     let remedy = match key_at(source, error.span()) {
-        Some(key) => format!("use a value that is valid for `{key}`"),
+        Some(key) => format!("use a value that is valid for `{}`", quote(key)),
         None => "correct the TOML syntax (see https://toml.io)".to_owned(),
     };
-    LoadError::Syntax { place, problem: message, remedy }
+    LoadError::Syntax { place, problem: abridged(&message), remedy }
 }
 
 /// The key with the invalid value; `None` if not even the syntax is valid.

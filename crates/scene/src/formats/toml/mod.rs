@@ -23,12 +23,11 @@ pub(crate) use check::unit;
 use check::{Source, syntax_error};
 use schema::{AmbientEntry, LightMeshEntry, SceneFile, WeightName};
 
-use crate::{LightMeshDefaults, LoadError, Weight, draft::Draft, error::Place, open::read_bytes};
+use crate::{LightMeshDefaults, LoadError, Weight, draft::Draft, error::Place};
 
 /// Reads a scene file into `draft`.
-pub(crate) fn read(path: &Path, draft: &mut Draft) -> Result<(), LoadError> {
-    let bytes = read_bytes(path)?;
-    let text = std::str::from_utf8(&bytes).map_err(|error| LoadError::Syntax {
+pub(crate) fn read(path: &Path, bytes: &[u8], draft: &mut Draft) -> Result<(), LoadError> {
+    let text = std::str::from_utf8(bytes).map_err(|error| LoadError::Syntax {
         place: Place::line(path, 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count()).into(),
         problem: "the text is not UTF-8".to_owned(),
         remedy: "save it as UTF-8".to_owned(),

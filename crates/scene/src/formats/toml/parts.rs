@@ -57,20 +57,13 @@ pub(super) fn read(source: &Source, file: &SceneFile, names: &[String], draft: &
 }
 
 fn read_mesh(source: &Source, entry: &MeshEntry, names: &[String], draft: &mut Draft) -> Result<(), LoadError> {
-    let path = draft.path_beside(source.path, entry.file.get_ref()).map_err(|error| match error {
-        LoadError::Outside { name, .. } => LoadError::Outside { place: source.place(entry.file.span()), name },
-        error => error,
-    })?;
-    if let Err(cause) = std::fs::metadata(&path) {
-        let problem = format!("cannot be read ({cause})");
-        let remedy = "name an OBJ, glTF, GLB, PLY or STL file, by its path from the scene file's folder";
-        return Err(source.refuse("file", &entry.file, &problem, remedy));
-    }
+    let named = |error: LoadError| error.named_by(source.place(entry.file.span()));
+    let (path, bytes) = draft.border.read_beside(source.path, entry.file.get_ref()).map_err(named)?;
     let material = match &entry.material {
         Some(name) => Some(source.index_of("material", name, names)? as u32),
         None => None,
     };
-    read_part(&path, mesh_transform(source, entry)?, material, draft)
+    read_part(&path, bytes, mesh_transform(source, entry)?, material, draft).map_err(named)
 }
 
 /// Scale, then rotation, then translation.

@@ -274,7 +274,7 @@ const MISTAKES: [(&str, &str); 37] = [
     ("[[light]]\nkind = \"rectangle\"\nposition = [0, 0, 0]\nu = [1, 0, 0]\nv = [1, 1, 0]", "v = [1, 1, 0] is not at a right angle to `u`, room.toml:5; "),
     ("[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\nintensity = -1", "intensity = -1 is below 0, room.toml:4; "),
     ("[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"", "name = \"a\" is used by an earlier material, room.toml:4; "),
-    ("[[mesh]]\nfile = \"none.obj\"", "file = \"none.obj\" cannot be read"),
+    ("[[mesh]]\nfile = \"none.obj\"", "none.obj; check that it exists and is readable (named by "),
     ("[[mesh]]\nfile = \"one.obj\"\nscale = 0", "scale = 0 is zero or not finite, room.toml:3; "),
     ("[[box]]\nmin = [0, 0, 0]\nmax = [1, 0, 1]", "max = [1, 0, 1] is not above `min` on every axis, room.toml:3; "),
     ("[[plane]]\npoint = [0, 0, 0]\nnormal = [0, 1, 0]", "key `size` is missing, room.toml:1; "),
@@ -368,7 +368,7 @@ fn a_texture_that_cannot_be_had_is_a_warning() {
     for name in ["none.png", "../oak.png", "one.obj"] {
         let scene = open(&format!("[[material]]\nname = \"oak\"\ntexture = \"{name}\"\n{shape}"));
         assert_eq!(scene.geometry.materials[0].texture, None);
-        assert!(scene.warnings[0].starts_with("1 texture cannot be used"), "{:?}", scene.warnings);
+        assert!(scene.warnings[0].contains("room.toml: 1 texture cannot be used"), "{:?}", scene.warnings);
     }
 }
 
@@ -405,6 +405,111 @@ fn a_mesh_outside_of_the_folder_names_its_line() {
     let message = error("[[mesh]]\nfile = \"../one.obj\"");
     assert_eq!(
         message,
-        "`../one.obj` lies outside the scene's folder, room.toml:2; move it there, or allow references outside"
+        "`../one.obj` leads outside the scene's folder, room.toml:2; move the file there, or allow references outside"
     );
+}
+
+#[test]
+fn damage_in_a_mesh_names_the_scene_too() {
+    let (folder, path) = folder("[[mesh]]\nfile = \"bad.obj\"");
+    fs::write(folder.path().join("bad.obj"), "v 0 0 zero\n").unwrap();
+    let message = Scene::open(path).unwrap_err().to_string();
+    let message = message.replace(&format!("{}/", folder.path().display()), "");
+    assert_eq!(
+        message,
+        "`zero` in a line `v` is not a number, bad.obj:1; correct the line or export the file again (named by room.toml:2)"
+    );
+}
+
+/// Each kind of reference, through a link out of the folder, and through one within it.
+#[cfg(unix)]
+#[test]
+fn links_do_not_lead_out_of_the_folder() {
+    use std::os::unix::fs::symlink;
+
+    use crate::LoadOptions;
+
+    const OBJ: &str = "mtllib linked\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n";
+    const GLTF: &str = r#"{"asset": {"version": "2.0"}, "buffers": [{"uri": "linked", "byteLength": 36}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}], "nodes": [{"mesh": 0}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]}"#;
+    let mesh = "[[mesh]]\nfile = \"linked.obj\"";
+    let texture = "[[material]]\nname = \"a\"\ntexture = \"linked\"\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"a\"";
+    let mut pixel = std::io::Cursor::new(Vec::new());
+    image::RgbImage::new(1, 1).write_to(&mut pixel, image::ImageFormat::Png).unwrap();
+    let cases: [(&str, &str, &str, &[u8]); 4] = [
+        ("room.toml", mesh, "linked.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+        ("room.toml", texture, "linked", pixel.get_ref()),
+        ("part.obj", OBJ, "linked", b"newmtl a\nKd 1 0 0\n"),
+        ("part.gltf", GLTF, "linked", &[0; 36]),
+    ];
+    for (file, text, link, content) in cases {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("scene");
+        fs::create_dir(&folder).unwrap();
+        fs::write(folder.join(file), text).unwrap();
+        fs::write(place.path().join("secret"), content).unwrap();
+        let open = |options: &LoadOptions| match Scene::open_with(folder.join(file), options) {
+            Ok(scene) => scene.warnings.join("\n"),
+            Err(error) => error.to_string(),
+        };
+        let strict = LoadOptions::default();
+        for way in ["../secret", place.path().join("secret").to_str().unwrap()] {
+            symlink(way, folder.join(link)).unwrap();
+            let message = open(&strict);
+            let expected = format!("`{link}` leads outside the scene's folder, ");
+            assert!(message.contains(&expected) && message.contains(file), "{file}: {message}");
+            assert_eq!(open(&strict.clone().with_allow_outside(true)), "", "{file}");
+            fs::remove_file(folder.join(link)).unwrap();
+        }
+        fs::create_dir(folder.join("parts")).unwrap();
+        fs::write(folder.join("parts/secret"), content).unwrap();
+        symlink("parts/secret", folder.join(link)).unwrap();
+        assert_eq!(open(&strict), "", "{file}");
+        // A link that leads out, somewhere on the way.
+        fs::remove_file(folder.join(link)).unwrap();
+        symlink("..", folder.join("up")).unwrap();
+        fs::write(folder.join(file), text.replace("linked", "up/linked")).unwrap();
+        fs::write(place.path().join(link), content).unwrap();
+        assert!(open(&strict).contains("leads outside the scene's folder"), "{file}: {}", open(&strict));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_refused_without_waiting() {
+    let (folder, path) = folder("[[mesh]]\nfile = \"pipe.obj\"");
+    assert!(std::process::Command::new("mkfifo").arg(folder.path().join("pipe.obj")).status().unwrap().success());
+    let message = Scene::open(&path).unwrap_err().to_string();
+    assert!(message.starts_with("this is not a regular file, ") && message.ends_with("room.toml:2)"), "{message}");
+    let _listener = std::os::unix::net::UnixListener::bind(folder.path().join("socket.obj")).unwrap();
+    fs::write(&path, "[[mesh]]\nfile = \"socket.obj\"").unwrap();
+    assert!(Scene::open(&path).unwrap_err().to_string().starts_with("this is not a regular file, "));
+}
+
+#[test]
+fn messages_quote_little_of_a_file_that_is_no_model() {
+    let secret = "root:x:0:0:root:/root:/bin/bash\n".repeat(9);
+    for file in ["passwd.obj", "passwd.ply", "passwd.stl", "passwd.gltf", "passwd.toml"] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(file);
+        for text in
+            [secret.clone(), format!("{{\"asset\": {secret:?}}}"), format!("v {secret}"), format!("a = {secret:?}")]
+        {
+            fs::write(&path, &text).unwrap();
+            let said = Scene::open(&path).map_or_else(|error| error.to_string(), |scene| scene.warnings.join(" "));
+            assert!(!said.contains("/root:/bin/bash") && !said.contains('\n'), "{file}: {said}");
+        }
+    }
+}
+
+#[test]
+fn very_many_faulty_meshes_are_a_short_list_of_warnings() {
+    let mesh = "[[mesh]]\nfile = \"part.obj\"\n";
+    let (folder, path) = folder(&mesh.repeat(3000));
+    fs::write(folder.path().join("part.obj"), "odd 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n").unwrap();
+    let warnings = Scene::open(path).unwrap().warnings;
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    assert!(warnings.iter().all(|warning| warning.ends_with(" (3000 times)")), "{warnings:?}");
 }

@@ -158,7 +158,7 @@ fn a_buffer_may_lie_outside_where_that_is_allowed() {
     fs::write(folder.path().join("model.bin"), bin).unwrap();
     let path = folder.path().join("scene/model.gltf");
     fs::write(&path, json.replace("\"byteLength\":39}", "\"byteLength\":39,\"uri\":\"../model.bin\"}")).unwrap();
-    assert!(Scene::open(&path).unwrap_err().to_string().contains("`../model.bin` lies outside the scene's folder"));
+    assert!(Scene::open(&path).unwrap_err().to_string().contains("`../model.bin` leads outside the scene's folder"));
     let options = LoadOptions { allow_outside: true, ..Default::default() };
     assert_eq!(Scene::open_with(&path, &options).unwrap().geometry.mesh.triangles.len(), 1);
 }

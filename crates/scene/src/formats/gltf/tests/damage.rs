@@ -40,8 +40,8 @@ fn ranges_that_do_not_fit_are_refused() {
         ("/buffers/0/byteLength", json!(400), "buffer 0 has 39 of 400 bytes"),
         ("/buffers/0/uri", json!("missing.bin"), "missing.bin; check that it exists"),
         ("/buffers/0/uri", json!("data:;base64,*"), "the data URI of buffer 0 cannot be decoded"),
-        ("/buffers/0/uri", json!("../model.bin"), "lies outside the scene's folder"),
-        ("/buffers/0/uri", json!("https://example.org/model.bin"), "lies outside the scene's folder"),
+        ("/buffers/0/uri", json!("../model.bin"), "leads outside the scene's folder"),
+        ("/buffers/0/uri", json!("https://example.org/model.bin"), "leads outside the scene's folder"),
         ("/bufferViews/0/buffer", json!(3), "there is no buffer 3"),
         ("/bufferViews/0/byteOffset", json!(u64::MAX), "buffer view 0 reaches beyond its buffer of 39 bytes"),
         ("/accessors/1/componentType", json!(5124), "accessor 1 has the component type 5124"),
@@ -57,6 +57,21 @@ fn ranges_that_do_not_fit_are_refused() {
         assert!(expected.split('|').any(|expected| message.contains(expected)), "{pointer}: {message}");
         assert!(message.contains("; "), "{message}");
     }
+}
+
+#[test]
+fn a_stride_of_zero_means_none() {
+    let mut document = triangle();
+    document["bufferViews"][0]["byteStride"] = json!(0);
+    assert_eq!(open(&document).geometry.mesh.corners(0), open(&triangle()).geometry.mesh.corners(0));
+    assert!(warnings(&document).ends_with("model.gltf: 1 buffer view with a byteStride of 0: read without gaps"));
+}
+
+#[test]
+fn damage_in_a_buffer_names_the_scene_too() {
+    let mut document = triangle();
+    document["buffers"][0]["uri"] = json!("missing.bin");
+    assert!(error(&document).ends_with("missing.bin; check that it exists and is readable (named by model.gltf)"));
 }
 
 #[test]

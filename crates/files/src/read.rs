@@ -1,0 +1,154 @@
+//! Reading regular files, anywhere or only in a folder.
+//!
+//! A file that another file names is [read in its folder](read_inside): links are followed, and what they lead to must lie in the folder.
+//! The path without links is then opened one name after another, following none, so that a link that appears in the meantime is an
+//! error (on Unix; elsewhere the check is not repeated).
+
+use std::fs::{self, File, Metadata};
+use std::io::{self, Read};
+use std::path::Path;
+
+/// Why a file cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The system's error.
+    #[error(transparent)]
+    System(#[from] io::Error),
+    /// It is a folder, a pipe, a socket or a device, or a link to one.
+    #[error("not a regular file")]
+    Irregular,
+    /// Its real path is not in the folder.
+    #[error("outside the folder")]
+    Outside,
+}
+
+/// The content of a regular file. Pipes and devices, which might never end, are not opened.
+///
+/// # Errors
+/// [`ReadError::System`] or [`ReadError::Irregular`].
+pub fn read(path: &Path) -> Result<Vec<u8>, ReadError> {
+    regular(&fs::metadata(path)?)?;
+    read_to_end(open(path)?)
+}
+
+/// The content of a regular file whose real path is in `folder`; the empty path is the current one.
+///
+/// # Errors
+/// [`ReadError`]; [`ReadError::Outside`] if a link or `..` in `path` leads out of the folder.
+pub fn read_inside(folder: &Path, path: &Path) -> Result<Vec<u8>, ReadError> {
+    let folder = fs::canonicalize(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })?;
+    let real = fs::canonicalize(path)?;
+    let inside = real.strip_prefix(&folder).map_err(|_| ReadError::Outside)?;
+    regular(&fs::symlink_metadata(&real)?)?;
+    read_to_end(open_inside(&folder, inside)?)
+}
+
+/// Looked at before opening, which may wait or have effects, and once more afterwards.
+fn regular(status: &Metadata) -> Result<(), ReadError> {
+    if status.is_file() { Ok(()) } else { Err(ReadError::Irregular) }
+}
+
+fn read_to_end(mut file: File) -> Result<Vec<u8>, ReadError> {
+    regular(&file.metadata()?)?;
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+#[cfg(unix)]
+use unix::{open, open_inside};
+
+#[cfg(unix)]
+mod unix {
+    use std::fs::File;
+    use std::io;
+    use std::path::Path;
+
+    use rustix::fs::{CWD, Mode, OFlags, openat};
+
+    /// Opening a pipe does not wait for its other end.
+    const FLAGS: OFlags = OFlags::RDONLY.union(OFlags::CLOEXEC).union(OFlags::NONBLOCK).union(OFlags::NOCTTY);
+
+    pub(super) fn open(path: &Path) -> io::Result<File> {
+        Ok(File::from(openat(CWD, path, FLAGS, Mode::empty())?))
+    }
+
+    /// Opens a path below `folder`; any link on the way is an error.
+    pub(super) fn open_inside(folder: &Path, inside: &Path) -> io::Result<File> {
+        let mut found = openat(CWD, folder, FLAGS | OFlags::DIRECTORY, Mode::empty())?;
+        for name in inside {
+            found = openat(&found, name, FLAGS | OFlags::NOFOLLOW, Mode::empty())?;
+        }
+        Ok(File::from(found))
+    }
+}
+
+#[cfg(not(unix))]
+fn open(path: &Path) -> io::Result<File> {
+    File::open(path)
+}
+
+#[cfg(not(unix))]
+fn open_inside(folder: &Path, inside: &Path) -> io::Result<File> {
+    File::open(folder.join(inside))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_in_the_folder_is_read_and_others_are_not() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("scene");
+        fs::create_dir_all(folder.join("parts")).unwrap();
+        fs::write(folder.join("parts/a"), "in").unwrap();
+        fs::write(place.path().join("b"), "out").unwrap();
+        assert_eq!(read_inside(&folder, &folder.join("parts/../parts/a")).unwrap(), b"in");
+        assert_eq!(read(&place.path().join("b")).unwrap(), b"out");
+        assert!(matches!(read_inside(&folder, &folder.join("../b")), Err(ReadError::Outside)));
+        assert!(matches!(read_inside(&folder, &folder), Err(ReadError::Irregular)));
+        assert!(matches!(read(&folder), Err(ReadError::Irregular)));
+        assert!(matches!(read_inside(&folder, &folder.join("c")), Err(ReadError::System(_))));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_in_the_folder_and_not_out_of_it() {
+        use std::os::unix::fs::symlink;
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("scene");
+        fs::create_dir_all(folder.join("parts")).unwrap();
+        fs::write(folder.join("parts/a"), "in").unwrap();
+        fs::write(place.path().join("b"), "out").unwrap();
+        symlink("parts", folder.join("near")).unwrap();
+        symlink(folder.join("parts/a"), folder.join("absolute")).unwrap();
+        symlink("../b", folder.join("far")).unwrap();
+        symlink("..", folder.join("up")).unwrap();
+        symlink("/dev/zero", folder.join("device")).unwrap();
+        symlink(&folder, place.path().join("scene again")).unwrap();
+        let read = |path: &str| read_inside(&place.path().join("scene again"), &folder.join(path));
+        for path in ["near/a", "absolute", "parts/a"] {
+            assert_eq!(read(path).unwrap(), b"in", "{path}");
+        }
+        for path in ["far", "up/b", "device"] {
+            assert!(matches!(read(path), Err(ReadError::Outside)), "{path}");
+        }
+        assert_eq!(read("up/scene/parts/a").unwrap(), b"in");
+        assert!(matches!(super::read(&folder.join("device")), Err(ReadError::Irregular)));
+    }
+
+    /// What happens if a folder becomes a link after its path was found good.
+    #[cfg(unix)]
+    #[test]
+    fn a_link_that_appears_later_is_not_followed() {
+        let place = tempfile::tempdir().unwrap();
+        fs::create_dir_all(place.path().join("out")).unwrap();
+        fs::write(place.path().join("out/a"), "out").unwrap();
+        let folder = place.path().join("scene");
+        fs::create_dir(&folder).unwrap();
+        std::os::unix::fs::symlink("../out", folder.join("parts")).unwrap();
+        assert!(open_inside(&folder, Path::new("parts/a")).is_err());
+    }
+}

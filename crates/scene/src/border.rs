@@ -1,0 +1,118 @@
+//! The files that a scene may be made of: those in the folder of the file that was opened, links resolved, unless the options allow
+//! others.
+
+use std::path::{Component, Path, PathBuf};
+
+use lightmesh_files::{ReadError, read, read_inside};
+
+use crate::{LoadError, error::Place};
+
+/// Where the files of one scene may lie.
+#[derive(Clone, Debug)]
+pub(crate) struct Border {
+    /// The file that was opened.
+    scene: PathBuf,
+    allow_outside: bool,
+}
+
+impl Border {
+    pub(crate) fn new(scene: &Path, allow_outside: bool) -> Border {
+        Border { scene: scene.to_owned(), allow_outside }
+    }
+
+    /// The path that `source`, one of the scene's files, refers to as `name`: relative to the file's own folder, with either
+    /// kind of slash.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError::Outside`] if that is a URL or, by its text, outside the scene's folder, unless that is allowed.
+    pub(crate) fn path_beside(&self, source: &Path, name: &str) -> Result<PathBuf, LoadError> {
+        let is_url =
+            name.split_once("://").is_some_and(|(scheme, _)| scheme.chars().all(|c| c.is_ascii_alphanumeric()));
+        let named = name.replace('\\', "/");
+        let has_drive =
+            matches!(named.as_bytes(), [letter, b':', ..] if letter.is_ascii_alphabetic()) && cfg!(not(windows));
+        if is_url || has_drive {
+            return Err(outside(source, name));
+        }
+        let path = source.parent().unwrap_or(Path::new("")).join(named);
+        let in_folder = tidy(&path)
+            .strip_prefix(tidy(self.folder()))
+            .is_ok_and(|rest| matches!(rest.components().next(), None | Some(Component::Normal(_))));
+        if self.allow_outside || in_folder { Ok(path) } else { Err(outside(source, name)) }
+    }
+
+    /// The path and the content of the file that `source` refers to as `name`.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError::Outside`] if it is, by its text or through a link, outside the scene's folder, unless that is allowed;
+    /// [`LoadError::Read`] or [`LoadError::NoFile`] if it cannot be read.
+    pub(crate) fn read_beside(&self, source: &Path, name: &str) -> Result<(PathBuf, Vec<u8>), LoadError> {
+        let path = self.path_beside(source, name)?;
+        let bytes = if self.allow_outside { read(&path) } else { read_inside(self.folder(), &path) };
+        match bytes {
+            Ok(bytes) => Ok((path, bytes)),
+            Err(ReadError::Outside) => Err(outside(source, name)),
+            Err(error) => Err(unreadable(&path, error)),
+        }
+    }
+
+    fn folder(&self) -> &Path {
+        self.scene.parent().unwrap_or(Path::new(""))
+    }
+}
+
+/// The content of the file that the user named, wherever it is. Only regular files: a pipe or a device might never end.
+pub(crate) fn read_scene(path: &Path) -> Result<Vec<u8>, LoadError> {
+    read(path).map_err(|error| unreadable(path, error))
+}
+
+fn unreadable(path: &Path, error: ReadError) -> LoadError {
+    match error {
+        ReadError::System(cause) => LoadError::Read { path: path.to_owned(), cause },
+        _ => LoadError::NoFile { path: path.to_owned() },
+    }
+}
+
+fn outside(source: &Path, name: &str) -> LoadError {
+    LoadError::Outside { place: Place::file(source).into(), name: name.to_owned() }
+}
+
+/// The path without `.` and `..`, by its text alone.
+fn tidy(path: &Path) -> PathBuf {
+    let mut tidy = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(tidy.components().next_back(), Some(Component::Normal(_))) => {
+                tidy.pop();
+            }
+            part => tidy.push(part),
+        }
+    }
+    tidy
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn references_stay_in_the_scenes_folder() {
+        let beside = |scene: &str, source: &str, name: &str| {
+            Border::new(Path::new(scene), false).path_beside(Path::new(source), name).ok()
+        };
+        let inside = |path: &str| Some(PathBuf::from(path));
+        assert_eq!(beside("room.toml", "room.toml", r".\maps\oak.png"), inside("./maps/oak.png"));
+        assert_eq!(beside("a/room.toml", "a/parts/door.gltf", "../oak.png"), inside("a/parts/../oak.png"));
+        assert_eq!(beside("../a/room.toml", "../a/room.toml", "oak.png"), inside("../a/oak.png"));
+        for name in ["../oak.png", "/etc/passwd", "maps/../../oak.png", r"C:\oak.png", "https://example.org/oak.png"] {
+            assert_eq!(beside("room.toml", "room.toml", name), None, "{name}");
+            assert_eq!(beside("../room.toml", "../room.toml", name), None, "{name}");
+        }
+        let free = Border::new(Path::new("a/room.toml"), true);
+        let path = |name| free.path_beside(Path::new("a/room.toml"), name).ok();
+        assert_eq!([path("../oak.png"), path("http://oak.png")], [inside("a/../oak.png"), None]);
+    }
+}
