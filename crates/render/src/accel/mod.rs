@@ -31,7 +31,7 @@ use glam::Vec3;
 use lightmesh_scene::Bounds;
 
 pub use brute_force::BruteForce;
-pub use bvh::Bvh;
+pub use bvh::{Bvh, BvhCost};
 pub use grid::{Grid, GridError, GridFault, GridFileError, GridOptions, GridSaveError, Levels};
 pub use region::{Region, TangentPlanes};
 pub use sieve::{PIECE, Take};

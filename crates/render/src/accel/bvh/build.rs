@@ -82,7 +82,7 @@ fn spread(boxes: &mut [Aabb]) {
 }
 
 /// One child of a node.
-enum Child {
+pub(super) enum Child {
     /// Index of its node.
     Inner(usize),
     /// Its triangles.
@@ -90,7 +90,7 @@ enum Child {
 }
 
 /// The occupied slots of a node.
-fn children(node: &Node) -> impl Iterator<Item = (usize, Child)> + use<> {
+pub(super) fn children(node: &Node) -> impl Iterator<Item = (usize, Child)> + use<> {
     let node = *node;
     (0..8).filter(move |&slot| node.child_meta[slot] != 0).map(move |slot| {
         if node.imask >> slot & 1 == 1 {
@@ -153,11 +153,11 @@ fn enclose_axis(node: &mut Node, axis: usize, boxes: &[(usize, Bounds)], origin:
     }
 }
 
-fn extent(node: &Node) -> DVec3 {
+pub(super) fn extent(node: &Node) -> DVec3 {
     node.compute_extent().as_dvec3()
 }
 
-fn planes(node: &Node, axis: usize) -> ([u8; 8], [u8; 8]) {
+pub(super) fn planes(node: &Node, axis: usize) -> ([u8; 8], [u8; 8]) {
     match axis {
         0 => (node.child_min_x, node.child_max_x),
         1 => (node.child_min_y, node.child_max_y),
