@@ -36,7 +36,7 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Builds the tree over the usable triangles.
+    /// Builds the tree over the usable triangles, one of identical ones.
     pub fn new(triangles: &[Triangle]) -> Bvh {
         build::build(triangles)
     }

@@ -99,7 +99,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Sorts the usable triangles into cells.
+    /// Sorts the usable triangles into cells, one of identical ones.
     ///
     /// # Errors
     ///
