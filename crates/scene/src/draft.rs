@@ -51,6 +51,8 @@ pub(crate) struct Draft {
     pub(crate) materials: Vec<Material>,
     pub(crate) textures: Vec<Texture>,
     pub(crate) texture_files: TextureFiles,
+    /// Index of the material for triangles without one, once there is one.
+    default_material: Option<u32>,
     pub(crate) ambient: Option<Vec3>,
     pub(crate) background: Option<Vec3>,
     pub(crate) light_mesh: LightMeshDefaults,
@@ -71,6 +73,7 @@ impl Draft {
             materials: Vec::new(),
             textures: Vec::new(),
             texture_files: TextureFiles::default(),
+            default_material: None,
             ambient: None,
             background: None,
             light_mesh: LightMeshDefaults::default(),
@@ -205,12 +208,15 @@ impl Draft {
 
     /// The material for triangles without one: matt grey, added on first use.
     pub(crate) fn default_material(&mut self) -> u32 {
-        let default = Material::default();
-        let index = self.materials.iter().position(|material| *material == default).unwrap_or_else(|| {
-            self.materials.push(default);
-            self.materials.len() - 1
-        });
-        index as u32
+        let materials = &mut self.materials;
+        *self.default_material.get_or_insert_with(|| {
+            let default = Material::default();
+            let index = materials.iter().position(|material| *material == default).unwrap_or_else(|| {
+                materials.push(default);
+                materials.len() - 1
+            });
+            index as u32
+        })
     }
 
     /// Chooses the local frame and transforms everything to it.
@@ -260,7 +266,7 @@ fn usable_in<P: Position>(transform: &DMat4) -> impl Fn(&P) -> bool + use<'_, P>
 }
 
 /// The path without `.` and `..`, by its text alone.
-fn tidy(path: &Path) -> PathBuf {
+pub(crate) fn tidy(path: &Path) -> PathBuf {
     let mut tidy = PathBuf::new();
     for part in path.components() {
         match part {

@@ -206,9 +206,17 @@ fn suggestion(name: &str, known: &[String]) -> String {
     let similarity = |candidate: &&String| (1e6 * strsim::jaro_winkler(name, candidate)) as u32;
     match known.iter().max_by_key(similarity).filter(|best| similarity(best) > 800_000) {
         _ if known.is_empty() => "there are none: define it first, or remove the reference".to_owned(),
-        Some(best) => format!("did you mean `{best}`? Available: {}", known.join(", ")),
-        None => format!("available: {}", known.join(", ")),
+        Some(best) => format!("did you mean `{best}`? Available: {}", listed(known)),
+        None => format!("available: {}", listed(known)),
     }
+}
+
+/// The first of some names.
+pub(crate) fn listed(names: &[impl AsRef<str>]) -> String {
+    const MOST: usize = 40;
+    let first: Vec<&str> = names.iter().take(MOST).map(AsRef::as_ref).collect();
+    let more = if names.len() > MOST { format!(" and {} more", names.len() - MOST) } else { String::new() };
+    first.join(", ") + &more
 }
 
 #[cfg(test)]

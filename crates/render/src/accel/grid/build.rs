@@ -26,6 +26,11 @@ const MOST: [f64; 2] = [1024.0, 32.0];
 const COPIES: [u64; 2] = [32, 16];
 /// The same for both levels together: where triangles are large, nested grids would repeat them once more.
 const ALL_COPIES: u64 = 64;
+/// Most cells of the outer grid: 512 on each axis.
+const MOST_CELLS: u64 = 1 << 27;
+/// Most references that a requested grid may need: a second's work, or this many per triangle.
+const MOST_REFERENCES: u64 = 1 << 24;
+const MOST_COPIES: u64 = 256;
 /// Triangles that one task sorts into cells.
 const TASK: usize = 2048;
 
@@ -42,7 +47,8 @@ pub(super) fn build(triangles: &[Triangle], options: &GridOptions) -> Result<Gri
         }
     };
     let (lattice, approach, margin) = frame(&bounds, dims)?;
-    fit(sorter.candidates(&lattice, &usable), "triangle references", dims)?;
+    let most = MOST_REFERENCES.max(MOST_COPIES * usable.len() as u64);
+    bounded(sorter.candidates(&lattice, &usable), most, "triangle references", dims)?;
 
     let lists = sorter.sort(&lattice, &usable);
     sorter.inner_copies = (ALL_COPIES * usable.len() as u64 / lists.sources.len().max(1) as u64).clamp(1, COPIES[1]);
@@ -71,16 +77,20 @@ pub(super) fn frame(bounds: &Bounds, dims: UVec3) -> Result<(Lattice, Approach, 
     if cells == 0 {
         return Err(GridError::NoCells { dims: dims.to_array() });
     }
-    let needed = u64::try_from(cells + 3).unwrap_or(u64::MAX);
-    fit(needed, "integers", dims)?;
+    bounded(u64::try_from(cells).unwrap_or(u64::MAX), MOST_CELLS, "cells", dims)?;
     let approach = Approach::new(bounds);
     let margin = margin(approach.radius());
     let bounds = if bounds.is_empty() { Bounds::around([Vec3::ZERO]) } else { *bounds };
     Ok((Lattice::new(&bounds, margin, dims), approach, margin))
 }
 
+fn bounded(needed: u64, most: u64, what: &'static str, dims: UVec3) -> Result<(), GridError> {
+    if needed <= most { Ok(()) } else { Err(GridError::TooLarge { dims: dims.to_array(), what, needed, most }) }
+}
+
+/// An offset of the flat form.
 fn fit(needed: u64, what: &'static str, dims: UVec3) -> Result<i32, GridError> {
-    i32::try_from(needed).map_err(|_| GridError::TooLarge { dims: dims.to_array(), what, needed })
+    bounded(needed, i32::MAX as u64, what, dims).map(|()| needed as i32)
 }
 
 /// About `wanted` cells that are nearly cubes: the largest cube edge that yields that many.

@@ -18,7 +18,10 @@ mod parse;
 #[cfg(test)]
 mod tests;
 
-use std::{collections::HashMap, path::Path};
+use std::{
+    collections::{HashMap, HashSet},
+    path::Path,
+};
 
 use glam::{DVec3, Vec2, Vec3};
 
@@ -30,7 +33,7 @@ use super::{
 use crate::{
     LoadError,
     draft::{Draft, Placement},
-    error::Place,
+    error::{Place, listed},
     loaded_mesh::LoadedMesh,
     open::read_bytes,
 };
@@ -63,8 +66,9 @@ fn find_materials(path: &Path, content: &Content, draft: &mut Draft) -> Result<V
         by_name.entry(entry.name.as_str()).or_insert(index);
     }
     let found: Vec<Option<usize>> = content.materials.iter().map(|name| by_name.get(name.as_str()).copied()).collect();
+    let used: HashSet<usize> = found.iter().copied().flatten().collect();
     for (index, entry) in entries.iter().enumerate() {
-        let material = entry.material(found.contains(&Some(index)), draft);
+        let material = entry.material(used.contains(&index), draft);
         draft.materials.push(material);
     }
     let missing: Vec<&str> = content
@@ -76,7 +80,7 @@ fn find_materials(path: &Path, content: &Content, draft: &mut Draft) -> Result<V
         .filter(|name| !name.is_empty())
         .collect();
     if !missing.is_empty() {
-        let names = missing.join(", ");
+        let names = listed(&missing);
         draft.warnings.push(format!("{}: no library has the material {names}; light grey is used", path.display()));
     }
     Ok(found

@@ -1,13 +1,16 @@
 //! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke and map_Kd to the coefficients of formula (1).
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::HashSet,
+    path::{Path, PathBuf},
+};
 
 use glam::{DVec3, Vec3};
 
 use super::{lines::Lines, malformed, map::Map};
 use crate::{
     LoadError, Material,
-    draft::Draft,
+    draft::{Draft, tidy},
     formats::text::{decoded, number, quoted, split_word, with_line_feeds, words},
     open::read_bytes,
 };
@@ -35,21 +38,35 @@ struct LeftOut {
     spectral: usize,
 }
 
-/// Reads the libraries that `mtllib` lines name, in their order. One that cannot be read is a warning, because the shape is
-/// available without it.
+/// Libraries that cannot be read, of which a warning each gives the reason; the others are counted.
+const REASONS: usize = 20;
+
+/// Reads the libraries that `mtllib` lines name, in their order, each once. One that cannot be read is a warning, because the
+/// shape is available without it.
 pub(super) fn read_libraries(obj: &Path, lines: &[String], draft: &mut Draft) -> Result<Vec<Entry>, LoadError> {
     let mut entries = Vec::new();
-    let mut seen = Vec::new();
-    let names: Vec<String> = lines.iter().flat_map(|line| file_names(obj, line, draft)).collect();
+    let (mut seen, mut seen_lines) = (HashSet::new(), HashSet::new());
+    let mut unreadable = 0;
+    let lines = lines.iter().filter(|&line| seen_lines.insert(line));
+    let names: Vec<String> = lines.flat_map(|line| file_names(obj, line, draft)).collect();
     for name in names {
-        if seen.contains(&name) {
+        let path = draft.path_beside(obj, &name);
+        // The same file by another name is read once as well.
+        if !seen.insert(path.as_ref().map_or_else(|_| PathBuf::from(&name), |path| tidy(path))) {
             continue;
         }
-        match draft.path_beside(obj, &name).and_then(|path| Ok((read_bytes(&path)?, path))) {
+        match path.and_then(|path| Ok((read_bytes(&path)?, path))) {
             Ok((mut bytes, path)) => read_library(&path, with_line_feeds(&mut bytes), &mut entries, draft)?,
-            Err(error) => draft.warnings.push(format!("{error}; light grey is used instead")),
+            Err(error) => {
+                unreadable += 1;
+                if unreadable <= REASONS {
+                    draft.warnings.push(format!("{error}; light grey is used instead"));
+                }
+            }
         }
-        seen.push(name);
+    }
+    if unreadable > REASONS {
+        draft.warnings.push(format!("{}: {} more libraries cannot be read", obj.display(), unreadable - REASONS));
     }
     let transparent = entries.iter().filter(|entry| entry.is_transparent()).count();
     if transparent > 0 {

@@ -43,7 +43,7 @@ pub(super) struct Content {
     pub(super) material_of_triangle: Vec<u32>,
     /// Names in the order of their first use; the empty one means none.
     pub(super) materials: Vec<String>,
-    /// The names in `mtllib` lines, each once.
+    /// The names in `mtllib` lines.
     pub(super) libraries: Vec<String>,
     pub(super) warnings: Vec<String>,
 }
@@ -100,12 +100,7 @@ impl Parser {
             b"f" | b"fo" => self.face(rest)?,
             b"l" | b"p" => self.points_and_lines += 1,
             b"usemtl" => self.material = Some(self.material_named(&decoded(rest))),
-            b"mtllib" => {
-                let names = decoded(rest);
-                if !self.libraries.iter().any(|known| *known == names) {
-                    self.libraries.push(names.into_owned());
-                }
-            }
+            b"mtllib" => self.libraries.push(decoded(rest).into_owned()),
             b"" | b"g" | b"o" | b"s" | b"mg" | b"lod" | b"bevel" | b"c_interp" | b"d_interp" => {}
             [b'#', ..] => {}
             _ => {

@@ -12,11 +12,11 @@ use crate::{Camera, Fov, LoadError, Projection};
 /// Default vertical field of view, degrees.
 const DEFAULT_VFOV: f32 = 50.0;
 
-/// The camera and its world position.
+/// The camera and its world position. Counts those with two angles that differ.
 pub(super) fn read(
     source: &Source,
     table: &Spanned<CameraEntry>,
-    warnings: &mut Vec<String>,
+    two_angles: &mut usize,
 ) -> Result<(Camera, DVec3), LoadError> {
     let entry = table.get_ref();
     let position = source.vector("position", &entry.position)?;
@@ -37,7 +37,7 @@ pub(super) fn read(
         position: Vec3::ZERO,
         direction: direction.as_vec3(),
         up: up.as_vec3(),
-        projection: projection(source, table, warnings)?,
+        projection: projection(source, table, two_angles)?,
     };
     Ok((camera, position))
 }
@@ -57,11 +57,7 @@ fn view_direction(source: &Source, table: &Spanned<CameraEntry>, position: DVec3
     }
 }
 
-fn projection(
-    source: &Source,
-    table: &Spanned<CameraEntry>,
-    warnings: &mut Vec<String>,
-) -> Result<Projection, LoadError> {
+fn projection(source: &Source, table: &Spanned<CameraEntry>, two_angles: &mut usize) -> Result<Projection, LoadError> {
     let entry = table.get_ref();
     let vfov = entry.vfov.as_ref().map(|angle| source.view_angle("vfov", angle)).transpose()?;
     let hfov = entry.hfov.as_ref().map(|angle| source.view_angle("hfov", angle)).transpose()?;
@@ -80,10 +76,7 @@ fn projection(
     }
     Ok(Projection::Perspective(match (vfov, hfov) {
         (Some(vfov), Some(hfov)) => {
-            if vfov != hfov {
-                let place = source.place(table.span());
-                warnings.push(format!("{place}: the camera has vfov and hfov; vfov = {vfov} is used"));
-            }
+            *two_angles += usize::from(vfov != hfov);
             Fov::Vertical(vfov)
         }
         (None, Some(hfov)) => Fov::Horizontal(hfov),

@@ -44,9 +44,13 @@ fn convert(source: &Source, file: &SceneFile, draft: &mut Draft) -> Result<(), L
     }
     let names = materials::read(source, &file.material, draft)?;
     parts::read(source, file, &names, draft)?;
+    let mut two_angles = 0;
     for camera in &file.camera {
-        let camera = cameras::read(source, camera, &mut draft.warnings)?;
-        draft.cameras.push(camera);
+        draft.cameras.push(cameras::read(source, camera, &mut two_angles)?);
+    }
+    if two_angles > 0 {
+        let path = source.path.display();
+        draft.warnings.push(format!("{path}: {two_angles} cameras have vfov and hfov, which differ; vfov is used"));
     }
     for light in &file.light {
         draft.lights.push(lights::read(source, light)?);

@@ -37,14 +37,16 @@ fn full_cells_hold_grids() {
 fn impossible_sizes_are_refused_before_anything_is_allocated() {
     let triangles = [triangle(Vec3::ZERO, 0)];
     assert_eq!(built(&triangles, [4, 0, 4], Levels::One).unwrap_err(), GridError::NoCells { dims: [4, 0, 4] });
-    for dims in [[u32::MAX; 3], [1 << 16, 1 << 15, 1]] {
+    for dims in [[u32::MAX; 3], [1 << 16, 1 << 15, 1], [1 << 14, 1 << 14, 1]] {
         let error = built(&triangles, dims, Levels::One).unwrap_err();
-        assert!(matches!(error, GridError::TooLarge { what: "integers", .. }), "{error}");
+        assert!(matches!(error, GridError::TooLarge { what: "cells", .. }), "{error}");
         assert!(error.to_string().contains("use fewer cells"), "{error}");
     }
     let triangles: Vec<_> = (0..300).map(wide).collect();
-    let error = built(&triangles, [3000, 3000, 1], Levels::One).unwrap_err();
-    assert!(matches!(error, GridError::TooLarge { what: "triangle references", .. }), "{error}");
+    for dims in [[3000, 3000, 1], [1, 10_000_000, 1]] {
+        let error = built(&triangles, dims, Levels::Two).unwrap_err();
+        assert!(matches!(error, GridError::TooLarge { what: "triangle references", .. }), "{error}");
+    }
 }
 
 #[test]
