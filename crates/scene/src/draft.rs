@@ -12,7 +12,7 @@ use crate::{
     loaded_mesh::LoadedMesh,
     mesh_part::Room,
     texture::{TextureFiles, untextured},
-    usable::{is_place, keep_finite, keep_placed},
+    usable::{is_place, keep_finite, keep_passive, keep_placed},
 };
 
 /// The placement of a model in the scene, and which parts of it to use.
@@ -234,6 +234,8 @@ impl Draft {
         self.warnings.extend(keep_placed(&mut self.cameras, "cameras"));
         self.warnings.extend(keep_placed(&mut self.lights, "lights"));
         self.warnings.extend(keep_finite(&mut self.materials));
+        let adding = keep_passive(&mut self.materials);
+        self.warnings.extend(adding.map(|warning| format!("{}: {warning}", self.path.display())));
         self.warnings.extend(self.texture_files.warning());
         if self.builder.triangle_count() == 0 {
             self.warnings.push("the scene has no triangles".to_owned());

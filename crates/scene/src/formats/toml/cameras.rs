@@ -1,5 +1,7 @@
 //! `[camera]` to [`Camera`].
 
+use std::ops::Range;
+
 use glam::{DVec3, Vec3};
 
 use super::{
@@ -12,11 +14,11 @@ use crate::{Camera, Fov, LoadError, Projection};
 /// Default vertical field of view, degrees.
 const DEFAULT_VFOV: f32 = 50.0;
 
-/// The camera and its world position. Counts those with two angles that differ.
+/// The camera and its world position. Adds one with two angles that differ to the list of those, by its table and the angle used.
 pub(super) fn read(
     source: &Source,
     table: &Spanned<CameraEntry>,
-    two_angles: &mut usize,
+    two_angles: &mut Vec<(Range<usize>, f32)>,
 ) -> Result<(Camera, DVec3), LoadError> {
     let entry = table.get_ref();
     let position = source.vector("position", &entry.position)?;
@@ -57,7 +59,11 @@ fn view_direction(source: &Source, table: &Spanned<CameraEntry>, position: DVec3
     }
 }
 
-fn projection(source: &Source, table: &Spanned<CameraEntry>, two_angles: &mut usize) -> Result<Projection, LoadError> {
+fn projection(
+    source: &Source,
+    table: &Spanned<CameraEntry>,
+    two_angles: &mut Vec<(Range<usize>, f32)>,
+) -> Result<Projection, LoadError> {
     let entry = table.get_ref();
     let vfov = entry.vfov.as_ref().map(|angle| source.view_angle("vfov", angle)).transpose()?;
     let hfov = entry.hfov.as_ref().map(|angle| source.view_angle("hfov", angle)).transpose()?;
@@ -76,7 +82,9 @@ fn projection(source: &Source, table: &Spanned<CameraEntry>, two_angles: &mut us
     }
     Ok(Projection::Perspective(match (vfov, hfov) {
         (Some(vfov), Some(hfov)) => {
-            *two_angles += usize::from(vfov != hfov);
+            if vfov != hfov {
+                two_angles.push((table.span(), vfov));
+            }
             Fov::Vertical(vfov)
         }
         (None, Some(hfov)) => Fov::Horizontal(hfov),
