@@ -86,7 +86,9 @@ fn check(scene: &Scene) {
     }
     for material in &scene.geometry.materials {
         let lobes = [material.ks, material.ks_tinted, material.emission, material.emission_tinted];
-        assert!(lobes.iter().chain([&material.ka, &material.kd]).all(|color| color.is_finite()), "{material:?}");
+        let all = || lobes.iter().chain([&material.ka, &material.kd]);
+        assert!(all().all(|color| color.is_finite() && color.min_element() >= 0.0), "{material:?}");
+        assert!((material.ks + material.ks_tinted).max_element() < 1.00001, "{material:?}");
     }
     assert!(scene.cameras.iter().all(|camera| camera.position.is_finite() && camera.direction.is_normalized()));
     assert!(scene.lights.iter().all(|light| light.intensity.is_finite()));

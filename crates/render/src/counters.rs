@@ -37,6 +37,8 @@ macro_rules! tally {
             pub pixels: u64,
             /// Light points of the template; 0 if there is none.
             pub template: u64,
+            /// Pixels with a colour that is infinite or not a number: none, unless radiance leaves the range of `f32`.
+            pub non_finite_pixels: u64,
             $($(#[$doc])* pub $report: tally!(@type $kind),)*
         }
 
@@ -44,7 +46,7 @@ macro_rules! tally {
             /// The report on the counts.
             pub(crate) fn new(pixels: u64, template: u64, counters: &Counters) -> Counts {
                 let points = (counters.surface_points as f64).max(1.0);
-                Counts { pixels, template, $($report: tally!(@report $kind, counters.$name, points),)* }
+                Counts { pixels, template, non_finite_pixels: 0, $($report: tally!(@report $kind, counters.$name, points),)* }
             }
 
             /// All numbers with their names.
@@ -52,6 +54,7 @@ macro_rules! tally {
                 vec![
                     ("pixels", self.pixels as f64),
                     ("template", self.template as f64),
+                    ("non_finite_pixels", self.non_finite_pixels as f64),
                     $((stringify!($report), self.$report as f64),)*
                 ]
             }
@@ -97,7 +100,7 @@ mod tests {
         let counters = Counters { surface_points: 4, used: 10, hits: 3, ..Tally::default().snapshot() };
         let counts = Counts::new(16, 88, &counters);
         assert_eq!((counts.pixels, counts.template, counts.hits, counts.used_mean), (16, 88, 3, 2.5));
-        assert_eq!(counts.values().len(), Counters::NAMES.len() + 2);
+        assert_eq!(counts.values().len(), Counters::NAMES.len() + 3);
         assert_eq!(Counts::new(1, 0, &Tally::default().snapshot()).used_mean, 0.0);
     }
 }

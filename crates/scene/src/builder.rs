@@ -3,8 +3,12 @@
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
 use crate::{
-    Geometry, GeometryError, Material, Mesh, MeshPart, Position, Scene, geometry_check::check_room,
-    loaded_mesh::LoadedMesh, mesh_part::Room, vertices::Vertices,
+    Geometry, GeometryError, Material, Mesh, MeshPart, Position, Scene,
+    geometry_check::check_room,
+    loaded_mesh::LoadedMesh,
+    mesh_part::Room,
+    usable::{keep_finite, keep_passive},
+    vertices::Vertices,
 };
 
 /// Collects placed meshes and their materials; [`SceneBuilder::finish_scene`] turns them into a scene in a local frame.
@@ -162,14 +166,16 @@ impl SceneBuilder {
     }
 
     /// A scene with only the meshes and materials, in its local frame: place cameras and lights with [`Scene::to_local`]. If no
-    /// material was added, there is one, the default.
+    /// material was added, there is one, the default. Coefficients that are not finite, or that add light, are corrected with a
+    /// warning of the scene.
     pub fn finish_scene(mut self, name: impl Into<String>) -> Scene {
         let mut materials = std::mem::take(&mut self.palette);
         if materials.is_empty() && self.triangle_count() > 0 {
             materials.push(Material::default());
         }
+        let warnings = [keep_finite(&mut materials), keep_passive(&mut materials)].into_iter().flatten().collect();
         let (origin, mesh) = self.finish();
-        Scene::new(name, Geometry { origin, mesh, materials, ..Geometry::default() })
+        Scene { warnings, ..Scene::new(name, Geometry { origin, mesh, materials, ..Geometry::default() }) }
     }
 }
 

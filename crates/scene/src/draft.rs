@@ -14,7 +14,7 @@ use crate::{
     mesh_part::Room,
     quote::reference,
     texture::{TextureFiles, untextured},
-    usable::{is_place, keep_finite, keep_placed},
+    usable::{is_place, keep_finite, keep_passive, keep_placed},
     warnings::Warnings,
 };
 
@@ -56,6 +56,8 @@ pub(crate) struct Draft {
     pub(crate) materials: Vec<Material>,
     pub(crate) textures: Vec<Texture>,
     pub(crate) texture_files: TextureFiles,
+    /// Index of the material for triangles without one, once there is one.
+    default_material: Option<u32>,
     pub(crate) ambient: Option<Vec3>,
     pub(crate) background: Option<Vec3>,
     pub(crate) light_mesh: LightMeshDefaults,
@@ -77,6 +79,7 @@ impl Draft {
             materials: Vec::new(),
             textures: Vec::new(),
             texture_files: TextureFiles::default(),
+            default_material: None,
             ambient: None,
             background: None,
             light_mesh: LightMeshDefaults::default(),
@@ -206,12 +209,15 @@ impl Draft {
 
     /// The material for triangles without one: matt grey, added on first use.
     pub(crate) fn default_material(&mut self) -> u32 {
-        let default = Material::default();
-        let index = self.materials.iter().position(|material| *material == default).unwrap_or_else(|| {
-            self.materials.push(default);
-            self.materials.len() - 1
-        });
-        index as u32
+        let materials = &mut self.materials;
+        *self.default_material.get_or_insert_with(|| {
+            let default = Material::default();
+            let index = materials.iter().position(|material| *material == default).unwrap_or_else(|| {
+                materials.push(default);
+                materials.len() - 1
+            });
+            index as u32
+        })
     }
 
     /// Chooses the local frame and transforms everything to it.
@@ -229,6 +235,8 @@ impl Draft {
         self.warnings.extend(keep_placed(&mut self.cameras, "cameras"));
         self.warnings.extend(keep_placed(&mut self.lights, "lights"));
         self.warnings.extend(keep_finite(&mut self.materials));
+        let adding = keep_passive(&mut self.materials);
+        self.warnings.extend(adding.map(|warning| format!("{}: {warning}", self.path.display())));
         self.warnings.extend(self.texture_files.warning(&self.path));
         if self.builder.triangle_count() == 0 {
             self.warnings.push("the scene has no triangles".to_owned());

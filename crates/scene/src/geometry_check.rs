@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use crate::{Geometry, MeshPart};
+use crate::{Geometry, Material, MeshPart};
 
 /// Inconsistent geometry.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -49,6 +49,18 @@ pub enum GeometryError {
         /// Number of materials.
         materials: usize,
     },
+    /// A material reflects more than it receives.
+    #[error(
+        "material {index} (`{name}`) has a specular coefficient of {value}, which adds light: lower ks + ks_tinted to 1"
+    )]
+    Reflectance {
+        /// Number of the material.
+        index: usize,
+        /// Its name.
+        name: String,
+        /// The largest channel of `ks` + `ks_tinted`.
+        value: String,
+    },
     /// More vertices or triangles than 32-bit indices can address.
     #[error("{vertices} vertices and {triangles} triangles are too many for 32-bit indices: split the scene")]
     TooLarge {
@@ -79,7 +91,7 @@ impl Geometry {
             let index = mesh.materials[triangle];
             return Err(GeometryError::Material { triangle, index, materials: self.materials.len() });
         }
-        Ok(())
+        check_materials(&self.materials)
     }
 }
 
@@ -90,6 +102,17 @@ impl<P> MeshPart<'_, P> {
         check_attributes(vertices, self.normals.len(), self.uvs.len(), self.colors.len())?;
         check_triangles(self.triangles, vertices)
     }
+}
+
+/// Fails if a mirror adds light.
+fn check_materials(materials: &[Material]) -> Result<(), GeometryError> {
+    for (index, material) in materials.iter().enumerate() {
+        if let Some(excess) = material.excess() {
+            let (name, value) = (material.name.clone(), excess.max_element().to_string());
+            return Err(GeometryError::Reflectance { index, name, value });
+        }
+    }
+    Ok(())
 }
 
 /// Fails if the numbers of vertices or triangles do not fit in 32 bits.
@@ -133,7 +156,7 @@ mod tests {
     use glam::{DMat4, DVec3, Vec2, Vec3};
 
     use super::*;
-    use crate::{Material, Mesh, SceneBuilder};
+    use crate::{Mesh, SceneBuilder};
 
     const CORNERS: [DVec3; 4] = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 
@@ -161,6 +184,11 @@ mod tests {
         assert!(message(|geometry| geometry.mesh.triangles[0][0] = 4).contains("triangle 0 has the vertex index 4"));
         assert!(message(|geometry| geometry.mesh.materials[1] = 2).contains("triangle 1 has the material 2"));
         assert!(message(|geometry| geometry.materials.clear()).contains("there are 0 materials"));
+        let bright = Material::default().with_ks([0.5, 1.25, 0.5]).named("lamp");
+        assert!(
+            message(|geometry| geometry.materials[1] = bright)
+                .contains("material 1 (`lamp`) has a specular coefficient of 1.25")
+        );
     }
 
     #[test]

@@ -17,7 +17,8 @@ pub struct Material {
     pub ka: Vec3,
     /// Diffuse reflectance k_d, per channel.
     pub kd: Vec3,
-    /// Specular coefficient k_s, per channel: the Phong lobe and, with `--bounces`, the mirror.
+    /// Specular coefficient k_s, per channel: the Phong lobe and, with `--bounces`, the mirror. With the tinted part at most 1:
+    /// loaders and builders lower what is above, with a warning.
     pub ks: Vec3,
     /// The part of the specular coefficient that is tinted: the reflection of a metal. It also counts without a tint.
     pub ks_tinted: Vec3,
@@ -57,6 +58,13 @@ impl Default for Material {
 /// assert_eq!(brass.ka, brass.kd);
 /// ```
 impl Material {
+    /// The specular coefficient, with the tinted part, if it exceeds 1 by more than rounding: a mirror that adds light.
+    pub(crate) fn excess(&self) -> Option<Vec3> {
+        const ROUNDING: f32 = 4.0 * f32::EPSILON;
+        let whole = self.ks + self.ks_tinted;
+        (whole.max_element() > 1.0 + ROUNDING).then_some(whole)
+    }
+
     /// A matt surface of this colour, also in ambient light.
     pub fn matt(color: impl Into<Vec3>) -> Material {
         let color = color.into();

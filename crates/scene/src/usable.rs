@@ -1,9 +1,9 @@
 //! Unusable values, checked once a whole scene is read: cameras and lights without a valid position, coefficients without a finite
-//! value. One warning for each kind gives their number.
+//! value, mirrors that add light. One warning for each kind gives their number.
 
 use glam::{DVec3, Vec3};
 
-use crate::{Material, draft::LARGEST_COORDINATE};
+use crate::{Material, draft::LARGEST_COORDINATE, quote::list};
 
 /// Whether a world position is usable.
 pub(crate) fn is_place(world: DVec3) -> bool {
@@ -18,18 +18,35 @@ pub(crate) fn keep_placed<T>(items: &mut Vec<(T, DVec3)>, kind: &str) -> Option<
     (count > 0).then(|| format!("{count} {kind} with infinite, undefined or far too large coordinates were ignored"))
 }
 
-/// Replaces infinite and NaN coefficients by 0.
+/// Replaces infinite, NaN and negative coefficients by 0.
 pub(crate) fn keep_finite(materials: &mut [Material]) -> Option<String> {
     let mut count = 0;
     for Material { ka, kd, ks, ks_tinted, emission, emission_tinted, .. } in materials {
         let mut odd = false;
         for color in [ka, kd, ks, ks_tinted, emission, emission_tinted] {
-            odd |= !color.is_finite();
-            *color = Vec3::select(color.is_finite_mask(), *color, Vec3::ZERO);
+            let usable = color.is_finite_mask() & color.cmpge(Vec3::ZERO);
+            odd |= !usable.all();
+            *color = Vec3::select(usable, *color, Vec3::ZERO);
         }
         count += usize::from(odd);
     }
-    (count > 0).then(|| format!("{count} materials have infinite or undefined coefficients, which count as 0"))
+    (count > 0)
+        .then(|| format!("{count} materials have infinite, undefined or negative coefficients, which count as 0"))
+}
+
+/// Lowers specular coefficients above 1: between such mirrors light would grow beyond every number.
+pub(crate) fn keep_passive(materials: &mut [Material]) -> Option<String> {
+    let mut adding = Vec::new();
+    for material in materials {
+        let (Some(excess), name) = (material.excess(), &material.name) else { continue };
+        adding.push(format!("`{name}` (ks = {} {} {})", excess.x, excess.y, excess.z));
+        material.ks = material.ks.min(Vec3::ONE);
+        material.ks_tinted = material.ks_tinted.min(Vec3::ONE - material.ks);
+    }
+    let count = adding.len();
+    (count > 0).then(|| {
+        format!("{count} materials reflect more than they receive, so their ks is lowered to 1: {}", list(adding.iter().map(String::as_str)))
+    })
 }
 
 #[cfg(test)]
@@ -50,11 +67,26 @@ mod tests {
     }
 
     #[test]
+    fn mirrors_that_add_light_are_lowered_and_named() {
+        let tinted = Material::default().with_ks([0.5; 3]).with_ks_tinted([0.75, 0.25, 0.5]).named("gold");
+        let usual = Material::matt([1.0; 3]).with_ks([1.0; 3]);
+        let mut materials = [Material::default().with_ks([1.5, 1.0, 0.5]).named("box"), tinted, usual.clone()];
+        let warning = keep_passive(&mut materials).unwrap();
+        assert_eq!(
+            warning,
+            "2 materials reflect more than they receive, so their ks is lowered to 1: `box` (ks = 1.5 1 0.5), `gold` (ks = 1.25 0.75 1)"
+        );
+        assert_eq!((materials[0].ks, materials[1].ks), (Vec3::new(1.0, 1.0, 0.5), Vec3::splat(0.5)));
+        assert_eq!((materials[1].ks_tinted, &materials[2]), (Vec3::new(0.5, 0.25, 0.5), &usual));
+        assert_eq!(keep_passive(&mut materials), None);
+    }
+
+    #[test]
     fn coefficients_without_a_value_count_as_0() {
-        let odd = Material { kd: Vec3::new(f32::INFINITY, 0.5, 0.25), ks: Vec3::NAN, ..Material::default() };
+        let odd = Material { kd: Vec3::new(f32::INFINITY, 0.5, -0.25), ks: Vec3::NAN, ..Material::default() };
         let mut materials = [Material::default(), odd];
         let warning = keep_finite(&mut materials);
-        assert_eq!((materials[1].kd, materials[1].ks), (Vec3::new(0.0, 0.5, 0.25), Vec3::ZERO));
+        assert_eq!((materials[1].kd, materials[1].ks), (Vec3::new(0.0, 0.5, 0.0), Vec3::ZERO));
         assert!(warning.is_some_and(|warning| warning.starts_with("1 materials have infinite")));
         assert_eq!((keep_finite(&mut materials), &materials[0]), (None, &Material::default()));
     }

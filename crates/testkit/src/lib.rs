@@ -2,6 +2,7 @@
 //! image checks.
 //!
 //! * [`SceneDraft`] assembles analytic scenes in double precision, anywhere in the world.
+//! * [`FAMILIES`] are shapes of any number of triangles, in a row, on top of each other, within each other.
 //! * [`MODELS`] lists the models next to the repository, with cameras and lights.
 //! * [`each_device`], [`ACCELERATIONS`], [`RADII`] and others are the cases for which a guarantee must hold.
 //! * [`Watch`] is an observer that checks progress.
@@ -10,6 +11,7 @@
 //! Helpers panic with the reason: a test whose setup fails has failed.
 
 mod draft;
+mod families;
 mod matrix;
 mod models;
 mod picture;
@@ -18,6 +20,7 @@ mod scenes;
 mod watch;
 
 pub use draft::SceneDraft;
+pub use families::{FAMILIES, Family};
 pub use matrix::{ACCELERATIONS, MODES, RADII, WEIGHTS, each_device, render};
 pub use models::{MODELS, Model};
 pub use picture::{Picture, mean_difference, rms_difference};

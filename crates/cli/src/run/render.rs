@@ -39,6 +39,13 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
 
     frame.stats.seconds.load = load;
+    let odd = frame.stats.counts.non_finite_pixels;
+    if odd > 0 {
+        let of = frame.stats.counts.pixels;
+        watcher.warning(&format!(
+            "{odd} of {of} pixels have infinite or undefined colours: lower the intensities of lights or the coefficients of materials"
+        ));
+    }
     write(&mut frame, &scene, &plan.files, &watcher)?;
     watcher.summary(&summary(&frame, &plan.files));
     Ok(())

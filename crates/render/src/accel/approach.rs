@@ -117,11 +117,6 @@ impl NearRay {
     }
 }
 
-/// The triangles that structures accept.
-pub(super) fn usable(triangles: &[Triangle]) -> Vec<Triangle> {
-    triangles.iter().copied().filter(Triangle::is_usable).collect()
-}
-
 /// The box around `triangles`.
 pub(super) fn bounds(triangles: &[Triangle]) -> Bounds {
     Bounds::around(triangles.iter().flat_map(|triangle| triangle.corners()))

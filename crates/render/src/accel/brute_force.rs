@@ -4,7 +4,8 @@ use fearless_simd::Level;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
-use super::approach::{Approach, NearRay, usable};
+use super::approach::{Approach, NearRay};
+use super::distinct::distinct;
 use super::sieve::{Sieve, Take};
 use super::triangle::RayShear;
 use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Triangle};
@@ -18,13 +19,13 @@ pub struct BruteForce {
 }
 
 impl BruteForce {
-    /// Keeps the usable triangles.
+    /// Keeps the usable triangles, one of identical ones.
     pub fn new(triangles: &[Triangle]) -> BruteForce {
-        let triangles = usable(triangles);
+        let triangles: Vec<_> = distinct(triangles).into_iter().map(|at| triangles[at as usize]).collect();
         BruteForce { approach: Approach::around(&triangles), triangles }
     }
 
-    /// The usable triangles.
+    /// The triangles held.
     pub(crate) fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }

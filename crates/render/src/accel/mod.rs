@@ -11,6 +11,7 @@
 //!   their box tests err on the side of testing, so that all three give the same bits.
 //! * Zero, negative-zero and subnormal direction components and far-away origins are ordinary input. A zero direction, a ray
 //!   that is not finite and a triangle that is not [usable](Triangle::is_usable) hit nothing.
+//! * Of triangles with identical corners only the one with the smallest index is held: neither hits nor shadows need the others.
 //!
 //! The structures are built here; devices hold copies ([`Form`]) and walk them with the code in the `.cuh` files next to the Rust
 //! ones, with the same promises. `walk.cuh` and `search.cuh` are the twins of the trait.
@@ -18,6 +19,7 @@
 mod approach;
 mod brute_force;
 mod bvh;
+mod distinct;
 mod grid;
 mod packet;
 mod region;
@@ -31,7 +33,7 @@ use glam::Vec3;
 use lightmesh_scene::Bounds;
 
 pub use brute_force::BruteForce;
-pub use bvh::Bvh;
+pub use bvh::{Bvh, BvhCost};
 pub use grid::{Grid, GridError, GridFault, GridFileError, GridOptions, GridSaveError, Levels};
 pub use region::{Region, TangentPlanes};
 pub use sieve::{PIECE, Take};
@@ -136,7 +138,7 @@ pub trait Accelerator: Send + Sync {
     /// is overwritten.
     fn short_segments(&self, segments: &ShortSegments, blocked: &mut [bool]);
 
-    /// Hands all triangles that meet `region` to `take`, up to [`PIECE`] at once, in no order and perhaps twice, until it returns false.
+    /// Hands all triangles held that meet `region` to `take`, up to [`PIECE`] at once, in no order and perhaps twice, until it returns false.
     /// May find others as well, but only those whose bounding box the region [may meet](Region). A list and a BVH find all of those; a
     /// grid need not find a triangle that stays away from the region's cells although its bounding box does not.
     fn search(&self, region: &Region, take: Take);

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use lightmesh_image::{Frame, Layers};
+use rayon::prelude::*;
 
 /// Linear colours and, on request, layers of some rows of an image; row 0 is the top.
 #[derive(Clone, Debug)]
@@ -73,6 +74,11 @@ impl Picture {
                 plane[places.clone()].copy_from_slice(band);
             }
         }
+    }
+
+    /// Number of pixels with a colour that is infinite or not a number.
+    pub fn non_finite(&self) -> u64 {
+        self.color.par_iter().filter(|color| !color.iter().all(|channel| channel.is_finite())).count() as u64
     }
 
     /// The finished frame.

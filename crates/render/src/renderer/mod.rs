@@ -229,7 +229,9 @@ pub fn visibility_on<B: Backend>(
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, resolved.plan.memory_limit))?;
     let Resolved { technique, plan, .. } = &resolved;
     let (visibility, rows) = Baking { run, scene: &on_device, technique, plan }.bake(points)?;
-    let stats = report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
+    let mut stats =
+        report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
+    stats.counts.non_finite_pixels = picture.non_finite();
     Ok(PointVisibility { visibility, lights: scene.scene.lights.len(), stats })
 }
 

@@ -1,61 +1,61 @@
 //! From triangles to nodes.
 //!
-//! 1. `obvhs` sorts the triangles' boxes into a binary tree (PLOC) and improves it by reinsertion.
-//! 2. It collapses the tree into compressed nodes of eight children.
+//! 1. `cluster` sorts the triangles' boxes into a binary tree, which `reinsert` improves.
+//! 2. `obvhs` collapses it into compressed nodes of eight children.
 //! 3. We widen every quantised box that rounding left too small, so that each holds its triangles exactly: the margins of the
 //!    walk rely on this.
+//!
+//! For every input, that takes O(n log n) time, and the tree has at most [`LEVELS`] levels: walks need no larger stack.
 
-use std::collections::HashMap;
+mod cluster;
+mod reinsert;
+#[cfg(test)]
+mod tests;
 
 use fearless_simd::Level;
 use glam::{DVec3, Vec3A};
+use lightmesh_layout::constants::BVH_STACK;
 use lightmesh_scene::Bounds;
 use obvhs::aabb::Aabb;
-use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
-use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
 use super::{Bvh, Node};
 use crate::accel::Triangle;
-use crate::accel::approach::{self, Approach, usable};
+use crate::accel::approach::{self, Approach};
+use crate::accel::distinct::distinct;
 
-/// Neighbours looked at on each side when boxes are paired.
-const SEARCH_DISTANCE: PlocSearchDistance = PlocSearchDistance::Medium;
-/// Levels below which a narrower search would do.
-const SEARCH_DEPTH: usize = 3;
-/// Share of the nodes that are reinserted in a round.
-const REINSERTION: f32 = 0.1;
-/// This many triangles may have the same box before their boxes are moved apart.
-const SAME: u32 = 16;
+/// Most levels: of the binary tree without its leaves, and so of the wide one.
+const LEVELS: usize = BVH_STACK as usize;
 /// Most triangles in a leaf: the node format has room for three.
 const LEAF_SIZE: u32 = 3;
 
+/// What a build does.
+#[derive(Clone, Copy, Debug, Default)]
+struct Work {
+    /// Boxes that others are compared with.
+    boxes: u64,
+}
+
 pub(super) fn build(triangles: &[Triangle]) -> Bvh {
-    let triangles = usable(triangles);
+    let triangles: Vec<_> = distinct(triangles).into_iter().map(|at| triangles[at as usize]).collect();
     let approach = Approach::around(&triangles);
-    let tree = tree(&triangles);
+    let tree = tree(&triangles, &mut Work::default());
     let triangles: Vec<_> = tree.primitive_indices.iter().map(|&index| triangles[index as usize]).collect();
     let mut nodes = tree.nodes;
     enclose(&mut nodes, &triangles);
     Bvh { depth: depth(&nodes), nodes, triangles, approach, level: Level::new() }
 }
 
-fn tree(triangles: &[Triangle]) -> CwBvh {
+fn tree(triangles: &[Triangle], work: &mut Work) -> CwBvh {
     if triangles.is_empty() {
         return CwBvh::default();
     }
-    let mut boxes: Vec<_> = triangles.iter().map(bounds).collect();
-    spread(&mut boxes);
-    let indices = (0..boxes.len() as u32).collect();
-    let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
-        SEARCH_DISTANCE,
-        &boxes,
-        indices,
-        SortPrecision::U64,
-        SEARCH_DEPTH,
-    );
-    ReinsertionOptimizer::default().run(&mut binary, REINSERTION, None);
+    let boxes: Vec<_> = triangles.iter().map(bounds).collect();
+    let mut binary = cluster::cluster(&boxes, work);
+    if binary.nodes.len() > 1 {
+        reinsert::reinsert(&mut binary, work);
+    }
     bvh2_to_cwbvh(&binary, LEAF_SIZE, true, false)
 }
 
@@ -63,26 +63,8 @@ fn bounds(triangle: &Triangle) -> Aabb {
     Aabb::from_points(&triangle.corners().map(Vec3A::from))
 }
 
-/// Slightly separates boxes that many triangles share. Equal boxes all find the same partner, so that only one pair is joined
-/// per round and building takes quadratic time. Boxes that are moved too far are repaired by [`enclose`].
-fn spread(boxes: &mut [Aabb]) {
-    let mut seen: HashMap<[u32; 6], u32> = HashMap::new();
-    for bounds in boxes {
-        let [low, high] = [bounds.min, bounds.max].map(|corner| corner.to_array().map(f32::to_bits));
-        let count = seen.entry([low[0], low[1], low[2], high[0], high[1], high[2]]).or_insert(0);
-        *count += 1;
-        if *count > SAME {
-            // The fractional parts of multiples of irrational numbers fill the unit cube evenly.
-            let share = (DVec3::new(0.819_172_5, 0.671_043_6, 0.549_700_5) * f64::from(*count)).fract().as_vec3a();
-            let size = bounds.diagonal().max_element().max(bounds.max.abs().max_element() * 1e-4);
-            let shift = share * size * 0.01;
-            (bounds.min, bounds.max) = (bounds.min + shift, bounds.max + shift);
-        }
-    }
-}
-
 /// One child of a node.
-enum Child {
+pub(super) enum Child {
     /// Index of its node.
     Inner(usize),
     /// Its triangles.
@@ -90,7 +72,7 @@ enum Child {
 }
 
 /// The occupied slots of a node.
-fn children(node: &Node) -> impl Iterator<Item = (usize, Child)> + use<> {
+pub(super) fn children(node: &Node) -> impl Iterator<Item = (usize, Child)> + use<> {
     let node = *node;
     (0..8).filter(move |&slot| node.child_meta[slot] != 0).map(move |slot| {
         if node.imask >> slot & 1 == 1 {
@@ -153,11 +135,11 @@ fn enclose_axis(node: &mut Node, axis: usize, boxes: &[(usize, Bounds)], origin:
     }
 }
 
-fn extent(node: &Node) -> DVec3 {
+pub(super) fn extent(node: &Node) -> DVec3 {
     node.compute_extent().as_dvec3()
 }
 
-fn planes(node: &Node, axis: usize) -> ([u8; 8], [u8; 8]) {
+pub(super) fn planes(node: &Node, axis: usize) -> ([u8; 8], [u8; 8]) {
     match axis {
         0 => (node.child_min_x, node.child_max_x),
         1 => (node.child_min_y, node.child_max_y),
@@ -185,45 +167,4 @@ fn depth(nodes: &[Node]) -> usize {
         }
     }
     depths.into_iter().max().unwrap_or(0)
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::Vec3;
-
-    use super::*;
-    use crate::accel::{Accelerator, Hit, Ray};
-
-    #[test]
-    fn many_equal_triangles_make_a_shallow_tree() {
-        let triangles: Vec<_> = (0..20_000).map(|index| Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], index)).collect();
-        let bvh = Bvh::new(&triangles);
-        assert!(bvh.depth < 20, "{} levels", bvh.depth);
-        let ray = Ray { origin: Vec3::new(0.2, 0.3, 1.0), direction: Vec3::NEG_Z, t_max: 2.0 };
-        let mut hit = [Hit::MISS];
-        bvh.closest_hits(&[ray], &mut hit);
-        assert_eq!((hit[0].t, hit[0].triangle), (1.0, 0));
-    }
-
-    #[test]
-    fn every_box_holds_its_triangles() {
-        let corner = |index: u32| Vec3::new((index % 37) as f32, (index % 11) as f32 * 0.3, (index % 5) as f32) * 1.7;
-        let triangles: Vec<_> =
-            (0..999).map(|index| Triangle::new([0, 1, 2].map(|turn| corner(index + turn)), index)).collect();
-        let bvh = Bvh::new(&triangles);
-        let mut leaves = 0;
-        for node in &bvh.nodes {
-            for (slot, child) in children(node) {
-                let Child::Leaf(range) = child else { continue };
-                leaves += range.len();
-                let content = approach::bounds(&bvh.triangles[range]);
-                for axis in 0..3 {
-                    let (start, step, (low, high)) = (node.p.as_dvec3()[axis], extent(node)[axis], planes(node, axis));
-                    assert!(start + step * f64::from(low[slot]) <= f64::from(content.min[axis]));
-                    assert!(start + step * f64::from(high[slot]) >= f64::from(content.max[axis]));
-                }
-            }
-        }
-        assert_eq!(leaves, triangles.len());
-    }
 }

@@ -2,10 +2,12 @@
 //! GPUs Through Compressed Wide BVHs* (HPG 2017).
 //!
 //! * `build`: the tree comes from `obvhs`; we make sure that every box holds its triangles, and store these in leaf order.
+//! * `cost`: how good the tree is.
 //! * `walk`: the traversal by a ray; `search`: by a region. Nodes and triangles are plain arrays, which devices copy.
 //! * `packet`: the traversal by many coherent rays at once.
 
 mod build;
+mod cost;
 mod packet;
 mod search;
 mod walk;
@@ -13,6 +15,8 @@ mod walk;
 use fearless_simd::{Level, Simd};
 use glam::Vec3;
 use obvhs::cwbvh::node::CwBvhNode as Node;
+
+pub use cost::BvhCost;
 
 use super::approach::Approach;
 use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Take, Triangle, Visitor};
@@ -32,7 +36,7 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Builds the tree over the usable triangles.
+    /// Builds the tree over the usable triangles, one of identical ones.
     pub fn new(triangles: &[Triangle]) -> Bvh {
         build::build(triangles)
     }

@@ -10,6 +10,7 @@ use super::overlap::triangle_meets_box;
 use super::{Grid, GridError, GridOptions, Levels};
 use crate::accel::Triangle;
 use crate::accel::approach::Approach;
+use crate::accel::distinct::distinct;
 
 /// Cells per triangle, if there is one level.
 const DENSITY: f64 = 8.0;
@@ -22,15 +23,22 @@ const MANY: usize = 8;
 /// Most cells along an axis that are chosen automatically: smaller cells would be dominated by the margin.
 const MOST: [f64; 2] = [1024.0, 32.0];
 /// How many cells a triangle's box may overlap on average before an automatic grid is made coarser: one number per level.
-const COPIES: [u64; 2] = [64, 16];
+const COPIES: [u64; 2] = [32, 16];
+/// The same for both levels together: where triangles are large, nested grids would repeat them once more.
+const ALL_COPIES: u64 = 64;
+/// Most cells of the outer grid: 512 on each axis.
+const MOST_CELLS: u64 = 1 << 27;
+/// Most references that a requested grid may need: a second's work, or this many per triangle.
+const MOST_REFERENCES: u64 = 1 << 24;
+const MOST_COPIES: u64 = 256;
 /// Triangles that one task sorts into cells.
 const TASK: usize = 2048;
 
 pub(super) fn build(triangles: &[Triangle], options: &GridOptions) -> Result<Grid, GridError> {
-    let usable: Vec<u32> = (0..triangles.len() as u32).filter(|&at| triangles[at as usize].is_usable()).collect();
+    let usable = distinct(triangles);
     let bounds = Bounds::around(usable.iter().flat_map(|&at| triangles[at as usize].corners()));
     let density = if options.levels == Levels::One { DENSITY } else { OUTER_DENSITY };
-    let sorter = Sorter { triangles, margin: margin(Approach::new(&bounds).radius()) };
+    let mut sorter = Sorter { triangles, inner_copies: COPIES[1], margin: margin(Approach::new(&bounds).radius()) };
     let dims = match options.dims {
         Some(dims) => dims.into(),
         None => {
@@ -39,9 +47,11 @@ pub(super) fn build(triangles: &[Triangle], options: &GridOptions) -> Result<Gri
         }
     };
     let (lattice, approach, margin) = frame(&bounds, dims)?;
-    fit(sorter.candidates(&lattice, &usable), "triangle references", dims)?;
+    let most = MOST_REFERENCES.max(MOST_COPIES * usable.len() as u64);
+    bounded(sorter.candidates(&lattice, &usable), most, "triangle references", dims)?;
 
     let lists = sorter.sort(&lattice, &usable);
+    sorter.inner_copies = (ALL_COPIES * usable.len() as u64 / lists.sources.len().max(1) as u64).clamp(1, COPIES[1]);
     let nested = |cell: usize| {
         let list = lists.of(cell);
         (options.levels == Levels::Two && list.len() > MANY).then(|| sorter.nested(&lattice, cell, list)).flatten()
@@ -67,16 +77,20 @@ pub(super) fn frame(bounds: &Bounds, dims: UVec3) -> Result<(Lattice, Approach, 
     if cells == 0 {
         return Err(GridError::NoCells { dims: dims.to_array() });
     }
-    let needed = u64::try_from(cells + 3).unwrap_or(u64::MAX);
-    fit(needed, "integers", dims)?;
+    bounded(u64::try_from(cells).unwrap_or(u64::MAX), MOST_CELLS, "cells", dims)?;
     let approach = Approach::new(bounds);
     let margin = margin(approach.radius());
     let bounds = if bounds.is_empty() { Bounds::around([Vec3::ZERO]) } else { *bounds };
     Ok((Lattice::new(&bounds, margin, dims), approach, margin))
 }
 
+fn bounded(needed: u64, most: u64, what: &'static str, dims: UVec3) -> Result<(), GridError> {
+    if needed <= most { Ok(()) } else { Err(GridError::TooLarge { dims: dims.to_array(), what, needed, most }) }
+}
+
+/// An offset of the flat form.
 fn fit(needed: u64, what: &'static str, dims: UVec3) -> Result<i32, GridError> {
-    i32::try_from(needed).map_err(|_| GridError::TooLarge { dims: dims.to_array(), what, needed })
+    bounded(needed, i32::MAX as u64, what, dims).map(|()| needed as i32)
 }
 
 /// About `wanted` cells that are nearly cubes: the largest cube edge that yields that many.
@@ -117,13 +131,15 @@ struct Nested {
 struct Sorter<'a> {
     triangles: &'a [Triangle],
     margin: f32,
+    /// How many cells of a nested grid a triangle's box may overlap on average.
+    inner_copies: u64,
 }
 
 impl Sorter<'_> {
-    /// `dims`, halved until triangles that span many cells no longer dominate.
+    /// `dims`, made fewer until triangles that span many cells no longer dominate.
     fn coarsened(&self, mut dims: UVec3, sources: &[u32], copies: u64, lattice: impl Fn(UVec3) -> Lattice) -> UVec3 {
         while dims != UVec3::ONE && self.candidates(&lattice(dims), sources) > copies * sources.len() as u64 {
-            dims = (dims / 2).max(UVec3::ONE);
+            dims = (dims * 3 / 4).max(UVec3::ONE);
         }
         dims
     }
@@ -182,7 +198,7 @@ impl Sorter<'_> {
         let at = position(outer, cell);
         let bounds = Bounds { min: Vec3::ZERO, max: outer.size };
         let dims = automatic(&bounds, INNER_DENSITY * list.len() as f64, MOST[1]);
-        let dims = self.coarsened(dims, list, COPIES[1], |dims| outer.nested(at, dims));
+        let dims = self.coarsened(dims, list, self.inner_copies, |dims| outer.nested(at, dims));
         let lattice = outer.nested(at, dims);
         // Cells no larger than their margins separate nothing.
         let useful = lattice.size.min_element() > 8.0 * self.margin && dims != UVec3::ONE;

@@ -64,10 +64,10 @@ pub enum GridError {
         /// The requested cells.
         dims: [u32; 3],
     },
-    /// Offsets would not fit 32 bits.
+    /// Out of proportion to the triangles, or offsets would not fit 32 bits.
     #[error(
-        "a grid of {}x{}x{} cells needs {needed} {what}, more than 32-bit offsets reach ({}): use fewer cells or the BVH",
-        dims[0], dims[1], dims[2], i32::MAX
+        "a grid of {}x{}x{} cells needs {needed} {what}, more than the {most} that are allowed: use fewer cells or the BVH",
+        dims[0], dims[1], dims[2]
     )]
     TooLarge {
         /// Cells on each axis.
@@ -76,6 +76,8 @@ pub enum GridError {
         what: &'static str,
         /// How many are needed, at least.
         needed: u64,
+        /// How many are allowed.
+        most: u64,
     },
 }
 
@@ -99,11 +101,11 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Sorts the usable triangles into cells.
+    /// Sorts the usable triangles into cells, one of identical ones.
     ///
     /// # Errors
     ///
-    /// If the requested grid has no cells, or too many for 32-bit offsets.
+    /// If the requested grid has no cells, or too many for so few triangles or for 32-bit offsets.
     pub fn new(triangles: &[Triangle], options: &GridOptions) -> Result<Grid, GridError> {
         build::build(triangles, options)
     }

@@ -51,13 +51,21 @@ impl<'a> Accessors<'a> {
         self.read(index, &elements, [0.0; N], is_float, |elements| elements.numbers())
     }
 
-    /// Colours with or without alpha, which is ignored: surfaces are opaque.
+    /// Colours with or without alpha, which is ignored: surfaces are opaque. Clamped to [0, 1], as glTF requires; NaN counts as 0.
     pub(super) fn colors(&self, index: u32) -> Result<Cow<'a, [[f32; 3]]>, LoadError> {
-        if self.elements(index)?.kind == "VEC4" {
-            Ok(self.vectors(index)?.iter().map(|&[r, g, b, _]| [r, g, b]).collect())
+        let mut colors = if self.elements(index)?.kind == "VEC4" {
+            self.vectors(index)?.iter().map(|&[r, g, b, _]| [r, g, b]).collect()
         } else {
-            self.vectors(index)
+            self.vectors(index)?
+        };
+        if colors.as_flattened().iter().any(|channel| !(0.0..=1.0).contains(channel)) {
+            for channel in colors.to_mut().as_flattened_mut() {
+                #[allow(clippy::manual_clamp, reason = "`clamp` would keep NaN")]
+                let clamped = channel.max(0.0).min(1.0);
+                *channel = clamped;
+            }
         }
+        Ok(colors)
     }
 
     /// Vertex indices.

@@ -1,6 +1,10 @@
 //! The bytes behind accessors and images; each buffer is read on first use.
 
-use std::{borrow::Cow, cell::OnceCell, path::Path};
+use std::{
+    borrow::Cow,
+    cell::{Cell, OnceCell},
+    path::Path,
+};
 
 use super::{
     container::malformed,
@@ -15,6 +19,7 @@ pub(super) struct Buffers<'a> {
     views: &'a [BufferView],
     buffers: Vec<Buffer<'a>>,
     border: Border,
+    bytes_read: Cell<usize>,
 }
 
 struct Buffer<'a> {
@@ -54,7 +59,7 @@ impl<'a> Buffers<'a> {
             Ok(Buffer { source, length: buffer.byte_length, bytes: OnceCell::new() })
         };
         let buffers = document.buffers.iter().enumerate().map(buffer).collect::<Result<_, _>>()?;
-        Ok(Buffers { path, views: &document.buffer_views, buffers, border: border.clone() })
+        Ok(Buffers { path, views: &document.buffer_views, buffers, border: border.clone(), bytes_read: Cell::new(0) })
     }
 
     /// The bytes of a view, with its stride if it has one.
@@ -70,7 +75,7 @@ impl<'a> Buffers<'a> {
 
     /// Number of bytes in all buffers that have been read so far.
     pub(super) fn bytes_read(&self) -> usize {
-        self.buffers.iter().filter_map(|buffer| buffer.bytes.get()).map(|bytes| bytes.len()).sum()
+        self.bytes_read.get()
     }
 
     fn buffer(&self, index: u32) -> Result<&[u8], LoadError> {
@@ -82,6 +87,7 @@ impl<'a> Buffers<'a> {
             return Ok(bytes);
         }
         let bytes = buffer.read(self.path, index, &self.border)?;
+        self.bytes_read.update(|sum| sum + bytes.len());
         Ok(buffer.bytes.get_or_init(|| bytes))
     }
 }

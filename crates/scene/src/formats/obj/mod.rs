@@ -20,7 +20,10 @@ mod parse;
 #[cfg(test)]
 mod tests;
 
-use std::{collections::HashMap, path::Path};
+use std::{
+    collections::{HashMap, HashSet},
+    path::Path,
+};
 
 use glam::{DVec3, Vec2, Vec3};
 
@@ -64,8 +67,9 @@ fn find_materials(path: &Path, content: &Content, draft: &mut Draft) -> Result<V
         by_name.entry(entry.name.as_str()).or_insert(index);
     }
     let found: Vec<Option<usize>> = content.materials.iter().map(|name| by_name.get(name.as_str()).copied()).collect();
+    let used: HashSet<usize> = found.iter().copied().flatten().collect();
     for (index, entry) in entries.iter().enumerate() {
-        let material = entry.material(found.contains(&Some(index)), draft);
+        let material = entry.material(used.contains(&index), draft);
         draft.materials.push(material);
     }
     let missing: Vec<&str> = content
@@ -77,7 +81,7 @@ fn find_materials(path: &Path, content: &Content, draft: &mut Draft) -> Result<V
         .filter(|name| !name.is_empty())
         .collect();
     if !missing.is_empty() {
-        let names = list(missing.into_iter());
+        let names = list(missing.iter().map(|name| name.as_ref()));
         draft.warnings.push(format!("{}: no library has the material {names}; light grey is used", path.display()));
     }
     Ok(found

@@ -53,7 +53,7 @@ pub(super) fn read_libraries(
     draft: &mut Draft,
 ) -> Result<Vec<Entry>, LoadError> {
     let mut entries = Vec::new();
-    let mut seen = HashSet::new();
+    let (mut seen, mut paths) = (HashSet::new(), HashSet::new());
     for (number, line) in lines {
         for name in file_names(obj, line, draft) {
             if seen.contains(&name) {
@@ -61,6 +61,8 @@ pub(super) fn read_libraries(
             }
             let place = Place::line(obj, *number);
             match draft.read_nearby(obj, &name) {
+                // The same file by another name is read once as well.
+                Ok((path, _)) if !paths.insert(path.clone()) => {}
                 Ok((path, mut bytes)) => read_library(&path, with_line_feeds(&mut bytes), &mut entries, draft)
                     .map_err(|error| error.named_by(place))?,
                 Err(error) => draft.warnings.push(format!("{}; light grey is used instead", error.named_by(place))),

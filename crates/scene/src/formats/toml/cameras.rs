@@ -1,5 +1,7 @@
 //! `[camera]` to [`Camera`].
 
+use std::ops::Range;
+
 use glam::{DVec3, Vec3};
 
 use super::{
@@ -7,16 +9,16 @@ use super::{
     schema::{CameraEntry, ProjectionName},
     spanned::Spanned,
 };
-use crate::{Camera, Fov, LoadError, Projection, warnings::Warnings};
+use crate::{Camera, Fov, LoadError, Projection};
 
 /// Default vertical field of view, degrees.
 const DEFAULT_VFOV: f32 = 50.0;
 
-/// The camera and its world position.
+/// The camera and its world position. Adds one with two angles that differ to the list of those, by its table and the angle used.
 pub(super) fn read(
     source: &Source,
     table: &Spanned<CameraEntry>,
-    warnings: &mut Warnings,
+    two_angles: &mut Vec<(Range<usize>, f32)>,
 ) -> Result<(Camera, DVec3), LoadError> {
     let entry = table.get_ref();
     let position = source.vector("position", &entry.position)?;
@@ -37,7 +39,7 @@ pub(super) fn read(
         position: Vec3::ZERO,
         direction: direction.as_vec3(),
         up: up.as_vec3(),
-        projection: projection(source, table, warnings)?,
+        projection: projection(source, table, two_angles)?,
     };
     Ok((camera, position))
 }
@@ -57,7 +59,11 @@ fn view_direction(source: &Source, table: &Spanned<CameraEntry>, position: DVec3
     }
 }
 
-fn projection(source: &Source, table: &Spanned<CameraEntry>, warnings: &mut Warnings) -> Result<Projection, LoadError> {
+fn projection(
+    source: &Source,
+    table: &Spanned<CameraEntry>,
+    two_angles: &mut Vec<(Range<usize>, f32)>,
+) -> Result<Projection, LoadError> {
     let entry = table.get_ref();
     let vfov = entry.vfov.as_ref().map(|angle| source.view_angle("vfov", angle)).transpose()?;
     let hfov = entry.hfov.as_ref().map(|angle| source.view_angle("hfov", angle)).transpose()?;
@@ -77,8 +83,7 @@ fn projection(source: &Source, table: &Spanned<CameraEntry>, warnings: &mut Warn
     Ok(Projection::Perspective(match (vfov, hfov) {
         (Some(vfov), Some(hfov)) => {
             if vfov != hfov {
-                let place = source.place(table.span());
-                warnings.push(format!("{place}: the camera has vfov and hfov; vfov = {vfov} is used"));
+                two_angles.push((table.span(), vfov));
             }
             Fov::Vertical(vfov)
         }

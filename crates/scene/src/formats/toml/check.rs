@@ -1,6 +1,6 @@
 //! Checks of a scene file's values: finite, in range, known. Every error names file, line, key and remedy.
 
-use std::{fmt::Debug, ops::Range, path::Path};
+use std::{collections::HashMap, fmt::Debug, ops::Range, path::Path};
 
 use glam::{DVec3, Vec3};
 
@@ -141,12 +141,21 @@ impl Source<'_> {
     }
 
     /// The index of a name among the known ones.
-    pub(super) fn index_of(&self, kind: &'static str, name: &Text, known: &[String]) -> Result<usize, LoadError> {
-        known.iter().position(|candidate| candidate == name.get_ref()).ok_or_else(|| LoadError::UnknownName {
-            place: self.place(name.span()),
-            kind,
-            name: name.get_ref().clone(),
-            known: known.to_vec(),
+    pub(super) fn index_of(
+        &self,
+        kind: &'static str,
+        name: &Text,
+        known: &HashMap<String, u32>,
+    ) -> Result<u32, LoadError> {
+        known.get(name.get_ref()).copied().ok_or_else(|| {
+            let mut names: Vec<&String> = known.keys().collect();
+            names.sort_unstable_by_key(|&name| known[name]);
+            LoadError::UnknownName {
+                place: self.place(name.span()),
+                kind,
+                name: name.get_ref().clone(),
+                known: names.into_iter().cloned().collect(),
+            }
         })
     }
 }

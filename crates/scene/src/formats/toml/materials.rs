@@ -1,5 +1,7 @@
 //! `[[material]]` to materials and their textures.
 
+use std::collections::HashMap;
+
 use glam::{Affine2, DVec2, Vec2};
 
 use super::{
@@ -9,19 +11,18 @@ use super::{
 };
 use crate::{LoadError, Material, TextureUse, Wrap, draft::Draft};
 
-/// Adds the file's materials and returns their names, in the order of their indices.
+/// Adds the file's materials and returns the index of each name.
 pub(super) fn read(
     source: &Source,
     entries: &[Spanned<MaterialEntry>],
     draft: &mut Draft,
-) -> Result<Vec<String>, LoadError> {
-    let mut names: Vec<String> = Vec::new();
+) -> Result<HashMap<String, u32>, LoadError> {
+    let mut names = HashMap::new();
     for entry in entries.iter().map(Spanned::get_ref) {
-        if names.contains(entry.name.get_ref()) {
+        if names.insert(entry.name.get_ref().clone(), draft.materials.len() as u32).is_some() {
             let remedy = "give every material a name of its own";
             return Err(source.refuse("name", &entry.name, "is used by an earlier material", remedy));
         }
-        names.push(entry.name.get_ref().clone());
         let material = Material { texture: texture(source, entry, draft)?, ..coefficients(source, entry)? };
         draft.materials.push(material);
     }

@@ -43,9 +43,14 @@ fn convert(source: &Source, file: &SceneFile, draft: &mut Draft) -> Result<(), L
     }
     let names = materials::read(source, &file.material, draft)?;
     parts::read(source, file, &names, draft)?;
+    let mut two_angles = Vec::new();
     for camera in &file.camera {
-        let camera = cameras::read(source, camera, &mut draft.warnings)?;
-        draft.cameras.push(camera);
+        draft.cameras.push(cameras::read(source, camera, &mut two_angles)?);
+    }
+    if let Some(((span, vfov), others)) = two_angles.split_first() {
+        let place = source.place(span.clone());
+        let more = if others.is_empty() { String::new() } else { format!(", as of {} more cameras", others.len()) };
+        draft.warnings.push(format!("{place}: the camera has vfov and hfov; vfov = {vfov} is used{more}"));
     }
     for light in &file.light {
         draft.lights.push(lights::read(source, light)?);

@@ -1,5 +1,7 @@
 //! `[[mesh]]` and the solids to triangles.
 
+use std::collections::HashMap;
+
 use glam::{DMat4, DVec2, DVec3, Vec2};
 
 use super::{
@@ -17,11 +19,16 @@ use crate::{
 /// Default edge of a plane, in diagonals of the rest of the scene.
 const PLANE_DIAGONALS: f64 = 20.0;
 
-/// Adds all triangles of the file; `names` are the materials in the order of their indices. Planes come last, because their
+/// Adds all triangles of the file; `names` are the indices of its materials. Planes come last, because their
 /// size may depend on the rest.
-pub(super) fn read(source: &Source, file: &SceneFile, names: &[String], draft: &mut Draft) -> Result<(), LoadError> {
+pub(super) fn read(
+    source: &Source,
+    file: &SceneFile,
+    names: &HashMap<String, u32>,
+    draft: &mut Draft,
+) -> Result<(), LoadError> {
     let material = |draft: &mut Draft, name: &Option<Text>| match name {
-        Some(name) => source.index_of("material", name, names).map(|index| index as u32),
+        Some(name) => source.index_of("material", name, names),
         None => Ok(draft.default_material()),
     };
     let add = |draft: &mut Draft, shape: Shape, transform: &DMat4, name: &Option<Text>| {
@@ -56,11 +63,16 @@ pub(super) fn read(source: &Source, file: &SceneFile, names: &[String], draft: &
     Ok(())
 }
 
-fn read_mesh(source: &Source, entry: &MeshEntry, names: &[String], draft: &mut Draft) -> Result<(), LoadError> {
+fn read_mesh(
+    source: &Source,
+    entry: &MeshEntry,
+    names: &HashMap<String, u32>,
+    draft: &mut Draft,
+) -> Result<(), LoadError> {
     let named = |error: LoadError| error.named_by(source.place(entry.file.span()));
     let (path, bytes) = draft.border.read_beside(source.path, entry.file.get_ref()).map_err(named)?;
     let material = match &entry.material {
-        Some(name) => Some(source.index_of("material", name, names)? as u32),
+        Some(name) => Some(source.index_of("material", name, names)?),
         None => None,
     };
     read_part(&path, bytes, mesh_transform(source, entry)?, material, draft).map_err(named)

@@ -8,9 +8,14 @@ fn triangle(at: Vec3, index: u32) -> Triangle {
     Triangle::new([at, at + 0.1 * Vec3::X, at + 0.1 * Vec3::Y], index)
 }
 
+/// One of many that fill the unit square.
+fn wide(index: u32) -> Triangle {
+    Triangle::new([Vec3::ZERO, Vec3::X, Vec3::new(1e-6 * index as f32, 1.0, 0.0)], index)
+}
+
 #[test]
 fn the_flat_form_is_that_of_the_thesis() {
-    let triangles = [triangle(Vec3::ZERO, 5), triangle(Vec3::new(4.0, 4.0, 0.0), 6), triangle(Vec3::ZERO, 7)];
+    let triangles = [triangle(Vec3::ZERO, 5), triangle(Vec3::new(4.0, 4.0, 0.0), 6), triangle(0.1 * Vec3::X, 7)];
     let grid = built(&triangles, [2, 2, 1], Levels::One).unwrap();
     // nx ny nz, four offsets, a leaf with triangles 0 and 1, a leaf with triangle 2.
     assert_eq!(grid.cells, [2, 2, 1, 7, -1, -1, 9, -2, 0, -1, 2]);
@@ -32,21 +37,23 @@ fn full_cells_hold_grids() {
 fn impossible_sizes_are_refused_before_anything_is_allocated() {
     let triangles = [triangle(Vec3::ZERO, 0)];
     assert_eq!(built(&triangles, [4, 0, 4], Levels::One).unwrap_err(), GridError::NoCells { dims: [4, 0, 4] });
-    for dims in [[u32::MAX; 3], [1 << 16, 1 << 15, 1]] {
+    for dims in [[u32::MAX; 3], [1 << 16, 1 << 15, 1], [1 << 14, 1 << 14, 1]] {
         let error = built(&triangles, dims, Levels::One).unwrap_err();
-        assert!(matches!(error, GridError::TooLarge { what: "integers", .. }), "{error}");
+        assert!(matches!(error, GridError::TooLarge { what: "cells", .. }), "{error}");
         assert!(error.to_string().contains("use fewer cells"), "{error}");
     }
-    let wide: Vec<_> = (0..300).map(|index| Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], index)).collect();
-    let error = built(&wide, [3000, 3000, 1], Levels::One).unwrap_err();
-    assert!(matches!(error, GridError::TooLarge { what: "triangle references", .. }), "{error}");
+    let triangles: Vec<_> = (0..300).map(wide).collect();
+    for dims in [[3000, 3000, 1], [1, 10_000_000, 1]] {
+        let error = built(&triangles, dims, Levels::Two).unwrap_err();
+        assert!(matches!(error, GridError::TooLarge { what: "triangle references", .. }), "{error}");
+    }
 }
 
 #[test]
 fn triangles_that_fill_the_scene_make_automatic_grids_coarse() {
-    let wide: Vec<_> = (0..5000).map(|index| Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], index)).collect();
+    let triangles: Vec<_> = (0..5000).map(wide).collect();
     for levels in [Levels::One, Levels::Two] {
-        let grid = Grid::new(&wide, &GridOptions { dims: None, levels }).unwrap();
+        let grid = Grid::new(&triangles, &GridOptions { dims: None, levels }).unwrap();
         assert!(grid.triangles.len() < 400_000, "{levels:?}: {}", grid.triangles.len());
     }
 }
