@@ -26,7 +26,7 @@ mod table;
 pub use compare::{RunComparison, StageComparison, Verdict};
 pub use error::BenchError;
 pub use findings::Findings;
-pub use output::{OutputError, prepare_folder};
+pub use output::{OutputError, check_output_folder};
 pub use plan::{Plan, Suite};
 pub use results::{Gpu, Key, Machine, Picture, Program, Results, Row, Samples};
 pub(crate) use results::{MANY_LIGHTS, SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};

@@ -1,6 +1,7 @@
 //! A scene while it is being read: everything in world coordinates and double precision, until the last triangle is known and
 //! the local frame can be chosen.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
@@ -51,6 +52,8 @@ pub(crate) struct Draft {
     pub(crate) materials: Vec<Material>,
     pub(crate) textures: Vec<Texture>,
     pub(crate) texture_files: TextureFiles,
+    /// The file itself and all that it refers to.
+    files: BTreeSet<PathBuf>,
     pub(crate) ambient: Option<Vec3>,
     pub(crate) background: Option<Vec3>,
     pub(crate) light_mesh: LightMeshDefaults,
@@ -71,6 +74,7 @@ impl Draft {
             materials: Vec::new(),
             textures: Vec::new(),
             texture_files: TextureFiles::default(),
+            files: BTreeSet::from([path.to_owned()]),
             ambient: None,
             background: None,
             light_mesh: LightMeshDefaults::default(),
@@ -177,20 +181,17 @@ impl Draft {
     /// [`LoadError::Outside`] if that is a URL or outside the folder of the file that was opened, unless the options allow it.
     pub(crate) fn path_beside(&self, source: &Path, name: &str) -> Result<PathBuf, LoadError> {
         let outside = || LoadError::Outside { place: Place::file(source).into(), name: name.to_owned() };
-        let is_url =
-            name.split_once("://").is_some_and(|(scheme, _)| scheme.chars().all(|c| c.is_ascii_alphanumeric()));
-        let named = name.replace('\\', "/");
-        let has_drive =
-            matches!(named.as_bytes(), [letter, b':', ..] if letter.is_ascii_alphabetic()) && cfg!(not(windows));
-        if is_url || has_drive {
-            return Err(outside());
-        }
-        let path = source.parent().unwrap_or(Path::new("")).join(named);
+        let path = beside(source, name).ok_or_else(outside)?;
         let folder = tidy(self.path.parent().unwrap_or(Path::new("")));
         let in_folder = tidy(&path)
             .strip_prefix(folder)
             .is_ok_and(|rest| matches!(rest.components().next(), None | Some(Component::Normal(_))));
         if self.options.allow_outside || in_folder { Ok(path) } else { Err(outside()) }
+    }
+
+    /// Notes that `source` refers to a file as `name`, whether or not the file exists and is used.
+    pub(crate) fn refer(&mut self, source: &Path, name: &str) {
+        self.files.extend(beside(source, name));
     }
 
     /// Sets the local frame that the scene was written with, if its file records it: then it is read back to the same `f32`.
@@ -249,6 +250,7 @@ impl Draft {
             lights: Lights { list, ambient: self.ambient, background: self.background },
             cameras,
             light_mesh: self.light_mesh,
+            files: self.files.into_iter().collect(),
             warnings: self.warnings,
         })
     }
@@ -257,6 +259,15 @@ impl Draft {
 /// Whether a vertex has usable coordinates after placement.
 fn usable_in<P: Position>(transform: &DMat4) -> impl Fn(&P) -> bool + use<'_, P> {
     |position| is_place(transform.transform_point3(position.to_double()))
+}
+
+/// The path that `source` refers to as `name`; `None` if that is a URL.
+fn beside(source: &Path, name: &str) -> Option<PathBuf> {
+    let is_url = name.split_once("://").is_some_and(|(scheme, _)| scheme.chars().all(|c| c.is_ascii_alphanumeric()));
+    let named = name.replace('\\', "/");
+    let has_drive =
+        matches!(named.as_bytes(), [letter, b':', ..] if letter.is_ascii_alphabetic()) && cfg!(not(windows));
+    (!is_url && !has_drive).then(|| source.parent().unwrap_or(Path::new("")).join(named))
 }
 
 /// The path without `.` and `..`, by its text alone.

@@ -2,13 +2,15 @@
 
 use std::path::PathBuf;
 
+use lightmesh::Scene;
 use lightmesh_bench::report::Report;
-use lightmesh_bench::{Plan, Results, Suite, prepare_folder};
+use lightmesh_bench::{Plan, Results, Suite, check_output_folder};
+use lightmesh_files::is_standard_output;
 
 use crate::args::{BenchArgs, BenchCommand, SuiteArgs};
 use crate::failure::Failure;
+use crate::output::{self, Outputs};
 use crate::progress::Watcher;
-use crate::{interrupt, output};
 
 pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
     match (&args.command, args.run.suite) {
@@ -23,29 +25,64 @@ fn list() -> String {
 }
 
 fn measure(suite: Suite, args: &SuiteArgs) -> Result<(), Failure> {
-    if let Some(path) = &args.json {
-        output::check_writable(path)?;
-        if args.pictures {
-            prepare_folder(&Results::pictures_folder(path))?;
-        }
-    }
-    if let Some(folder) = &args.report {
-        prepare_folder(folder)?;
-    }
+    let outputs = outputs(args)?;
+    keep_scenes(&outputs, &args.scenes)?;
     let watcher = Watcher::new(args.progress, args.quiet);
-    interrupt::watch();
     let results = lightmesh_bench::run(suite, &plan(args), &watcher)?;
+    let (table, summary) = (results.to_string(), summary(&results, args));
+    let mut files = Vec::new();
     if let Some(path) = &args.json {
-        if args.pictures { results.save_with_pictures(path) } else { results.save(path) }?;
+        files = results.ready(path, args.pictures)?;
     }
-    output::print(&results.to_string())?;
-    let summary = summary(&results, args);
     if let Some(folder) = &args.report {
         // Named as in a report on the file.
         let name = args.json.clone().unwrap_or_else(|| PathBuf::from(suite.name()));
-        Report::new(vec![(name, results)])?.write(folder)?;
+        files.extend(Report::new(vec![(name, results)])?.ready(folder)?);
+    }
+    output::publish(files)?;
+    // A program that reads the rows expects nothing else.
+    if !args.json.as_ref().is_some_and(is_standard_output) {
+        output::print(&table)?;
     }
     watcher.summary(&summary);
+    Ok(())
+}
+
+/// Checks that all files can be written.
+fn outputs(args: &SuiteArgs) -> Result<Outputs, Failure> {
+    let pages = args.report.iter().flat_map(|folder| Report::pages(folder));
+    let pages: Vec<PathBuf> = pages.collect();
+    let json = args.json.as_deref();
+    let mut outputs =
+        Outputs::new(std::iter::once(("--json", json)).chain(pages.iter().map(|page| ("--report", Some(&**page)))))?;
+    if let Some(path) = json {
+        output::check_writable(path)?;
+        if args.pictures {
+            let folder = Results::pictures_folder(path);
+            check_output_folder(&folder)?;
+            outputs = outputs.with_folder("--pictures", folder);
+        }
+    }
+    if let Some(folder) = &args.report {
+        check_output_folder(folder)?;
+        let existing = pages.iter().filter(|page| page.exists());
+        existing.map(|page| output::check_writable(page)).collect::<Result<(), _>>()?;
+        for part in Report::FOLDERS {
+            outputs = outputs.with_folder("--report", folder.join(part));
+        }
+    }
+    Ok(outputs)
+}
+
+/// Checks that no file of the scenes is overwritten. They are opened for that: better now than after hours.
+fn keep_scenes(outputs: &Outputs, scenes: &[PathBuf]) -> Result<(), Failure> {
+    outputs.keep("the scene", scenes.iter().map(PathBuf::as_path))?;
+    let is_file = |path: &&PathBuf| !path.to_string_lossy().starts_with("builtin:");
+    if !outputs.is_empty() {
+        for path in scenes.iter().filter(is_file) {
+            outputs.keep_scene(&Scene::open(path)?)?;
+        }
+    }
     Ok(())
 }
 

@@ -12,3 +12,5 @@ mod scenes;
 
 #[cfg(unix)]
 mod interrupt;
+#[cfg(unix)]
+mod outputs;

@@ -36,6 +36,7 @@ impl Draft {
     /// Index of the texture in the file that `source`, one of the scene's files, refers to as `name`. Each file is read once. If
     /// it is not available, a warning will say so.
     pub(crate) fn texture_file(&mut self, source: &Path, name: &str) -> Option<u32> {
+        self.refer(source, name);
         let path = match self.path_beside(source, name) {
             Ok(path) => path,
             Err(error) => {

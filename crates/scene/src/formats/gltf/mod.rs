@@ -52,6 +52,7 @@ use self::{
     meshes::{Meshes, Shown},
     nodes::Placed,
     picture::Pictures,
+    uri::Uri,
     views::Views,
 };
 use crate::{
@@ -67,6 +68,7 @@ pub(crate) fn read(path: &Path, placement: &Placement, draft: &mut Draft) -> Res
     let container = Container::split(path, &bytes)?;
     let document = container.parse(path)?;
     extensions::check(path, &document, draft)?;
+    refer(path, &document, draft);
     let buffers = Buffers::new(path, &document, container.bin, draft)?;
     let accessors = Accessors { path, document: &document, buffers: &buffers };
     let mut left_out = LeftOut::default();
@@ -84,6 +86,17 @@ pub(crate) fn read(path: &Path, placement: &Placement, draft: &mut Draft) -> Res
     }
     left_out.warn(path, draft);
     Ok(())
+}
+
+/// Notes all files of buffers and images, although only those in use are read.
+fn refer(path: &Path, document: &Document, draft: &mut Draft) {
+    let buffers = document.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
+    let images = document.images.iter().filter_map(|image| image.uri.as_deref());
+    for uri in buffers.chain(images) {
+        if let Uri::File(name) = Uri::new(uri) {
+            draft.refer(path, &name);
+        }
+    }
 }
 
 /// The meshes of all nodes.

@@ -40,8 +40,7 @@ struct LeftOut {
 pub(super) fn read_libraries(obj: &Path, lines: &[String], draft: &mut Draft) -> Result<Vec<Entry>, LoadError> {
     let mut entries = Vec::new();
     let mut seen = Vec::new();
-    let names: Vec<String> = lines.iter().flat_map(|line| file_names(obj, line, draft)).collect();
-    for name in names {
+    for name in refer(obj, lines, draft) {
         if seen.contains(&name) {
             continue;
         }
@@ -58,6 +57,13 @@ pub(super) fn read_libraries(obj: &Path, lines: &[String], draft: &mut Draft) ->
             .push(format!("{}: {transparent} materials are transparent (d, Tr), but are shown opaque", obj.display()));
     }
     Ok(entries)
+}
+
+/// Notes the libraries; returns their names.
+pub(super) fn refer(obj: &Path, lines: &[String], draft: &mut Draft) -> Vec<String> {
+    let names: Vec<String> = lines.iter().flat_map(|line| file_names(obj, line, draft)).collect();
+    names.iter().for_each(|name| draft.refer(obj, name));
+    names
 }
 
 /// The files of an `mtllib` line: one whose name may contain blanks, or several; whichever exist. If none exists, the line is
@@ -86,6 +92,11 @@ fn read_library(path: &Path, text: &[u8], entries: &mut Vec<Entry>, draft: &mut 
     let mut entry = None;
     while let Some(line) = lines.next() {
         let (word, rest) = split_word(line);
+        if is_map(word)
+            && let Some(map) = Map::parse(&decoded(rest))
+        {
+            draft.refer(path, &map.file);
+        }
         if word == b"newmtl" {
             entries.extend(entry.take());
             let name = decoded(rest).into_owned();
@@ -137,8 +148,7 @@ impl Entry {
             b"map_Kd" => self.map = Map::parse(&decoded(rest)),
             // Exporters repeat the texture as the ambient texture.
             b"map_Ka" | b"map_aat" => {}
-            b"bump" | b"disp" | b"decal" | b"refl" | b"norm" => left_out.maps += 1,
-            word if word.starts_with(b"map_") => left_out.maps += 1,
+            word if is_map(word) => left_out.maps += 1,
             _ => {}
         }
         Ok(())
@@ -171,6 +181,12 @@ impl Entry {
             ..default
         }
     }
+}
+
+/// Whether a statement names a texture.
+fn is_map(word: &[u8]) -> bool {
+    matches!(word, b"bump" | b"disp" | b"decal" | b"refl" | b"norm")
+        || (word.starts_with(b"map_") && word != b"map_aat")
 }
 
 /// One number for all channels, or three.

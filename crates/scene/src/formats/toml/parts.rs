@@ -57,6 +57,7 @@ pub(super) fn read(source: &Source, file: &SceneFile, names: &[String], draft: &
 }
 
 fn read_mesh(source: &Source, entry: &MeshEntry, names: &[String], draft: &mut Draft) -> Result<(), LoadError> {
+    draft.refer(source.path, entry.file.get_ref());
     let path = draft.path_beside(source.path, entry.file.get_ref()).map_err(|error| match error {
         LoadError::Outside { name, .. } => LoadError::Outside { place: source.place(entry.file.span()), name },
         error => error,
