@@ -30,4 +30,4 @@ pub use output::{OutputError, check_output_folder};
 pub use plan::{Plan, Suite};
 pub use results::{Gpu, Key, Machine, Picture, Program, Results, Row, Samples};
 pub(crate) use results::{MANY_LIGHTS, SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};
-pub use suites::run;
+pub use suites::{run, run_keeping};

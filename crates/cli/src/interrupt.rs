@@ -1,14 +1,14 @@
 //! Requests to end: Ctrl-C and the signals INT, TERM and HUP.
 //!
-//! 1. A request is recorded. A render sees it between pieces of work and ends by itself; so does a suite, with its rows so far.
-//! 2. Whatever else the program does then (reading, decoding, building, encoding), it has a short time to end by itself.
-//! 3. The process [leaves](leave): temporary files are removed, from then on none can be created or renamed, so that each output is
+//! 1. A request is recorded. Work that [asks for it](watched) has a short time to end by itself: a suite saves its rows so far.
+//! 2. The process [leaves](leave): temporary files are removed, from then on none can be created or renamed, so that each output is
 //!    there completely or not at all; the message says which are there.
 //!
-//! Libraries know nothing of signals, and no thread has to cooperate. GPU memory is freed by the driver.
+//! So nothing has to cooperate, be it reading, decoding, building or encoding. Libraries know nothing of signals. GPU memory is freed
+//! by the driver.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::thread;
 use std::time::Duration;
 
@@ -17,20 +17,32 @@ use lightmesh_files::{Abandoned, abandon, record_written};
 use crate::failure::Failure;
 use crate::output;
 
-/// How long the program may take to end by itself.
-const GRACE: Duration = Duration::from_millis(150);
+/// How long work may take to end by itself.
+const GRACE: Duration = Duration::from_millis(100);
 
 /// The exit code of the request; 0: none so far.
 static REQUESTED: AtomicU8 = AtomicU8::new(0);
+/// Whether the work in progress asks for requests.
+static WATCHED: AtomicBool = AtomicBool::new(false);
 
 /// Obeys requests from now on.
 pub(crate) fn install() -> Result<(), Failure> {
     record_written();
     listen(|code| {
         REQUESTED.store(code, Ordering::SeqCst);
-        thread::sleep(GRACE);
+        if WATCHED.load(Ordering::SeqCst) {
+            thread::sleep(GRACE);
+        }
         leave(code)
     })
+}
+
+/// Does work that ends by itself when the program [shall end](requested).
+pub(crate) fn watched<T>(work: impl FnOnce() -> T) -> T {
+    WATCHED.store(true, Ordering::SeqCst);
+    let result = work();
+    WATCHED.store(false, Ordering::SeqCst);
+    result
 }
 
 /// Whether the program shall end.

@@ -8,6 +8,8 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use crate::output::{Ready, Step};
+
 /// Paths of temporary files.
 pub(crate) type Temporaries = BTreeSet<PathBuf>;
 
@@ -22,10 +24,17 @@ pub(crate) struct Registry {
     written: Option<Vec<PathBuf>>,
     /// The stream that is being written.
     partial: Option<PathBuf>,
+    /// What is published if the program ends early.
+    pub(crate) standby: Option<Ready>,
 }
 
-static REGISTRY: Mutex<Registry> =
-    Mutex::new(Registry { temporaries: BTreeSet::new(), swept: BTreeSet::new(), written: None, partial: None });
+static REGISTRY: Mutex<Registry> = Mutex::new(Registry {
+    temporaries: BTreeSet::new(),
+    swept: BTreeSet::new(),
+    written: None,
+    partial: None,
+    standby: None,
+});
 
 pub(crate) fn registry() -> MutexGuard<'static, Registry> {
     REGISTRY.lock().unwrap_or_else(PoisonError::into_inner)
@@ -59,10 +68,25 @@ pub fn record_written() {
     registry().written.get_or_insert_default();
 }
 
-/// Removes all temporary files of this process, for good: whoever creates, publishes or removes an output afterwards, or calls this
+/// An output that [`abandon`] publishes, such as results so far; it replaces an earlier one, and [`publish`](crate::publish())
+/// replaces it. Only a file can stand by: what is written through would have to wait for a reader.
+pub fn stand_by(output: Option<Ready>) {
+    let earlier = std::mem::replace(&mut registry().standby, output);
+    // The registry is free again.
+    drop(earlier);
+}
+
+/// Publishes the output that stands by, and removes all temporary files of this process, for good: whoever creates, publishes or removes an output afterwards, or calls this
 /// again, waits forever. To be called just before the process exits, from any thread.
 pub fn abandon() -> Abandoned {
     let mut registry = registry();
+    if let Some((path, Step::Rename(file, target))) = registry.standby.take().map(Ready::step) {
+        if file.rename(&target, &mut registry).is_ok() {
+            registry.wrote(path);
+        }
+        // Dropping it would take the registry.
+        std::mem::forget(file);
+    }
     for path in &registry.temporaries {
         // If it cannot be removed, the next run will.
         let _ = fs::remove_file(path);

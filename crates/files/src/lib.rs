@@ -31,7 +31,7 @@ mod temporary;
 #[cfg(test)]
 mod tests;
 
-pub use ending::{Abandoned, abandon, record_written};
+pub use ending::{Abandoned, abandon, record_written, stand_by};
 pub use output::{Output, Ready};
 pub use publish::{PublishError, publish};
 pub use stream::is_standard_output;

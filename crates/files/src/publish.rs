@@ -73,7 +73,10 @@ fn send(path: &Path, bytes: &mut impl io::Read, stream: &Stream) -> io::Result<(
 
 /// Renames all files while holding the registry, so that a program that ends early does so before the first or after the last.
 fn rename(files: &[(PathBuf, Temporary, PathBuf)], mut written: Vec<PathBuf>) -> Result<(), PublishError> {
+    // Dropped after the registry, which dropping it takes.
+    let _superseded;
     let mut registry = registry();
+    _superseded = registry.standby.take();
     for (path, file, target) in files {
         match file.rename(target, &mut registry) {
             Ok(()) => {

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use lightmesh::Scene;
 use lightmesh_bench::report::Report;
 use lightmesh_bench::{Plan, Results, Suite, check_output_folder};
-use lightmesh_files::is_standard_output;
+use lightmesh_files::{is_standard_output, stand_by};
 
 use crate::args::{BenchArgs, BenchCommand, SuiteArgs};
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::output::{self, Outputs};
 use crate::progress::Watcher;
 
@@ -28,7 +29,17 @@ fn measure(suite: Suite, args: &SuiteArgs) -> Result<(), Failure> {
     let outputs = outputs(args)?;
     keep_scenes(&outputs, &args.scenes)?;
     let watcher = Watcher::new(args.progress, args.quiet);
-    let results = lightmesh_bench::run(suite, &plan(args), &watcher)?;
+    interrupt::watched(|| run_and_write(suite, args, &watcher))
+}
+
+fn run_and_write(suite: Suite, args: &SuiteArgs, watcher: &Watcher) -> Result<(), Failure> {
+    let _standby = Standby;
+    let json = args.json.clone();
+    let results = lightmesh_bench::run_keeping(suite, &plan(args), watcher, move |results| {
+        // If this fails, so will the end of the run, which says why.
+        let files = json.as_ref().and_then(|path| results.ready(path, false).ok());
+        stand_by(files.and_then(|mut files| files.pop()));
+    })?;
     let (table, summary) = (results.to_string(), summary(&results, args));
     let mut files = Vec::new();
     if let Some(path) = &args.json {
@@ -48,6 +59,15 @@ fn measure(suite: Suite, args: &SuiteArgs) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Results so far, which appear if the program must end. They do not outlive the run, whether it succeeds or fails.
+struct Standby;
+
+impl Drop for Standby {
+    fn drop(&mut self) {
+        stand_by(None);
+    }
+}
+
 /// Checks that all files can be written.
 fn outputs(args: &SuiteArgs) -> Result<Outputs, Failure> {
     let pages = args.report.iter().flat_map(|folder| Report::pages(folder));
@@ -65,8 +85,8 @@ fn outputs(args: &SuiteArgs) -> Result<Outputs, Failure> {
     }
     if let Some(folder) = &args.report {
         check_output_folder(folder)?;
-        let existing = pages.iter().filter(|page| page.exists());
-        existing.map(|page| output::check_writable(page)).collect::<Result<(), _>>()?;
+        let mut existing = pages.iter().filter(|page| page.exists());
+        existing.try_for_each(|page| output::check_writable(page))?;
         for part in Report::FOLDERS {
             outputs = outputs.with_folder("--report", folder.join(part));
         }

@@ -9,11 +9,11 @@ use lightmesh::{Device, Frame, Observer, RenderError, Renderer, Scene};
 use super::open::open;
 use crate::args::RenderArgs;
 use crate::failure::Failure;
-use crate::output;
 use crate::plan::{PictureFiles, RenderPlan};
 use crate::progress::Watcher;
 use crate::report::{Report, json};
 use crate::value::Exposure;
+use crate::{interrupt, output};
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let plan = RenderPlan::new(args)?;
@@ -31,7 +31,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let settings = plan.settings;
     plan.choices.apply(&mut scene, &watcher)?;
     let prepared = renderer.prepare(&scene, &settings, &watcher)?;
-    let mut frame = renderer.render_prepared(&prepared, &settings, &watcher)?;
+    let mut frame = interrupt::watched(|| renderer.render_prepared(&prepared, &settings, &watcher))?;
     drop(prepared); // frees memory for the encoders
     if watcher.cancelled() {
         return Err(RenderError::Cancelled.into());

@@ -204,6 +204,25 @@ fn what_a_killed_run_left_is_removed_by_the_next_and_what_a_living_one_writes_is
 }
 
 #[test]
+fn a_suite_keeps_the_rows_it_has() {
+    let place = Place::new();
+    // Nothing of the second scene is done for a long time.
+    let scenes = ["--scene", "room.toml", "--scene", "builtin:garden", "--size", "16", "--repeat", "1"];
+    let flags = ["--quick", "--device", "cpu", "--json", "a.json", "--progress", "json"];
+    for (signal, code) in SIGNALS {
+        let mut running = Running::new(&place, &[&["bench", "stages"], &scenes[..], &flags].concat());
+        assert!(running.lines.by_ref().map(Result::unwrap).any(|line| line.contains(r#""text":"scene 2 of 2"#)));
+        assert_eq!(running.end_by(signal), (Some(code), "interrupted: written: a.json".to_owned()));
+        let results = place.json("a.json");
+        assert_eq!(results["notes"].as_array().unwrap().last().unwrap(), "Stopped early; later rows are missing.");
+        let rows = results["rows"].as_array().unwrap();
+        assert!(rows.len() == 10 && rows.iter().all(|row| row["keys"]["scene"] == "room"), "{results}");
+        assert_eq!(place.files(), ["a.json", "room.toml"]);
+        std::fs::remove_file(place.path("a.json")).unwrap();
+    }
+}
+
+#[test]
 fn a_signal_that_the_parent_ignores_stays_ignored() {
     let place = Place::new();
     let args = ["render", "room.toml", "-o", "a.png", "--size", "3000x3000", "--mode", "area", "--progress", "json"];
