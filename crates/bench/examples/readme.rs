@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use lightmesh_bench::readme;
-use lightmesh_files::Replacement;
+use lightmesh_files::Output;
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
     let (flags, documents): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|word| word == "--check");
@@ -22,7 +22,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
         match &tables.differing[..] {
             [] => println!("{name}: {} tables from results, all up to date", tables.count),
             lines if flags.is_empty() => {
-                let mut file = Replacement::of(&document)?;
+                let mut file = Output::to(&document)?;
                 file.write_all(tables.text.as_bytes())?;
                 file.commit()?;
                 println!("{name}: {} of {} tables updated", lines.len(), tables.count);

@@ -1,11 +1,14 @@
 //! Results collected while a suite runs.
 
+use std::fmt;
+use std::rc::Rc;
+
 use lightmesh::image::{EncodeError, Frame};
 
 use crate::{Picture, Row};
 
 /// Rows, images and notes so far.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Findings {
     /// One row per measurement.
     pub rows: Vec<Row>,
@@ -15,6 +18,31 @@ pub struct Findings {
     pub notes: Vec<String>,
     /// Devices that were used, as in `cuda:0`.
     pub devices: Vec<String>,
+    /// Who is told of new rows.
+    pub(crate) keeper: Keeper,
+}
+
+/// Somebody who is told when there are new rows.
+#[derive(Clone, Default)]
+pub(crate) struct Keeper(pub(crate) Option<Tell>);
+
+/// Gets everything so far.
+pub(crate) type Tell = Rc<dyn Fn(&Findings)>;
+
+impl fmt::Debug for Keeper {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.0.is_some() { "somebody" } else { "nobody" })
+    }
+}
+
+impl Findings {
+    /// Adds rows.
+    pub fn add(&mut self, rows: impl IntoIterator<Item = Row>) {
+        self.rows.extend(rows);
+        if let Some(tell) = self.keeper.0.clone() {
+            tell(self);
+        }
+    }
 }
 
 impl Picture {

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use lightmesh_files::{Replacement, TargetError, check_writable};
+use lightmesh_files::{Output, PublishError, Ready, TargetError, check_folder};
 
 /// Why output cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -28,15 +28,22 @@ pub enum OutputError {
         /// The system's message.
         reason: io::Error,
     },
+    /// Complete files could not be renamed.
+    #[error(transparent)]
+    Publish(#[from] PublishError),
 }
 
-/// Creates a folder if it is missing, and checks that files can be written to it, before a long run.
+/// Checks that files can be written to a folder, before a long run. It may be missing, and is not created.
 ///
 /// # Errors
 /// [`OutputError::Folder`] or [`OutputError::Target`].
-pub fn prepare_folder(folder: &Path) -> Result<(), OutputError> {
-    make_folder(folder)?;
-    Ok(check_writable(folder.join("report.md"))?)
+pub fn check_output_folder(folder: &Path) -> Result<(), OutputError> {
+    check_folder(folder).map_err(|error| match error {
+        TargetError::NotADirectory { .. } => {
+            OutputError::Folder { path: folder.to_owned(), reason: io::ErrorKind::NotADirectory.into() }
+        }
+        error => error.into(),
+    })
 }
 
 /// Creates a folder if it is missing.
@@ -44,10 +51,9 @@ pub(crate) fn make_folder(path: &Path) -> Result<(), OutputError> {
     fs::create_dir_all(path).map_err(|reason| OutputError::Folder { path: path.to_owned(), reason })
 }
 
-/// Writes a file completely or not at all.
-pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
-    let failed = |reason| OutputError::Write { path: path.to_owned(), reason };
-    let mut file = Replacement::of(path)?;
-    file.write_all(bytes).map_err(failed)?;
-    file.commit().map_err(failed)
+/// A complete file that may appear.
+pub(crate) fn ready(path: &Path, bytes: &[u8]) -> Result<Ready, OutputError> {
+    let mut file = Output::to(path)?;
+    let written = file.write_all(bytes).and_then(|()| file.ready());
+    written.map_err(|reason| OutputError::Write { path: path.to_owned(), reason })
 }

@@ -3,7 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crate::output::{make_folder, write};
+use lightmesh_files::{Ready, publish};
+
+use crate::output::{make_folder, ready};
 use crate::report::{free_name, slug};
 use crate::{OutputError, Picture, Results, json};
 
@@ -19,7 +21,7 @@ impl Results {
     /// # Errors
     /// [`OutputError`], which names the file.
     pub fn save(&self, path: &Path) -> Result<(), OutputError> {
-        self.write(path, Vec::new())
+        Ok(publish(self.ready(path, false)?)?)
     }
 
     /// Writes rows and notes, and images to the [folder](Results::pictures_folder) next to them, which is created if missing.
@@ -27,21 +29,34 @@ impl Results {
     /// # Errors
     /// [`OutputError`], which names the file or folder.
     pub fn save_with_pictures(&self, path: &Path) -> Result<(), OutputError> {
+        Ok(publish(self.ready(path, true)?)?)
+    }
+
+    /// The files that [`Results::save`] or [`Results::save_with_pictures`] writes, which appear only when they are published.
+    ///
+    /// # Errors
+    /// [`OutputError`], which names the file or folder.
+    pub fn ready(&self, path: &Path, pictures: bool) -> Result<Vec<Ready>, OutputError> {
+        let mut files = Vec::new();
+        let pictures = if pictures { self.ready_pictures(path, &mut files)? } else { Vec::new() };
+        let results = Results { pictures, ..self.clone() }.with_rounded_values();
+        files.push(ready(path, &json::lines(&results))?);
+        Ok(files)
+    }
+
+    /// Adds the images to `files`; returns them with the names of their files.
+    fn ready_pictures(&self, path: &Path, files: &mut Vec<Ready>) -> Result<Vec<Picture>, OutputError> {
         let folder = Results::pictures_folder(path);
         make_folder(&folder)?;
         let beside = folder.file_name().unwrap_or_default().to_string_lossy();
         let (mut taken, mut pictures) = (BTreeSet::new(), self.pictures.clone());
         for picture in &mut pictures {
             let name = free_name(&slug(&picture.id), ".png", |name| taken.contains(name));
-            write(&folder.join(&name), &picture.png)?;
+            files.push(ready(&folder.join(&name), &picture.png)?);
             picture.file = format!("{beside}/{name}");
             taken.insert(name);
         }
-        self.write(path, pictures)
-    }
-
-    fn write(&self, path: &Path, pictures: Vec<Picture>) -> Result<(), OutputError> {
-        write(path, &json::lines(&Results { pictures, ..self.clone() }.with_rounded_values()))
+        Ok(pictures)
     }
 }
 

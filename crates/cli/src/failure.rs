@@ -15,7 +15,7 @@ pub(crate) const EXCEEDED: u8 = 1;
 pub(crate) const BAD_INPUT: u8 = 2;
 /// Device unusable or memory insufficient.
 pub(crate) const UNABLE: u8 = 3;
-/// Interrupted by the user.
+/// Interrupted by Ctrl-C. Other signals have other codes: 128 more than their numbers.
 pub(crate) const INTERRUPTED: u8 = 130;
 
 /// Why a run ended early. The message is one sentence: what, where, and what to do.
@@ -61,9 +61,9 @@ pub(crate) enum Failure {
         /// All names.
         known: Vec<String>,
     },
-    /// Interrupts cannot be caught.
-    #[error("cannot listen for Ctrl-C ({0}); start the program from a terminal or a shell")]
-    Signals(#[from] ctrlc::Error),
+    /// Signals cannot be caught.
+    #[error("cannot listen for signals ({0}); end other programs or raise the limits of this one")]
+    Signals(#[from] std::io::Error),
 }
 
 impl From<BenchError> for Failure {

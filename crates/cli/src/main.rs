@@ -32,15 +32,16 @@ fn main() -> ExitCode {
             message.exit_code() as u8
         }
     });
-    let code = result.unwrap_or(UNABLE);
-    ExitCode::from(if interrupt::requested() { INTERRUPTED } else { code })
+    interrupt::leave_if_requested();
+    ExitCode::from(result.unwrap_or(UNABLE))
 }
 
 /// Reports an error; returns the exit code.
 fn failed(failure: &Failure) -> u8 {
     match failure {
         Failure::Exceeded(_) => output::complain(&failure.to_string()),
-        _ if failure.exit_code() == INTERRUPTED => output::complain("interrupted: nothing was written"),
+        // The last message, on what is written, says it.
+        _ if failure.exit_code() == INTERRUPTED => {}
         _ => match flags::that_mend(failure) {
             flags if flags.is_empty() => output::complain(&format!("error: {failure}")),
             flags => output::complain(&format!("error: {failure} ({})", flags.join(", "))),

@@ -1,10 +1,18 @@
 //! Output to standard output, standard error, and files that are written completely or not at all.
 
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
 
-use lightmesh_files::{Replacement, TargetError, resolved, visible, visible_json, visible_lines};
+use lightmesh_files::{Identity, Output, PublishError, Ready, TargetError, identity, visible, visible_json, visible_lines};
 use serde::Serialize;
+
+/// How long the last line may wait for someone to read standard error.
+const PATIENCE: Duration = Duration::from_millis(50);
+/// Removes a progress bar from the current line of a terminal.
+const CLEAR_LINE: &str = "\r\x1b[2K";
 
 /// Why output cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -15,9 +23,15 @@ pub(crate) enum OutputError {
     /// Writing the file failed.
     #[error("cannot write {}: {reason}; nothing was written; check the free disk space", path.display())]
     Write { path: PathBuf, reason: io::Error },
-    /// Two outputs are the same file.
+    /// Complete files could not be renamed.
+    #[error(transparent)]
+    Publish(#[from] PublishError),
+    /// An output is an input, or another output.
     #[error("{first} and {second} are the same file, {}; give them different names", path.display())]
     SameFile { first: &'static str, second: &'static str, path: PathBuf },
+    /// An input is in a folder whose files are written.
+    #[error("{what}, {}, is in a folder that {flag} fills, {}; choose another name for {flag}", path.display(), folder.display())]
+    InFolder { what: &'static str, path: PathBuf, flag: &'static str, folder: PathBuf },
     /// Standard output cannot be written.
     #[error("cannot write to standard output: {0}; check its destination")]
     Stdout(io::Error),
@@ -63,6 +77,24 @@ pub(crate) fn complain_json(value: &impl Serialize) {
     }
 }
 
+/// Prints the last line to standard error, and lets no thread print after it. Does not wait long if nobody reads.
+pub(crate) fn conclude(text: &str) {
+    let line = format!("{}{}\n", if io::stderr().is_terminal() { CLEAR_LINE } else { "" }, visible(text));
+    let (sender, printed) = mpsc::channel();
+    let print = move || {
+        let mut stderr = io::stderr().lock();
+        let _ = stderr.write_all(line.as_bytes());
+        let _ = sender.send(());
+        // Keeps the lock until the process exits.
+        loop {
+            thread::park();
+        }
+    };
+    if thread::Builder::new().spawn(print).is_ok() {
+        let _ = printed.recv_timeout(PATIENCE);
+    }
+}
+
 /// Prints what the parser of the command line says: help, or an error that quotes arguments.
 pub(crate) fn print_usage(message: &clap::Error) {
     let text = message.render().to_string();
@@ -80,26 +112,83 @@ pub(crate) fn check_writable(path: &Path) -> Result<(), OutputError> {
     Ok(lightmesh_files::check_writable(path)?)
 }
 
-/// Writes a file completely or not at all.
-pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
-    let failed = |reason| OutputError::Write { path: path.to_owned(), reason };
-    let mut file = Replacement::of(path)?;
-    file.write_all(bytes).map_err(failed)?;
-    file.commit().map_err(failed)
+/// A complete file that appears when it is published.
+pub(crate) fn ready(path: &Path, bytes: &[u8]) -> Result<Ready, OutputError> {
+    let mut file = Output::to(path)?;
+    let written = file.write_all(bytes).and_then(|()| file.ready());
+    written.map_err(|reason| OutputError::Write { path: path.to_owned(), reason })
 }
 
-/// Rejects paths to the same file. Each comes with the name by which the user knows it.
-pub(crate) fn check_distinct(files: &[(&'static str, Option<&Path>)]) -> Result<(), OutputError> {
-    let mut seen: Vec<(&str, PathBuf)> = Vec::new();
-    for &(second, path) in files {
-        let Some(path) = path else { continue };
-        let place = resolved(path);
-        if let Some(&(first, _)) = seen.iter().find(|(_, other)| *other == place) {
-            return Err(OutputError::SameFile { first, second, path: path.to_owned() });
+/// Lets all outputs of a run appear together.
+pub(crate) fn publish(outputs: Vec<Ready>) -> Result<(), OutputError> {
+    Ok(lightmesh_files::publish(outputs)?)
+}
+
+/// The outputs of a run, each with the name by which the user knows it. They overwrite neither inputs nor each other.
+#[derive(Debug, Default)]
+pub(crate) struct Outputs {
+    files: Vec<(&'static str, Identity)>,
+    /// All files in these may be written; the names are known later.
+    folders: Vec<(&'static str, PathBuf)>,
+}
+
+impl Outputs {
+    /// Checks that the files are different.
+    pub(crate) fn new<'a>(
+        files: impl IntoIterator<Item = (&'static str, Option<&'a Path>)>,
+    ) -> Result<Outputs, OutputError> {
+        let mut outputs = Outputs::default();
+        for (flag, path) in files {
+            let Some(path) = path else { continue };
+            if let Some(first) = outputs.same_as(path) {
+                return Err(OutputError::SameFile { first, second: flag, path: path.to_owned() });
+            }
+            outputs.files.extend(identity(path).map(|file| (flag, file)));
         }
-        seen.push((second, place));
+        Ok(outputs)
     }
-    Ok(())
+
+    /// The same with a folder for files of any names.
+    pub(crate) fn with_folder(mut self, flag: &'static str, folder: PathBuf) -> Outputs {
+        self.folders.push((flag, folder));
+        self
+    }
+
+    /// Whether nothing is written.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.files.is_empty() && self.folders.is_empty()
+    }
+
+    /// Checks that none of the files, which the user knows as `what`, is overwritten.
+    pub(crate) fn keep<'a>(
+        &self,
+        what: &'static str,
+        paths: impl IntoIterator<Item = &'a Path>,
+    ) -> Result<(), OutputError> {
+        for path in paths {
+            if let Some(flag) = self.same_as(path) {
+                return Err(OutputError::SameFile { first: what, second: flag, path: path.to_owned() });
+            }
+            let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            let parent = identity(parent);
+            if let Some((flag, folder)) = self.folders.iter().find(|(_, folder)| identity(folder) == parent) {
+                let (path, folder) = (path.to_owned(), folder.clone());
+                return Err(OutputError::InFolder { what, path, flag, folder });
+            }
+        }
+        Ok(())
+    }
+
+    /// The output that is the same file.
+    fn same_as(&self, path: &Path) -> Option<&'static str> {
+        let file = identity(path)?;
+        self.files.iter().find(|(_, output)| *output == file).map(|&(flag, _)| flag)
+    }
+
+    /// Checks that no file of a scene is overwritten.
+    pub(crate) fn keep_scene(&self, scene: &lightmesh::Scene) -> Result<(), OutputError> {
+        self.keep("a file of the scene", scene.files.iter().map(PathBuf::as_path))
+    }
 }
 
 #[cfg(test)]
@@ -110,8 +199,19 @@ mod tests {
     fn one_file_has_many_names() {
         let folder = tempfile::tempdir().unwrap();
         let (a, b) = (folder.path().join("a"), folder.path().join(".").join("a"));
-        let same = check_distinct(&[("-o", Some(&a)), ("--stats", None), ("--layers", Some(&b))]).unwrap_err();
+        let same = Outputs::new([("-o", Some(&*a)), ("--stats", None), ("--layers", Some(&*b))]).unwrap_err();
         assert!(same.to_string().starts_with("-o and --layers are the same file, "), "{same}");
-        check_distinct(&[("-o", Some(&a)), ("--layers", Some(&folder.path().join("b")))]).unwrap();
+        let outputs = Outputs::new([("-o", Some(&*a)), ("--layers", Some(&folder.path().join("b")))]).unwrap();
+        assert!(outputs.keep("the scene", [&*b]).is_err());
+        outputs.keep("the scene", [&*folder.path().join("c")]).unwrap();
+    }
+
+    #[test]
+    fn a_folder_that_is_filled_has_no_input() {
+        let folder = tempfile::tempdir().unwrap();
+        let outputs = Outputs::default().with_folder("--report", folder.path().to_owned());
+        let within = outputs.keep("the scene", [&*folder.path().join(".").join("a.obj")]).unwrap_err();
+        assert!(within.to_string().contains("is in a folder that --report fills"), "{within}");
+        outputs.keep("the scene", [Path::new("a.obj")]).unwrap();
     }
 }

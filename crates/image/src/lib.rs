@@ -3,6 +3,7 @@
 //! A renderer fills a [`Frame`]: linear colour, and optionally [`Layers`] with per-pixel data. From there,
 //!
 //! - [`Frame::save`] writes bmp, png, exr or jpg, according to the path's extension, and [`Frame::save_layers`] a multilayer exr;
+//!   [`publish`] lets several files appear together;
 //! - [`Frame::load`] reads the same formats back into linear values;
 //! - [`compare`] measures the difference between two frames, as numbers and as an image (FLIP).
 //!
@@ -54,6 +55,7 @@ mod transfer;
 pub use compare::{CompareError, Comparison, compare};
 pub use format::Format;
 pub use frame::{Frame, FrameError, FrameParts, Layers};
+pub use lightmesh_files::{PublishError, Ready, publish};
 pub use load::{DecodeError, LoadError};
 pub use save::{EncodeError, SaveError, check_size, check_writable};
 pub use transfer::{Transfer, UnknownTransfer};

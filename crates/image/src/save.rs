@@ -1,12 +1,12 @@
 //! Saving a [`Frame`]: the extension determines the format, and a file is written completely or not at all.
 //!
 //! Images are written to a temporary file next to the target and renamed over it, so an interrupted program leaves the previous
-//! file intact. [`check_writable`] detects problems before any time is spent on rendering.
+//! file intact. Several of them can appear together: see [`Frame::ready`]. [`check_writable`] detects problems before any time is spent on rendering.
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use lightmesh_files::{Replacement, TargetError};
+use lightmesh_files::{Output, PublishError, Ready, TargetError};
 use thiserror::Error;
 
 #[cfg(feature = "bmp")]
@@ -74,6 +74,9 @@ pub enum SaveError {
         /// The system's message.
         reason: io::Error,
     },
+    /// The complete file could not be renamed.
+    #[error(transparent)]
+    Publish(#[from] PublishError),
 }
 
 /// An error of a writer; [`SaveError`] adds the file.
@@ -121,9 +124,17 @@ impl Frame {
     /// # Errors
     /// [`SaveError`]; the target is then unchanged.
     pub fn save_with(&self, path: impl AsRef<Path>, transfer: Transfer) -> Result<(), SaveError> {
+        publish(self.ready(path, transfer)?)
+    }
+
+    /// As [`Frame::save_with`], but the file appears only when it is published, together with others.
+    ///
+    /// # Errors
+    /// [`SaveError`]; the target is then unchanged.
+    pub fn ready(&self, path: impl AsRef<Path>, transfer: Transfer) -> Result<Ready, SaveError> {
         let path = path.as_ref();
         let format = known_format(path)?;
-        self.replace(path, format, |output| match format {
+        self.written(path, format, |output| match format {
             #[cfg(feature = "bmp")]
             Format::Bmp => bmp::write(self, transfer, output),
             #[cfg(feature = "png")]
@@ -165,22 +176,31 @@ impl Frame {
     /// # Errors
     /// [`SaveError::NoLayers`], [`SaveError::LayersNeedExr`], or as [`Frame::save`].
     pub fn save_layers(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        publish(self.ready_layers(path)?)
+    }
+
+    #[cfg(feature = "exr")]
+    /// As [`Frame::save_layers`], but the file appears only when it is published, together with others.
+    ///
+    /// # Errors
+    /// As [`Frame::save_layers`].
+    pub fn ready_layers(&self, path: impl AsRef<Path>) -> Result<Ready, SaveError> {
         let path = path.as_ref();
         let format = known_format(path)?;
         if format != Format::Exr {
             return Err(SaveError::LayersNeedExr { path: path.to_owned() });
         }
         let layers = self.layers().ok_or_else(|| SaveError::NoLayers { path: path.to_owned() })?;
-        self.replace(path, format, |output| exr::write_layers(self, layers, output))
+        self.written(path, format, |output| exr::write_layers(self, layers, output))
     }
 
-    /// Calls `write` to fill a file, which then replaces the one at `path`.
-    fn replace(
+    /// Calls `write` to fill a file, which may then replace the one at `path`.
+    fn written(
         &self,
         path: &Path,
         format: Format,
-        write: impl FnOnce(&mut BufWriter<&mut Replacement>) -> Result<(), EncodeError>,
-    ) -> Result<(), SaveError> {
+        write: impl FnOnce(&mut BufWriter<&mut Output>) -> Result<(), EncodeError>,
+    ) -> Result<Ready, SaveError> {
         let failed = |error| match error {
             EncodeError::TooLarge { limit } => {
                 let (width, height) = (self.width(), self.height());
@@ -189,13 +209,17 @@ impl Frame {
             EncodeError::NotBuilt { format, .. } => SaveError::NotBuilt { path: path.to_owned(), format },
             EncodeError::Io(reason) => SaveError::Write { path: path.to_owned(), reason },
         };
-        let mut file = Replacement::of(path)?;
+        let mut file = Output::to(path)?;
         let mut output = BufWriter::new(&mut file);
         write(&mut output).map_err(failed)?;
         output.flush().map_err(|reason| failed(reason.into()))?;
         drop(output);
-        file.commit().map_err(|reason| failed(reason.into()))
+        file.ready().map_err(|reason| failed(reason.into()))
     }
+}
+
+fn publish(file: Ready) -> Result<(), SaveError> {
+    Ok(lightmesh_files::publish([file])?)
 }
 
 /// Checks that an image could be saved to `path`, without touching an existing one: the extension is known, the target is not a

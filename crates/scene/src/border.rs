@@ -27,15 +27,7 @@ impl Border {
     ///
     /// [`LoadError::Outside`] if that is a URL or, by its text, outside the scene's folder, unless that is allowed.
     pub(crate) fn path_beside(&self, source: &Path, name: &str) -> Result<PathBuf, LoadError> {
-        let is_url =
-            name.split_once("://").is_some_and(|(scheme, _)| scheme.chars().all(|c| c.is_ascii_alphanumeric()));
-        let named = name.replace('\\', "/");
-        let has_drive =
-            matches!(named.as_bytes(), [letter, b':', ..] if letter.is_ascii_alphabetic()) && cfg!(not(windows));
-        if is_url || has_drive {
-            return Err(outside(source, name));
-        }
-        let path = source.parent().unwrap_or(Path::new("")).join(named);
+        let path = beside(source, name).ok_or_else(|| outside(source, name))?;
         let in_folder = tidy(&path)
             .strip_prefix(tidy(self.folder()))
             .is_ok_and(|rest| matches!(rest.components().next(), None | Some(Component::Normal(_))));
@@ -61,6 +53,15 @@ impl Border {
     fn folder(&self) -> &Path {
         self.scene.parent().unwrap_or(Path::new(""))
     }
+}
+
+/// The path that `source` refers to as `name`; `None` if that is a URL.
+pub(crate) fn beside(source: &Path, name: &str) -> Option<PathBuf> {
+    let is_url = name.split_once("://").is_some_and(|(scheme, _)| scheme.chars().all(|c| c.is_ascii_alphanumeric()));
+    let named = name.replace('\\', "/");
+    let has_drive =
+        matches!(named.as_bytes(), [letter, b':', ..] if letter.is_ascii_alphabetic()) && cfg!(not(windows));
+    (!is_url && !has_drive).then(|| source.parent().unwrap_or(Path::new("")).join(named))
 }
 
 /// The content of the file that the user named, wherever it is. Only regular files: a pipe or a device might never end.

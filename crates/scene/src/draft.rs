@@ -1,6 +1,7 @@
 //! A scene while it is being read: everything in world coordinates and double precision, until the last triangle is known and
 //! the local frame can be chosen.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -9,7 +10,7 @@ use glam::{DMat4, DVec3, Vec3};
 use crate::{
     Camera, Geometry, Light, LightKind, LightMeshDefaults, Lights, LoadError, LoadOptions, Material, MeshPart,
     Position, Scene, SceneBuilder, Texture,
-    border::Border,
+    border::{Border, beside},
     loaded_mesh::LoadedMesh,
     mesh_part::Room,
     quote::reference,
@@ -58,6 +59,8 @@ pub(crate) struct Draft {
     pub(crate) texture_files: TextureFiles,
     /// Index of the material for triangles without one, once there is one.
     default_material: Option<u32>,
+    /// The file itself and all that it refers to.
+    files: BTreeSet<PathBuf>,
     pub(crate) ambient: Option<Vec3>,
     pub(crate) background: Option<Vec3>,
     pub(crate) light_mesh: LightMeshDefaults,
@@ -80,6 +83,7 @@ impl Draft {
             textures: Vec::new(),
             texture_files: TextureFiles::default(),
             default_material: None,
+            files: BTreeSet::from([path.to_owned()]),
             ambient: None,
             background: None,
             light_mesh: LightMeshDefaults::default(),
@@ -188,6 +192,7 @@ impl Draft {
         let base = name.rsplit(['/', '\\']).next().unwrap_or_default();
         match self.border.read_beside(source, base) {
             Ok(found) if base != name => {
+                self.refer(source, base);
                 let (source, named) = (source.display(), reference(name));
                 self.warnings
                     .push(format!("{source}: `{named}` cannot be used; {base} next to the file is used instead"));
@@ -195,6 +200,11 @@ impl Draft {
             }
             _ => Err(missing),
         }
+    }
+
+    /// Notes that `source` refers to a file as `name`, whether or not the file exists and is used.
+    pub(crate) fn refer(&mut self, source: &Path, name: &str) {
+        self.files.extend(beside(source, name));
     }
 
     /// Sets the local frame that the scene was written with, if its file records it: then it is read back to the same `f32`.
@@ -259,6 +269,7 @@ impl Draft {
             lights: Lights { list, ambient: self.ambient, background: self.background },
             cameras,
             light_mesh: self.light_mesh,
+            files: self.files.into_iter().collect(),
             warnings,
         })
     }

@@ -1,5 +1,6 @@
 //! The scene itself.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
@@ -70,6 +71,9 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Proposed settings of the light mesh.
     pub light_mesh: LightMeshDefaults,
+    /// The file that was read, and all files that it refers to, also those that do not exist or are not used: what a program must
+    /// not overwrite. Empty for other scenes.
+    pub files: Vec<PathBuf>,
     /// What a loader corrected, ignored or guessed: one sentence each, at most about a hundred. Names in them are as in the files; make them
     /// visible before they reach a terminal.
     pub warnings: Vec<String>,
@@ -84,6 +88,7 @@ impl Scene {
             lights: Lights::default(),
             cameras: Vec::new(),
             light_mesh: LightMeshDefaults::default(),
+            files: Vec::new(),
             warnings: Vec::new(),
         }
     }

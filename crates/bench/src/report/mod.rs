@@ -49,6 +49,7 @@ use crate::Results;
 pub struct Report {
     document: Document,
     assets: Assets,
+    inputs: Vec<PathBuf>,
 }
 
 impl Report {
@@ -70,6 +71,7 @@ impl Report {
             check_ids(path, "rows", results.rows.iter().map(|row| &row.id))?;
             check_ids(path, "images", results.pictures.iter().map(|picture| &picture.id))?;
         }
+        let inputs = results.iter().flat_map(|(path, results)| inputs(path, results)).collect();
         let paths: Vec<PathBuf> = results.iter().map(|(path, _)| path.clone()).collect();
         let faulty = |(run, id, reason): pictures::Fault| ReportError::Picture { path: paths[run].clone(), id, reason };
         let runs = named(results);
@@ -77,7 +79,12 @@ impl Report {
         let gallery = Gallery::new(&runs.0, &mut assets).map_err(faulty)?;
         let mut document = document(&runs, &gallery, &mut assets).map_err(faulty)?;
         assets.draw_plots(&mut document);
-        Ok(Report { document, assets })
+        Ok(Report { document, assets, inputs })
+    }
+
+    /// The files of results, and those of images that they refer to.
+    pub fn inputs(&self) -> &[PathBuf] {
+        &self.inputs
     }
 
     /// The report as Markdown; plots and images are files in `plots` and `pictures`.
@@ -97,6 +104,12 @@ impl Report {
             _ => None,
         })
     }
+}
+
+/// The file of results, and those of images that it refers to.
+fn inputs(path: &Path, results: &Results) -> Vec<PathBuf> {
+    let pictures = results.pictures.iter().filter(|picture| !picture.file.is_empty());
+    std::iter::once(path.to_owned()).chain(pictures.map(|picture| path.with_file_name(&picture.file))).collect()
 }
 
 /// Results with their images.

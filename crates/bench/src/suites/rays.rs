@@ -55,9 +55,8 @@ pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings)
         let cases = cases(&engines, &structures, &prepared);
         let variants: Vec<Variant> = cases.iter().map(|case| case.variant(subject)).collect();
         let turns = Turns::take(&variants, plan.repetitions, share, observer)?;
-        for (case, measured) in cases.iter().zip(&turns.measured) {
-            findings.rows.extend(case.rows(subject, measured));
-        }
+        let measured = cases.iter().zip(&turns.measured);
+        findings.add(measured.flat_map(|(case, measured)| case.rows(subject, measured)));
         findings.notes.extend(turns.notes(&subject.name, plan.repetitions));
         Ok(())
     })

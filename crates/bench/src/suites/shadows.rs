@@ -147,7 +147,7 @@ impl Case<'_> {
                 row.values.insert("differing_samples".to_owned(), samples);
                 row.values.insert("visibility_rmse".to_owned(), visibility_rmse(converged, &own));
             }
-            findings.rows.push(row);
+            findings.add([row]);
         }
         Ok(())
     }

@@ -49,7 +49,7 @@ pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings)
             .collect();
         let variants: Vec<Variant> = trials.iter().map(Trial::variant).collect();
         let turns = Turns::take(&variants, plan.repetitions, share, observer)?;
-        findings.rows.extend(trials.iter().zip(&turns.measured).map(|(trial, measured)| trial.row(subject, measured)));
+        findings.add(trials.iter().zip(&turns.measured).map(|(trial, measured)| trial.row(subject, measured)));
         findings.notes.extend(turns.notes(&subject.name, plan.repetitions));
         Ok(())
     })

@@ -26,7 +26,7 @@ pub(crate) struct Cli {
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 success, 1 a comparison exceeded its threshold, 2 bad input or usage, 3 device unusable or memory \
-insufficient, 130 interrupted.";
+insufficient, 130 interrupted (143 by SIGTERM, 129 by SIGHUP).";
 
 /// What to do.
 #[derive(Debug, Subcommand)]

@@ -7,7 +7,7 @@ use lightmesh::{SaveError, Transfer};
 
 use super::PlanError;
 use crate::args::RenderArgs;
-use crate::output;
+use crate::output::{self, Outputs};
 use crate::value::Exposure;
 
 /// The output files.
@@ -22,6 +22,8 @@ pub(crate) struct PictureFiles {
     pub(crate) layers: Option<PathBuf>,
     /// The statistics.
     pub(crate) stats: Option<PathBuf>,
+    /// All of them.
+    pub(crate) outputs: Outputs,
 }
 
 impl PictureFiles {
@@ -37,19 +39,20 @@ impl PictureFiles {
         if let Some(stats) = &args.stats {
             output::check_writable(stats)?;
         }
-        output::check_distinct(&[
-            ("the scene", Some(&args.scene.scene)),
-            ("--grid-file", args.grid_file.as_deref()),
-            ("-o", Some(&args.output)),
+        let outputs = Outputs::new([
+            ("-o", Some(&*args.output)),
             ("--layers", args.layers.as_deref()),
             ("--stats", args.stats.as_deref()),
         ])?;
+        outputs.keep("the scene", [&*args.scene.scene])?;
+        outputs.keep("--grid-file", args.grid_file.as_deref())?;
         Ok(PictureFiles {
             picture: args.output.clone(),
             transfer: args.transfer,
             exposure: args.exposure,
             layers: args.layers.clone(),
             stats: args.stats.clone(),
+            outputs,
         })
     }
 }

@@ -2,13 +2,16 @@
 
 use std::path::PathBuf;
 
+use lightmesh::Scene;
 use lightmesh_bench::report::Report;
-use lightmesh_bench::{Plan, Results, Suite, prepare_folder};
+use lightmesh_bench::{Plan, Results, Suite, check_output_folder};
+use lightmesh_files::{is_standard_output, stand_by};
 
 use crate::args::{BenchArgs, BenchCommand, SuiteArgs};
 use crate::failure::Failure;
+use crate::interrupt;
+use crate::output::{self, Outputs};
 use crate::progress::Watcher;
-use crate::{interrupt, output};
 
 pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
     match (&args.command, args.run.suite) {
@@ -23,29 +26,83 @@ fn list() -> String {
 }
 
 fn measure(suite: Suite, args: &SuiteArgs) -> Result<(), Failure> {
-    if let Some(path) = &args.json {
-        output::check_writable(path)?;
-        if args.pictures {
-            prepare_folder(&Results::pictures_folder(path))?;
-        }
-    }
-    if let Some(folder) = &args.report {
-        prepare_folder(folder)?;
-    }
+    let outputs = outputs(args)?;
+    keep_scenes(&outputs, &args.scenes)?;
     let watcher = Watcher::new(args.progress, args.quiet);
-    interrupt::watch();
-    let results = lightmesh_bench::run(suite, &plan(args), &watcher)?;
+    interrupt::watched(|| run_and_write(suite, args, &watcher))
+}
+
+fn run_and_write(suite: Suite, args: &SuiteArgs, watcher: &Watcher) -> Result<(), Failure> {
+    let _standby = Standby;
+    let json = args.json.clone();
+    let results = lightmesh_bench::run_keeping(suite, &plan(args), watcher, move |results| {
+        // If this fails, so will the end of the run, which says why.
+        let files = json.as_ref().and_then(|path| results.ready(path, false).ok());
+        stand_by(files.and_then(|mut files| files.pop()));
+    })?;
+    let (table, summary) = (results.to_string(), summary(&results, args));
+    let mut files = Vec::new();
     if let Some(path) = &args.json {
-        if args.pictures { results.save_with_pictures(path) } else { results.save(path) }?;
+        files = results.ready(path, args.pictures)?;
     }
-    output::print(&results.to_string())?;
-    let summary = summary(&results, args);
     if let Some(folder) = &args.report {
         // Named as in a report on the file.
         let name = args.json.clone().unwrap_or_else(|| PathBuf::from(suite.name()));
-        Report::new(vec![(name, results)])?.write(folder)?;
+        files.extend(Report::new(vec![(name, results)])?.ready(folder)?);
+    }
+    output::publish(files)?;
+    // A program that reads the rows expects nothing else.
+    if !args.json.as_ref().is_some_and(is_standard_output) {
+        output::print(&table)?;
     }
     watcher.summary(&summary);
+    Ok(())
+}
+
+/// Results so far, which appear if the program must end. They do not outlive the run, whether it succeeds or fails.
+struct Standby;
+
+impl Drop for Standby {
+    fn drop(&mut self) {
+        stand_by(None);
+    }
+}
+
+/// Checks that all files can be written.
+fn outputs(args: &SuiteArgs) -> Result<Outputs, Failure> {
+    let pages = args.report.iter().flat_map(|folder| Report::pages(folder));
+    let pages: Vec<PathBuf> = pages.collect();
+    let json = args.json.as_deref();
+    let mut outputs =
+        Outputs::new(std::iter::once(("--json", json)).chain(pages.iter().map(|page| ("--report", Some(&**page)))))?;
+    if let Some(path) = json {
+        output::check_writable(path)?;
+        if args.pictures {
+            let folder = Results::pictures_folder(path);
+            check_output_folder(&folder)?;
+            outputs = outputs.with_folder("--pictures", folder);
+        }
+    }
+    if let Some(folder) = &args.report {
+        check_output_folder(folder)?;
+        let mut existing = pages.iter().filter(|page| page.exists());
+        existing.try_for_each(|page| output::check_writable(page))?;
+        for part in Report::FOLDERS {
+            outputs = outputs.with_folder("--report", folder.join(part));
+        }
+    }
+    Ok(outputs)
+}
+
+/// Checks that no file of the scenes is overwritten. They are opened for that: better now than after hours.
+fn keep_scenes(outputs: &Outputs, scenes: &[PathBuf]) -> Result<(), Failure> {
+    outputs.keep("the scene", scenes.iter().map(PathBuf::as_path))?;
+    let is_file = |path: &&PathBuf| !path.to_string_lossy().starts_with("builtin:");
+    if !outputs.is_empty() {
+        for path in scenes.iter().filter(is_file) {
+            outputs.keep_scene(&Scene::open(path)?)?;
+        }
+    }
     Ok(())
 }
 

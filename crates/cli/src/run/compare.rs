@@ -4,13 +4,14 @@ use lightmesh::image::{Comparison, Frame, check_writable, compare};
 
 use crate::args::CompareArgs;
 use crate::failure::Failure;
-use crate::output;
+use crate::output::{self, Outputs};
 
 pub(super) fn run(args: &CompareArgs) -> Result<(), Failure> {
     if let Some(diff) = &args.diff {
         check_writable(diff)?;
-        output::check_distinct(&[("A", Some(&args.reference)), ("--diff", Some(diff))])?;
-        output::check_distinct(&[("B", Some(&args.test)), ("--diff", Some(diff))])?;
+        let outputs = Outputs::new([("--diff", Some(&**diff))])?;
+        outputs.keep("A", [&*args.reference])?;
+        outputs.keep("B", [&*args.test])?;
     }
     let comparison = compare(&Frame::load(&args.reference)?, &Frame::load(&args.test)?)?;
     if let Some(diff) = &args.diff {

@@ -1,17 +1,21 @@
 //! `lightmesh export`.
 
+use lightmesh::Scene;
+
 use super::open::open;
 use crate::args::ExportArgs;
 use crate::failure::Failure;
+use crate::output::{self, Outputs};
 use crate::progress::Watcher;
-use crate::{interrupt, output};
 
 pub(super) fn run(args: &ExportArgs) -> Result<(), Failure> {
-    output::check_writable(&args.output)?;
-    output::check_distinct(&[("the scene", Some(&args.scene.scene)), ("-o", Some(&args.output))])?;
+    let mesh = Scene::export_mesh(&args.output)?;
+    for path in std::iter::once(&args.output).chain(&mesh) {
+        output::check_writable(path)?;
+    }
+    let outputs = Outputs::new([("-o", Some(&*args.output)), ("the triangles of -o", mesh.as_deref())])?;
     let watcher = Watcher::plain(args.quiet);
-    let scene = open(&args.scene, &watcher)?;
-    interrupt::watch();
+    let scene = open(&args.scene, &outputs, &watcher)?;
     scene.export(&args.output)?;
     watcher.summary(&format!(
         "{}, {} triangles: {}",

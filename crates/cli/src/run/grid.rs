@@ -7,14 +7,14 @@ use lightmesh::render::accel::{Grid, GridOptions, Levels, Triangle};
 use super::open::open;
 use crate::args::GridArgs;
 use crate::failure::Failure;
+use crate::output::{self, Outputs};
 use crate::progress::Watcher;
-use crate::{interrupt, output};
 
 pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
     output::check_writable(&args.output)?;
-    output::check_distinct(&[("the scene", Some(&args.scene.scene)), ("-o", Some(&args.output))])?;
+    let outputs = Outputs::new([("-o", Some(&*args.output))])?;
     let watcher = Watcher::plain(args.quiet);
-    let scene = open(&args.scene, &watcher)?;
+    let scene = open(&args.scene, &outputs, &watcher)?;
 
     let start = Instant::now();
     let levels = if args.levels == 1 { Levels::One } else { Levels::Two };
@@ -23,7 +23,6 @@ pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
         .collect();
     let grid = Grid::new(&triangles, &GridOptions { dims: args.grid.map(|dims| dims.0), levels })?;
     let seconds = start.elapsed().as_secs_f64();
-    interrupt::watch();
     grid.save(&args.output)?;
 
     let ([nx, ny, nz], count, file) = (grid.dims(), triangles.len(), args.output.display());

@@ -11,11 +11,12 @@ pub(super) fn run(args: &ManArgs) -> Result<(), Failure> {
     let mut lightmesh = Cli::command().disable_help_subcommand(true);
     lightmesh.build(); // gives subcommands their full names
     if let Some(directory) = &args.output {
+        let mut pages = Vec::new();
         for command in std::iter::once(&lightmesh).chain(lightmesh.get_subcommands()) {
             let page = Man::new(command.clone());
-            output::write(&directory.join(page.get_filename()), text(&page)?.as_bytes())?;
+            pages.push(output::ready(&directory.join(page.get_filename()), text(&page)?.as_bytes())?);
         }
-        return Ok(());
+        return Ok(output::publish(pages)?);
     }
     let command = args.page.as_deref().map_or(Ok(&lightmesh), |name| subcommand(&lightmesh, name))?;
     Ok(output::print(&text(&Man::new(command.clone()))?)?)

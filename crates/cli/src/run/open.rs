@@ -6,11 +6,15 @@ use lightmesh::scene::LoadOptions;
 use lightmesh::{LoadError, Scene};
 
 use crate::args::{ReadingArgs, SceneArg};
+use crate::failure::Failure;
+use crate::output::Outputs;
 use crate::progress::Watcher;
 
-/// Reads the scene, and prints its warnings.
-pub(super) fn open(arg: &SceneArg, watcher: &Watcher) -> Result<Scene, LoadError> {
+/// Reads the scene, of which outputs must not overwrite any file, and prints its warnings.
+pub(super) fn open(arg: &SceneArg, outputs: &Outputs, watcher: &Watcher) -> Result<Scene, Failure> {
+    outputs.keep("the scene", [&*arg.scene])?;
     let scene = read(&arg.scene, arg.reading)?;
+    outputs.keep_scene(&scene)?;
     scene.warnings.iter().for_each(|warning| watcher.warning(warning));
     Ok(scene)
 }

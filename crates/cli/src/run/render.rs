@@ -22,7 +22,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let reason = choice.reason.clone();
     let renderer = Renderer::on(choice, plan.threads.map(usize::from))?;
     let start = Instant::now();
-    let mut scene = open(&plan.scene, &watcher)?;
+    let mut scene = open(&plan.scene, &plan.files.outputs, &watcher)?;
     let load = start.elapsed().as_secs_f64();
     if matches!(plan.device, Device::Auto | Device::Cuda(None)) {
         watcher.note(&format!("device {}: using {}", plan.device, reason));
@@ -31,8 +31,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let settings = plan.settings;
     plan.choices.apply(&mut scene, &watcher)?;
     let prepared = renderer.prepare(&scene, &settings, &watcher)?;
-    interrupt::watch();
-    let mut frame = renderer.render_prepared(&prepared, &settings, &watcher)?;
+    let mut frame = interrupt::watched(|| renderer.render_prepared(&prepared, &settings, &watcher))?;
     drop(prepared); // frees memory for the encoders
     if watcher.cancelled() {
         return Err(RenderError::Cancelled.into());
@@ -51,24 +50,25 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes all files; the statistics last, because they include the time taken by the others.
+/// Writes all files, which appear together; the statistics last, because they include the time taken by the others.
 fn write(frame: &mut Frame, scene: &Scene, files: &PictureFiles, watcher: &Watcher) -> Result<(), Failure> {
     let start = Instant::now();
+    let mut outputs = Vec::new();
     if let Some(path) = &files.layers {
-        frame.image.save_layers(path)?;
+        outputs.push(frame.image.ready_layers(path)?);
     }
     let stops = exposure(&frame.image, files, watcher);
     if stops != 0.0 {
         frame.image.expose(stops);
     }
-    frame.image.save_with(&files.picture, files.transfer)?;
+    outputs.push(frame.image.ready(&files.picture, files.transfer)?);
     frame.stats.seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &files.stats {
         let lights = scene.info().lights;
         let report = Report::new(&frame.stats, files.transfer.name(), stops, &lights);
-        output::write(path, output::json(&report).as_bytes())?;
+        outputs.push(output::ready(path, output::json(&report).as_bytes())?);
     }
-    Ok(())
+    Ok(output::publish(outputs)?)
 }
 
 /// Exposure of the image file: none if it stores linear values.

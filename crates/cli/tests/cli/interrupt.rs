@@ -1,24 +1,252 @@
-//! Ctrl-C.
+//! Requests to end, in every phase and with every signal: exit code, message, and what is on the disk.
 
-use std::io::{BufRead, BufReader};
-use std::process::{Command, Stdio};
+use std::fmt::Write;
+use std::io::{BufRead, BufReader, Lines};
+use std::process::{Child, ChildStderr, Command, ExitStatus, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use lightmesh::image::Frame;
 
 use crate::run::Place;
 
-#[test]
-fn an_interrupted_render_leaves_nothing_behind() {
-    let place = Place::new();
-    let flags = ["--mode", "area", "--size", "3000x3000", "--progress", "json", "--light", "3,5,2;1;0.5"];
-    let mut command = place.command(&[&["render", "room.toml", "-o", "a.png"], &flags[..]].concat());
-    let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
-    let tracing = lines.find(|line| line.contains(r#""begin","stage":"long_tests""#));
-    assert!(tracing.is_some());
+/// Each signal with its exit code.
+const SIGNALS: [(&str, i32); 3] = [("INT", 130), ("TERM", 143), ("HUP", 129)];
+/// Only a guard: how soon the program ends is measured elsewhere.
+const LIMIT: Duration = Duration::from_secs(30);
+const LOOK: Duration = Duration::from_millis(2);
+const NOTHING: &str = "interrupted: nothing was written";
 
-    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+/// The program at work.
+struct Running {
+    child: Child,
+    lines: Lines<BufReader<ChildStderr>>,
+}
+
+impl Running {
+    fn new(place: &Place, args: &[&str]) -> Running {
+        Running::of(place.command(args))
+    }
+
+    fn of(mut command: Command) -> Running {
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let lines = BufReader::new(child.stderr.take().unwrap()).lines();
+        Running { child, lines }
+    }
+
+    /// Waits for a line of progress, such as the begin of a stage.
+    fn await_event(&mut self, event: &str, stage: &str) {
+        let wanted = format!(r#"{{"event":"{event}","stage":"{stage}""#);
+        assert!(self.lines.by_ref().map(Result::unwrap).any(|line| line.starts_with(&wanted)), "{wanted}");
+    }
+
+    /// Sends a signal; returns the exit code and the last line.
+    fn end_by(mut self, signal: &str) -> (Option<i32>, String) {
+        send(&self.child, signal);
+        let status = wait(&mut self.child);
+        (status.code(), self.lines.map(Result::unwrap).last().unwrap_or_default())
+    }
+}
+
+fn send(child: &Child, signal: &str) {
+    let sent = Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
-    let last = lines.last().unwrap();
-    assert_eq!(child.wait().unwrap().code(), Some(130));
-    assert_eq!(last, "interrupted: nothing was written");
-    assert_eq!(place.files(), ["room.toml"]);
+}
+
+fn wait(child: &mut Child) -> ExitStatus {
+    until(|| child.try_wait().unwrap())
+}
+
+/// Asks until there is an answer.
+fn until<T>(mut ask: impl FnMut() -> Option<T>) -> T {
+    let start = Instant::now();
+    loop {
+        if let Some(answer) = ask() {
+            return answer;
+        }
+        assert!(start.elapsed() < LIMIT);
+        sleep(LOOK);
+    }
+}
+
+/// Waits until the program catches signals.
+fn await_start(child: &Child) {
+    if cfg!(target_os = "linux") {
+        let path = format!("/proc/{}/status", child.id());
+        until(|| {
+            let status = std::fs::read_to_string(&path).unwrap();
+            let mask = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
+            (u64::from_str_radix(mask.trim(), 16).unwrap() >> 14 & 1 == 1).then_some(())
+        });
+    } else {
+        sleep(Duration::from_millis(200));
+    }
+}
+
+/// A file in the folder that is being written.
+fn await_temporary(place: &Place) -> String {
+    until(|| place.files().into_iter().find(|name| name.starts_with(".lightmesh-")))
+}
+
+/// A sheet of so many triangles that reading it and building a structure take seconds.
+fn large(place: &Place) {
+    let (side, mut text) = (900usize, String::new());
+    for (x, y) in (0..side * side).map(|index| (index % side, index / side)) {
+        writeln!(text, "v {x} {y} {}", (x * y) % 7).unwrap();
+    }
+    for index in (0..side * (side - 1)).filter(|index| (index + 1) % side != 0) {
+        let (a, b) = (index + 1, index + 1 + side);
+        writeln!(text, "f {a} {} {b}\nf {} {b} {}", a + 1, a + 1, b + 1).unwrap();
+    }
+    place.write("large.obj", &text);
+}
+
+#[test]
+fn loading_ends() {
+    let place = Place::new();
+    large(&place);
+    let json = ["--progress", "json", "--size", "16x16", "--stats", "a.json"];
+    let render = [&["render", "large.obj", "-o", "a.png"], &json[..]].concat();
+    for args in [&render[..], &["info", "large.obj"], &["export", "large.obj", "-o", "a.glb"]] {
+        for (signal, code) in SIGNALS {
+            let running = Running::new(&place, args);
+            await_start(&running.child);
+            assert_eq!(running.end_by(signal), (Some(code), NOTHING.to_owned()), "{args:?}");
+            assert_eq!(place.files(), ["large.obj", "room.toml"]);
+        }
+    }
+}
+
+#[test]
+fn building_ends() {
+    let place = Place::new();
+    large(&place);
+    for (signal, code) in SIGNALS {
+        let flags = ["-o", "a.png", "--size", "2000x2000", "--mode", "area", "--progress", "json"];
+        let mut running = Running::new(&place, &[&["render", "large.obj"], &flags[..]].concat());
+        running.await_event("begin", "build");
+        assert_eq!(running.end_by(signal), (Some(code), NOTHING.to_owned()));
+        assert_eq!(place.files(), ["large.obj", "room.toml"]);
+    }
+}
+
+#[test]
+fn rendering_ends() {
+    let place = Place::new();
+    place.write("a.png", "the earlier image");
+    let flags = ["--mode", "area", "--size", "3000x3000", "--progress", "json", "--light", "3,5,2;1;0.5"];
+    for (signal, code) in SIGNALS {
+        let mut running = Running::new(&place, &[&["render", "room.toml", "-o", "a.png"], &flags[..]].concat());
+        running.await_event("begin", "long_tests");
+        assert_eq!(running.end_by(signal), (Some(code), NOTHING.to_owned()));
+        assert_eq!(place.files(), ["a.png", "room.toml"]);
+        assert_eq!(place.read("a.png"), b"the earlier image");
+    }
+}
+
+/// Nothing is in sight, so that there is more to encode than to render.
+#[test]
+fn encoding_ends_and_the_image_is_whole_or_absent() {
+    let place = Place::new();
+    let away = ["--camera", "0,2,6;0,2,9;45", "--mode", "ray-trace", "--size", "5000x4000", "--progress", "json"];
+    for (signal, code) in SIGNALS {
+        let args = [&["render", "room.toml", "-o", "a.png", "--layers", "a.exr"], &away[..]].concat();
+        let mut running = Running::new(&place, &args);
+        running.await_event("end", "shade");
+        await_temporary(&place);
+        let (ended, message) = running.end_by(signal);
+        assert_eq!(ended, Some(code));
+        let there = place.path("a.png").exists();
+        assert_eq!(message, if there { "interrupted: written: a.exr, a.png" } else { NOTHING });
+        assert_eq!(place.path("a.exr").exists(), there);
+        assert_eq!(place.files().len(), if there { 3 } else { 1 }, "{:?}", place.files());
+        if there {
+            assert_eq!(Frame::load(place.path("a.png")).unwrap().width(), 5000);
+            ["a.png", "a.exr"].iter().for_each(|name| std::fs::remove_file(place.path(name)).unwrap());
+        }
+    }
+}
+
+/// A render whose image is complete, and which waits for a reader of its statistics.
+fn waiting(place: &Place) -> Running {
+    if !place.path("pipe").exists() {
+        assert!(Command::new("mkfifo").arg(place.path("pipe")).status().unwrap().success());
+    }
+    let flags = ["-o", "a.png", "--size", "16x16", "--stats", "pipe", "--progress", "json"];
+    let mut running = Running::new(place, &[&["render", "room.toml"], &flags[..]].concat());
+    running.await_event("end", "shade");
+    await_temporary(place);
+    running
+}
+
+#[test]
+fn publishing_ends() {
+    let place = Place::new();
+    for (signal, code) in SIGNALS {
+        assert_eq!(waiting(&place).end_by(signal), (Some(code), NOTHING.to_owned()));
+        assert_eq!(place.files(), ["pipe", "room.toml"]);
+    }
+}
+
+#[test]
+fn what_a_killed_run_left_is_removed_by_the_next_and_what_a_living_one_writes_is_not() {
+    let place = Place::new();
+    let mut killed = waiting(&place);
+    let left = await_temporary(&place);
+    let render = |name| place.good(&["render", "room.toml", "-o", name, "--size", "8x8", "-q"]);
+    render("b.png");
+    assert!(place.files().contains(&left), "removed from a living run");
+    send(&killed.child, "KILL");
+    wait(&mut killed.child);
+    assert!(place.files().contains(&left));
+    render("c.png");
+    assert_eq!(place.files(), ["b.png", "c.png", "pipe", "room.toml"]);
+}
+
+#[test]
+fn a_suite_keeps_the_rows_it_has() {
+    let place = Place::new();
+    // Nothing of the second scene is done for a long time.
+    let scenes = ["--scene", "room.toml", "--scene", "builtin:garden", "--size", "16", "--repeat", "1"];
+    let flags = ["--quick", "--device", "cpu", "--json", "a.json", "--progress", "json"];
+    for (signal, code) in SIGNALS {
+        let mut running = Running::new(&place, &[&["bench", "stages"], &scenes[..], &flags].concat());
+        assert!(running.lines.by_ref().map(Result::unwrap).any(|line| line.contains(r#""text":"scene 2 of 2"#)));
+        assert_eq!(running.end_by(signal), (Some(code), "interrupted: written: a.json".to_owned()));
+        let results = place.json("a.json");
+        assert_eq!(results["notes"].as_array().unwrap().last().unwrap(), "Stopped early; later rows are missing.");
+        let rows = results["rows"].as_array().unwrap();
+        assert!(rows.len() == 10 && rows.iter().all(|row| row["keys"]["scene"] == "room"), "{results}");
+        assert_eq!(place.files(), ["a.json", "room.toml"]);
+        std::fs::remove_file(place.path("a.json")).unwrap();
+    }
+}
+
+#[test]
+fn a_signal_that_the_parent_ignores_stays_ignored() {
+    let place = Place::new();
+    let args = ["render", "room.toml", "-o", "a.png", "--size", "3000x3000", "--mode", "area", "--progress", "json"];
+    let mut running = Running::of(place.shell("trap '' HUP; exec \"$0\" \"$@\"", &args));
+    if cfg!(target_os = "linux") {
+        running.await_event("begin", "primary_rays");
+        send(&running.child, "HUP");
+        sleep(Duration::from_millis(500));
+        assert!(running.child.try_wait().unwrap().is_none());
+    }
+    assert_eq!(running.end_by("TERM").0, Some(143));
+}
+
+/// Standard error is a pipe that is full, and nobody reads it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_message_that_nobody_reads_does_not_hold_up_the_end() {
+    let place = Place::new();
+    let args = ["render", "room.toml", "-o", "a.png", "--size", "3000x3000", "--mode", "area", "--progress", "json"];
+    let full = "head -c 65536 /dev/zero >&2; exec \"$0\" \"$@\"";
+    let mut running = Running::of(place.shell(full, &args));
+    let path = format!("/proc/{}/comm", running.child.id());
+    until(|| (std::fs::read_to_string(&path).unwrap().trim() == "lightmesh").then_some(()));
+    await_start(&running.child);
+    send(&running.child, "TERM");
+    assert_eq!(wait(&mut running.child).code(), Some(143));
 }

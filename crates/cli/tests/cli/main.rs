@@ -13,3 +13,5 @@ mod scenes;
 
 #[cfg(unix)]
 mod interrupt;
+#[cfg(unix)]
+mod outputs;

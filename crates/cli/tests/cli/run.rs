@@ -97,6 +97,15 @@ impl Place {
         command
     }
 
+    /// As [`Place::command`], from a shell in which `"$0" "$@"` is the program with its arguments.
+    #[cfg(unix)]
+    pub(crate) fn shell(&self, script: &str, args: &[&str]) -> Command {
+        let mut command = Command::new("sh");
+        command.args(["-c", script, env!("CARGO_BIN_EXE_lightmesh")]).args(args);
+        command.current_dir(self.0.path()).env("CUDA_VISIBLE_DEVICES", "-1").stdin(Stdio::null());
+        command
+    }
+
     pub(crate) fn run(&self, args: &[&str]) -> Done {
         self.command(args).output().unwrap().into()
     }

@@ -19,7 +19,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use lightmesh_files::{Replacement, TargetError};
+use lightmesh_files::{Output, PublishError, Ready, TargetError, publish};
 
 use crate::Scene;
 
@@ -38,6 +38,9 @@ pub enum ExportError {
         /// The system's error.
         cause: io::Error,
     },
+    /// Complete files could not be renamed.
+    #[error(transparent)]
+    Publish(#[from] PublishError),
     /// The file extension is not that of a format that can be written.
     #[error("`.{extension}` is not a format that can be written, {}; use the extension .toml or .glb", path.display())]
     UnknownFormat {
@@ -61,28 +64,41 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`ExportError`] names the file and the remedy. Nothing is left half-written.
+    /// [`ExportError`] names the file and the remedy. Nothing is left half-written; two files appear together.
     pub fn export(&self, path: impl AsRef<Path>) -> Result<(), ExportError> {
+        let path = path.as_ref();
+        let mut files = Vec::new();
+        if let Some(mesh) = Scene::export_mesh(path)? {
+            let name = mesh.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let text = text::encode(self, &name).map_err(|cause| refused(path, io::Error::other(cause)))?;
+            files.push(ready(&mesh, &glb::encode(self, glb::Content::Triangles, &mesh)?)?);
+            files.push(ready(path, text.as_bytes())?);
+        } else {
+            files.push(ready(path, &glb::encode(self, glb::Content::Everything, path)?)?);
+        }
+        Ok(publish(files)?)
+    }
+
+    /// The file of triangles that [`Scene::export`] writes next to `path`: `a.mesh.glb` next to `a.toml`, none next to `a.glb`.
+    ///
+    /// # Errors
+    ///
+    /// [`ExportError::UnknownFormat`]
+    pub fn export_mesh(path: impl AsRef<Path>) -> Result<Option<PathBuf>, ExportError> {
         let path = path.as_ref();
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         match extension.as_str() {
-            "glb" => write(path, &glb::encode(self, glb::Content::Everything, path)?),
-            "toml" => {
-                let mesh = path.with_extension("mesh.glb");
-                let name = mesh.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                let text = text::encode(self, &name).map_err(|cause| refused(path, io::Error::other(cause)))?;
-                write(&mesh, &glb::encode(self, glb::Content::Triangles, &mesh)?)?;
-                write(path, text.as_bytes())
-            }
+            "glb" => Ok(None),
+            "toml" => Ok(Some(path.with_extension("mesh.glb"))),
             _ => Err(ExportError::UnknownFormat { path: path.to_owned(), extension }),
         }
     }
 }
 
-/// Writes a file, completely or not at all.
-fn write(path: &Path, bytes: &[u8]) -> Result<(), ExportError> {
-    let mut file = Replacement::of(path)?;
-    file.write_all(bytes).and_then(|()| file.commit()).map_err(|cause| refused(path, cause))
+/// A complete file that may appear.
+fn ready(path: &Path, bytes: &[u8]) -> Result<Ready, ExportError> {
+    let mut file = Output::to(path)?;
+    file.write_all(bytes).and_then(|()| file.ready()).map_err(|cause| refused(path, cause))
 }
 
 fn refused(path: &Path, cause: io::Error) -> ExportError {

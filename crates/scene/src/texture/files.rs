@@ -39,6 +39,7 @@ impl Draft {
     /// Index of the texture in the file that `source`, one of the scene's files, refers to as `name`. Each file is read once. If
     /// it is not available, a warning will say so.
     pub(crate) fn texture_file(&mut self, source: &Path, name: &str) -> Option<u32> {
+        self.refer(source, name);
         let named = self.border.path_beside(source, name);
         // A refused name is not a path: the file must not be accessed.
         let key = named.unwrap_or_else(|_| PathBuf::from(format!("{}\0{name}", source.display())));

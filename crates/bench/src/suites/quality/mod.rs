@@ -79,12 +79,12 @@ fn study(
     let reference = Reference::converge(plan, &engines[0], &balls, side, share, observer)?;
     findings.notes.extend(reference.note(&subject.name));
     let study = Study { plan, subject, balls, points, side, reference, observer };
-    findings.rows.push(study.reference_row());
+    findings.add([study.reference_row()]);
     let step = study.step(&engines[0])?;
     for (index, engine) in engines.iter().enumerate() {
         let left = share.saturating_sub(begin.elapsed()) / (engines.len() - index) as u32;
         let outcomes = study.measure(engine, step, left, findings)?;
-        findings.rows.extend(outcomes.iter().map(|outcome| {
+        findings.add(outcomes.iter().map(|outcome| {
             study.row("errors", engine, outcome.case.keys.clone(), |row| {
                 outcome.errors.fill(row);
                 outcome.measured.fill(row);

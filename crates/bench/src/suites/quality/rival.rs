@@ -33,7 +33,7 @@ pub(super) fn compare(
         for mesh in &meshes {
             let reach = cost_at(&curve, error(&mesh.errors));
             never += usize::from(reach == Reach::Never);
-            findings.rows.push(equal_error(study, engine, mesh, measure, error(&mesh.errors), reach));
+            findings.add([equal_error(study, engine, mesh, measure, error(&mesh.errors), reach)]);
         }
     }
     if never > 0 {
@@ -98,7 +98,7 @@ fn equal_time(
     let layered = case.settings.clone().with_layers(true);
     let rival = engine.renderer.render_prepared(study.scene(case.emitter), &layered, &Silent(study.observer))?;
     let errors = Errors::between(&study.reference.frame, &rival.image)?;
-    findings.rows.push(study.row("equal time", engine, Vec::new(), |row| {
+    findings.add([study.row("equal time", engine, Vec::new(), |row| {
         let figures = [
             ("seconds", seconds),
             ("samples", f64::from(rival.stats.settings.samples)),
@@ -108,7 +108,7 @@ fn equal_time(
             ("area_mean_flip", errors.mean_flip),
         ];
         row.values.extend(figures.map(|(name, figure)| (name.to_owned(), figure)));
-    }));
+    })]);
     if pictures {
         let picture = |what: &str, frame| Picture::new("equal time", &format!("{}, {what}", study.subject.name), frame);
         let reference = picture("reference", &study.reference.frame)?;

@@ -47,7 +47,7 @@ pub(super) fn measure(
         rows.push(row);
     }
     compare(&mut rows);
-    findings.rows.extend(rows);
+    findings.add(rows);
     Ok(())
 }
 

@@ -72,7 +72,7 @@ pub(super) fn measure(
             let pixels = f64::from(side) * f64::from(side);
             row.values.extend(peak.map(|bytes| ("peak_bytes_per_pixel".to_owned(), bytes / pixels)));
             row.seconds.insert("shadows".to_owned(), shadows);
-            findings.rows.push(row);
+            findings.add([row]);
         }
     }
     Ok(())

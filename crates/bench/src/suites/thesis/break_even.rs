@@ -53,7 +53,7 @@ pub(super) fn add(findings: &mut Findings) {
         }
         rows.push(row);
     }
-    findings.rows.extend(rows);
+    findings.add(rows);
     findings.notes.extend(notes);
 }
 

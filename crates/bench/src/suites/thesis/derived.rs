@@ -16,7 +16,7 @@ pub(super) fn table_1(findings: &mut Findings) {
     ];
     let rows = timings(findings).filter(|row| wanted.iter().all(|(name, key)| row.keys.get(*name) == Some(key)));
     let rows: Vec<Row> = rows.filter_map(share).collect();
-    findings.rows.extend(rows);
+    findings.add(rows);
 }
 
 fn share(timing: &Row) -> Option<Row> {
@@ -46,7 +46,7 @@ pub(super) fn table_2(findings: &mut Findings) {
             rows.push(row);
         }
     }
-    findings.rows.extend(rows);
+    findings.add(rows);
 }
 
 fn timings(findings: &Findings) -> impl Iterator<Item = &Row> {

@@ -86,7 +86,7 @@ fn add(
             }
         }
     }
-    findings.rows.push(row);
+    findings.add([row]);
     Ok(())
 }
 

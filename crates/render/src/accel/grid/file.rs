@@ -24,7 +24,7 @@ use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
 
 use glam::UVec3;
-use lightmesh_files::Replacement;
+use lightmesh_files::Output;
 use lightmesh_scene::Bounds;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
@@ -46,11 +46,11 @@ impl Grid {
     /// If the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), GridSaveError> {
         let path = path.as_ref();
-        let file = Replacement::of(path)?;
+        let file = Output::to(path)?;
         self.write(file).map_err(|reason| GridSaveError::Write { path: path.into(), reason })
     }
 
-    fn write(&self, mut file: Replacement) -> io::Result<()> {
+    fn write(&self, mut file: Output) -> io::Result<()> {
         let mut output = Hashed { inner: BufWriter::new(&mut file), hash: Xxh3::new() };
         output.write(&MAGIC)?;
         output.write(&VERSION.to_le_bytes())?;

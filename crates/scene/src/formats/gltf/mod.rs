@@ -52,6 +52,7 @@ use self::{
     meshes::{Meshes, Shown},
     nodes::Placed,
     picture::Pictures,
+    uri::Uri,
     views::Views,
 };
 use crate::{
@@ -66,6 +67,7 @@ pub(crate) fn read(path: &Path, bytes: Vec<u8>, placement: &Placement, draft: &m
     let container = Container::split(path, &bytes)?;
     let document = container.parse(path)?;
     extensions::check(path, &document, draft)?;
+    refer(path, &document, draft);
     let buffers = Buffers::new(path, &document, container.bin, &draft.border)?;
     let accessors = Accessors { path, document: &document, buffers: &buffers };
     let strides_of_zero = document.buffer_views.iter().filter(|view| view.byte_stride == Some(0)).count();
@@ -84,6 +86,17 @@ pub(crate) fn read(path: &Path, bytes: Vec<u8>, placement: &Placement, draft: &m
     }
     left_out.warn(path, draft);
     Ok(())
+}
+
+/// Notes all files of buffers and images, although only those in use are read.
+fn refer(path: &Path, document: &Document, draft: &mut Draft) {
+    let buffers = document.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
+    let images = document.images.iter().filter_map(|image| image.uri.as_deref());
+    for uri in buffers.chain(images) {
+        if let Uri::File(name) = Uri::new(uri) {
+            draft.refer(path, &name);
+        }
+    }
 }
 
 /// The meshes of all nodes.

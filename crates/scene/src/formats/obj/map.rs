@@ -9,7 +9,8 @@ use crate::{TextureUse, Wrap, draft::Draft, formats::text::number};
 /// A texture of a material.
 #[derive(Debug, PartialEq)]
 pub(super) struct Map {
-    file: String,
+    /// Its name as in the library.
+    pub(super) file: String,
     scale: Vec2,
     offset: Vec2,
     clamp: bool,

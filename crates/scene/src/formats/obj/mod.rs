@@ -48,7 +48,10 @@ pub(crate) fn read(path: &Path, mut bytes: Vec<u8>, placement: &Placement, draft
     draft.warnings.extend(std::mem::take(&mut content.warnings));
     let mut materials = std::mem::take(&mut content.material_of_triangle);
     match placement.material {
-        Some(material) => materials.fill(material),
+        Some(material) => {
+            mtl::refer(path, &content.libraries, draft);
+            materials.fill(material);
+        }
         None => {
             let indices = find_materials(path, &content, draft)?;
             materials.iter_mut().for_each(|material| *material = indices[*material as usize]);

@@ -54,21 +54,18 @@ pub(super) fn read_libraries(
 ) -> Result<Vec<Entry>, LoadError> {
     let mut entries = Vec::new();
     let (mut seen, mut paths) = (HashSet::new(), HashSet::new());
-    for (number, line) in lines {
-        for name in file_names(obj, line, draft) {
-            if seen.contains(&name) {
-                continue;
-            }
-            let place = Place::line(obj, *number);
-            match draft.read_nearby(obj, &name) {
-                // The same file by another name is read once as well.
-                Ok((path, _)) if !paths.insert(path.clone()) => {}
-                Ok((path, mut bytes)) => read_library(&path, with_line_feeds(&mut bytes), &mut entries, draft)
-                    .map_err(|error| error.named_by(place))?,
-                Err(error) => draft.warnings.push(format!("{}; light grey is used instead", error.named_by(place))),
-            }
-            seen.insert(name);
+    for (place, name) in refer(obj, lines, draft) {
+        if seen.contains(&name) {
+            continue;
         }
+        match draft.read_nearby(obj, &name) {
+            // The same file by another name is read once as well.
+            Ok((path, _)) if !paths.insert(path.clone()) => {}
+            Ok((path, mut bytes)) => read_library(&path, with_line_feeds(&mut bytes), &mut entries, draft)
+                .map_err(|error| error.named_by(place))?,
+            Err(error) => draft.warnings.push(format!("{}; light grey is used instead", error.named_by(place))),
+        }
+        seen.insert(name);
     }
     let transparent = entries.iter().filter(|entry| entry.is_transparent()).count();
     if transparent > 0 {
@@ -77,6 +74,18 @@ pub(super) fn read_libraries(
             .push(format!("{}: {transparent} materials are transparent (d, Tr), but are shown opaque", obj.display()));
     }
     Ok(entries)
+}
+
+/// Notes the libraries; returns their names, and the places of these.
+pub(super) fn refer(obj: &Path, lines: &[(usize, String)], draft: &mut Draft) -> Vec<(Place, String)> {
+    let mut libraries = Vec::new();
+    for (number, line) in lines {
+        for name in file_names(obj, line, draft) {
+            draft.refer(obj, &name);
+            libraries.push((Place::line(obj, *number), name));
+        }
+    }
+    libraries
 }
 
 /// The files of an `mtllib` line: one whose name may contain blanks or be in quotation marks, or several; whichever exist. If none
@@ -107,6 +116,11 @@ fn read_library(path: &Path, text: &[u8], entries: &mut Vec<Entry>, draft: &mut 
     let mut entry: Option<Entry> = None;
     while let Some((number, line)) = lines.next() {
         let (word, rest) = split_word(line);
+        if is_map(word)
+            && let Some(map) = Map::parse(&decoded(rest))
+        {
+            draft.refer(path, &map.file);
+        }
         let first = || (number, quoted(word));
         match (word, &mut entry) {
             (b"" | [b'#', ..], _) => {}
@@ -162,8 +176,7 @@ impl Entry {
             b"map_Kd" => self.map = Map::parse(&decoded(rest)),
             // Exporters repeat the texture as the ambient texture.
             b"map_Ka" | b"map_aat" => {}
-            b"bump" | b"disp" | b"decal" | b"refl" | b"norm" => left_out.maps += 1,
-            word if word.starts_with(b"map_") => left_out.maps += 1,
+            word if is_map(word) => left_out.maps += 1,
             _ => {}
         }
         Ok(())
@@ -196,6 +209,12 @@ impl Entry {
             ..default
         }
     }
+}
+
+/// Whether a statement names a texture.
+fn is_map(word: &[u8]) -> bool {
+    matches!(word, b"bump" | b"disp" | b"decal" | b"refl" | b"norm")
+        || (word.starts_with(b"map_") && word != b"map_aat")
 }
 
 /// One number for all channels, or three.

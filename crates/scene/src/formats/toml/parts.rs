@@ -69,6 +69,7 @@ fn read_mesh(
     names: &HashMap<String, u32>,
     draft: &mut Draft,
 ) -> Result<(), LoadError> {
+    draft.refer(source.path, entry.file.get_ref());
     let named = |error: LoadError| error.named_by(source.place(entry.file.span()));
     let (path, bytes) = draft.border.read_beside(source.path, entry.file.get_ref()).map_err(named)?;
     let material = match &entry.material {
