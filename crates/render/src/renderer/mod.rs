@@ -229,9 +229,7 @@ pub fn visibility_on<B: Backend>(
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, resolved.plan.memory_limit))?;
     let Resolved { technique, plan, .. } = &resolved;
     let (visibility, rows) = Baking { run, scene: &on_device, technique, plan }.bake(points)?;
-    let mut stats =
-        report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
-    stats.counts.non_finite_pixels = picture.non_finite();
+    let stats = report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
     Ok(PointVisibility { visibility, lights: scene.scene.lights.len(), stats })
 }
 
@@ -278,6 +276,8 @@ fn picture_on<B: Backend>(
     let run = Run::new(backend, &job, kept);
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
     let rows = Passes { run, scene: &on_device, technique, view, plan }.render(&mut picture)?;
-    let stats = report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
+    let mut stats =
+        report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
+    stats.counts.non_finite_pixels = picture.non_finite();
     Ok(Frame { image: picture.into_frame(), stats })
 }
