@@ -6,7 +6,9 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-use lightmesh_files::{Identity, Output, PublishError, Ready, TargetError, identity, visible, visible_json, visible_lines};
+use lightmesh_files::{
+    Identity, Output, PublishError, Ready, TargetError, identity, visible, visible_json, visible_lines,
+};
 use serde::Serialize;
 
 /// How long the last line may wait for someone to read standard error.

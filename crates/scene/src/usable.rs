@@ -45,7 +45,10 @@ pub(crate) fn keep_passive(materials: &mut [Material]) -> Option<String> {
     }
     let count = adding.len();
     (count > 0).then(|| {
-        format!("{count} materials reflect more than they receive, so their ks is lowered to 1: {}", list(adding.iter().map(String::as_str)))
+        format!(
+            "{count} materials reflect more than they receive, so their ks is lowered to 1: {}",
+            list(adding.iter().map(String::as_str))
+        )
     })
 }
 

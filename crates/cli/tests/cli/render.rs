@@ -284,3 +284,40 @@ fn strict_reading_ends_with_the_warnings() {
     let warnings = done.stderr.lines().filter(|line| line.starts_with("warning: ")).count();
     assert_eq!(warnings, 1, "{done:?}");
 }
+
+/// A small closed box around the camera and a light: `material` and `light` are lines of their tables.
+fn closed_box(material: &str, light: &str) -> String {
+    format!(
+        "[camera]\nposition = [0, 0, 0]\ntarget = [1, 0.2, 0.1]\n[[light]]\nkind = \"point\"\nposition = [0.005, 0.005, 0.005]\n{light}\n\
+         [[material]]\nname = \"glare\"\n{material}\n[[box]]\nmin = [-0.01, -0.01, -0.01]\nmax = [0.01, 0.01, 0.01]\nmaterial = \"glare\"\n"
+    )
+}
+
+/// `counts.non_finite_pixels`, and what was said.
+fn non_finite(place: &Place, scene: &str) -> (u64, String) {
+    place.write("box.toml", scene);
+    let flags = ["-o", "a.exr", "--size", "8x8", "--bounces", "200", "--mode", "ray-trace", "--stats", "a.json"];
+    let done = place.good(&[&["render", "box.toml"], &flags[..]].concat());
+    let stats: serde_json::Value = serde_json::from_slice(&place.read("a.json")).unwrap();
+    (stats["counts"]["non_finite_pixels"].as_u64().unwrap(), done.stderr)
+}
+
+#[test]
+fn mirrors_that_add_light_are_lowered_with_a_warning() {
+    let place = Place::new();
+    let (pixels, said) = non_finite(&place, &closed_box("ks = [8, 8, 8]", ""));
+    assert_eq!(pixels, 0, "{said}");
+    assert!(said.contains("warning: box.toml: 1 materials reflect more than they receive"), "{said}");
+    assert!(said.contains("`glare` (ks = 8 8 8)"), "{said}");
+    let (pixels, said) = non_finite(&place, &closed_box("kd = 1\nks = 1", ""));
+    assert!(pixels == 0 && !said.contains("warning"), "{said}");
+}
+
+#[test]
+fn pixels_that_are_not_finite_are_counted_with_a_warning() {
+    let place = Place::new();
+    let light = "intensity = 1e18\nfalloff = \"inverse-square\"";
+    let (pixels, said) = non_finite(&place, &closed_box("kd = 1e18", light));
+    assert!(pixels > 0, "{said}");
+    assert!(said.contains(&format!("warning: {pixels} of 64 pixels have infinite or undefined colours")), "{said}");
+}

@@ -121,7 +121,7 @@ fn libraries() -> Vec<Input> {
 }
 
 /// Whole files.
-fn texts() -> [Input; 14] {
+fn texts() -> [Input; 17] {
     let triangle = format!("{TRIANGLE}f 1 2 3\n");
     let many = |count: usize, word: &str| word.repeat(count);
     [
@@ -138,6 +138,30 @@ fn texts() -> [Input; 14] {
         Input::new("obj", "a keyword of a megabyte", format!("{} 1\n{triangle}", many(1 << 20, "v")), Opens),
         Input::new("obj", "a polygon of many corners", format!("{TRIANGLE}f{}\n", many(100_000, " 1 2 3")), Opens),
         Input::new("obj", "continued for ever", format!("{triangle}f {}", many(100_000, "\\\n")), Opens),
+        Input::new("obj", "a gear of many teeth", gear(90_000), Opens),
+        Input::new("obj", "many libraries", format!("{}{triangle}", numbered(100_000, "mtllib #.mtl\n")), Opens),
+        Input::new(
+            "obj",
+            "many materials",
+            format!("mtllib a.mtl\n{TRIANGLE}{}", numbered(50_000, "usemtl m#\nf 1 2 3\n")),
+            Opens,
+        )
+        .beside("a.mtl", numbered(200_000, "newmtl m#\nKd 1 0 0\n")),
         Input::new("obj", "many groups", format!("{triangle}{}", many(100_000, "g a\nusemtl b\n")), Opens),
     ]
+}
+
+/// The text many times, with the number in place of `#`.
+fn numbered(count: usize, text: &str) -> String {
+    (0..count).map(|number| text.replace('#', &number.to_string())).collect()
+}
+
+/// A polygon of which every other corner is not convex.
+fn gear(corners: usize) -> String {
+    let corner = |index: usize| {
+        let (angle, radius) = (std::f64::consts::TAU * index as f64 / corners as f64, 1.0 + 0.1 * (index % 2) as f64);
+        format!("v {} {} 0\n", radius * angle.cos(), radius * angle.sin())
+    };
+    let face: String = (1..=corners).map(|index| format!(" {index}")).collect();
+    format!("{}f{face}\n", (0..corners).map(corner).collect::<String>())
 }

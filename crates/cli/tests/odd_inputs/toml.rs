@@ -131,7 +131,15 @@ pub(crate) fn inputs() -> Vec<Input> {
     all
 }
 
-fn texts() -> [Input; 14] {
+/// A camera that causes a warning.
+const CAMERA: &str = "[[camera]]\nname = \"c#\"\nposition = [0, 0, 5]\ntarget = [0, 0, 0]\nvfov = 40\nhfov = 50\n";
+
+/// The tables 100 000 times, with the number in place of `#`.
+fn numbered(tables: &str) -> String {
+    (0..100_000).map(|number| tables.replace('#', &number.to_string())).collect()
+}
+
+fn texts() -> [Input; 16] {
     let long = "x".repeat(1 << 20);
     let nested = |open: &str| format!("a = {}", open.repeat(100_000));
     [
@@ -148,6 +156,8 @@ fn texts() -> [Input; 14] {
         Input::new("toml", "tables in tables' names", format!("[{}a]", "a.".repeat(100_000)), Refused),
         Input::new("toml", "a key of a megabyte", format!("{long} = 1"), Refused),
         Input::new("toml", "a comment of a megabyte", format!("# {long}\n{ROOM}"), Opens),
+        Input::new("toml", "many materials", format!("{ROOM}{}", numbered("[[material]]\nname = \"m#\"\n")), Opens),
+        Input::new("toml", "many cameras with two angles", format!("{}{ROOM}", numbered(CAMERA)), Opens),
         Input::new("toml", "a name of a megabyte", ROOM.replace("white", &long), Opens),
     ]
 }

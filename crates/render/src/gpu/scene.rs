@@ -167,15 +167,7 @@ impl<R: Runtime> Upload<'_, R> {
     }
 
     fn bvh(&mut self, bvh: &accel::Bvh) -> Result<Bvh, RenderError> {
-        if bvh.depth() > BVH_STACK as usize {
-            return Err(RenderError::Device {
-                device: self.cuda.pool.runtime().name(),
-                reason: format!(
-                    "the scene's BVH has {} levels, more than the {BVH_STACK} that kernels support: choose a grid, or the device cpu",
-                    bvh.depth()
-                ),
-            });
-        }
+        debug_assert!(bvh.depth() <= BVH_STACK as usize, "builds keep to this many levels");
         let nodes = bvh.nodes();
         Ok(Bvh {
             nodes: self.array::<BvhNode>("BVH", bytemuck::cast_slice(nodes))?,
