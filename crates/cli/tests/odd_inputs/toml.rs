@@ -157,7 +157,12 @@ fn texts() -> [Input; 16] {
         Input::new("toml", "a key of a megabyte", format!("{long} = 1"), Refused),
         Input::new("toml", "a comment of a megabyte", format!("# {long}\n{ROOM}"), Opens),
         Input::new("toml", "many materials", format!("{ROOM}{}", numbered("[[material]]\nname = \"m#\"\n")), Opens),
-        Input::new("toml", "many cameras with two angles", format!("{}{ROOM}", numbered(CAMERA)), Opens),
+        Input::new(
+            "toml",
+            "many cameras with two angles",
+            format!("{}[{ROOM}", numbered(CAMERA)).replace("[[camera]\n", "[[camera]]\n"),
+            Opens,
+        ),
         Input::new("toml", "a name of a megabyte", ROOM.replace("white", &long), Opens),
     ]
 }

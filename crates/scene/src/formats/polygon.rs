@@ -324,7 +324,7 @@ mod tests {
             DVec3::new(radius * angle.cos(), radius * angle.sin(), 0.0)
         };
         let flower = |index: usize| around(index, 2.0 + (0.01 * index as f64).cos());
-        let gear = |index: usize| around(index, if index % 2 == 0 { 1.0 } else { 1.001 });
+        let gear = |index: usize| around(index, 1.0 + 0.001 * (index % 2) as f64);
         // Single precision makes some corners of a circle reflex.
         let circle = |index: usize| around(index, 1.0).as_vec3().as_dvec3();
         for (name, corner) in [("flower", &flower as &dyn Fn(usize) -> DVec3), ("gear", &gear), ("circle", &circle)] {

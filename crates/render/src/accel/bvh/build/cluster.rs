@@ -83,8 +83,8 @@ fn choose(clusters: &[Node], distance: usize, choices: &mut Vec<Choice>) {
     choices.clear();
     choices.resize(clusters.len(), Choice { surface: f32::INFINITY, partner: u32::MAX });
     for (at, cluster) in clusters.iter().enumerate() {
-        for other in at + 1..clusters.len().min(at + 1 + distance) {
-            let surface = cluster.aabb().union(clusters[other].aabb()).half_area();
+        for (other, candidate) in clusters.iter().enumerate().skip(at + 1).take(distance) {
+            let surface = cluster.aabb().union(candidate.aabb()).half_area();
             for (own, partner) in [(at, other as u32), (other, at as u32)] {
                 let known = choices[own];
                 let better = surface < known.surface
