@@ -27,7 +27,7 @@ import lightmesh
 import native
 import rays
 import renderers
-from results import row
+from results import rounded, row
 from scene import Scene
 
 LIBRARY = Path("target/release/examples/libc_interface.so")
@@ -54,7 +54,7 @@ def main():
         "program": {"name": "lightmesh and peers", "version": version, "commit": None, "command": shlex.join(["python", *sys.argv])},
         "machine": machine(plan),
         "started": started,
-        "seconds": time.perf_counter() - start,
+        "seconds": rounded(time.perf_counter() - start),
         "rows": rows,
         "pictures": [],
         "notes": list(dict.fromkeys(notes)),

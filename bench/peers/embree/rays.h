@@ -7,6 +7,7 @@
 #include <cstring>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 template <typename T>
@@ -118,6 +119,17 @@ struct Camera {
 // A rectangle with the edges 2 half_u and 2 half_v.
 struct Light {
     Vec3 position, half_u, half_v;
+
+    // Makes half_u the longer one.
+    void order() {
+        // Of equal edges, rounding makes one longer. Volatile products are not fused with sums, which would round differently.
+        const auto squared = [](Vec3 a) {
+            volatile float x = a.x * a.x, y = a.y * a.y, z = a.z * a.z, sum = x + y;
+            return sum + z;
+        };
+        if (squared(half_u) < squared(half_v))
+            std::swap(half_u, half_v);
+    }
 };
 
 // γ(32), the bound on rounding that keeps a segment off the surfaces at its ends.
@@ -197,14 +209,12 @@ public:
         : rows(rows), half(0.5f * float(rows.lines)) {
         const uint64_t random = mix(mix(pixel << 1 ^ mix(number + 1)));
         const float aside = float(random >> 16 & 0xffff) / SHIFTS;
-        const bool ordered = dot(light.half_u, light.half_u) >= dot(light.half_v, light.half_v);
-        const Vec3 u = ordered ? light.half_u : light.half_v;
-        across = ordered ? light.half_v : light.half_u;
+        across = light.half_v;
         const Vec3 step = 1 / float(rows.lines) * across;
         shift = float(random & 0xffff) / SHIFTS;
         inside = (1 - aside) * float(rows.lines);
         center = light.position - origin + 2 * aside * step;
-        along = u + step;
+        along = light.half_u + step;
     }
 
     // Where N samples are, from `first`, seen from the surface point.

@@ -39,6 +39,7 @@ struct Scene {
         const auto counts = read<uint32_t>(file, 3);
         camera = read<Camera>(file, 1)[0];
         lights = read<Light>(file, counts[0]);
+        std::for_each(lights.begin(), lights.end(), [](Light& light) { light.order(); });
         const auto vertices = read<Vec3>(file, counts[1]);
         const auto triangles = read<uint32_t>(file, 3 * size_t(counts[2]));
         if (!file || triangles.empty())
