@@ -193,9 +193,10 @@ fn regions_hold_what_meets_them() {
 #[test]
 fn a_search_finds_more_than_one_round_holds() {
     let random = &mut Random::new(3);
-    // A tree deeper than full rounds can handle, with one triangle many times.
+    // One triangle many times, hardly moved: structures hold identical ones once.
     let mut corners = triangles::triangles(triangles::Kind::Soup, random);
-    corners.extend(vec![corners[0]; 700]);
+    let first = corners[0];
+    corners.extend((1..=700).map(|number| first.map(|corner| corner + 1e-5 * number as f32 * Vec3::X)));
     let around = Bounds { min: Vec3::splat(-9.0), max: Vec3::splat(9.0) };
     let region = |form| Asked { form, origins: around, points: Vec::new(), slack: 0.0, cut: false };
     let regions = [region(Form::Box), region(Form::Near(1.0)), region(Form::Shaft(around))];
