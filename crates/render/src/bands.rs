@@ -9,6 +9,19 @@ use crate::prepared::PreparedScene;
 /// Memory reserved for everything that is not counted below: stacks, the segments in flight, allocator overhead.
 const RESERVE: u64 = 64 << 20;
 
+/// Rejects an image that does not fit, before any of it is allocated. `limit` is that of the host.
+pub(crate) fn check_picture(plan: &Plan, limit: Option<u64>) -> Result<(), RenderError> {
+    let needed = plan.pixels() * plan.film_bytes();
+    let limit = limit.into_iter().chain(memory::available()).min();
+    match limit.filter(|limit| needed > *limit) {
+        Some(limit) if plan.layers.is_some() => {
+            Err(RenderError::Memory { buffer: "the image and its layers", needed, limit })
+        }
+        Some(limit) => Err(RenderError::Memory { buffer: "the image", needed, limit }),
+        None => Ok(()),
+    }
+}
+
 /// Number of rows that can be rendered at once on the host.
 pub(crate) fn rows_on_host(scene: &PreparedScene, plan: &Plan) -> Result<u32, RenderError> {
     let picture = plan.pixels() * plan.film_bytes();
@@ -29,7 +42,7 @@ fn rows_per_band(plan: &Plan, resident: u64, limit: Option<u64>) -> Result<u32, 
     let free = limit.saturating_sub(resident).saturating_sub(RESERVE);
     match free / row {
         0 => Err(RenderError::Memory {
-            buffer: "masks and visibility, in addition to the scene",
+            buffer: "the scene, the image, and masks and visibility of one row",
             needed: row + resident + RESERVE,
             limit,
         }),
@@ -48,6 +61,27 @@ mod tests {
     use super::*;
     use crate::data::lights::LightGroups;
     use crate::plan::Footprint;
+
+    #[test]
+    fn an_image_that_does_not_fit_is_refused_before_it_is_made() {
+        let lights = LightGroups { lights: 3, at_once: 3 };
+        let plan = |side, layers| Plan {
+            size: [side; 2],
+            bounces: 0,
+            layers,
+            lights,
+            memory_limit: None,
+            kept: 0,
+            footprint: Footprint::default(),
+        };
+        let needed = |side, layers| match check_picture(&plan(side, layers), Some(1 << 20)) {
+            Err(RenderError::Memory { needed, limit, .. }) if limit == 1 << 20 => needed,
+            found => panic!("{found:?}"),
+        };
+        assert_eq!(needed(60_000, None), 43_200_000_000);
+        assert_eq!(needed(256, Some(3)), 65_536 * (12 + 32 + 12));
+        assert!(check_picture(&plan(256, None), Some(1 << 20)).is_ok());
+    }
 
     #[test]
     fn a_limit_splits_the_picture_and_none_does_not() {

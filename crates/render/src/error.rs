@@ -67,16 +67,16 @@ pub enum RenderError {
         /// The system's error message.
         reason: String,
     },
-    /// Not even one row of the image fits.
+    /// The image, or even one row of it, does not fit into the host's memory.
     #[error(
-        "one row of the image needs {needed} bytes for {buffer}, more than the limit of {limit}: raise the limit, or choose a smaller image, a larger step or a smaller radius"
+        "rendering needs at least {needed} bytes, for {buffer}, more than the limit of {limit}: raise the limit, or choose a smaller image, a larger step or a smaller radius"
     )]
     Memory {
-        /// The largest buffer.
+        /// What is counted.
         buffer: &'static str,
-        /// Bytes per row.
+        /// Bytes of it.
         needed: u64,
-        /// Bytes allowed.
+        /// Bytes allowed, or available.
         limit: u64,
     },
     /// The device does not exist or cannot be used.

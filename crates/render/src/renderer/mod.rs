@@ -17,6 +17,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::backend::run::Run;
 use crate::backend::{Backend, Cpu, Cuda};
+use crate::bands;
 use crate::cache::{Kept, MeshCache};
 use crate::cuda::{Driver, Runtime};
 use crate::data::picture::Picture;
@@ -271,6 +272,8 @@ fn picture_on<B: Backend>(
     let mut resolved = Resolved::new(scene, settings, observer)?;
     resolved.plan.kept = kept.as_ref().map_or(0, |kept| kept.memory());
     let Resolved { technique, view, plan, .. } = &resolved;
+    // On a device, the limit is that of its own memory.
+    bands::check_picture(plan, plan.memory_limit.filter(|_| backend.kind() == Cpu.kind()))?;
     let job = resolved.job(observer);
     let mut picture = Picture::new(settings.size, plan.layers);
     let run = Run::new(backend, &job, kept);
