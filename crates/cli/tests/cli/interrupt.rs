@@ -3,10 +3,14 @@
 use std::fmt::Write;
 use std::io::{BufRead, BufReader, Lines};
 use std::process::{Child, ChildStderr, Command, ExitStatus, Stdio};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Once};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use lightmesh::image::Frame;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::flag::register_conditional_default;
 
 use crate::run::Place;
 
@@ -29,6 +33,7 @@ impl Running {
     }
 
     fn of(mut command: Command) -> Running {
+        obey_signals();
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         let lines = BufReader::new(child.stderr.take().unwrap()).lines();
         Running { child, lines }
@@ -46,6 +51,16 @@ impl Running {
         let status = wait(&mut self.child);
         (status.code(), self.lines.map(Result::unwrap).last().unwrap_or_default())
     }
+}
+
+/// Children ignore what this process ignores, as it does if it runs in the background or by `nohup`; not what it handles, be it as usual.
+fn obey_signals() {
+    static DONE: Once = Once::new();
+    DONE.call_once(|| {
+        for signal in [SIGINT, SIGTERM, SIGHUP] {
+            register_conditional_default(signal, Arc::new(AtomicBool::new(true))).unwrap();
+        }
+    });
 }
 
 fn send(child: &Child, signal: &str) {
