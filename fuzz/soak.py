@@ -255,7 +255,8 @@ def stl_text(triangles):
 def toml_text(dice):
     lines = ["[camera]", "position = [0, 2, 5]", "target = [0, 0, 0]"] if dice.random() < 0.7 else []
     for _ in range(dice.randrange(3)):
-        kind = dice.choice(['kind = "point"\nspread = 0.2', 'kind = "sphere"\nradius = 0.3', 'kind = "disk"\nradius = 1\nnormal = [0, -1, 0]'])
+        kinds = ['kind = "point"\nspread = 0.2', 'kind = "sphere"\nradius = 0.3', 'kind = "disk"\nradius = 1\nnormal = [0, -1, 0]']
+        kind = dice.choice(kinds)
         lines += ["[[light]]", kind, f"position = [{dice.choice(['1', '0', '1e9'])}, 4, 2]"]
     for _ in range(dice.randrange(1, 4)):
         file = dice.choice(3 * ["scene.obj", "scene.ply", "scene.stl"] + ["none.obj", "../scene.obj", "scene.toml"])

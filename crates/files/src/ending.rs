@@ -76,8 +76,9 @@ pub fn stand_by(output: Option<Ready>) {
     drop(earlier);
 }
 
-/// Publishes the output that stands by, and removes all temporary files of this process, for good: whoever creates, publishes or removes an output afterwards, or calls this
-/// again, waits forever. To be called just before the process exits, from any thread.
+/// Publishes the output that stands by, and removes all temporary files of this process, for good: whoever creates,
+/// publishes or removes an output afterwards, or calls this again, waits forever. To be called just before the process
+/// exits, from any thread.
 pub fn abandon() -> Abandoned {
     let mut registry = registry();
     if let Some((path, Step::Rename(file, target))) = registry.standby.take().map(Ready::step) {

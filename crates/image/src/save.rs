@@ -1,7 +1,8 @@
 //! Saving a [`Frame`]: the extension determines the format, and a file is written completely or not at all.
 //!
 //! Images are written to a temporary file next to the target and renamed over it, so an interrupted program leaves the previous
-//! file intact. Several of them can appear together: see [`Frame::ready`]. [`check_writable`] detects problems before any time is spent on rendering.
+//! file intact. Several of them can appear together: see [`Frame::ready`]. [`check_writable`] detects problems before
+//! any time is spent on rendering.
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};

@@ -74,8 +74,8 @@ pub struct Scene {
     /// The file that was read, and all files that it refers to, also those that do not exist or are not used: what a program must
     /// not overwrite. Empty for other scenes.
     pub files: Vec<PathBuf>,
-    /// What a loader corrected, ignored or guessed: one sentence each, at most about a hundred. Names in them are as in the files; make them
-    /// visible before they reach a terminal.
+    /// What a loader corrected, ignored or guessed: one sentence each, at most about a hundred. Names in them are as in
+    /// the files; make them visible before they reach a terminal.
     pub warnings: Vec<String>,
 }
 

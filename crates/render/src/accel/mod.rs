@@ -138,9 +138,10 @@ pub trait Accelerator: Send + Sync {
     /// is overwritten.
     fn short_segments(&self, segments: &ShortSegments, blocked: &mut [bool]);
 
-    /// Hands all triangles held that meet `region` to `take`, up to [`PIECE`] at once, in no order and perhaps twice, until it returns false.
-    /// May find others as well, but only those whose bounding box the region [may meet](Region). A list and a BVH find all of those; a
-    /// grid need not find a triangle that stays away from the region's cells although its bounding box does not.
+    /// Hands all triangles held that meet `region` to `take`, up to [`PIECE`] at once, in no order and perhaps twice,
+    /// until it returns false. May find others as well, but only those whose bounding box the region
+    /// [may meet](Region). A list and a BVH find all of those; a grid need not find a triangle that stays away from the
+    /// region's cells although its bounding box does not.
     fn search(&self, region: &Region, take: Take);
 
     /// Replaces the content of `found` with what a [search](Accelerator::search) finds, each once, in ascending order of index.

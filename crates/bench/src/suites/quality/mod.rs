@@ -8,10 +8,10 @@
 //! | `equal time` | scene | `samples` that take as long as the light mesh, and both errors |
 //!
 //! The competitor is area mode: n stratified shadow rays per pixel and light, on the same ray tracer. Occluder lists and adaptive shadow
-//! rays, which have the key `lookup`, are compared with it like light meshes; their `rays` count all samples that are tested. Its cost at an error is
-//! interpolated between the measured n, linearly in the logarithms ([`curve`]). Lights are balls with the spread that area mode
-//! gives point lights; the emitter `point` is the thesis' light mesh, which uses their centres. Each scene gets an equal share of
-//! the time.
+//! rays, which have the key `lookup`, are compared with it like light meshes; their `rays` count all samples that are
+//! tested. Its cost at an error is interpolated between the measured n, linearly in the logarithms ([`curve`]). Lights
+//! are balls with the spread that area mode gives point lights; the emitter `point` is the thesis' light mesh, which
+//! uses their centres. Each scene gets an equal share of the time.
 
 mod cases;
 mod curve;

@@ -6,9 +6,9 @@
 //! * `half-ball`: the thesis' lookup with all its defaults, an automatic step among them;
 //! * `adaptive`: adaptive shadow rays, with the samples of the lists.
 //!
-//! Times are those of all stages and of the whole frame, in turns. Values besides counts: `visibility_rmse` relative to a converged reference,
-//! `samples` of each light, and of lists and adaptive rays the half-ball's time and error by theirs, `faster_than_half_ball` and
-//! `nearer_than_half_ball`: above 1 they are ahead.
+//! Times are those of all stages and of the whole frame, in turns. Values besides counts: `visibility_rmse` relative to
+//! a converged reference, `samples` of each light, and of lists and adaptive rays the half-ball's time and error by
+//! theirs, `faster_than_half_ball` and `nearer_than_half_ball`: above 1 they are ahead.
 
 use std::time::Duration;
 

@@ -1,8 +1,9 @@
 //! Many lights: what occluder lists cost with up to 256 balls around a scene, in time and memory.
 //!
-//! Rows have the keys scene, lights, size, samples, method, accel, device and threads. Times are those of all stages; `shadows` is the sum of
-//! those between primary rays and shading. Values besides counts: `per_light_by_one`, the shadows' time per light by that of a single
-//! light with as many samples, and `peak_bytes_per_pixel`, the peak memory of the device, or of the whole process, by pixel.
+//! Rows have the keys scene, lights, size, samples, method, accel, device and threads. Times are those of all stages;
+//! `shadows` is the sum of those between primary rays and shading. Values besides counts: `per_light_by_one`, the
+//! shadows' time per light by that of a single light with as many samples, and `peak_bytes_per_pixel`, the peak memory
+//! of the device, or of the whole process, by pixel.
 
 use std::time::Duration;
 

@@ -15,8 +15,8 @@ impl<'a> Lines<'a> {
         Lines { rest: text, joined: Vec::new(), number: 0 }
     }
 
-    /// The next line with its number, and with its continuation lines, trimmed; `None` at the end. Comments are never continued, because their authors
-    /// do not expect that of a path in them.
+    /// The next line with its number, and with its continuation lines, trimmed; `None` at the end. Comments are never
+    /// continued, because their authors do not expect that of a path in them.
     pub(super) fn next(&mut self) -> Option<(usize, &[u8])> {
         let line = self.take()?;
         let Some(begun) = continued(line) else { return Some((self.number, line)) };
