@@ -9,15 +9,15 @@ use crate::prepared::PreparedScene;
 /// Memory reserved for everything that is not counted below: stacks, the segments in flight, allocator overhead.
 const RESERVE: u64 = 64 << 20;
 
-/// Rejects an image that does not fit, before any of it is allocated. `limit` is that of the host.
-pub(crate) fn check_picture(plan: &Plan, limit: Option<u64>) -> Result<(), RenderError> {
+/// Rejects an image that does not fit into the host's memory, before any of it is allocated.
+pub(crate) fn check_picture(plan: &Plan) -> Result<(), RenderError> {
+    fits(plan, memory::available())
+}
+
+fn fits(plan: &Plan, available: Option<u64>) -> Result<(), RenderError> {
     let needed = plan.pixels() * plan.film_bytes();
-    let limit = limit.into_iter().chain(memory::available()).min();
-    match limit.filter(|limit| needed > *limit) {
-        Some(limit) if plan.layers.is_some() => {
-            Err(RenderError::Memory { buffer: "the image and its layers", needed, limit })
-        }
-        Some(limit) => Err(RenderError::Memory { buffer: "the image", needed, limit }),
+    match available.filter(|available| needed > *available) {
+        Some(limit) => Err(RenderError::Memory { buffer: "the image and its layers", needed, limit }),
         None => Ok(()),
     }
 }
@@ -74,13 +74,13 @@ mod tests {
             kept: 0,
             footprint: Footprint::default(),
         };
-        let needed = |side, layers| match check_picture(&plan(side, layers), Some(1 << 20)) {
+        let needed = |side, layers| match fits(&plan(side, layers), Some(1 << 20)) {
             Err(RenderError::Memory { needed, limit, .. }) if limit == 1 << 20 => needed,
             found => panic!("{found:?}"),
         };
         assert_eq!(needed(60_000, None), 43_200_000_000);
         assert_eq!(needed(256, Some(3)), 65_536 * (12 + 32 + 12));
-        assert!(check_picture(&plan(256, None), Some(1 << 20)).is_ok());
+        assert!(fits(&plan(256, None), Some(1 << 20)).is_ok());
     }
 
     #[test]

@@ -165,7 +165,7 @@ fn what_is_wrong_in_a_render_names_value_remedy_and_flag() {
         (&["--size", "100000x100000"], &["size = 100000x100000", "below 4294967295 (--size)"]),
         (
             &["--size", "60000x60000", "--memory-limit", "1G"],
-            &["at least 43200000000 bytes, for the image", "the limit of 1073741824"],
+            &["at least 432", "bytes, for the scene, the image", "the limit of 1073741824"],
         ),
         (&["--memory-limit", "1M"], &["the limit of 1048576", "(--memory-limit, --size, --step, --radius)"]),
     ];
@@ -197,6 +197,10 @@ fn an_image_beyond_the_address_space_is_refused() {
     let render = ["render", "room.toml", "-o", "a.png", "--size", "30000x30000"];
     let done = Done::from(place.shell(r#"ulimit -v 4000000; exec "$0" "$@""#, &render).output().unwrap());
     assert_eq!(done.code, Some(3), "{done:?}");
-    assert!(done.stderr.contains("at least 10800000000 bytes, for the image, more than the limit of "), "{done:?}");
+    assert!(
+        done.stderr
+            .contains("bytes, for the scene, the image, and masks and visibility of one row, more than the limit of "),
+        "{done:?}"
+    );
     assert_eq!(place.files(), ["room.toml"]);
 }

@@ -272,8 +272,11 @@ fn picture_on<B: Backend>(
     let mut resolved = Resolved::new(scene, settings, observer)?;
     resolved.plan.kept = kept.as_ref().map_or(0, |kept| kept.memory());
     let Resolved { technique, view, plan, .. } = &resolved;
-    // On a device, the limit is that of its own memory.
-    bands::check_picture(plan, plan.memory_limit.filter(|_| backend.kind() == Cpu.kind()))?;
+    match backend.kind() == Cpu.kind() {
+        true => bands::rows_on_host(scene, plan).map(drop)?,
+        // The limit is that of the device's own memory.
+        false => bands::check_picture(plan)?,
+    }
     let job = resolved.job(observer);
     let mut picture = Picture::new(settings.size, plan.layers);
     let run = Run::new(backend, &job, kept);
