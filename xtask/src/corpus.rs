@@ -11,7 +11,7 @@ use crate::{Outcome, Verdict};
 const LONGEST: u64 = 16 << 10;
 
 /// Fuzz targets, and the extensions of the files that they accept.
-const TARGETS: [(&str, &[&str]); 8] = [
+const TARGETS: [(&str, &[&str]); 12] = [
     ("obj", &["obj"]),
     ("ply", &["ply"]),
     ("stl", &["stl"]),
@@ -20,6 +20,10 @@ const TARGETS: [(&str, &[&str]); 8] = [
     ("toml", &["toml"]),
     ("texture", &["png", "jpg", "jpeg", "bmp", "tga"]),
     ("grid", &["grid"]),
+    ("scene", &[]),
+    ("picture", &["png", "exr", "bmp"]),
+    ("values", &[]),
+    ("bvh", &[]),
 ];
 
 /// Fills `fuzz/corpus` in the repository at `root`, also with files below `scenes`.

@@ -29,7 +29,7 @@ impl Program {
         Program {
             name: "lightmesh".to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            commit: option_env!("LIGHTMESH_COMMIT").filter(|commit| !commit.is_empty()).map(str::to_owned),
+            commit: commit().map(str::to_owned),
             command: command.to_owned(),
         }
     }
@@ -38,6 +38,11 @@ impl Program {
 fn gpu(report: &DeviceReport) -> Gpu {
     let driver = report.driver_cuda_version.as_deref().map_or_else(String::new, |version| format!("CUDA {version}"));
     Gpu { name: report.name.clone(), memory_bytes: report.memory_bytes.unwrap_or(0), driver }
+}
+
+/// The commit from which the program was built, if it is known.
+pub fn commit() -> Option<&'static str> {
+    option_env!("LIGHTMESH_COMMIT").filter(|commit| !commit.is_empty())
 }
 
 /// Bytes of main memory, on Linux.

@@ -1,10 +1,10 @@
 //! Writing files and folders.
 
 use std::fs;
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
-use lightmesh_files::{Output, PublishError, Ready, TargetError, check_folder};
+use lightmesh_files::{PublishError, TargetError, WriteError, check_folder};
 
 /// Why output cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -21,13 +21,8 @@ pub enum OutputError {
     #[error(transparent)]
     Target(#[from] TargetError),
     /// Writing a file failed.
-    #[error("cannot write {}: {reason}; check the free disk space, then try again", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// The system's message.
-        reason: io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] WriteError),
     /// Complete files could not be renamed.
     #[error(transparent)]
     Publish(#[from] PublishError),
@@ -49,11 +44,4 @@ pub fn check_output_folder(folder: &Path) -> Result<(), OutputError> {
 /// Creates a folder if it is missing.
 pub(crate) fn make_folder(path: &Path) -> Result<(), OutputError> {
     fs::create_dir_all(path).map_err(|reason| OutputError::Folder { path: path.to_owned(), reason })
-}
-
-/// A complete file that may appear.
-pub(crate) fn ready(path: &Path, bytes: &[u8]) -> Result<Ready, OutputError> {
-    let mut file = Output::to(path)?;
-    let written = file.write_all(bytes).and_then(|()| file.ready());
-    written.map_err(|reason| OutputError::Write { path: path.to_owned(), reason })
 }

@@ -22,11 +22,14 @@ pub enum Suite {
     Shadows,
     /// Seconds of each stage, by acceleration structure and kind of short tests.
     Stages,
+    /// Several samples of a pixel: time and errors.
+    Antialiasing,
 }
 
 impl Suite {
     /// All of them.
-    pub const ALL: [Suite; 5] = [Suite::Thesis, Suite::Quality, Suite::Rays, Suite::Shadows, Suite::Stages];
+    pub const ALL: [Suite; 6] =
+        [Suite::Thesis, Suite::Quality, Suite::Rays, Suite::Shadows, Suite::Stages, Suite::Antialiasing];
 
     /// The name on the command line and in results.
     pub fn name(self) -> &'static str {
@@ -36,6 +39,7 @@ impl Suite {
             Suite::Rays => "rays",
             Suite::Shadows => "shadows",
             Suite::Stages => "stages",
+            Suite::Antialiasing => "antialiasing",
         }
     }
 
@@ -50,6 +54,9 @@ impl Suite {
             }
             Suite::Stages => {
                 "seconds of each stage by acceleration structure, kind of short tests and radius, on any scene"
+            }
+            Suite::Antialiasing => {
+                "what several samples of a pixel cost and gain, against a converged image, on any scene"
             }
         }
     }

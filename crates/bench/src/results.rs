@@ -104,6 +104,9 @@ pub(crate) const SHADOWS: &str = "shadows";
 /// The experiment that compares defaults.
 pub(crate) const WHOLE_FRAMES: &str = "whole frames";
 
+/// The experiment on samples of pixels.
+pub(crate) const ANTIALIASING: &str = "antialiasing";
+
 /// The experiment that adds lights.
 pub(crate) const MANY_LIGHTS: &str = "many lights";
 

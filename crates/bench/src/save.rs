@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use lightmesh_files::{Ready, publish};
 
-use crate::output::{make_folder, ready};
+use crate::output::make_folder;
 use crate::report::{free_name, slug};
 use crate::{OutputError, Picture, Results, json};
 
@@ -40,7 +40,7 @@ impl Results {
         let mut files = Vec::new();
         let pictures = if pictures { self.ready_pictures(path, &mut files)? } else { Vec::new() };
         let results = Results { pictures, ..self.clone() }.with_rounded_values();
-        files.push(ready(path, &json::lines(&results))?);
+        files.push(Ready::with(path, &json::lines(&results))?);
         Ok(files)
     }
 
@@ -52,7 +52,7 @@ impl Results {
         let (mut taken, mut pictures) = (BTreeSet::new(), self.pictures.clone());
         for picture in &mut pictures {
             let name = free_name(&slug(&picture.id), ".png", |name| taken.contains(name));
-            files.push(ready(&folder.join(&name), &picture.png)?);
+            files.push(Ready::with(folder.join(&name), &picture.png)?);
             picture.file = format!("{beside}/{name}");
             taken.insert(name);
         }

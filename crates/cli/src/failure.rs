@@ -61,7 +61,7 @@ pub(crate) enum Failure {
         /// All names.
         known: Vec<String>,
     },
-    /// Signals cannot be caught.
+    /// The threads that wait for signals and for the end of memory cannot be started.
     #[error("cannot listen for signals ({0}); end other programs or raise the limits of this one")]
     Signals(#[from] std::io::Error),
 }
@@ -92,12 +92,16 @@ impl Failure {
             Failure::Render(error) => match error {
                 RenderError::Cancelled => INTERRUPTED,
                 RenderError::Memory { .. }
+                | RenderError::BuildMemory { .. }
+                | RenderError::Grid(GridError::Memory { .. })
                 | RenderError::Threads { .. }
                 | RenderError::Device { .. }
                 | RenderError::DeviceMemory { .. }
                 | RenderError::DeviceFault { .. } => UNABLE,
                 _ => BAD_INPUT,
             },
+            Failure::Load(error) if matches!(error.root(), LoadError::Memory { .. }) => UNABLE,
+            Failure::Grid(GridError::Memory { .. }) => UNABLE,
             _ => BAD_INPUT,
         }
     }
@@ -106,12 +110,13 @@ impl Failure {
 #[cfg(test)]
 mod tests {
     use lightmesh::render::Setting;
+    use lightmesh_memory::Short;
 
     use super::*;
 
     #[test]
     fn what_the_machine_cannot_do_is_told_from_bad_input() {
-        let memory = RenderError::Memory { buffer: "masks", needed: 2, limit: 1 };
+        let memory = RenderError::Memory { buffer: "masks", short: Short { needed: 2, left: 1, limit: None } };
         let device = RenderError::Device { device: "cuda".into(), reason: "none".into() };
         let full = RenderError::DeviceMemory { device: "Fake".into(), buffer: "masks", needed: 2, free: Some(1) };
         let fault = RenderError::DeviceFault { device: "Fake".into(), reason: "none".into() };

@@ -3,6 +3,7 @@
 //! The library's messages name settings in words; the program adds the flag of each in brackets.
 
 use lightmesh::render::Setting;
+use lightmesh::render::accel::GridError;
 use lightmesh::{LoadError, RenderError};
 use lightmesh_bench::BenchError;
 use lightmesh_bench::report::ReportError;
@@ -21,10 +22,14 @@ pub(crate) fn of(setting: Setting) -> String {
 pub(crate) fn that_mend(failure: &Failure) -> Vec<String> {
     const RESULTS: &str = "lightmesh bench SUITE --json FILE";
     let fixed: &[&str] = match failure {
+        Failure::Render(RenderError::Grid(GridError::Memory { .. })) | Failure::Grid(GridError::Memory { .. }) => {
+            &["--grid", "--memory-limit"]
+        }
         Failure::Render(RenderError::Grid(_)) | Failure::Grid(_) => &["--grid"],
         Failure::Render(RenderError::GridFile(_)) => &["lightmesh grid SCENE -o FILE"],
         Failure::Render(error) => return error.settings().into_iter().map(of).collect(),
         Failure::Load(error) => match error.root() {
+            LoadError::Memory { .. } => &["--memory-limit"],
             LoadError::Outside { .. } => &["--allow-outside"],
             LoadError::Warnings { .. } => &["--strict"],
             _ => &[],
@@ -51,14 +56,14 @@ pub(crate) fn that_mend(failure: &Failure) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
+    use lightmesh_memory::Short;
 
     use super::*;
-    use crate::args::Cli;
+    use crate::args;
 
     #[test]
     fn every_setting_has_a_flag() {
-        let cli = Cli::command();
+        let cli = args::command();
         let render = cli.find_subcommand("render").unwrap();
         let known: Vec<String> =
             render.get_arguments().filter_map(|flag| flag.get_long()).map(|long| format!("--{long}")).collect();
@@ -69,7 +74,7 @@ mod tests {
 
     #[test]
     fn a_failure_names_the_flags_that_mend_it() {
-        let memory = RenderError::Memory { buffer: "masks", needed: 2, limit: 1 };
+        let memory = RenderError::Memory { buffer: "masks", short: Short { needed: 2, left: 1, limit: None } };
         assert_eq!(that_mend(&memory.into()), ["--memory-limit", "--size", "--step", "--radius"]);
         let strict = LoadError::Warnings { path: "a.obj".into(), warnings: vec!["odd".into()] };
         assert_eq!(that_mend(&strict.into()), ["--strict"]);

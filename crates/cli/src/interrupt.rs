@@ -64,6 +64,15 @@ fn leave(code: u8) -> ! {
     exit(code)
 }
 
+/// The same for another reason, which is the message, unless it is known that outputs are there.
+pub(crate) fn end(code: u8, reason: &str) -> ! {
+    match abandon() {
+        abandoned if abandoned == Abandoned::default() => output::conclude(reason),
+        abandoned => output::conclude(&format!("{reason}; {}", message(&abandoned))),
+    }
+    exit(code)
+}
+
 fn message(Abandoned { written, partial, .. }: &Abandoned) -> String {
     let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
     let whole = match &names[..] {
@@ -103,12 +112,12 @@ fn listen(end: impl Fn(u8) + Send + 'static) -> Result<(), Failure> {
 
 /// Exits without the clean-up of libraries, which would wait for threads at work.
 #[cfg(unix)]
-fn exit(code: u8) -> ! {
+pub(crate) fn exit(code: u8) -> ! {
     signal_hook::low_level::exit(code.into())
 }
 
 #[cfg(not(unix))]
-fn exit(code: u8) -> ! {
+pub(crate) fn exit(code: u8) -> ! {
     std::process::exit(code.into())
 }
 

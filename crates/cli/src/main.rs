@@ -7,6 +7,7 @@ mod args;
 mod failure;
 mod flags;
 mod interrupt;
+mod memory;
 mod output;
 mod plan;
 mod progress;
@@ -18,15 +19,15 @@ use std::panic::{self, PanicHookInfo};
 use std::process::ExitCode;
 use std::sync::Once;
 
-use clap::Parser;
+use clap::FromArgMatches;
 
-use crate::args::Cli;
+use crate::args::{Cli, Command};
 use crate::failure::{Failure, INTERRUPTED, UNABLE};
 
 fn main() -> ExitCode {
     panic::set_hook(Box::new(report_fault));
-    let result = panic::catch_unwind(|| match Cli::try_parse() {
-        Ok(cli) => interrupt::install().and_then(|()| run::run(cli.command)).unwrap_or_else(|failure| failed(&failure)),
+    let result = panic::catch_unwind(|| match parse() {
+        Ok(cli) => start(&cli.command).and_then(|()| run::run(cli.command)).unwrap_or_else(|failure| failed(&failure)),
         Err(message) => {
             output::print_usage(&message);
             message.exit_code() as u8
@@ -34,6 +35,16 @@ fn main() -> ExitCode {
     });
     interrupt::leave_if_requested();
     ExitCode::from(result.unwrap_or(UNABLE))
+}
+
+fn parse() -> Result<Cli, clap::Error> {
+    Cli::from_arg_matches(&args::command().try_get_matches()?)
+}
+
+/// Prepares for the ends that may come at any moment.
+fn start(command: &Command) -> Result<(), Failure> {
+    interrupt::install()?;
+    Ok(memory::watch(command.reading())?)
 }
 
 /// Reports an error; returns the exit code.

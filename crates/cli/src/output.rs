@@ -7,7 +7,7 @@ use std::thread;
 use std::time::Duration;
 
 use lightmesh_files::{
-    Identity, Output, PublishError, Ready, TargetError, identity, visible, visible_json, visible_lines,
+    Identity, PublishError, Ready, TargetError, WriteError, directory, identity, visible, visible_json, visible_lines,
 };
 use serde::Serialize;
 
@@ -23,8 +23,8 @@ pub(crate) enum OutputError {
     #[error(transparent)]
     Target(#[from] TargetError),
     /// Writing the file failed.
-    #[error("cannot write {}: {reason}; nothing was written; check the free disk space", path.display())]
-    Write { path: PathBuf, reason: io::Error },
+    #[error(transparent)]
+    Write(#[from] WriteError),
     /// Complete files could not be renamed.
     #[error(transparent)]
     Publish(#[from] PublishError),
@@ -116,9 +116,7 @@ pub(crate) fn check_writable(path: &Path) -> Result<(), OutputError> {
 
 /// A complete file that appears when it is published.
 pub(crate) fn ready(path: &Path, bytes: &[u8]) -> Result<Ready, OutputError> {
-    let mut file = Output::to(path)?;
-    let written = file.write_all(bytes).and_then(|()| file.ready());
-    written.map_err(|reason| OutputError::Write { path: path.to_owned(), reason })
+    Ok(Ready::with(path, bytes)?)
 }
 
 /// Lets all outputs of a run appear together.
@@ -171,8 +169,7 @@ impl Outputs {
             if let Some(flag) = self.same_as(path) {
                 return Err(OutputError::SameFile { first: what, second: flag, path: path.to_owned() });
             }
-            let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            let parent = identity(parent);
+            let parent = identity(directory(path));
             if let Some((flag, folder)) = self.folders.iter().find(|(_, folder)| identity(folder) == parent) {
                 let (path, folder) = (path.to_owned(), folder.clone());
                 return Err(OutputError::InFolder { what, path, flag, folder });

@@ -1,9 +1,12 @@
 //! The JSON of `--stats`: the renderer's statistics, and settings known only to the command line.
 
 use lightmesh::Stats;
+use lightmesh::image::{BitDepth, Format, SaveOptions};
 use lightmesh::render::{Counts, DeviceStats, MemoryStats, SceneStats, Seconds, SettingsStats};
 use lightmesh::scene::LightInfo;
 use serde::Serialize;
+
+use crate::plan::PictureFiles;
 
 /// [`Stats`] with the command line's settings added.
 #[derive(Serialize)]
@@ -24,17 +27,46 @@ struct AllSettings<'a> {
     transfer: &'static str,
     /// Stops, 0 for an exr.
     exposure: f32,
+    /// None for an exr, as the next two.
+    view: Option<&'static str>,
+    bit_depth: Option<u8>,
+    dither: Option<bool>,
+    /// None if neither the image nor the layers are an exr, as the next.
+    exr_type: Option<&'static str>,
+    exr_compression: Option<&'static str>,
     /// The camera as described by `lightmesh info`.
     lights: &'a [LightInfo],
 }
 
 impl<'a> Report<'a> {
-    pub(crate) fn new(stats: &'a Stats, transfer: &'static str, exposure: f32, lights: &'a [LightInfo]) -> Report<'a> {
+    pub(crate) fn new(
+        stats: &'a Stats,
+        files: &PictureFiles,
+        options: &SaveOptions,
+        lights: &'a [LightInfo],
+    ) -> Report<'a> {
+        let (display, exr) = (&options.display, &options.exr);
+        let format = Format::from_path(&files.picture);
+        let is_exr = format == Some(Format::Exr);
+        let has_exr = is_exr || files.layers.is_some();
+        // Only 8-bit codes are dithered.
+        let dither = display.dither && display.bit_depth == BitDepth::Eight;
+        let settings = AllSettings {
+            render: &stats.settings,
+            transfer: display.transfer.name(),
+            exposure: display.exposure,
+            view: (!is_exr).then(|| display.view.name()),
+            bit_depth: (!is_exr).then(|| display.bit_depth.bits()),
+            dither: (!is_exr).then_some(dither),
+            exr_type: has_exr.then(|| exr.samples.name()),
+            exr_compression: has_exr.then(|| exr.compression.name()),
+            lights,
+        };
         Report {
             version: stats.version,
             scene: &stats.scene,
             device: &stats.device,
-            settings: AllSettings { render: &stats.settings, transfer, exposure, lights },
+            settings,
             counts: &stats.counts,
             seconds: &stats.seconds,
             memory: &stats.memory,

@@ -36,9 +36,9 @@ mod visible;
 mod tests;
 
 pub use ending::{Abandoned, abandon, record_written, stand_by};
-pub use output::{Output, Ready};
+pub use output::{Output, Ready, WriteError};
 pub use publish::{PublishError, publish};
-pub use read::{ReadError, read, read_inside};
+pub use read::{Portion, ReadError, read, read_inside};
 pub use stream::is_standard_output;
-pub use target::{Identity, TargetError, check_folder, check_writable, identity};
+pub use target::{Identity, TargetError, check_folder, check_writable, directory, identity};
 pub use visible::{visible, visible_json, visible_lines};

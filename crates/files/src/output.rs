@@ -15,6 +15,23 @@ const SPOOLED: usize = 64 << 20;
 /// Data become durable in steps of so many bytes. A process cannot end while the system writes, so none may take long.
 const SYNCED: u64 = 16 << 20;
 
+/// Why a whole file cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// It cannot be created.
+    #[error(transparent)]
+    Target(#[from] TargetError),
+    /// Writing its data failed, most often because the disk is full.
+    #[error("cannot write {}: {reason}; nothing was written; check the free disk space", path.display())]
+    Data {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        reason: io::Error,
+    },
+}
+
 /// An output that is being written. If dropped, it has never been.
 #[derive(Debug)]
 pub struct Output {
@@ -113,6 +130,17 @@ pub(crate) enum Step {
 }
 
 impl Ready {
+    /// A complete file with this content.
+    ///
+    /// # Errors
+    /// [`WriteError`], which names the file.
+    pub fn with(path: impl AsRef<Path>, bytes: &[u8]) -> Result<Ready, WriteError> {
+        let path = path.as_ref();
+        let mut file = Output::to(path)?;
+        let written = file.write_all(bytes).and_then(|()| file.ready());
+        written.map_err(|reason| WriteError::Data { path: path.to_owned(), reason })
+    }
+
     /// The path that was given.
     pub fn path(&self) -> &Path {
         &self.0.path

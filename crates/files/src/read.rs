@@ -8,6 +8,8 @@ use std::fs::{self, File, Metadata};
 use std::io::{self, Read};
 use std::path::Path;
 
+use lightmesh_memory::{Budget, Short};
+
 /// Why a file cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -21,27 +23,44 @@ pub enum ReadError {
     /// Its real path is not in the folder.
     #[error("outside the folder")]
     Outside,
+    /// What is to be read does not fit into memory.
+    #[error(transparent)]
+    Memory(#[from] Short),
+}
+
+/// How much of a file is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Portion {
+    /// This many bytes from its beginning, if it has them.
+    pub wanted: u64,
+    /// The memory for them.
+    pub budget: Budget,
+}
+
+impl Portion {
+    /// Everything, if the machine has memory for it.
+    pub const ALL: Portion = Portion { wanted: u64::MAX, budget: Budget::new(None) };
 }
 
 /// The content of a regular file. Pipes and devices, which might never end, are not opened.
 ///
 /// # Errors
-/// [`ReadError::System`] or [`ReadError::Irregular`].
-pub fn read(path: &Path) -> Result<Vec<u8>, ReadError> {
+/// [`ReadError`] except [`ReadError::Outside`].
+pub fn read(path: &Path, portion: Portion) -> Result<Vec<u8>, ReadError> {
     regular(&fs::metadata(path)?)?;
-    read_to_end(open(path)?)
+    read_portion(open(path)?, portion)
 }
 
 /// The content of a regular file whose real path is in `folder`; the empty path is the current one.
 ///
 /// # Errors
 /// [`ReadError`]; [`ReadError::Outside`] if a link or `..` in `path` leads out of the folder.
-pub fn read_inside(folder: &Path, path: &Path) -> Result<Vec<u8>, ReadError> {
+pub fn read_inside(folder: &Path, path: &Path, portion: Portion) -> Result<Vec<u8>, ReadError> {
     let folder = fs::canonicalize(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })?;
     let real = fs::canonicalize(path)?;
     let inside = real.strip_prefix(&folder).map_err(|_| ReadError::Outside)?;
     regular(&fs::symlink_metadata(&real)?)?;
-    read_to_end(open_inside(&folder, inside)?)
+    read_portion(open_inside(&folder, inside)?, portion)
 }
 
 /// Looked at before opening, which may wait or have effects, and once more afterwards.
@@ -49,10 +68,13 @@ fn regular(status: &Metadata) -> Result<(), ReadError> {
     if status.is_file() { Ok(()) } else { Err(ReadError::Irregular) }
 }
 
-fn read_to_end(mut file: File) -> Result<Vec<u8>, ReadError> {
-    regular(&file.metadata()?)?;
-    let mut bytes = Vec::new();
-    file.read_to_end(&mut bytes)?;
+fn read_portion(file: File, Portion { wanted, budget }: Portion) -> Result<Vec<u8>, ReadError> {
+    let status = file.metadata()?;
+    regular(&status)?;
+    let size = status.len().min(wanted);
+    budget.check(size)?;
+    let mut bytes = Vec::with_capacity(size as usize);
+    file.take(wanted).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
@@ -96,39 +118,45 @@ fn open_inside(folder: &Path, inside: &Path) -> io::Result<File> {
 
 #[cfg(test)]
 mod tests {
+    use std::path::PathBuf;
+
+    use tempfile::TempDir;
+
     use super::*;
 
-    #[test]
-    fn a_file_in_the_folder_is_read_and_others_are_not() {
+    /// The folder `scene` with the file `parts/a`, and the file `b` next to it.
+    fn scene() -> (TempDir, PathBuf) {
         let place = tempfile::tempdir().unwrap();
         let folder = place.path().join("scene");
         fs::create_dir_all(folder.join("parts")).unwrap();
         fs::write(folder.join("parts/a"), "in").unwrap();
         fs::write(place.path().join("b"), "out").unwrap();
-        assert_eq!(read_inside(&folder, &folder.join("parts/../parts/a")).unwrap(), b"in");
-        assert_eq!(read(&place.path().join("b")).unwrap(), b"out");
-        assert!(matches!(read_inside(&folder, &folder.join("../b")), Err(ReadError::Outside)));
-        assert!(matches!(read_inside(&folder, &folder), Err(ReadError::Irregular)));
-        assert!(matches!(read(&folder), Err(ReadError::Irregular)));
-        assert!(matches!(read_inside(&folder, &folder.join("c")), Err(ReadError::System(_))));
+        (place, folder)
+    }
+
+    #[test]
+    fn a_file_in_the_folder_is_read_and_others_are_not() {
+        let (place, folder) = scene();
+        assert_eq!(read_inside(&folder, &folder.join("parts/../parts/a"), Portion::ALL).unwrap(), b"in");
+        assert_eq!(read(&place.path().join("b"), Portion::ALL).unwrap(), b"out");
+        assert!(matches!(read_inside(&folder, &folder.join("../b"), Portion::ALL), Err(ReadError::Outside)));
+        assert!(matches!(read_inside(&folder, &folder, Portion::ALL), Err(ReadError::Irregular)));
+        assert!(matches!(read(&folder, Portion::ALL), Err(ReadError::Irregular)));
+        assert!(matches!(read_inside(&folder, &folder.join("c"), Portion::ALL), Err(ReadError::System(_))));
     }
 
     #[cfg(unix)]
     #[test]
     fn links_are_followed_in_the_folder_and_not_out_of_it() {
         use std::os::unix::fs::symlink;
-        let place = tempfile::tempdir().unwrap();
-        let folder = place.path().join("scene");
-        fs::create_dir_all(folder.join("parts")).unwrap();
-        fs::write(folder.join("parts/a"), "in").unwrap();
-        fs::write(place.path().join("b"), "out").unwrap();
+        let (place, folder) = scene();
         symlink("parts", folder.join("near")).unwrap();
         symlink(folder.join("parts/a"), folder.join("absolute")).unwrap();
         symlink("../b", folder.join("far")).unwrap();
         symlink("..", folder.join("up")).unwrap();
         symlink("/dev/zero", folder.join("device")).unwrap();
         symlink(&folder, place.path().join("scene again")).unwrap();
-        let read = |path: &str| read_inside(&place.path().join("scene again"), &folder.join(path));
+        let read = |path: &str| read_inside(&place.path().join("scene again"), &folder.join(path), Portion::ALL);
         for path in ["near/a", "absolute", "parts/a"] {
             assert_eq!(read(path).unwrap(), b"in", "{path}");
         }
@@ -136,7 +164,7 @@ mod tests {
             assert!(matches!(read(path), Err(ReadError::Outside)), "{path}");
         }
         assert_eq!(read("up/scene/parts/a").unwrap(), b"in");
-        assert!(matches!(super::read(&folder.join("device")), Err(ReadError::Irregular)));
+        assert!(matches!(super::read(&folder.join("device"), Portion::ALL), Err(ReadError::Irregular)));
     }
 
     /// What happens if a folder becomes a link after its path was found good.
@@ -150,5 +178,18 @@ mod tests {
         fs::create_dir(&folder).unwrap();
         std::os::unix::fs::symlink("../out", folder.join("parts")).unwrap();
         assert!(open_inside(&folder, Path::new("parts/a")).is_err());
+    }
+
+    #[test]
+    fn no_more_is_read_than_wanted_and_none_if_that_is_too_much() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("a");
+        fs::write(&path, "abcdef").unwrap();
+        File::options().write(true).open(&path).unwrap().set_len(1 << 32).unwrap();
+        let portion = |wanted| read(&path, Portion { wanted, budget: Budget::new(Some(1 << 24)) });
+        assert_eq!(portion(4).unwrap(), b"abcd");
+        assert_eq!(portion(0).unwrap(), b"");
+        assert!(matches!(portion(u64::MAX), Err(ReadError::Memory(Short { needed: 0x1_0000_0000, .. }))));
+        assert!(matches!(portion(1 << 25), Err(ReadError::Memory(Short { needed: 0x200_0000, .. }))));
     }
 }

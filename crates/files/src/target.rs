@@ -207,8 +207,8 @@ fn followed(path: &Path) -> PathBuf {
     path
 }
 
-/// The directory of a path; `.` if it has none.
-pub(crate) fn directory(path: &Path) -> &Path {
+/// The directory in which a path names something: `.` for a name alone, and the root for the root.
+pub fn directory(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         Some(_) => Path::new("."),

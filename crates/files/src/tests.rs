@@ -7,9 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::{Output, Ready, TargetError, check_folder, check_writable, identity, publish};
 
 fn ready(path: &Path, bytes: &[u8]) -> Ready {
-    let mut file = Output::to(path).unwrap();
-    file.write_all(bytes).unwrap();
-    file.ready().unwrap()
+    Ready::with(path, bytes).unwrap()
 }
 
 fn put(path: &Path, bytes: &[u8]) {

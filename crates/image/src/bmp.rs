@@ -9,7 +9,7 @@ use image::codecs::bmp::BmpDecoder;
 
 use crate::load::{DecodeError, read_with};
 use crate::save::EncodeError;
-use crate::{Format, Frame, Transfer};
+use crate::{Display, Format, Frame};
 
 const FILE_HEADER: u32 = 14;
 const INFO_HEADER: u32 = 40;
@@ -66,15 +66,16 @@ pub(crate) fn can_hold(width: u32, height: u32) -> bool {
     Layout::new(width, height).is_some()
 }
 
-/// Writes `frame` with `transfer`, which the format cannot record.
-pub(crate) fn write(frame: &Frame, transfer: Transfer, mut output: impl Write) -> Result<(), EncodeError> {
+/// Writes `frame` with 8 bits per channel; the format cannot record the transfer function.
+pub(crate) fn write(frame: &Frame, display: &Display, mut output: impl Write) -> Result<(), EncodeError> {
     let layout = Layout::new(frame.width(), frame.height());
     let layout = layout.ok_or(EncodeError::TooLarge { limit: LIMIT })?;
     output.write_all(&layout.headers())?;
     let mut bytes = Vec::with_capacity(layout.row);
-    for row in frame.rows().rev() {
+    for y in (0..frame.height() as usize).rev() {
         bytes.clear();
-        bytes.extend(row.iter().flat_map(|&[r, g, b]| [b, g, r].map(|value| transfer.encode(value))));
+        display.encode_row(frame, y, &mut bytes);
+        bytes.chunks_exact_mut(3).for_each(|pixel| pixel.swap(0, 2));
         bytes.resize(layout.row, 0);
         output.write_all(&bytes)?;
     }
@@ -89,10 +90,12 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Transfer;
 
     fn encode(width: u32, height: u32, color: Vec<[f32; 3]>) -> Vec<u8> {
         let mut bytes = Vec::new();
-        write(&Frame::new(width, height, color).unwrap(), Transfer::Linear, &mut bytes).unwrap();
+        let display = Display::default().with_transfer(Transfer::Linear);
+        write(&Frame::new(width, height, color).unwrap(), &display, &mut bytes).unwrap();
         bytes
     }
 

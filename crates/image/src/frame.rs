@@ -3,14 +3,20 @@
 //! Pixels are row-major and row 0 is at the top, so pixel (x, y) is at `y * width + x` in every plane. All lengths are checked
 //! when a frame is created; the writers rely on that.
 
+use std::ops::Range;
+
 use thiserror::Error;
 
-/// An image of linear radiance with Rec. 709 primaries, and optionally its [`Layers`].
+/// An image of linear radiance with Rec. 709 primaries, and optionally its alpha and its [`Layers`].
+///
+/// Alpha is the share of a pixel that is covered, in [0, 1]. Colours are what the covered part sends alone: they are premultiplied, and black
+/// where alpha is 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     width: u32,
     height: u32,
     color: Vec<[f32; 3]>,
+    alpha: Option<Vec<f32>>,
     layers: Option<Layers>,
 }
 
@@ -40,6 +46,8 @@ pub struct FrameParts {
     pub size: [u32; 2],
     /// Linear colours, row-major, row 0 at the top.
     pub color: Vec<[f32; 3]>,
+    /// Share of each pixel that is covered, if the frame has it.
+    pub alpha: Option<Vec<f32>>,
     /// The layers, if the frame has any.
     pub layers: Option<Layers>,
 }
@@ -59,7 +67,7 @@ pub enum FrameError {
     /// The number of entries of a plane is not the number of pixels.
     #[error("plane '{plane}' has {found} entries, but a frame of {width}x{height} pixels needs {expected}")]
     Length {
-        /// Name of the plane: `color`, or a field of [`Layers`] (`visibility[i]` for light i).
+        /// Name of the plane: `color`, `alpha`, or a field of [`Layers`] (`visibility[i]` for light i).
         plane: String,
         /// Width in pixels.
         width: u32,
@@ -80,7 +88,7 @@ impl Frame {
     pub fn new(width: u32, height: u32, color: Vec<[f32; 3]>) -> Result<Self, FrameError> {
         let pixels = pixel_count(width, height).ok_or(FrameError::Size { width, height })?;
         check_length("color", color.len(), width, height, pixels)?;
-        Ok(Self { width, height, color, layers: None })
+        Ok(Self { width, height, color, alpha: None, layers: None })
     }
 
     /// The same frame with `layers`, replacing any previous ones.
@@ -97,6 +105,16 @@ impl Frame {
             check(&format!("visibility[{light}]"), plane.len())?;
         }
         self.layers = Some(layers);
+        Ok(self)
+    }
+
+    /// The same frame with `alpha`, the covered share of each pixel, replacing any previous one. Colours are taken as premultiplied.
+    ///
+    /// # Errors
+    /// [`FrameError::Length`] if the number of entries is not the number of pixels.
+    pub fn with_alpha(mut self, alpha: Vec<f32>) -> Result<Self, FrameError> {
+        check_length("alpha", alpha.len(), self.width, self.height, self.color.len())?;
+        self.alpha = Some(alpha);
         Ok(self)
     }
 
@@ -120,7 +138,8 @@ impl Frame {
         &mut self.color
     }
 
-    /// Splits the frame into its parts without copying. [`Frame::new`] and [`Frame::with_layers`] reassemble it.
+    /// Splits the frame into its parts without copying. [`Frame::new`], [`Frame::with_alpha`] and [`Frame::with_layers`]
+    /// reassemble it.
     ///
     /// ```
     /// let frame = lightmesh_image::Frame::new(2, 1, vec![[0.0; 3], [0.5; 3]])?;
@@ -129,7 +148,7 @@ impl Frame {
     /// # Ok::<(), lightmesh_image::FrameError>(())
     /// ```
     pub fn into_parts(self) -> FrameParts {
-        FrameParts { size: [self.width, self.height], color: self.color, layers: self.layers }
+        FrameParts { size: [self.width, self.height], color: self.color, alpha: self.alpha, layers: self.layers }
     }
 
     /// The colour of pixel (x, y), or `None` outside of the frame.
@@ -142,9 +161,25 @@ impl Frame {
         self.color.chunks_exact(self.width as usize)
     }
 
-    /// A frame of the same size, without layers, with colours computed from pixel indices.
+    /// The colours of row `y`.
+    pub(crate) fn row(&self, y: usize) -> &[[f32; 3]] {
+        &self.color[self.row_range(y)]
+    }
+
+    /// Where the pixels of row `y` are in every plane.
+    pub(crate) fn row_range(&self, y: usize) -> Range<usize> {
+        let width = self.width as usize;
+        y * width..(y + 1) * width
+    }
+
+    /// A frame of the same size, without alpha and layers, with colours computed from pixel indices.
     pub(crate) fn recolored(&self, color: impl FnMut(usize) -> [f32; 3]) -> Self {
-        Self { color: (0..self.color.len()).map(color).collect(), layers: None, ..*self }
+        Self { color: (0..self.color.len()).map(color).collect(), alpha: None, layers: None, ..*self }
+    }
+
+    /// The covered share of each pixel, if the frame has it.
+    pub fn alpha(&self) -> Option<&[f32]> {
+        self.alpha.as_deref()
     }
 
     /// The layers, if the frame has any.
@@ -195,8 +230,10 @@ mod tests {
         let color = vec![[0.5; 3]; 6];
         let (colors, planes) = (color.as_ptr(), layers(6));
         let depth = planes.depth.as_ptr();
-        let parts = Frame::new(3, 2, color).unwrap().with_layers(planes).unwrap().into_parts();
+        let frame = Frame::new(3, 2, color).unwrap().with_alpha(vec![0.5; 6]).unwrap();
+        let parts = frame.with_layers(planes).unwrap().into_parts();
         assert_eq!((parts.size, parts.color.as_ptr()), ([3, 2], colors));
+        assert_eq!(parts.alpha.unwrap(), [0.5; 6]);
         assert_eq!(parts.layers.unwrap().depth.as_ptr(), depth);
     }
 
@@ -219,5 +256,6 @@ mod tests {
         let error = frame().with_layers(short).unwrap_err();
         assert!(error.to_string().contains("visibility[1]"), "{error}");
         assert!(frame().with_layers(layers(7)).is_err());
+        assert!(frame().with_alpha(vec![1.0; 5]).unwrap_err().to_string().contains("plane 'alpha' has 5"));
     }
 }

@@ -7,7 +7,7 @@ use image::codecs::jpeg::{JpegDecoder, JpegEncoder};
 
 use crate::load::{DecodeError, read_with};
 use crate::save::{EncodeError, check_fits};
-use crate::{Format, Frame, Transfer};
+use crate::{Display, Format, Frame};
 
 const QUALITY: u8 = 92;
 /// The format stores sizes in 16 bits.
@@ -16,12 +16,12 @@ pub(crate) const MAX_SIDE: u32 = 65_535;
 const START_OF_SCAN: [u8; 2] = [0xff, 0xda];
 const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
 
-/// Writes `frame` with `transfer`, which the format cannot record.
-pub(crate) fn write(frame: &Frame, transfer: Transfer, output: impl Write) -> Result<(), EncodeError> {
+/// Writes `frame` with 8 bits per channel; the format cannot record the transfer function.
+pub(crate) fn write(frame: &Frame, display: &Display, output: impl Write) -> Result<(), EncodeError> {
     let (width, height) = (frame.width(), frame.height());
     check_fits(Format::Jpg, frame)?;
     let mut bytes = Vec::with_capacity(3 * frame.color().len());
-    transfer.encode_into(frame.color(), &mut bytes);
+    (0..height as usize).for_each(|y| display.encode_row(frame, y, &mut bytes));
     JpegEncoder::new_with_quality(output, QUALITY)
         .encode(&bytes, width, height, image::ExtendedColorType::Rgb8)
         .map_err(|error| EncodeError::Io(io_error(error)))
@@ -56,7 +56,7 @@ mod tests {
     #[test]
     fn large_sides_are_refused() {
         let frame = Frame::new(65_536, 1, vec![[0.0; 3]; 65_536]).unwrap();
-        assert!(matches!(write(&frame, Transfer::Srgb, Vec::new()), Err(EncodeError::TooLarge { .. })));
+        assert!(matches!(write(&frame, &Display::default(), Vec::new()), Err(EncodeError::TooLarge { .. })));
     }
 
     #[test]

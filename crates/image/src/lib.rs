@@ -7,7 +7,8 @@
 //! - [`Frame::load`] reads the same formats back into linear values;
 //! - [`compare`] measures the difference between two frames, as numbers and as an image (FLIP).
 //!
-//! Transfer functions ([`Transfer`]) are only applied here; everything else in the workspace uses linear values.
+//! [`SaveOptions`] say how: exposure, [`View`], transfer function and bits of files that are looked at ([`Display`]), numbers and compression of
+//! exr files ([`ExrOptions`]). All of it is only applied here; everything else in the workspace uses linear values.
 //!
 //! Each format has a Cargo feature (`bmp`, `exr`, `jpeg`, `png`), and so has the comparison (`flip`); all are on by default.
 //!
@@ -38,6 +39,9 @@
 mod bmp;
 #[cfg(feature = "flip")]
 mod compare;
+#[cfg(any(feature = "exr", feature = "png"))]
+mod deflate;
+mod display;
 mod exposure;
 #[cfg(feature = "exr")]
 mod exr;
@@ -46,6 +50,7 @@ mod frame;
 #[cfg(feature = "jpeg")]
 mod jpg;
 mod load;
+mod options;
 #[cfg(feature = "png")]
 mod png;
 mod save;
@@ -53,9 +58,11 @@ mod transfer;
 
 #[cfg(feature = "flip")]
 pub use compare::{CompareError, Comparison, compare};
+pub use display::{BitDepth, Display, UnknownView, View};
 pub use format::Format;
 pub use frame::{Frame, FrameError, FrameParts, Layers};
 pub use lightmesh_files::{PublishError, Ready, publish};
 pub use load::{DecodeError, LoadError};
-pub use save::{EncodeError, SaveError, check_size, check_writable};
+pub use options::{Description, ExrCompression, ExrOptions, ExrSamples, SaveOptions, UnknownWord};
+pub use save::{EncodeError, SaveError, check_options, check_size, check_writable};
 pub use transfer::{Transfer, UnknownTransfer};

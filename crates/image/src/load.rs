@@ -1,7 +1,7 @@
 //! Loading images into linear [`Frame`]s. The format is determined by the first bytes of a file, not its name.
 //!
 //! Files are untrusted: sizes are checked before memory is allocated, and a truncated or damaged file is an error. Colour
-//! profiles, EXIF orientation and alpha are ignored.
+//! profiles and EXIF orientation are ignored.
 
 use std::fs::File;
 use std::io::{self, Read};

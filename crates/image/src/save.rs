@@ -18,7 +18,7 @@ use crate::exr;
 use crate::jpg;
 #[cfg(feature = "png")]
 use crate::png;
-use crate::{Format, Frame, Transfer};
+use crate::{BitDepth, Format, Frame, SaveOptions, Transfer};
 
 /// Why an image cannot be saved.
 #[derive(Debug, Error)]
@@ -67,6 +67,22 @@ pub enum SaveError {
         /// The limit of the format.
         limit: &'static str,
     },
+    /// The format has 8 bits per channel.
+    #[error("cannot save {} with 16 bits per channel: {format} files have 8; use png, or exr for floats", path.display())]
+    BitDepth {
+        /// The target.
+        path: PathBuf,
+        /// The target's format.
+        format: Format,
+    },
+    /// The format cannot be transparent.
+    #[error("cannot save {} with a transparent background: {format} files have no alpha; use png or exr", path.display())]
+    Alpha {
+        /// The target.
+        path: PathBuf,
+        /// The target's format.
+        format: Format,
+    },
     /// Writing failed, most often because the disk is full; nothing is left behind.
     #[error("cannot save {}: {reason}; nothing was written; check the free disk space", path.display())]
     Write {
@@ -90,6 +106,18 @@ pub enum EncodeError {
         /// The limit.
         limit: &'static str,
     },
+    /// The format has 8 bits per channel.
+    #[error("{format} files have 8 bits per channel")]
+    BitDepth {
+        /// The format.
+        format: Format,
+    },
+    /// The format cannot be transparent.
+    #[error("{format} files have no alpha")]
+    Alpha {
+        /// The format.
+        format: Format,
+    },
     /// This crate was built without the format.
     #[error("this program was built without {format} files: build it with the feature {feature}")]
     NotBuilt {
@@ -98,6 +126,9 @@ pub enum EncodeError {
         /// The Cargo feature that it needs.
         feature: &'static str,
     },
+    /// The frame was rendered without layers.
+    #[error("the frame has no layers; render it with layers")]
+    NoLayers,
     /// The bytes could not be written.
     #[error(transparent)]
     Io(#[from] io::Error),
@@ -108,6 +139,16 @@ pub(crate) fn check_fits(format: Format, frame: &Frame) -> Result<(), EncodeErro
     match format.exceeded_limit(frame.width(), frame.height()) {
         Some(limit) => Err(EncodeError::TooLarge { limit }),
         None => Ok(()),
+    }
+}
+
+/// Fails if `format` has fewer bits than requested, or no alpha.
+fn check_storable(format: Format, options: &SaveOptions, has_alpha: bool) -> Result<(), EncodeError> {
+    let is_plain = matches!(format, Format::Bmp | Format::Jpg);
+    match (is_plain, has_alpha, options.display.bit_depth) {
+        (true, true, _) => Err(EncodeError::Alpha { format }),
+        (true, _, BitDepth::Sixteen) => Err(EncodeError::BitDepth { format }),
+        _ => Ok(()),
     }
 }
 
@@ -133,19 +174,30 @@ impl Frame {
     /// # Errors
     /// [`SaveError`]; the target is then unchanged.
     pub fn ready(&self, path: impl AsRef<Path>, transfer: Transfer) -> Result<Ready, SaveError> {
+        self.ready_with(path, &transfer.into())
+    }
+
+    /// As [`Frame::ready`], with all options.
+    ///
+    /// # Errors
+    /// [`SaveError`]; the target is then unchanged.
+    pub fn ready_with(&self, path: impl AsRef<Path>, options: &SaveOptions) -> Result<Ready, SaveError> {
         let path = path.as_ref();
         let format = known_format(path)?;
-        self.written(path, format, |output| match format {
-            #[cfg(feature = "bmp")]
-            Format::Bmp => bmp::write(self, transfer, output),
-            #[cfg(feature = "png")]
-            Format::Png => png::write(self, transfer, output),
-            #[cfg(feature = "exr")]
-            Format::Exr => exr::write(self, output),
-            #[cfg(feature = "jpeg")]
-            Format::Jpg => jpg::write(self, transfer, output),
-            #[allow(unreachable_patterns, reason = "unless all features are on")]
-            other => Err(EncodeError::NotBuilt { format: other, feature: other.feature() }),
+        self.written(path, format, |output| {
+            check_storable(format, options, self.alpha().is_some())?;
+            match format {
+                #[cfg(feature = "bmp")]
+                Format::Bmp => bmp::write(self, &options.display, output),
+                #[cfg(feature = "png")]
+                Format::Png => png::write(self, &options.display, output),
+                #[cfg(feature = "exr")]
+                Format::Exr => exr::write(self, options, output),
+                #[cfg(feature = "jpeg")]
+                Format::Jpg => jpg::write(self, &options.display, output),
+                #[allow(unreachable_patterns, reason = "unless all features are on")]
+                other => Err(EncodeError::NotBuilt { format: other, feature: other.feature() }),
+            }
         })
     }
 
@@ -156,7 +208,7 @@ impl Frame {
     /// [`EncodeError::TooLarge`] if a side is longer than 2147483647 pixels.
     pub fn to_png(&self) -> Result<Vec<u8>, EncodeError> {
         let mut bytes = Vec::new();
-        png::write(self, Transfer::Srgb, &mut bytes)?;
+        png::write(self, &crate::Display::default(), &mut bytes)?;
         Ok(bytes)
     }
 
@@ -172,7 +224,7 @@ impl Frame {
 
     #[cfg(feature = "exr")]
     /// Saves colours and layers as one multilayer exr of 32-bit floats with the channels `R G B` (linear), `Z` (distance
-    /// along the ray), `N.X N.Y N.Z`, `P.X P.Y P.Z`, `V.0 V.1 …` (one per light) and `M` (light points used).
+    /// along the ray), `A` if the frame has alpha, `N.X N.Y N.Z`, `P.X P.Y P.Z`, `V.0 V.1 …` (one per light) and `M` (light points used).
     ///
     /// # Errors
     /// [`SaveError::NoLayers`], [`SaveError::LayersNeedExr`], or as [`Frame::save`].
@@ -186,13 +238,34 @@ impl Frame {
     /// # Errors
     /// As [`Frame::save_layers`].
     pub fn ready_layers(&self, path: impl AsRef<Path>) -> Result<Ready, SaveError> {
+        self.ready_layers_with(path, &SaveOptions::default())
+    }
+
+    #[cfg(feature = "exr")]
+    /// As [`Frame::ready_layers`], with all options.
+    ///
+    /// # Errors
+    /// As [`Frame::save_layers`].
+    pub fn ready_layers_with(&self, path: impl AsRef<Path>, options: &SaveOptions) -> Result<Ready, SaveError> {
         let path = path.as_ref();
         let format = known_format(path)?;
         if format != Format::Exr {
             return Err(SaveError::LayersNeedExr { path: path.to_owned() });
         }
         let layers = self.layers().ok_or_else(|| SaveError::NoLayers { path: path.to_owned() })?;
-        self.written(path, format, |output| exr::write_layers(self, layers, output))
+        self.written(path, format, |output| exr::write_layers(self, layers, options, output))
+    }
+
+    #[cfg(feature = "exr")]
+    /// The bytes that [`Frame::save_layers`] would write.
+    ///
+    /// # Errors
+    /// [`EncodeError::NoLayers`] if the frame has none.
+    pub fn encode_layers(&self) -> Result<Vec<u8>, EncodeError> {
+        let layers = self.layers().ok_or(EncodeError::NoLayers)?;
+        let mut output = std::io::Cursor::new(Vec::new());
+        exr::write_layers(self, layers, &SaveOptions::default(), &mut output)?;
+        Ok(output.into_inner())
     }
 
     /// Calls `write` to fill a file, which may then replace the one at `path`.
@@ -207,7 +280,10 @@ impl Frame {
                 let (width, height) = (self.width(), self.height());
                 SaveError::TooLarge { path: path.to_owned(), format, width, height, limit }
             }
+            EncodeError::BitDepth { format } => SaveError::BitDepth { path: path.to_owned(), format },
+            EncodeError::Alpha { format } => SaveError::Alpha { path: path.to_owned(), format },
             EncodeError::NotBuilt { format, .. } => SaveError::NotBuilt { path: path.to_owned(), format },
+            EncodeError::NoLayers => SaveError::NoLayers { path: path.to_owned() },
             EncodeError::Io(reason) => SaveError::Write { path: path.to_owned(), reason },
         };
         let mut file = Output::to(path)?;
@@ -245,6 +321,19 @@ pub fn check_size(path: impl AsRef<Path>, width: u32, height: u32) -> Result<(),
         Some(limit) => Err(SaveError::TooLarge { path: path.to_owned(), format, width, height, limit }),
         None => Ok(()),
     }
+}
+
+/// Checks that the format of `path` can store an image with these options, and with alpha if it is to be transparent.
+///
+/// # Errors
+/// [`SaveError::BitDepth`], [`SaveError::Alpha`] or [`SaveError::UnknownExtension`], as [`Frame::ready_with`] would return.
+pub fn check_options(path: impl AsRef<Path>, options: &SaveOptions, has_alpha: bool) -> Result<(), SaveError> {
+    let path = path.as_ref();
+    let format = known_format(path)?;
+    check_storable(format, options, has_alpha).map_err(|error| match error {
+        EncodeError::Alpha { .. } => SaveError::Alpha { path: path.to_owned(), format },
+        _ => SaveError::BitDepth { path: path.to_owned(), format },
+    })
 }
 
 fn known_format(path: &Path) -> Result<Format, SaveError> {

@@ -8,6 +8,8 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::LazyLock;
 
+use crate::display::Curve;
+
 /// How an 8-bit file encodes linear values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -19,6 +21,12 @@ pub enum Transfer {
     Linear,
 }
 
+/// Below this, the sRGB curve is a straight line.
+const SRGB_KNEE: f64 = 0.003_130_8;
+
+/// The sRGB curve above the line.
+static SRGB_CURVE: LazyLock<Curve> = LazyLock::new(|| Curve::new(1.0 / 512.0, 1.0, linear_to_srgb));
+
 /// The linear values of the sRGB codes.
 static SRGB_DECODED: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|code| srgb_to_linear(code as f64 / 255.0) as f32));
@@ -26,6 +34,42 @@ static SRGB_DECODED: LazyLock<[f32; 256]> =
 /// The linear value above which code `i + 1` is nearer than code `i`: the curve half-way between the two.
 static SRGB_THRESHOLDS: LazyLock<[f32; 255]> =
     LazyLock::new(|| std::array::from_fn(|code| srgb_to_linear((code as f64 + 0.5) / 255.0) as f32));
+
+/// The smallest magnitude whose code is looked up, 2⁻¹³; what is below has code 0.
+const SMALLEST: f32 = 1.0 / 8192.0;
+/// Bits of a float that are ignored to look up its code: what remains divides each power of two in 128.
+const IGNORED: u32 = 16;
+
+/// Number of ranges between [`SMALLEST`] and 1.
+const RANGES: usize = 13 << (23 - IGNORED);
+
+/// The code of the beginning of each range, and the thresholds, after which none follows.
+struct SrgbCodes {
+    starts: [u8; RANGES],
+    next: [f32; 256],
+}
+
+/// No range has two thresholds, as the closest ones, near 1, differ by 0.9 %.
+static SRGB_CODES: LazyLock<SrgbCodes> = LazyLock::new(|| SrgbCodes {
+    starts: std::array::from_fn(|range| exceeded(f32::from_bits(SMALLEST.to_bits() + ((range as u32) << IGNORED)))),
+    next: std::array::from_fn(|code| SRGB_THRESHOLDS.get(code).copied().unwrap_or(f32::NAN)),
+});
+
+/// Number of thresholds that a value has reached.
+fn exceeded(linear: f32) -> u8 {
+    SRGB_THRESHOLDS.partition_point(|&threshold| linear >= threshold) as u8
+}
+
+impl SrgbCodes {
+    /// The code nearest to `linear` on the sRGB curve.
+    #[inline]
+    fn code(&self, linear: f32) -> u8 {
+        // NaN becomes the smallest value.
+        let value = linear.max(SMALLEST).min(1.0_f32.next_down());
+        let code = self.starts[((value.to_bits() - SMALLEST.to_bits()) >> IGNORED) as usize];
+        code + u8::from(value >= self.next[usize::from(code)])
+    }
+}
 
 /// A word that is not the name of a transfer function.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -55,8 +99,7 @@ impl Transfer {
     /// The code nearest to `linear` on this curve. Values outside of [0, 1] are clamped; NaN becomes 0.
     pub fn encode(self, linear: f32) -> u8 {
         match self {
-            // Counting exceeded thresholds needs no power function per pixel, clamps at both ends, and NaN exceeds none.
-            Self::Srgb => SRGB_THRESHOLDS.partition_point(|&threshold| linear >= threshold) as u8,
+            Self::Srgb => SRGB_CODES.code(linear),
             // In f64 the product is exact; the cast saturates and turns NaN into 0.
             Self::Linear => (f64::from(linear) * 255.0 + 0.5) as u8,
         }
@@ -79,9 +122,37 @@ impl Transfer {
         }
     }
 
+    /// The 16-bit code nearest to `linear`.
+    pub(crate) fn encode16(self, linear: f32) -> u16 {
+        (self.encoded(linear) * 65535.0 + 0.5) as u16
+    }
+
+    /// The code below or above `linear`, whichever `threshold` between 0 and 1 decides; the mean of many thresholds is the value.
+    pub(crate) fn encode_between(self, linear: f32, threshold: f32) -> u8 {
+        (self.encoded(linear) * 255.0 + threshold) as u8
+    }
+
+    /// The display value in [0, 1], accurate to 10⁻⁵ of it; that of NaN is 0.
+    #[expect(clippy::manual_clamp, reason = "NaN becomes 0")]
+    fn encoded(self, linear: f32) -> f32 {
+        let linear = linear.max(0.0).min(1.0);
+        match self {
+            Self::Srgb if linear <= SRGB_KNEE as f32 => 12.92 * linear,
+            Self::Srgb => SRGB_CURVE.at(linear),
+            Self::Linear => linear,
+        }
+    }
+
     /// Appends the codes of `colors` to `bytes`, red first.
     pub(crate) fn encode_into(self, colors: &[[f32; 3]], bytes: &mut Vec<u8>) {
-        bytes.extend(colors.as_flattened().iter().map(|&value| self.encode(value)));
+        let values = colors.as_flattened().iter();
+        match self {
+            Self::Srgb => {
+                let codes = &*SRGB_CODES;
+                bytes.extend(values.map(|&value| codes.code(value)));
+            }
+            Self::Linear => bytes.extend(values.map(|&value| self.encode(value))),
+        }
     }
 }
 
@@ -102,7 +173,7 @@ impl FromStr for Transfer {
 
 /// The sRGB curve: a linear value in [0, 1] to its display value in [0, 1].
 pub(crate) fn linear_to_srgb(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+    if linear <= SRGB_KNEE { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// The inverse of [`linear_to_srgb`].
@@ -144,7 +215,13 @@ mod tests {
                 assert_eq!(transfer.encode(transfer.decode(code)), code, "{transfer:?}");
                 let wide = transfer.decode16(u16::from(code) * 257);
                 assert!((wide - transfer.decode(code)).abs() < 1e-7, "{transfer:?} {code}");
+                assert!(
+                    [0.002, 0.5, 0.998]
+                        .into_iter()
+                        .all(|part| transfer.encode_between(transfer.decode(code), part) == code)
+                );
             }
+            assert!((0..=u16::MAX).all(|code| transfer.encode16(transfer.decode16(code)) == code), "{transfer:?}");
         }
     }
 
@@ -157,6 +234,22 @@ mod tests {
             assert!(off <= 0.5 + 1e-5, "{linear}: off by {off} codes");
             let off = (f64::from(Transfer::Linear.encode(linear)) - f64::from(linear) * 255.0).abs();
             assert!(off <= 0.5, "{linear}: off by {off} codes");
+        }
+    }
+
+    #[test]
+    fn codes_are_those_of_the_thresholds() {
+        let check = |value: f32| assert_eq!(Transfer::Srgb.encode(value), exceeded(value), "{value:e}");
+        for value in SRGB_THRESHOLDS.iter().chain(&*SRGB_DECODED).copied() {
+            [value.next_down(), value, value.next_up()].into_iter().for_each(check);
+        }
+        // The first and last value of every range that is looked up.
+        for range in SMALLEST.to_bits() >> IGNORED..=1_f32.to_bits() >> IGNORED {
+            let start = f32::from_bits(range << IGNORED);
+            [start.next_down(), start].into_iter().for_each(check);
+        }
+        for (below, above) in SRGB_THRESHOLDS.iter().zip(&SRGB_THRESHOLDS[1..]) {
+            assert!(below.to_bits() >> IGNORED < above.to_bits() >> IGNORED, "{below} and {above} are in one range");
         }
     }
 

@@ -91,6 +91,33 @@ constants! {
     TILE_SIDE: u32 = 32;
     /// Rays of such a tile, or of a list, that one block groups.
     TILE: u32 = TILE_SIDE * TILE_SIDE;
+    /// Parts of the unit interval at whose ends the inverse of a pixel filter's cumulative distribution is tabulated.
+    FILTER_STEPS: u32 = 63;
+    /// Number of these ends.
+    FILTER_PLACES: u32 = FILTER_STEPS + 1;
+    /// Stands for a light in the random pattern of a pixel's samples.
+    PIXEL_PATTERN: u32 = 0x7fff_ffff;
+    /// Samples of a pixel at most if any are shaded together.
+    MOST_SHARED: u32 = 32;
+    /// A pixel's samples and its centre lie on one surface.
+    PIXEL_SHARED: u32 = 1;
+    /// The same, but neighbours differ so much that each sample is shaded by itself.
+    PIXEL_SPLIT: u32 = 2;
+    /// Samples lie on one surface if the cosine between their normals is at least this: less than 2.6 degrees. Then light at 45 degrees
+    /// differs by less than 5 %.
+    SAME_COSINE: f32 = 0.999;
+    /// The same for the geometric normals of triangles that share smooth ones.
+    SAME_FACET_COSINE: f32 = 0.8;
+    /// And if neither is farther from the other's tangent plane than this part of a pixel's width.
+    SAME_HEIGHT: f32 = 0.5;
+    /// The same for neighbouring pixels.
+    NEAR_HEIGHT: f32 = 2.0;
+    /// Neighbouring pixels are compared if the cosine between their normals is at least this.
+    NEAR_COSINE: f32 = 0.9;
+    /// Differences between neighbouring pixels are relative to the brighter one and this radiance: darker ones are hardly seen.
+    CONTRAST_FLOOR: f32 = 0.2;
+    /// Rows above and below a band with which its pixels are compared.
+    MARGIN_ROWS: u32 = 1;
     /// Values per thread of a prefix sum.
     VALUES_OF_THREAD: u32 = 4;
 

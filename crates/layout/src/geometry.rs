@@ -132,7 +132,7 @@ records! {
         spare: u32,
     }
 
-    /// A ray from a mirror.
+    /// A ray from a mirror, or through a sample of a pixel.
     ListedRay {
         /// Origin.
         origin: Vec3,
@@ -140,12 +140,12 @@ records! {
         pixel: u32,
         /// Direction; unit length.
         direction: Vec3,
-        /// Padding to a multiple of sixteen bytes.
-        spare: u32,
+        /// The number of the pixel's sample that it goes through, and one; 0 if the pixel has one sample.
+        sample: u32,
         /// The share of its radiance that reaches the pixel.
         weight: Vec3,
-        /// Padding to a multiple of sixteen bytes.
-        spare_too: u32,
+        /// The samples of the pixel that are shaded with it, a bit each; 0 if none are.
+        shared: u32,
     }
 
     /// Rays: those of some rows of a camera's image, generated where they are needed, or a list.
@@ -154,7 +154,7 @@ records! {
     Rays {
         /// The camera.
         view: View,
-        /// The mirror rays; null for a camera.
+        /// The rays of a list; null for a camera.
         list: In<ListedRay>,
         /// The first pixel of a camera's rows.
         first_pixel: u32,

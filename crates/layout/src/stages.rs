@@ -160,6 +160,8 @@ records! {
         color: Out<Vec3>,
         /// While groups of lights follow, the radiance of each ray so far; null if that has its place in `color`.
         sums: Out<Vec3>,
+        /// What the samples of the camera's pixels see, sample by sample; null if a pixel has one.
+        samples: In<Hit>,
         /// Distance by pixel; null if no layers are kept, like all fields that follow.
         depth: Out<f32>,
         /// Geometric normal by pixel.
@@ -178,6 +180,81 @@ records! {
         first_light: u32,
         /// The last, and one.
         end_light: u32,
+        /// 1 if a pixel may have several rays, next to each other in the list: sums of rays are added to pixels afterwards.
+        several: u32,
+        /// 1 if the rays go through samples of the camera's pixels: their shares are added to layers.
+        sampled: u32,
+        /// Samples of a pixel in `samples`.
+        sample_count: u32,
+        /// The first pixel of `samples`.
+        first_sampled: u32,
+        /// Number of pixels of `samples`.
+        sampled_pixels: u64,
+    }
+
+    /// `pixel_samples`, `merge_samples`, `find_contrast`, `count_fragments` and `emit_fragments`: one thread per pixel of a camera's rows,
+    /// the first also per sample.
+    PixelSamples {
+        /// The scene.
+        scene: Scene,
+        /// The camera's rays through the centres of pixels.
+        rays: Rays,
+        /// What samples see: sample by sample, then by pixel.
+        hits: Out<Hit>,
+        /// What the centres see. Where a pixel's samples do not share a surface with it, it is taken away.
+        centers: Out<Hit>,
+        /// State of each pixel.
+        state: Out<u32>,
+        /// Radiance by pixel, with what samples share.
+        color: Out<Vec3>,
+        /// Number of large and of small fragments of each block; after the scans, of all blocks before it.
+        counts: [Out<u32>; 2],
+        /// Large fragments, and small ones.
+        fragments: [Out<ListedRay>; 2],
+        /// Share of samples that see anything, by pixel; null if that is not kept.
+        coverage: Out<f32>,
+        /// Distance of the nearest sample by pixel; null if no layers are kept, like all fields that follow.
+        depth: Out<f32>,
+        /// Its geometric normal.
+        normal: Out<Vec3>,
+        /// Its surface point, local frame.
+        position: Out<Vec3>,
+        /// Share of each light by light, then pixel.
+        visibility: Out<f32>,
+        /// Number of light points used.
+        light_points: Out<u32>,
+        /// Counts grid walks.
+        tally: Tally,
+        /// The first block of this launch among all blocks.
+        first_block: u64,
+        /// Selects the random pattern.
+        seed: u64,
+        /// Number of pixels of the film.
+        film_pixels: u64,
+        /// The distance between the surface points of neighbouring pixels: a constant, and a multiple of their distance.
+        spacing: [f32; 2],
+        /// The first of these samples, and their number.
+        samples: [u32; 2],
+        /// The first ray whose pixel gets fragments, and the end.
+        inner: [u32; 2],
+        /// Number of samples of a pixel in all ranges.
+        all_samples: u32,
+        /// Number of lights with layers.
+        light_count: u32,
+        /// Share of a sample in its pixel.
+        weight: f32,
+        /// The relative difference to a neighbour from which a pixel is not shared.
+        contrast: f32,
+        /// 1 if samples are never shared.
+        apart: u32,
+        /// 1 if mirrors are followed: then what mirrors is not shared.
+        mirrors: u32,
+        /// 1 if the hits of centres stay.
+        keeps: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
+        /// Where the inverse of the filter's cumulative distribution is, at equal distances: offsets from the centre in pixels.
+        quantiles: [f32; 64],
     }
 
     /// `mirror_rays_count` and `mirror_rays_emit`: one thread per ray.

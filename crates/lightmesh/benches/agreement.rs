@@ -94,6 +94,7 @@ fn compare(
     stages(cuda, case, &scene, size, verdict)?;
     for mode in [Mode::RayTrace, Mode::LightMesh, Mode::Area] {
         let settings = Settings::default()
+            .with_aa(1)
             .with_mode(mode)
             .with_size([size, size])
             .with_step(Step::Fixed(case.step))
@@ -146,15 +147,21 @@ fn stages(
             radius: radius * case.step,
             weight: Weight::Smooth,
         };
-        let wave = Wave { job: &by_cell, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL };
+        let wave = Wave { job: &by_cell, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
         let cells = Cpu.cells(&wave, &mesh)?;
         let masks = Cpu.short_tests(&wave, &cells, &mesh)?;
         let mut expected = vec![Vec::new(); hits.len()];
         for (slot, &ray) in cells.members().iter().enumerate() {
             expected[rays.pixels[ray as usize] as usize] = masks.mask(slot).to_vec();
         }
-        let on_device =
-            |job| Wave { job, scene: &device_scene, rays: &device_rays, hits: &device_hits, lights: LightGroup::ALL };
+        let on_device = |job| Wave {
+            job,
+            scene: &device_scene,
+            rays: &device_rays,
+            hits: &device_hits,
+            lights: LightGroup::ALL,
+            parts: 1,
+        };
         let device_cells = cuda.cells(&on_device(&by_cell), &mesh)?;
         let masks_of = |job| cuda.short_tests(&on_device(job), &device_cells, &mesh)?.read(&device_cells);
         let (device, oracle) = (masks_of(&by_cell)?, masks_of(&plain)?);

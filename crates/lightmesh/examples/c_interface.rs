@@ -108,7 +108,7 @@ unsafe fn render(opened: &Opened, request: &Request) -> Result<Report, Box<dyn E
 }
 
 fn of_method(name: &str) -> Result<Settings, Box<dyn Error>> {
-    let settings = Settings::default();
+    let settings = Settings::default().with_aa(1);
     Ok(match name.parse::<Mode>() {
         Ok(mode) => settings.with_mode(mode).with_shadow_tests(ShadowTests::Rays),
         Err(_) => settings.with_lookup(name.parse::<Lookup>()?),

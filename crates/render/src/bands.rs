@@ -1,52 +1,36 @@
 //! How many rows of an image fit into the host's memory at once.
 
+use lightmesh_memory::Short;
+
 use crate::accel::{Hit, Ray};
 use crate::error::RenderError;
-use crate::memory;
 use crate::plan::Plan;
-use crate::prepared::PreparedScene;
 
 /// Memory reserved for everything that is not counted below: stacks, the segments in flight, allocator overhead.
-const RESERVE: u64 = 64 << 20;
+const RESERVE: u64 = 32 << 20;
 
 /// Rejects an image that does not fit into the host's memory, before any of it is allocated.
 pub(crate) fn check_picture(plan: &Plan) -> Result<(), RenderError> {
-    fits(plan, memory::available())
+    fits(plan, "the image and its layers", plan.image_bytes())
 }
 
-fn fits(plan: &Plan, available: Option<u64>) -> Result<(), RenderError> {
-    let needed = plan.pixels() * plan.film_bytes();
-    match available.filter(|available| needed > *available) {
-        Some(limit) => Err(RenderError::Memory { buffer: "the image and its layers", needed, limit }),
-        None => Ok(()),
-    }
-}
-
-/// Number of rows that can be rendered at once on the host.
-pub(crate) fn rows_on_host(scene: &PreparedScene, plan: &Plan) -> Result<u32, RenderError> {
-    let picture = plan.pixels() * plan.film_bytes();
-    match plan.memory_limit {
-        // The limit applies to the process: what it already holds counts.
-        Some(limit) => rows_per_band(plan, scene.geometry.memory() as u64 + plan.kept + picture, Some(limit)),
-        None => rows_per_band(plan, picture, memory::available().map(|bytes| bytes - bytes / 8)),
-    }
-}
-
-/// Number of rows that fit under `limit` bytes in addition to the `resident` bytes of scene and image.
+/// Number of rows that can be rendered at once on the host, besides the image. Rejects an image that leaves no room for any.
 ///
 /// The estimate is an upper bound per pixel, taken at the stage that holds most; see the sum.
-fn rows_per_band(plan: &Plan, resident: u64, limit: Option<u64>) -> Result<u32, RenderError> {
-    let size = plan.size;
-    let Some(limit) = limit else { return Ok(size[1]) };
-    let row = u64::from(size[0]) * (bytes_per_ray(plan) + plan.film_bytes());
-    let free = limit.saturating_sub(resident).saturating_sub(RESERVE);
-    match free / row {
-        0 => Err(RenderError::Memory {
-            buffer: "the scene, the image, and masks and visibility of one row",
-            needed: row + resident + RESERVE,
-            limit,
-        }),
-        rows => Ok(rows.min(u64::from(size[1])) as u32),
+pub(crate) fn rows_on_host(plan: &Plan) -> Result<u32, RenderError> {
+    let pixel = plan.rays_per_pixel() * bytes_per_ray(plan) + plan.sample_bytes() + plan.film_bytes();
+    let row = u64::from(plan.size[0]) * pixel;
+    // The rows around a band are rendered with it.
+    let fixed = plan.image_bytes() + RESERVE + plan.margin_rows() * row;
+    fits(plan, "the image, and masks and visibility of one row", fixed + row)?;
+    let rows = plan.left.map_or(u64::MAX, |left| (left - fixed) / row);
+    Ok(rows.min(u64::from(plan.size[1])) as u32)
+}
+
+fn fits(plan: &Plan, buffer: &'static str, needed: u64) -> Result<(), RenderError> {
+    match plan.left.filter(|left| needed > *left) {
+        Some(left) => Err(RenderError::Memory { buffer, short: Short { needed, left, limit: plan.memory_limit } }),
+        None => Ok(()),
     }
 }
 
@@ -62,38 +46,43 @@ mod tests {
     use crate::data::lights::LightGroups;
     use crate::plan::Footprint;
 
-    #[test]
-    fn an_image_that_does_not_fit_is_refused_before_it_is_made() {
+    fn plan(size: [u32; 2], layers: Option<usize>, left: Option<u64>) -> Plan {
         let lights = LightGroups { lights: 3, at_once: 3 };
-        let plan = |side, layers| Plan {
-            size: [side; 2],
+        let footprint = Footprint::default();
+        Plan {
+            size,
+            antialiasing: None,
             bounces: 0,
+            coverage: false,
             layers,
             lights,
-            memory_limit: None,
+            memory_limit: left,
+            left,
             kept: 0,
-            footprint: Footprint::default(),
-        };
-        let needed = |side, layers| match fits(&plan(side, layers), Some(1 << 20)) {
-            Err(RenderError::Memory { needed, limit, .. }) if limit == 1 << 20 => needed,
+            footprint,
+        }
+    }
+
+    #[test]
+    fn an_image_that_does_not_fit_is_refused_before_it_is_made() {
+        let needed = |side, layers| match check_picture(&plan([side; 2], layers, Some(1 << 20))) {
+            Err(RenderError::Memory { short: Short { needed, left: 0x10_0000, limit: Some(0x10_0000) }, .. }) => needed,
             found => panic!("{found:?}"),
         };
         assert_eq!(needed(60_000, None), 43_200_000_000);
         assert_eq!(needed(256, Some(3)), 65_536 * (12 + 32 + 12));
-        assert!(fits(&plan(256, None), Some(1 << 20)).is_ok());
+        assert!(check_picture(&plan([256; 2], None, Some(1 << 20))).is_ok());
     }
 
     #[test]
     fn a_limit_splits_the_picture_and_none_does_not() {
-        let footprint = Footprint::default();
-        let lights = LightGroups { lights: 3, at_once: 3 };
-        let plan =
-            Plan { size: [1000, 1000], bounces: 0, layers: None, lights, memory_limit: None, kept: 0, footprint };
-        let rows = |limit| rows_per_band(&plan, 0, limit);
+        let rows = |left| rows_on_host(&plan([1000; 2], None, left));
         assert_eq!(rows(None).unwrap(), 1000);
         assert_eq!(rows(Some(u64::MAX)).unwrap(), 1000);
-        let some = rows(Some(RESERVE + (20 << 20))).unwrap();
+        let some = rows(Some(RESERVE + (32 << 20))).unwrap();
         assert!((1..1000).contains(&some), "{some}");
-        assert!(matches!(rows(Some(RESERVE + 1)), Err(RenderError::Memory { .. })));
+        let Err(RenderError::Memory { short, .. }) = rows(Some(RESERVE + 1)) else { panic!("no row fits") };
+        assert_eq!(rows(Some(short.needed)).unwrap(), 1);
+        assert!(rows(Some(short.needed - 1)).is_err());
     }
 }

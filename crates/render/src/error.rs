@@ -1,5 +1,6 @@
 //! Errors of a render.
 
+use lightmesh_memory::Short;
 use lightmesh_scene::GeometryError;
 
 use crate::accel::{GridError, GridFileError};
@@ -69,15 +70,23 @@ pub enum RenderError {
     },
     /// The image, or even one row of it, does not fit into the host's memory.
     #[error(
-        "rendering needs at least {needed} bytes, for {buffer}, more than the limit of {limit}: raise the limit, or choose a smaller image, a larger step or a smaller radius"
+        "there is not enough memory for {buffer}: {short}; raise the limit, or choose a smaller image, a larger step or a smaller radius"
     )]
     Memory {
         /// What is counted.
         buffer: &'static str,
-        /// Bytes of it.
-        needed: u64,
-        /// Bytes allowed, or available.
-        limit: u64,
+        /// Bytes needed and left.
+        short: Short,
+    },
+    /// The geometry is too large for the host's memory.
+    #[error(
+        "there is not enough memory for the acceleration structure of {triangles} triangles: {short}; raise the limit, or simplify the scene"
+    )]
+    BuildMemory {
+        /// Number of triangles.
+        triangles: usize,
+        /// Bytes needed and left.
+        short: Short,
     },
     /// The device does not exist or cannot be used.
     #[error("device {device} cannot be used: {reason}")]
@@ -125,6 +134,7 @@ impl RenderError {
             RenderError::Setting { setting, .. } => vec![*setting],
             RenderError::Threads { .. } => vec![Setting::Threads],
             RenderError::Memory { .. } => vec![Setting::MemoryLimit, Setting::Size, Setting::Step, Setting::Radius],
+            RenderError::BuildMemory { .. } => vec![Setting::MemoryLimit],
             RenderError::DeviceMemory { .. } => {
                 vec![Setting::Size, Setting::Step, Setting::Radius, Setting::Device]
             }

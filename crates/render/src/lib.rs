@@ -10,6 +10,7 @@
 //! radiance ▶ [`Frame`].
 
 pub mod accel;
+mod antialiasing;
 pub mod backend;
 mod bands;
 mod cache;
@@ -21,7 +22,6 @@ mod error;
 mod gpu;
 mod job;
 pub mod light_mesh;
-mod memory;
 mod observer;
 mod passes;
 mod plan;
@@ -60,7 +60,7 @@ pub use prepared::{PreparedGeometry, PreparedScene};
 pub use probes::{GivenPoints, PointVisibility, Probes};
 pub use renderer::{Frame, Renderer, render_on, render_on_with, visibility_on};
 pub use settings::{
-    Acceleration, Lookup, Mode, Quality, Setting, Settings, ShadowTests, ShortTests, Step, UnknownStep,
+    Acceleration, Filter, Lookup, Mode, Quality, Setting, Settings, ShadowTests, Sharing, ShortTests, Step, UnknownStep,
 };
 pub use stage::{Seconds, Stage};
 pub use stats::{CameraStats, DeviceStats, LatticeStats, MemoryStats, SceneStats, SettingsStats, Stats};

@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use crate::antialiasing::Antialiasing;
 use crate::backend::run::Run;
 use crate::backend::{Backend, WaveOf};
 use crate::counters::Tally;
@@ -15,6 +16,7 @@ use crate::error::RenderError;
 use crate::plan::Plan;
 use crate::probes::GivenPoints;
 use crate::stage::Stage;
+use crate::stages::pixel_samples::SampleRange;
 use crate::techniques::Technique;
 use crate::view::View;
 
@@ -37,7 +39,14 @@ impl<B: Backend> Baking<'_, B> {
             let range = points.range(&rows);
             let probes = points.part(&rows);
             let (scene, rays, hits) = run.on_host(Stage::Upload, |backend| backend.probes(scene, &probes))?;
-            let wave = WaveOf::<B> { job: run.job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL };
+            let wave = WaveOf::<B> {
+                job: run.job,
+                scene: &scene,
+                rays: &rays,
+                hits: &hits,
+                lights: LightGroup::ALL,
+                parts: 1,
+            };
             let mut seen = None;
             technique.visibility(run, &wave, plan.lights, &mut |visibility| {
                 seen = Some(visibility);
@@ -67,17 +76,38 @@ pub(crate) struct Passes<'a, B: Backend> {
 impl<B: Backend> Passes<'_, B> {
     /// Renders the whole view into `picture`. Returns how many rows were rendered at once.
     pub(crate) fn render(&self, picture: &mut Picture) -> Result<u32, RenderError> {
-        self.run.job.work.expect(self.pieces_of_wave(0, self.plan.pixels()));
+        if self.plan.antialiasing.is_none() {
+            // With several samples it depends on what they see, and on the bands.
+            let camera_rays = self.plan.pixels();
+            self.run.job.work.expect(camera_rays + self.pieces_of_wave(0, camera_rays));
+        }
         let at_once = self.run.or_forget(|backend| backend.rows_at_once(self.scene, self.plan))?;
         in_bands(&self.run, self.view.size()[1], at_once, |rows| self.band(rows, picture))
     }
 
     /// Renders some rows.
     fn band(&self, rows: Range<u32>, picture: &mut Picture) -> Result<(), RenderError> {
-        let Passes { run, scene, technique, view, plan } = self;
-        let mut film = run.on_host(Stage::Film, |backend| backend.film(plan, rows.clone()))?;
-        let pixels = view.size()[0] as usize * rows.len();
-        let mut rays = run.stage(Stage::CameraRays, [pixels; 2], |backend| backend.camera_rays(view, rows))?;
+        let Passes { run, scene, view, plan, .. } = self;
+        let margin = plan.antialiasing.as_ref().map_or(0, Antialiasing::margin);
+        let all = rows.start.saturating_sub(margin)..view.size()[1].min(rows.end.saturating_add(margin));
+        let mut film = run.on_host(Stage::Film, |backend| backend.film(plan, [all.clone(), rows]))?;
+        let pixels = view.size()[0] as usize * all.len();
+        if plan.antialiasing.is_some() {
+            // Camera rays, and what they see.
+            run.job.work.expect(2 * pixels as u64);
+        }
+        let rays = run.stage(Stage::CameraRays, [pixels; 2], |backend| backend.camera_rays(view, all))?;
+        match &plan.antialiasing {
+            None => self.waves(rays, 1, &mut film)?,
+            Some(samples) => self.samples(rays, samples, &mut film)?,
+        }
+        run.backend.finish(run.job)?;
+        run.on_host(Stage::Download, |backend| backend.develop(scene, film, picture))
+    }
+
+    /// Renders a wave of rays, and those that mirrors reflect. Each ray takes one of `parts` parts of the samples of lights.
+    fn waves(&self, mut rays: B::Rays, parts: u32, film: &mut B::Film) -> Result<(), RenderError> {
+        let Passes { run, scene, plan, .. } = self;
         for depth in 0..=plan.bounces {
             let n = run.backend.ray_count(&rays);
             if n == 0 {
@@ -87,24 +117,69 @@ impl<B: Backend> Passes<'_, B> {
                 run.job.work.expect(self.pieces_of_wave(depth, n as u64));
             }
             let hits = run.stage(Stage::PrimaryRays, [n; 2], |backend| backend.primary_rays(run.job, scene, &rays))?;
-            let wave = WaveOf::<B> { job: run.job, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL };
-            technique.visibility(run, &wave, plan.lights, &mut |visibility| {
-                run.stage(Stage::Shade, [n; 2], |backend| backend.shade(&wave, &visibility, &mut film))
-            })?;
+            let wave = WaveOf::<B> { job: run.job, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts };
+            self.light(&wave, film)?;
             if depth < plan.bounces {
                 rays = run.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
             }
         }
-        run.backend.finish(run.job)?;
-        run.on_host(Stage::Download, |backend| backend.develop(scene, film, picture))
+        Ok(())
+    }
+
+    /// Adds the light that a wave's surface points reflect.
+    fn light(&self, wave: &WaveOf<B>, film: &mut B::Film) -> Result<(), RenderError> {
+        let Passes { run, technique, plan, .. } = self;
+        let n = run.backend.ray_count(wave.rays);
+        technique.visibility(run, wave, plan.lights, &mut |visibility| {
+            run.stage(Stage::Shade, [n; 2], |backend| backend.shade(wave, &visibility, film))
+        })
+    }
+
+    /// Renders pixels with several samples; `rays` go through their centres.
+    fn samples(&self, mut rays: B::Rays, all: &Antialiasing, film: &mut B::Film) -> Result<(), RenderError> {
+        let Passes { run, scene, .. } = self;
+        let n = run.backend.ray_count(&rays);
+        let mut hits = run.stage(Stage::PrimaryRays, [n; 2], |backend| backend.primary_rays(run.job, scene, &rays))?;
+        let mut done = 0;
+        while done < all.samples {
+            let numbers = done..all.samples.min(done + all.at_once());
+            done = numbers.end;
+
+            // What the samples see; the pixels whose samples lie on one surface are shaded once.
+            let range = SampleRange { all, numbers };
+            let pieces = n * range.numbers.len();
+            let light = if all.apart { 0 } else { self.pieces_of_light(n as u64) };
+            run.job.work.expect((pieces + n) as u64 + light);
+            let mut samples = run.stage(Stage::PrimaryRays, [pieces; 2], |backend| {
+                backend.pixel_samples(run.job, scene, &mut rays, &mut hits, film, &range)
+            })?;
+            let wave = WaveOf::<B> { job: run.job, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
+            if !all.apart {
+                self.light(&wave, film)?;
+            }
+
+            // The others, by surface or sample by sample.
+            let lists =
+                run.stage(Stage::CameraRays, [n; 2], |backend| backend.fragments(&wave, &mut samples, film, all))?;
+            for (list, parts) in lists.into_iter().zip([2, all.samples]) {
+                run.job.work.expect(self.pieces_of_wave(0, run.backend.ray_count(&list) as u64));
+                self.waves(list, parts, film)?;
+            }
+        }
+        Ok(())
     }
 
     /// Pieces of work of a wave of `rays` rays in all of its stages.
     fn pieces_of_wave(&self, depth: u32, rays: u64) -> u64 {
-        let (from_camera, to_mirrors) = (u64::from(depth == 0), u64::from(depth < self.plan.bounces));
-        // Camera rays, primary rays, the technique's stages, shading, mirror rays; long tests and shading again for each further group.
+        // Primary rays, mirror rays.
+        rays * (1 + u64::from(depth < self.plan.bounces)) + self.pieces_of_light(rays)
+    }
+
+    /// Those of the stages that find what its surface points reflect.
+    fn pieces_of_light(&self, rays: u64) -> u64 {
+        // The technique's stages, shading; long tests and shading again for each further group.
         let further = self.plan.lights.iter().len() as u64 - 1;
-        rays * (from_camera + 1 + self.technique.stages().len() as u64 + 1 + to_mirrors + 2 * further)
+        rays * (self.technique.stages().len() as u64 + 1 + 2 * further)
     }
 }
 
@@ -152,7 +227,8 @@ mod tests {
     use crate::job::{Job, Sampling};
     use crate::observer::Unobserved;
     use crate::prepared::PreparedScene;
-    use crate::settings::{Acceleration, Lookup, Mode, Settings};
+    use crate::probes::ROW;
+    use crate::settings::{Acceleration, Filter, Lookup, Mode, Settings, Step};
     use crate::techniques::Request;
 
     const LIGHTS: usize = 9;
@@ -169,39 +245,150 @@ mod tests {
         PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap()
     }
 
-    #[test]
-    fn groups_of_lights_give_the_same_picture() {
-        let scene = scene();
-        for (mode, lookup) in [
-            (Mode::LightMesh, Lookup::Lists),
-            (Mode::LightMesh, Lookup::Adaptive),
-            (Mode::Area, Lookup::Auto),
-            (Mode::RayTrace, Lookup::Auto),
-        ] {
-            let settings = Settings::default().with_mode(mode).with_lookup(lookup).with_size([24, 18]);
+    /// An image in all modes: how it differs between plans.
+    struct Way {
+        settings: Settings,
+        scene: PreparedScene,
+        samples: Option<Antialiasing>,
+    }
+
+    /// Bits of colours, visibility and positions, with the rows at once.
+    type Bits = (Vec<[u32; 3]>, Vec<f32>, Vec<[f32; 3]>, u32);
+
+    impl Way {
+        fn all() -> impl Iterator<Item = Way> {
+            let modes = [
+                (Mode::LightMesh, Lookup::Lists),
+                (Mode::LightMesh, Lookup::Adaptive),
+                (Mode::LightMesh, Lookup::HalfBall),
+                (Mode::Area, Lookup::Auto),
+                (Mode::RayTrace, Lookup::Auto),
+            ];
+            modes.into_iter().flat_map(|(mode, lookup)| {
+                let settings = Settings::default().with_mode(mode).with_lookup(lookup).with_size([24, 18]);
+                let settings = Settings { step: Some(Step::Fixed(0.2)), ..settings };
+                let all = Antialiasing::new(6, Filter::BlackmanHarris, 0, 9);
+                let several = Antialiasing { mirrors: true, keeps: lookup == Lookup::Adaptive, ..all };
+                let apart = Antialiasing { apart: true, ..several.clone() };
+                [None, Some(several), Some(apart)].map(|samples| Way {
+                    settings: settings.clone(),
+                    scene: scene(),
+                    samples,
+                })
+            })
+        }
+
+        /// The picture with `at_once` lights and `left` bytes; an error if these do not suffice.
+        fn picture(&self, at_once: usize, left: Option<u64>) -> Result<Bits, RenderError> {
+            let Way { settings, scene, samples } = self;
             let view = View::new(&scene.scene.cameras[0], settings.size);
             let bounds: Bounds = scene.geometry.bounds;
-            let request = Request { scene: &scene, settings: &settings, view: &view, observer: &Unobserved, bounds };
+            let technique =
+                Technique::resolve(&Request { scene, settings, view: &view, observer: &Unobserved, bounds })?;
+            let lights = LightGroups { lights: LIGHTS, at_once };
+            let footprint = technique.footprint(lights.held() as u64);
+            let (size, layers) = (settings.size, Some(LIGHTS));
+            let plan = Plan {
+                size,
+                antialiasing: samples.clone(),
+                bounces: 2,
+                coverage: true,
+                layers,
+                lights,
+                memory_limit: left,
+                left,
+                kept: 0,
+                footprint,
+            };
+            let job = Job::new(&Unobserved, Sampling { samples: 9, seed: 0, spread: true });
+            let run = Run::new(&Cpu, &job, None);
+            let mut picture = Picture::new(size, layers).with_coverage();
+            let rows = Passes { run, scene, technique: &technique, view: &view, plan: &plan }.render(&mut picture)?;
+            assert_eq!(job.work.done(), job.work.total(), "{settings:?}: progress");
+            let layers = picture.layers.take().unwrap();
+            if let Some(samples) = samples {
+                // A pixel is covered by samples: those with a depth by some, those without by none.
+                let samples = samples.samples as f32;
+                for (covered, depth) in picture.coverage.iter().flatten().zip(&layers.depth) {
+                    assert!((samples * covered - (samples * covered).round()).abs() < 1e-4 && *covered < 1.001);
+                    assert_eq!(*covered > 0.0, depth.is_finite(), "{settings:?}: coverage");
+                }
+            }
+            Ok((bytemuck::cast_vec(picture.color), layers.visibility.concat(), layers.position, rows))
+        }
+    }
+
+    #[test]
+    fn groups_of_lights_give_the_same_picture() {
+        for way in Way::all().filter(|way| way.settings.lookup != Lookup::HalfBall) {
+            let whole = way.picture(usize::MAX, None).unwrap();
+            let soft = whole.1.iter().any(|share| *share > 0.0 && *share < 1.0);
+            assert!(soft || way.settings.mode == Mode::RayTrace);
+            for at_once in [1, 4] {
+                assert!(way.picture(at_once, None).unwrap() == whole, "{:?}: {at_once} lights at once", way.settings);
+            }
+        }
+    }
+
+    #[test]
+    fn bands_give_the_same_picture() {
+        for way in Way::all() {
+            let (color, visibility, positions, rows) = way.picture(usize::MAX, None).unwrap();
+            assert_eq!(rows, way.settings.size[1]);
+            let Err(RenderError::Memory { short, .. }) = way.picture(usize::MAX, Some(1)) else {
+                panic!("one byte must not suffice")
+            };
+            // Just enough for one row, then for some.
+            for left in [short.needed, short.needed + if way.samples.is_some() { 100_000 } else { 40_000 }] {
+                let banded = way.picture(usize::MAX, Some(left)).unwrap();
+                assert!((1..rows).contains(&banded.3), "{:?}", way.settings);
+                assert!(
+                    banded == (color.clone(), visibility.clone(), positions.clone(), banded.3),
+                    "{:?}",
+                    way.settings
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn bands_of_given_points_change_nothing() {
+        let scene = scene();
+        let places = (0..12_000).map(|i| Vec3::new((i % 109) as f32 / 31.0 - 1.7, 0.0, (i / 109) as f32 / 31.0 - 1.7));
+        let places: Vec<Vec3> = places.collect();
+        let normals = vec![Vec3::Y; places.len()];
+        let points = GivenPoints::new(&scene, &places, &normals).unwrap();
+        for way in Way::all() {
+            let settings = &way.settings;
+            let view = View::new(&scene.scene.cameras[0], settings.size);
+            let bounds = points.bounds;
+            let request = Request { scene: &scene, settings, view: &view, observer: &Unobserved, bounds };
             let technique = Technique::resolve(&request).unwrap();
-            let picture = |at_once| {
-                let lights = LightGroups { lights: LIGHTS, at_once };
-                let footprint = technique.footprint(lights.held() as u64);
-                let (size, layers) = (settings.size, Some(LIGHTS));
-                let plan = Plan { size, bounces: 2, layers, lights, memory_limit: None, kept: 0, footprint };
+            let lights = LightGroups { lights: LIGHTS, at_once: usize::MAX };
+            let footprint = technique.footprint(LIGHTS as u64);
+            let size = [ROW, points.rows()];
+            let baked = |left| {
+                let plan = Plan {
+                    size,
+                    antialiasing: None,
+                    bounces: 0,
+                    coverage: false,
+                    layers: None,
+                    lights,
+                    memory_limit: left,
+                    left,
+                    kept: 0,
+                    footprint,
+                };
                 let job = Job::new(&Unobserved, Sampling { samples: 9, seed: 0, spread: true });
                 let run = Run::new(&Cpu, &job, None);
-                let mut picture = Picture::new(size, layers);
-                let passes = Passes { run, scene: &scene, technique: &technique, view: &view, plan: &plan };
-                passes.render(&mut picture).unwrap();
-                assert_eq!(job.work.done(), job.work.total(), "{mode:?} {lookup:?}: progress");
-                let layers = picture.layers.take().unwrap();
-                (bytemuck::cast_vec::<[f32; 3], [u32; 3]>(picture.color), layers.visibility.concat(), layers.position)
+                Baking { run, scene: &scene, technique: &technique, plan: &plan }.bake(&points)
             };
-            let whole = picture(usize::MAX);
-            assert!(whole.1.iter().any(|share| *share > 0.0 && *share < 1.0) || mode == Mode::RayTrace);
-            for at_once in [1, 4] {
-                assert!(picture(at_once) == whole, "{mode:?} {lookup:?}: {at_once} lights at once");
-            }
+            let (whole, rows) = baked(None).unwrap();
+            assert_eq!(rows, points.rows());
+            let Err(RenderError::Memory { short, .. }) = baked(Some(1)) else { panic!("one byte must not suffice") };
+            let (limited, rows) = baked(Some(short.needed)).unwrap();
+            assert!(rows == 1 && limited.share == whole.share, "{settings:?}: {rows} rows");
         }
     }
 

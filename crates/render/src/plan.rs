@@ -1,5 +1,7 @@
 //! The image to render, and the memory limits.
 
+use crate::accel::Hit;
+use crate::antialiasing::Antialiasing;
 use crate::data::lights::LightGroups;
 
 /// Bytes that a technique needs per ray at its peak, on the host and on a device, with the shares of lights.
@@ -16,14 +18,20 @@ pub struct Footprint {
 pub struct Plan {
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// The samples of pixels; `None`: their centres.
+    pub antialiasing: Option<Antialiasing>,
     /// Depth of mirror recursion.
     pub bounces: u32,
+    /// Whether the share of a pixel's samples that see anything is kept.
+    pub coverage: bool,
     /// Number of lights whose layers are kept; `None`: no layers.
     pub layers: Option<usize>,
     /// Groups of lights whose visibility is held at the same time.
     pub lights: LightGroups,
     /// Memory limit in bytes; `None`: what is free, less a reserve.
     pub memory_limit: Option<u64>,
+    /// Bytes that the host could still allocate before the image was; `None`: unknown.
+    pub left: Option<u64>,
     /// Bytes that the caller keeps from image to image, in the backend's memory.
     pub kept: u64,
     /// The additional bytes that the technique needs per ray.
@@ -36,8 +44,29 @@ impl Plan {
         self.size.map(u64::from).iter().product()
     }
 
+    /// The most rays of a pixel in a wave.
+    pub(crate) fn rays_per_pixel(&self) -> u64 {
+        self.antialiasing.as_ref().map_or(1, |all| u64::from(all.at_once()))
+    }
+
+    /// Bytes of the samples of a pixel: a hit each, and the pixel's state.
+    pub(crate) fn sample_bytes(&self) -> u64 {
+        self.antialiasing.as_ref().map_or(0, |all| size_of::<Hit>() as u64 * u64::from(all.at_once()) + 8)
+    }
+
+    /// Rows above and below a band that are rendered with it, together.
+    pub(crate) fn margin_rows(&self) -> u64 {
+        let margin = self.antialiasing.as_ref().map_or(0, Antialiasing::margin);
+        2 * u64::from(margin)
+    }
+
+    /// Bytes of the image with its layers.
+    pub(crate) fn image_bytes(&self) -> u64 {
+        self.pixels() * self.film_bytes()
+    }
+
     /// Bytes of an image per pixel.
     pub(crate) fn film_bytes(&self) -> u64 {
-        12 + self.layers.map_or(0, |lights| 32 + 4 * lights as u64)
+        12 + if self.coverage { 4 } else { 0 } + self.layers.map_or(0, |lights| 32 + 4 * lights as u64)
     }
 }

@@ -6,6 +6,7 @@
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use glam::Vec3;
+use lightmesh_memory::Budget;
 use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Scene};
 
 use crate::accel::{Accelerator, BruteForce, Bvh, Grid, GridOptions, Triangle};
@@ -13,6 +14,9 @@ use crate::error::RenderError;
 use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
 use crate::stage::Stage;
+
+/// Bytes that a triangle takes at most while a BVH is built, with what is kept of it.
+const BYTES_TO_BUILD: u64 = 400;
 
 /// Triangles with the acceleration structure over them. Shared behind an [`Arc`] by all images of a geometry, and the key of the copies
 /// that devices keep.
@@ -36,15 +40,19 @@ impl PreparedGeometry {
     /// Builds the acceleration structure over `geometry`.
     ///
     /// # Errors
-    /// [`RenderError::Geometry`] if the geometry is inconsistent, [`RenderError::Grid`] or [`RenderError::GridFile`] if a grid was
-    /// requested and cannot be built or read.
+    /// [`RenderError::Geometry`] if the geometry is inconsistent, [`RenderError::BuildMemory`] if there is not enough memory,
+    /// [`RenderError::Grid`] or [`RenderError::GridFile`] if a grid was requested and cannot be built or read.
     pub fn new(
         geometry: &Geometry,
         acceleration: &Acceleration,
+        budget: Budget,
         observer: &dyn Observer,
     ) -> Result<PreparedGeometry, RenderError> {
         geometry.check()?;
         let mesh = &geometry.mesh;
+        let triangles = mesh.triangles.len();
+        let needed = triangles as u64 * BYTES_TO_BUILD;
+        budget.check(needed).map_err(|short| RenderError::BuildMemory { triangles, short })?;
         observer.begin(Stage::Build, mesh.triangles.len() as u64);
         let start = std::time::Instant::now();
         let triangles: Vec<Triangle> =
@@ -52,7 +60,7 @@ impl PreparedGeometry {
         let accelerator: Box<dyn Accelerator> = match acceleration {
             Acceleration::Auto | Acceleration::Bvh => Box::new(Bvh::new(&triangles)),
             Acceleration::Grid(dims) => {
-                Box::new(Grid::new(&triangles, &GridOptions { dims: *dims, ..GridOptions::default() })?)
+                Box::new(Grid::new(&triangles, &GridOptions { dims: *dims, budget, ..GridOptions::default() })?)
             }
             Acceleration::GridFile(path) => Box::new(Grid::load(path, &triangles)?),
             Acceleration::BruteForce => Box::new(BruteForce::new(&triangles)),
@@ -122,8 +130,27 @@ impl PreparedScene {
         acceleration: &Acceleration,
         observer: &dyn Observer,
     ) -> Result<PreparedScene, RenderError> {
-        let geometry = Arc::new(PreparedGeometry::new(&scene.geometry, acceleration, observer)?);
+        PreparedScene::within(scene, acceleration, Budget::default(), observer)
+    }
+
+    /// [`PreparedScene::new`] within a memory limit.
+    ///
+    /// # Errors
+    /// As [`PreparedGeometry::new`].
+    pub fn within(
+        scene: &Scene,
+        acceleration: &Acceleration,
+        budget: Budget,
+        observer: &dyn Observer,
+    ) -> Result<PreparedScene, RenderError> {
+        let geometry = Arc::new(PreparedGeometry::new(&scene.geometry, acceleration, budget, observer)?);
         Ok(PreparedScene { scene: scene.clone(), geometry })
+    }
+
+    /// I_a of formula (1): what the scene sets, or the [default](Lights::default_ambient).
+    pub(crate) fn ambient(&self) -> Vec3 {
+        let lights = &self.scene.lights;
+        lights.ambient.unwrap_or_else(|| lights.default_ambient(&self.geometry.bounds))
     }
 
     /// The same geometry under other lights. Their positions are in the geometry's local frame.
@@ -172,13 +199,14 @@ impl Preparations {
         &self,
         scene: &Scene,
         acceleration: &Acceleration,
+        budget: Budget,
         observer: &dyn Observer,
     ) -> Result<PreparedScene, RenderError> {
         if let Some(geometry) = self.find(scene, acceleration) {
             return Ok(PreparedScene { scene: scene.clone(), geometry });
         }
         // Not under the lock: others may prepare other geometry in the meantime.
-        let prepared = PreparedScene::new(scene, acceleration, observer)?;
+        let prepared = PreparedScene::within(scene, acceleration, budget, observer)?;
         let geometry = Arc::downgrade(&scene.geometry);
         self.locked().push(Preparation { geometry, prepared: Arc::clone(&prepared.geometry) });
         Ok(prepared)
@@ -195,5 +223,29 @@ impl Preparations {
 
     fn locked(&self) -> std::sync::MutexGuard<'_, Vec<Preparation>> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lightmesh_scene::Mesh;
+
+    use super::*;
+    use crate::observer::Unobserved;
+
+    #[test]
+    fn triangles_that_do_not_fit_are_refused_before_anything_is_built() {
+        let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+        let mesh =
+            Mesh { positions: corners, triangles: vec![[0, 1, 2]; 5000], materials: vec![0; 5000], ..Mesh::default() };
+        let geometry = Geometry { mesh, materials: vec![Default::default()], ..Geometry::default() };
+        let within = |limit| PreparedGeometry::new(&geometry, &Acceleration::Bvh, Budget::new(limit), &Unobserved);
+        assert!(within(None).is_ok());
+        match within(Some(1)).err() {
+            Some(RenderError::BuildMemory { triangles: 5000, short }) => {
+                assert_eq!(short.needed, 5000 * BYTES_TO_BUILD)
+            }
+            other => panic!("{other:?}"),
+        }
     }
 }

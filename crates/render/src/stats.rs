@@ -4,7 +4,6 @@ use serde::Serialize;
 
 use crate::counters::Counts;
 use crate::light_mesh::Lattice;
-use crate::memory;
 use crate::prepared::PreparedScene;
 use crate::stage::Seconds;
 
@@ -88,12 +87,15 @@ pub struct SettingsStats {
     pub weight: Option<&'static str>,
     pub lookup: Option<&'static str>,
     pub quality: Option<&'static str>,
+    pub aa: u32,
+    pub filter: Option<&'static str>,
     pub short_tests: Option<&'static str>,
     pub samples: u32,
     pub accel: &'static str,
     pub camera: CameraStats,
     pub ambient: [f32; 3],
     pub background: [f32; 3],
+    pub transparent: bool,
     pub seed: u64,
     pub memory_limit: Option<u64>,
     pub rows_per_band: u32,
@@ -117,6 +119,6 @@ impl LatticeStats {
 
 impl MemoryStats {
     pub(crate) fn now(device_peak_bytes: u64) -> MemoryStats {
-        MemoryStats { host_peak_bytes: memory::peak().unwrap_or(0), device_peak_bytes }
+        MemoryStats { host_peak_bytes: lightmesh_memory::peak().unwrap_or(0), device_peak_bytes }
     }
 }

@@ -64,6 +64,21 @@ impl View {
         let [width, height] = self.size;
         let x = (index % width) as f32 + 0.5 - 0.5 * width as f32;
         let y = (index / width) as f32 + 0.5 - 0.5 * height as f32;
+        self.ray_towards(x, y)
+    }
+
+    /// The ray through the point of pixel `index` that is `aside` from its centre, in pixels.
+    #[inline(always)]
+    pub(crate) fn ray_beside(&self, index: u32, aside: [f32; 2]) -> Ray {
+        let [width, height] = self.size;
+        let x = (index % width) as f32 + 0.5 - 0.5 * width as f32;
+        let y = (index / width) as f32 + 0.5 - 0.5 * height as f32;
+        self.ray_towards(x + aside[0], y + aside[1])
+    }
+
+    /// The ray `x` pixels to the right and `y` down from the image's centre.
+    #[inline(always)]
+    fn ray_towards(&self, x: f32, y: f32) -> Ray {
         let aside = x * self.right + y * self.down;
         let (origin, direction) = if self.perspective {
             let direction = self.forward + aside;

@@ -1,23 +1,36 @@
 //! The files that a scene may be made of: those in the folder of the file that was opened, links resolved, unless the options allow
-//! others.
+//! others; and what fits into memory.
 
 use std::path::{Component, Path, PathBuf};
 
-use lightmesh_files::{ReadError, read, read_inside};
+use lightmesh_files::{Portion, ReadError, read, read_inside};
+use lightmesh_memory::Budget;
 
-use crate::{LoadError, error::Place};
+use crate::{LoadError, LoadOptions, error::Place};
 
-/// Where the files of one scene may lie.
+/// Where the files of one scene may lie, and how much memory they may take.
 #[derive(Clone, Debug)]
 pub(crate) struct Border {
     /// The file that was opened.
     scene: PathBuf,
     allow_outside: bool,
+    pub(crate) budget: Budget,
 }
 
 impl Border {
-    pub(crate) fn new(scene: &Path, allow_outside: bool) -> Border {
-        Border { scene: scene.to_owned(), allow_outside }
+    pub(crate) fn new(scene: &Path, options: &LoadOptions) -> Border {
+        let budget = Budget::new(options.memory_limit);
+        Border { scene: scene.to_owned(), allow_outside: options.allow_outside, budget }
+    }
+
+    /// The content of the scene itself, wherever it is. Only regular files: a pipe or a device might never end.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError::Read`], [`LoadError::NoFile`] or [`LoadError::Memory`].
+    pub(crate) fn read_scene(&self) -> Result<Vec<u8>, LoadError> {
+        let portion = Portion { budget: self.budget, ..Portion::ALL };
+        read(&self.scene, portion).map_err(|error| unreadable(&self.scene, error))
     }
 
     /// The path that `source`, one of the scene's files, refers to as `name`: relative to the file's own folder, with either
@@ -39,10 +52,16 @@ impl Border {
     /// # Errors
     ///
     /// [`LoadError::Outside`] if it is, by its text or through a link, outside the scene's folder, unless that is allowed;
-    /// [`LoadError::Read`] or [`LoadError::NoFile`] if it cannot be read.
+    /// [`LoadError::Read`], [`LoadError::NoFile`] or [`LoadError::Memory`] if it cannot be read.
     pub(crate) fn read_beside(&self, source: &Path, name: &str) -> Result<(PathBuf, Vec<u8>), LoadError> {
+        self.read_start(source, name, u64::MAX)
+    }
+
+    /// The same with the first `wanted` bytes of the content.
+    pub(crate) fn read_start(&self, source: &Path, name: &str, wanted: u64) -> Result<(PathBuf, Vec<u8>), LoadError> {
         let path = self.path_beside(source, name)?;
-        let bytes = if self.allow_outside { read(&path) } else { read_inside(self.folder(), &path) };
+        let portion = Portion { wanted, budget: self.budget };
+        let bytes = if self.allow_outside { read(&path, portion) } else { read_inside(self.folder(), &path, portion) };
         match bytes {
             Ok(bytes) => Ok((path, bytes)),
             Err(ReadError::Outside) => Err(outside(source, name)),
@@ -64,15 +83,12 @@ pub(crate) fn beside(source: &Path, name: &str) -> Option<PathBuf> {
     (!is_url && !has_drive).then(|| source.parent().unwrap_or(Path::new("")).join(named))
 }
 
-/// The content of the file that the user named, wherever it is. Only regular files: a pipe or a device might never end.
-pub(crate) fn read_scene(path: &Path) -> Result<Vec<u8>, LoadError> {
-    read(path).map_err(|error| unreadable(path, error))
-}
-
 fn unreadable(path: &Path, error: ReadError) -> LoadError {
+    let path = path.to_owned();
     match error {
-        ReadError::System(cause) => LoadError::Read { path: path.to_owned(), cause },
-        _ => LoadError::NoFile { path: path.to_owned() },
+        ReadError::System(cause) => LoadError::Read { path, cause },
+        ReadError::Memory(short) => LoadError::Memory { path, what: "the file".to_owned(), short },
+        _ => LoadError::NoFile { path },
     }
 }
 
@@ -102,7 +118,7 @@ mod tests {
     #[test]
     fn references_stay_in_the_scenes_folder() {
         let beside = |scene: &str, source: &str, name: &str| {
-            Border::new(Path::new(scene), false).path_beside(Path::new(source), name).ok()
+            Border::new(Path::new(scene), &LoadOptions::default()).path_beside(Path::new(source), name).ok()
         };
         let inside = |path: &str| Some(PathBuf::from(path));
         assert_eq!(beside("room.toml", "room.toml", r".\maps\oak.png"), inside("./maps/oak.png"));
@@ -112,7 +128,7 @@ mod tests {
             assert_eq!(beside("room.toml", "room.toml", name), None, "{name}");
             assert_eq!(beside("../room.toml", "../room.toml", name), None, "{name}");
         }
-        let free = Border::new(Path::new("a/room.toml"), true);
+        let free = Border::new(Path::new("a/room.toml"), &LoadOptions::default().with_allow_outside(true));
         let path = |name| free.path_beside(Path::new("a/room.toml"), name).ok();
         assert_eq!([path("../oak.png"), path("http://oak.png")], [inside("a/../oak.png"), None]);
     }

@@ -123,6 +123,11 @@ impl SceneBuilder {
             && reserve(&mut self.materials, room.triangles)
     }
 
+    /// Number of triangles for which memory is reserved.
+    pub(crate) fn reserved_triangles(&self) -> usize {
+        self.triangles.capacity() - self.triangles.len()
+    }
+
     /// Number of triangles so far.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()

@@ -1,6 +1,6 @@
 //! Cameras: the viewpoints of images.
 
-use glam::{DVec3, Vec3};
+use glam::{DMat4, DVec3, DVec4, Vec3};
 
 /// The field of view of a perspective camera. The other angle follows from the image's aspect ratio, because pixels are square.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,6 +135,31 @@ impl Camera {
         Camera { position, ..self }
     }
 
+    /// From world coordinates to the camera's: x to the right, y up, −z into the image. `origin` is where the local frame lies.
+    pub fn from_world(&self, origin: DVec3) -> DMat4 {
+        let eye = origin + self.position.as_dvec3();
+        let (right, up, forward) = self.basis();
+        let row = |axis: Vec3| axis.as_dvec3().extend(-axis.as_dvec3().dot(eye));
+        DMat4::from_cols(row(right), row(up), row(-forward), DVec4::W).transpose()
+    }
+
+    /// From world coordinates to those of an image `aspect` times as wide as high: x and y from −1 at its left and lower edges to 1 at the
+    /// others, and as z the distance in front of the camera, which for a perspective camera is divided by itself.
+    pub fn from_world_to_image(&self, origin: DVec3, aspect: f64) -> DMat4 {
+        // Half the height of the image, one unit before the camera or anywhere.
+        let (half, perspective) = match self.projection {
+            Projection::Perspective(fov) => {
+                let vertical = f64::from(fov.vertical(aspect as f32));
+                ((0.5 * vertical).to_radians().tan(), true)
+            }
+            Projection::Orthographic { height } => (0.5 * f64::from(height), false),
+        };
+        let scale = DVec3::new(1.0 / (half * aspect), 1.0 / half, -1.0);
+        let last = if perspective { DVec4::NEG_Z } else { DVec4::W };
+        let projection = DMat4::from_cols(DVec4::X * scale.x, DVec4::Y * scale.y, DVec4::Z * scale.z, last).transpose();
+        projection * self.from_world(origin)
+    }
+
     /// The camera's axes: right, up and forward, orthonormal. Forward is the view direction.
     pub fn basis(&self) -> (Vec3, Vec3, Vec3) {
         let forward = self.direction.normalize();
@@ -158,6 +183,21 @@ fn upper_edge(forward: DVec3, up: DVec3) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_edges_of_the_image_are_at_one() {
+        let origin = DVec3::new(1000.0, 0.0, -7.0);
+        let camera = Camera::look_at(Vec3::new(1.0, 2.0, 3.0), Vec3::new(1.0, 2.0, -5.0), Vec3::Y, 90.0).unwrap();
+        let eye = origin + DVec3::new(1.0, 2.0, 3.0);
+        let seen = camera.from_world(origin).transform_point3(eye + DVec3::new(0.5, -0.25, -4.0));
+        assert!((seen - DVec3::new(0.5, -0.25, -4.0)).length() < 1e-6, "{seen}");
+        // At a distance of 4, the image with an angle of 90° is 8 units high and 16 wide.
+        let orthographic = camera.clone().with_projection(Projection::Orthographic { height: 8.0 });
+        for camera in [camera, orthographic] {
+            let corner = camera.from_world_to_image(origin, 2.0).project_point3(eye + DVec3::new(8.0, -4.0, -4.0));
+            assert!((corner.truncate() - glam::DVec2::new(1.0, -1.0)).length() < 1e-6, "{corner}");
+        }
+    }
 
     #[test]
     fn the_upper_edge_is_up_or_the_back_of_a_plan() {

@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3, Vec3};
+use lightmesh_memory::Short;
 
 use crate::{
     Camera, Geometry, Light, LightKind, LightMeshDefaults, Lights, LoadError, LoadOptions, Material, MeshPart,
@@ -57,6 +58,8 @@ pub(crate) struct Draft {
     pub(crate) materials: Vec<Material>,
     pub(crate) textures: Vec<Texture>,
     pub(crate) texture_files: TextureFiles,
+    /// The first texture for which there is not enough memory: there will be no scene.
+    pub(crate) too_large: Option<LoadError>,
     /// Index of the material for triangles without one, once there is one.
     default_material: Option<u32>,
     /// The file itself and all that it refers to.
@@ -73,7 +76,7 @@ impl Draft {
         Draft {
             path: path.to_owned(),
             strict: options.strict,
-            border: Border::new(path, options.allow_outside),
+            border: Border::new(path, options),
             builder: SceneBuilder::new(),
             unusable_triangles: 0,
             without_uvs: Vec::new(),
@@ -82,6 +85,7 @@ impl Draft {
             materials: Vec::new(),
             textures: Vec::new(),
             texture_files: TextureFiles::default(),
+            too_large: None,
             default_material: None,
             files: BTreeSet::from([path.to_owned()]),
             ambient: None,
@@ -103,10 +107,26 @@ impl Draft {
         if vertices > limit || triangles > limit {
             return Err(LoadError::TooLarge { path: self.path.clone() });
         }
+        self.check_memory(room, vertices, triangles)?;
         if self.builder.reserve(room) {
             Ok(())
         } else {
-            Err(LoadError::Memory { path: self.path.clone(), vertices, triangles })
+            let (needed, limit) = (room.bytes(), self.border.budget.limit());
+            Err(self.out_of_memory(vertices, triangles, Short { needed, left: 0, limit }))
+        }
+    }
+
+    /// Fails if there is not enough memory for what is added, of `vertices` and `triangles` in all.
+    fn check_memory(&self, room: &Room, vertices: usize, triangles: usize) -> Result<(), LoadError> {
+        let checked = self.border.budget.check(room.bytes());
+        checked.map_err(|short| self.out_of_memory(vertices, triangles, short))
+    }
+
+    fn out_of_memory(&self, vertices: usize, triangles: usize, short: Short) -> LoadError {
+        LoadError::Memory {
+            path: self.path.clone(),
+            what: format!("{vertices} vertices and {triangles} triangles"),
+            short,
         }
     }
 
@@ -118,7 +138,7 @@ impl Draft {
         transform: &DMat4,
         material: impl Fn(usize) -> u32,
     ) -> Result<(), LoadError> {
-        self.check_room(part.positions.len())?;
+        self.check_room(&part)?;
         let usable = usable_in(transform);
         if part.positions.iter().all(&usable) {
             self.builder.append(part, transform, material);
@@ -131,7 +151,9 @@ impl Draft {
 
     /// [`Draft::add`] for a mesh passed by value.
     pub(crate) fn take<P: Position>(&mut self, mesh: LoadedMesh<P>, transform: &DMat4) -> Result<(), LoadError> {
-        self.check_room(mesh.positions.len())?;
+        // The first mesh of a scene is not copied.
+        let copied = if self.builder.vertex_count() > 0 { mesh.part() } else { MeshPart::default() };
+        self.check_room(&copied)?;
         let usable = usable_in(transform);
         if mesh.positions.iter().all(&usable) {
             let (triangles, has_uvs) = (mesh.triangles.len(), !mesh.uvs.is_empty());
@@ -143,11 +165,15 @@ impl Draft {
         Ok(())
     }
 
-    fn check_room(&self, vertices: usize) -> Result<(), LoadError> {
-        if self.builder.vertex_count() + vertices > u32::MAX as usize {
+    fn check_room<P>(&self, part: &MeshPart<P>) -> Result<(), LoadError> {
+        let vertices = self.builder.vertex_count() + part.positions.len();
+        if vertices > u32::MAX as usize {
             return Err(LoadError::TooLarge { path: self.path.clone() });
         }
-        Ok(())
+        if part.triangles.len() <= self.builder.reserved_triangles() {
+            return Ok(());
+        }
+        self.check_memory(&Room::of(part), vertices, self.builder.triangle_count() + part.triangles.len())
     }
 
     /// [`Draft::add`] without the triangles that use an unusable vertex.
@@ -236,6 +262,9 @@ impl Draft {
     ///
     /// [`LoadError::Warnings`] if the options are strict and there are warnings.
     pub(crate) fn finish(mut self) -> Result<Scene, LoadError> {
+        if let Some(error) = self.too_large {
+            return Err(error);
+        }
         if self.unusable_triangles > 0 {
             self.warnings.push(format!(
                 "{} triangles with infinite, undefined or far too large coordinates were ignored",

@@ -2,6 +2,8 @@
 
 use std::{fmt, io, path::Path, path::PathBuf};
 
+use lightmesh_memory::Short;
+
 use crate::quote::{self, list, quote, reference};
 
 /// The location of an error in a file.
@@ -199,14 +201,14 @@ pub enum LoadError {
         warnings: Vec<String>,
     },
     /// Not enough memory.
-    #[error("there is not enough memory for {vertices} vertices and {triangles} triangles, {}; split or simplify the scene", path.display())]
+    #[error("there is not enough memory for {what}: {short}, {}; raise the memory limit, or simplify the scene", path.display())]
     Memory {
-        /// The file being opened.
+        /// The file.
         path: PathBuf,
-        /// Number of vertices, counting every use of a mesh.
-        vertices: usize,
-        /// Number of triangles, counting every use of a mesh.
-        triangles: usize,
+        /// What would be held: the file itself, a texture, vertices and triangles counting every use of a mesh.
+        what: String,
+        /// Bytes needed and left.
+        short: Short,
     },
     /// More vertices or triangles than 32-bit indices can address.
     #[error("the scene has more than {} vertices or triangles, {}; split or simplify it", u32::MAX, path.display())]

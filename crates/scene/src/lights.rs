@@ -1,10 +1,14 @@
 //! The lights of a scene.
 
+use std::f32::consts::PI;
 use std::ops::{Deref, DerefMut};
 
 use glam::Vec3;
 
-use crate::Light;
+use crate::{Bounds, Falloff, Light};
+
+/// The default ambient term as a share of what the lights give.
+const DEFAULT_AMBIENT: f32 = 0.1;
 
 /// The lights of a scene, and the ambient light. Dereferences to the list of lights.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,6 +31,23 @@ impl Lights {
     /// I_a of formula (1), per channel.
     pub fn with_ambient(self, ambient: impl Into<Vec3>) -> Lights {
         Lights { ambient: Some(ambient.into()), ..self }
+    }
+
+    /// I_a if it is not set, for a scene within `bounds`: a tenth of what a white surface shows that faces a light of intensity 1 without
+    /// falloff; and if all lights have falloff, a tenth of what it shows at the centre with all of them facing it. So the ambient term has
+    /// the unit of the lights.
+    pub fn default_ambient(&self, bounds: &Bounds) -> Vec3 {
+        if self.list.is_empty() || self.list.iter().any(|light| light.falloff == Falloff::None) {
+            return Vec3::splat(DEFAULT_AMBIENT);
+        }
+        // A lamp at the centre itself would be infinitely near.
+        let nearest = (0.25 * bounds.diagonal()).max(f32::MIN_POSITIVE);
+        let shown = |light: &Light| {
+            let distance = light.position().map_or(1.0, |position| position.distance(bounds.center()).max(nearest));
+            light.intensity.element_sum() / (3.0 * PI * distance * distance)
+        };
+        let sum: f32 = self.list.iter().map(shown).sum();
+        Vec3::splat(DEFAULT_AMBIENT * sum.min(f32::MAX))
     }
 
     /// Radiance of rays that hit nothing.
@@ -86,5 +107,30 @@ impl IntoIterator for Lights {
 
     fn into_iter(self) -> Self::IntoIter {
         self.list.into_iter()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ambient_term_has_the_unit_of_the_lights() {
+        let bounds = Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE };
+        let ambient = |lights: Vec<Light>| Lights::from(lights).default_ambient(&bounds);
+        let lamp = |distance: f32, candela: f32| {
+            let light = Light::point(distance * Vec3::Y).with_intensity(Vec3::splat(candela));
+            light.with_falloff(Falloff::InverseSquare)
+        };
+        assert_eq!(ambient(Vec::new()), Vec3::splat(0.1));
+        assert_eq!(ambient(vec![Light::point(Vec3::Y), lamp(2.0, 800.0)]), Vec3::splat(0.1));
+        // 800 cd at 2 m are 200 lux, of which a white surface reflects 200 / pi to each side.
+        let near = |found: Vec3, expected: f32| (found - expected).abs().max_element() < 1e-5 * expected;
+        assert!(near(ambient(vec![lamp(2.0, 800.0)]), 20.0 / PI));
+        assert!(near(ambient(vec![lamp(2.0, 800.0), lamp(4.0, 800.0)]), 25.0 / PI));
+        let sun =
+            Light::directional(Vec3::NEG_Y).unwrap().with_intensity([1e5; 3]).with_falloff(Falloff::InverseSquare);
+        assert!(near(ambient(vec![sun]), 1e4 / PI));
+        assert!(ambient(vec![lamp(0.0, 800.0)]).is_finite());
     }
 }

@@ -35,6 +35,28 @@ pub(crate) struct Room {
 }
 
 impl Room {
+    /// What a part adds.
+    pub(crate) fn of<P>(part: &MeshPart<P>) -> Room {
+        Room {
+            vertices: part.positions.len(),
+            triangles: part.triangles.len(),
+            normals: !part.normals.is_empty(),
+            uvs: !part.uvs.is_empty(),
+            colors: !part.colors.is_empty(),
+        }
+    }
+
+    /// Bytes of it, with positions in double precision.
+    pub(crate) fn bytes(&self) -> u64 {
+        let used = |used: bool, bytes: usize| if used { bytes } else { 0 };
+        let vertex = size_of::<DVec3>()
+            + used(self.normals, size_of::<Vec3>())
+            + used(self.uvs, size_of::<Vec2>())
+            + used(self.colors, size_of::<Vec3>());
+        let triangle = size_of::<[u32; 3]>() + size_of::<u32>();
+        (self.vertices as u64 * vertex as u64).saturating_add(self.triangles as u64 * triangle as u64)
+    }
+
     /// The memory for this, and for `count` times `more`.
     pub(crate) fn and(&self, more: &Room, count: usize) -> Room {
         let sum = |a: usize, b: usize| a.saturating_add(b.saturating_mul(count));

@@ -6,7 +6,6 @@ use glam::DMat4;
 
 use crate::{
     LoadError, Scene,
-    border::read_scene,
     draft::{Draft, Placement},
     formats,
 };
@@ -23,12 +22,19 @@ pub struct LoadOptions {
     pub allow_outside: bool,
     /// Treat warnings as errors.
     pub strict: bool,
+    /// Most bytes that the process may hold while it reads; `None`: what is free, less a reserve.
+    pub memory_limit: Option<u64>,
 }
 
 impl LoadOptions {
     /// Whether to follow references outside the folder of the opened file.
     pub fn with_allow_outside(self, allow_outside: bool) -> LoadOptions {
         LoadOptions { allow_outside, ..self }
+    }
+
+    /// Most bytes that the process may hold while it reads.
+    pub fn with_memory_limit(self, memory_limit: impl Into<Option<u64>>) -> LoadOptions {
+        LoadOptions { memory_limit: memory_limit.into(), ..self }
     }
 
     /// Whether warnings are errors.
@@ -62,9 +68,9 @@ impl Scene {
         }
         let mut draft = Draft::new(path, options);
         if extension(path) == "toml" {
-            formats::toml::read(path, &read_scene(path)?, &mut draft)?;
+            formats::toml::read(path, &draft.border.read_scene()?, &mut draft)?;
         } else {
-            reader(path)?(path, read_scene(path)?, &Placement::default(), &mut draft)?;
+            reader(path)?(path, draft.border.read_scene()?, &Placement::default(), &mut draft)?;
         }
         draft.finish()
     }

@@ -13,7 +13,7 @@ fn every_model_is_seen_in_every_mode() {
     for model in MODELS {
         let scene = model.open();
         for mode in MODES {
-            let frame = render(&scene, &Settings::default().with_mode(mode).with_size(SIZE).with_samples(4));
+            let frame = render(&scene, &Settings::default().with_aa(1).with_mode(mode).with_size(SIZE).with_samples(4));
             let picture = Picture::new(&frame);
             assert_eq!(picture.fault(), None, "{}, {mode:?}", model.file);
             let hits = picture.hits().count();
@@ -82,7 +82,7 @@ fn open(file: &str) -> Scene {
 }
 
 fn picture(scene: &Scene) -> Frame {
-    render(scene, &Settings::default().with_mode(Mode::LightMesh).with_size([256, 256]))
+    render(scene, &Settings::default().with_aa(1).with_mode(Mode::LightMesh).with_size([256, 256]))
 }
 
 fn corners(scene: &Scene) -> Vec<Vec3> {

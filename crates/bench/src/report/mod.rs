@@ -37,7 +37,7 @@ use assets::Assets;
 pub(crate) use assets::{free_name, slug};
 use document::{Block, Document, Section, Table};
 pub use error::{PictureError, ReportError};
-use lightmesh_files::read_inside;
+use lightmesh_files::{Portion, read_inside};
 use pictures::Gallery;
 use runs::{Run, Runs};
 pub use select::{Selection, TableError};
@@ -118,7 +118,7 @@ fn opened(path: &Path) -> Result<Results, ReportError> {
     for picture in &mut results.pictures {
         let file = path.with_file_name(&picture.file);
         let folder = path.parent().unwrap_or(Path::new(""));
-        picture.png = read_inside(folder, &file).map_err(|reason| ReportError::Picture {
+        picture.png = read_inside(folder, &file, Portion::ALL).map_err(|reason| ReportError::Picture {
             path: path.to_owned(),
             id: picture.id.clone(),
             reason: PictureError::Read { path: file, reason },

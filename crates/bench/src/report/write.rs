@@ -6,7 +6,7 @@ use lightmesh_files::{Ready, publish};
 
 use super::Report;
 use crate::OutputError;
-use crate::output::{make_folder, ready};
+use crate::output::make_folder;
 
 /// As Markdown and as HTML.
 const PAGES: [&str; 2] = ["report.md", "report.html"];
@@ -48,10 +48,10 @@ impl Report {
         }
         let mut files = Vec::new();
         for (name, bytes) in self.assets.files() {
-            files.push(ready(&folder.join(name), bytes)?);
+            files.push(Ready::with(folder.join(name), bytes)?);
         }
         for (name, page) in PAGES.iter().zip([self.markdown(), self.html()]) {
-            files.push(ready(&folder.join(name), page.as_bytes())?);
+            files.push(Ready::with(folder.join(name), page.as_bytes())?);
         }
         Ok(files)
     }

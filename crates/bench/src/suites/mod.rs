@@ -1,5 +1,6 @@
 //! The suites. Each is a function that fills [`Findings`].
 
+mod antialiasing;
 mod quality;
 mod rays;
 mod shadows;
@@ -14,7 +15,7 @@ use std::time::Instant;
 
 use lightmesh::{Observer, RenderError};
 
-use crate::findings::Keeper;
+use crate::findings::{Keeper, Tell};
 use crate::{BenchError, Findings, Machine, Picture, Plan, Program, Results, Suite, machine};
 
 /// Runs a suite. The observer's [`note`](Observer::note) gets human-readable progress. If the observer requests a stop, the
@@ -24,7 +25,7 @@ use crate::{BenchError, Findings, Machine, Picture, Plan, Program, Results, Suit
 /// [`BenchError`], most often because a device cannot be used; it is [`RenderError::Cancelled`] if the suite was stopped before
 /// its first row.
 pub fn run(suite: Suite, plan: &Plan, observer: &dyn Observer) -> Result<Results, BenchError> {
-    run_keeping(suite, plan, observer, |_| {})
+    run_with(suite, plan, observer, None)
 }
 
 /// As [`run`]. Whenever there are new rows, `keep` gets the results so far, without images, as those of a suite that was stopped.
@@ -37,13 +38,22 @@ pub fn run_keeping(
     observer: &dyn Observer,
     keep: impl Fn(&Results) + 'static,
 ) -> Result<Results, BenchError> {
+    run_with(suite, plan, observer, Some(Box::new(keep)))
+}
+
+/// Whoever gets the results so far.
+type Keep = Box<dyn Fn(&Results)>;
+
+/// Without `keep`, results are put together at the end alone: that copies all rows.
+fn run_with(suite: Suite, plan: &Plan, observer: &dyn Observer, keep: Option<Keep>) -> Result<Results, BenchError> {
     let run = Rc::new(Run::begin(suite, plan));
     let mut findings = Findings::default();
-    findings.keeper = Keeper(Some({
+    findings.keeper = Keeper(keep.map(|keep| -> Tell {
         let run = run.clone();
         Rc::new(move |findings| keep(&run.stopped(findings)))
     }));
     let outcome = match suite {
+        Suite::Antialiasing => antialiasing::run(plan, observer, &mut findings),
         Suite::Thesis => thesis::run(plan, observer, &mut findings),
         Suite::Quality => quality::run(plan, observer, &mut findings),
         Suite::Rays => rays::run(plan, observer, &mut findings),

@@ -99,6 +99,7 @@ fn cases<'a>(
 impl Case<'_> {
     fn variant(&self, subject: &Subject) -> Variant<'_> {
         let mut settings = Settings::default()
+            .with_aa(1)
             .with_mode(self.mode)
             .with_size([self.side; 2])
             .with_lookup(Lookup::HalfBall)

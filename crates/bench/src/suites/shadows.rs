@@ -36,7 +36,7 @@ const SIDES: [u32; 2] = [2048, 512];
 /// Numbers of samples.
 const SAMPLES: [u32; 2] = [16, 64];
 /// Radii of the lights as parts of their distances.
-const EMITTERS: [f32; 3] = [0.016, 0.042, 0.107];
+pub(super) const EMITTERS: [f32; 3] = [0.016, 0.042, 0.107];
 /// The stages between primary rays and shading.
 const STAGES: [&str; 2] = ["cells", "long_tests"];
 /// Samples of the reference, and in the short version.
@@ -70,7 +70,7 @@ pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings)
         for engine in &engines {
             for &emitter in &emitters {
                 let scene = own.with_lights(with_emitters(subject, emitter).lights);
-                let settings = Settings::default().with_size([side; 2]);
+                let settings = Settings::default().with_aa(1).with_size([side; 2]);
                 let case = Case { subject, engine, scene: &scene, emitter, settings };
                 let reference = case.converged(plan, observer)?;
                 for samples in SAMPLES {
@@ -87,7 +87,7 @@ pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings)
 }
 
 /// The scene with balls as lights: of a radius that is a part of their distance from its middle, or their own.
-fn with_emitters(subject: &Subject, emitter: Option<f32>) -> Scene {
+pub(super) fn with_emitters(subject: &Subject, emitter: Option<f32>) -> Scene {
     let Some(part) = emitter else { return subject.with_balls() };
     let mut scene = subject.scene.clone();
     let middle = scene.geometry.mesh.bounds().center();

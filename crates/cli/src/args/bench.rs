@@ -12,9 +12,10 @@ use crate::value::Budget;
 /// Run a suite of experiments, or compare two runs
 ///
 /// Suites: `thesis` reproduces all tables and figures of the thesis, `quality` measures errors relative to converged area shadows
-/// and the cost of shadow rays with equal error, `rays` measures rays per second for each acceleration structure, `stages` the
-/// time of each stage by acceleration structure, kind of short tests and radius. A table is printed; --json saves all rows, for
-/// `lightmesh bench compare` and `lightmesh report`. To name a file `compare`, write ./compare.
+/// and the cost of shadow rays with equal error, `rays` measures rays per second for each acceleration structure, `stages` the time
+/// of each stage by acceleration structure, kind of short tests and radius, `antialiasing` time and errors of several samples of a
+/// pixel. A table is printed; --json saves all rows, for `lightmesh bench compare` and `lightmesh report`. To name a file
+/// `compare`, write ./compare.
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true)]
 pub(crate) struct BenchArgs {

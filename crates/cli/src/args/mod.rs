@@ -8,25 +8,58 @@ mod words;
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Arg, Args, CommandFactory, Parser, Subcommand};
 
 pub(crate) use bench::{BenchArgs, BenchCommand, BenchCompareArgs, SuiteArgs};
 pub(crate) use render::RenderArgs;
-pub(crate) use words::{Progress, Up};
+pub(crate) use words::{Progress, Switch, Up};
 
-use crate::value::{Bound, Dims};
+use crate::value::{Bound, ByteSize, Dims};
 
 /// Soft shadows by the light mesh method
 #[derive(Debug, Parser)]
-#[command(name = "lightmesh", version, max_term_width = 110, after_help = EXIT_CODES)]
+#[command(name = "lightmesh", version, long_version = version(), max_term_width = 110, after_help = EXIT_CODES)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
 }
 
+/// The version, with the commit if it is known, and what the kernels need.
+fn version() -> String {
+    let commit = lightmesh_bench::commit().map_or_else(String::new, |commit| format!("commit {commit}, "));
+    format!("{} ({commit}kernels for CUDA 12.0 or newer)", env!("CARGO_PKG_VERSION"))
+}
+
+/// The command line with a variable for each flag of `render`: LIGHTMESH_MEMORY_LIMIT for `--memory-limit`.
+pub(crate) fn command() -> clap::Command {
+    Cli::command().mut_subcommands(|subcommand| match subcommand.get_name() {
+        "render" => subcommand.mut_args(with_variable),
+        _ => subcommand,
+    })
+}
+
+fn with_variable(flag: Arg) -> Arg {
+    match flag.get_long().map(|long| long.replace('-', "_").to_uppercase()) {
+        Some(name) if !NOT_FROM_VARIABLES.contains(&&*name) => flag.env(format!("LIGHTMESH_{name}")).hide_env(true),
+        _ => flag,
+    }
+}
+
+/// What a single command asks for, or what has no value.
+const NOT_FROM_VARIABLES: [&str; 5] = ["HELP", "OUTPUT", "LIGHT", "QUIET", "VERBOSE"];
+
 const EXIT_CODES: &str = "\
 Exit codes: 0 success, 1 a comparison exceeded its threshold, 2 bad input or usage, 3 device unusable or memory \
-insufficient, 130 interrupted (143 by SIGTERM, 129 by SIGHUP).";
+insufficient, 130 interrupted (143 by SIGTERM, 129 by SIGHUP).
+
+Environment: each flag of `lightmesh render` except -o, --light, -q and -v can be set by a variable, LIGHTMESH_DEVICE for \
+--device or LIGHTMESH_MEMORY_LIMIT for --memory-limit; the flag wins. CUDA_VISIBLE_DEVICES hides GPUs.
+
+Examples:
+  lightmesh render builtin:childpark -o park.png
+  lightmesh render house.glb -o house.png --size 1920x1080 --quality final
+  lightmesh render room.toml -o room.exr --layers layers.exr --device cpu -v
+  lightmesh compare before.png after.png --max-flip 0.01";
 
 /// What to do.
 #[derive(Debug, Subcommand)]
@@ -75,6 +108,25 @@ pub(crate) struct ReadingArgs {
     /// Treat warnings as errors (exit code 2)
     #[arg(long, help_heading = "Reading")]
     pub(crate) strict: bool,
+
+    /// Most memory to use, on the host and on a device each; work is split to fit, and what cannot be split is refused (exit code 3). In
+    /// bytes, or with a unit: K, M, G, T (or KiB, …) are powers of 1024, kB, MB, GB, TB powers of 1000. A CUDA driver's own memory on the
+    /// host is not counted [default: free memory minus a reserve]
+    #[arg(long, value_name = "SIZE", help_heading = "Machine")]
+    pub(crate) memory_limit: Option<ByteSize>,
+}
+
+impl Command {
+    /// How it reads its scene; `None` if it has no such flags.
+    pub(crate) fn reading(&self) -> Option<ReadingArgs> {
+        match self {
+            Command::Render(args) => Some(args.scene.reading),
+            Command::Info(args) => Some(args.reading),
+            Command::Grid(args) => Some(args.scene.reading),
+            Command::Export(args) => Some(args.scene.reading),
+            _ => None,
+        }
+    }
 }
 
 /// Describe a scene, or list devices
@@ -209,12 +261,19 @@ pub(crate) struct ManArgs {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     #[test]
     fn the_definition_is_consistent() {
-        Cli::command().debug_assert();
+        command().debug_assert();
+    }
+
+    #[test]
+    fn flags_have_variables() {
+        let command = command();
+        let render = command.find_subcommand("render").unwrap();
+        let variable = |id: &str| render.get_arguments().find(|flag| flag.get_id() == id).unwrap().get_env();
+        assert_eq!(variable("memory_limit"), Some("LIGHTMESH_MEMORY_LIMIT".as_ref()));
+        assert_eq!((variable("device"), variable("output")), (Some("LIGHTMESH_DEVICE".as_ref()), None));
     }
 }

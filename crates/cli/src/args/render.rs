@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lightmesh::render::{Quality, ShortTests};
+use lightmesh::image::{BitDepth, ExrCompression, ExrSamples, View};
+use lightmesh::render::{Filter, Quality, ShortTests};
 use lightmesh::scene::{Falloff, Weight};
 use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
 
-use super::{Progress, SceneArg, Up, words};
-use crate::value::{ByteSize, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size};
+use super::{Progress, SceneArg, Switch, Up, words};
+use crate::value::{Background, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size};
 
 /// Render an image of a scene
 #[derive(Debug, Args)]
@@ -44,15 +45,23 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_parser = words::lookup(), default_value_t = Lookup::Auto, help_heading = "Method")]
     pub(crate) lookup: Lookup,
 
-    /// Samples of each light with a size: how smooth soft shadows are
+    /// Samples of each light with a size, and of each pixel: how smooth soft shadows and edges are
     #[arg(long, value_parser = words::quality(), default_value_t = Quality::Good, help_heading = "Method")]
     pub(crate) quality: Quality,
+
+    /// Samples of a pixel, in any mode; 1 is its centre [default: by --quality; 1 with half-ball, ray-trace and area]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Image")]
+    pub(crate) aa: Option<u32>,
+
+    /// Filter over which the colour of a pixel with several samples is averaged
+    #[arg(long, value_parser = words::filter(), default_value_t = Filter::BlackmanHarris, help_heading = "Image")]
+    pub(crate) filter: Filter,
 
     /// How short tests are evaluated; the image is the same
     #[arg(long, value_parser = words::short_tests(), default_value_t = ShortTests::Cells, help_heading = "Method")]
     pub(crate) short_tests: ShortTests,
 
-    /// Number of samples of each light with a size, at a surface point (lists, adaptive, area) or a light point (half-ball)
+    /// Number of samples of each light with a size, in a pixel (lists, adaptive, area) or at a light point (half-ball)
     /// [default: by --quality / 225 / 4]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65535), help_heading = "Method")]
     pub(crate) samples: Option<u32>,
@@ -70,9 +79,35 @@ pub(crate) struct RenderArgs {
     pub(crate) transfer: Transfer,
 
     /// Exposure of 8-bit files in stops, each of which doubles the brightness; auto brings any light level into range. Does not
-    /// affect exr files and --layers
-    #[arg(long, value_name = "STOPS|auto", allow_negative_numbers = true, default_value = "0", help_heading = "Image")]
-    pub(crate) exposure: Exposure,
+    /// affect exr files and --layers [default: auto if a light has a photometric unit (inverse-square falloff), else 0]
+    #[arg(long, value_name = "STOPS|auto", allow_negative_numbers = true, help_heading = "Image")]
+    pub(crate) exposure: Option<Exposure>,
+
+    /// How 8-bit and 16-bit files show what is brighter than white; exr files are always linear
+    #[arg(long, value_parser = words::view(), default_value_t = View::Standard, help_heading = "Image")]
+    pub(crate) view: View,
+
+    /// Bits per channel of png files
+    #[arg(long, value_name = "N", value_parser = words::bit_depth(), default_value = "8", help_heading = "Image")]
+    pub(crate) bit_depth: BitDepth,
+
+    /// Round 8-bit codes up and down in a fine fixed pattern, so that smooth gradients have no bands. Exact codes, such as black and white,
+    /// stay as they are; files become larger
+    #[arg(long, value_enum, default_value_t = Switch::Off, help_heading = "Image")]
+    pub(crate) dither: Switch,
+
+    /// Numbers of exr files; depth, positions and counts of --layers are always float
+    #[arg(long, value_parser = words::exr_type(), default_value_t = ExrSamples::Float, help_heading = "Image")]
+    pub(crate) exr_type: ExrSamples,
+
+    /// Lossless compression of exr files
+    #[arg(long, value_parser = words::exr_compression(), default_value_t = ExrCompression::Zip, help_heading = "Image")]
+    pub(crate) exr_compression: ExrCompression,
+
+    /// What is behind the scene: a colour, as one number, r,g,b or "#rrggbb" (sRGB), or transparent, which writes an alpha channel to png and exr
+    /// files; mirrors then still reflect the scene's background [default: the scene's, else black]
+    #[arg(long, value_name = "COLOUR|transparent", allow_hyphen_values = true, help_heading = "Image")]
+    pub(crate) background: Option<Background>,
 
     /// Write per-pixel data as a multilayer exr: colour, depth, normal, position, visibility of each light, number of light
     /// points used [default: off]
@@ -102,7 +137,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_parser = words::falloff(), default_value_t = Falloff::None, requires = "lights", help_heading = "Scene")]
     pub(crate) falloff: Falloff,
 
-    /// Ambient intensity: one number or r,g,b [default: the scene's, else 0.1]
+    /// Ambient intensity: one number or r,g,b [default: the scene's, else 0.1, or a tenth of what photometric lights give]
     #[arg(long, value_name = "V", allow_hyphen_values = true, help_heading = "Scene")]
     pub(crate) ambient: Option<Color>,
 
@@ -127,11 +162,6 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "F", help_heading = "Machine")]
     pub(crate) grid_file: Option<PathBuf>,
 
-    /// Memory limit; work is split to fit. In bytes, or with a unit: K, M, G, T (or KiB, …) are powers of 1024, kB, MB, GB, TB
-    /// powers of 1000 [default: free memory minus a reserve]
-    #[arg(long, value_name = "SIZE", help_heading = "Machine")]
-    pub(crate) memory_limit: Option<ByteSize>,
-
     /// Write counts, timings and all resolved settings as JSON. The time of the render excludes file input and output [default:
     /// off]
     #[arg(long, value_name = "F.json", help_heading = "Reports")]
@@ -144,4 +174,8 @@ pub(crate) struct RenderArgs {
     /// Print only errors, and progress only if --progress requests it
     #[arg(short, long, help_heading = "Reports")]
     pub(crate) quiet: bool,
+
+    /// Print more: why no CUDA device can be used; seconds of each stage, counts and memory
+    #[arg(short, long, conflicts_with = "quiet", help_heading = "Reports")]
+    pub(crate) verbose: bool,
 }

@@ -8,7 +8,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use lightmesh::scene::{Falloff, Weight};
 use lightmesh::{
     Acceleration, Lookup, Mode, Transfer,
-    render::{Quality, ShortTests},
+    image::{BitDepth, ExrCompression, ExrSamples, View},
+    render::{Filter, Quality, ShortTests},
     scene,
 };
 
@@ -37,6 +38,10 @@ pub(super) fn quality() -> impl TypedValueParser<Value = Quality> {
     one_of(Quality::ALL.iter().map(|quality| (quality.name(), quality.help())))
 }
 
+pub(super) fn filter() -> impl TypedValueParser<Value = Filter> {
+    one_of(Filter::ALL.iter().map(|filter| (filter.name(), filter.help())))
+}
+
 pub(super) fn short_tests() -> impl TypedValueParser<Value = ShortTests> {
     one_of(ShortTests::ALL.iter().map(|tests| (tests.name(), tests.help())))
 }
@@ -52,6 +57,35 @@ pub(super) fn falloff() -> impl TypedValueParser<Value = Falloff> {
 
 pub(super) fn transfer() -> impl TypedValueParser<Value = Transfer> {
     one_of(Transfer::ALL.iter().map(|transfer| (transfer.name(), transfer.help())))
+}
+
+pub(super) fn view() -> impl TypedValueParser<Value = View> {
+    one_of(View::ALL.iter().map(|view| (view.name(), view.help())))
+}
+
+pub(super) fn exr_type() -> impl TypedValueParser<Value = ExrSamples> {
+    one_of(ExrSamples::ALL.iter().map(|samples| (samples.name(), samples.help())))
+}
+
+pub(super) fn exr_compression() -> impl TypedValueParser<Value = ExrCompression> {
+    one_of(ExrCompression::ALL.iter().map(|method| (method.name(), method.help())))
+}
+
+pub(super) fn bit_depth() -> impl TypedValueParser<Value = BitDepth> {
+    PossibleValuesParser::new([
+        PossibleValue::new("8").help("256 codes: what screens show"),
+        PossibleValue::new("16").help("65536 codes, for further grading"),
+    ])
+    .map(|bits| if bits == "16" { BitDepth::Sixteen } else { BitDepth::Eight })
+}
+
+/// Something that is on or off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Switch {
+    /// Do it
+    On,
+    /// Leave it
+    Off,
 }
 
 /// The up axis.

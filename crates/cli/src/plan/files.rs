@@ -2,22 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
-use lightmesh::image::{Format, check_size, check_writable};
-use lightmesh::{SaveError, Transfer};
+use lightmesh::SaveError;
+use lightmesh::image::{Display, ExrOptions, Format, SaveOptions, check_options, check_size, check_writable};
 
 use super::PlanError;
-use crate::args::RenderArgs;
+use crate::args::{RenderArgs, Switch};
 use crate::output::{self, Outputs};
-use crate::value::Exposure;
+use crate::value::{Background, Exposure};
 
 /// The output files.
 pub(crate) struct PictureFiles {
     /// The image.
     pub(crate) picture: PathBuf,
-    /// Transfer function of 8-bit images.
-    pub(crate) transfer: Transfer,
-    /// Exposure of 8-bit images.
-    pub(crate) exposure: Exposure,
+    /// How it is stored, except for the exposure.
+    pub(crate) options: SaveOptions,
+    /// Exposure of 8-bit and 16-bit images; `None`: by the unit of the lights.
+    pub(crate) exposure: Option<Exposure>,
     /// The multilayer exr.
     pub(crate) layers: Option<PathBuf>,
     /// The statistics.
@@ -33,6 +33,8 @@ impl PictureFiles {
         let [width, height] = args.size.0;
         // Images that the format cannot store are rejected now rather than after the render.
         check_size(&args.output, width, height)?;
+        let options = options(args);
+        check_options(&args.output, &options, args.background == Some(Background::Transparent))?;
         if let Some(layers) = &args.layers {
             check_layers(layers)?;
         }
@@ -48,13 +50,23 @@ impl PictureFiles {
         outputs.keep("--grid-file", args.grid_file.as_deref())?;
         Ok(PictureFiles {
             picture: args.output.clone(),
-            transfer: args.transfer,
+            options,
             exposure: args.exposure,
             layers: args.layers.clone(),
             stats: args.stats.clone(),
             outputs,
         })
     }
+}
+
+fn options(args: &RenderArgs) -> SaveOptions {
+    let display = Display::default()
+        .with_view(args.view)
+        .with_transfer(args.transfer)
+        .with_bit_depth(args.bit_depth)
+        .with_dither(args.dither == Switch::On);
+    let exr = ExrOptions::default().with_samples(args.exr_type).with_compression(args.exr_compression);
+    SaveOptions::default().with_display(display).with_exr(exr)
 }
 
 fn check_layers(path: &Path) -> Result<(), SaveError> {

@@ -5,9 +5,9 @@ use lightmesh::scene::{Camera, CameraError, Light, LightKind, UnknownCamera, Up}
 use lightmesh::{Observer, Scene};
 
 use crate::args::RenderArgs;
-use crate::value::{Color, LightSpec};
+use crate::value::{Background, Color, LightSpec};
 
-/// Camera, lights and ambient term as typed.
+/// Camera, lights, ambient term and background as typed.
 pub(crate) struct SceneChoices {
     /// At the local frame's origin, together with its world position.
     camera: Option<(Camera, DVec3)>,
@@ -16,6 +16,7 @@ pub(crate) struct SceneChoices {
     lights: Vec<LightSpec>,
     falloff: lightmesh::scene::Falloff,
     ambient: Option<Color>,
+    background: Option<Background>,
 }
 
 impl SceneChoices {
@@ -32,10 +33,11 @@ impl SceneChoices {
             lights: args.lights.clone(),
             falloff: args.falloff,
             ambient: args.ambient,
+            background: args.background,
         })
     }
 
-    /// Applies camera, lights and ambient term to the scene; reports which defaults had to be added.
+    /// Applies camera, lights, ambient term and background to the scene; reports which defaults had to be added.
     pub(crate) fn apply(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<(), UnknownCamera> {
         if let Some(camera) = self.camera(scene)? {
             scene.cameras = vec![camera];
@@ -45,6 +47,9 @@ impl SceneChoices {
         }
         if let Some(Color(ambient)) = self.ambient {
             scene.lights.ambient = Some(ambient);
+        }
+        if let Some(Background::Color(Color(background))) = self.background {
+            scene.lights.background = Some(background);
         }
         let added = scene.complete(self.up);
         if added.camera {

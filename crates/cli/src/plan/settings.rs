@@ -4,6 +4,7 @@ use lightmesh::{Acceleration, Settings};
 
 use super::PlanError;
 use crate::args::RenderArgs;
+use crate::value::Background;
 
 /// All settings except the camera, which is part of the scene.
 pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
@@ -14,16 +15,19 @@ pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
         .with_up(args.up.of(&args.scene.scene))
         .with_lookup(args.lookup)
         .with_quality(args.quality)
+        .with_filter(args.filter)
         .with_short_tests(args.short_tests)
         .with_acceleration(acceleration(args)?)
         .with_seed(args.seed)
-        .with_layers(args.layers.is_some());
+        .with_layers(args.layers.is_some())
+        .with_transparent(args.background == Some(Background::Transparent));
     // Omitted flags leave their settings open.
     settings.step = args.step;
     settings.radius = args.radius.map(|radius| radius.0);
     settings.weight = args.weight;
     settings.samples = args.samples;
-    settings.memory_limit = args.memory_limit.map(|limit| limit.0);
+    settings.aa = args.aa;
+    settings.memory_limit = args.scene.reading.memory_limit.map(|limit| limit.0);
     Ok(settings)
 }
 

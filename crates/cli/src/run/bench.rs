@@ -22,7 +22,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
 }
 
 fn list() -> String {
-    Suite::ALL.iter().map(|suite| format!("{:9}{}\n", suite.name(), suite.summary())).collect()
+    Suite::ALL.iter().map(|suite| format!("{:13}{}\n", suite.name(), suite.summary())).collect()
 }
 
 fn measure(suite: Suite, args: &SuiteArgs) -> Result<(), Failure> {
@@ -34,12 +34,14 @@ fn measure(suite: Suite, args: &SuiteArgs) -> Result<(), Failure> {
 
 fn run_and_write(suite: Suite, args: &SuiteArgs, watcher: &Watcher) -> Result<(), Failure> {
     let _standby = Standby;
-    let json = args.json.clone();
-    let results = lightmesh_bench::run_keeping(suite, &plan(args), watcher, move |results| {
-        // If this fails, so will the end of the run, which says why.
-        let files = json.as_ref().and_then(|path| results.ready(path, false).ok());
-        stand_by(files.and_then(|mut files| files.pop()));
-    })?;
+    let results = match args.json.clone() {
+        Some(path) => lightmesh_bench::run_keeping(suite, &plan(args), watcher, move |results| {
+            // If this fails, so will the end of the run, which says why.
+            let files = results.ready(&path, false).ok();
+            stand_by(files.and_then(|mut files| files.pop()));
+        })?,
+        None => lightmesh_bench::run(suite, &plan(args), watcher)?,
+    };
     let (table, summary) = (results.to_string(), summary(&results, args));
     let mut files = Vec::new();
     if let Some(path) = &args.json {

@@ -4,6 +4,7 @@ use lightmesh::image::{Comparison, Frame, check_writable, compare};
 
 use crate::args::CompareArgs;
 use crate::failure::Failure;
+use crate::memory;
 use crate::output::{self, Outputs};
 
 pub(super) fn run(args: &CompareArgs) -> Result<(), Failure> {
@@ -13,7 +14,8 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), Failure> {
         outputs.keep("A", [&*args.reference])?;
         outputs.keep("B", [&*args.test])?;
     }
-    let comparison = compare(&Frame::load(&args.reference)?, &Frame::load(&args.test)?)?;
+    let compared = || Ok::<_, Failure>(compare(&Frame::load(&args.reference)?, &Frame::load(&args.test)?)?);
+    let comparison = memory::during("comparing", compared)?;
     if let Some(diff) = &args.diff {
         comparison.difference.save(diff)?;
     }

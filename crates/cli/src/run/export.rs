@@ -5,6 +5,7 @@ use lightmesh::Scene;
 use super::open::open;
 use crate::args::ExportArgs;
 use crate::failure::Failure;
+use crate::memory;
 use crate::output::{self, Outputs};
 use crate::progress::Watcher;
 
@@ -16,7 +17,7 @@ pub(super) fn run(args: &ExportArgs) -> Result<(), Failure> {
     let outputs = Outputs::new([("-o", Some(&*args.output)), ("the triangles of -o", mesh.as_deref())])?;
     let watcher = Watcher::plain(args.quiet);
     let scene = open(&args.scene, &outputs, &watcher)?;
-    scene.export(&args.output)?;
+    memory::during("exporting the scene", || scene.export(&args.output))?;
     watcher.summary(&format!(
         "{}, {} triangles: {}",
         scene.name,

@@ -3,10 +3,12 @@
 use std::time::Instant;
 
 use lightmesh::render::accel::{Grid, GridOptions, Levels, Triangle};
+use lightmesh_memory::Budget;
 
-use super::open::open;
+use super::{BUILDING, open::open};
 use crate::args::GridArgs;
 use crate::failure::Failure;
+use crate::memory;
 use crate::output::{self, Outputs};
 use crate::progress::Watcher;
 
@@ -18,14 +20,19 @@ pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
 
     let start = Instant::now();
     let levels = if args.levels == 1 { Levels::One } else { Levels::Two };
-    let triangles: Vec<Triangle> = (0..scene.geometry.mesh.triangles.len())
-        .map(|index| Triangle::new(scene.geometry.mesh.corners(index), index as u32))
-        .collect();
-    let grid = Grid::new(&triangles, &GridOptions { dims: args.grid.map(|dims| dims.0), levels })?;
+    let budget = Budget::new(args.scene.reading.memory_limit.map(|limit| limit.0));
+    let options = GridOptions { dims: args.grid.map(|dims| dims.0), levels, budget };
+    let build = || {
+        let triangles: Vec<Triangle> = (0..scene.geometry.mesh.triangles.len())
+            .map(|index| Triangle::new(scene.geometry.mesh.corners(index), index as u32))
+            .collect();
+        Grid::new(&triangles, &options)
+    };
+    let grid = memory::during(BUILDING, build)?;
     let seconds = start.elapsed().as_secs_f64();
     grid.save(&args.output)?;
 
-    let ([nx, ny, nz], count, file) = (grid.dims(), triangles.len(), args.output.display());
+    let ([nx, ny, nz], count, file) = (grid.dims(), scene.geometry.mesh.triangles.len(), args.output.display());
     watcher.summary(&format!("{}, {count} triangles: {nx}x{ny}x{nz} cells in {seconds:.3} s, {file}", scene.name));
     Ok(())
 }

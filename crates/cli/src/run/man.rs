@@ -1,16 +1,16 @@
 //! `lightmesh man`.
 
-use clap::{Command, CommandFactory};
+use clap::Command;
 use clap_mangen::Man;
 
-use crate::args::{Cli, ManArgs};
+use crate::args::{self, ManArgs};
 use crate::failure::Failure;
 use crate::output::{self, OutputError};
 
-pub(super) fn run(args: &ManArgs) -> Result<(), Failure> {
-    let mut lightmesh = Cli::command().disable_help_subcommand(true);
+pub(super) fn run(asked: &ManArgs) -> Result<(), Failure> {
+    let mut lightmesh = args::command().disable_help_subcommand(true);
     lightmesh.build(); // gives subcommands their full names
-    if let Some(directory) = &args.output {
+    if let Some(directory) = &asked.output {
         let mut pages = Vec::new();
         for command in std::iter::once(&lightmesh).chain(lightmesh.get_subcommands()) {
             let page = Man::new(command.clone());
@@ -18,7 +18,7 @@ pub(super) fn run(args: &ManArgs) -> Result<(), Failure> {
         }
         return Ok(output::publish(pages)?);
     }
-    let command = args.page.as_deref().map_or(Ok(&lightmesh), |name| subcommand(&lightmesh, name))?;
+    let command = asked.page.as_deref().map_or(Ok(&lightmesh), |name| subcommand(&lightmesh, name))?;
     Ok(output::print(&text(&Man::new(command.clone()))?)?)
 }
 

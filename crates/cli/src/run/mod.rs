@@ -18,6 +18,9 @@ use crate::args::Command;
 use crate::failure::Failure;
 use crate::output;
 
+/// What messages call the construction of an acceleration structure.
+const BUILDING: &str = "building the acceleration structure";
+
 /// Runs the subcommand; returns the exit code.
 pub(crate) fn run(command: Command) -> Result<u8, Failure> {
     match command {

@@ -7,6 +7,7 @@ use lightmesh::{LoadError, Scene};
 
 use crate::args::{ReadingArgs, SceneArg};
 use crate::failure::Failure;
+use crate::memory;
 use crate::output::Outputs;
 use crate::progress::Watcher;
 
@@ -21,6 +22,9 @@ pub(super) fn open(arg: &SceneArg, outputs: &Outputs, watcher: &Watcher) -> Resu
 
 /// Reads the scene.
 pub(super) fn read(path: &Path, reading: ReadingArgs) -> Result<Scene, LoadError> {
-    let options = LoadOptions::default().with_allow_outside(reading.allow_outside).with_strict(reading.strict);
-    Scene::open_with(path, &options)
+    let options = LoadOptions::default()
+        .with_allow_outside(reading.allow_outside)
+        .with_strict(reading.strict)
+        .with_memory_limit(reading.memory_limit.map(|limit| limit.0));
+    memory::during(format!("reading {}", path.display()), || Scene::open_with(path, &options))
 }

@@ -2,36 +2,45 @@
 
 use std::time::Instant;
 
-use lightmesh::image::{self, Format};
+use glam::{DMat4, Vec3};
+use lightmesh::image::{self, Description, Format, Ready, SaveOptions};
 use lightmesh::render::Choice;
-use lightmesh::{Device, Frame, Observer, RenderError, Renderer, Scene};
+use lightmesh::render::Stats;
+use lightmesh::scene::Falloff;
+use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene};
+use lightmesh_memory::Bytes;
 
-use super::open::open;
+use super::{BUILDING, open::open};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::plan::{PictureFiles, RenderPlan};
 use crate::progress::Watcher;
 use crate::report::Report;
 use crate::value::Exposure;
-use crate::{interrupt, output};
+use crate::{interrupt, memory, output};
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let plan = RenderPlan::new(args)?;
     let watcher = Watcher::new(args.progress, args.quiet);
     let choice = Choice::of(plan.device)?;
-    let reason = choice.reason.clone();
+    let (reason, no_cuda) = (choice.reason.clone(), choice.no_cuda.clone());
     let renderer = Renderer::on(choice, plan.threads.map(usize::from))?;
     let start = Instant::now();
     let mut scene = open(&plan.scene, &plan.files.outputs, &watcher)?;
     let load = start.elapsed().as_secs_f64();
     if matches!(plan.device, Device::Auto | Device::Cuda(None)) {
-        watcher.note(&format!("device {}: using {}", plan.device, reason));
+        let why = match no_cuda {
+            Some(why) if args.verbose => format!("; no CUDA device can be used: {why}"),
+            Some(_) => "; no CUDA device (-v says why)".to_owned(),
+            None => String::new(),
+        };
+        watcher.note(&format!("device {}: using {reason}{why}", plan.device));
     }
 
-    let settings = plan.settings;
     plan.choices.apply(&mut scene, &watcher)?;
-    let prepared = renderer.prepare(&scene, &settings, &watcher)?;
-    let mut frame = interrupt::watched(|| renderer.render_prepared(&prepared, &settings, &watcher))?;
+    let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;
+    let render = || renderer.render_prepared(&prepared, &plan.settings, &watcher);
+    let mut frame = memory::during("rendering", || interrupt::watched(render))?;
     drop(prepared); // frees memory for the encoders
     if watcher.cancelled() {
         return Err(RenderError::Cancelled.into());
@@ -45,35 +54,87 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
             "{odd} of {of} pixels have infinite or undefined colours: lower the intensities of lights or the coefficients of materials"
         ));
     }
-    write(&mut frame, &scene, &plan.files, &watcher)?;
+    memory::during("writing the image", || write(&renderer, &mut frame, &scene, &plan.files, &watcher))?;
+    if args.verbose {
+        details(&frame.stats).iter().for_each(|line| watcher.note(line));
+    }
     watcher.summary(&summary(&frame, &plan.files));
     Ok(())
 }
 
+/// Seconds of each stage, counts, and memory, by their names in `--stats`.
+fn details(stats: &Stats) -> Vec<String> {
+    let of = |what: &str, values: serde_json::Value, unit: &dyn Fn(f64) -> String| {
+        let known = values.as_object().into_iter().flatten();
+        let parts =
+            known.filter_map(|(name, value)| value.as_f64().filter(|value| *value > 0.0).map(|value| (name, value)));
+        let parts: Vec<String> = parts.map(|(name, value)| format!("{name} {}", unit(value))).collect();
+        format!("{what}: {}", parts.join(", "))
+    };
+    vec![
+        of("seconds", serde_json::json!(stats.seconds), &|value| format!("{value:.4}")),
+        of("counts", serde_json::json!(stats.counts), &|value| format!("{value}")),
+        of("memory", serde_json::json!(stats.memory), &|value| Bytes(value as u64).to_string()),
+    ]
+}
+
 /// Writes all files, which appear together; the statistics last, because they include the time taken by the others.
-fn write(frame: &mut Frame, scene: &Scene, files: &PictureFiles, watcher: &Watcher) -> Result<(), Failure> {
+fn write(
+    renderer: &Renderer,
+    frame: &mut Frame,
+    scene: &Scene,
+    files: &PictureFiles,
+    watcher: &Watcher,
+) -> Result<(), Failure> {
     let start = Instant::now();
-    let mut outputs = Vec::new();
-    if let Some(path) = &files.layers {
-        outputs.push(frame.image.ready_layers(path)?);
-    }
-    let stops = exposure(&frame.image, files, watcher);
-    if stops != 0.0 {
-        frame.image.expose(stops);
-    }
-    outputs.push(frame.image.ready(&files.picture, files.transfer)?);
+    let stops = exposure(&frame.image, scene, files, watcher);
+    let mut options = files.options.clone().with_description(description(frame, scene));
+    options.display.exposure = stops;
+    let mut outputs = renderer.install(|| encode(&frame.image, files, &options))?;
     frame.stats.seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &files.stats {
         let lights = scene.info().lights;
-        let report = Report::new(&frame.stats, files.transfer.name(), stops, &lights);
+        let report = Report::new(&frame.stats, files, &options, &lights);
         outputs.push(output::ready(path, output::json(&report).as_bytes())?);
     }
     Ok(output::publish(outputs)?)
 }
 
-/// Exposure of the image file: none if it stores linear values.
-fn exposure(image: &image::Frame, files: &PictureFiles, watcher: &Watcher) -> f32 {
-    match files.exposure {
+/// The image and the layers, encoded at the same time: while one waits for the disk, the other is compressed.
+fn encode(image: &image::Frame, files: &PictureFiles, options: &SaveOptions) -> Result<Vec<Ready>, SaveError> {
+    let (picture, layers) = rayon::join(
+        || image.ready_with(&files.picture, options),
+        || files.layers.as_ref().map(|path| image.ready_layers_with(path, options)).transpose(),
+    );
+    Ok(layers?.into_iter().chain([picture?]).collect())
+}
+
+/// Settings that say nothing about an image: the machine, and ways to the same result.
+const MACHINE: [&str; 6] = ["device", "threads", "memory_limit", "rows_per_band", "accel", "short_tests"];
+
+/// What exr files say about the image.
+fn description(frame: &Frame, scene: &Scene) -> Description {
+    let mut settings = serde_json::json!(frame.stats.settings);
+    // The bytes of an image do not depend on the machine.
+    if let Some(settings) = settings.as_object_mut() {
+        MACHINE.iter().for_each(|&name| drop(settings.remove(name)));
+    }
+    let description = Description::default()
+        .with_software(concat!("Lightmesh ", env!("CARGO_PKG_VERSION")))
+        .with_scene(&*frame.stats.scene.name)
+        .with_settings(settings.to_string());
+    let Some(camera) = scene.cameras.first() else { return description };
+    let [width, height] = frame.size().map(f64::from);
+    let origin = scene.to_world(Vec3::ZERO);
+    // Columns of a matrix for column vectors are rows of one for row vectors.
+    let rows = |matrix: DMat4| matrix.as_mat4().to_cols_array();
+    description.with_camera(rows(camera.from_world(origin)), rows(camera.from_world_to_image(origin, width / height)))
+}
+
+/// Exposure of the image file: none if it stores linear values. Candela and lux say nothing of the range of a screen.
+fn exposure(image: &image::Frame, scene: &Scene, files: &PictureFiles, watcher: &Watcher) -> f32 {
+    let photometric = scene.lights.iter().any(|light| light.falloff == Falloff::InverseSquare);
+    match files.exposure.unwrap_or(if photometric { Exposure::Auto } else { Exposure::Stops(0.0) }) {
         _ if Format::from_path(&files.picture) == Some(Format::Exr) => 0.0,
         Exposure::Stops(stops) => stops,
         Exposure::Auto => {

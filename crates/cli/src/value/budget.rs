@@ -26,7 +26,12 @@ impl FromStr for Budget {
             _ => return Err(FORM),
         };
         let seconds = unit * number.parse::<f64>().map_err(|_| FORM)?;
-        if seconds > 0.0 && seconds <= MAX_SECONDS { Ok(Budget(Duration::from_secs_f64(seconds))) } else { Err(FORM) }
+        if !(0.0..=MAX_SECONDS).contains(&seconds) {
+            return Err(FORM);
+        }
+        // Less than a nanosecond is no time.
+        let time = Duration::from_secs_f64(seconds);
+        if time.is_zero() { Err(FORM) } else { Ok(Budget(time)) }
     }
 }
 
@@ -39,7 +44,7 @@ mod tests {
         let seconds = |text: &str| text.parse().map(|Budget(time)| time.as_secs_f64());
         assert_eq!([seconds("90"), seconds("90s"), seconds("1.5 m")], [Ok(90.0), Ok(90.0), Ok(90.0)]);
         assert_eq!(seconds("2h"), Ok(7200.0));
-        for text in ["", "m", "0", "-1m", "1d", "1e9", "1.2.3s", "99999999h"] {
+        for text in ["", "m", "0", "-1m", "1d", "1e9", "1.2.3s", "99999999h", "0.0000000001"] {
             assert!(text.parse::<Budget>().is_err(), "{text}");
         }
     }

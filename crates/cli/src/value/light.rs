@@ -1,8 +1,9 @@
-//! `--light "x,y,z[;I[;RADIUS]]"` and `--ambient V`.
+//! `--light "x,y,z[;I[;RADIUS]]"`, `--ambient V` and `--background V|transparent`.
 
 use std::str::FromStr;
 
 use glam::{DVec3, Vec3};
+use lightmesh::Transfer;
 
 use super::ValueError;
 use super::number::{not_negative, triple};
@@ -23,6 +24,42 @@ impl FromStr for Color {
             _ => Err(ValueError::Form { form: "one number, or three as red,green,blue", example: "0.9,0.8,0.7" }),
         }
     }
+}
+
+/// What is behind a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Background {
+    /// Nothing.
+    Transparent,
+    /// A linear colour.
+    Color(Color),
+}
+
+impl FromStr for Background {
+    type Err = ValueError;
+
+    fn from_str(text: &str) -> Result<Background, ValueError> {
+        const FORM: ValueError = ValueError::Form {
+            form: "transparent, one number, three as red,green,blue, or #rrggbb",
+            example: "0.6,0.75,0.9",
+        };
+        match (text, text.strip_prefix('#')) {
+            ("transparent", _) => Ok(Background::Transparent),
+            (_, Some(digits)) => hexadecimal(digits).map(Background::Color).ok_or(FORM),
+            _ => text.parse().map(Background::Color).map_err(|error| match error {
+                ValueError::Form { .. } | ValueError::NotANumber { .. } => FORM,
+                other => other,
+            }),
+        }
+    }
+}
+
+/// The linear colour of six hexadecimal digits, which are codes on the sRGB curve.
+fn hexadecimal(digits: &str) -> Option<Color> {
+    let is_valid = digits.len() == 6 && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let codes = is_valid.then(|| u32::from_str_radix(digits, 16).ok())??.to_be_bytes();
+    let [_, r, g, b] = codes.map(|code| Transfer::Srgb.decode(code));
+    Some(Color(Vec3::new(r, g, b)))
 }
 
 /// A light as typed.
@@ -70,6 +107,19 @@ mod tests {
         assert_eq!(light("-1,2,3;0.5"), LightSpec { position, intensity: Vec3::splat(0.5), radius: 0.0 });
         let intensity = Vec3::new(1.0, 0.5, 0.25);
         assert_eq!(light("-1,2,3;1,.5,.25;2"), LightSpec { position, intensity, radius: 2.0 });
+    }
+
+    #[test]
+    fn a_background_is_a_colour_or_nothing() {
+        let color = |r, g, b| Ok(Background::Color(Color(Vec3::new(r, g, b))));
+        assert_eq!("transparent".parse(), Ok(Background::Transparent));
+        assert_eq!(["0.5".parse(), "1,0.5,0".parse()], [color(0.5, 0.5, 0.5), color(1.0, 0.5, 0.0)]);
+        assert_eq!("#ff0080".parse(), color(1.0, 0.0, Transfer::Srgb.decode(128)));
+        for text in ["", "none", "#ff00", "#ff00zz", "#+f0000", "#ääa", "1,2", "nan"] {
+            let message = text.parse::<Background>().unwrap_err().to_string();
+            assert!(message.contains("transparent") && message.contains("#rrggbb"), "{text}: {message}");
+        }
+        assert_eq!("-1".parse::<Background>().unwrap_err().to_string(), "the intensity must be 0 or more, but is -1");
     }
 
     #[test]

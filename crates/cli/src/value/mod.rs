@@ -11,7 +11,7 @@ mod size;
 
 pub(crate) use budget::Budget;
 pub(crate) use camera::CameraView;
-pub(crate) use light::{Color, LightSpec};
+pub(crate) use light::{Background, Color, LightSpec};
 pub(crate) use memory::ByteSize;
 pub(crate) use number::{Bound, Exposure, Positive};
 pub(crate) use size::{Dims, Size};

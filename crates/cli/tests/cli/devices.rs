@@ -97,7 +97,13 @@ fn what_auto_takes_is_said_with_the_reason() {
         None => {
             assert!(line.starts_with("device auto: using cpu ("), "{line}");
             let why = devices[1]["remark"].as_str().unwrap();
-            assert!(line.contains("; no CUDA device can be used: ") && line.contains(why), "{line}");
+            assert!(line.ends_with("; no CUDA device (-v says why)"), "{line}");
+            let long = place.good(&["render", "room.toml", "-o", "b.png", "--size", "8x8", "-v"]).stderr;
+            assert!(long.contains("; no CUDA device can be used: ") && long.contains(why), "{long}");
+            assert!(
+                long.contains("seconds: ") && long.contains("primary_rays") && long.contains("host_peak_bytes"),
+                "{long}"
+            );
         }
     }
     assert!(!render_on(&place, "cpu").stderr.contains("using"));

@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::run::Place;
 
 /// The flags of `render` that other programs rely on.
-const FLAGS: [&str; 32] = [
+const FLAGS: [&str; 38] = [
     "--mode",
     "--bounces",
     "--size",
@@ -28,6 +28,12 @@ const FLAGS: [&str; 32] = [
     "--layers",
     "--transfer",
     "--exposure",
+    "--view",
+    "--bit-depth",
+    "--dither",
+    "--exr-type",
+    "--exr-compression",
+    "--background",
     "--allow-outside",
     "--strict",
     "--seed",
@@ -90,13 +96,28 @@ fn shells_complete_flags() {
 }
 
 #[test]
+fn a_variable_sets_a_flag_unless_the_flag_is_given() {
+    let place = Place::new();
+    let size = |flags: &[&str]| {
+        let base = ["render", "room.toml", "-o", "a.png", "-q", "--stats", "s.json"];
+        let run = place.command(&[&base, flags].concat()).env("LIGHTMESH_SIZE", "9x7").output().unwrap();
+        assert!(run.status.success(), "{run:?}");
+        place.json("s.json")["settings"]["size"].clone()
+    };
+    assert_eq!(size(&[]), serde_json::json!([9, 7]));
+    assert_eq!(size(&["--size", "8x8"]), serde_json::json!([8, 8]));
+}
+
+#[test]
 fn usage_errors_and_versions() {
     let place = Place::new();
     assert_eq!(place.run(&[]).code, Some(2));
     place.refused(&["paint"]);
     place.refused(&["render", "room.toml"]);
     place.refused(&["render", "room.toml", "-o", "a.png", "--sise", "1x1"]);
-    assert_eq!(place.good(&["--version"]).stdout, concat!("lightmesh ", env!("CARGO_PKG_VERSION"), "\n"));
+    let version = place.good(&["--version"]).stdout;
+    assert!(version.starts_with(concat!("lightmesh ", env!("CARGO_PKG_VERSION"), " (")), "{version}");
+    assert!(version.ends_with("kernels for CUDA 12.0 or newer)\n"), "{version}");
 }
 
 #[cfg(unix)]

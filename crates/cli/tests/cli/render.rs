@@ -93,6 +93,11 @@ fn modes_and_their_settings_reach_the_renderer() {
         assert_eq!((&lists["lookup"], &lists["quality"]), (&json!("lists"), &quality), "{flags:?}");
         assert_eq!(lists["samples"], samples, "{flags:?}");
     }
+    for (flags, aa) in [(&[][..], 8), (&["--quality", "final"], 16), (&["--mode", "area"], 1), (&["--aa", "3"], 3)] {
+        assert_eq!(settings(flags)["aa"], aa, "{flags:?}");
+    }
+    assert_eq!(settings(&["--filter", "box"])["filter"], "box");
+    assert_eq!(settings(&["--aa", "1"])["filter"], json!(null));
     let adaptive = settings(&["--lookup", "adaptive", "--quality", "draft"]);
     assert_eq!((&adaptive["lookup"], &adaptive["quality"]), (&json!("adaptive"), &json!("draft")));
     assert_eq!(adaptive["samples"], 16);
@@ -166,11 +171,11 @@ fn the_picture_does_not_depend_on_how_it_is_computed() {
 #[test]
 fn a_memory_limit_splits_the_work_and_keeps_the_picture() {
     let place = Place::new();
-    let base = ["render", "builtin:gazebo", "--size", "128x128", "-q", "--bounces", "1"];
+    let base = ["render", "builtin:gazebo", "--size", "384x384", "-q", "--bounces", "1"];
     place.good(&[&base[..], &["-o", "whole.exr", "--stats", "whole.json"]].concat());
-    place.good(&[&base[..], &["-o", "split.exr", "--stats", "split.json", "--memory-limit", "65M"]].concat());
-    assert_eq!(place.json("whole.json")["settings"]["rows_per_band"], 128);
-    assert!(place.json("split.json")["settings"]["rows_per_band"].as_u64().unwrap() < 128);
+    place.good(&[&base[..], &["-o", "split.exr", "--stats", "split.json", "--memory-limit", "80M"]].concat());
+    assert_eq!(place.json("whole.json")["settings"]["rows_per_band"], 384);
+    assert!(place.json("split.json")["settings"]["rows_per_band"].as_u64().unwrap() < 384);
     assert!(place.read("whole.exr") == place.read("split.exr"));
 }
 
@@ -241,6 +246,24 @@ fn exposure_brightens_8_bit_files_alone() {
     let (_, stops, _) = render("a.png", &["--exposure", "5", "--layers", "d.exr"]);
     let layers = Frame::load(place.path("d.exr")).unwrap();
     assert_eq!((layers.color(), stops), (as_computed.color(), 5.0));
+}
+
+#[test]
+fn photometric_lights_are_exposed_unless_told_otherwise() {
+    let place = Place::new();
+    let render = |flags: &[&str]| {
+        let base =
+            ["render", "room.toml", "-o", "a.png", "--size", "32x24", "--light", "3,5,2;5000", "--stats", "s.json"];
+        let done = place.good(&[&base, flags].concat());
+        let settings = place.json("s.json")["settings"].clone();
+        (done.stderr, settings["exposure"].as_f64().unwrap(), settings["ambient"][0].as_f64().unwrap())
+    };
+    let (said, stops, ambient) = render(&["--falloff", "inverse-square"]);
+    assert!(said.contains("exposure auto: using -") && stops < 0.0 && ambient > 1.0, "{said} {stops} {ambient}");
+    let (_, stops, _) = render(&["--falloff", "inverse-square", "--exposure", "1"]);
+    assert_eq!(stops, 1.0);
+    let (_, stops, ambient) = render(&[]);
+    assert_eq!((stops, ambient as f32), (0.0, 0.1));
 }
 
 #[test]

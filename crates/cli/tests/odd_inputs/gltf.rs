@@ -35,7 +35,7 @@ const NO_REFERENCES: [&str; 5] = [BEYOND, "4294967296", "-1", "0.5", "\"0\""];
 const VALUES: [(&str, &str, Expected); 52] = [
     ("/asset/version", "\"1.0\"", Refused),
     ("/asset/version", "\"3.0\"", Refused),
-    ("/asset/version", "2.0", Refused),
+    ("/asset/version", "2.0", Opens),
     ("/accessors/0/count", "4294967295", Refused),
     ("/accessors/0/count", "18446744073709551615", Refused),
     ("/accessors/0/count", "1e308", Refused),

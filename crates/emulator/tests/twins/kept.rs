@@ -63,6 +63,7 @@ fn settings(subject: &'static Subject, step: usize) -> Settings {
     let (right, ..) = camera.basis();
     let position = camera.position + 3.0 * subject.step * step as f32 * right;
     Settings::default()
+        .with_aa(1)
         .with_size(SIZE)
         .with_bounces(2)
         .with_samples(4)

@@ -32,7 +32,9 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         for way in WAYS {
             let (name, ..) = way;
             let picture = format!("{}::picture::{name}", subject.name);
-            cases.push(Case::new(picture, move |cuda| same_picture(cuda, subject, way)));
+            cases.push(Case::new(picture, move |cuda| same_picture(cuda, subject, way, 1)));
+            let samples = format!("{}::samples::{name}", subject.name);
+            cases.push(Case::new(samples, move |cuda| same_picture(cuda, subject, way, 6)));
             let points = format!("{}::points::{name}", subject.name);
             cases.push(Case::new(points, move |cuda| same_at_points(cuda, subject, way)));
         }
@@ -43,12 +45,13 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
 fn settings(subject: &Subject, (_, mode, lookup): Way) -> Settings {
     let settings =
         Settings::default().with_mode(mode).with_lookup(lookup).with_size(SIZE).with_bounces(2).with_layers(true);
-    settings.with_samples(4).with_step(Step::Fixed(subject.step)).with_radius(2.1)
+    settings.with_samples(4).with_step(Step::Fixed(subject.step)).with_radius(2.1).with_aa(1)
 }
 
-fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, way: Way) {
+/// The image with `aa` samples of a pixel.
+fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, way: Way, aa: u32) {
     let scene = subject.prepared(0);
-    let settings = settings(subject, way);
+    let settings = settings(subject, way).with_aa(aa);
     let host = render_on(&Cpu, scene, &settings, &Unobserved).unwrap();
     let device = render_on(cuda, scene, &settings, &Unobserved).unwrap();
     same_colors::<R>(&host, &device);

@@ -128,7 +128,7 @@ impl<'a, R: Target> Twins<'a, R> {
     }
 
     fn on_host<'b>(&'b self, job: &'b Job<'b>) -> WaveOf<'b, Cpu> {
-        Wave { job, scene: self.scene, rays: &self.rays, hits: &self.hits, lights: LightGroup::ALL }
+        Wave { job, scene: self.scene, rays: &self.rays, hits: &self.hits, lights: LightGroup::ALL, parts: 1 }
     }
 
     fn on_device<'b>(&'b self, job: &'b Job<'b>) -> WaveOf<'b, Cuda<R>> {
@@ -138,6 +138,7 @@ impl<'a, R: Target> Twins<'a, R> {
             rays: &self.device_rays,
             hits: &self.device_hits,
             lights: LightGroup::ALL,
+            parts: 1,
         }
     }
 
@@ -182,7 +183,8 @@ impl<'a, R: Target> Twins<'a, R> {
         let rows = height / 3..height / 3 + 2;
         let rays = self.cuda.camera_rays(&self.subject.view(self.size), rows.clone()).unwrap();
         let hits = self.cuda.primary_rays(&job, &self.device_scene, &rays).unwrap();
-        let wave = Wave { job: &job, scene: &self.device_scene, rays: &rays, hits: &hits, lights: LightGroup::ALL };
+        let wave =
+            Wave { job: &job, scene: &self.device_scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
         let band = self.cuda.adaptive_shadows(&wave, &aim).unwrap().read().unwrap();
         let planes = device.chunks_exact(self.rays.pixels.len()).zip(band.chunks_exact((2 * width) as usize));
         for (light, (whole, band)) in planes.enumerate() {

@@ -8,7 +8,7 @@ use ::exr::image::read::read as reader;
 use ::exr::meta::header::Header;
 use ::exr::prelude::{ReadChannels, ReadLayers};
 
-use super::{COLOR, DEPTH, LUMINANCE, NORMAL, POSITION, USED, visibility_name};
+use super::{ALPHA, COLOR, DEPTH, LUMINANCE, NORMAL, POSITION, USED, visibility_name};
 use crate::load::{DecodeError, checked_pixels};
 use crate::{Format, Frame, Layers};
 
@@ -18,7 +18,7 @@ const MAX_BYTES: u64 = 1 << 36;
 /// Maximum expansion of any compression method: deflate reaches 1032, times 4/3 for 24-bit floats.
 const MAX_EXPANSION: u64 = 1376;
 
-/// Reads colours from the channels `R G B`, or from `Y` as grey, and the layers if all of their channels are present. The image
+/// Reads colours from the channels `R G B`, or from `Y` as grey, alpha if there is `A`, and the layers if all of their channels are present. The image
 /// is the file's data window.
 pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
     let chunks = ::exr::block::read(Cursor::new(bytes), false).map_err(malformed)?;
@@ -38,6 +38,10 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
     let planes =
         Planes(image.layer_data.channel_data.list.into_iter().map(|c| (c.name.to_string(), c.sample_data)).collect());
     let frame = Frame::new(size.0 as u32, size.1 as u32, planes.color()?).map_err(malformed)?;
+    let frame = match planes.get(ALPHA) {
+        Some(alpha) => frame.with_alpha(alpha).map_err(malformed)?,
+        None => frame,
+    };
     match planes.layers() {
         Some(layers) => frame.with_layers(layers).map_err(malformed),
         None => Ok(frame),

@@ -26,6 +26,42 @@ fn lossless_formats_return_every_code() {
     }
 }
 
+/// Every code, in no order that compresses.
+fn noise(width: u32, height: u32) -> Frame {
+    let code = |index: u32| Transfer::Srgb.decode((index.wrapping_mul(2_654_435_761) >> 24) as u8);
+    let color = (0..width * height).map(|pixel| [0, 1, 2].map(|channel| code(3 * pixel + channel))).collect();
+    Frame::new(width, height, color).unwrap()
+}
+
+/// Some are compressed in more parts than are held in memory at once.
+#[test]
+fn large_pictures_are_joined_from_their_parts() {
+    for (name, width, height) in [("a.png", 1000, 6000), ("a.png", 100_000, 3), ("a.exr", 40, 1100)] {
+        for frame in [noise(width, height), ramp(width, height)] {
+            let loaded = Frame::decode(&saved(&frame, name)).unwrap();
+            let codes =
+                |frame: &Frame| frame.color().iter().map(|c| c.map(|v| Transfer::Srgb.encode(v))).collect::<Vec<_>>();
+            assert!(codes(&loaded) == codes(&frame), "{name} {width}x{height}");
+        }
+    }
+}
+
+#[test]
+fn bytes_do_not_depend_on_the_number_of_threads() {
+    let frame = layered(700, 900);
+    let written = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let folder = tempdir().unwrap();
+            let path = folder.path().join("layers.exr");
+            frame.save_layers(&path).unwrap();
+            [fs::read(&path).unwrap(), saved(&frame, "a.png"), saved(&frame, "a.exr")]
+        })
+    };
+    let alone = written(1);
+    assert!([2, 5].into_iter().all(|threads| written(threads) == alone));
+}
+
 #[test]
 fn exr_returns_every_float() {
     let color = [[-1.5, 1e30, f32::INFINITY], [f32::MIN_POSITIVE, 0.1, -0.0], [1e-42, 65_505.0, 3.0]];

@@ -85,7 +85,7 @@ impl World {
         if !hits.iter().all(Hit::is_some) {
             return Err(format!("{}: there is no surface below some eye", scene.scene.name).into());
         }
-        let wave = Wave { job: &job, scene: &scene, rays: &list, hits: &hits, lights: LightGroup::ALL };
+        let wave = Wave { job: &job, scene: &scene, rays: &list, hits: &hits, lights: LightGroup::ALL, parts: 1 };
         let cells = Cpu.cells(&wave, &mesh)?;
         let masks = Cpu.short_tests(&wave, &cells, &mesh)?;
         Ok(World { scene, mesh, job, list, hits, cells, masks })
@@ -119,8 +119,14 @@ impl World {
 
     /// Steps 3 and 4: the used light points in the plane z = 0, and whether each sees the scene's only light.
     pub(crate) fn long_tests(&self) -> Result<Vec<(Vec2, bool)>, Box<dyn Error>> {
-        let wave =
-            Wave { job: &self.job, scene: &self.scene, rays: &self.list, hits: &self.hits, lights: LightGroup::ALL };
+        let wave = Wave {
+            job: &self.job,
+            scene: &self.scene,
+            rays: &self.list,
+            hits: &self.hits,
+            lights: LightGroup::ALL,
+            parts: 1,
+        };
         let points: UsedPoints = Cpu.light_points(&self.job, &self.cells, &self.masks, &self.mesh)?;
         let lit = Cpu.long_tests(&wave, &points, &self.mesh, None)?;
         let Some(LitBy::Bits(words)) = lit.lights.first() else { return Err("the world has no point light".into()) };

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::table::{stage_table, stages_on_cpu};
 use super::{Backend, Probed, SeenOf, WaveOf};
 use crate::accel::Hit;
+use crate::antialiasing::Antialiasing;
 use crate::bands;
 use crate::cache::{HostTable, Kept};
 use crate::data::cells::CellGroups;
@@ -13,6 +14,7 @@ use crate::data::lit::Lit;
 use crate::data::masks::Masks;
 use crate::data::picture::Picture;
 use crate::data::rays::RayList;
+use crate::data::samples::PixelSamples;
 use crate::data::visibility::Visibility;
 use crate::device::cpu_name;
 use crate::error::RenderError;
@@ -23,6 +25,7 @@ use crate::prepared::PreparedScene;
 use crate::probes::Probes;
 use crate::shadow::Aim;
 use crate::stage::Stage;
+use crate::stages::pixel_samples::SampleRange;
 use crate::stages::primary_rays;
 use crate::view::View;
 
@@ -34,6 +37,7 @@ impl Backend for Cpu {
     type Scene = PreparedScene;
     type Rays = RayList;
     type Hits = Vec<Hit>;
+    type Samples = PixelSamples;
     type Cells = CellGroups;
     type Items = Items;
     type Masks = Masks;
@@ -68,12 +72,17 @@ impl Backend for Cpu {
         Ok(scene.clone())
     }
 
-    fn rows_at_once(&self, scene: &PreparedScene, plan: &Plan) -> Result<u32, RenderError> {
-        bands::rows_on_host(scene, plan)
+    fn check_host_memory(&self, plan: &Plan) -> Result<(), RenderError> {
+        bands::rows_on_host(plan).map(drop)
     }
 
-    fn film(&self, plan: &Plan, rows: Range<u32>) -> Result<Picture, RenderError> {
-        Ok(Picture::band(plan.size, rows, plan.layers))
+    fn rows_at_once(&self, _: &PreparedScene, plan: &Plan) -> Result<u32, RenderError> {
+        bands::rows_on_host(plan)
+    }
+
+    fn film(&self, plan: &Plan, rows: [Range<u32>; 2]) -> Result<Picture, RenderError> {
+        let film = Picture::band(plan.size, rows, plan.layers);
+        Ok(if plan.coverage { film.with_coverage() } else { film })
     }
 
     fn camera_rays(&self, view: &View, rows: Range<u32>) -> Result<RayList, RenderError> {

@@ -4,12 +4,15 @@ use std::ops::Range;
 
 use lightmesh_layout::In;
 use lightmesh_layout::geometry::Rays;
+use lightmesh_memory::Budget;
 
 use super::table::{stage_table, stages_on_cuda};
 use super::{
     Backend, Cuda, DeviceCells, DeviceFilm, DeviceHits, DeviceItems, DeviceLit, DeviceMasks, DevicePoints, DeviceRays,
-    DeviceScene, DeviceVisibility, Probed, SeenOf, WaveOf,
+    DeviceSamples, DeviceScene, DeviceVisibility, Probed, SeenOf, WaveOf,
 };
+use crate::antialiasing::Antialiasing;
+use crate::bands;
 use crate::cache::{DeviceTable, Kept};
 use crate::cuda::Runtime;
 use crate::data::picture::Picture;
@@ -22,12 +25,14 @@ use crate::prepared::PreparedScene;
 use crate::probes::Probes;
 use crate::shadow::Aim;
 use crate::stage::Stage;
+use crate::stages::pixel_samples::SampleRange;
 use crate::view::View;
 
 impl<R: Runtime> Backend for Cuda<R> {
     type Scene = DeviceScene<R>;
     type Rays = DeviceRays<R>;
     type Hits = DeviceHits<R>;
+    type Samples = DeviceSamples<R>;
     type Cells = DeviceCells<R>;
     type Items = DeviceItems<R>;
     type Masks = DeviceMasks<R>;
@@ -64,11 +69,17 @@ impl<R: Runtime> Backend for Cuda<R> {
         self.device_scene(job, scene)
     }
 
+    fn check_host_memory(&self, plan: &Plan) -> Result<(), RenderError> {
+        // The limit is that of the device's own memory.
+        let left = Budget::default().left();
+        bands::check_picture(&Plan { left, memory_limit: None, ..plan.clone() })
+    }
+
     fn rows_at_once(&self, _: &DeviceScene<R>, plan: &Plan) -> Result<u32, RenderError> {
         self.rows_that_fit(plan)
     }
 
-    fn film(&self, plan: &Plan, rows: Range<u32>) -> Result<DeviceFilm<R>, RenderError> {
+    fn film(&self, plan: &Plan, rows: [Range<u32>; 2]) -> Result<DeviceFilm<R>, RenderError> {
         self.begin_band()?;
         DeviceFilm::new(self, plan, rows)
     }
@@ -77,7 +88,7 @@ impl<R: Runtime> Backend for Cuda<R> {
         let [width, _] = view.size();
         let count = width * rows.len() as u32;
         let record = Rays { view: view.record(), list: In::NULL, first_pixel: rows.start * width, count };
-        Ok(DeviceRays { record, list: None, spacing: view.spacing() })
+        Ok(DeviceRays::new(record, None, view.spacing()))
     }
 
     fn ray_count(&self, rays: &DeviceRays<R>) -> usize {

@@ -20,10 +20,12 @@ pub use crate::gpu::lit::DeviceLit;
 pub use crate::gpu::masks::DeviceMasks;
 pub use crate::gpu::points::DevicePoints;
 pub use crate::gpu::rays::{DeviceHits, DeviceRays, DeviceVisibility};
+pub use crate::gpu::samples::DeviceSamples;
 pub use cpu::Cpu;
 #[cfg(doc)]
 use run::Run;
 
+use crate::antialiasing::Antialiasing;
 use crate::cache::{Kept, Table};
 use crate::data::picture::Picture;
 use crate::data::visibility::Visibility;
@@ -35,6 +37,7 @@ use crate::prepared::PreparedScene;
 use crate::probes::Probes;
 pub use crate::shadow::Aim;
 use crate::stage::Stage;
+use crate::stages::pixel_samples::SampleRange;
 use crate::view::View;
 use table::{stage_methods, stage_table};
 
@@ -56,6 +59,8 @@ pub trait Backend: Sized {
     type Rays;
     /// One closest hit per ray.
     type Hits;
+    /// What samples of pixels see.
+    type Samples;
     /// The surface points of each cell of the light mesh.
     type Cells;
     /// Surface points in small groups.
@@ -94,11 +99,15 @@ pub trait Backend: Sized {
     /// memory; `None`: what is free, minus a reserve.
     fn scene(&self, job: &Job, scene: &PreparedScene, memory_limit: Option<u64>) -> Result<Self::Scene, RenderError>;
 
+    /// Rejects an image for which the host's memory does not suffice, before any of it is allocated.
+    fn check_host_memory(&self, plan: &Plan) -> Result<(), RenderError>;
+
     /// How many rows of the image can be rendered at once: an estimate from the sizes of all buffers, before any is allocated.
     fn rows_at_once(&self, scene: &Self::Scene, plan: &Plan) -> Result<u32, RenderError>;
 
-    /// Begins some rows of an image, all black. Discards counts and times since the last band ended.
-    fn film(&self, plan: &Plan, rows: Range<u32>) -> Result<Self::Film, RenderError>;
+    /// Begins some rows of an image, all black: all that are rendered, and those of them that are kept. Discards counts and times since the
+    /// last band ended.
+    fn film(&self, plan: &Plan, rows: [Range<u32>; 2]) -> Result<Self::Film, RenderError>;
 
     /// The camera rays of the rows `rows`, one per pixel, row by row.
     fn camera_rays(&self, view: &View, rows: Range<u32>) -> Result<Self::Rays, RenderError>;

@@ -7,6 +7,22 @@ macro_rules! stage_table {
         $use! {
             /// Computes what each ray hits.
             primary_rays(job: &Job, scene: &Self::Scene, rays: &Self::Rays) -> Self::Hits;
+            /// Computes what some samples of each pixel see, and which pixels are shared: `hits`, those of the centres, keeps them alone.
+            pixel_samples(
+                job: &Job,
+                scene: &Self::Scene,
+                rays: &mut Self::Rays,
+                hits: &mut Self::Hits,
+                film: &mut Self::Film,
+                range: &SampleRange
+            ) -> Self::Samples;
+            /// Parts the samples of the pixels that are not shared, or should not be: large fragments, and small ones.
+            fragments(
+                wave: &WaveOf<Self>,
+                samples: &mut Self::Samples,
+                film: &mut Self::Film,
+                all: &Antialiasing
+            ) -> [Self::Rays; 2];
             /// Groups surface points by cell of the light mesh.
             cells(wave: &WaveOf<Self>, mesh: &LightMesh) -> Self::Cells;
             /// Tests which light points each surface point sees. Formula (2).

@@ -13,6 +13,33 @@
 #define TILE_SIDE 32u
 // Rays of such a tile, or of a list, that one block groups.
 #define TILE 1024u
+// Parts of the unit interval at whose ends the inverse of a pixel filter's cumulative distribution is tabulated.
+#define FILTER_STEPS 63u
+// Number of these ends.
+#define FILTER_PLACES 64u
+// Stands for a light in the random pattern of a pixel's samples.
+#define PIXEL_PATTERN 0x7fffffffu
+// Samples of a pixel at most if any are shaded together.
+#define MOST_SHARED 32u
+// A pixel's samples and its centre lie on one surface.
+#define PIXEL_SHARED 1u
+// The same, but neighbours differ so much that each sample is shaded by itself.
+#define PIXEL_SPLIT 2u
+// Samples lie on one surface if the cosine between their normals is at least this: less than 2.6 degrees. Then light at 45 degrees
+// differs by less than 5 %.
+#define SAME_COSINE 0x1.ff7ceep-1f
+// The same for the geometric normals of triangles that share smooth ones.
+#define SAME_FACET_COSINE 0x1.99999ap-1f
+// And if neither is farther from the other's tangent plane than this part of a pixel's width.
+#define SAME_HEIGHT 0x1p-1f
+// The same for neighbouring pixels.
+#define NEAR_HEIGHT 0x1p1f
+// Neighbouring pixels are compared if the cosine between their normals is at least this.
+#define NEAR_COSINE 0x1.ccccccp-1f
+// Differences between neighbouring pixels are relative to the brighter one and this radiance: darker ones are hardly seen.
+#define CONTRAST_FLOOR 0x1.99999ap-3f
+// Rows above and below a band with which its pixels are compared.
+#define MARGIN_ROWS 1u
 // Values per thread of a prefix sum.
 #define VALUES_OF_THREAD 4u
 // The largest number of single precision.
@@ -362,17 +389,17 @@ struct alignas(4) ListedRay {
     Vec3 origin;
     unsigned pixel;
     Vec3 direction;
-    unsigned spare;
+    unsigned sample;
     Vec3 weight;
-    unsigned spare_too;
+    unsigned shared;
 };
 static_assert(sizeof(ListedRay) == 48, "size of ListedRay");
 static_assert(PLACE_OF(ListedRay, origin) == 0, "place of ListedRay::origin");
 static_assert(PLACE_OF(ListedRay, pixel) == 12, "place of ListedRay::pixel");
 static_assert(PLACE_OF(ListedRay, direction) == 16, "place of ListedRay::direction");
-static_assert(PLACE_OF(ListedRay, spare) == 28, "place of ListedRay::spare");
+static_assert(PLACE_OF(ListedRay, sample) == 28, "place of ListedRay::sample");
 static_assert(PLACE_OF(ListedRay, weight) == 32, "place of ListedRay::weight");
-static_assert(PLACE_OF(ListedRay, spare_too) == 44, "place of ListedRay::spare_too");
+static_assert(PLACE_OF(ListedRay, shared) == 44, "place of ListedRay::shared");
 
 struct alignas(8) Rays {
     View view;
@@ -846,6 +873,7 @@ struct alignas(8) Shade {
     unsigned long long film_pixel;
     Vec3 *color;
     Vec3 *sums;
+    const Hit *samples;
     float *depth;
     Vec3 *normal;
     Vec3 *position;
@@ -855,8 +883,13 @@ struct alignas(8) Shade {
     unsigned long long first_block;
     unsigned first_light;
     unsigned end_light;
+    unsigned several;
+    unsigned sampled;
+    unsigned sample_count;
+    unsigned first_sampled;
+    unsigned long long sampled_pixels;
 };
-static_assert(sizeof(Shade) == 496, "size of Shade");
+static_assert(sizeof(Shade) == 528, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
 static_assert(PLACE_OF(Shade, rays) == 304, "place of Shade::rays");
 static_assert(PLACE_OF(Shade, hits) == 384, "place of Shade::hits");
@@ -865,15 +898,85 @@ static_assert(PLACE_OF(Shade, used) == 400, "place of Shade::used");
 static_assert(PLACE_OF(Shade, film_pixel) == 408, "place of Shade::film_pixel");
 static_assert(PLACE_OF(Shade, color) == 416, "place of Shade::color");
 static_assert(PLACE_OF(Shade, sums) == 424, "place of Shade::sums");
-static_assert(PLACE_OF(Shade, depth) == 432, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 440, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 448, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 456, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 464, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, film_pixels) == 472, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 480, "place of Shade::first_block");
-static_assert(PLACE_OF(Shade, first_light) == 488, "place of Shade::first_light");
-static_assert(PLACE_OF(Shade, end_light) == 492, "place of Shade::end_light");
+static_assert(PLACE_OF(Shade, samples) == 432, "place of Shade::samples");
+static_assert(PLACE_OF(Shade, depth) == 440, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 448, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 456, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 464, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 472, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, film_pixels) == 480, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 488, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, first_light) == 496, "place of Shade::first_light");
+static_assert(PLACE_OF(Shade, end_light) == 500, "place of Shade::end_light");
+static_assert(PLACE_OF(Shade, several) == 504, "place of Shade::several");
+static_assert(PLACE_OF(Shade, sampled) == 508, "place of Shade::sampled");
+static_assert(PLACE_OF(Shade, sample_count) == 512, "place of Shade::sample_count");
+static_assert(PLACE_OF(Shade, first_sampled) == 516, "place of Shade::first_sampled");
+static_assert(PLACE_OF(Shade, sampled_pixels) == 520, "place of Shade::sampled_pixels");
+
+struct alignas(8) PixelSamples {
+    Scene scene;
+    Rays rays;
+    Hit *hits;
+    Hit *centers;
+    unsigned *state;
+    Vec3 *color;
+    unsigned *counts[2];
+    ListedRay *fragments[2];
+    float *coverage;
+    float *depth;
+    Vec3 *normal;
+    Vec3 *position;
+    float *visibility;
+    unsigned *light_points;
+    Tally tally;
+    unsigned long long first_block;
+    unsigned long long seed;
+    unsigned long long film_pixels;
+    float spacing[2];
+    unsigned samples[2];
+    unsigned inner[2];
+    unsigned all_samples;
+    unsigned light_count;
+    float weight;
+    float contrast;
+    unsigned apart;
+    unsigned mirrors;
+    unsigned keeps;
+    unsigned spare;
+    float quantiles[64];
+};
+static_assert(sizeof(PixelSamples) == 840, "size of PixelSamples");
+static_assert(PLACE_OF(PixelSamples, scene) == 0, "place of PixelSamples::scene");
+static_assert(PLACE_OF(PixelSamples, rays) == 304, "place of PixelSamples::rays");
+static_assert(PLACE_OF(PixelSamples, hits) == 384, "place of PixelSamples::hits");
+static_assert(PLACE_OF(PixelSamples, centers) == 392, "place of PixelSamples::centers");
+static_assert(PLACE_OF(PixelSamples, state) == 400, "place of PixelSamples::state");
+static_assert(PLACE_OF(PixelSamples, color) == 408, "place of PixelSamples::color");
+static_assert(PLACE_OF(PixelSamples, counts) == 416, "place of PixelSamples::counts");
+static_assert(PLACE_OF(PixelSamples, fragments) == 432, "place of PixelSamples::fragments");
+static_assert(PLACE_OF(PixelSamples, coverage) == 448, "place of PixelSamples::coverage");
+static_assert(PLACE_OF(PixelSamples, depth) == 456, "place of PixelSamples::depth");
+static_assert(PLACE_OF(PixelSamples, normal) == 464, "place of PixelSamples::normal");
+static_assert(PLACE_OF(PixelSamples, position) == 472, "place of PixelSamples::position");
+static_assert(PLACE_OF(PixelSamples, visibility) == 480, "place of PixelSamples::visibility");
+static_assert(PLACE_OF(PixelSamples, light_points) == 488, "place of PixelSamples::light_points");
+static_assert(PLACE_OF(PixelSamples, tally) == 496, "place of PixelSamples::tally");
+static_assert(PLACE_OF(PixelSamples, first_block) == 504, "place of PixelSamples::first_block");
+static_assert(PLACE_OF(PixelSamples, seed) == 512, "place of PixelSamples::seed");
+static_assert(PLACE_OF(PixelSamples, film_pixels) == 520, "place of PixelSamples::film_pixels");
+static_assert(PLACE_OF(PixelSamples, spacing) == 528, "place of PixelSamples::spacing");
+static_assert(PLACE_OF(PixelSamples, samples) == 536, "place of PixelSamples::samples");
+static_assert(PLACE_OF(PixelSamples, inner) == 544, "place of PixelSamples::inner");
+static_assert(PLACE_OF(PixelSamples, all_samples) == 552, "place of PixelSamples::all_samples");
+static_assert(PLACE_OF(PixelSamples, light_count) == 556, "place of PixelSamples::light_count");
+static_assert(PLACE_OF(PixelSamples, weight) == 560, "place of PixelSamples::weight");
+static_assert(PLACE_OF(PixelSamples, contrast) == 564, "place of PixelSamples::contrast");
+static_assert(PLACE_OF(PixelSamples, apart) == 568, "place of PixelSamples::apart");
+static_assert(PLACE_OF(PixelSamples, mirrors) == 572, "place of PixelSamples::mirrors");
+static_assert(PLACE_OF(PixelSamples, keeps) == 576, "place of PixelSamples::keeps");
+static_assert(PLACE_OF(PixelSamples, spare) == 580, "place of PixelSamples::spare");
+static_assert(PLACE_OF(PixelSamples, quantiles) == 584, "place of PixelSamples::quantiles");
 
 struct alignas(8) MirrorRays {
     Scene scene;

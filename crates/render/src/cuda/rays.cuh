@@ -38,17 +38,30 @@ DEVICE unsigned pixel_of(const Rays &rays, unsigned ray) {
     return rays.list != nullptr ? __ldg(&rays.list[ray].pixel) : rays.first_pixel + ray;
 }
 
-// The camera ray through the centre of a pixel.
-DEVICE Ray view_ray(const View &view, unsigned pixel) {
-    const unsigned width = view.size[0], height = view.size[1];
-    const float x = (float)(pixel % width) + 0.5f - 0.5f * (float)width;
-    const float y = (float)(pixel / width) + 0.5f - 0.5f * (float)height;
+// The ray `x` pixels to the right and `y` down from the image's centre.
+DEVICE Ray ray_towards(const View &view, float x, float y) {
     const Vec3 aside = x * view.right + y * view.down;
     if (view.perspective) {
         const Vec3 direction = view.forward + aside;
         return Ray{view.origin, direction / length(direction), INFINITE};
     }
     return Ray{view.origin + aside, view.forward, INFINITE};
+}
+
+// The camera ray through the centre of a pixel.
+DEVICE Ray view_ray(const View &view, unsigned pixel) {
+    const unsigned width = view.size[0], height = view.size[1];
+    const float x = (float)(pixel % width) + 0.5f - 0.5f * (float)width;
+    const float y = (float)(pixel / width) + 0.5f - 0.5f * (float)height;
+    return ray_towards(view, x, y);
+}
+
+// The ray through the point of a pixel that is (`right`, `down`) from its centre, in pixels.
+DEVICE Ray view_ray_beside(const View &view, unsigned pixel, float right, float down) {
+    const unsigned width = view.size[0], height = view.size[1];
+    const float x = (float)(pixel % width) + 0.5f - 0.5f * (float)width;
+    const float y = (float)(pixel / width) + 0.5f - 0.5f * (float)height;
+    return ray_towards(view, x + right, y + down);
 }
 
 // Sixteen bytes of a listed ray: origin and pixel, direction, weight.
@@ -69,7 +82,12 @@ DEVICE Vec3 weight_of(const Rays &rays, unsigned ray) {
     return rays.list == nullptr ? Vec3{1.0f, 1.0f, 1.0f} : load_listed(rays.list + ray, 2);
 }
 
-// The key that distinguishes the random patterns of two surface points: the pixel, and whether it is seen in a mirror.
+// The number of the pixel's sample that a ray goes through, and one; 0 for a camera's.
+DEVICE unsigned sample_of(const Rays &rays, unsigned ray) { return rays.list != nullptr ? __ldg(&rays.list[ray].sample) : 0; }
+
+// The key that distinguishes the random patterns of two surface points: the pixel, its sample, and whether it is in a list, such as that of
+// mirror rays.
 DEVICE unsigned long long ray_key(const Rays &rays, unsigned ray) {
-    return (unsigned long long)pixel_of(rays, ray) << 1 | (rays.list != nullptr ? 1 : 0);
+    const unsigned long long key = (unsigned long long)pixel_of(rays, ray) << 1 | (rays.list != nullptr ? 1 : 0);
+    return (unsigned long long)sample_of(rays, ray) << 33 | key;
 }

@@ -10,5 +10,6 @@ pub(crate) mod lit;
 pub(crate) mod masks;
 pub(crate) mod picture;
 pub(crate) mod rays;
+pub(crate) mod samples;
 pub(crate) mod visibility;
 pub(crate) mod wave;

@@ -12,8 +12,12 @@ pub struct Picture {
     pub size: [u32; 2],
     /// The rows that are stored here.
     pub rows: Range<u32>,
+    /// Those of them that are finished here; the others are needed by their neighbours.
+    pub kept: Range<u32>,
     /// Linear radiance by pixel of these rows.
     pub color: Vec<[f32; 3]>,
+    /// The share of each pixel's samples that see anything, if it was asked for.
+    pub coverage: Option<Vec<f32>>,
     /// What each of these pixels sees.
     pub layers: Option<Layers>,
     /// While groups of lights follow: the radiance of each ray of a wave so far.
@@ -23,11 +27,11 @@ pub struct Picture {
 impl Picture {
     /// A black image of `size` pixels; with layers for `lights` lights on request.
     pub fn new(size: [u32; 2], lights: Option<usize>) -> Picture {
-        Picture::band(size, 0..size[1], lights)
+        Picture::band(size, [0..size[1], 0..size[1]], lights)
     }
 
-    /// The black rows `rows` of an image of `size` pixels.
-    pub fn band(size: [u32; 2], rows: Range<u32>, lights: Option<usize>) -> Picture {
+    /// Black rows of an image of `size` pixels: all that are stored, and those of them that are kept.
+    pub fn band(size: [u32; 2], [rows, kept]: [Range<u32>; 2], lights: Option<usize>) -> Picture {
         let pixels = size[0] as usize * rows.len();
         let layers = lights.map(|lights| Layers {
             depth: vec![f32::INFINITY; pixels],
@@ -36,7 +40,7 @@ impl Picture {
             visibility: vec![vec![0.0; pixels]; lights],
             used: vec![0; pixels],
         });
-        Picture { size, rows, color: vec![[0.0; 3]; pixels], layers, sums: Vec::new() }
+        Picture { size, rows, kept, color: vec![[0.0; 3]; pixels], coverage: None, layers, sums: Vec::new() }
     }
 
     /// The index of pixel y · width + x of the whole image in the planes.
@@ -57,21 +61,29 @@ impl Picture {
         *color = (glam::Vec3::from_array(*color) + radiance).to_array();
     }
 
-    /// Copies the rows of a band into this image, with its layers if both have them.
+    /// Keeps the coverage of each pixel, none so far.
+    pub fn with_coverage(self) -> Picture {
+        Picture { coverage: Some(vec![0.0; self.color.len()]), ..self }
+    }
+
+    /// Copies the kept rows of a band into this image, with its layers and coverage if both have them.
     pub fn take(&mut self, band: Picture) {
-        if band.rows == self.rows {
+        if band.kept == self.rows && band.rows == self.rows {
             *self = band;
             return;
         }
-        let places = self.places(&band.rows);
-        self.color[places.clone()].copy_from_slice(&band.color);
+        let (to, from) = (self.places(&band.kept), band.places(&band.kept));
+        self.color[to.clone()].copy_from_slice(&band.color[from.clone()]);
+        if let (Some(coverage), Some(band)) = (&mut self.coverage, &band.coverage) {
+            coverage[to.clone()].copy_from_slice(&band[from.clone()]);
+        }
         if let (Some(layers), Some(band)) = (&mut self.layers, &band.layers) {
-            layers.depth[places.clone()].copy_from_slice(&band.depth);
-            layers.normal[places.clone()].copy_from_slice(&band.normal);
-            layers.position[places.clone()].copy_from_slice(&band.position);
-            layers.used[places.clone()].copy_from_slice(&band.used);
+            layers.depth[to.clone()].copy_from_slice(&band.depth[from.clone()]);
+            layers.normal[to.clone()].copy_from_slice(&band.normal[from.clone()]);
+            layers.position[to.clone()].copy_from_slice(&band.position[from.clone()]);
+            layers.used[to.clone()].copy_from_slice(&band.used[from.clone()]);
             for (plane, band) in layers.visibility.iter_mut().zip(&band.visibility) {
-                plane[places.clone()].copy_from_slice(band);
+                plane[to.clone()].copy_from_slice(&band[from.clone()]);
             }
         }
     }
@@ -81,13 +93,54 @@ impl Picture {
         self.color.par_iter().filter(|color| !color.iter().all(|channel| channel.is_finite())).count() as u64
     }
 
-    /// The finished frame.
+    /// Finds what is covered: pixels with a depth.
+    pub(crate) fn find_coverage(&mut self) {
+        let depths = self.layers.as_ref().map(|layers| &layers.depth);
+        self.coverage =
+            depths.map(|depths| depths.iter().map(|depth| f32::from(u8::from(depth.is_finite()))).collect());
+    }
+
+    /// Takes the background out of all pixels, as far as they are not covered: what remains is premultiplied by the coverage.
+    pub(crate) fn take_out(&mut self, background: glam::Vec3) {
+        let Some(coverage) = &self.coverage else { return };
+        for (color, &coverage) in self.color.iter_mut().zip(coverage) {
+            if coverage <= 0.0 {
+                *color = [0.0; 3];
+            } else if coverage < 1.0 {
+                let covered = glam::Vec3::from_array(*color) - (1.0 - coverage) * background;
+                *color = covered.max(glam::Vec3::ZERO).to_array();
+            }
+        }
+    }
+
+    /// The finished frame; its alpha is the coverage.
     pub fn into_frame(self) -> Frame {
         let frame = Frame::new(self.size[0], self.size[1], self.color);
         let frame = frame.expect("an image has as many colours as pixels, and its size was checked");
+        let frame = match self.coverage {
+            Some(coverage) => frame.with_alpha(coverage).expect("coverage was created with the image"),
+            None => frame,
+        };
         match self.layers {
             Some(layers) => frame.with_layers(layers).expect("layers were created with the image"),
             None => frame,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_covered_loses_its_background() {
+        let mut picture = Picture::new([3, 1], None);
+        picture.color = vec![[0.2, 0.4, 0.8], [0.6, 0.5, 0.4], [0.25; 3]];
+        picture.coverage = Some(vec![0.0, 1.0, 0.5]);
+        picture.take_out(glam::Vec3::new(0.2, 0.4, 0.8));
+        let frame = picture.into_frame();
+        assert_eq!(frame.alpha(), Some(&[0.0, 1.0, 0.5][..]));
+        let half = [0.25_f32 - 0.5 * 0.2, 0.25 - 0.5 * 0.4, 0.0];
+        assert_eq!(frame.color(), [[0.0; 3], [0.6, 0.5, 0.4], half]);
     }
 }

@@ -1,5 +1,7 @@
 //! Rays, and the surface points that they see.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use crate::accel::{Hit, Ray, Triangle};
@@ -7,17 +9,43 @@ use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
 use crate::view::View;
 
-/// Rays with the pixels that they contribute to. Each pixel has at most one ray in a list.
+/// What the samples of some pixels see.
+#[derive(Clone, Debug)]
+pub struct Sampled {
+    /// Their hits: pixel by pixel, then by sample.
+    pub hits: Arc<Vec<Hit>>,
+    /// The first pixel.
+    pub first: u32,
+    /// Samples of a pixel.
+    pub count: usize,
+}
+
+impl Sampled {
+    /// What those samples of a pixel see whose bits are set in `shared`.
+    pub(crate) fn hits_of(&self, pixel: u32, shared: u32) -> impl Iterator<Item = &Hit> {
+        let hits = self.hits[(pixel - self.first) as usize * self.count..][..self.count].iter();
+        hits.enumerate().filter(move |(sample, hit)| shared >> sample & 1 != 0 && hit.is_some()).map(|(_, hit)| hit)
+    }
+}
+
+/// Rays with the pixels that they contribute to. The rays of a pixel follow each other.
 #[derive(Clone, Debug, Default)]
 pub struct RayList {
     /// The rays; directions have unit length.
     pub rays: Vec<Ray>,
     /// The pixel of each ray, y · width + x.
     pub pixels: Vec<u32>,
+    /// The number of the pixel's sample that each ray goes through, and one. Empty if pixels have one sample.
+    pub samples: Vec<u32>,
+    /// The samples of its pixel that are shaded with each ray, a bit each; 0 if none are. Empty for camera rays, with which all
+    /// are.
+    pub shared: Vec<u32>,
+    /// What the pixels' samples see, if they have several.
+    pub sampled: Option<Sampled>,
     /// The share of a ray's radiance that reaches its pixel. Empty for camera rays, which contribute all of it.
     pub weights: Vec<Vec3>,
-    /// The distance between the surface points of neighbouring pixels that face the camera: a constant, and a multiple of the distance from
-    /// the camera. Zero if the rays are not a camera's.
+    /// The distance between the surface points of neighbouring pixels that face the camera: a constant, and a multiple of the
+    /// distance from the camera. Zero if the rays are not a camera's.
     pub spacing: [f32; 2],
     /// The camera and its image, all pixels of some rows; `None` if the rays are not a camera's.
     pub view: Option<View>,
@@ -32,14 +60,40 @@ impl RayList {
         self.weights.get(index).copied().unwrap_or(Vec3::ONE)
     }
 
-    /// Whether the rays come from the camera.
+    /// An empty list of rays from the same camera.
+    pub(crate) fn empty(&self) -> RayList {
+        RayList { spacing: self.spacing, ..RayList::default() }
+    }
+
+    /// The ray through the point of a pixel that is `aside` from its centre, in pixels. The rays must be a camera's.
+    #[inline(always)]
+    pub(crate) fn beside(&self, pixel: u32, aside: [f32; 2]) -> Ray {
+        self.view.as_ref().expect("the rays are a camera's").ray_beside(pixel, aside)
+    }
+
+    /// Adds the rays of another list, which goes through samples of pixels as this does.
+    pub(crate) fn append(&mut self, mut other: RayList) {
+        self.rays.append(&mut other.rays);
+        self.pixels.append(&mut other.pixels);
+        self.samples.append(&mut other.samples);
+        self.shared.append(&mut other.shared);
+        self.weights.append(&mut other.weights);
+    }
+
+    /// Whether the rays go through the centres of a camera's pixels.
     pub fn from_camera(&self) -> bool {
         self.weights.is_empty()
     }
 
-    /// The key that distinguishes the random patterns of two surface points: the pixel, and whether it is seen in a mirror.
+    /// The number of the pixel's sample that a ray goes through, and one.
+    pub(crate) fn sample(&self, ray: usize) -> u32 {
+        self.samples.get(ray).copied().unwrap_or(0)
+    }
+
+    /// The key that distinguishes the random patterns of two surface points: the pixel, its sample, and whether it is in a list,
+    /// such as that of mirror rays.
     pub(crate) fn key(&self, ray: usize) -> u64 {
-        u64::from(self.pixels[ray]) << 1 | u64::from(!self.from_camera())
+        u64::from(self.sample(ray)) << 33 | u64::from(self.pixels[ray]) << 1 | u64::from(!self.from_camera())
     }
 }
 

@@ -10,7 +10,7 @@ use super::lit::Lit;
 use super::masks::Masks;
 use super::rays::{RayList, surface_point_of};
 use crate::accel::Hit;
-use crate::job::Job;
+use crate::job::{Job, Sampling};
 use crate::light_mesh::{LightMesh, UsedPoints};
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
@@ -27,11 +27,23 @@ pub struct Wave<'a, Scene, Rays, Hits> {
     pub hits: &'a Hits,
     /// The lights whose visibility is asked for; light points have that of all.
     pub lights: LightGroup,
+    /// How many parts the samples of each light are divided into: each ray takes one.
+    pub parts: u32,
 }
 
 impl<Scene, Rays, Hits> Clone for Wave<'_, Scene, Rays, Hits> {
     fn clone(&self) -> Self {
         *self
+    }
+}
+
+impl<Scene, Rays, Hits> Wave<'_, Scene, Rays, Hits> {
+    /// How each of its surface points samples lights.
+    pub(crate) fn sampling(&self) -> Sampling {
+        let all = self.job.sampling;
+        // A single sample would be the centre.
+        let least = all.samples.min(2);
+        Sampling { samples: (all.samples / self.parts).max(least), ..all }
     }
 }
 

@@ -11,8 +11,10 @@ use crate::error::RenderError;
 pub struct Choice {
     /// [`Device::Cpu`], or [`Device::Cuda`] with a number.
     pub device: Device,
-    /// Which device it is and, if the choice was left open, why it is no other.
+    /// Which device it is.
     pub reason: String,
+    /// Why no CUDA device was taken, and what to do, if the choice was left open and none works.
+    pub no_cuda: Option<String>,
     pub(crate) chosen: Chosen,
 }
 
@@ -32,7 +34,7 @@ impl Choice {
     /// [`RenderError::Device`] if a CUDA device is requested and cannot be used.
     pub fn of(device: Device) -> Result<Choice, RenderError> {
         match device {
-            Device::Cpu => Ok(Choice::cpu("")),
+            Device::Cpu => Ok(Choice::cpu(None)),
             Device::Cuda(number) => open_cuda(number).map(Choice::cuda),
             Device::Auto => Ok(open_cuda(None).map_or_else(Choice::instead_of_cuda, Choice::cuda)),
         }
@@ -43,20 +45,20 @@ impl Choice {
             RenderError::Device { reason, .. } => reason,
             other => other.to_string(),
         };
-        Choice::cpu(&format!("; no CUDA device can be used: {why}"))
+        Choice::cpu(Some(why))
     }
 
-    fn cpu(why: &str) -> Choice {
+    fn cpu(no_cuda: Option<String>) -> Choice {
         let report = cpu();
-        let reason = format!("{} ({}, {}){why}", report.device, report.name, report.remark);
-        Choice { device: Device::Cpu, reason, chosen: Chosen::Cpu }
+        let reason = format!("{} ({}, {})", report.device, report.name, report.remark);
+        Choice { device: Device::Cpu, reason, no_cuda, chosen: Chosen::Cpu }
     }
 
     fn cuda(driver: Arc<Driver>) -> Choice {
         let report = ready(&driver);
         let device = Device::Cuda(Some(driver.number()));
         let reason = format!("{} ({}, {})", report.device, report.name, report.remark);
-        Choice { device, reason, chosen: Chosen::Cuda(driver) }
+        Choice { device, reason, no_cuda: None, chosen: Chosen::Cuda(driver) }
     }
 }
 
@@ -68,7 +70,7 @@ mod tests {
     fn the_processor_can_always_be_chosen() {
         let choice = Choice::of(Device::Cpu).unwrap();
         assert_eq!(choice.device, Device::Cpu);
-        assert!(choice.reason.starts_with("cpu (") && !choice.reason.contains("CUDA"), "{}", choice.reason);
+        assert!(choice.reason.starts_with("cpu (") && choice.no_cuda.is_none(), "{}", choice.reason);
     }
 
     #[test]
@@ -78,7 +80,7 @@ mod tests {
             Device::Cuda(Some(number)) => {
                 assert!(choice.reason.starts_with(&format!("cuda:{number} (")), "{}", choice.reason)
             }
-            Device::Cpu => assert!(choice.reason.contains("; no CUDA device can be used: "), "{}", choice.reason),
+            Device::Cpu => assert!(choice.no_cuda.is_some_and(|why| !why.is_empty()), "{}", choice.reason),
             other => panic!("{other} is not decided"),
         }
     }

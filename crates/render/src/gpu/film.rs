@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use lightmesh_layout::Out;
 use lightmesh_layout::geometry::Vec3;
-use lightmesh_layout::stages::Shade;
+use lightmesh_layout::stages::{PixelSamples, Shade};
 use lightmesh_scene::Geometry;
 
 use super::device::Cuda;
+use super::rays::DeviceRays;
 use crate::cuda::{Buffer, Runtime};
 use crate::data::picture::Picture;
 use crate::error::RenderError;
@@ -16,14 +17,17 @@ use crate::plan::Plan;
 /// Radiance and, if requested, layers of some rows.
 pub struct DeviceFilm<R: Runtime> {
     rows: Range<u32>,
+    kept: Range<u32>,
     width: u32,
     color: Buffer<R, Vec3>,
+    coverage: Option<Buffer<R, f32>>,
     layers: Option<DeviceLayers<R>>,
-    /// While groups of lights follow: the radiance of each ray of a wave of mirrors so far.
+    /// The radiance of each ray of a wave, while groups of lights follow or pixels have several rays.
     sums: Option<Buffer<R, Vec3>>,
 }
 
 struct DeviceLayers<R: Runtime> {
+    lights: u32,
     depth: Buffer<R, f32>,
     normal: Buffer<R, Vec3>,
     position: Buffer<R, Vec3>,
@@ -33,11 +37,17 @@ struct DeviceLayers<R: Runtime> {
 }
 
 impl<R: Runtime> DeviceFilm<R> {
-    pub(crate) fn new(cuda: &Cuda<R>, plan: &Plan, rows: Range<u32>) -> Result<DeviceFilm<R>, RenderError> {
+    /// Black rows: all that are rendered, and those of them that are kept.
+    pub(crate) fn new(
+        cuda: &Cuda<R>,
+        plan: &Plan,
+        [rows, kept]: [Range<u32>; 2],
+    ) -> Result<DeviceFilm<R>, RenderError> {
         let pool = &cuda.pool;
-        let pixels = plan.size[0] as usize * rows.len();
+        let (width, pixels) = (plan.size[0], plan.size[0] as usize * rows.len());
         let layers = plan.layers.map(|lights| {
             Ok::<_, RenderError>(DeviceLayers {
+                lights: lights as u32,
                 depth: pool.zeros("layer Z", pixels)?,
                 normal: pool.zeros("layer N", pixels)?,
                 position: pool.zeros("layer P", pixels)?,
@@ -46,7 +56,8 @@ impl<R: Runtime> DeviceFilm<R> {
             })
         });
         let layers = layers.transpose()?;
-        Ok(DeviceFilm { rows, width: plan.size[0], color: pool.zeros("radiance", pixels)?, layers, sums: None })
+        let coverage = plan.coverage.then(|| pool.zeros("coverage", pixels)).transpose()?;
+        Ok(DeviceFilm { rows, kept, width, color: pool.zeros("radiance", pixels)?, coverage, layers, sums: None })
     }
 
     /// Makes room for the sums of a wave of `rays` rays if they have to wait for other groups of lights, where there is none yet.
@@ -55,36 +66,62 @@ impl<R: Runtime> DeviceFilm<R> {
             self.sums = None;
         }
         if wait && self.sums.is_none() {
-            self.sums = Some(cuda.pool.room("radiance of mirror rays", rays)?);
+            self.sums = Some(cuda.pool.room("radiance of rays", rays)?);
         }
         Ok(())
     }
 
     /// Writes the film's addresses into the arguments of `shade`. Layers contain what the camera sees.
-    pub(crate) fn expose(&self, from_camera: bool, arguments: &mut Shade) {
+    pub(crate) fn expose(&self, rays: &DeviceRays<R>, arguments: &mut Shade) {
         arguments.film_pixel = u64::from(self.rows.start) * u64::from(self.width);
         arguments.film_pixels = self.color.len() as u64;
         arguments.color = self.color.output();
         arguments.sums = self.sums.as_ref().map_or(Out::NULL, Buffer::output);
-        let layers = self.layers.as_ref().filter(|_| from_camera);
+        let layers = self.layers.as_ref().filter(|_| rays.is_from_camera() || rays.are_fragments);
+        arguments.visibility = layers.map_or(Out::NULL, |layers| layers.visibility.output());
+        arguments.light_points = layers.map_or(Out::NULL, |layers| layers.used.output());
+        // With several samples, these are the nearest one's.
+        let layers = layers.filter(|_| rays.is_from_camera() && rays.sampled.is_none());
         arguments.depth = layers.map_or(Out::NULL, |layers| layers.depth.output());
         arguments.normal = layers.map_or(Out::NULL, |layers| layers.normal.output());
         arguments.position = layers.map_or(Out::NULL, |layers| layers.position.output());
-        arguments.visibility = layers.map_or(Out::NULL, |layers| layers.visibility.output());
-        arguments.light_points = layers.map_or(Out::NULL, |layers| layers.used.output());
     }
 
-    /// Copies the rows to their place in the image.
+    /// The same for the samples of pixels.
+    pub(crate) fn expose_to_samples(&self, arguments: &mut PixelSamples) {
+        arguments.film_pixels = self.color.len() as u64;
+        arguments.color = self.color.output();
+        arguments.coverage = self.coverage.as_ref().map_or(Out::NULL, Buffer::output);
+        if let Some(layers) = &self.layers {
+            arguments.light_count = layers.lights;
+            arguments.depth = layers.depth.output();
+            arguments.normal = layers.normal.output();
+            arguments.position = layers.position.output();
+            arguments.visibility = layers.visibility.output();
+            arguments.light_points = layers.used.output();
+        }
+    }
+
+    /// The places of the first pixel that is kept, and of the end.
+    pub(crate) fn kept_places(&self) -> [usize; 2] {
+        [self.kept.start, self.kept.end].map(|row| (row - self.rows.start) as usize * self.width as usize)
+    }
+
+    /// Copies the kept rows to their place in the image.
     pub(crate) fn develop(&self, geometry: &Geometry, picture: &mut Picture) -> Result<(), RenderError> {
-        let places = picture.places(&self.rows);
-        self.color.read_into(0, bytemuck::cast_slice_mut(&mut picture.color[places.clone()]))?;
+        let places = picture.places(&self.kept);
+        let [first, _] = self.kept_places();
+        self.color.read_into(first, bytemuck::cast_slice_mut(&mut picture.color[places.clone()]))?;
+        if let (Some(from), Some(to)) = (&self.coverage, &mut picture.coverage) {
+            from.read_into(first, &mut to[places.clone()])?;
+        }
         let (Some(from), Some(to)) = (&self.layers, &mut picture.layers) else { return Ok(()) };
-        from.depth.read_into(0, &mut to.depth[places.clone()])?;
-        from.normal.read_into(0, bytemuck::cast_slice_mut(&mut to.normal[places.clone()]))?;
-        from.position.read_into(0, bytemuck::cast_slice_mut(&mut to.position[places.clone()]))?;
-        from.used.read_into(0, &mut to.used[places.clone()])?;
+        from.depth.read_into(first, &mut to.depth[places.clone()])?;
+        from.normal.read_into(first, bytemuck::cast_slice_mut(&mut to.normal[places.clone()]))?;
+        from.position.read_into(first, bytemuck::cast_slice_mut(&mut to.position[places.clone()]))?;
+        from.used.read_into(first, &mut to.used[places.clone()])?;
         for (light, plane) in to.visibility.iter_mut().enumerate() {
-            from.visibility.read_into(light * places.len(), &mut plane[places.clone()])?;
+            from.visibility.read_into(light * self.color.len() + first, &mut plane[places.clone()])?;
         }
         // The device uses the local frame, and 0 instead of infinity as the depth of a miss.
         for index in places {

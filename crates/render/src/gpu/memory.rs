@@ -28,25 +28,34 @@ impl<R: Runtime> Cuda<R> {
             None => free,
         };
         let Some(free) = free else { return Ok(plan.size[1]) };
-        let row = u64::from(plan.size[0]) * bytes_per_ray(plan);
+        let row = u64::from(plan.size[0]) * bytes_per_pixel(plan);
         match free / row {
-            0 => Err(RenderError::DeviceMemory {
+            rows if rows <= plan.margin_rows() => Err(RenderError::DeviceMemory {
                 device: self.pool.runtime().name(),
                 buffer: "one row of the image",
-                needed: row,
+                needed: row * (plan.margin_rows() + 1),
                 free: Some(free),
             }),
-            rows => Ok(rows.min(u64::from(plan.size[1])) as u32),
+            rows => Ok((rows - plan.margin_rows()).min(u64::from(plan.size[1])) as u32),
         }
     }
 }
 
-/// Bytes per ray when memory use is highest.
-fn bytes_per_ray(plan: &Plan) -> u64 {
+/// Bytes per pixel when memory use is highest.
+fn bytes_per_pixel(plan: &Plan) -> u64 {
     // With more than one group of lights, mirror rays have sums of their own.
     let sum = if plan.lights.iter().len() > 1 { size_of::<Vec3>() as u64 } else { 0 };
-    let listed = if plan.bounces > 0 { 2 * size_of::<ListedRay>() as u64 + sum } else { 0 };
-    plan.film_bytes() + listed + size_of::<Hit>() as u64 + plan.footprint.device
+    let several = plan.antialiasing.is_some();
+    let listed = if plan.bounces > 0 || several { 2 * size_of::<ListedRay>() as u64 } else { 0 };
+    let sum = if several {
+        size_of::<Vec3>() as u64
+    } else if plan.bounces > 0 {
+        sum
+    } else {
+        0
+    };
+    let ray = listed + sum + size_of::<Hit>() as u64 + plan.footprint.device;
+    plan.film_bytes() + plan.sample_bytes() + plan.rays_per_pixel() * ray
 }
 
 /// What the light mesh method adds per ray, for a template with masks of `words` words and `bricks` bricks around a cell.

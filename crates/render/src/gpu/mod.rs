@@ -21,6 +21,7 @@ pub(crate) mod points;
 mod probes;
 mod rates;
 pub(crate) mod rays;
+pub(crate) mod samples;
 mod scan;
 mod scene;
 

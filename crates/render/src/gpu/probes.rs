@@ -25,7 +25,7 @@ impl<R: Runtime> Cuda<R> {
         let triangles = pool.upload("given points", bytemuck::cast_slice::<_, Triangle>(&probes.rays.probes))?;
         let rays = Rays { list: list.input(), count: listed.len() as u32, ..Rays::zeroed() };
         let scene = scene.with_triangles(Arc::new(triangles));
-        Ok((scene, DeviceRays { record: rays, list: Some(list), spacing: [0.0; 2] }, DeviceHits { hits }))
+        Ok((scene, DeviceRays::new(rays, Some(list), [0.0; 2]), DeviceHits { hits }))
     }
 }
 

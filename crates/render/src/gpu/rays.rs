@@ -6,6 +6,7 @@ use lightmesh_layout::Out;
 use lightmesh_layout::geometry::{Hit, ListedRay, Rays};
 
 use super::device::Cuda;
+use super::samples::DeviceSampled;
 use super::scene::DeviceScene;
 use crate::accel;
 use crate::cuda::{Buffer, Runtime};
@@ -22,6 +23,12 @@ pub struct DeviceRays<R: Runtime> {
     pub(crate) list: Option<Buffer<R, ListedRay>>,
     /// As in [`RayList`](crate::data::rays::RayList).
     pub(crate) spacing: [f32; 2],
+    /// Whether a pixel may have several of them.
+    pub(crate) several: bool,
+    /// Whether they go through samples of a camera's pixels.
+    pub(crate) are_fragments: bool,
+    /// What the samples see that they are shaded with.
+    pub(crate) sampled: Option<DeviceSampled<R>>,
 }
 
 /// Hits on a device, one per ray.
@@ -81,6 +88,11 @@ impl<R: Runtime> DeviceVisibility<R> {
 }
 
 impl<R: Runtime> DeviceRays<R> {
+    /// Rays of a list, at most one of each pixel, or without any the camera's.
+    pub(crate) fn new(record: Rays, list: Option<Buffer<R, ListedRay>>, spacing: [f32; 2]) -> DeviceRays<R> {
+        DeviceRays { record, list, spacing, several: false, are_fragments: false, sampled: None }
+    }
+
     /// Whether the rays come from the camera rather than from mirrors.
     pub(crate) fn is_from_camera(&self) -> bool {
         self.list.is_none()

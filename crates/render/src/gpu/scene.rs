@@ -6,7 +6,7 @@ use lightmesh_layout::constants::{BVH_STACK, GRID_FRAME_WORDS, RECENT_TRIANGLES,
 use lightmesh_layout::geometry::{Approach, BruteForce, Bvh, BvhNode, DVec3, Grid, Triangle, Vec3};
 use lightmesh_layout::scene::{Indices, Light, Scene};
 use lightmesh_layout::{DeviceType, In, Structure};
-use lightmesh_scene::{Falloff, LightKind, Lights};
+use lightmesh_scene::{Falloff, LightKind};
 
 use super::device::Cuda;
 use super::held::{Buffers, DeviceGeometry};
@@ -16,8 +16,8 @@ use crate::error::RenderError;
 use crate::job::Job;
 use crate::prepared::{PreparedGeometry, PreparedScene};
 use crate::sampling::disk_radius;
+use crate::shading::LightTargets;
 use crate::shading::tint::is_tinted;
-use crate::shading::{DEFAULT_AMBIENT, LightTargets};
 use crate::stage::Stage;
 use crate::sync::locked;
 
@@ -73,7 +73,7 @@ impl<R: Runtime> Cuda<R> {
     pub(crate) fn device_scene(&self, job: &Job, scene: &PreparedScene) -> Result<DeviceScene<R>, RenderError> {
         let geometry = self.device_geometry(job, scene)?;
         let mut upload = Upload { cuda: self, buffers: Vec::new() };
-        let record = upload.lights(&scene.scene.lights, &scene.geometry, geometry.record)?;
+        let record = upload.lights(scene, geometry.record)?;
         Ok(DeviceScene {
             record,
             structure: geometry.structure,
@@ -149,14 +149,15 @@ impl<R: Runtime> Upload<'_, R> {
     }
 
     /// The record of a scene with these lights.
-    fn lights(&mut self, lights: &Lights, prepared: &PreparedGeometry, geometry: Scene) -> Result<Scene, RenderError> {
-        let records: Vec<Light> = lights.iter().map(|it| light(prepared, it)).collect();
+    fn lights(&mut self, scene: &PreparedScene, geometry: Scene) -> Result<Scene, RenderError> {
+        let lights = &scene.scene.lights;
+        let records: Vec<Light> = lights.iter().map(|it| light(&scene.geometry, it)).collect();
         let targets = LightTargets::new(lights).flat();
         Ok(Scene {
             lights: self.array("lights", &records)?,
             light_targets: self.array::<Vec3>("points on lights", bytemuck::cast_slice(&targets))?,
             light_count: records.len() as u32,
-            ambient: vec3(lights.ambient.unwrap_or(DEFAULT_AMBIENT)),
+            ambient: vec3(scene.ambient()),
             background: vec3(lights.background.unwrap_or_default()),
             ..geometry
         })

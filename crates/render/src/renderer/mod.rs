@@ -12,12 +12,12 @@ use std::time::Instant;
 
 use glam::Vec3;
 use lightmesh_image::{FrameParts, Layers, SaveError};
+use lightmesh_memory::Budget;
 use lightmesh_scene::Scene;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::backend::run::Run;
 use crate::backend::{Backend, Cpu, Cuda};
-use crate::bands;
 use crate::cache::{Kept, MeshCache};
 use crate::cuda::{Driver, Runtime};
 use crate::data::picture::Picture;
@@ -34,7 +34,7 @@ use resolve::Resolved;
 /// A finished image and its statistics.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Linear colours, and layers if requested.
+    /// Linear colours, and alpha and layers if requested.
     pub image: lightmesh_image::Frame,
     /// Counts, seconds and settings.
     pub stats: Stats,
@@ -133,15 +133,20 @@ impl Renderer {
     /// not rebuilt while it is alive, whatever the lights and cameras.
     ///
     /// # Errors
-    /// [`RenderError::Geometry`] if the geometry is inconsistent, [`RenderError::Grid`] or [`RenderError::GridFile`] if a grid was
-    /// requested and cannot be built or read.
+    /// [`RenderError::Geometry`] if the geometry is inconsistent, [`RenderError::BuildMemory`] if there is not enough memory,
+    /// [`RenderError::Grid`] or [`RenderError::GridFile`] if a grid was requested and cannot be built or read.
     pub fn prepare(
         &self,
         scene: &Scene,
         settings: &Settings,
         observer: &dyn Observer,
     ) -> Result<PreparedScene, RenderError> {
-        self.pool.install(|| self.preparations.prepare(scene, &settings.acceleration, observer))
+        let budget = match &self.engine {
+            Engine::Cpu => Budget::new(settings.memory_limit),
+            // The limit is that of the device's own memory.
+            Engine::Cuda(_) => Budget::default(),
+        };
+        self.pool.install(|| self.preparations.prepare(scene, &settings.acceleration, budget, observer))
     }
 
     /// Renders one image of a prepared scene.
@@ -187,6 +192,11 @@ impl Renderer {
                 visibility_on(&*cuda, &points, settings, observer)
             }
         })
+    }
+
+    /// Does other work on this renderer's CPU threads, such as encoding an image.
+    pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.pool.install(work)
     }
 
     /// Renders one image of a prepared scene with the cached visibility of its light points, and adds what it computes to the cache. The
@@ -272,18 +282,26 @@ fn picture_on<B: Backend>(
     let mut resolved = Resolved::new(scene, settings, observer)?;
     resolved.plan.kept = kept.as_ref().map_or(0, |kept| kept.memory());
     let Resolved { technique, view, plan, .. } = &resolved;
-    match backend.kind() == Cpu.kind() {
-        true => bands::rows_on_host(scene, plan).map(drop)?,
-        // The limit is that of the device's own memory.
-        false => bands::check_picture(plan)?,
-    }
+    backend.check_host_memory(plan)?;
     let job = resolved.job(observer);
     let mut picture = Picture::new(settings.size, plan.layers);
+    if plan.coverage {
+        picture = picture.with_coverage();
+    }
     let run = Run::new(backend, &job, kept);
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
     let rows = Passes { run, scene: &on_device, technique, view, plan }.render(&mut picture)?;
     let mut stats =
         report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
     stats.counts.non_finite_pixels = picture.non_finite();
+    if settings.transparent {
+        if !plan.coverage {
+            picture.find_coverage();
+        }
+        picture.take_out(scene.scene.lights.background.unwrap_or_default());
+    }
+    if !settings.layers {
+        picture.layers = None;
+    }
     Ok(Frame { image: picture.into_frame(), stats })
 }

@@ -6,7 +6,6 @@ use super::resolve::Resolved;
 use crate::backend::Backend;
 use crate::counters::Counts;
 use crate::job::Job;
-use crate::shading::DEFAULT_AMBIENT;
 use crate::stage::Seconds;
 use crate::stats::{CameraStats, DeviceStats, MemoryStats, SceneStats, SettingsStats, Stats};
 
@@ -63,12 +62,15 @@ fn settings(resolved: &Resolved, device: &'static str, rows_per_band: u32) -> Se
         weight: None,
         lookup: None,
         quality: None,
+        aa: resolved.plan.antialiasing.as_ref().map_or(1, |all| all.samples),
+        filter: resolved.plan.antialiasing.as_ref().map(|_| settings.filter.name()),
         short_tests: None,
         samples: sampling.samples,
         accel: scene.geometry.accelerator.name(),
         camera: camera(resolved),
-        ambient: lights.ambient.unwrap_or(DEFAULT_AMBIENT).to_array(),
+        ambient: scene.ambient().to_array(),
         background: lights.background.unwrap_or_default().to_array(),
+        transparent: settings.transparent,
         seed: settings.seed,
         memory_limit: settings.memory_limit,
         rows_per_band,

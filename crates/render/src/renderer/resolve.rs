@@ -1,7 +1,9 @@
 //! Checks the settings, and chooses what they leave open.
 
+use lightmesh_memory::Budget;
 use lightmesh_scene::{Bounds, Camera};
 
+use crate::antialiasing::Antialiasing;
 use crate::data::lights::LightGroups;
 use crate::error::RenderError;
 use crate::job::{Job, Sampling};
@@ -9,12 +11,15 @@ use crate::observer::Observer;
 use crate::plan::{Footprint, Plan};
 use crate::prepared::PreparedScene;
 use crate::probes::{GivenPoints, Probes, ROW};
-use crate::settings::{Setting, Settings};
+use crate::settings::{Setting, Settings, Sharing};
 use crate::techniques::{Request, Technique};
 use crate::view::View;
 
 /// More threads than any machine has logical CPUs would only wait for each other.
 const MAX_THREADS: usize = 1024;
+
+/// Samples of a pixel are numbered next to pixels in 64 bits.
+const MAX_PIXEL_SAMPLES: u32 = 1 << 16;
 
 /// An image of a scene with all settings resolved.
 pub(super) struct Resolved<'a> {
@@ -50,8 +55,15 @@ impl<'a> Resolved<'a> {
         let lights = LightGroups { at_once: usize::MAX, ..resolved.plan.lights };
         let Footprint { host, device } = resolved.technique.footprint(lights.held() as u64);
         let footprint = Footprint { host: host + Probes::BYTES, device: device + Probes::BYTES };
-        resolved.plan =
-            Plan { size: [ROW, points.rows()], bounces: 0, layers: None, lights, footprint, ..resolved.plan };
+        resolved.plan = Plan {
+            size: [ROW, points.rows()],
+            antialiasing: None,
+            bounces: 0,
+            layers: None,
+            lights,
+            footprint,
+            ..resolved.plan
+        };
         resolved.pixels = points.len() as u64;
         Ok(resolved)
     }
@@ -69,16 +81,28 @@ impl<'a> Resolved<'a> {
         let view = View::new(&camera, settings.size);
         let technique = Technique::resolve(&Request { scene, settings, view: &view, observer, bounds })?;
         let lights = LightGroups { lights: scene.scene.lights.len(), at_once: technique.lights_at_once() };
+        let samples = Technique::samples(settings);
+        let antialiasing = match Technique::pixel_samples(settings) {
+            1 => None,
+            number => {
+                let all = Antialiasing::new(number, settings.filter, settings.seed, samples);
+                let (mirrors, keeps) = (settings.bounces > 0, technique.needs_neighbours());
+                Some(Antialiasing { apart: all.apart || settings.sharing == Sharing::Never, mirrors, keeps, ..all })
+            }
+        };
         let plan = Plan {
             size: settings.size,
+            // With one sample of a pixel, coverage is found from its depth.
+            coverage: settings.transparent && antialiasing.is_some(),
+            layers: (settings.layers || settings.transparent && antialiasing.is_none()).then_some(lights.lights),
+            antialiasing,
             bounces: settings.bounces,
-            layers: settings.layers.then_some(lights.lights),
             lights,
             memory_limit: settings.memory_limit,
+            left: Budget::new(settings.memory_limit).left(),
             kept: 0,
             footprint: technique.footprint(lights.held() as u64),
         };
-        let samples = Technique::samples(settings);
         let sampling = Sampling { samples, seed: settings.seed, spread: technique.spreads_points() };
         let pixels = plan.pixels();
         Ok(Resolved { scene, settings, camera, view, technique, plan, sampling, pixels })
@@ -123,6 +147,14 @@ fn check(settings: &Settings) -> Result<(), RenderError> {
             setting: Setting::Samples,
             value: samples.to_string(),
             remedy: "choose 1 to 65535",
+        });
+    }
+    let pixel_samples = Technique::pixel_samples(settings);
+    if !(1..=MAX_PIXEL_SAMPLES).contains(&pixel_samples) {
+        return Err(RenderError::Setting {
+            setting: Setting::Aa,
+            value: pixel_samples.to_string(),
+            remedy: "choose 1 to 65536 samples of a pixel",
         });
     }
     Ok(())

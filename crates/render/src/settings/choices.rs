@@ -193,12 +193,12 @@ parse_by_name!(ShadowTests, "shadow-test method");
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Quality {
-    /// 16 samples of a light at each surface point.
+    /// 16 samples of a light in a pixel, 4 samples of the pixel.
     Draft,
-    /// 64 samples.
+    /// 64, and 8 of the pixel.
     #[default]
     Good,
-    /// 256 samples.
+    /// 256, and 16 of the pixel.
     Final,
 }
 
@@ -218,13 +218,22 @@ impl Quality {
     /// A short description.
     pub fn help(self) -> &'static str {
         match self {
-            Quality::Draft => "16 samples of a light: for a quick look",
-            Quality::Good => "64 samples: hardly any noise",
-            Quality::Final => "256 samples: no visible noise",
+            Quality::Draft => "16 samples of a light in a pixel, 4 of the pixel: for a quick look",
+            Quality::Good => "64, and 8 of the pixel: hardly any noise",
+            Quality::Final => "256, and 16 of the pixel: no visible noise",
         }
     }
 
-    /// Samples of a light with a size at each surface point.
+    /// Samples of a pixel.
+    pub fn pixel_samples(self) -> u32 {
+        match self {
+            Quality::Draft => 4,
+            Quality::Good => 8,
+            Quality::Final => 16,
+        }
+    }
+
+    /// Samples of a light with a size in a pixel.
     pub fn samples(self) -> u32 {
         match self {
             Quality::Draft => 16,
@@ -235,6 +244,63 @@ impl Quality {
 }
 
 parse_by_name!(Quality, "quality");
+
+/// The filter over which a pixel's colour is averaged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Filter {
+    /// The pixel's square.
+    Box,
+    /// A bell with a standard deviation of a quarter of a pixel, cut off at three.
+    Gauss,
+    /// Blackman and Harris' window, 1.5 pixels wide: smooth edges, hardly blurred.
+    #[default]
+    BlackmanHarris,
+}
+
+impl Filter {
+    /// All of them.
+    pub const ALL: &'static [Filter] = &[Filter::Box, Filter::Gauss, Filter::BlackmanHarris];
+
+    /// Its name, also in statistics.
+    pub fn name(self) -> &'static str {
+        match self {
+            Filter::Box => "box",
+            Filter::Gauss => "gauss",
+            Filter::BlackmanHarris => "blackman-harris",
+        }
+    }
+
+    /// A short description.
+    pub fn help(self) -> &'static str {
+        match self {
+            Filter::Box => "The pixel's square",
+            Filter::Gauss => "A bell with a standard deviation of 0.25 pixels",
+            Filter::BlackmanHarris => "1.5 pixels wide: smooth edges, hardly blurred",
+        }
+    }
+
+    /// Its width in pixels.
+    pub(crate) fn width(self) -> f64 {
+        match self {
+            Filter::Box => 1.0,
+            Filter::Gauss | Filter::BlackmanHarris => 1.5,
+        }
+    }
+}
+
+parse_by_name!(Filter, "filter");
+
+/// Whether samples of a pixel that lie on one surface are shaded together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Sharing {
+    /// Where that is not seen.
+    #[default]
+    Unseen,
+    /// Never: the reference. So it always is with more than 32 samples.
+    Never,
+}
 
 #[cfg(test)]
 mod tests {

@@ -7,7 +7,7 @@ mod setting;
 use lightmesh_scene::{Camera, Up, Weight};
 
 pub use acceleration::Acceleration;
-pub use choices::{Lookup, Mode, Quality, ShadowTests, ShortTests, Step, UnknownStep};
+pub use choices::{Filter, Lookup, Mode, Quality, ShadowTests, Sharing, ShortTests, Step, UnknownStep};
 pub use setting::Setting;
 
 /// All settings of an image, apart from the scene. Fields can be set, or methods chained; more may be added.
@@ -39,8 +39,14 @@ pub struct Settings {
     pub weight: Option<Weight>,
     /// How light-mesh mode looks up visibility.
     pub lookup: Lookup,
-    /// How good soft shadows are: the number of samples, unless `samples` is set.
+    /// How good soft shadows and edges are: the numbers of samples, unless `samples` or `aa` is set.
     pub quality: Quality,
+    /// Samples of a pixel; `None`: by `quality` with lists and adaptive rays, else 1. A single one goes through its centre.
+    pub aa: Option<u32>,
+    /// How samples of a pixel are distributed.
+    pub filter: Filter,
+    /// Whether samples of a pixel that lie on one surface are shaded together.
+    pub sharing: Sharing,
     /// How short tests are evaluated.
     pub short_tests: ShortTests,
     /// How area mode tests the samples of a light.
@@ -53,7 +59,10 @@ pub struct Settings {
     pub seed: u64,
     /// Whether to keep depth, normals, positions and visibility of every pixel in addition to its colour.
     pub layers: bool,
-    /// Memory limit in bytes: of the process on the CPU, of the device's own memory on a GPU; `None`: what is free, less a reserve.
+    /// Whether the background is left out: the image has an alpha, 0 where the camera sees nothing. Mirrors still show the background.
+    pub transparent: bool,
+    /// Memory limit in bytes: of all that the process holds on the CPU, of the device's own memory on a GPU; `None`: what is free, less a
+    /// reserve.
     pub memory_limit: Option<u64>,
 }
 
@@ -70,12 +79,16 @@ impl Default for Settings {
             weight: None,
             lookup: Lookup::Auto,
             quality: Quality::Good,
+            aa: None,
+            filter: Filter::BlackmanHarris,
+            sharing: Sharing::Unseen,
             short_tests: ShortTests::Cells,
             shadow_tests: ShadowTests::Rows,
             samples: None,
             acceleration: Acceleration::Auto,
             seed: 0,
             layers: false,
+            transparent: false,
             memory_limit: None,
         }
     }
@@ -134,9 +147,24 @@ impl Settings {
         Settings { lookup, ..self }
     }
 
-    /// How good soft shadows are: the number of samples, unless that is set.
+    /// How good soft shadows and edges are: the numbers of samples, unless they are set.
     pub fn with_quality(self, quality: Quality) -> Settings {
         Settings { quality, ..self }
+    }
+
+    /// Samples of a pixel; a single one goes through its centre.
+    pub fn with_aa(self, aa: u32) -> Settings {
+        Settings { aa: Some(aa), ..self }
+    }
+
+    /// How samples of a pixel are distributed.
+    pub fn with_filter(self, filter: Filter) -> Settings {
+        Settings { filter, ..self }
+    }
+
+    /// Whether samples of a pixel that lie on one surface are shaded together.
+    pub fn with_sharing(self, sharing: Sharing) -> Settings {
+        Settings { sharing, ..self }
     }
 
     /// How short tests are evaluated.
@@ -167,6 +195,11 @@ impl Settings {
     /// Whether to keep depth, normals, positions and visibility of every pixel in addition to its colour.
     pub fn with_layers(self, layers: bool) -> Settings {
         Settings { layers, ..self }
+    }
+
+    /// Whether the background is left out, and the image has an alpha.
+    pub fn with_transparent(self, transparent: bool) -> Settings {
+        Settings { transparent, ..self }
     }
 
     /// Memory limit in bytes, of the process on the CPU, of the device's own memory on a GPU.

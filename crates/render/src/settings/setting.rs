@@ -19,6 +19,8 @@ pub enum Setting {
     Lookup,
     /// [`Settings::quality`](crate::Settings::quality).
     Quality,
+    /// [`Settings::aa`](crate::Settings::aa).
+    Aa,
     /// [`Settings::samples`](crate::Settings::samples).
     Samples,
     /// [`Settings::acceleration`](crate::Settings::acceleration).
@@ -40,6 +42,7 @@ impl Setting {
         Setting::Mode,
         Setting::Lookup,
         Setting::Quality,
+        Setting::Aa,
         Setting::Samples,
         Setting::Acceleration,
         Setting::MemoryLimit,
@@ -56,6 +59,7 @@ impl Setting {
             Setting::Mode => "mode",
             Setting::Lookup => "lookup",
             Setting::Quality => "quality",
+            Setting::Aa => "aa",
             Setting::Samples => "samples",
             Setting::Acceleration => "acceleration",
             Setting::MemoryLimit => "memory_limit",

@@ -21,10 +21,7 @@ use lightmesh_scene::{Falloff, Light, LightKind};
 use crate::data::wave::HostWave;
 use crate::sampling::{Pattern, light_center, light_point};
 use crate::surface::{SurfacePoint, shading_normal};
-use tint::Coefficients;
-
-/// I_a if neither the scene nor the user sets it.
-pub(crate) const DEFAULT_AMBIENT: Vec3 = Vec3::splat(0.1);
+use tint::{Coefficients, is_tinted};
 
 /// A surface point with what formula (1) needs.
 pub(crate) struct Surface {
@@ -52,6 +49,22 @@ impl Surface {
             coefficients: Coefficients::at(geometry, material, hit),
             shininess: material.shininess,
         }
+    }
+
+    /// The same with the mean colour of the samples of its pixel that are shaded with it.
+    #[inline(always)]
+    pub(crate) fn shared(wave: &HostWave, ray: usize) -> Surface {
+        let mut surface = Surface::new(wave, ray);
+        if let Some(sampled) = &wave.rays.sampled {
+            let geometry = &wave.scene.scene.geometry;
+            let material = &geometry.materials[geometry.mesh.materials[wave.hits[ray].triangle as usize] as usize];
+            let shared = wave.rays.shared.get(ray).copied().unwrap_or(u32::MAX);
+            if is_tinted(geometry, material) && shared != 0 {
+                let hits = sampled.hits_of(wave.rays.pixels[ray], shared);
+                surface.coefficients = Coefficients::mean(geometry, material, hits).unwrap_or(surface.coefficients);
+            }
+        }
+        surface
     }
 
     /// Light of `light` that reaches the eye if all of it comes from `target`: one term of the sum without V.

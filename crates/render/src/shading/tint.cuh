@@ -79,9 +79,8 @@ DEVICE Vec3 tint_at(const TintSources &sources, const Material &material, const 
     return tint * ((1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c);
 }
 
-// Sets `own` to the material with its coefficients at `hit`.
-COLD void tint_material(TintSources sources, const Material *material, Hit hit, Material *own) {
-    const Vec3 tint = tint_at(sources, *material, hit);
+// Sets `own` to the material with the coefficients that a tint gives it.
+DEVICE void set_tint(const Material *material, const Vec3 &tint, Material *own) {
     own->ka = material->ka * tint;
     own->kd = material->kd * tint;
     own->ks = material->ks + material->ks_tinted * tint;
@@ -89,13 +88,42 @@ COLD void tint_material(TintSources sources, const Material *material, Hit hit, 
     own->shininess = material->shininess;
 }
 
+// Sets `own` to the material with its coefficients at `hit`.
+COLD void tint_material(TintSources sources, const Material *material, Hit hit, Material *own) {
+    set_tint(material, tint_at(sources, *material, hit), own);
+}
+
+// The hits of the samples of a pixel: `count` of them, `stride` apart; those whose bits are set in `shared` count.
+struct SharedHits {
+    const Hit *hits;
+    unsigned long long stride;
+    unsigned count, shared;
+};
+
+// Sets `own` to the material with the mean of its coefficients at these hits; leaves it without any.
+COLD void tint_by_all(TintSources sources, const Material *material, SharedHits all, Material *own) {
+    Vec3 sum = splat(0.0f);
+    float count = 0.0f;
+    for (unsigned sample = 0; sample < all.count; ++sample) {
+        const Hit hit = load_hit(all.hits + sample * all.stride, 0);
+        if ((all.shared >> sample & 1) == 0 || hit.triangle == Hit::NONE)
+            continue;
+        sum = sum + tint_at(sources, *material, hit);
+        count += 1.0f;
+    }
+    if (count > 0.0f)
+        set_tint(material, sum / count, own);
+}
+
+// The inputs of the tints of a scene.
+DEVICE TintSources tint_sources(const Scene &scene) { return {scene.indices, scene.uvs, scene.colors, scene.textures, scene.srgb}; }
+
 // The material at `hit`: that of its triangle, or `own` if it has a tint. So a material without one takes no registers for
 // coefficients.
 DEVICE const Material *material_at(const Scene &scene, const Hit &hit, Material &own) {
     const Material *material = scene.materials + __ldg(scene.triangle_materials + hit.triangle);
     if (!material->tinted)
         return material;
-    const TintSources sources = {scene.indices, scene.uvs, scene.colors, scene.textures, scene.srgb};
-    tint_material(sources, material, hit, &own);
+    tint_material(tint_sources(scene), material, hit, &own);
     return &own;
 }

@@ -32,6 +32,20 @@ impl Coefficients {
         }
     }
 
+    /// The mean of those at some hits; `None` without any.
+    pub(crate) fn mean<'h>(
+        geometry: &Geometry,
+        material: &Material,
+        hits: impl Iterator<Item = &'h Hit>,
+    ) -> Option<Coefficients> {
+        let (mut sum, mut count) = (Vec3::ZERO, 0.0);
+        for hit in hits {
+            sum += tint(geometry, material, hit);
+            count += 1.0;
+        }
+        (count > 0.0).then(|| Coefficients::tinted(material, sum / count))
+    }
+
     /// Those of a material that is the same everywhere.
     #[inline(always)]
     pub(crate) fn untinted(material: &Material) -> Coefficients {

@@ -57,7 +57,7 @@ pub(crate) fn arguments<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> Res
         scene: wave.scene.record,
         rays: wave.rays.record,
         hits: wave.hits.hits.input(),
-        sampling: sampling(wave.job.sampling),
+        sampling: sampling(wave.sampling()),
         tally: cuda.tally()?,
         first_light: lights.start as u32,
         end_light: lights.end as u32,

@@ -15,7 +15,7 @@ use lightmesh_scene::{Light, LightKind};
 
 use crate::accel::Ray;
 use crate::counters::Tally;
-use crate::data::wave::HostWave;
+use crate::data::wave::{HostWave, Wave};
 use crate::job::Sampling;
 use crate::sampling::{Pattern, disk_radius, light_center, light_point};
 use crate::surface::{SurfacePoint, long_segment};
@@ -30,6 +30,13 @@ pub enum Aim {
     Middle,
     /// Points distributed over a light that has an extent, with the sampling of the image.
     Extent(Sampling),
+}
+
+impl<Scene, Rays, Hits> Wave<'_, Scene, Rays, Hits> {
+    /// Shadow rays to the samples of each light that a ray of this wave takes.
+    pub(crate) fn aim(&self) -> Aim {
+        Aim::Extent(self.sampling())
+    }
 }
 
 impl Aim {

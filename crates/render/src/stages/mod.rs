@@ -4,12 +4,14 @@
 pub(crate) mod adaptive_shadows;
 pub(crate) mod area_shadows;
 pub(crate) mod cells;
+pub(crate) mod fragments;
 pub(crate) mod interpolate;
 pub(crate) mod items;
 pub(crate) mod light_points;
 pub(crate) mod long_tests;
 pub(crate) mod mirror_rays;
 pub(crate) mod occluder_lists;
+pub(crate) mod pixel_samples;
 pub(crate) mod primary_rays;
 pub(crate) mod shade;
 pub(crate) mod shadow_rays;

@@ -9,7 +9,6 @@ use crate::error::RenderError;
 use crate::plan::Footprint;
 use crate::prepared::PreparedScene;
 use crate::settings::{Lookup, Settings};
-use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stages::adaptive_shadows::cuda::LIGHTS;
 use crate::stats::SettingsStats;
@@ -21,6 +20,10 @@ pub(crate) struct Adaptive;
 impl Visible for Adaptive {
     fn default_samples(settings: &Settings) -> u32 {
         settings.quality.samples()
+    }
+
+    fn default_pixel_samples(settings: &Settings) -> u32 {
+        settings.quality.pixel_samples()
     }
 
     fn resolve(request: &Request) -> Result<Adaptive, RenderError> {
@@ -40,7 +43,7 @@ impl Visible for Adaptive {
         taker: &mut Taker<B>,
     ) -> Result<(), RenderError> {
         let n = run.backend.ray_count(wave.rays);
-        let aim = Aim::Extent(wave.job.sampling);
+        let aim = wave.aim();
         each_group::<B>(wave, groups, taker, |wave| {
             // Each surface point twice for each light: its first ray, and what follows from the answers.
             let pieces = 2 * n * wave.lights.of(groups.lights).len();
@@ -51,6 +54,10 @@ impl Visible for Adaptive {
     fn footprint(&self, lights: u64) -> Footprint {
         // The answers, and on the host those of whole rows; on a device half of all samples to be tested, of a slice of lights.
         Footprint { host: 2 + 4 * lights, device: 4 * lights + 5 * lights.min(LIGHTS as u64) }
+    }
+
+    fn needs_neighbours(&self) -> bool {
+        true
     }
 
     fn spreads_points(&self) -> bool {

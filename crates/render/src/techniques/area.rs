@@ -8,7 +8,6 @@ use crate::error::RenderError;
 use crate::plan::Footprint;
 use crate::prepared::PreparedScene;
 use crate::settings::{Settings, ShadowTests};
-use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stats::SettingsStats;
 
@@ -37,7 +36,7 @@ impl Visible for Area {
         taker: &mut Taker<B>,
     ) -> Result<(), RenderError> {
         let rays = run.backend.ray_count(wave.rays);
-        let aim = Aim::Extent(wave.job.sampling);
+        let aim = wave.aim();
         each_group::<B>(wave, groups, taker, |wave| {
             run.stage(Stage::LongTests, [rays; 2], |backend| match wave.job.shadow_tests {
                 ShadowTests::Rows => backend.area_shadows(wave, &aim),

@@ -11,7 +11,6 @@ use crate::error::RenderError;
 use crate::plan::Footprint;
 use crate::prepared::PreparedScene;
 use crate::settings::{Lookup, Settings};
-use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stats::SettingsStats;
 
@@ -22,6 +21,10 @@ pub(crate) struct Lists;
 impl Visible for Lists {
     fn default_samples(settings: &Settings) -> u32 {
         settings.quality.samples()
+    }
+
+    fn default_pixel_samples(settings: &Settings) -> u32 {
+        settings.quality.pixel_samples()
     }
 
     fn resolve(request: &Request) -> Result<Lists, RenderError> {
@@ -47,7 +50,7 @@ impl Visible for Lists {
         let pieces = run.backend.item_pieces(&items);
 
         // What stands between them and each light?
-        let aim = Aim::Extent(wave.job.sampling);
+        let aim = wave.aim();
         each_group::<B>(wave, groups, taker, |wave| {
             run.stage(Stage::LongTests, [n, pieces], |backend| backend.occluder_lists(wave, &items, &aim))
         })

@@ -63,6 +63,11 @@ pub(crate) trait Visible: Sized {
     /// Default number of samples of a light with a size.
     fn default_samples(settings: &Settings) -> u32;
 
+    /// Default number of samples of a pixel.
+    fn default_pixel_samples(_: &Settings) -> u32 {
+        1
+    }
+
     /// Resolves the settings that the technique needs, and tells the observer what was chosen.
     fn resolve(request: &Request) -> Result<Self, RenderError>;
 
@@ -85,6 +90,11 @@ pub(crate) trait Visible: Sized {
 
     /// Bytes that it needs per ray for `lights` lights at once, with their shares.
     fn footprint(&self, lights: u64) -> Footprint;
+
+    /// Whether the visibility of a pixel depends on its neighbours.
+    fn needs_neighbours(&self) -> bool {
+        false
+    }
 
     /// Whether point lights are distributed over their spread.
     fn spreads_points(&self) -> bool {
@@ -127,10 +137,19 @@ macro_rules! techniques {
                 settings.samples.unwrap_or(1)
             }
 
+            /// Samples of a pixel.
+            pub(crate) fn pixel_samples(settings: &Settings) -> u32 {
+                $(if chosen(settings, Mode::$mode, techniques!(@lookup $lookup)) {
+                    return settings.aa.unwrap_or_else(|| $file::$name::default_pixel_samples(settings));
+                })*
+                settings.aa.unwrap_or(1)
+            }
+
             techniques!(@each $($name)*;
                 stages() -> &'static [Stage];
                 lights_at_once() -> usize;
                 footprint(lights: u64) -> Footprint;
+                needs_neighbours() -> bool;
                 spreads_points() -> bool;
                 template() -> u64;
                 describe(scene: &PreparedScene, settings: &Settings, stats: &mut SettingsStats) -> ();

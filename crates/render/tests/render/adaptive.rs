@@ -11,7 +11,7 @@ use crate::{LAMP, mode, prepared, renderer};
 const SIZE: [u32; 2] = [80, 50];
 
 fn adaptive(samples: u32) -> Settings {
-    Settings::default().with_lookup(Lookup::Adaptive).with_size(SIZE).with_samples(samples).with_layers(true)
+    Settings::default().with_aa(1).with_lookup(Lookup::Adaptive).with_size(SIZE).with_samples(samples).with_layers(true)
 }
 
 fn rays(samples: u32) -> Settings {

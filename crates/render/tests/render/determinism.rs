@@ -1,4 +1,4 @@
-//! The same image, whatever the threads and bands; a different one for another seed.
+//! The same image, whatever the threads; a different one for another seed.
 
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Device, Frame, Lookup, Mode, RenderError, Renderer, Settings};
@@ -27,7 +27,7 @@ fn ways() -> Vec<Settings> {
 
 fn settings(which: Mode) -> Settings {
     let settings = if which == Mode::LightMesh { light_mesh(SIZE, 0.15, 2.1) } else { mode(which, SIZE) };
-    settings.with_samples(7).with_bounces(1).with_layers(true)
+    settings.with_aa(1).with_samples(7).with_bounces(1).with_layers(true)
 }
 
 fn render(threads: usize, settings: &Settings) -> Result<Frame, RenderError> {
@@ -42,25 +42,6 @@ fn threads_do_not_change_a_bit() {
             let many = render(threads, &settings).unwrap();
             assert!(Picture::new(&many).bits() == Picture::new(&one).bits(), "{settings:?} on {threads} threads");
         }
-    }
-}
-
-#[test]
-fn bands_do_not_change_a_bit() {
-    for settings in ways() {
-        let whole = render(2, &settings).unwrap();
-        assert_eq!(whole.stats.settings.rows_per_band, SIZE[1]);
-        let limited = |limit| render(2, &settings.clone().with_memory_limit(limit));
-        let Err(RenderError::Memory { needed, .. }) = limited(1) else { panic!("one byte must not suffice") };
-        // Just enough for one row, then for some.
-        for limit in [needed, needed + 100_000] {
-            let banded = limited(limit).unwrap();
-            assert!(banded.stats.settings.rows_per_band < SIZE[1], "{settings:?}");
-            assert!(Picture::new(&banded).bits() == Picture::new(&whole).bits(), "{settings:?} in bands");
-            let counts = |frame: &Frame| (frame.stats.counts.shadow_rays, frame.stats.counts.rays);
-            assert_eq!(counts(&banded), counts(&whole), "{settings:?} in bands");
-        }
-        assert!(matches!(limited(needed - 1), Err(RenderError::Memory { .. })));
     }
 }
 

@@ -28,7 +28,7 @@ pub(crate) fn kinds() -> Vec<LightKind> {
 }
 
 fn lists(samples: u32) -> Settings {
-    Settings::default().with_lookup(Lookup::Lists).with_size(SIZE).with_samples(samples).with_layers(true)
+    Settings::default().with_aa(1).with_lookup(Lookup::Lists).with_size(SIZE).with_samples(samples).with_layers(true)
 }
 
 fn area(samples: u32) -> Settings {
@@ -139,7 +139,8 @@ fn a_light_above_an_open_floor_is_fully_seen_and_one_below_it_not_at_all() {
 fn quality_is_a_number_of_samples() {
     let scene = pile(DVec3::ZERO, &[LAMP]);
     for (quality, samples) in [(Quality::Draft, 16), (Quality::Good, 64), (Quality::Final, 256)] {
-        let frame = render(&scene, &Settings::default().with_size(SIZE).with_layers(true).with_quality(quality));
+        let frame =
+            render(&scene, &Settings::default().with_aa(1).with_size(SIZE).with_layers(true).with_quality(quality));
         assert_eq!((frame.stats.settings.samples, frame.stats.settings.lookup), (samples, Some("lists")));
         assert!(same_bits(&frame, &render(&scene, &lists(samples))), "{quality:?}");
     }

@@ -1,6 +1,7 @@
 //! Whole images with known answers.
 
 mod adaptive;
+mod antialiasing;
 mod convergence;
 mod degenerate;
 mod determinism;
@@ -39,5 +40,5 @@ fn light_mesh(size: [u32; 2], step: f32, radius: f32) -> Settings {
 }
 
 fn mode(mode: Mode, size: [u32; 2]) -> Settings {
-    Settings::default().with_mode(mode).with_size(size)
+    Settings::default().with_aa(1).with_mode(mode).with_size(size)
 }

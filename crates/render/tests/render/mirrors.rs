@@ -12,7 +12,8 @@ fn mirror(ks: f32, emission: f32) -> Material {
 /// What the camera sees along its axis, the same in all modes.
 fn seen(scene: &Scene, bounces: u32) -> Vec3 {
     let colors = MODES.map(|mode| {
-        let frame = render(scene, &Settings::default().with_mode(mode).with_size([1, 1]).with_bounces(bounces));
+        let frame =
+            render(scene, &Settings::default().with_aa(1).with_mode(mode).with_size([1, 1]).with_bounces(bounces));
         Vec3::from_array(frame.image.color()[0])
     });
     assert!(colors.iter().all(|color| *color == colors[0]), "{colors:?}");

@@ -53,23 +53,6 @@ fn points_of_an_image_see_what_its_pixels_see() {
 }
 
 #[test]
-fn bands_change_nothing() {
-    let scene = prepared(&pile(DVec3::ZERO, &[POINT, LAMP]));
-    let points: Vec<Vec3> =
-        (0..12_000).map(|i| Vec3::new((i % 109) as f32 / 31.0 - 1.7, 0.0, (i / 109) as f32 / 31.0 - 1.7)).collect();
-    let normals = vec![Vec3::Y; points.len()];
-    for settings in [light_mesh(SIZE, 0.2, 2.1).with_samples(5), mode(Mode::Area, SIZE).with_samples(9)] {
-        let whole = visibility(&scene, &points, &normals, &settings);
-        let mean = whole.of_light(0).iter().sum::<f32>() / points.len() as f32;
-        assert!((0.2..0.98).contains(&mean), "some of it is in shadow: {mean}");
-        // The reserve for other purposes, and room for some rows of 1024 points.
-        let limited = visibility(&scene, &points, &normals, &settings.with_memory_limit((64 << 20) + (1 << 20)));
-        assert!(limited.stats.settings.rows_per_band < 10, "{}", limited.stats.settings.rows_per_band);
-        assert_eq!(limited.into_shares(), whole.into_shares());
-    }
-}
-
-#[test]
 fn what_lies_behind_a_surface_is_dark() {
     let scene = prepared(&half_plane());
     let above = Vec3::new(0.3, 1.0, 0.2);

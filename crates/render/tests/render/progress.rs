@@ -8,7 +8,13 @@ use lightmesh_scene::{Geometry, Scene};
 use lightmesh_testkit::{Watch, half_plane};
 
 fn settings(mode: Mode) -> Settings {
-    Settings::default().with_size([60, 44]).with_mode(mode).with_bounces(1).with_samples(3).with_step(Step::Fixed(0.3))
+    Settings::default()
+        .with_aa(1)
+        .with_size([60, 44])
+        .with_mode(mode)
+        .with_bounces(1)
+        .with_samples(3)
+        .with_step(Step::Fixed(0.3))
 }
 
 /// The stages of an image; each has ended at its total.

@@ -20,7 +20,7 @@ fn floor(material: Material) -> SceneDraft {
 }
 
 fn pixel(draft: SceneDraft, mode: Mode) -> Frame {
-    render(&draft.finish("one pixel"), &Settings::default().with_mode(mode).with_size([1, 1]))
+    render(&draft.finish("one pixel"), &Settings::default().with_aa(1).with_mode(mode).with_size([1, 1]))
 }
 
 /// The grey value of the pixel in all modes, which must agree, since nothing casts a shadow.
@@ -139,6 +139,44 @@ fn layers_say_what_a_pixel_saw() {
 }
 
 #[test]
+fn a_transparent_background_is_left_out_and_only_that() {
+    let sky = Vec3::new(0.1, 0.2, 0.3);
+    let level = floor(matt(0.7)).camera([-2.0, 2.0, 0.0], [0.0, 2.0, 0.0]);
+    let scene = level.point_light([0.0, 3.0, 0.0]).background(sky).finish("sky");
+    let settings = Settings::default().with_size([24, 24]).with_aa(1);
+    let opaque = render(&scene, &settings);
+    let transparent = render(&scene, &settings.clone().with_transparent(true));
+    let alpha = transparent.image.alpha().unwrap();
+    assert!(alpha.contains(&0.0) && alpha.contains(&1.0) && opaque.image.alpha().is_none());
+    let without_layers = crate::renderer().render(&scene, &settings.clone().with_transparent(true)).unwrap();
+    assert!(without_layers.layers().is_none() && without_layers.image.alpha() == Some(alpha));
+    for ((before, after), &alpha) in opaque.color().iter().zip(transparent.color()).zip(alpha) {
+        if alpha == 1.0 {
+            assert_eq!(before, after);
+        } else {
+            assert_eq!((*before, *after), (sky.to_array(), [0.0; 3]));
+        }
+    }
+}
+
+/// The image over its own background is the image with the background.
+#[test]
+fn several_samples_of_a_pixel_give_a_share_of_alpha() {
+    let sky = Vec3::new(0.1, 0.2, 0.3);
+    let level = floor(matt(0.7)).camera([-2.0, 2.0, 0.0], [0.0, 2.0, 0.3]);
+    let scene = level.point_light([0.0, 3.0, 0.0]).background(sky).finish("sky");
+    let settings = Settings::default().with_size([24, 24]).with_aa(8);
+    let opaque = render(&scene, &settings);
+    let transparent = render(&scene, &settings.clone().with_transparent(true));
+    let alpha = transparent.image.alpha().unwrap();
+    assert!(alpha.iter().any(|&alpha| alpha > 0.1 && alpha < 0.9));
+    for ((before, after), &alpha) in opaque.color().iter().zip(transparent.color()).zip(alpha) {
+        let over = Vec3::from_array(*after) + (1.0 - alpha) * sky;
+        assert!((over - Vec3::from_array(*before)).abs().max_element() < 1e-5, "{alpha}: {over} {before:?}");
+    }
+}
+
+#[test]
 fn missed_pixels_show_the_background() {
     for mode in MODES {
         let sky = floor(matt(0.7)).point_light([0.0, 3.0, 0.0]).background(Vec3::new(0.1, 0.2, 0.3));
@@ -171,7 +209,7 @@ fn an_unshadowed_area_light_is_as_bright_in_every_mode() {
         let draft = SceneDraft::new().floor(0.0, 3.0).light_of(kind.clone(), 1.0, falloff);
         let scene = draft.camera([0.0, 2.0, 4.0], [0.0, 0.0, 0.0]).finish("lamp");
         let colors = [Mode::RayTrace, Mode::Area].map(|mode| {
-            let frame = render(&scene, &Settings::default().with_mode(mode).with_size([32, 32]));
+            let frame = render(&scene, &Settings::default().with_aa(1).with_mode(mode).with_size([32, 32]));
             let hits: Vec<usize> = Picture::new(&frame).hits().collect();
             hits.iter().map(|&pixel| frame.image.color()[pixel][0]).collect::<Vec<f32>>()
         });

@@ -8,7 +8,7 @@ use std::{collections::HashMap, path::Path};
 use glam::{DVec3, Vec3};
 use serde_json::{Map, Value, json};
 
-use super::{ExportError, pictures::Pictures};
+use super::{ExportError, pictures::Pictures, refused};
 use crate::{
     Camera, Falloff, Fov, Light, LightKind, Material, Mesh, Projection, Scene,
     formats::{
@@ -34,7 +34,7 @@ pub(super) fn encode(scene: &Scene, content: Content, path: &Path) -> Result<Vec
     let mut bin = Vec::new();
     let mut extensions = Vec::new();
     if !scene.geometry.mesh.triangles.is_empty() {
-        let pictures = Pictures::new(scene).map_err(|cause| ExportError::Write { path: path.to_owned(), cause })?;
+        let pictures = Pictures::new(scene).map_err(|cause| refused(path, cause))?;
         root["materials"] =
             scene.geometry.materials.iter().enumerate().map(|(index, it)| material(it, index, &pictures)).collect();
         if pictures.transformed() {

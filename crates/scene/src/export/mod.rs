@@ -15,11 +15,11 @@ mod tests;
 mod text;
 
 use std::{
-    io::{self, Write},
+    io,
     path::{Path, PathBuf},
 };
 
-use lightmesh_files::{Output, PublishError, Ready, TargetError, publish};
+use lightmesh_files::{PublishError, Ready, WriteError, publish};
 
 use crate::Scene;
 
@@ -27,17 +27,9 @@ use crate::Scene;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// The target file cannot exist.
+    /// A file cannot be written; nothing is left behind.
     #[error(transparent)]
-    Target(#[from] TargetError),
-    /// Writing failed, most often because the disk is full; nothing is left behind.
-    #[error("cannot write {}: {cause}; nothing was written, check the free disk space", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        cause: io::Error,
-    },
+    Write(#[from] WriteError),
     /// Complete files could not be renamed.
     #[error(transparent)]
     Publish(#[from] PublishError),
@@ -71,10 +63,10 @@ impl Scene {
         if let Some(mesh) = Scene::export_mesh(path)? {
             let name = mesh.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let text = text::encode(self, &name).map_err(|cause| refused(path, io::Error::other(cause)))?;
-            files.push(ready(&mesh, &glb::encode(self, glb::Content::Triangles, &mesh)?)?);
-            files.push(ready(path, text.as_bytes())?);
+            files.push(Ready::with(&mesh, &glb::encode(self, glb::Content::Triangles, &mesh)?)?);
+            files.push(Ready::with(path, text.as_bytes())?);
         } else {
-            files.push(ready(path, &glb::encode(self, glb::Content::Everything, path)?)?);
+            files.push(Ready::with(path, &glb::encode(self, glb::Content::Everything, path)?)?);
         }
         Ok(publish(files)?)
     }
@@ -95,12 +87,7 @@ impl Scene {
     }
 }
 
-/// A complete file that may appear.
-fn ready(path: &Path, bytes: &[u8]) -> Result<Ready, ExportError> {
-    let mut file = Output::to(path)?;
-    file.write_all(bytes).and_then(|()| file.ready()).map_err(|cause| refused(path, cause))
-}
-
-fn refused(path: &Path, cause: io::Error) -> ExportError {
-    ExportError::Write { path: path.to_owned(), cause }
+/// The content of a file cannot be made.
+fn refused(path: &Path, reason: io::Error) -> ExportError {
+    WriteError::Data { path: path.to_owned(), reason }.into()
 }

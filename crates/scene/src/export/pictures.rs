@@ -1,6 +1,10 @@
 //! Textures in a GLB: PNG images in the buffer, samplers, and how each material uses its texture.
 
-use std::io::{self, Cursor};
+use std::{
+    collections::HashMap,
+    hash::Hash,
+    io::{self, Cursor},
+};
 
 use glam::{Affine2, Vec2};
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
@@ -13,10 +17,10 @@ use crate::{Scene, Texture, TextureUse, Wrap, formats::gltf::affine};
 pub(super) struct Pictures {
     /// PNG files, in the order of the scene's textures; none if no material can use it.
     files: Vec<Option<Vec<u8>>>,
-    /// How texels are looked up beyond the edge, without duplicates.
-    samplers: Vec<[Wrap; 2]>,
+    /// How texels are looked up beyond the edge.
+    samplers: Distinct<[Wrap; 2]>,
     /// Image and sampler of each glTF texture.
-    textures: Vec<(usize, usize)>,
+    textures: Distinct<(usize, usize)>,
     /// For each material, its glTF texture.
     by_material: Vec<Option<(usize, TextureUse)>>,
     transformed: bool,
@@ -45,8 +49,8 @@ impl Pictures {
             *file = Some(png(texture)?);
         }
         self.transformed |= uses.transform != Affine2::IDENTITY;
-        let sampler = place_in(&mut self.samplers, uses.wrap);
-        Ok(place_in(&mut self.textures, (uses.texture as usize, sampler)))
+        let sampler = self.samplers.index_of(uses.wrap);
+        Ok(self.textures.index_of((uses.texture as usize, sampler)))
     }
 
     /// The `baseColorTexture` of a material.
@@ -75,7 +79,7 @@ impl Pictures {
 
     /// Appends the images to `bin` and describes them, samplers and textures in `root`.
     pub(super) fn write(self, scene: &Scene, bin: &mut Vec<u8>, root: &mut Value) {
-        if self.textures.is_empty() {
+        if self.textures.list.is_empty() {
             return;
         }
         let mut images = Vec::new();
@@ -89,19 +93,37 @@ impl Pictures {
             bin.extend(file);
         }
         root["images"] = Value::Array(images);
-        root["samplers"] =
-            self.samplers.iter().map(|wrap| json!({"wrapS": gl_word(wrap[0]), "wrapT": gl_word(wrap[1])})).collect();
+        root["samplers"] = self
+            .samplers
+            .list
+            .iter()
+            .map(|wrap| json!({"wrapS": gl_word(wrap[0]), "wrapT": gl_word(wrap[1])}))
+            .collect();
         let texture = |&(image, sampler): &(usize, usize)| json!({"source": place[image], "sampler": sampler});
-        root["textures"] = self.textures.iter().map(texture).collect();
+        root["textures"] = self.textures.list.iter().map(texture).collect();
     }
 }
 
-/// The index of `value` in `list`, to which it is added if necessary.
-fn place_in<T: PartialEq>(list: &mut Vec<T>, value: T) -> usize {
-    list.iter().position(|known| *known == value).unwrap_or_else(|| {
-        list.push(value);
-        list.len() - 1
-    })
+/// Values in the order in which they first occurred.
+struct Distinct<T> {
+    list: Vec<T>,
+    indices: HashMap<T, usize>,
+}
+
+impl<T> Default for Distinct<T> {
+    fn default() -> Distinct<T> {
+        Distinct { list: Vec::new(), indices: HashMap::new() }
+    }
+}
+
+impl<T: Copy + Eq + Hash> Distinct<T> {
+    /// The index of a value, which is added if it is new.
+    fn index_of(&mut self, value: T) -> usize {
+        *self.indices.entry(value).or_insert_with(|| {
+            self.list.push(value);
+            self.list.len() - 1
+        })
+    }
 }
 
 fn is_whole(texture: &Texture) -> bool {

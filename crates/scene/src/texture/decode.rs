@@ -6,7 +6,9 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, guess_format};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, guess_format};
+
+use lightmesh_memory::{Budget, Short};
 
 use super::Texture;
 
@@ -22,17 +24,32 @@ const DECODER_BYTES: u64 = 16 << 20;
 const START_OF_SCAN: [u8; 2] = [0xff, 0xda];
 const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
 
+/// Why an image cannot be used.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Undecodable {
+    /// Something is wrong with it, worded to be put in brackets.
+    Odd(String),
+    /// Its texels do not fit into memory.
+    TooLarge { size: [u32; 2], short: Short },
+}
+
+impl From<String> for Undecodable {
+    fn from(reason: String) -> Undecodable {
+        Undecodable::Odd(reason)
+    }
+}
+
 /// The image in `bytes`. Its first bytes determine the format; a TGA file, which has no signature, is recognised by the
 /// extension of `name`.
 ///
 /// # Errors
 ///
-/// The reason why it cannot be used, worded to be put in brackets.
-pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
+/// [`Undecodable`]: the reason why it cannot be used.
+pub(crate) fn decode(name: &str, bytes: &[u8], budget: Budget) -> Result<Texture, Undecodable> {
     let format = format(name, bytes)?;
     // The decoder fills missing data with grey and reports success.
     if format == ImageFormat::Jpeg && is_cut_off(bytes) {
-        return Err("the JPEG data is truncated".to_owned());
+        return Err("the JPEG data is truncated".to_owned().into());
     }
     let malformed = |error: ImageError| match error {
         ImageError::Unsupported(_) | ImageError::Limits(_) => error.to_string(),
@@ -42,16 +59,26 @@ pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
     let (width, height) = decoder.dimensions();
     let texels = u64::from(width) * u64::from(height);
     if texels == 0 || width.max(height) > MAX_SIDE {
-        return Err(format!("it has {width} x {height} texels, but only 1 to {MAX_SIDE} per side are supported"));
+        let reason = format!("it has {width} x {height} texels, but only 1 to {MAX_SIDE} per side are supported");
+        return Err(reason.into());
     }
     if texels > MAX_TEXELS_PER_BYTE * bytes.len() as u64 {
-        return Err(format!("its header says {width} x {height} texels, too many for {} bytes", bytes.len()));
+        return Err(format!("its header says {width} x {height} texels, too many for {} bytes", bytes.len()).into());
     }
+    // As stored in the file, and as they will be kept.
+    let kept = if decoder.color_type() == ColorType::Rgba8 { 0 } else { size_of::<[u8; 4]>() as u64 * texels };
+    let needed = decoder.total_bytes() + kept;
+    budget.check(needed).map_err(|short| Undecodable::TooLarge { size: [width, height], short })?;
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(2 * MAX_BYTES_PER_TEXEL * texels + DECODER_BYTES);
     decoder.set_limits(limits).map_err(malformed)?;
     let picture = DynamicImage::from_decoder(decoder).map_err(malformed)?.into_rgba8();
-    Ok(Texture { name: name.to_owned(), size: [width, height], texels: picture.as_chunks().0.to_vec() })
+    Ok(Texture { name: name.to_owned(), size: [width, height], texels: texels_of(picture.into_raw()) })
+}
+
+/// The same bytes as texels; nothing is copied unless their capacity is no multiple of a texel.
+fn texels_of(bytes: Vec<u8>) -> Vec<[u8; 4]> {
+    bytemuck::try_cast_vec(bytes).unwrap_or_else(|(_, bytes)| bytes.as_chunks().0.to_vec())
 }
 
 fn format(name: &str, bytes: &[u8]) -> Result<ImageFormat, String> {
@@ -80,6 +107,13 @@ mod tests {
     use image::{GrayImage, ImageBuffer, Luma, Rgb, Rgba};
 
     use super::*;
+
+    fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
+        super::decode(name, bytes, Budget::default()).map_err(|error| match error {
+            Undecodable::Odd(reason) => reason,
+            Undecodable::TooLarge { size, short } => format!("{size:?}: {short}"),
+        })
+    }
 
     /// Two by two texels that JPEG preserves well, each a different grey.
     fn grey() -> DynamicImage {
@@ -162,5 +196,18 @@ mod tests {
         assert!(decode("a.tga", &bytes).unwrap_err().starts_with("it has 16385 x 1 texels"));
         bytes[12..16].copy_from_slice(&[0, 0, 1, 0]);
         assert!(decode("a.tga", &bytes).is_err());
+    }
+
+    /// A few kilobytes that would be a gigabyte in memory.
+    #[test]
+    fn texels_that_do_not_fit_are_refused_before_they_are_decoded() {
+        let plain: DynamicImage = GrayImage::new(16384, 4096).into();
+        let bytes = encoded(&plain, ImageFormat::Png);
+        assert!(bytes.len() < 1 << 20);
+        let limit = Budget::new(Some(lightmesh_memory::held() + (128 << 20)));
+        match super::decode("a.png", &bytes, limit) {
+            Err(Undecodable::TooLarge { size: [16384, 4096], short }) => assert_eq!(short.needed, 5 << 26),
+            other => panic!("{:?}", other.map(|texture| texture.size)),
+        }
     }
 }

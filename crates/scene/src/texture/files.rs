@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use super::{Texture, decode};
+use super::{Texture, Undecodable, decode};
+use crate::LoadError;
 use crate::draft::Draft;
 use crate::error::Place;
 
@@ -47,7 +48,10 @@ impl Draft {
             return known;
         }
         let index = match self.read_nearby(source, name) {
-            Ok((path, bytes)) => self.texture(&path.display().to_string(), decode(name, &bytes)),
+            Ok((path, bytes)) => {
+                let decoded = decode(name, &bytes, self.border.budget);
+                self.texture(&path, &path.display().to_string(), decoded)
+            }
             Err(error) => {
                 self.texture_files.missing.push(error.named_by(Place::file(source)).to_string());
                 None
@@ -60,17 +64,24 @@ impl Draft {
     /// Index of the texture in `bytes`, an image that `source` contains and calls `name`. If it cannot be used, a warning will say
     /// so.
     pub(crate) fn texture_bytes(&mut self, source: &Path, name: &str, bytes: &[u8]) -> Option<u32> {
-        self.texture(&format!("{}: {name}", source.display()), decode(name, bytes))
+        let decoded = decode(name, bytes, self.border.budget);
+        self.texture(source, &format!("{}: {name}", source.display()), decoded)
     }
 
-    fn texture(&mut self, place: &str, decoded: Result<Texture, String>) -> Option<u32> {
+    /// Keeps the texture of the file at `path`, called `place` in messages.
+    fn texture(&mut self, path: &Path, place: &str, decoded: Result<Texture, Undecodable>) -> Option<u32> {
         match decoded {
             Ok(texture) => {
                 self.textures.push(texture);
                 Some(self.textures.len() as u32 - 1)
             }
-            Err(reason) => {
+            Err(Undecodable::Odd(reason)) => {
                 self.texture_files.missing.push(format!("{place} ({reason})"));
+                None
+            }
+            Err(Undecodable::TooLarge { size: [width, height], short }) => {
+                let what = format!("a texture of {width}x{height} texels");
+                self.too_large.get_or_insert(LoadError::Memory { path: path.to_owned(), what, short });
                 None
             }
         }

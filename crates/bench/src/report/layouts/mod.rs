@@ -12,14 +12,14 @@ use super::document::{Block, Column};
 use super::numbers;
 use super::runs::{Measured, Runs, distinct};
 use crate::Key;
-pub(crate) use crate::{MANY_LIGHTS, SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};
+pub(crate) use crate::{ANTIALIASING, MANY_LIGHTS, SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};
 
 /// Time against the number of lights, and the break-even.
 pub(crate) const LIGHTS: &str = "figure 11";
 pub(crate) const BREAK_EVEN: &str = "figure 11, break-even";
 
 /// Keys in their usual order; others follow by name.
-const ORDER: [&str; 16] = [
+const ORDER: [&str; 18] = [
     "scene",
     "lights",
     "size",
@@ -31,6 +31,8 @@ const ORDER: [&str; 16] = [
     "mode",
     "method",
     "samples",
+    "quality",
+    "aa",
     "program",
     "rays",
     "accel",
@@ -53,8 +55,8 @@ pub(crate) fn of(experiment: &str, runs: &Runs) -> (String, Vec<Block>) {
         "equal time" => quality::equal_time(&rows),
         "rays" => rays::rates(&rows),
         STAGES => thesis::by_stage(&rows),
-        // It has errors, but they are not what it is about.
-        SHADOWS => generic::blocks(experiment, &rows),
+        // They have errors, but in tables of their own.
+        SHADOWS | ANTIALIASING => generic::blocks(experiment, &rows),
         WHOLE_FRAMES => shadows::whole_frames(&rows),
         MANY_LIGHTS => shadows::many_lights(&rows),
         _ if quality::fits(&rows) => quality::errors(experiment, &rows),
@@ -80,6 +82,7 @@ pub(crate) fn title(experiment: &str) -> String {
         "rays" => "Rays per second",
         STAGES => "Time by stage",
         WHOLE_FRAMES => "Whole frames: the default, the half-ball, adaptive shadow rays",
+        ANTIALIASING => "Antialiasing: time and errors by those of one sample of a pixel",
         MANY_LIGHTS => "Many lights: time and memory of occluder lists",
         "soft shadows" => "Soft shadows with other renderers",
         "programs at equal error" => "Other renderers at the error of occluder lists",

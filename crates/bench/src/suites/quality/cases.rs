@@ -75,6 +75,7 @@ impl Case {
     /// Number of shadow rays to each light.
     pub(super) fn shadow_rays(mode: Mode, samples: u32, side: u32) -> Case {
         let settings = Settings::default()
+            .with_aa(1)
             .with_mode(mode)
             .with_shadow_tests(ShadowTests::Rays)
             .with_size([side; 2])
@@ -85,7 +86,7 @@ impl Case {
 
     /// Light-mesh mode with a lookup other than the half-ball.
     fn lookup(lookup: Lookup, samples: u32, side: u32) -> Case {
-        let settings = Settings::default().with_lookup(lookup).with_size([side; 2]).with_samples(samples);
+        let settings = Settings::default().with_aa(1).with_lookup(lookup).with_size([side; 2]).with_samples(samples);
         let keys = [("mode", settings.mode.name()), ("lookup", lookup.name()), ("emitter", "ball")];
         let keys = keys.map(|(name, word)| (name, word.into())).into_iter();
         Case { keys: keys.chain([("samples", f64::from(samples).into())]).collect(), settings, emitter: Emitter::Ball }
@@ -109,6 +110,7 @@ impl Mesh {
             Emitter::Point => keys.push(("emitter", "point".into())),
         }
         let settings = Settings::default()
+            .with_aa(1)
             .with_size([side; 2])
             .with_step(self.step)
             .with_radius(self.radius)

@@ -55,6 +55,7 @@ impl Reference {
     ) -> Result<Reference, BenchError> {
         let render = |samples, seed| {
             let settings = Settings::default()
+                .with_aa(1)
                 .with_mode(Mode::Area)
                 .with_size([side; 2])
                 .with_samples(samples)

@@ -73,7 +73,7 @@ fn study(
     findings: &mut Findings,
 ) -> Result<(), BenchError> {
     let (begin, side) = (Instant::now(), plan.side_or(SIDES));
-    let (scene, settings, silent) = (subject.with_balls(), Settings::default(), Silent(observer));
+    let (scene, settings, silent) = (subject.with_balls(), Settings::default().with_aa(1), Silent(observer));
     let balls = engines[0].renderer.prepare(&scene, &settings, &silent)?;
     let points = engines[0].renderer.prepare(&subject.scene, &settings, &silent)?;
     let reference = Reference::converge(plan, &engines[0], &balls, side, share, observer)?;
@@ -101,7 +101,7 @@ impl Study<'_> {
         if let Some(step) = self.subject.step {
             return Ok(step);
         }
-        let settings = Settings::default().with_size([self.side; 2]).with_step(Step::Auto);
+        let settings = Settings::default().with_aa(1).with_size([self.side; 2]).with_step(Step::Auto);
         let frame = engine.renderer.render_prepared(&self.points, &settings, &Silent(self.observer))?;
         Ok(frame.stats.settings.step.unwrap_or(1.0))
     }

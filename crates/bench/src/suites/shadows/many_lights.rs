@@ -47,7 +47,7 @@ pub(super) fn measure(
             Ok(scene.with_lights(lit.lights))
         });
         let scenes = scenes.collect::<Result<Vec<PreparedScene>, BenchError>>()?;
-        let settings = Settings::default().with_mode(Mode::LightMesh).with_lookup(Lookup::Lists);
+        let settings = Settings::default().with_aa(1).with_mode(Mode::LightMesh).with_lookup(Lookup::Lists);
         let settings = settings.with_size([side; 2]).with_samples(samples);
         let variant = |scene| Variant { renderer: &engine.renderer, scene, settings: settings.clone() };
         let variants: Vec<Variant> = scenes.iter().map(variant).collect();

@@ -31,6 +31,10 @@ const MOST_CELLS: u64 = 1 << 27;
 /// Most references that a requested grid may need: a second's work, or this many per triangle.
 const MOST_REFERENCES: u64 = 1 << 24;
 const MOST_COPIES: u64 = 256;
+/// Bytes that a cell takes while the grid is built: where its list begins, twice, and its integer in a vector that grows.
+const CELL_BYTES: u64 = 2 * 8 + 2 * 4;
+/// Bytes that a reference takes at most: with its cell, sorted, and in the flat form with a copy of its triangle.
+const REFERENCE_BYTES: u64 = 16 + 4 + 2 * 4 + size_of::<Triangle>() as u64;
 /// Triangles that one task sorts into cells.
 const TASK: usize = 2048;
 
@@ -48,15 +52,19 @@ pub(super) fn build(triangles: &[Triangle], options: &GridOptions) -> Result<Gri
     };
     let (lattice, approach, margin) = frame(&bounds, dims)?;
     let most = MOST_REFERENCES.max(MOST_COPIES * usable.len() as u64);
-    bounded(sorter.candidates(&lattice, &usable), most, "triangle references", dims)?;
+    let candidates = sorter.candidates(&lattice, &usable);
+    bounded(candidates, most, "triangle references", dims)?;
+    let needed = lattice.len() as u64 * CELL_BYTES + candidates * REFERENCE_BYTES;
+    options.budget.check(needed).map_err(|short| GridError::Memory { dims: dims.to_array(), short })?;
 
     let lists = sorter.sort(&lattice, &usable);
     sorter.inner_copies = (ALL_COPIES * usable.len() as u64 / lists.sources.len().max(1) as u64).clamp(1, COPIES[1]);
     let nested = |cell: usize| {
         let list = lists.of(cell);
-        (options.levels == Levels::Two && list.len() > MANY).then(|| sorter.nested(&lattice, cell, list)).flatten()
+        let many = options.levels == Levels::Two && list.len() > MANY;
+        many.then(|| sorter.nested(&lattice, cell, list)).flatten().map(|nested| (cell, nested))
     };
-    let nested: Vec<Option<Nested>> = (0..lattice.len()).into_par_iter().map(nested).collect();
+    let nested: Vec<(usize, Nested)> = (0..lattice.len()).into_par_iter().filter_map(nested).collect();
     let (cells, sources) = Writer::write(&lattice, &lists, &nested)?;
     Ok(Grid {
         triangles: sources.iter().map(|&at| triangles[at as usize]).collect(),
@@ -219,13 +227,15 @@ struct Writer {
 }
 
 impl Writer {
-    fn write(lattice: &Lattice, lists: &Lists, nested: &[Option<Nested>]) -> Result<(Vec<i32>, Vec<u32>), GridError> {
+    fn write(lattice: &Lattice, lists: &Lists, nested: &[(usize, Nested)]) -> Result<(Vec<i32>, Vec<u32>), GridError> {
         let mut writer = Writer { dims: lattice.dims, cells: Vec::new(), sources: Vec::new() };
         writer.grid(lattice, lists, nested)?;
         Ok((writer.cells, writer.sources))
     }
 
-    fn grid(&mut self, lattice: &Lattice, lists: &Lists, nested: &[Option<Nested>]) -> Result<(), GridError> {
+    /// Writes a grid; `nested` are those in its cells, in order.
+    fn grid(&mut self, lattice: &Lattice, lists: &Lists, nested: &[(usize, Nested)]) -> Result<(), GridError> {
+        let mut nested = nested.iter().peekable();
         let base = self.cells.len();
         self.cells.extend(lattice.dims.to_array().map(|count| count as i32));
         self.cells.resize(base + 3 + lattice.len(), -1);
@@ -235,9 +245,9 @@ impl Writer {
                 continue;
             }
             self.cells[base + 3 + cell] = fit(self.cells.len() as u64, "integers", self.dims)?;
-            match nested.get(cell) {
-                Some(Some(nested)) => self.grid(&nested.lattice, &nested.lists, &[])?,
-                _ => self.leaf(list)?,
+            match nested.next_if(|(at, _)| *at == cell) {
+                Some((_, nested)) => self.grid(&nested.lattice, &nested.lists, &[])?,
+                None => self.leaf(list)?,
             }
         }
         fit(self.cells.len() as u64, "integers", self.dims).map(|_| ())

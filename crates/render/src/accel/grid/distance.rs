@@ -106,7 +106,11 @@ mod tests {
     fn a_grid_knows_its_empty_cells() {
         let triangle = |at: Vec3, index| Triangle::new([at, at + 0.1 * Vec3::X, at + 0.1 * Vec3::Y], index);
         let triangles = [triangle(Vec3::ZERO, 0), triangle(Vec3::new(10.0, 3.0, 5.0), 1)];
-        let grid = Grid::new(&triangles, &GridOptions { dims: Some([10, 3, 5]), levels: Levels::One }).unwrap();
+        let grid = Grid::new(
+            &triangles,
+            &GridOptions { dims: Some([10, 3, 5]), levels: Levels::One, ..GridOptions::default() },
+        )
+        .unwrap();
         let distances = grid.distances();
         let at = |x: usize, y: usize, z: usize| distances[(z * 3 + y) * 10 + x];
         assert_eq!([at(0, 0, 0), at(9, 2, 4), at(1, 1, 1), at(4, 0, 0), at(5, 2, 4), at(6, 0, 1)], [0, 0, 1, 4, 4, 3]);

@@ -28,6 +28,7 @@ mod walk;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use fearless_simd::Level;
+use lightmesh_memory::{Budget, Short};
 
 use super::approach::{Approach, overlap};
 use super::visit::{Any, Closest};
@@ -43,6 +44,8 @@ pub struct GridOptions {
     pub dims: Option<[u32; 3]>,
     /// One level or two.
     pub levels: Levels,
+    /// The memory that may be used.
+    pub budget: Budget,
 }
 
 /// Number of levels of a grid.
@@ -78,6 +81,14 @@ pub enum GridError {
         needed: u64,
         /// How many are allowed.
         most: u64,
+    },
+    /// Not enough memory.
+    #[error("there is not enough memory for a grid of {}x{}x{} cells: {short}; use fewer cells or the BVH", dims[0], dims[1], dims[2])]
+    Memory {
+        /// Cells on each axis.
+        dims: [u32; 3],
+        /// Bytes needed and left.
+        short: Short,
     },
 }
 

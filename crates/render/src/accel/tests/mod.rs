@@ -42,7 +42,7 @@ impl Random {
 }
 
 fn grid(triangles: &[Triangle], dims: Option<[u32; 3]>, levels: Levels) -> Grid {
-    Grid::new(triangles, &GridOptions { dims, levels }).unwrap()
+    Grid::new(triangles, &GridOptions { dims, levels, ..GridOptions::default() }).unwrap()
 }
 
 /// Grids of several shapes.

@@ -74,7 +74,7 @@ impl<'a, R: Runtime> Band<'a, R> {
         let mut margins = Vec::new();
         for part in [rows.start..start, end..rows.end] {
             let record = Rays { first_pixel: part.start * width, count: part.len() as u32 * width, ..record };
-            let rays = DeviceRays { record, list: None, spacing: wave.rays.spacing };
+            let rays = DeviceRays::new(record, None, wave.rays.spacing);
             let counts = (Tally { shards: uncounted.output() }, 0);
             let hits = closest_hits(cuda, wave.job, wave.scene, &rays, counts)?;
             margins.push((rays, hits, u64::from(part.start - rows.start) * u64::from(width)));
@@ -143,7 +143,7 @@ impl<'a, R: Runtime> Band<'a, R> {
     fn first_rays(&self, record: AdaptiveShadows, progress: u64) -> Result<(), RenderError> {
         let (cuda, shadows) = (self.cuda, record.shadows);
         let kernel = FIRST_RAYS.of(self.wave.scene.structure);
-        let rays = DeviceRays::<R> { record: shadows.rays, list: None, spacing: self.wave.rays.spacing };
+        let rays = DeviceRays::<R>::new(shadows.rays, None, self.wave.rays.spacing);
         let lights = u64::from(shadows.first_light)..u64::from(shadows.end_light);
         let work = Work::of_rays(rays.blocks(BLOCK_SIDE), &lights, progress);
         cuda.in_pieces(self.wave.job, kernel, work, |piece| {

@@ -41,7 +41,7 @@ fn visibility_is_the_weighted_mean_of_the_light_points() {
         let cpu = Cpu;
         let rays = cpu.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64).unwrap();
         let hits = cpu.primary_rays(&job, &scene, &rays).unwrap();
-        let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL };
+        let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
         let cells = cpu.cells(&wave, &mesh).unwrap();
         let masks = cpu.short_tests(&wave, &cells, &mesh).unwrap();
         let points = cpu.light_points(&job, &cells, &masks, &mesh).unwrap();

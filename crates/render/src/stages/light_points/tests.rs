@@ -29,7 +29,7 @@ fn the_list_is_the_union_of_all_masks() {
         let backend = Cpu;
         let rays = backend.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64).unwrap();
         let hits = backend.primary_rays(&job, &scene, &rays).unwrap();
-        let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL };
+        let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
         let cells = backend.cells(&wave, &mesh).unwrap();
         let masks = backend.short_tests(&wave, &cells, &mesh).unwrap();
         let points = backend.light_points(&job, &cells, &masks, &mesh).unwrap();

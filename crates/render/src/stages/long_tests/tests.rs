@@ -39,7 +39,7 @@ fn with_light_points(radius: f32, judge: impl Fn(&PreparedScene, &LightMesh, &Us
     let cpu = Cpu;
     let rays = cpu.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64).unwrap();
     let hits = cpu.primary_rays(&job, &scene, &rays).unwrap();
-    let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL };
+    let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
     let cells = cpu.cells(&wave, &mesh).unwrap();
     let masks = cpu.short_tests(&wave, &cells, &mesh).unwrap();
     let points = cpu.light_points(&job, &cells, &masks, &mesh).unwrap();

@@ -22,6 +22,9 @@ pub(crate) fn mirror_rays(wave: &HostWave) -> RayList {
         });
         next.pixels.push(wave.rays.pixels[ray]);
         next.weights.push(weight);
+        if !wave.rays.samples.is_empty() {
+            next.samples.push(wave.rays.sample(ray));
+        }
     }
     next
 }

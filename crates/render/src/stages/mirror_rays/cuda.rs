@@ -35,5 +35,5 @@ pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> R
         cuda.launch(EMIT, launch, &MirrorRays { mirrored: list.output(), ..arguments })?;
     }
     let record = Rays { list: list.input(), first_pixel: 0, count: total as u32, ..rays.record };
-    Ok(DeviceRays { record, list: Some(list), spacing: [0.0; 2] })
+    Ok(DeviceRays { several: rays.several, ..DeviceRays::new(record, Some(list), [0.0; 2]) })
 }

@@ -55,5 +55,5 @@ KERNEL(mirror_rays_emit, MirrorRays, BLOCK, 4) {
     const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
     const Vec3 direction = normalize(mirrored(surface));
     args.mirrored[args.counts[blockIdx.x] + before] =
-        ListedRay{surface.point.origin, pixel_of(args.rays, ray), direction, 0, weight, 0};
+        ListedRay{surface.point.origin, pixel_of(args.rays, ray), direction, sample_of(args.rays, ray), weight, 0};
 }

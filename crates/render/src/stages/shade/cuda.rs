@@ -11,6 +11,7 @@ use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, Work, blocks_for};
 
 const KERNEL: Kernel = Kernel { module: "shade", name: "shade" };
+const ADD: Kernel = Kernel { module: "shade", name: "add_rays" };
 /// Number of blocks in the first launch.
 const FIRST: u64 = 1024;
 
@@ -25,22 +26,36 @@ pub(crate) fn shade<R: Runtime>(
     let cost = lights.len().max(1) as u64;
     // A wave of the camera has a ray per pixel, which takes the sum until it is complete.
     let all = wave.scene.host.scene.lights.len();
-    film.begin_sums(cuda, rays.len(), !rays.is_from_camera() && lights.len() < all)?;
+    film.begin_sums(cuda, rays.len(), rays.several || !rays.is_from_camera() && lights.len() < all)?;
+    let mut record = Shade {
+        scene: wave.scene.record,
+        rays: rays.record,
+        hits: wave.hits.hits.input(),
+        share: In::to(visibility.planes().address()),
+        used: visibility.used.as_ref().map_or(In::NULL, Buffer::input),
+        first_light: lights.start as u32,
+        end_light: lights.end as u32,
+        several: u32::from(rays.several),
+        ..Shade::zeroed()
+    };
+    film.expose(rays, &mut record);
+    if let Some(sampled) = &rays.sampled {
+        record.samples = sampled.hits.input();
+        record.sample_count = sampled.count;
+        record.first_sampled = sampled.first;
+        record.sampled_pixels = sampled.pixels;
+    }
     let work = Work { units: rays.blocks(BLOCK_SIDE), cost, first: FIRST, progress: rays.len() as u64 };
     cuda.in_pieces(wave.job, KERNEL, work, |piece| {
-        let mut arguments = Shade {
-            scene: wave.scene.record,
-            rays: rays.record,
-            hits: wave.hits.hits.input(),
-            share: In::to(visibility.planes().address()),
-            used: visibility.used.as_ref().map_or(In::NULL, Buffer::input),
-            first_block: piece.start,
-            first_light: lights.start as u32,
-            end_light: lights.end as u32,
-            ..Shade::zeroed()
-        };
-        film.expose(rays.is_from_camera(), &mut arguments);
-        let launch = blocks_for(&piece, BLOCK);
-        cuda.launch(KERNEL, launch, &arguments)
+        cuda.launch(KERNEL, blocks_for(&piece, BLOCK), &Shade { first_block: piece.start, ..record })
+    })?;
+    // The sums of rays that share a pixel, in their order.
+    let is_last = lights.end == all;
+    if !rays.several || !is_last && !rays.are_fragments {
+        return Ok(());
+    }
+    let work = Work { progress: 0, ..work };
+    cuda.in_pieces(wave.job, ADD, work, |piece| {
+        cuda.launch(ADD, blocks_for(&piece, BLOCK), &Shade { first_block: piece.start, ..record })
     })
 }

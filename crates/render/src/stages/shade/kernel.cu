@@ -1,6 +1,7 @@
 // Formula (1) on a CUDA device: twin of cpu.rs, one thread per ray.
 #include "cuda/prelude.cuh"
 
+#include "cuda/warp.cuh"
 #include "shading/shading.cuh"
 
 // The share of a light for a ray.
@@ -31,12 +32,27 @@ DEVICE Vec3 add_group(const Shade &args, unsigned ray, const Surface &surface, V
 
 // Stores what a pixel sees. The layers of a pixel that sees nothing stay as they are.
 DEVICE void fill_layers(const Shade &args, unsigned ray, const Surface &surface, unsigned long long place) {
-    args.depth[place] = load_hit(args.hits, ray).t;
-    args.normal[place] = surface.point.normal;
-    args.position[place] = surface.point.position;
+    // With several samples, these are the nearest one's.
+    if (args.depth != nullptr) {
+        args.depth[place] = load_hit(args.hits, ray).t;
+        args.normal[place] = surface.point.normal;
+        args.position[place] = surface.point.position;
+    }
     args.light_points[place] = args.used != nullptr ? args.used[ray] : 0;
     for (unsigned light = args.first_light; light < args.end_light; ++light)
         args.visibility[light * args.film_pixels + place] = share_of(args, light, ray);
+}
+
+// Gives a surface the mean colour of the samples of its pixel that are shaded with it.
+DEVICE void share_tint(const Shade &args, unsigned ray, Surface &surface, Material &own) {
+    const unsigned shared = args.rays.list == nullptr ? ALL_LANES : __ldg(&args.rays.list[ray].shared);
+    const Hit hit = load_hit(args.hits, ray);
+    const Material *material = args.scene.materials + __ldg(args.scene.triangle_materials + hit.triangle);
+    if (shared == 0 || !material->tinted)
+        return;
+    const SharedHits hits = {args.samples + (pixel_of(args.rays, ray) - args.first_sampled), args.sampled_pixels, args.sample_count,
+                             shared};
+    tint_by_all(tint_sources(args.scene), material, hits, &own);
 }
 
 KERNEL(shade, Shade, BLOCK, 4) {
@@ -46,19 +62,46 @@ KERNEL(shade, Shade, BLOCK, 4) {
     const unsigned long long place = pixel_of(args.rays, ray) - args.film_pixel;
     // Without a place of its own, the sum of a ray is its pixel's until it is complete.
     const bool first = args.first_light == 0, last = args.end_light == args.scene.light_count;
+    const bool fills = args.visibility != nullptr && !args.several;
     Vec3 &sum = args.sums != nullptr ? args.sums[ray] : args.color[place];
     Vec3 radiance = first ? args.scene.background : sum;
-    if (load_hit(args.hits, ray).triangle != Hit::NONE && (first || args.depth != nullptr || sees_any(args, ray))) {
+    if (load_hit(args.hits, ray).triangle != Hit::NONE && (first || fills || sees_any(args, ray))) {
         Material own;
-        const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
+        Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
+        if (args.samples != nullptr)
+            share_tint(args, ray, surface, own);
         radiance = add_group(args, ray, surface, radiance);
-        if (args.depth != nullptr)
+        if (fills)
             fill_layers(args, ray, surface, place);
     }
-    if (!last) {
+    if (!last || args.several) {
         sum = radiance;
         return;
     }
     const Vec3 before = first || args.sums != nullptr ? args.color[place] : Vec3{};
     args.color[place] = before + weight_of(args.rays, ray) * radiance;
+}
+
+// Adds the sums of the rays of a pixel, which follow each other in their list, in their order: the first one's thread adds all. What
+// fragments see is added to layers.
+KERNEL(add_rays, Shade, BLOCK, 4) {
+    const unsigned long long ray = (args.first_block + blockIdx.x) * BLOCK + threadIdx.x;
+    if (ray >= args.rays.count)
+        return;
+    const unsigned pixel = pixel_of(args.rays, (unsigned)ray);
+    if (ray > 0 && pixel_of(args.rays, (unsigned)ray - 1) == pixel)
+        return;
+    const unsigned long long place = pixel - args.film_pixel;
+    const bool last = args.end_light == args.scene.light_count;
+    for (unsigned next = (unsigned)ray; next < args.rays.count && pixel_of(args.rays, next) == pixel; ++next) {
+        const Vec3 weight = weight_of(args.rays, next);
+        if (last)
+            args.color[place] = args.color[place] + weight * args.sums[next];
+        if (args.visibility == nullptr || load_hit(args.hits, next).triangle == Hit::NONE)
+            continue;
+        if (args.used != nullptr)
+            args.light_points[place] = max(args.light_points[place], args.used[next]);
+        for (unsigned light = args.first_light; light < args.end_light; ++light)
+            args.visibility[light * args.film_pixels + place] += weight.x * share_of(args, light, next);
+    }
 }

@@ -46,7 +46,7 @@ fn masks(
     short_tests: ShortTests,
 ) -> (CellGroups, Masks) {
     let job = job().with_short_tests(short_tests);
-    let wave = Wave { job: &job, scene, rays, hits, lights: LightGroup::ALL };
+    let wave = Wave { job: &job, scene, rays, hits, lights: LightGroup::ALL, parts: 1 };
     let cells = Cpu.cells(&wave, mesh).unwrap();
     let masks = Cpu.short_tests(&wave, &cells, mesh).unwrap();
     (cells, masks)

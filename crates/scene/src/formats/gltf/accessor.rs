@@ -13,6 +13,10 @@ use super::{
 };
 use crate::{LoadError, quote::quote};
 
+/// Which elements of an accessor are read: those with these indices, ascending and in range, or all. A small part of a large
+/// accessor that many share is thus no more work than its size.
+pub(super) type Used<'u> = Option<&'u [u32]>;
+
 /// Accessors and the data they refer to.
 #[derive(Clone, Copy)]
 pub(super) struct Accessors<'a> {
@@ -38,8 +42,9 @@ impl<'a> Accessors<'a> {
         Ok(self.elements(index)?.count)
     }
 
-    /// Vectors of `N` numbers; integers are mapped to [0, 1] or [-1, 1] if the accessor is normalized.
-    pub(super) fn vectors<const N: usize>(&self, index: u32) -> Result<Cow<'a, [[f32; N]]>, LoadError>
+    /// Vectors of `N` numbers; integers are mapped to [0, 1] or [-1, 1] if the accessor is normalized. Of the elements only those
+    /// that are [`Used`].
+    pub(super) fn vectors<const N: usize>(&self, index: u32, used: Used) -> Result<Cow<'a, [[f32; N]]>, LoadError>
     where
         [f32; N]: AnyBitPattern,
     {
@@ -48,15 +53,15 @@ impl<'a> Accessors<'a> {
             return Err(self.broken(index, &format!("has type {} where VEC{N} is expected", quote(elements.kind))));
         }
         let is_float = elements.component == Component::F32;
-        self.read(index, &elements, [0.0; N], is_float, |elements| elements.numbers())
+        self.read(index, &elements, used, [0.0; N], is_float, |elements| elements.numbers())
     }
 
     /// Colours with or without alpha, which is ignored: surfaces are opaque. Clamped to [0, 1], as glTF requires; NaN counts as 0.
-    pub(super) fn colors(&self, index: u32) -> Result<Cow<'a, [[f32; 3]]>, LoadError> {
+    pub(super) fn colors(&self, index: u32, used: Used) -> Result<Cow<'a, [[f32; 3]]>, LoadError> {
         let mut colors = if self.elements(index)?.kind == "VEC4" {
-            self.vectors(index)?.iter().map(|&[r, g, b, _]| [r, g, b]).collect()
+            self.vectors(index, used)?.iter().map(|&[r, g, b, _]| [r, g, b]).collect()
         } else {
-            self.vectors(index)?
+            self.vectors(index, used)?
         };
         if colors.as_flattened().iter().any(|channel| !(0.0..=1.0).contains(channel)) {
             for channel in colors.to_mut().as_flattened_mut() {
@@ -74,30 +79,37 @@ impl<'a> Accessors<'a> {
         if elements.kind != "SCALAR" || !elements.component.is_unsigned() {
             return Err(self.broken(index, "does not contain unsigned integers, but is used for indices"));
         }
-        self.read(index, &elements, 0, elements.component == Component::U32, |elements| elements.integers())
+        self.read(index, &elements, None, 0, elements.component == Component::U32, |elements| elements.integers())
     }
 
-    /// The elements, borrowed if the file stores them `as_is` and nothing replaces them.
+    /// The elements that are used, borrowed if those are all, the file stores them `as_is` and nothing replaces them.
     fn read<T: AnyBitPattern>(
         &self,
         index: u32,
         elements: &Elements<'a>,
+        used: Used,
         zero: T,
         as_is: bool,
         convert: impl Fn(&Strided) -> Vec<T>,
     ) -> Result<Cow<'a, [T]>, LoadError> {
-        let mut all = match &elements.base {
-            Some(base) if as_is => base.borrowed().map_or_else(|| convert(base).into(), Cow::Borrowed),
-            Some(base) => convert(base).into(),
-            None => vec![zero; elements.count].into(),
+        let used = used.filter(|_| elements.count > 0);
+        let mut all = match (&elements.base, used) {
+            (Some(base), Some(used)) => convert(&base.packed(used, &mut Vec::new())).into(),
+            (Some(base), None) if as_is => base.borrowed().map_or_else(|| convert(base).into(), Cow::Borrowed),
+            (Some(base), None) => convert(base).into(),
+            (None, _) => vec![zero; used.map_or(elements.count, <[u32]>::len)].into(),
         };
         if let Some((indices, values)) = &elements.sparse {
             let all = all.to_mut();
             for (at, value) in indices.integers().into_iter().zip(convert(values)) {
-                *all.get_mut(at as usize).ok_or_else(|| {
+                if at as usize >= elements.count {
                     let problem = format!("has {} elements, but its sparse part replaces number {at}", elements.count);
-                    self.broken(index, &problem)
-                })? = value;
+                    return Err(self.broken(index, &problem));
+                }
+                let place = used.map_or(Ok(at as usize), |used| used.binary_search(&at));
+                if let Ok(place) = place {
+                    all[place] = value;
+                }
             }
         }
         Ok(all)
@@ -181,7 +193,7 @@ impl<'a> Accessors<'a> {
         // The offset is in range if there are elements. With only one element, any stride is allowed.
         let bytes = if count == 0 { &[] } else { &bytes[offset as usize..] };
         let stride = usize::try_from(stride).unwrap_or(usize::MAX);
-        Ok(Strided { bytes, count: count as usize, stride, component, normalized: false })
+        Ok(Strided { bytes, count: count as usize, size: size as usize, stride, component, normalized: false })
     }
 
     fn broken(&self, index: u32, problem: &str) -> LoadError {

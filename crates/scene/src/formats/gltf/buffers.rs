@@ -101,7 +101,9 @@ impl<'a> Buffer<'a> {
                     .ok_or_else(|| malformed(path, format!("the data URI of buffer {index} cannot be decoded")))?,
             ),
             Source::File(name) => {
-                let read = border.read_beside(path, name).map_err(|error| error.named_by(Place::file(path)));
+                // A file may contain more than this buffer.
+                let read =
+                    border.read_start(path, name, self.length).map_err(|error| error.named_by(Place::file(path)));
                 Cow::Owned(read?.1)
             }
             Source::Nothing => return Err(malformed(path, format!("buffer {index} has no data"))),

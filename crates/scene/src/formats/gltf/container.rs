@@ -1,14 +1,18 @@
 //! From the bytes of a file to its document and its binary chunk (glTF 2.0, section 4).
 
-use std::path::Path;
+use std::{cell::OnceCell, path::Path};
 
 use serde::Deserialize;
 
-use super::document::{Asset, Document};
+use super::{
+    document::{Asset, Document},
+    integers::as_integers,
+};
 use crate::{
     LoadError,
     error::Place,
     quote::{abridged, quote},
+    warnings::Warnings,
 };
 
 const MAGIC: &[u8] = b"glTF";
@@ -16,6 +20,8 @@ const MAGIC: &[u8] = b"glTF";
 const HEADER: usize = 12;
 /// Length and kind of a chunk.
 const CHUNK_HEADER: usize = 8;
+/// How errors about floats begin, which quote them.
+const FLOAT: &str = "invalid type: floating point `";
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// The parts of a file, borrowed from its bytes.
@@ -25,13 +31,15 @@ pub(super) struct Container<'a> {
     pub(super) bin: Option<&'a [u8]>,
     /// A GLB file, whose JSON has no lines to refer to.
     binary: bool,
+    /// The JSON with whole numbers as integers, if it cannot be read otherwise.
+    mended: OnceCell<Vec<u8>>,
 }
 
 impl<'a> Container<'a> {
     /// Splits a GLB file; anything else is JSON.
     pub(super) fn split(path: &Path, bytes: &'a [u8]) -> Result<Container<'a>, LoadError> {
         if !bytes.starts_with(MAGIC) {
-            return Ok(Container { json: trim(bytes), bin: None, binary: false });
+            return Ok(Container { json: trim(bytes), bin: None, binary: false, mended: OnceCell::new() });
         }
         let damaged = |problem: String| malformed(path, format!("the binary container {problem}"));
         let (Some(version), Some(length)) = (word(bytes, 4), word(bytes, 8)) else {
@@ -58,16 +66,22 @@ impl<'a> Container<'a> {
             })?;
             (kind == b"BIN\0").then_some(bin)
         };
-        Ok(Container { json: trim(json), bin, binary: true })
+        Ok(Container { json: trim(json), bin, binary: true, mended: OnceCell::new() })
     }
 
-    /// Reads the JSON.
-    pub(super) fn parse(&self, path: &Path) -> Result<Document<'a>, LoadError> {
-        let document = serde_json::from_slice::<Document>(self.json);
+    /// Reads the JSON. Warns of numbers that are not written as glTF requires.
+    pub(super) fn parse(&self, path: &Path, warnings: &mut Warnings) -> Result<Document<'_>, LoadError> {
+        let document =
+            serde_json::from_slice::<Document>(self.json).or_else(|error| self.parse_mended(path, error, warnings));
         // A file of another version differs in its basic structure: report that, and not where the difference first shows.
         match document {
             Ok(document) => {
                 check_version(path, &document.asset)?;
+                if document.asset.version.is_number {
+                    let version = &document.asset.version.text;
+                    warnings
+                        .push(format!("{}: its version is a number, not a text: read as `{version}`", path.display()));
+                }
                 Ok(document)
             }
             Err(error) => {
@@ -79,15 +93,37 @@ impl<'a> Container<'a> {
         }
     }
 
+    /// Reads the JSON once more, if the error is a float instead of an integer, with all whole numbers as integers.
+    fn parse_mended(
+        &self,
+        path: &Path,
+        error: serde_json::Error,
+        warnings: &mut Warnings,
+    ) -> serde_json::Result<Document<'_>> {
+        let message = error.to_string();
+        let Some(found) = message.strip_prefix(FLOAT).and_then(|rest| rest.split('`').next()) else {
+            return Err(error);
+        };
+        let document = serde_json::from_slice(self.mended.get_or_init(|| as_integers(self.json)))?;
+        let place = Place { path: path.to_owned(), line: self.line(&error) };
+        warnings
+            .push(format!("{place}: integers are written as floats, {} is the first: read as integers", quote(found)));
+        Ok(document)
+    }
+
+    /// Line and column of an error.
+    fn line(&self, error: &serde_json::Error) -> Option<(usize, usize)> {
+        (!self.binary).then_some((error.line(), error.column()))
+    }
+
     fn syntax(&self, path: &Path, error: &serde_json::Error) -> LoadError {
         let problem = if self.json.is_empty() {
             "the file contains no JSON".to_owned()
         } else {
             format!("the JSON cannot be read as glTF ({})", abridged(&error.to_string()))
         };
-        let line = (!self.binary).then_some((error.line(), error.column()));
         LoadError::Syntax {
-            place: Place { path: path.to_owned(), line }.into(),
+            place: Place { path: path.to_owned(), line: self.line(error) }.into(),
             problem,
             remedy: "export the file again".to_owned(),
         }
@@ -101,11 +137,11 @@ struct AssetAlone {
 
 fn check_version(path: &Path, asset: &Asset) -> Result<(), LoadError> {
     let major = |version: &str| version.split('.').next().and_then(|major| major.trim().parse::<u32>().ok());
-    if major(&asset.version) != Some(2) {
-        return Err(old(path, &asset.version));
+    if major(&asset.version.text) != Some(2) {
+        return Err(old(path, &asset.version.text));
     }
     match &asset.min_version {
-        Some(least) if least != "2.0" => Err(old(path, least)),
+        Some(least) if least.text != "2.0" => Err(old(path, &least.text)),
         _ => Ok(()),
     }
 }

@@ -4,9 +4,12 @@
 //! that a data URI is held only once. Indices are not checked here, but where they are used. Rarely used parts are boxed: two
 //! characters of a hostile file must not become a kilobyte.
 
-use std::{borrow::Cow, collections::HashMap};
+use std::{borrow::Cow, collections::HashMap, fmt};
 
-use serde::{Deserialize, de::IgnoredAny};
+use serde::{
+    Deserialize, Deserializer,
+    de::{Error, IgnoredAny, Visitor},
+};
 use serde_json::value::RawValue;
 
 /// A complete file.
@@ -49,8 +52,45 @@ pub(super) struct Document<'a> {
 #[serde(rename_all = "camelCase")]
 pub(super) struct Asset {
     #[serde(default)]
-    pub(super) version: String,
-    pub(super) min_version: Option<String>,
+    pub(super) version: Version,
+    pub(super) min_version: Option<Version>,
+}
+
+/// A version, which must be a text.
+#[derive(Debug, Default)]
+pub(super) struct Version {
+    pub(super) text: String,
+    /// Whether it is a number instead.
+    pub(super) is_number: bool,
+}
+
+impl<'de> Deserialize<'de> for Version {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Version, D::Error> {
+        deserializer.deserialize_any(VersionVisitor)
+    }
+}
+
+struct VersionVisitor;
+
+impl Visitor<'_> for VersionVisitor {
+    type Value = Version;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a string")
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<Version, E> {
+        Ok(Version { text: text.to_owned(), is_number: false })
+    }
+
+    fn visit_u64<E: Error>(self, number: u64) -> Result<Version, E> {
+        self.visit_f64(number as f64)
+    }
+
+    /// With a point.
+    fn visit_f64<E: Error>(self, number: f64) -> Result<Version, E> {
+        Ok(Version { text: format!("{number:?}"), is_number: true })
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]

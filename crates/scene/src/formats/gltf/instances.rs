@@ -43,9 +43,9 @@ impl<'a> Instances<'a> {
         let [translations, rotations, scales] = ATTRIBUTES.map(|name| instancing.attributes.get(name).copied());
         Ok(Instances {
             count,
-            translations: translations.map(|accessor| accessors.vectors(accessor)).transpose()?,
-            rotations: rotations.map(|accessor| accessors.vectors(accessor)).transpose()?,
-            scales: scales.map(|accessor| accessors.vectors(accessor)).transpose()?,
+            translations: translations.map(|accessor| accessors.vectors(accessor, None)).transpose()?,
+            rotations: rotations.map(|accessor| accessors.vectors(accessor, None)).transpose()?,
+            scales: scales.map(|accessor| accessors.vectors(accessor, None)).transpose()?,
         })
     }
 

@@ -138,24 +138,17 @@ impl<'a> Meshes<'a> {
         draft: &mut Draft,
     ) -> Result<(), LoadError> {
         let accessors = &self.accessors;
-        let positions = match primitive.attributes.position {
-            Some(positions) => accessors.vectors::<3>(positions)?,
-            None => return Ok(()),
-        };
-        let vectors =
-            |index: Option<u32>| index.map_or(Ok(Cow::Borrowed(&[][..])), |index| accessors.vectors::<3>(index));
-        let normals = vectors(primitive.attributes.normal)?;
-        let uvs = chosen.uvs.map_or(Ok(Cow::Borrowed(&[][..])), |index| accessors.vectors::<2>(index))?;
-        let colors = chosen.colors.map_or(Ok(Cow::Borrowed(&[][..])), |index| accessors.colors(index))?;
-        for (name, length) in
-            [("normals", normals.len()), ("texture coordinates", uvs.len()), ("colours", colors.len())]
-        {
-            if length != 0 && length != positions.len() {
-                let problem = format!("a primitive has {length} {name} for {} vertices", positions.len());
-                return Err(malformed(accessors.path, problem));
-            }
-        }
-        let indices = self.indices(primitive, positions.len())?;
+        let Some(place) = primitive.attributes.position else { return Ok(()) };
+        let vertices = accessors.count(place)?;
+        self.check_lengths(vertices, primitive.attributes.normal, chosen)?;
+        let mut indices = self.indices(primitive, vertices)?;
+        let used = vertices_used(&mut indices, vertices);
+        let used = used.as_deref();
+        let none = || Ok(Cow::default());
+        let positions = accessors.vectors::<3>(place, used)?;
+        let normals = primitive.attributes.normal.map_or_else(none, |index| accessors.vectors::<3>(index, used))?;
+        let uvs = chosen.uvs.map_or_else(|| Ok(Cow::default()), |index| accessors.vectors::<2>(index, used))?;
+        let colors = chosen.colors.map_or_else(none, |index| accessors.colors(index, used))?;
         let part = MeshPart {
             positions: bytemuck::cast_slice::<_, Vec3>(&positions),
             normals: bytemuck::cast_slice(&normals),
@@ -168,6 +161,18 @@ impl<'a> Meshes<'a> {
         };
         let mut transforms = instances.transforms();
         transforms.try_for_each(|instance| draft.add(part, &(transform * instance), |_| chosen.material))
+    }
+
+    /// Attributes that are there have a value for each vertex.
+    fn check_lengths(&self, vertices: usize, normals: Option<u32>, chosen: &Chosen) -> Result<(), LoadError> {
+        for (name, index) in [("normals", normals), ("texture coordinates", chosen.uvs), ("colours", chosen.colors)] {
+            let length = index.map_or(Ok(0), |index| self.accessors.count(index))?;
+            if length != 0 && length != vertices {
+                let problem = format!("a primitive has {length} {name} for {vertices} vertices");
+                return Err(malformed(self.accessors.path, problem));
+            }
+        }
+        Ok(())
     }
 
     fn indices(&self, primitive: &Primitive, vertices: usize) -> Result<Cow<'a, [u32]>, LoadError> {
@@ -203,7 +208,7 @@ impl<'a> Survey<'a> {
             if triangles > 0 {
                 let attributes = &primitive.attributes;
                 let room = Room {
-                    vertices,
+                    vertices: vertices.min(indices),
                     triangles,
                     normals: attributes.normal.is_some(),
                     uvs: attributes.texcoord_0.or(attributes.texcoord_1).is_some(),
@@ -215,6 +220,21 @@ impl<'a> Survey<'a> {
         }
         Ok(survey)
     }
+}
+
+/// The vertices that `indices` refer to, ascending, if there are more than that; `indices` then refer to places in this list.
+/// Primitives that are small parts of the same vertices would else copy all of these, each of them.
+fn vertices_used(indices: &mut Cow<[u32]>, vertices: usize) -> Option<Vec<u32>> {
+    if indices.len() >= vertices {
+        return None;
+    }
+    let mut used = indices.to_vec();
+    used.sort_unstable();
+    used.dedup();
+    for index in indices.to_mut() {
+        *index = used.binary_search(index).expect("each index is in the list") as u32;
+    }
+    Some(used)
 }
 
 /// Splits strips and fans into triangles with the same orientation (glTF 2.0, section 3.7.2.1).
@@ -241,6 +261,15 @@ mod tests {
         assert_eq!(*triangles(Mode::Strip, &[0, 1, 2, 3, 4]), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
         assert_eq!(*triangles(Mode::Fan, &[0, 1, 2, 3]), [[1, 2, 0], [2, 3, 0]]);
         assert!(triangles(Mode::Fan, &[]).is_empty());
+    }
+
+    #[test]
+    fn vertices_that_are_not_used_are_left_out() {
+        let mut indices = Cow::from(vec![7, 3, 9, 3]);
+        assert_eq!(vertices_used(&mut indices, 10), Some(vec![3, 7, 9]));
+        assert_eq!(*indices, [1, 0, 2, 0]);
+        assert_eq!(vertices_used(&mut indices, 4), None);
+        assert_eq!(*indices, [1, 0, 2, 0]);
     }
 
     #[test]

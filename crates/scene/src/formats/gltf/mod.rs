@@ -4,7 +4,8 @@
 //! the binary chunk, and reads accessors element by element.
 //!
 //! 1. [`container`]: the bytes are read once; JSON and binary chunk are slices of them.
-//! 2. [`document`]: the JSON, with numbers in double precision; [`extensions`]: whether the file can be read.
+//! 2. [`document`]: the JSON, with numbers in double precision, of which some may be [`integers`]; [`extensions`]: whether the file
+//!    can be read.
 //! 3. [`nodes`], [`instances`]: the placement of everything.
 //! 4. [`materials`] of [`material`] and [`picture`].
 //! 5. [`meshes`] through [`accessor`], [`strided`] and [`buffers`]: counted first, then added; data stored in the required
@@ -23,6 +24,7 @@ mod document;
 mod extensions;
 pub(crate) mod extras;
 mod instances;
+mod integers;
 mod left_out;
 mod lights;
 mod material;
@@ -65,7 +67,7 @@ use crate::{
 /// Reads a glTF or GLB file into `draft`.
 pub(crate) fn read(path: &Path, bytes: Vec<u8>, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
     let container = Container::split(path, &bytes)?;
-    let document = container.parse(path)?;
+    let document = container.parse(path, &mut draft.warnings)?;
     extensions::check(path, &document, draft)?;
     refer(path, &document, draft);
     let buffers = Buffers::new(path, &document, container.bin, &draft.border)?;

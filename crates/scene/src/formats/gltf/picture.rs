@@ -1,5 +1,6 @@
 //! Base colour textures: image, sampler and `KHR_texture_transform`.
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use glam::{Affine2, Mat2, Vec2};
@@ -18,13 +19,22 @@ pub(super) struct Pictures<'a> {
     buffers: &'a Buffers<'a>,
     /// By image: index of the texture in the draft, or that it is unavailable.
     decoded: Vec<Option<Option<u32>>>,
+    /// The same by content: images of a hostile file may all be views of one.
+    known: HashMap<&'a [u8], Option<u32>>,
     /// Number of textures that the file refers to, but does not contain.
     pub(super) missing: usize,
 }
 
 impl<'a> Pictures<'a> {
     pub(super) fn new(path: &'a Path, document: &'a Document<'a>, buffers: &'a Buffers<'a>) -> Pictures<'a> {
-        Pictures { path, document, buffers, decoded: vec![None; document.images.len()], missing: 0 }
+        Pictures {
+            path,
+            document,
+            buffers,
+            decoded: vec![None; document.images.len()],
+            known: HashMap::new(),
+            missing: 0,
+        }
     }
 
     /// How a material uses its texture, with the set of texture coordinates. `None` if the image is not available.
@@ -61,15 +71,22 @@ impl<'a> Pictures<'a> {
     }
 
     /// `None`: the file does not contain it. `Some(None)`: what it contains or refers to cannot be used, as the draft will report.
-    fn read(&self, index: usize, draft: &mut Draft) -> Option<Option<u32>> {
+    fn read(&mut self, index: usize, draft: &mut Draft) -> Option<Option<u32>> {
         let image = self.document.images.get(index)?;
         let name = image.name.as_deref().map_or_else(|| format!("image {index}"), str::to_owned);
         if let Some(view) = image.buffer_view {
             let (bytes, _) = self.buffers.view(view).ok()?;
-            return Some(draft.texture_bytes(self.path, &name, bytes));
+            let path = self.path;
+            return Some(*self.known.entry(bytes).or_insert_with(|| draft.texture_bytes(path, &name, bytes)));
         }
         Some(match Uri::new(image.uri.as_deref()?) {
-            Uri::Data(data) => draft.texture_bytes(self.path, &name, &uri::decode(data)?),
+            Uri::Data(data) => match self.known.get(data.as_bytes()) {
+                Some(known) => *known,
+                None => {
+                    let found = draft.texture_bytes(self.path, &name, &uri::decode(data)?);
+                    *self.known.entry(data.as_bytes()).or_insert(found)
+                }
+            },
             Uri::File(file) => draft.texture_file(self.path, &file),
         })
     }

@@ -47,6 +47,8 @@ impl Component {
 pub(super) struct Strided<'a> {
     pub(super) bytes: &'a [u8],
     pub(super) count: usize,
+    /// Bytes of an element.
+    pub(super) size: usize,
     /// Distance in bytes, at least the size of an element.
     pub(super) stride: usize,
     pub(super) component: Component,
@@ -59,6 +61,15 @@ impl<'a> Strided<'a> {
     pub(super) fn borrowed<T: AnyBitPattern>(&self) -> Option<&'a [T]> {
         let packed = self.stride == size_of::<T>() && cfg!(target_endian = "little");
         if packed { bytemuck::try_cast_slice(&self.bytes[..self.count * self.stride]).ok() } else { None }
+    }
+
+    /// Some of its elements, copied next to each other into `packed`.
+    pub(super) fn packed<'p>(&self, used: &[u32], packed: &'p mut Vec<u8>) -> Strided<'p> {
+        packed.reserve_exact(used.len() * self.size);
+        for &at in used {
+            packed.extend_from_slice(&self.bytes[at as usize * self.stride..][..self.size]);
+        }
+        Strided { bytes: packed, count: used.len(), stride: self.size, ..*self }
     }
 
     /// The elements as vectors of numbers.
@@ -123,7 +134,16 @@ mod tests {
     use super::*;
 
     fn strided(bytes: &[u8], count: usize, stride: usize, component: Component, normalized: bool) -> Strided<'_> {
-        Strided { bytes, count, stride, component, normalized }
+        Strided { bytes, count, size: component.size(), stride, component, normalized }
+    }
+
+    #[test]
+    fn some_elements_are_those_of_all() {
+        let bytes = [1, 0, 9, 2, 0, 9, 3, 0, 9, 4, 0];
+        let (all, mut packed) = (strided(&bytes, 4, 3, Component::U16, false), Vec::new());
+        assert_eq!(all.integers(), [1, 2, 3, 4]);
+        assert_eq!(all.packed(&[1, 3], &mut packed).integers(), [2, 4]);
+        assert_eq!(packed, [2, 0, 4, 0]);
     }
 
     #[test]

@@ -190,8 +190,8 @@ impl Entry {
         }
     }
 
-    /// The material for the shading model. Without Ka the ambient coefficient is the diffuse one, without Kd a texture is shown as
-    /// it is; negative values count as 0. An exponent below 1 would smear the highlight over everything (exporters write `Ns 0`
+    /// The material for the shading model. Without Ka, or with `Ka 0`, which many exporters write whatever the material, the ambient
+    /// coefficient is the diffuse one; without Kd a texture is shown as it is; negative values count as 0. An exponent below 1 would smear the highlight over everything (exporters write `Ns 0`
     /// for "none"), so it counts as 1. The texture is read only if the material is `used`.
     pub(super) fn material(&self, used: bool, draft: &mut Draft) -> Material {
         let default = Material::default();
@@ -200,7 +200,7 @@ impl Entry {
         let kd = self.diffuse.unwrap_or(plain);
         Material {
             name: self.name.clone(),
-            ka: self.ambient.unwrap_or(kd),
+            ka: self.ambient.filter(|ka| *ka != Vec3::ZERO).unwrap_or(kd),
             kd,
             ks: self.specular.unwrap_or(default.ks),
             shininess: self.shininess.map_or(default.shininess, |exponent| exponent.max(1.0)),

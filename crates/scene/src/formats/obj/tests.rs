@@ -318,3 +318,16 @@ fn very_many_lines_of_one_kind_are_one_warning_and_take_no_time() {
     assert_eq!(warnings.len(), 101, "{warnings:?}");
     assert!(warnings.iter().map(String::len).sum::<usize>() < 50_000);
 }
+
+/// Exporters write it whatever the material; a room of such materials would be black where no lamp shines.
+#[test]
+fn no_ambient_coefficient_is_the_diffuse_one() {
+    for line in ["Ka 0 0 0", "Ka 0", ""] {
+        let scene = try_open(
+            "mtllib a b.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+            &format!("newmtl a\n{line}\nKd 0.5 0.25 0\n"),
+        );
+        let material = &scene.unwrap().geometry.materials[0];
+        assert_eq!((material.ka, material.kd), (Vec3::new(0.5, 0.25, 0.0), Vec3::new(0.5, 0.25, 0.0)), "{line}");
+    }
+}

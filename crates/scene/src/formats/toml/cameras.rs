@@ -1,7 +1,5 @@
 //! `[camera]` to [`Camera`].
 
-use std::ops::Range;
-
 use glam::{DVec3, Vec3};
 
 use super::{
@@ -9,17 +7,13 @@ use super::{
     schema::{CameraEntry, ProjectionName},
     spanned::Spanned,
 };
-use crate::{Camera, Fov, LoadError, Projection};
+use crate::{Camera, Fov, LoadError, Projection, warnings::Warnings};
 
 /// Default vertical field of view, degrees.
 const DEFAULT_VFOV: f32 = 50.0;
 
-/// The camera and its world position. Adds one with two angles that differ to the list of those, by its table and the angle used.
-pub(super) fn read(
-    source: &Source,
-    table: &Spanned<CameraEntry>,
-    two_angles: &mut Vec<(Range<usize>, f32)>,
-) -> Result<(Camera, DVec3), LoadError> {
+/// The camera and its world position.
+pub(super) fn read(source: &Source, table: &Spanned<CameraEntry>) -> Result<(Camera, DVec3), LoadError> {
     let entry = table.get_ref();
     let position = source.vector("position", &entry.position)?;
     let direction = view_direction(source, table, position)?;
@@ -39,7 +33,7 @@ pub(super) fn read(
         position: Vec3::ZERO,
         direction: direction.as_vec3(),
         up: up.as_vec3(),
-        projection: projection(source, table, two_angles)?,
+        projection: projection(source, table)?,
     };
     Ok((camera, position))
 }
@@ -59,11 +53,22 @@ fn view_direction(source: &Source, table: &Spanned<CameraEntry>, position: DVec3
     }
 }
 
-fn projection(
-    source: &Source,
-    table: &Spanned<CameraEntry>,
-    two_angles: &mut Vec<(Range<usize>, f32)>,
-) -> Result<Projection, LoadError> {
+/// Of cameras with two angles that differ: one warning, however many there are.
+pub(super) fn warn_of_two_angles(source: &Source, tables: &[Spanned<CameraEntry>], warnings: &mut Warnings) {
+    let mut found = tables.iter().filter_map(|table| {
+        let CameraEntry { vfov: Some(vfov), hfov: Some(hfov), .. } = table.get_ref() else { return None };
+        let (vfov, hfov) = (*vfov.get_ref() as f32, *hfov.get_ref() as f32);
+        (vfov != hfov).then(|| (table.span(), vfov))
+    });
+    if let Some((span, vfov)) = found.next() {
+        let others = found.count();
+        let more = if others == 0 { String::new() } else { format!(", as of {others} more cameras") };
+        let place = source.place(span);
+        warnings.push(format!("{place}: the camera has vfov and hfov; vfov = {vfov} is used{more}"));
+    }
+}
+
+fn projection(source: &Source, table: &Spanned<CameraEntry>) -> Result<Projection, LoadError> {
     let entry = table.get_ref();
     let vfov = entry.vfov.as_ref().map(|angle| source.view_angle("vfov", angle)).transpose()?;
     let hfov = entry.hfov.as_ref().map(|angle| source.view_angle("hfov", angle)).transpose()?;
@@ -81,14 +86,9 @@ fn projection(
         return Err(source.refuse("height", height, "has no meaning in a perspective camera", remedy));
     }
     Ok(Projection::Perspective(match (vfov, hfov) {
-        (Some(vfov), Some(hfov)) => {
-            if vfov != hfov {
-                two_angles.push((table.span(), vfov));
-            }
-            Fov::Vertical(vfov)
-        }
         (None, Some(hfov)) => Fov::Horizontal(hfov),
-        (vfov, None) => Fov::Vertical(vfov.unwrap_or(DEFAULT_VFOV)),
+        // Of two angles the vertical one is used.
+        (vfov, _) => Fov::Vertical(vfov.unwrap_or(DEFAULT_VFOV)),
     }))
 }
 

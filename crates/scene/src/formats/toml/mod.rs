@@ -43,15 +43,10 @@ fn convert(source: &Source, file: &SceneFile, draft: &mut Draft) -> Result<(), L
     }
     let names = materials::read(source, &file.material, draft)?;
     parts::read(source, file, &names, draft)?;
-    let mut two_angles = Vec::new();
     for camera in &file.camera {
-        draft.cameras.push(cameras::read(source, camera, &mut two_angles)?);
+        draft.cameras.push(cameras::read(source, camera)?);
     }
-    if let Some(((span, vfov), others)) = two_angles.split_first() {
-        let place = source.place(span.clone());
-        let more = if others.is_empty() { String::new() } else { format!(", as of {} more cameras", others.len()) };
-        draft.warnings.push(format!("{place}: the camera has vfov and hfov; vfov = {vfov} is used{more}"));
-    }
+    cameras::warn_of_two_angles(source, &file.camera, &mut draft.warnings);
     for light in &file.light {
         draft.lights.push(lights::read(source, light)?);
     }

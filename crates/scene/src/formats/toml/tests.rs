@@ -112,6 +112,20 @@ fn cameras_of_all_sorts() {
     assert!(scene.warnings[0].contains("room.toml:13") && scene.warnings[0].contains("vfov"), "{:?}", scene.warnings);
 }
 
+/// However many there are, one warning names the first.
+#[test]
+fn cameras_with_two_angles_are_one_warning() {
+    let camera = "[[camera]]\nposition = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov = 40\n";
+    let other = format!("{camera}hfov = 60\n");
+    let same = format!("{camera}hfov = 40\n");
+    let ball = "[[sphere]]\ncenter = [0, 1, 0]\nradius = 1\n";
+    assert!(open(&format!("{camera}{same}{ball}")).warnings.is_empty());
+    let scene = open(&format!("{camera}{other}{same}{other}{other}{ball}"));
+    let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+    let sentence = "room.toml:5: the camera has vfov and hfov; vfov = 40 is used, as of 2 more cameras";
+    assert!(warning.ends_with(sentence), "{warning}");
+}
+
 #[test]
 fn lights_of_all_kinds() {
     let scene = open(

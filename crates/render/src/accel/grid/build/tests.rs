@@ -1,7 +1,7 @@
 use super::*;
 
 fn built(triangles: &[Triangle], dims: [u32; 3], levels: Levels) -> Result<Grid, GridError> {
-    Grid::new(triangles, &GridOptions { dims: Some(dims), levels })
+    Grid::new(triangles, &GridOptions { dims: Some(dims), levels, ..GridOptions::default() })
 }
 
 fn triangle(at: Vec3, index: u32) -> Triangle {
@@ -53,7 +53,7 @@ fn impossible_sizes_are_refused_before_anything_is_allocated() {
 fn triangles_that_fill_the_scene_make_automatic_grids_coarse() {
     let triangles: Vec<_> = (0..5000).map(wide).collect();
     for levels in [Levels::One, Levels::Two] {
-        let grid = Grid::new(&triangles, &GridOptions { dims: None, levels }).unwrap();
+        let grid = Grid::new(&triangles, &GridOptions { dims: None, levels, ..GridOptions::default() }).unwrap();
         assert!(grid.triangles.len() < 400_000, "{levels:?}: {}", grid.triangles.len());
     }
 }
@@ -61,7 +61,7 @@ fn triangles_that_fill_the_scene_make_automatic_grids_coarse() {
 #[test]
 fn flat_and_empty_scenes_have_few_cells() {
     let flat: Vec<_> = (0..100).map(|index| triangle(Vec3::X * index as f32, index)).collect();
-    let grid = Grid::new(&flat, &GridOptions { dims: None, levels: Levels::One }).unwrap();
+    let grid = Grid::new(&flat, &GridOptions { dims: None, levels: Levels::One, ..GridOptions::default() }).unwrap();
     assert_eq!(grid.dims()[2], 1);
     assert!(grid.dims()[0] > 50);
     assert_eq!(Grid::new(&[], &GridOptions::default()).unwrap().dims(), [1, 1, 1]);

@@ -12,7 +12,8 @@ fn triangles() -> Vec<Triangle> {
 }
 
 fn grid() -> Grid {
-    Grid::new(&triangles(), &GridOptions { dims: Some([2, 1, 2]), levels: Levels::Two }).unwrap()
+    Grid::new(&triangles(), &GridOptions { dims: Some([2, 1, 2]), levels: Levels::Two, ..GridOptions::default() })
+        .unwrap()
 }
 
 /// The saved grid as bytes, and a folder to change it in.

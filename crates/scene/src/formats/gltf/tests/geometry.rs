@@ -308,3 +308,35 @@ fn skeletons_and_morph_targets_are_said_to_be_missing() {
     document["nodes"][0]["weights"] = json!([0, 0]);
     assert!(!warnings(&document).contains("morph"));
 }
+
+/// Each used to copy all vertices: memory grew with the square of the file.
+#[test]
+fn parts_of_shared_vertices_hold_only_their_own() {
+    const PARTS: usize = 500;
+    let mut document = triangle();
+    let numbers: Vec<f32> = (0..3 * PARTS).flat_map(|vertex| [vertex as f32, (vertex % 3) as f32, 0.5]).collect();
+    let (positions, normals) = (add_floats(&mut document, &numbers, "VEC3", 3 * PARTS), 3 + PARTS);
+    let primitives: Vec<_> = (0..PARTS)
+        .map(|part| {
+            // The last corner first.
+            let corners: Vec<u8> = (0..3).rev().flat_map(|corner| (3 * part as u16 + corner).to_le_bytes()).collect();
+            let indices = add_accessor(&mut document, &corners, UNSIGNED_SHORT, "SCALAR", 3);
+            json!({"attributes": {"POSITION": positions, "NORMAL": normals}, "indices": indices})
+        })
+        .collect();
+    // Zeros, of which one is replaced.
+    let at = add_view(&mut document, &[4, 0, 1, 0]);
+    let values = add_view(&mut document, &bytes_of(&[0.0, 1.0, 0.0, 0.0, 0.0, 3.0]));
+    assert_eq!(document["accessors"].as_array().unwrap().len(), normals);
+    document["accessors"].as_array_mut().unwrap().push(json!({"componentType": FLOAT, "count": 3 * PARTS,
+        "type": "VEC3", "sparse": {"count": 2, "values": {"bufferView": values},
+        "indices": {"bufferView": at, "componentType": UNSIGNED_SHORT}}}));
+    document["meshes"][0]["primitives"] = json!(primitives);
+    let mesh = open(&document).geometry.mesh.clone();
+    assert_eq!((mesh.triangles.len(), mesh.positions.len()), (PARTS, 3 * PARTS));
+    for part in [0, 1, PARTS - 1] {
+        let corners = [2, 1, 0].map(|corner| Vec3::new((3 * part + corner) as f32, corner as f32, 0.5));
+        assert_eq!(mesh.corners(part), corners);
+    }
+    assert_eq!((mesh.normals[1], mesh.normals[4]), (Vec3::Z, Vec3::Y));
+}

@@ -40,3 +40,35 @@ fn cameras_and_lights_without_a_place_are_left_out() {
     );
     assert!(scene.warnings.iter().any(|warning| warning.starts_with("1 lights with infinite")), "{:?}", scene.warnings);
 }
+
+/// Some programs know floats only.
+#[test]
+fn integers_may_be_written_as_floats() {
+    let text = triangle().to_string().replace("\"count\":3", "\"count\":3.0").replace("\"mesh\":0", "\"mesh\":0.0");
+    let scene = try_open(text.as_bytes()).unwrap();
+    assert_eq!(scene.geometry.mesh.triangles.len(), 1);
+    let [warning, ..] = &scene.warnings[..] else { panic!("no warning") };
+    assert!(
+        warning.ends_with("model.gltf:1: integers are written as floats, 3.0 is the first: read as integers"),
+        "{warning}"
+    );
+
+    let damaged = text.replace("\"mesh\":0.0", "\"mesh\":0.5");
+    assert!(try_open(damaged.as_bytes()).unwrap_err().contains("floating point `0.5`, expected u32"));
+    assert!(try_open(text.replace("\"mesh\":0.0", "\"mesh\":-1.0").as_bytes()).is_err());
+    assert!(warnings(&triangle()).is_empty(), "{}", warnings(&triangle()));
+}
+
+#[test]
+fn a_version_may_be_a_number() {
+    for version in [json!(2.0), json!(2)] {
+        let mut document = triangle();
+        document["asset"] = json!({"version": version, "minVersion": version});
+        assert!(warnings(&document).contains("model.gltf: its version is a number, not a text: read as `2.0`"));
+    }
+    let mut document = triangle();
+    document["asset"] = json!({"version": 1.0});
+    assert!(error(&document).contains("the file has glTF version `1.0`"));
+    document["asset"] = json!({"version": [2]});
+    assert!(error(&document).contains("expected a string"));
+}

@@ -1,34 +1,34 @@
-//! PNG: 8 bits per channel, marked with its transfer function.
+//! PNG: 8 or 16 bits per channel, with straight alpha if the frame has it, marked with its transfer function.
+
+mod strips;
 
 use std::collections::HashMap;
 use std::io::{self, Cursor, Write};
 
 use png::{BitDepth, ColorType, Decoder, Encoder, EncodingError, ScaledFloat, SrgbRenderingIntent, Transformations};
 
-use crate::frame::Frame;
 use crate::load::{DecodeError, checked_pixels};
 use crate::save::{EncodeError, check_fits};
-use crate::{Format, Transfer};
+use crate::{Display, Format, Frame, Transfer};
+use strips::Rows;
 
-/// Writes `frame` as 8-bit RGB with an sRGB chunk, or a gAMA chunk of 1.0 if it is linear.
-pub(crate) fn write(frame: &Frame, transfer: Transfer, output: impl Write) -> Result<(), EncodeError> {
+/// Writes `frame` as RGB or RGBA with an sRGB chunk, or a gAMA chunk of 1.0 if it is linear.
+pub(crate) fn write(frame: &Frame, display: &Display, output: impl Write) -> Result<(), EncodeError> {
     check_fits(Format::Png, frame)?;
     let mut encoder = Encoder::new(output, frame.width(), frame.height());
-    encoder.set_color(ColorType::Rgb);
-    encoder.set_depth(BitDepth::Eight);
-    match transfer {
+    encoder.set_color(if frame.alpha().is_some() { ColorType::Rgba } else { ColorType::Rgb });
+    encoder.set_depth(match display.bit_depth {
+        crate::BitDepth::Eight => BitDepth::Eight,
+        crate::BitDepth::Sixteen => BitDepth::Sixteen,
+    });
+    match display.transfer {
         Transfer::Srgb => encoder.set_source_srgb(SrgbRenderingIntent::Perceptual),
         Transfer::Linear => encoder.set_source_gamma(ScaledFloat::new(1.0)),
     }
     let mut writer = encoder.write_header().map_err(io_error)?;
-    let mut rows = writer.stream_writer().map_err(io_error)?;
-    let mut bytes = Vec::new();
-    for row in frame.rows() {
-        bytes.clear();
-        transfer.encode_into(row, &mut bytes);
-        rows.write_all(&bytes)?;
-    }
-    rows.finish().map_err(io_error)?;
+    let pixel = display.pixel_bytes(frame);
+    let rows = Rows { count: frame.height() as usize, bytes: pixel * frame.width() as usize, pixel };
+    strips::write(&mut writer, rows, |y, bytes| display.encode_row(frame, y, bytes)).map_err(io_error)?;
     writer.finish().map_err(io_error)?;
     Ok(())
 }
@@ -69,7 +69,10 @@ fn io_error(error: EncodingError) -> io::Error {
     }
 }
 
-/// Reads any PNG into linear colours: grey is copied to all channels, alpha is dropped.
+/// Maximum expansion: deflate reaches 1032, and a pixel of one bit becomes red, green, blue and alpha.
+const MAX_EXPANSION: usize = 1032 * 32;
+
+/// Reads any PNG into linear colours, which are multiplied by alpha if there is one; grey is copied to all channels.
 pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
     let malformed = |error: png::DecodingError| DecodeError::malformed(Format::Png, error);
     let mut decoder = Decoder::new(Cursor::new(bytes));
@@ -82,32 +85,37 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
     let transfer = source_transfer(reader.info());
 
     let size = reader.output_buffer_size().ok_or(DecodeError::TooLarge { format: Format::Png, width, height })?;
+    if size / MAX_EXPANSION > bytes.len() {
+        let problem = format!("{width}x{height} pixels cannot be stored in {} bytes", bytes.len());
+        return Err(DecodeError::malformed(Format::Png, problem));
+    }
     let mut samples = vec![0; size];
     let info = reader.next_frame(&mut samples).map_err(malformed)?;
     reader.finish().map_err(malformed)?;
-    let values = match info.bit_depth {
-        BitDepth::Sixteen => decode_wide(&samples, transfer),
-        _ => samples.iter().map(|&code| transfer.decode(code)).collect(),
+    let channels = info.color_type.samples();
+    let (codes, most): (Vec<u16>, f32) = match info.bit_depth {
+        // PNG stores 16-bit samples with the high byte first.
+        BitDepth::Sixteen => (samples.as_chunks().0.iter().map(|&pair| u16::from_be_bytes(pair)).collect(), 65535.0),
+        _ => (samples.iter().map(|&code| u16::from(code)).collect(), 255.0),
     };
-    let color = spread(&values, info.color_type.samples());
-    Frame::new(width, height, color).map_err(|error| DecodeError::malformed(Format::Png, error))
+    drop(samples);
+    let decode = |code: u16| if most == 255.0 { transfer.decode(code as u8) } else { transfer.decode16(code) };
+    let color = |pixel: &[u16]| if channels < 3 { [pixel[0]; 3] } else { [pixel[0], pixel[1], pixel[2]] }.map(decode);
+    let pixels = codes.chunks_exact(channels);
+    let frame = if channels % 2 == 0 {
+        let alpha: Vec<f32> = pixels.clone().map(|pixel| f32::from(pixel[channels - 1]) / most).collect();
+        let color = pixels.zip(&alpha).map(|(pixel, alpha)| color(pixel).map(|channel| channel * alpha)).collect();
+        Frame::new(width, height, color).and_then(|frame| frame.with_alpha(alpha))
+    } else {
+        Frame::new(width, height, pixels.map(color).collect())
+    };
+    frame.map_err(|error| DecodeError::malformed(Format::Png, error))
 }
 
 /// Linear only if the file is marked so; most files are not marked and mean sRGB.
 fn source_transfer(info: &png::Info<'_>) -> Transfer {
     let linear = info.srgb.is_none() && info.gama_chunk.is_some_and(|gamma| gamma.into_value() == 1.0);
     if linear { Transfer::Linear } else { Transfer::Srgb }
-}
-
-/// PNG stores 16-bit samples with the high byte first.
-fn decode_wide(samples: &[u8], transfer: Transfer) -> Vec<f32> {
-    samples.chunks_exact(2).map(|pair| transfer.decode16(u16::from_be_bytes([pair[0], pair[1]]))).collect()
-}
-
-/// Colours from pixels of 1 (grey), 2 (grey, alpha), 3 (RGB) or 4 (RGB, alpha) values.
-fn spread(values: &[f32], channels: usize) -> Vec<[f32; 3]> {
-    let pixels = values.chunks_exact(channels);
-    if channels < 3 { pixels.map(|p| [p[0]; 3]).collect() } else { pixels.map(|p| [p[0], p[1], p[2]]).collect() }
 }
 
 #[cfg(test)]
@@ -123,12 +131,25 @@ mod tests {
         bytes
     }
 
+    /// A few bytes do not take gigabytes.
+    #[test]
+    fn a_header_that_promises_too_much_is_refused() {
+        let mut bytes = Vec::new();
+        let mut encoder = Encoder::new(&mut bytes, 16_384, 16_384);
+        encoder.set_color(ColorType::Rgba);
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_chunk(png::chunk::IDAT, &[0x78, 1]).unwrap();
+        drop(writer);
+        let refused = read(&bytes).unwrap_err().to_string();
+        assert!(refused.contains("16384x16384 pixels cannot be stored in "), "{refused}");
+    }
+
     #[test]
     fn the_transfer_function_is_marked() {
         let frame = Frame::new(1, 1, vec![[0.2; 3]]).unwrap();
         for (transfer, chunk) in [(Transfer::Srgb, &b"sRGB\0"[..]), (Transfer::Linear, b"gAMA\0\x01\x86\xa0")] {
             let mut bytes = Vec::new();
-            write(&frame, transfer, &mut bytes).unwrap();
+            write(&frame, &Display::default().with_transfer(transfer), &mut bytes).unwrap();
             assert!(bytes.windows(chunk.len()).any(|window| window == chunk), "{transfer:?}");
             let expected = transfer.decode(transfer.encode(0.2));
             assert_eq!(read(&bytes).unwrap().color(), [[expected; 3]], "{transfer:?}");
@@ -156,7 +177,9 @@ mod tests {
         assert_eq!(grey.color(), [[decode(50); 3], [decode(200); 3]]);
 
         let rgba = read(&encode(ColorType::Rgba, BitDepth::Eight, &[1, 2, 3, 4, 5, 6, 7, 8])).unwrap();
-        assert_eq!(rgba.color(), [[1, 2, 3].map(decode), [5, 6, 7].map(decode)]);
+        let share = |code: u8| f32::from(code) / 255.0;
+        let expected = [[1, 2, 3].map(|code| decode(code) * share(4)), [5, 6, 7].map(|code| decode(code) * share(8))];
+        assert_eq!((rgba.color(), rgba.alpha()), (&expected[..], Some(&[share(4), share(8)][..])));
 
         let wide = read(&encode(ColorType::Grayscale, BitDepth::Sixteen, &[0x80, 0x00, 0xff, 0xff])).unwrap();
         assert_eq!(wide.color(), [[Transfer::Srgb.decode16(0x8000); 3], [1.0; 3]]);

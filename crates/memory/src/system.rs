@@ -10,7 +10,7 @@ const UNLIMITED: u64 = 1 << 60;
 
 /// Bytes that this process can still allocate without swapping: what is free, and within the limits of its control groups (containers)
 /// and of its address space (`ulimit -v`).
-pub(crate) fn available() -> Option<u64> {
+pub fn available() -> Option<u64> {
     let groups = read_to_string("/proc/self/cgroup").unwrap_or_default();
     let left =
         [field("/proc/meminfo", "MemAvailable:"), left_in_groups(Path::new(GROUPS), &groups), left_in_address_space()];
@@ -53,8 +53,13 @@ fn left_in_group(mount: &Path, line: &str) -> Option<u64> {
     group.ancestors().take_while(|group| group.starts_with(&top)).filter_map(left).min()
 }
 
+/// The resident size of this process, in bytes.
+pub fn resident() -> Option<u64> {
+    field("/proc/self/status", "VmRSS:")
+}
+
 /// The largest resident size of this process so far, in bytes.
-pub(crate) fn peak() -> Option<u64> {
+pub fn peak() -> Option<u64> {
     field("/proc/self/status", "VmHWM:")
 }
 

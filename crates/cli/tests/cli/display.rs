@@ -1,0 +1,103 @@
+//! How images are shown and stored: views, bits, dithering, background, exr files.
+
+use lightmesh::Transfer;
+use lightmesh::image::{Frame, View};
+use serde_json::{Value, json};
+
+use crate::run::Place;
+
+const BALL: &str = "[camera]\nposition = [0, 0, 5]\ntarget = [0, 0, 0]\nvfov = 40\n[ambient]\nbackground = [0.2, 0.4, 0.8]\n\
+                    [[light]]\nkind = \"point\"\nposition = [2, 3, 4]\nintensity = 3\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
+
+/// The image and the settings.
+fn render(place: &Place, name: &str, flags: &[&str]) -> (Frame, Value) {
+    let base = ["render", "ball.toml", "-o", name, "--size", "32x24", "--lookup", "lists", "--stats", "s.json"];
+    place.good(&[&base[..], flags].concat());
+    (Frame::load(place.path(name)).unwrap(), place.json("s.json")["settings"].clone())
+}
+
+fn place() -> Place {
+    let place = Place::new();
+    place.write("ball.toml", BALL);
+    place
+}
+
+#[test]
+fn views_change_what_is_looked_at_and_never_an_exr() {
+    let place = place();
+    let (linear, settings) = render(&place, "a.exr", &["--view", "agx"]);
+    assert_eq!(
+        (&settings["view"], &settings["bit_depth"], &settings["exr_type"]),
+        (&Value::Null, &Value::Null, &json!("float"))
+    );
+    for &view in View::ALL {
+        let (shown, settings) = render(&place, "a.png", &["--view", view.name()]);
+        assert_eq!((&settings["view"], &settings["exr_type"]), (&json!(view.name()), &Value::Null));
+        for (&color, shown) in linear.color().iter().zip(shown.color()) {
+            let expected = view.apply(color).map(|channel| Transfer::Srgb.decode(Transfer::Srgb.encode(channel)));
+            assert_eq!(*shown, expected, "{view}: {color:?}");
+        }
+    }
+}
+
+#[test]
+fn sixteen_bits_are_nearer_and_dithered_codes_are_next_to_the_value() {
+    let place = place();
+    let (linear, _) = render(&place, "a.exr", &[]);
+    let off = |frame: &Frame| {
+        let pairs = linear.color().as_flattened().iter().zip(frame.color().as_flattened());
+        pairs.map(|(exact, shown)| (exact.clamp(0.0, 1.0) - shown).abs()).fold(0.0, f32::max)
+    };
+    let (narrow, settings) = render(&place, "a.png", &[]);
+    assert_eq!((&settings["bit_depth"], &settings["dither"]), (&json!(8), &json!(false)));
+    let (wide, settings) = render(&place, "b.png", &["--bit-depth", "16", "--dither", "on"]);
+    assert_eq!((&settings["bit_depth"], &settings["dither"]), (&json!(16), &json!(false)));
+    assert!(off(&wide) < 4e-5 && off(&narrow) > 5e-4, "{} {}", off(&wide), off(&narrow));
+    let (dithered, settings) = render(&place, "c.png", &["--dither", "on"]);
+    assert_eq!(settings["dither"], json!(true));
+    assert!(off(&dithered) < 0.01 && dithered != narrow, "{}", off(&dithered));
+}
+
+#[test]
+fn a_background_is_replaced_or_left_out() {
+    let place = place();
+    let (scene, settings) = render(&place, "a.exr", &[]);
+    assert_eq!((scene.pixel(0, 0), &settings["transparent"]), (Some([0.2, 0.4, 0.8]), &json!(false)));
+    let (red, settings) = render(&place, "a.exr", &["--background", "#ff0000"]);
+    assert_eq!((red.pixel(0, 0), &settings["background"]), (Some([1.0, 0.0, 0.0]), &json!([1.0, 0.0, 0.0])));
+    assert_eq!(red.pixel(16, 12), scene.pixel(16, 12));
+    for (name, flags) in [("b.exr", &[][..]), ("b.png", &["--bit-depth", "16"])] {
+        let flags = [flags, &["--background", "transparent", "--layers", "l.exr"]].concat();
+        let (clear, settings) = render(&place, name, &flags);
+        assert_eq!(settings["transparent"], json!(true));
+        let alpha = clear.alpha().unwrap();
+        assert_eq!((alpha[0], alpha[12 * 32 + 16], clear.pixel(0, 0)), (0.0, 1.0, Some([0.0; 3])), "{name}");
+        let layers = Frame::load(place.path("l.exr")).unwrap();
+        let exact = layers.alpha().unwrap().iter();
+        assert!(exact.zip(alpha).all(|(exact, alpha)| (exact - alpha).abs() < 1.0 / 65535.0), "{name}");
+    }
+    for name in ["a.jpg", "a.bmp"] {
+        let message = place.refused(&["render", "ball.toml", "-o", name, "--background", "transparent"]);
+        assert!(message.contains("files have no alpha; use png or exr"), "{message}");
+        let message = place.refused(&["render", "ball.toml", "-o", name, "--bit-depth", "16"]);
+        assert!(message.contains("files have 8; use png, or exr for floats"), "{message}");
+    }
+    let message = place.refused(&["render", "ball.toml", "-o", "a.png", "--background", "sky"]);
+    assert!(message.contains("write transparent, one number, three as red,green,blue, or #rrggbb"), "{message}");
+}
+
+#[test]
+fn halves_are_half_the_size_and_bytes_are_the_same_for_any_number_of_threads() {
+    let place = place();
+    let size = |flags: &[&str]| {
+        render(&place, "a.exr", &[&["--exr-compression", "none"], flags].concat());
+        place.read("a.exr").len()
+    };
+    let (float, half) = (size(&[]), size(&["--exr-type", "half"]));
+    assert_eq!(float - half, 32 * 24 * 3 * 2);
+    let written = |threads| {
+        render(&place, "a.exr", &["--layers", "l.exr", "--threads", threads]);
+        [place.read("a.exr"), place.read("l.exr")]
+    };
+    assert!(written("1") == written("3"));
+}

@@ -1,0 +1,169 @@
+//! Antialiasing: where the samples of a pixel lie.
+//!
+//! A pixel's colour is the mean over the area of a filter. Samples are distributed by importance: their distances from the pixel's
+//! centre are those that the inverse of the filter's cumulative distribution gives for evenly distributed numbers, so that all of
+//! them have the same weight. The numbers are an Owen-scrambled Sobol sequence with a scrambling of its own in each pixel
+//! ([`Pattern`]), the same on all devices. The filter is a product of two functions of one coordinate.
+
+use std::f64::consts::TAU;
+
+use lightmesh_layout::constants::{FILTER_PLACES, FILTER_STEPS, MARGIN_ROWS, MOST_SHARED, PIXEL_PATTERN};
+
+use crate::sampling::Pattern;
+use crate::settings::Filter;
+
+/// Samples in a wave if none are shared.
+const APART: u32 = 8;
+/// Number of parts over which a filter is integrated.
+const PARTS: usize = 1 << 14;
+/// Neighbouring pixels on one surface that differ by this part of the brighter one are sampled one by one, if lights have
+/// [`FULL_SAMPLES`].
+const CONTRAST: f32 = 0.15;
+/// With fewer samples, differences are noise more often.
+const FULL_SAMPLES: f32 = 64.0;
+
+/// The samples of an image's pixels.
+#[derive(Clone, Debug)]
+pub struct Antialiasing {
+    /// Number of samples of a pixel.
+    pub samples: u32,
+    /// Whether each sample is shaded by itself, even where several of a pixel lie on one surface.
+    pub apart: bool,
+    /// Whether samples in mirrors are followed by further rays.
+    pub mirrors: bool,
+    /// Whether the surface points of all pixels are needed, also where the samples of a pixel lie on several surfaces.
+    pub keeps: bool,
+    /// The relative difference to a neighbour from which a pixel's samples are shaded one by one.
+    pub contrast: f32,
+    pub(crate) seed: u64,
+    pub(crate) quantiles: [f32; FILTER_PLACES as usize],
+}
+
+impl Antialiasing {
+    /// `samples` samples of each pixel, distributed by `filter`; `seed` selects their pattern. Lights have `light_samples` samples.
+    pub fn new(samples: u32, filter: Filter, seed: u64, light_samples: u32) -> Antialiasing {
+        let noise = (FULL_SAMPLES / light_samples.max(1) as f32).sqrt().max(1.0);
+        Antialiasing {
+            samples,
+            apart: samples > MOST_SHARED,
+            mirrors: false,
+            keeps: false,
+            contrast: CONTRAST * noise,
+            seed,
+            quantiles: quantiles(filter),
+        }
+    }
+
+    /// Samples of a pixel whose hits are held at the same time.
+    pub(crate) fn at_once(&self) -> u32 {
+        if self.apart { self.samples.min(APART) } else { self.samples }
+    }
+
+    /// Rows above and below a band that decide what its pixels share.
+    pub(crate) fn margin(&self) -> u32 {
+        if self.apart { 0 } else { MARGIN_ROWS }
+    }
+
+    /// Where sample number `sample` of a pixel lies, in pixels from its centre: to the right and down.
+    #[inline(always)]
+    pub(crate) fn aside(&self, pixel: u32, sample: u32) -> [f32; 2] {
+        self.within(&self.pattern(pixel), sample)
+    }
+
+    /// The pattern of a pixel's samples.
+    #[inline(always)]
+    pub(crate) fn pattern(&self, pixel: u32) -> Pattern {
+        Pattern::new(self.seed, u64::from(pixel), PIXEL_PATTERN as usize)
+    }
+
+    /// Where sample number `sample` of a pixel with this pattern lies.
+    #[inline(always)]
+    pub(crate) fn within(&self, pattern: &Pattern, sample: u32) -> [f32; 2] {
+        let point = pattern.point(sample);
+        [self.quantile(point.x), self.quantile(point.y)]
+    }
+
+    /// The offset below which the share `u` of the filter lies, for `u` in [0, 1).
+    #[inline(always)]
+    fn quantile(&self, u: f32) -> f32 {
+        let place = u * FILTER_STEPS as f32;
+        let step = place as usize;
+        let (low, high) = (self.quantiles[step], self.quantiles[step + 1]);
+        low + (place - step as f32) * (high - low)
+    }
+}
+
+/// The offsets below which each 1/63 of a filter lies.
+fn quantiles(filter: Filter) -> [f32; FILTER_PLACES as usize] {
+    let radius = 0.5 * filter.width();
+    let middle = |part: usize| radius * ((part as f64 + 0.5) / (0.5 * PARTS as f64) - 1.0);
+    let values: Vec<f64> = (0..PARTS).map(|part| weight(filter, middle(part))).collect();
+    let total: f64 = values.iter().sum();
+    let (mut part, mut below) = (0, 0.0);
+    let mut offsets = [0.0; FILTER_PLACES as usize];
+    let half = FILTER_PLACES as usize / 2;
+    for (step, offset) in offsets.iter_mut().enumerate().take(half) {
+        let share = total * step as f64 / f64::from(FILTER_STEPS);
+        while below + values[part] < share {
+            below += values[part];
+            part += 1;
+        }
+        *offset = (radius * ((part as f64 + (share - below) / values[part]) / (0.5 * PARTS as f64) - 1.0)) as f32;
+    }
+    // Symmetric, so that what changes linearly is not shifted.
+    (0..half).for_each(|step| offsets[FILTER_STEPS as usize - step] = -offsets[step]);
+    offsets
+}
+
+/// A filter at `offset` pixels from the centre, within its width.
+fn weight(filter: Filter, offset: f64) -> f64 {
+    match filter {
+        Filter::Box => 1.0,
+        // Three standard deviations to either side.
+        Filter::Gauss => (-0.5 * (6.0 * offset / filter.width()).powi(2)).exp(),
+        Filter::BlackmanHarris => {
+            let turn = TAU * (offset / filter.width() + 0.5);
+            0.35875 - 0.48829 * turn.cos() + 0.14128 * (2.0 * turn).cos() - 0.01168 * (3.0 * turn).cos()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FILTERS: [Filter; 3] = [Filter::Box, Filter::Gauss, Filter::BlackmanHarris];
+
+    #[test]
+    fn samples_have_the_density_of_the_filter() {
+        for filter in FILTERS {
+            let offsets = quantiles(filter);
+            let radius = 0.5 * filter.width();
+            assert_eq!((offsets[0], offsets[63]), (-radius as f32, radius as f32), "{filter:?}");
+            let area = |from: f64, to: f64| {
+                let part = (to - from) / 1000.0;
+                (0..1000).map(|i| part * weight(filter, from + (f64::from(i) + 0.5) * part)).sum::<f64>()
+            };
+            let all = area(-radius, radius);
+            for step in offsets.windows(2) {
+                let share = area(f64::from(step[0]), f64::from(step[1])) / all;
+                assert!((share - 1.0 / 63.0).abs() < 1e-4, "{filter:?}: {share}");
+            }
+        }
+    }
+
+    #[test]
+    fn any_pixel_has_its_own_samples_around_its_centre() {
+        for filter in FILTERS {
+            let samples = Antialiasing::new(64, filter, 3, 64);
+            let of = |pixel: u32| (0..64).map(|sample| samples.aside(pixel, sample)).collect::<Vec<_>>();
+            assert_ne!(of(1), of(2));
+            for axis in 0..2 {
+                let mean = of(7).iter().map(|aside| aside[axis]).sum::<f32>() / 64.0;
+                assert!(mean.abs() < 0.01, "{filter:?}: {mean}");
+            }
+            let other = Antialiasing::new(64, filter, 4, 64);
+            assert_ne!(samples.aside(1, 0), other.aside(1, 0), "another seed");
+        }
+    }
+}

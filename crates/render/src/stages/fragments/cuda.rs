@@ -1,0 +1,71 @@
+//! Fragments on a CUDA device.
+
+use lightmesh_layout::geometry::{ListedRay, Rays};
+use lightmesh_layout::stages::PixelSamples;
+
+use crate::antialiasing::Antialiasing;
+use crate::cuda::{Kernel, Runtime};
+use crate::error::RenderError;
+use crate::gpu::film::DeviceFilm;
+use crate::gpu::rays::{DeviceRays, DeviceWave};
+use crate::gpu::samples::{DeviceSampled, DeviceSamples};
+use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, Work, blocks_for};
+
+const CONTRAST: Kernel = Kernel { module: "fragments", name: "find_contrast" };
+const COUNT: Kernel = Kernel { module: "fragments", name: "count_fragments" };
+const EMIT: Kernel = Kernel { module: "fragments", name: "emit_fragments" };
+/// Number of blocks in the first launch.
+const FIRST: u64 = 256;
+
+/// The shared fragments and the single samples of the pixels that count.
+pub(crate) fn fragments<R: Runtime>(
+    cuda: &Cuda<R>,
+    wave: &DeviceWave<R>,
+    samples: &mut DeviceSamples<R>,
+    film: &mut DeviceFilm<R>,
+    all: &Antialiasing,
+) -> Result<[DeviceRays<R>; 2], RenderError> {
+    let (pool, rays) = (cuda.pool(), wave.rays);
+    let blocks = rays.blocks(BLOCK_SIDE);
+    let launch = |kernel: Kernel, progress: usize, record: PixelSamples| {
+        let work = Work { units: blocks, cost: u64::from(record.samples[1]), first: FIRST, progress: progress as u64 };
+        cuda.in_pieces(wave.job, kernel, work, |piece| {
+            cuda.launch(kernel, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
+        })
+    };
+    let counts = [
+        pool.room("counts of large fragments", blocks as usize + 1)?,
+        pool.room("counts of small fragments", blocks as usize + 1)?,
+    ];
+    let mut record = PixelSamples { counts: [counts[0].output(), counts[1].output()], ..samples.record };
+    record.inner = film.kept_places().map(|place| place as u32);
+
+    // 1. Which shared pixels are split?
+    if !all.apart {
+        launch(CONTRAST, 0, record)?;
+    }
+    // 2. How many fragments does each block have, and where do they begin?
+    launch(COUNT, rays.len(), record)?;
+    let totals = [cuda.scan_total(&counts[0])?, cuda.scan_total(&counts[1])?];
+    // 3. The fragments.
+    let lists =
+        [pool.room::<ListedRay>("large fragments", totals[0])?, pool.room::<ListedRay>("small fragments", totals[1])?];
+    record.fragments = [lists[0].output(), lists[1].output()];
+    launch(EMIT, 0, record)?;
+    let [shared, single] = lists;
+    let list = |list: crate::cuda::Buffer<R, ListedRay>, total: usize, sampled| DeviceRays {
+        record: Rays { list: list.input(), first_pixel: 0, count: total as u32, ..rays.record },
+        list: Some(list),
+        spacing: rays.spacing,
+        several: true,
+        are_fragments: true,
+        sampled,
+    };
+    let sampled = || DeviceSampled {
+        hits: samples.hits.clone(),
+        first: rays.record.first_pixel,
+        pixels: rays.len() as u64,
+        count: record.samples[1],
+    };
+    Ok([(shared, totals[0]), (single, totals[1])].map(|(rays, total)| list(rays, total, (!all.apart).then(sampled))))
+}

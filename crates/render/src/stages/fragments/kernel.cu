@@ -1,0 +1,183 @@
+// Fragments on a CUDA device: twin of cpu.rs, one thread per pixel.
+//
+// 1. `find_contrast`: which shared pixels are split?
+// 2. `count_fragments`: how many fragments the pixels of each block have; then a scan of each list.
+// 3. `emit_fragments`: the fragments, in the order of blocks, threads and samples; their pixels begin anew.
+#include "cuda/prelude.cuh"
+
+#include "cuda/warp.cuh"
+#include "stages/pixel_samples/alike.cuh"
+
+// The columns or rows around a place, and it.
+struct Around {
+    unsigned start, end;
+};
+
+DEVICE Around around(unsigned place, unsigned size) { return Around{place > 0 ? place - 1 : 0, min(size, place + 2)}; }
+
+// Whether the difference between two colours can be seen.
+DEVICE bool differs(Vec3 a, Vec3 b, float contrast) {
+    const Vec3 bound = contrast * (max(a, b) + splat(CONTRAST_FLOOR));
+    const Vec3 apart = abs(a - b);
+    return apart.x > bound.x || apart.y > bound.y || apart.z > bound.z;
+}
+
+// What the first sample of a pixel sees.
+COLD Facet first_facet(const PixelSamples &args, unsigned index, Hit hit) {
+    return facet_of(args, sample_ray(args, index, 0), hit);
+}
+
+// Whether the radiance of a shared pixel differs from a neighbour's. The first sample lies on the pixel's surface.
+DEVICE bool is_split(const PixelSamples &args, unsigned index) {
+    if ((args.state[index] & PIXEL_SHARED) == 0)
+        return false;
+    const Hit hit = sample_hit(args, index, 0);
+    if (hit.triangle == Hit::NONE)
+        return false;
+    const unsigned width = args.rays.view.size[0];
+    const Around columns = around(index % width, width), rows = around(index / width, args.rays.count / width);
+    for (unsigned row = rows.start; row < rows.end; ++row)
+        for (unsigned column = columns.start; column < columns.end; ++column) {
+            const unsigned other = row * width + column;
+            if ((args.state[other] & PIXEL_SHARED) == 0 || !differs(args.color[index], args.color[other], args.contrast))
+                continue;
+            const Hit beside = sample_hit(args, other, 0);
+            if (beside.triangle != Hit::NONE && is_near(first_facet(args, index, hit), first_facet(args, other, beside)))
+                return true;
+        }
+    return false;
+}
+
+KERNEL(find_contrast, PixelSamples, BLOCK, 4) {
+    unsigned index;
+    if (!ray_of_thread(args.rays, (unsigned)(args.first_block + blockIdx.x), threadIdx.x, index))
+        return;
+    // Neighbours read the other bit alone.
+    if (is_split(args, index))
+        args.state[index] |= PIXEL_SPLIT;
+}
+
+// The samples among `rest` that lie on a surface with `first`.
+DEVICE unsigned part_of(const PixelSamples &args, unsigned index, unsigned first, unsigned rest) {
+    const Hit hit = sample_hit(args, index, first);
+    const Ray through = sample_ray(args, index, first);
+    unsigned part = 0;
+    for (unsigned left = rest; left != 0; left &= left - 1) {
+        const unsigned sample = __ffs(left) - 1;
+        const Hit other = sample_hit(args, index, sample);
+        if (is_alike(args, through, hit, sample_ray(args, index, sample), other))
+            part |= 1u << sample;
+    }
+    return part;
+}
+
+// Whether rays that a mirror reflects are followed from here.
+DEVICE bool mirrors(const PixelSamples &args, const Hit &hit) {
+    const Material &material = args.scene.materials[__ldg(args.scene.triangle_materials + hit.triangle)];
+    return args.mirrors && (material.ks != splat(0.0f) || material.ks_tinted != splat(0.0f));
+}
+
+// The number of fragments in each list.
+struct Counted {
+    unsigned counts[2];
+};
+
+DEVICE void take(const PixelSamples &, unsigned, Counted &counted, unsigned list, unsigned, unsigned, float) { ++counted.counts[list]; }
+
+// Where the next fragment of each list is written.
+struct Written {
+    unsigned places[2];
+};
+
+DEVICE void take(const PixelSamples &args, unsigned index, Written &written, unsigned list, unsigned sample, unsigned shared,
+                 float weight) {
+    const Ray ray = sample_ray(args, index, sample);
+    args.fragments[list][written.places[list]++] = ListedRay{
+        ray.origin, args.rays.first_pixel + index, ray.direction, args.samples[0] + sample + 1, splat(weight), shared};
+}
+
+// Hands the large fragments and the small ones of a pixel to `taker`.
+template <class Taker>
+DEVICE void add_fragments(const PixelSamples &args, unsigned index, Taker &taker) {
+    const unsigned state = args.state[index], count = args.samples[1];
+    if (state == PIXEL_SHARED || index < args.inner[0] || index >= args.inner[1])
+        return;
+    const bool singles = args.apart || (state & PIXEL_SPLIT);
+    unsigned rest = count == WARP ? ALL_LANES : (1u << count) - 1;
+    while (rest != 0) {
+        const unsigned first = __ffs(rest) - 1;
+        const unsigned part = args.apart ? 1u << first : part_of(args, index, first, rest);
+        rest &= ~part;
+        const unsigned size = __popc(part);
+        const Hit hit = sample_hit(args, index, first);
+        // What sees nothing costs nothing.
+        if (!args.apart && (hit.triangle == Hit::NONE || (!singles && !mirrors(args, hit)))) {
+            const bool is_large = 4 * size > count;
+            take(args, index, taker, is_large ? 0 : 1, first, part, (float)size / (float)args.all_samples);
+            continue;
+        }
+        for (unsigned left = part; left != 0; left &= left - 1)
+            take(args, index, taker, 1, __ffs(left) - 1, 0, args.weight);
+    }
+}
+
+// The sum of the values of the threads of the block before this one, and of all.
+DEVICE unsigned sum_before(unsigned value, unsigned &all) {
+    SHARED(unsigned, warps, [BLOCK / WARP]);
+    const unsigned warp = threadIdx.x / WARP, sum = warp_running_sum(value);
+    __syncthreads();
+    if (lane_of_thread() == WARP - 1)
+        warps[warp] = sum;
+    __syncthreads();
+    unsigned before = sum - value;
+    all = 0;
+    for (unsigned other = 0; other < BLOCK / WARP; ++other) {
+        before += other < warp ? warps[other] : 0;
+        all += warps[other];
+    }
+    return before;
+}
+
+// The number of fragments of the thread's pixel.
+DEVICE Counted count_of(const PixelSamples &args, bool has, unsigned index) {
+    Counted counted = {};
+    if (has)
+        add_fragments(args, index, counted);
+    return counted;
+}
+
+KERNEL(count_fragments, PixelSamples, BLOCK, 4) {
+    const unsigned long long block = args.first_block + blockIdx.x;
+    unsigned index = 0;
+    const bool has = ray_of_thread(args.rays, (unsigned)block, threadIdx.x, index);
+    const Counted counted = count_of(args, has, index);
+    for (unsigned list = 0; list < 2; ++list) {
+        unsigned all;
+        sum_before(counted.counts[list], all);
+        if (threadIdx.x == 0)
+            args.counts[list][block] = all;
+    }
+}
+
+KERNEL(emit_fragments, PixelSamples, BLOCK, 4) {
+    const unsigned long long block = args.first_block + blockIdx.x;
+    unsigned index = 0;
+    const bool has = ray_of_thread(args.rays, (unsigned)block, threadIdx.x, index);
+    const Counted counted = count_of(args, has, index);
+    Written written = {};
+    for (unsigned list = 0; list < 2; ++list) {
+        unsigned all;
+        written.places[list] = args.counts[list][block] + sum_before(counted.counts[list], all);
+    }
+    if (!has)
+        return;
+    add_fragments(args, index, written);
+    if (args.apart || args.state[index] == PIXEL_SHARED)
+        return;
+    // Begin anew.
+    args.color[index] = splat(0.0f);
+    if (args.light_points != nullptr)
+        args.light_points[index] = 0;
+    for (unsigned light = 0; light < args.light_count; ++light)
+        args.visibility[light * args.film_pixels + index] = 0.0f;
+}

@@ -1,0 +1,72 @@
+// The samples of a pixel, and whether two of them lie on one surface: twin of alike.rs, and of antialiasing.rs.
+#pragma once
+
+#include "sampling.cuh"
+#include "surface.cuh"
+
+// The offset below which the share `u` of the filter lies, for `u` in [0, 1).
+DEVICE float quantile(const PixelSamples &args, float u) {
+    const float place = u * (float)FILTER_STEPS;
+    const unsigned step = (unsigned)place;
+    const float low = args.quantiles[step], high = args.quantiles[step + 1];
+    return low + (place - (float)step) * (high - low);
+}
+
+// The ray through a sample of the pixel of ray number `ray`; `sample` is its number among those of the range.
+DEVICE Ray sample_ray(const PixelSamples &args, unsigned ray, unsigned sample) {
+    const unsigned pixel = args.rays.first_pixel + ray;
+    const Pattern pattern = pattern_of(args.seed, pixel, PIXEL_PATTERN);
+    const Vec3 point = pattern_point(pattern, args.samples[0] + sample);
+    return view_ray_beside(args.rays.view, pixel, quantile(args, point.x), quantile(args, point.y));
+}
+
+// What a sample sees.
+DEVICE Hit sample_hit(const PixelSamples &args, unsigned ray, unsigned sample) {
+    return load_hit(args.hits + (unsigned long long)sample * args.rays.count, ray);
+}
+
+// A piece of a surface, about as large as a pixel.
+struct Facet {
+    SurfacePoint point;
+    // The normal that shading uses.
+    Vec3 smooth;
+    // The number of the material.
+    unsigned material;
+    // About how wide the pixel is there.
+    float width;
+};
+
+// What a ray sees.
+DEVICE Facet facet_of(const PixelSamples &args, const Ray &ray, const Hit &hit) {
+    const SurfacePoint point = surface_point(ray, hit, load_corners(args.scene.triangles + hit.triangle));
+    return Facet{point, shading_normal(args.scene, hit, point.normal), __ldg(args.scene.triangle_materials + hit.triangle),
+                 args.spacing[0] + args.spacing[1] * hit.t};
+}
+
+// Whether both have the same material, and neither is farther from the other's tangent plane than `height` times the pixel's width.
+DEVICE bool is_level(const Facet &a, const Facet &b, float height) {
+    const Vec3 between = b.point.position - a.point.position;
+    return a.material == b.material && fabsf(dot(a.point.normal, between)) <= height * a.width &&
+           fabsf(dot(b.point.normal, between)) <= height * b.width;
+}
+
+// Whether two samples of a pixel may be shaded together.
+DEVICE bool continues(const Facet &a, const Facet &b) {
+    return dot(a.smooth, b.smooth) >= SAME_COSINE && dot(a.point.normal, b.point.normal) >= SAME_FACET_COSINE &&
+           is_level(a, b, SAME_HEIGHT);
+}
+
+// Whether the surface of a neighbouring pixel may be compared.
+DEVICE bool is_near(const Facet &a, const Facet &b) { return dot(a.smooth, b.smooth) >= NEAR_COSINE && is_level(a, b, NEAR_HEIGHT); }
+
+// The same for different triangles: seldom, and too much for registers.
+COLD bool triangles_continue(const PixelSamples &args, Ray a, Hit hit_a, Ray b, Hit hit_b) {
+    return continues(facet_of(args, a, hit_a), facet_of(args, b, hit_b));
+}
+
+// Whether two hits of a pixel may be shaded together.
+DEVICE bool is_alike(const PixelSamples &args, const Ray &a, const Hit &hit_a, const Ray &b, const Hit &hit_b) {
+    if (hit_a.triangle == hit_b.triangle)
+        return true;
+    return hit_a.triangle != Hit::NONE && hit_b.triangle != Hit::NONE && triangles_continue(args, a, hit_a, b, hit_b);
+}

@@ -1,0 +1,83 @@
+//! The samples of pixels on a CUDA device.
+
+use std::sync::Arc;
+
+use bytemuck::Zeroable;
+use lightmesh_layout::stages::PixelSamples;
+
+use super::SampleRange;
+use crate::counters::Tally;
+use crate::cuda::{Kernel, Runtime};
+use crate::error::RenderError;
+use crate::gpu::film::DeviceFilm;
+use crate::gpu::rays::{DeviceHits, DeviceRays};
+use crate::gpu::samples::{DeviceSampled, DeviceSamples};
+use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerStructure, Work, blocks_for, per_structure};
+use crate::job::Job;
+
+const CAST: PerStructure = per_structure!("pixel_samples", "pixel_samples");
+const MERGE: Kernel = Kernel { module: "pixel_samples", name: "merge_samples" };
+/// Number of blocks in the first launch.
+const FIRST: u64 = 256;
+
+/// What the samples of pixels see. Takes away from `hits`, those of the centres, what is not shared.
+pub(crate) fn pixel_samples<R: Runtime>(
+    cuda: &Cuda<R>,
+    job: &Job,
+    scene: &DeviceScene<R>,
+    rays: &mut DeviceRays<R>,
+    hits: &mut DeviceHits<R>,
+    film: &mut DeviceFilm<R>,
+    range: &SampleRange,
+) -> Result<DeviceSamples<R>, RenderError> {
+    let SampleRange { all, numbers } = range;
+    let (pixels, count) = (rays.len(), numbers.len());
+    let planes = cuda.pool().room("hits of samples", pixels * count)?;
+    let state = cuda.pool().room("states of pixels", pixels)?;
+    let mut record = PixelSamples {
+        scene: scene.record,
+        rays: rays.record,
+        hits: planes.output(),
+        centers: hits.hits.output(),
+        state: state.output(),
+        tally: cuda.tally()?,
+        seed: all.seed,
+        spacing: rays.spacing,
+        samples: [numbers.start, count as u32],
+        all_samples: all.samples,
+        weight: 1.0 / all.samples as f32,
+        contrast: all.contrast,
+        apart: u32::from(all.apart),
+        mirrors: u32::from(all.mirrors),
+        keeps: u32::from(all.keeps),
+        quantiles: all.quantiles,
+        ..PixelSamples::zeroed()
+    };
+    film.expose_to_samples(&mut record);
+
+    // 1. What each sample sees.
+    let kernel = CAST.of(scene.structure);
+    let blocks = rays.blocks(BLOCK_SIDE);
+    let work = Work { units: blocks * count as u64, cost: 1, first: FIRST, progress: (pixels * count) as u64 };
+    cuda.in_pieces(job, kernel, work, |piece| {
+        cuda.launch(kernel, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
+    })?;
+    Tally::add(&job.tally.rays, (pixels * count) as u64);
+
+    // 2. Which pixels are shared?
+    let work = Work { units: blocks, cost: count as u64, first: FIRST, progress: 0 };
+    cuda.in_pieces(job, MERGE, work, |piece| {
+        cuda.launch(MERGE, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
+    })?;
+    let hits = Arc::new(planes);
+    if !all.apart {
+        let sampled = DeviceSampled {
+            hits: Arc::clone(&hits),
+            first: rays.record.first_pixel,
+            pixels: pixels as u64,
+            count: count as u32,
+        };
+        rays.sampled = Some(sampled);
+    }
+    Ok(DeviceSamples { hits, _state: state, record })
+}
