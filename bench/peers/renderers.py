@@ -31,7 +31,7 @@ class Denoised:
     """A renderer with its denoiser, which expects edges without stairs: samples cover the pixel. The reference has no denoiser."""
 
     def __init__(self, renderer):
-        self.name, self.version, self.renderer = f"{renderer.name} denoised", renderer.version, renderer
+        self.name, self.renderer = f"{renderer.name} denoised", renderer
 
     def render(self, samples, seed):
         return self.renderer.render(samples, seed, smooth=True, denoise=True)
