@@ -1,0 +1,105 @@
+//! Values of flags: each text is read as every kind of value. What is accepted must be in range and mean the same when it is
+//! written again; what is not must be told in one sentence.
+#![no_main]
+
+use std::fmt::Debug;
+use std::str::FromStr;
+use std::time::Duration;
+
+use libfuzzer_sys::fuzz_target;
+
+// The program's own modules: they need nothing else of it.
+#[path = "../../crates/cli/src/value/mod.rs"]
+mod value;
+
+use value::{Background, Bound, Budget, ByteSize, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size};
+
+/// Messages quote a part of the text and explain the rest.
+const EXPLANATION: usize = 200;
+
+fuzz_target!(|text: &str| {
+    read::<Size>(text, |Size([width, height])| {
+        assert!(*width > 0 && *height > 0);
+        format!("{width}x{height}")
+    });
+    read::<Dims>(text, |Dims([x, y, z])| {
+        assert!(*x > 0 && *y > 0 && *z > 0);
+        format!("{x}x{y}x{z}")
+    });
+    read::<ByteSize>(text, |ByteSize(bytes)| {
+        assert!(*bytes > 0);
+        bytes.to_string()
+    });
+    read::<Budget>(text, |Budget(time)| {
+        assert!(*time > Duration::ZERO);
+        // A nanosecond is the smallest part of a time.
+        format!("{:.9}", time.as_secs_f64())
+    });
+    read_numbers(text);
+    read_places(text);
+});
+
+fn read_numbers(text: &str) {
+    read::<Positive>(text, |Positive(number)| {
+        assert!(*number > 0.0 && number.is_finite());
+        number.to_string()
+    });
+    read::<Bound>(text, |Bound(number)| {
+        assert!(*number >= 0.0 && number.is_finite());
+        number.to_string()
+    });
+    read::<Exposure>(text, |exposure| match exposure {
+        Exposure::Auto => "auto".to_owned(),
+        Exposure::Stops(stops) => {
+            assert!(stops.is_finite());
+            stops.to_string()
+        }
+    });
+    read::<Color>(text, color);
+    read::<Background>(text, |background| match background {
+        Background::Transparent => "transparent".to_owned(),
+        Background::Color(behind) => color(behind),
+    });
+}
+
+fn read_places(text: &str) {
+    read::<LightSpec>(text, |light| {
+        assert!(light.position.as_vec3().is_finite());
+        assert!(light.radius >= 0.0 && light.radius.is_finite());
+        let [x, y, z] = light.position.to_array();
+        format!("{x},{y},{z};{};{}", color(&Color(light.intensity)), light.radius)
+    });
+    if let Some(CameraView { position, direction, vfov }) = parsed(text) {
+        assert!(position.as_vec3().is_finite() && direction.normalize().is_finite());
+        assert!(vfov > 0.0 && vfov < 180.0);
+        // A target is not kept, only the way to it: one along an axis, so far away that it can be told from the position.
+        let [x, y, z] = position.to_array();
+        let target = if x.abs() < 1.0 { x + 2.0 } else { -x };
+        let written = format!("{x},{y},{z};{target},{y},{z};{vfov}");
+        let again = parsed::<CameraView>(&written).map(|view| (view.position, view.vfov));
+        assert_eq!(again, Some((position, vfov)), "{text:?} is written as {written}");
+    }
+}
+
+fn color(Color(color): &Color) -> String {
+    assert!(color.is_finite() && color.min_element() >= 0.0);
+    let [r, g, b] = color.to_array();
+    format!("{r},{g},{b}")
+}
+
+/// Reads a value; what `write` makes of it must be read as the same.
+fn read<T: FromStr<Err = value::ValueError> + PartialEq + Debug>(text: &str, write: impl Fn(&T) -> String) {
+    let Some(value) = parsed::<T>(text) else { return };
+    let written = write(&value);
+    assert_eq!(written.parse().as_ref(), Ok(&value), "{text:?} is written as {written}");
+}
+
+fn parsed<T: FromStr<Err = value::ValueError>>(text: &str) -> Option<T> {
+    let refused = match text.parse() {
+        Ok(value) => return Some(value),
+        Err(refused) => refused,
+    };
+    let message = refused.to_string();
+    assert!(message.len() <= text.len() + EXPLANATION, "{message}");
+    None
+}
