@@ -20,7 +20,7 @@ import time
 from pathlib import Path
 
 SIGNALS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129, signal.SIGKILL: -9}
-PATIENCE = 60
+PATIENCE = 120
 """Seconds that any of these small commands may take, on a busy machine as well."""
 OLD = b"what was here before"
 CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069]")
@@ -143,7 +143,7 @@ def arguments(scene, outputs, folder, dice):
         "--radius": (["2.1", "16"], ["0.1", "inf"]),
         "--bounces": (["0", "1", "8"], ["-3", "4294967296"]),
         "--accel": (["bvh", "grid", "auto"], ["x"]),
-        "--grid": (["3x3x3", "1x1x1"], ["1x1x10000000", "500x500x500"]),
+        "--grid": (["16x16x16", "40x3x20"], ["1x1x10000000", "500x500x500"]),
         "--memory-limit": (["256M", "1G"], ["1", "0", "64M"]),
         "--light": (["0,3,1", "1,2,3;1;0.5"], ["nan,0,0", "0,0,0;1e38"]),
         "--camera": (["0,2,5;0,1,0;45"], ["0,0,0;0,0,0;45", "1e30,0,0;0,0,0;1"]),

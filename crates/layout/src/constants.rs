@@ -169,6 +169,13 @@ constants! {
     LEAST_SQUARE: f32 = 1e-30;
     /// If the square of its length is below this, an interpolated normal has cancelled out.
     LEAST_SMOOTH_SQUARE: f32 = 1e-12;
+    /// Vertex normals farther from the triangle's than this cosine says, 45°, do not tell a curved surface.
+    LEAST_CURVED_COSINE: f32 = 0.707;
+    /// How far the curved surface is from the triangle, as a share of the way to the planes that touch it at the corners (Boubekeur
+    /// and Alexa: *Phong Tessellation*, SIGGRAPH Asia 2008).
+    SHAPE_FACTOR: f32 = 0.75;
+    /// The sine of the height over a triangle, 6°, below which a light is looked for from the curved surface.
+    LOW_LIGHT: f32 = 0.1;
 
     // Light points.
 

@@ -58,6 +58,38 @@ impl SceneDraft {
         self
     }
 
+    /// Adds a ball of `2 · columns · (rings − 1)` triangles with the normals of a sphere.
+    pub fn smooth_ball(mut self, center: DVec3, radius: f64, [rings, columns]: [u32; 2]) -> SceneDraft {
+        let vertex = |ring: u32, column: u32| {
+            let up = std::f64::consts::PI * f64::from(ring) / f64::from(rings);
+            let around = std::f64::consts::TAU * f64::from(column) / f64::from(columns);
+            DVec3::new(up.sin() * around.cos(), up.cos(), up.sin() * around.sin())
+        };
+        let ways: Vec<DVec3> =
+            (0..=rings).flat_map(|ring| (0..columns).map(move |column| vertex(ring, column))).collect();
+        let positions: Vec<DVec3> = ways.iter().map(|way| center + radius * way).collect();
+        let normals: Vec<Vec3> = ways.iter().map(|way| way.as_vec3().normalize()).collect();
+        let mut triangles = Vec::new();
+        for ring in 0..rings {
+            for column in 0..columns {
+                let place = |ring: u32, column: u32| ring * columns + column % columns;
+                let [a, b] = [place(ring, column), place(ring, column + 1)];
+                let [c, d] = [place(ring + 1, column), place(ring + 1, column + 1)];
+                if ring > 0 {
+                    triangles.push([a, b, c]);
+                }
+                if ring < rings - 1 {
+                    triangles.push([b, d, c]);
+                }
+            }
+        }
+        let material = self.materials.len() as u32 - 1;
+        let part = MeshPart { positions: &positions, normals: &normals, triangles: &triangles, ..Default::default() };
+        let added = self.builder.add(part, &DMat4::from_translation(self.offset), |_| material);
+        added.unwrap_or_else(|error| panic!("{error}"));
+        self
+    }
+
     /// Adds a planar quadrilateral, corners in order around its border.
     pub fn quad(self, corners: [[f64; 3]; 4]) -> SceneDraft {
         self.triangles(&corners.map(DVec3::from), &[[0, 1, 2], [0, 2, 3]])

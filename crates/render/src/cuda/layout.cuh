@@ -82,6 +82,13 @@
 #define LEAST_SQUARE 0x1.4484cp-100f
 // If the square of its length is below this, an interpolated normal has cancelled out.
 #define LEAST_SMOOTH_SQUARE 0x1.197998p-40f
+// Vertex normals farther from the triangle's than this cosine says, 45°, do not tell a curved surface.
+#define LEAST_CURVED_COSINE 0x1.69fbe8p-1f
+// How far the curved surface is from the triangle, as a share of the way to the planes that touch it at the corners (Boubekeur
+// and Alexa: *Phong Tessellation*, SIGGRAPH Asia 2008).
+#define SHAPE_FACTOR 0x1.8p-1f
+// The sine of the height over a triangle, 6°, below which a light is looked for from the curved surface.
+#define LOW_LIGHT 0x1.99999ap-4f
 // Bits of a brick's key for each axis.
 #define AXIS_BITS 19u
 // Bits of a light point's index along an axis that give its position in its brick: bricks have 4 x 4 x 4 points.

@@ -37,7 +37,8 @@ impl<R: Runtime> DeviceScene<R> {
     /// The same scene with other triangles for rays to see; the triangles that hide lights stay.
     pub(super) fn with_triangles(&self, triangles: Arc<Buffer<R, Triangle>>) -> DeviceScene<R> {
         DeviceScene {
-            record: Scene { triangles: triangles.input(), ..self.record },
+            // Given points have no vertex normals.
+            record: Scene { triangles: triangles.input(), normals: In::NULL, ..self.record },
             structure: self.structure,
             host: self.host.clone(),
             _geometry: Arc::clone(&self._geometry),

@@ -6,6 +6,7 @@ pub(crate) mod occlusion;
 pub(crate) mod rows;
 pub(crate) mod sample_ray;
 pub(crate) mod sight;
+pub(crate) mod terminator;
 #[cfg(test)]
 mod tests;
 

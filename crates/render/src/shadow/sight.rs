@@ -16,6 +16,7 @@ use lightmesh_scene::{Bounds, Light, LightKind};
 
 use super::Aim;
 use super::rows::Rows;
+use super::terminator::ShadowPoint;
 use crate::accel::Region;
 use crate::data::wave::HostWave;
 use crate::prepared::PreparedGeometry;
@@ -101,6 +102,12 @@ impl<'a> Emitter<'a> {
     /// Whether its samples are those of a disc.
     pub(crate) fn is_disc(&self) -> bool {
         self.shape == Shape::Disc
+    }
+
+    /// The surface point from which it is looked for.
+    #[inline(always)]
+    pub(crate) fn seen_from(&self, geometry: &PreparedGeometry, point: &ShadowPoint) -> SurfacePoint {
+        point.toward(self.light, geometry)
     }
 
     /// As the surface point of ray number `ray` sees it.

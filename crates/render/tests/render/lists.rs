@@ -59,6 +59,30 @@ fn lists_are_the_reference_for_every_light_and_number_of_samples() {
     }
 }
 
+/// A coarse ball with the normals of a sphere, on a floor.
+fn smooth_ball() -> Scene {
+    let draft =
+        SceneDraft::new().floor(-1.0, 5.0).smooth_ball(DVec3::ZERO, 1.0, [7, 9]).camera([1.0, 2.0, 4.0], [0.0; 3]);
+    kinds().into_iter().fold(draft, SceneDraft::light).finish("smooth ball")
+}
+
+#[test]
+fn lists_are_the_reference_on_smooth_surfaces() {
+    let scene = smooth_ball();
+    let facets = {
+        let mut scene = scene.clone();
+        scene.geometry_mut().mesh.normals.clear();
+        scene
+    };
+    for samples in [1, 16, 64] {
+        let frame = render(&scene, &lists(samples));
+        assert!(same_bits(&frame, &render(&scene, &area(samples))), "{samples} samples");
+        let (smooth, flat) = (visibilities(&frame), visibilities(&render(&facets, &lists(samples))));
+        let lighter = smooth.iter().zip(&flat).filter(|(smooth, flat)| **smooth > **flat + 0.4).count();
+        assert!(lighter > 10, "{samples} samples: {lighter} where facets alone hide a light");
+    }
+}
+
 #[test]
 fn every_structure_gives_the_same_bits() {
     let lamp = LightKind::Sphere { position: Vec3::new(0.5, 7.0, 1.0), radius: 2.0 };

@@ -28,6 +28,8 @@ const COPIES: [u64; 2] = [32, 16];
 const ALL_COPIES: u64 = 64;
 /// Most cells of the outer grid: 512 on each axis.
 const MOST_CELLS: u64 = 1 << 27;
+/// Most cells that a ray may cross, the sum of those along the axes: a millisecond for each of a million rays would be too long.
+const MOST_CROSSED: u64 = 1 << 14;
 /// Most references that a requested grid may need: a second's work, or this many per triangle.
 const MOST_REFERENCES: u64 = 1 << 24;
 const MOST_COPIES: u64 = 256;
@@ -86,6 +88,8 @@ pub(super) fn frame(bounds: &Bounds, dims: UVec3) -> Result<(Lattice, Approach, 
         return Err(GridError::NoCells { dims: dims.to_array() });
     }
     bounded(u64::try_from(cells).unwrap_or(u64::MAX), MOST_CELLS, "cells", dims)?;
+    let crossed = dims.to_array().map(u64::from).iter().sum();
+    bounded(crossed, MOST_CROSSED, "cells on the way of a ray", dims)?;
     let approach = Approach::new(bounds);
     let margin = margin(approach.radius());
     let bounds = if bounds.is_empty() { Bounds::around([Vec3::ZERO]) } else { *bounds };

@@ -139,7 +139,8 @@ impl<'a> Band<'a> {
     fn first_rays_of(&self, wave: &HostWave, emitter: &Emitter, rays: Range<usize>, answers: &[AtomicU8]) -> u64 {
         let (mut segments, mut owners) = (Vec::with_capacity(RUN), Vec::with_capacity(RUN));
         for ray in rays.filter(|&ray| wave.sees(ray)) {
-            let (point, pixel) = (wave.surface_point(ray), wave.rays.pixels[ray]);
+            let point = emitter.seen_from(&wave.scene.geometry, &wave.shadow_point(ray));
+            let pixel = wave.rays.pixels[ray];
             let extent = Extent::new(emitter, &point, wave.scene.geometry.reach(point.origin));
             let Some(known) = extent.at_horizon(point.normal) else { continue };
             let target = extent.target(point.origin, &self.places, place_of(pixel, self.width as u32));

@@ -6,6 +6,7 @@
 #include "cuda/prelude.cuh"
 
 #include "cuda/rays.cuh"
+#include "shadow/terminator.cuh"
 #include "stages/adaptive_shadows/first.cuh"
 #include "stages/shadow_rays/samples.cuh"
 
@@ -34,7 +35,7 @@ DEVICE bool first_ray(const AdaptiveShadows &args, const Light &light, Shape sha
 
 // Casts the rays of a surface point to all lights of this launch. Returns how many were cast. Without a surface point there are no answers.
 template <class Structure>
-DEVICE unsigned ask_lights(const AdaptiveShadows &args, const Structure &structure, unsigned ray, bool has, const SurfacePoint &point) {
+DEVICE unsigned ask_lights(const AdaptiveShadows &args, const Structure &structure, unsigned ray, bool has, const SurfacePoint &flat) {
     const Shadows &shadows = args.shadows;
     unsigned cast = 0;
     unsigned char *answer = args.answers + args.first_answer + ray;
@@ -43,6 +44,9 @@ DEVICE unsigned ask_lights(const AdaptiveShadows &args, const Structure &structu
         const Shape shape = shape_of(shadows.sampling, light);
         Vec3 target = {};
         unsigned known = 0;
+        SurfacePoint point = flat;
+        if (has)
+            point = shadow_point_of(shadows.scene, shadows.rays, shadows.hits, ray, light, flat);
         const bool asks = has && first_ray(args, light, shape, ray, point, target, known);
         const bool casts = asks && dot(point.normal, target - point.origin) > 0.0f;
         cast += casts;
@@ -141,7 +145,8 @@ DEVICE void open_rays(const AdaptiveShadows &args, const Structure &structure) {
     if (place < args.entry_count) {
         const unsigned light = (unsigned)(args.entries[place] >> 32), ray = (unsigned)args.entries[place];
         const Shape shape = shape_of(shadows.sampling, shadows.scene.lights[light]);
-        const SurfacePoint point = surface_point_of(shadows.scene, shadows.rays, shadows.hits, ray);
+        const SurfacePoint point =
+            shadow_point_of(shadows.scene, shadows.rays, shadows.hits, ray, shadows.scene.lights[light]);
         add_seen(shadows, shape, light, ray, trace_samples(shadows, structure, point, light, ray, shape, cast));
     }
     count(tally_shard(shadows.tally).shadow_rays, cast);

@@ -33,8 +33,9 @@ pub(crate) fn area_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
         wave.job.piece(rays.len(), || {
             let (mut found, mut asked) = (Vec::new(), 0);
             for ray in rays.filter(|&ray| wave.sees(ray)) {
-                let point = wave.surface_point(ray);
+                let point = wave.shadow_point(ray);
                 for (emitter, shares) in emitters.iter().zip(&mut shares) {
+                    let point = emitter.seen_from(&wave.scene.geometry, &point);
                     let sight = emitter.sight(wave, ray, &point);
                     let seen =
                         dispatch!(level, simd => seen(simd, wave, emitter, &point, &sight, &mut found, &mut asked));

@@ -6,6 +6,7 @@
 #include "cuda/rays.cuh"
 #include "cuda/tally.cuh"
 #include "shadow/seen.cuh"
+#include "shadow/terminator.cuh"
 
 // The value of one lane.
 DEVICE Sight broadcast(const Sight &sight, unsigned lane) {
@@ -68,9 +69,9 @@ DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
     unsigned ray = 0;
     const bool has = ray_of_thread(args.rays, (unsigned)(warp / warps), (unsigned)(warp % warps) * WARP + lane, ray) &&
                      load_hit(args.hits, ray).triangle != Hit::NONE;
-    SurfacePoint point = {};
+    SurfacePoint flat = {};
     if (has)
-        point = surface_point_of(args.scene, args.rays, args.hits, ray);
+        flat = surface_point_of(args.scene, args.rays, args.hits, ray);
     for (unsigned light = args.first_light; light < args.end_light; ++light) {
         const Light &emitter = args.scene.lights[light];
         const Shape shape = shape_of(args.sampling, emitter);
@@ -78,6 +79,9 @@ DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
         if (shape == SHAPE_POINT && args.set != 0)
             continue;
         Sight sight = {};
+        SurfacePoint point = flat;
+        if (has)
+            point = shadow_point_of(args.scene, args.rays, args.hits, ray, emitter, flat);
         if (has)
             sight = sight_of(args.scene, args.sampling, light, shape, set.lines, point, ray_key(args.rays, ray));
         const RowTable own = row_table(tables, shape, offsets + lane);

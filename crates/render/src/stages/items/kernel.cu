@@ -6,7 +6,7 @@
 
 #include "cuda/rays.cuh"
 #include "cuda/tile.cuh"
-#include "surface.cuh"
+#include "shadow/terminator.cuh"
 
 // One coordinate in cells: which, and in which quarter of it.
 DEVICE unsigned cell_coordinate(float coordinate, unsigned &quarter) {
@@ -48,12 +48,12 @@ struct Corner {
 
 static_assert(TILE / WARP == WARP, "a lane for each warp of a block");
 
-// Writes the box around the origins of the threads that have one.
-DEVICE void box_tile(bool has, const Vec3 &origin, Corner &corner, TileBox &tile) {
+// Writes the box around the origins of the threads that have one: shadow rays start between `origin` and `lifted`.
+DEVICE void box_tile(bool has, const Vec3 &origin, const Vec3 &lifted, Corner &corner, TileBox &tile) {
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / WARP;
     for (unsigned k = 0; k < 6; ++k) {
-        const float coordinate = component(k % 3, origin);
-        const float lowest = warp_min(!has ? F32_MAX : k < 3 ? coordinate : -coordinate);
+        const float a = component(k % 3, origin), b = component(k % 3, lifted);
+        const float lowest = warp_min(!has ? F32_MAX : k < 3 ? fminf(a, b) : -fmaxf(a, b));
         if (lane == 0)
             corner.coordinates[k][warp] = lowest;
     }
@@ -77,12 +77,14 @@ KERNEL(group_items, GroupItems, TILE, 2) {
     unsigned ray = 0, word = NO_POINT;
     const bool has = tile_ray_of_thread(args.rays, (unsigned)tile, thread, ray) && args.hits[ray].triangle != Hit::NONE;
     SurfacePoint point = {};
+    Vec3 lifted = {};
     if (has) {
         point = surface_point_of(args.scene, args.rays, args.hits, ray);
         rays[thread] = ray;
         word = sort_word(args, ray, point, thread);
+        lifted = point.origin + largest_lift(args.scene, args.hits, ray, point);
     }
-    box_tile(has, point.origin, corner, args.tiles[tile]);
+    box_tile(has, point.origin, lifted, corner, args.tiles[tile]);
     __syncthreads();
 
     // 2. Sort by cell, within a cell along the curve.

@@ -21,6 +21,7 @@ use crate::shadow::occlusion::gathered;
 use crate::shadow::rows::Rows;
 use crate::shadow::sample_ray::SampleRays;
 use crate::shadow::sight::Emitter;
+use crate::shadow::terminator::ShadowPoint;
 use crate::simd::{LANES, dispatch};
 use crate::surface::SurfacePoint;
 
@@ -97,6 +98,8 @@ struct Item<'a, S: Simd> {
     simd: S,
     wave: &'a HostWave<'a>,
     members: &'a [u32],
+    /// As shadow rays to any light leave them, and as they leave them for the light that is looked at.
+    casting: Vec<ShadowPoint>,
     points: Vec<SurfacePoint>,
     groups: [Group<S>; GROUPS],
     around: Around,
@@ -143,6 +146,7 @@ impl<'a, S: Simd> Item<'a, S> {
             simd,
             wave,
             members: &[],
+            casting: Vec::with_capacity(WARP as usize),
             points: Vec::with_capacity(WARP as usize),
             groups,
             around,
@@ -155,8 +159,20 @@ impl<'a, S: Simd> Item<'a, S> {
     #[inline(always)]
     fn take(&mut self, members: &'a [u32]) {
         self.members = members;
+        self.casting.clear();
+        self.casting.extend(members.iter().map(|&ray| self.wave.shadow_point(ray as usize)));
         self.points.clear();
-        self.points.extend(members.iter().map(|&ray| self.wave.surface_point(ray as usize)));
+    }
+
+    /// Places the surface points where a light is looked for, unless they are there.
+    #[inline(always)]
+    fn place(&mut self, emitter: &Emitter) {
+        if !self.points.is_empty() && !self.casting.iter().any(ShadowPoint::is_curved) {
+            return;
+        }
+        let geometry = &self.wave.scene.geometry;
+        self.points.clear();
+        self.points.extend(self.casting.iter().map(|point| emitter.seen_from(geometry, point)));
         self.around.lanes = 0;
         for (number, group) in self.groups.iter_mut().enumerate() {
             group.take(self.simd, &self.points[self.points.len().min(number * LANES)..]);
@@ -166,6 +182,7 @@ impl<'a, S: Simd> Item<'a, S> {
     /// How many samples of an emitter each surface point sees.
     #[inline(always)]
     fn seen(&mut self, number: usize, emitter: &Emitter) -> [u32; WARP as usize] {
+        self.place(emitter);
         let mut seen = [0; WARP as usize];
         if emitter.is_point() {
             self.samples(&View { wave: self.wave, number, emitter, set: None }, &mut seen);

@@ -5,6 +5,7 @@
 #include "cuda/rays.cuh"
 #include "cuda/tally.cuh"
 #include "shadow/seen.cuh"
+#include "shadow/terminator.cuh"
 #include "stages/occluder_lists/candidates.cuh"
 
 // What is known of the surface points that see anything of a light. Often it is the same for the next one.
@@ -65,6 +66,7 @@ struct ItemSight {
     // Whether the view is computed.
     bool looked;
     unsigned long long key;
+    unsigned ray;
     // The samples of all lights in front of the lane's surface.
     unsigned asked;
 };
@@ -226,6 +228,16 @@ DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, I
     return number(seen);
 }
 
+// Places the surface points where a light is looked for.
+DEVICE void place(const Shadows &args, ItemSight &item, unsigned light, const ListMemory &memory) {
+    if (args.scene.normals == nullptr)
+        return;
+    item.point = curved_point_of(args.scene, args.rays, args.hits, item.ray, args.scene.lights[light]);
+    if (lane_of_thread() == 0)
+        memory.around->lanes = 0;
+    __syncwarp();
+}
+
 // The shadows of an item. Returns the samples of all lights in front of the lane's surface.
 template <unsigned WORDS, class Structure>
 DEVICE unsigned shadows_of_item(const Shadows &args, const Structure &structure, const ListMemory &memory, unsigned long long entry) {
@@ -233,9 +245,9 @@ DEVICE unsigned shadows_of_item(const Shadows &args, const Structure &structure,
     const unsigned long long slot = entry >> 6;
     ItemSight item;
     item.has = lane < count;
-    const unsigned ray = args.members[slot + (item.has ? lane : 0)];
-    item.point = surface_point_of(args.scene, args.rays, args.hits, ray);
-    item.key = ray_key(args.rays, ray);
+    item.ray = args.members[slot + (item.has ? lane : 0)];
+    item.point = surface_point_of(args.scene, args.rays, args.hits, item.ray);
+    item.key = ray_key(args.rays, item.ray);
     item.asked = 0;
     if (lane == 0)
         memory.around->lanes = 0;
@@ -247,9 +259,10 @@ DEVICE unsigned shadows_of_item(const Shadows &args, const Structure &structure,
         const SampleRows &set = args.sets[item.shape == SHAPE_RECTANGLE ? SHAPE_RECTANGLE : SHAPE_DISC];
         if (item.shape == SHAPE_POINT && args.set != 0)
             continue;
+        place(args, item, light, memory);
         const unsigned seen = seen_of_light<WORDS>(args, structure, item, (unsigned)(slot / TILE), light, set, memory);
         if (item.has)
-            add_seen(args, item.shape, light, ray, seen);
+            add_seen(args, item.shape, light, item.ray, seen);
         __syncwarp();
     }
     return item.asked;

@@ -44,7 +44,7 @@ DEVICE void fill_layers(const Shade &args, unsigned ray, const Surface &surface,
 }
 
 // Gives a surface the mean colour of the samples of its pixel that are shaded with it.
-DEVICE void share_tint(const Shade &args, unsigned ray, Surface &surface, Material &own) {
+DEVICE void share_tint(const Shade &args, unsigned ray, Material &own) {
     const unsigned shared = args.rays.list == nullptr ? ALL_LANES : __ldg(&args.rays.list[ray].shared);
     const Hit hit = load_hit(args.hits, ray);
     const Material *material = args.scene.materials + __ldg(args.scene.triangle_materials + hit.triangle);
@@ -69,7 +69,7 @@ KERNEL(shade, Shade, BLOCK, 4) {
         Material own;
         Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
         if (args.samples != nullptr)
-            share_tint(args, ray, surface, own);
+            share_tint(args, ray, own);
         radiance = add_group(args, ray, surface, radiance);
         if (fills)
             fill_layers(args, ray, surface, place);

@@ -8,8 +8,9 @@ use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
 use crate::shadow::rows::Rows;
 use crate::shadow::sight::Emitter;
+use crate::shadow::terminator::ShadowPoint;
 use crate::shadow::{Aim, SEGMENTS, hidden};
-use crate::surface::{SurfacePoint, long_segment};
+use crate::surface::long_segment;
 
 /// Maximum number of surface points per task.
 const BATCH: usize = 1024;
@@ -39,7 +40,7 @@ pub(crate) fn shadow_rays(wave: &HostWave, aim: &Aim) -> Visibility {
 pub(crate) struct Batch<'a> {
     wave: &'a HostWave<'a>,
     /// Rays and the surface points that they see.
-    points: Vec<(usize, SurfacePoint)>,
+    points: Vec<(usize, ShadowPoint)>,
     segments: Vec<Ray>,
     /// The number of the surface point that each segment belongs to.
     owners: Vec<usize>,
@@ -57,7 +58,7 @@ impl<'a> Batch<'a> {
     pub(crate) fn take(&mut self, rays: impl Iterator<Item = usize>) {
         let wave = self.wave;
         self.points.clear();
-        self.points.extend(rays.filter(|&ray| wave.sees(ray)).map(|ray| (ray, wave.surface_point(ray))));
+        self.points.extend(rays.filter(|&ray| wave.sees(ray)).map(|ray| (ray, wave.shadow_point(ray))));
     }
 
     /// Hands the share of a light that each surface point sees to `put`, with its ray.
@@ -65,7 +66,8 @@ impl<'a> Batch<'a> {
         self.segments.clear();
         self.owners.clear();
         for (owner, (ray, point)) in self.points.iter().enumerate() {
-            emitter.each_target(self.wave, *ray, point, |target| {
+            let point = emitter.seen_from(&self.wave.scene.geometry, point);
+            emitter.each_target(self.wave, *ray, &point, |target| {
                 if point.normal.dot(target - point.origin) > 0.0 {
                     self.segments.push(long_segment(point.origin, target));
                     self.owners.push(owner);

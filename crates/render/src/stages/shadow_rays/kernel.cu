@@ -6,6 +6,7 @@
 #include "cuda/rays.cuh"
 #include "shadow/seen.cuh"
 #include "shadow/shadow.cuh"
+#include "shadow/terminator.cuh"
 #include "stages/shadow_rays/samples.cuh"
 
 // The share of a light for a ray.
@@ -15,9 +16,10 @@ DEVICE float &share_of(const ShadowRays &args, unsigned light, unsigned ray) {
 
 // Casts one ray from a surface point to the centre of each light of this launch. Returns how many were cast.
 template <class Structure>
-DEVICE unsigned trace_hard(const ShadowRays &args, const Structure &structure, unsigned ray, const SurfacePoint &point) {
+DEVICE unsigned trace_hard(const ShadowRays &args, const Structure &structure, unsigned ray, const SurfacePoint &flat) {
     unsigned cast = 0;
     for (unsigned light = args.first_light; light < args.first_light + args.light_count; ++light) {
+        const SurfacePoint point = shadow_point_of(args.scene, args.rays, args.hits, ray, args.scene.lights[light], flat);
         const Vec3 middle = light_center(args.scene.lights[light], point.origin, scene_reach(args.scene, point.origin));
         bool lit = false;
         if (dot(point.normal, middle - point.origin) > 0.0f) {
@@ -44,7 +46,8 @@ DEVICE void sample_rays(const Shadows &args, const Structure &structure) {
     const bool has = !(shape == SHAPE_POINT && args.set != 0) && ray_of_thread(args.rays, args.first + blockIdx.x, threadIdx.x, ray) &&
                      load_hit(args.hits, ray).triangle != Hit::NONE;
     if (has) {
-        const SurfacePoint point = surface_point_of(args.scene, args.rays, args.hits, ray);
+        const SurfacePoint point =
+            shadow_point_of(args.scene, args.rays, args.hits, ray, args.scene.lights[args.first_light]);
         add_seen(args, shape, args.first_light, ray, trace_samples(args, structure, point, args.first_light, ray, shape, cast));
     }
     count(tally_shard(args.tally).shadow_rays, cast);

@@ -43,7 +43,7 @@ fn impossible_sizes_are_refused_before_anything_is_allocated() {
         assert!(error.to_string().contains("use fewer cells"), "{error}");
     }
     let triangles: Vec<_> = (0..300).map(wide).collect();
-    for dims in [[3000, 3000, 1], [1, 10_000_000, 1]] {
+    for dims in [[3000, 3000, 1], [300, 10_000, 10]] {
         let error = built(&triangles, dims, Levels::Two).unwrap_err();
         assert!(matches!(error, GridError::TooLarge { what: "triangle references", .. }), "{error}");
     }
@@ -55,6 +55,16 @@ fn triangles_that_fill_the_scene_make_automatic_grids_coarse() {
     for levels in [Levels::One, Levels::Two] {
         let grid = Grid::new(&triangles, &GridOptions { dims: None, levels, ..GridOptions::default() }).unwrap();
         assert!(grid.triangles.len() < 400_000, "{levels:?}: {}", grid.triangles.len());
+    }
+}
+
+#[test]
+fn a_grid_that_rays_cross_for_ever_is_refused() {
+    let one = [triangle(Vec3::ZERO, 0)];
+    let grid = |dims| Grid::new(&one, &GridOptions { dims: Some(dims), ..GridOptions::default() });
+    assert!(grid([1, 1, 10_000]).is_ok());
+    for dims in [[1, 1, 10_000_000], [20_000, 1, 1], [8000, 8000, 1000]] {
+        assert!(matches!(grid(dims), Err(GridError::TooLarge { .. })), "{dims:?}");
     }
 }
 

@@ -1,0 +1,85 @@
+// Where shadow rays leave smooth-shaded triangles: twin of terminator.rs.
+#pragma once
+
+#include "cuda/rays.cuh"
+#include "shadow/sight.cuh"
+#include "surface.cuh"
+
+// A surface point that casts shadow rays.
+struct ShadowPoint {
+    SurfacePoint flat;
+    // The way to the curved surface, and the normal there.
+    Vec3 lift, normal;
+    bool is_curved;
+};
+
+// Adds the way to the plane through a corner that touches the surface. False if the normal is too far from the triangle's.
+DEVICE bool add_lift(const SurfacePoint &point, float side, Vec3 corner, Vec3 vertex, float weight, Vec3 &lift, float &deepest) {
+    vertex = side * vertex;
+    if (dot(vertex, point.normal) < LEAST_CURVED_COSINE)
+        return false;
+    const float depth = fmaxf(dot(vertex, corner - point.position), 0.0f);
+    lift = lift + SHAPE_FACTOR * weight * depth * vertex;
+    deepest = fmaxf(deepest, depth);
+    return true;
+}
+
+// The point at `hit` on the triangle with these corners. The scene must have normals.
+DEVICE ShadowPoint shadow_point(const Scene &scene, const Hit &hit, const Corners &corners, const SurfacePoint &point) {
+    const unsigned *vertices = scene.indices[hit.triangle].vertices;
+    const Vec3 a = load_normal(scene.normals, __ldg(vertices)), b = load_normal(scene.normals, __ldg(vertices + 1)),
+               c = load_normal(scene.normals, __ldg(vertices + 2));
+    // Vertex normals are on the side of the viewer, too, or all of them are not.
+    const float side = dot(a, point.normal) < 0.0f ? -1.0f : 1.0f;
+    Vec3 lift = splat(0.0f);
+    float deepest = 0.0f;
+    const bool is_curved = add_lift(point, side, corners.a, a, 1.0f - hit.u - hit.v, lift, deepest) &&
+                           add_lift(point, side, corners.b, b, hit.u, lift, deepest) &&
+                           add_lift(point, side, corners.c, c, hit.v, lift, deepest) && deepest > 0.0f;
+    return ShadowPoint{point, lift, shading_normal(scene, hit, point.normal), is_curved};
+}
+
+// The way from a surface point to where shadow rays to a light that is low leave it.
+DEVICE Vec3 largest_lift(const Scene &scene, const Hit *hits, unsigned ray, const SurfacePoint &point) {
+    if (scene.normals == nullptr)
+        return splat(0.0f);
+    const Hit hit = load_hit(hits, ray);
+    const ShadowPoint casting = shadow_point(scene, hit, load_corners(scene.triangles + hit.triangle), point);
+    return casting.is_curved ? casting.lift : splat(0.0f);
+}
+
+// The point from which `light` is looked for.
+DEVICE SurfacePoint toward(const Scene &scene, const Light &light, const ShadowPoint &point) {
+    const SurfacePoint &flat = point.flat;
+    if (!point.is_curved)
+        return flat;
+    const float reach = scene_reach(scene, flat.origin), largest = larger(light.size, light.radius);
+    const Vec3 way = light_center(light, flat.origin, reach) - flat.origin;
+    const float radius = light.kind == Light::DIRECTIONAL ? reach * largest : largest;
+    const float lowest = (dot(flat.normal, way) - radius) / fmaxf(length(way), F32_MIN_POSITIVE);
+    const Vec3 lift = fminf(fmaxf(1.0f - lowest / LOW_LIGHT, 0.0f), 1.0f) * point.lift;
+    // Seen from there, a lamp is nearer to the horizon than it is to shading.
+    const Vec3 lowered = way - lift;
+    const float tilt =
+        light.kind == Light::DIRECTIONAL ? 0.0f : dot(point.normal, lift) / fmaxf(length_squared(lowered), F32_MIN_POSITIVE);
+    const Vec3 normal = point.normal + tilt * lowered;
+    return SurfacePoint{flat.position, flat.origin + lift, normal / fmaxf(length(normal), F32_MIN_POSITIVE)};
+}
+
+// The point from which ray number `ray`, which must have hit something, looks for a light.
+COLD SurfacePoint curved_point_of(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray, const Light &light) {
+    const Hit hit = load_hit(hits, ray);
+    const Corners corners = load_corners(scene.triangles + hit.triangle);
+    return toward(scene, light, shadow_point(scene, hit, corners, surface_point(ray_at(rays, ray), hit, corners)));
+}
+
+// The same, if `flat` is that point on its triangle.
+DEVICE SurfacePoint shadow_point_of(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray, const Light &light,
+                                    const SurfacePoint &flat) {
+    return scene.normals == nullptr ? flat : curved_point_of(scene, rays, hits, ray, light);
+}
+
+// The same for one light.
+DEVICE SurfacePoint shadow_point_of(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray, const Light &light) {
+    return scene.normals == nullptr ? surface_point_of(scene, rays, hits, ray) : curved_point_of(scene, rays, hits, ray, light);
+}
