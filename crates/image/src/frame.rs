@@ -15,9 +15,20 @@ use thiserror::Error;
 pub struct Frame {
     width: u32,
     height: u32,
+    window: Window,
     color: Vec<[f32; 3]>,
     alpha: Option<Vec<f32>>,
     layers: Option<Layers>,
+}
+
+/// Where a frame lies in an image that it is a part of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Window {
+    /// Column and row of its first pixel.
+    pub first: [u32; 2],
+    /// Width and height of the image in pixels.
+    pub whole: [u32; 2],
 }
 
 /// Per-pixel data of a render: one plane per quantity, each of `width * height` entries in the frame's order.
@@ -88,7 +99,48 @@ impl Frame {
     pub fn new(width: u32, height: u32, color: Vec<[f32; 3]>) -> Result<Self, FrameError> {
         let pixels = pixel_count(width, height).ok_or(FrameError::Size { width, height })?;
         check_length("color", color.len(), width, height, pixels)?;
-        Ok(Self { width, height, color, alpha: None, layers: None })
+        let window = Window { first: [0; 2], whole: [width, height] };
+        Ok(Self { width, height, window, color, alpha: None, layers: None })
+    }
+
+    /// The same frame as the part of an image of `whole` pixels whose first pixel is in column and row `first`. An exr file says so;
+    /// dithering depends on it.
+    #[must_use]
+    pub fn with_window(self, first: [u32; 2], whole: [u32; 2]) -> Self {
+        Self { window: Window { first, whole }, ..self }
+    }
+
+    /// Where the frame lies in the image that it is a part of; in an image of its own if it was not told.
+    pub fn window(&self) -> Window {
+        self.window
+    }
+
+    /// The part of `size` pixels from column and row `first` of the whole image on, with alpha and layers; `None` if the frame does not have
+    /// all of it, or it has no pixel.
+    pub fn cropped(&self, first: [u32; 2], size: [u32; 2]) -> Option<Self> {
+        let Window { first: start, whole } = self.window;
+        let own = [self.width, self.height];
+        let within = |axis: usize| {
+            let offset = first[axis].checked_sub(start[axis])?;
+            (size[axis] > 0 && u64::from(offset) + u64::from(size[axis]) <= u64::from(own[axis])).then_some(offset)
+        };
+        let corner = [within(0)?, within(1)?].map(|offset| offset as usize);
+        let cut = Cut { corner, size: size.map(|pixels| pixels as usize), width: self.width as usize };
+        let layers = self.layers.as_ref().map(|layers| Layers {
+            depth: cut.of(&layers.depth),
+            normal: cut.of(&layers.normal),
+            position: cut.of(&layers.position),
+            visibility: layers.visibility.iter().map(|plane| cut.of(plane)).collect(),
+            used: cut.of(&layers.used),
+        });
+        Some(Self {
+            width: size[0],
+            height: size[1],
+            window: Window { first, whole },
+            color: cut.of(&self.color),
+            alpha: self.alpha.as_ref().map(|alpha| cut.of(alpha)),
+            layers,
+        })
     }
 
     /// The same frame with `layers`, replacing any previous ones.
@@ -188,6 +240,21 @@ impl Frame {
     }
 }
 
+/// A rectangle of a plane.
+struct Cut {
+    corner: [usize; 2],
+    size: [usize; 2],
+    /// Of the plane.
+    width: usize,
+}
+
+impl Cut {
+    fn of<T: Copy>(&self, plane: &[T]) -> Vec<T> {
+        let ([x, y], [columns, rows]) = (self.corner, self.size);
+        plane.chunks_exact(self.width).skip(y).take(rows).flat_map(|row| &row[x..x + columns]).copied().collect()
+    }
+}
+
 /// `width * height`, or `None` if there is no pixel or the colours would not be addressable.
 pub(crate) fn pixel_count(width: u32, height: u32) -> Option<usize> {
     let pixels = usize::try_from(u64::from(width) * u64::from(height)).ok()?;
@@ -223,6 +290,24 @@ mod tests {
         assert_eq!(frame.pixel(0, 1), Some([2.0; 3]));
         assert_eq!((frame.pixel(2, 0), frame.pixel(0, 2)), (None, None));
         assert_eq!(frame.rows().last(), Some(&[[2.0; 3], [3.0; 3]][..]));
+    }
+
+    #[test]
+    fn a_crop_has_the_pixels_of_the_image() {
+        let color: Vec<[f32; 3]> = (0..30).map(|pixel| [pixel as f32; 3]).collect();
+        let mut planes = layers(30);
+        (planes.depth, planes.used) = ((0..30).map(|pixel| pixel as f32).collect(), (0..30).collect());
+        let frame = Frame::new(6, 5, color).unwrap().with_layers(planes).unwrap().with_alpha(vec![0.5; 30]).unwrap();
+        let crop = frame.cropped([2, 1], [3, 2]).unwrap();
+        assert_eq!(crop.layers().unwrap().used, [8, 9, 10, 14, 15, 16]);
+        assert_eq!(crop.layers().unwrap().visibility[1].len(), 6);
+        assert_eq!((crop.pixel(0, 0), crop.pixel(2, 1)), (Some([8.0; 3]), Some([16.0; 3])));
+        assert_eq!(crop.window(), Window { first: [2, 1], whole: [6, 5] });
+        // Cropping twice is cropping once.
+        assert_eq!(crop.cropped([3, 2], [2, 1]), frame.cropped([3, 2], [2, 1]));
+        for (first, size) in [([1, 1], [2, 2]), ([2, 1], [4, 2]), ([2, 1], [0, 1]), ([u32::MAX, 1], [2, 1])] {
+            assert_eq!(crop.cropped(first, size), None, "{first:?} {size:?}");
+        }
     }
 
     #[test]

@@ -60,7 +60,7 @@ mod transfer;
 pub use compare::{CompareError, Comparison, compare};
 pub use display::{BitDepth, Display, UnknownView, View};
 pub use format::Format;
-pub use frame::{Frame, FrameError, FrameParts, Layers};
+pub use frame::{Frame, FrameError, FrameParts, Layers, Window};
 pub use lightmesh_files::{PublishError, Ready, publish};
 pub use load::{DecodeError, LoadError};
 pub use options::{Description, ExrCompression, ExrOptions, ExrSamples, SaveOptions, UnknownWord};

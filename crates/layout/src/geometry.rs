@@ -124,8 +124,12 @@ records! {
         right: Vec3,
         /// One pixel down.
         down: Vec3,
-        /// Width and height in pixels.
+        /// Width and height of the window that is rendered, in pixels.
         size: [u32; 2],
+        /// Column and row of its first pixel in the image.
+        first: [u32; 2],
+        /// Width and height of the image.
+        whole: [u32; 2],
         /// 1 for perspective, 0 for orthographic.
         perspective: u32,
         /// Padding to a multiple of eight bytes.

@@ -9,8 +9,10 @@ use std::f64::consts::TAU;
 
 use lightmesh_layout::constants::{FILTER_PLACES, FILTER_STEPS, MARGIN_ROWS, MOST_SHARED, PIXEL_PATTERN};
 
+use crate::accel::Ray;
 use crate::sampling::Pattern;
 use crate::settings::Filter;
+use crate::view::View;
 
 /// Samples in a wave if none are shared.
 const APART: u32 = 8;
@@ -64,16 +66,22 @@ impl Antialiasing {
         if self.apart { 0 } else { MARGIN_ROWS }
     }
 
-    /// Where sample number `sample` of a pixel lies, in pixels from its centre: to the right and down.
+    /// Where sample number `sample` of pixel number `number` lies, in pixels from its centre: to the right and down.
     #[inline(always)]
-    pub(crate) fn aside(&self, pixel: u32, sample: u32) -> [f32; 2] {
-        self.within(&self.pattern(pixel), sample)
+    pub(crate) fn aside(&self, number: u32, sample: u32) -> [f32; 2] {
+        self.within(&self.pattern(number), sample)
     }
 
-    /// The pattern of a pixel's samples.
+    /// The pattern of the samples of pixel number `number` of the image.
     #[inline(always)]
-    pub(crate) fn pattern(&self, pixel: u32) -> Pattern {
-        Pattern::new(self.seed, u64::from(pixel), PIXEL_PATTERN as usize)
+    pub(crate) fn pattern(&self, number: u32) -> Pattern {
+        Pattern::new(self.seed, u64::from(number), PIXEL_PATTERN as usize)
+    }
+
+    /// The ray through sample number `sample` of a pixel of a view.
+    #[inline(always)]
+    pub(crate) fn ray(&self, view: &View, pixel: u32, sample: u32) -> Ray {
+        view.ray_beside(pixel, self.aside(view.window().number(pixel), sample))
     }
 
     /// Where sample number `sample` of a pixel with this pattern lies.

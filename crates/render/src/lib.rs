@@ -60,9 +60,10 @@ pub use prepared::{PreparedGeometry, PreparedScene};
 pub use probes::{GivenPoints, PointVisibility, Probes};
 pub use renderer::{Frame, Renderer, render_on, render_on_with, visibility_on};
 pub use settings::{
-    Acceleration, Filter, Lookup, Mode, Quality, Setting, Settings, ShadowTests, Sharing, ShortTests, Step, UnknownStep,
+    Acceleration, Crop, Filter, Lookup, Mode, Quality, Setting, Settings, ShadowTests, Sharing, ShortTests, Step,
+    UnknownCrop, UnknownStep,
 };
 pub use stage::{Seconds, Stage};
 pub use stats::{CameraStats, DeviceStats, LatticeStats, MemoryStats, SceneStats, SettingsStats, Stats};
 pub use surface::SurfacePoint;
-pub use view::View;
+pub use view::{View, Window};

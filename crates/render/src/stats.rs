@@ -79,6 +79,8 @@ pub struct SettingsStats {
     pub mode: &'static str,
     pub bounces: u32,
     pub size: [u32; 2],
+    /// Column, row, width and height of the part that was rendered; `None`: all.
+    pub crop: Option<[u32; 4]>,
     pub device: &'static str,
     pub threads: usize,
     pub step: Option<f32>,

@@ -6,12 +6,63 @@ use lightmesh_scene::{Camera, Projection};
 
 use crate::accel::Ray;
 
+/// A rectangle of an image's pixels.
+///
+/// Pixels are indexed within it, y · width + x. What is random is keyed by their numbers in the image, so that it does not depend on the
+/// window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Window {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Column and row of its first pixel in the image.
+    pub first: [u32; 2],
+    /// Width and height of the image.
+    pub whole: [u32; 2],
+}
+
+impl Window {
+    /// A whole image.
+    pub fn all(size: [u32; 2]) -> Window {
+        Window { size, first: [0; 2], whole: size }
+    }
+
+    /// With `margin` pixels more on each side, as far as the image goes.
+    pub(crate) fn grown(&self, margin: u32) -> Window {
+        let side = |axis: usize| {
+            let first = self.first[axis].saturating_sub(margin);
+            let end = self.whole[axis].min((self.first[axis] + self.size[axis]).saturating_add(margin));
+            (first, end - first)
+        };
+        let [(x, width), (y, height)] = [side(0), side(1)];
+        Window { size: [width, height], first: [x, y], ..*self }
+    }
+
+    /// Column and row in the image of the pixel with this index.
+    #[inline(always)]
+    pub(crate) fn place(&self, index: u32) -> [u32; 2] {
+        let width = self.size[0];
+        [index % width + self.first[0], index / width + self.first[1]]
+    }
+
+    /// The number in the image of the pixel with this index.
+    #[inline(always)]
+    pub(crate) fn number(&self, index: u32) -> u32 {
+        let (width, whole) = (self.size[0], self.whole[0]);
+        // Given points have no window.
+        if width == whole {
+            return self.first[1] * whole + index;
+        }
+        let [x, y] = self.place(index);
+        y * whole + x
+    }
+}
+
 /// A camera and an image size, ready to generate rays.
 ///
 /// A pixel's ray goes through its centre, pixels are square, row 0 is the top.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    size: [u32; 2],
+    window: Window,
     origin: Vec3,
     forward: Vec3,
     /// From one pixel's centre to the next one on the right, on the plane one unit away (perspective) or in scene units.
@@ -31,12 +82,23 @@ impl View {
             Projection::Orthographic { height } => (false, height),
         };
         let pixel = picture_height / height;
-        View { size, origin: camera.position, forward, right: pixel * right, down: -pixel * up, perspective }
+        let window = Window::all(size);
+        View { window, origin: camera.position, forward, right: pixel * right, down: -pixel * up, perspective }
     }
 
-    /// Width and height in pixels.
+    /// The same camera for the pixels of a window alone.
+    pub fn with_window(self, window: Window) -> View {
+        View { window, ..self }
+    }
+
+    /// The pixels that are rendered.
+    pub fn window(&self) -> Window {
+        self.window
+    }
+
+    /// Width and height of the window in pixels.
     pub fn size(&self) -> [u32; 2] {
-        self.size
+        self.window.size
     }
 
     /// The distance between the surface points of neighbouring pixels that face the camera: a constant, and a multiple of the distance.
@@ -52,28 +114,33 @@ impl View {
             forward: layout::Vec3::from(self.forward.to_array()),
             right: layout::Vec3::from(self.right.to_array()),
             down: layout::Vec3::from(self.down.to_array()),
-            size: self.size,
+            size: self.window.size,
+            first: self.window.first,
+            whole: self.window.whole,
             perspective: u32::from(self.perspective),
             spare: 0,
         }
     }
 
-    /// The ray through the centre of pixel `index` = y · width + x; its direction has unit length.
+    /// The ray through the centre of pixel `index` = y · width + x of the window; its direction has unit length.
     #[inline(always)]
     pub fn ray(&self, index: u32) -> Ray {
-        let [width, height] = self.size;
-        let x = (index % width) as f32 + 0.5 - 0.5 * width as f32;
-        let y = (index / width) as f32 + 0.5 - 0.5 * height as f32;
+        let [x, y] = self.center(index);
         self.ray_towards(x, y)
     }
 
     /// The ray through the point of pixel `index` that is `aside` from its centre, in pixels.
     #[inline(always)]
     pub(crate) fn ray_beside(&self, index: u32, aside: [f32; 2]) -> Ray {
-        let [width, height] = self.size;
-        let x = (index % width) as f32 + 0.5 - 0.5 * width as f32;
-        let y = (index / width) as f32 + 0.5 - 0.5 * height as f32;
+        let [x, y] = self.center(index);
         self.ray_towards(x + aside[0], y + aside[1])
+    }
+
+    /// The centre of a pixel, in pixels from that of the image: to the right and down.
+    #[inline(always)]
+    fn center(&self, index: u32) -> [f32; 2] {
+        let ([x, y], [width, height]) = (self.window.place(index), self.window.whole);
+        [x as f32 + 0.5 - 0.5 * width as f32, y as f32 + 0.5 - 0.5 * height as f32]
     }
 
     /// The ray `x` pixels to the right and `y` down from the image's centre.
@@ -118,6 +185,21 @@ mod tests {
         assert!((first - Vec3::new(-1.5, 0.5, -1.0)).length() < 1e-6, "{first}");
         let last = view.ray(7).direction;
         assert!(last.x > 0.0 && last.y < 0.0);
+    }
+
+    #[test]
+    fn a_window_has_the_rays_and_numbers_of_the_image() {
+        let whole = View::new(&camera(Projection::Perspective(Fov::Vertical(90.0))), [40, 30]);
+        for (first, size) in [([0, 0], [40, 30]), ([7, 11], [5, 4]), ([0, 9], [40, 2]), ([39, 29], [1, 1])] {
+            let view = whole.with_window(Window { size, first, whole: [40, 30] });
+            for index in 0..size[0] * size[1] {
+                let number = view.window().number(index);
+                assert_eq!([number % 40, number / 40], [index % size[0] + first[0], index / size[0] + first[1]]);
+                assert_eq!(view.ray(index).direction, whole.ray(number).direction);
+            }
+        }
+        let window = Window { size: [5, 4], first: [1, 25], whole: [40, 30] };
+        assert_eq!(window.grown(3), Window { size: [9, 8], first: [0, 22], whole: [40, 30] });
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lightmesh::image::{BitDepth, ExrCompression, ExrSamples, View};
-use lightmesh::render::{Filter, Quality, ShortTests};
+use lightmesh::render::{Crop, Filter, Quality, ShortTests};
 use lightmesh::scene::{Falloff, Weight};
 use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
 
@@ -73,6 +73,10 @@ pub(crate) struct RenderArgs {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1024x1024", help_heading = "Image")]
     pub(crate) size: Size,
+
+    /// Only these pixels of the image: column and row of the first, width and height; they are the same as in the whole
+    #[arg(long, value_name = "X,Y,W,H", help_heading = "Image")]
+    pub(crate) crop: Option<Crop>,
 
     /// Transfer function of 8-bit files; exr files are always linear
     #[arg(long, value_parser = words::transfer(), default_value_t = Transfer::Srgb, help_heading = "Image")]

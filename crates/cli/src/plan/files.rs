@@ -30,7 +30,7 @@ impl PictureFiles {
     /// Checks that each file can be written, that its format can store the image, and that it overwrites none of the others.
     pub(super) fn new(args: &RenderArgs) -> Result<PictureFiles, PlanError> {
         check_writable(&args.output)?;
-        let [width, height] = args.size.0;
+        let [width, height] = args.crop.map_or(args.size.0, |crop| crop.size);
         // Images that the format cannot store are rejected now rather than after the render.
         check_size(&args.output, width, height)?;
         let options = options(args);

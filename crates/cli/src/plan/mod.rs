@@ -6,6 +6,7 @@ mod settings;
 
 use std::num::NonZeroUsize;
 
+use lightmesh::render::Crop;
 use lightmesh::scene::CameraError;
 use lightmesh::{Device, SaveError, Settings};
 
@@ -23,6 +24,14 @@ pub(crate) enum PlanError {
     Output(#[from] OutputError),
     #[error(transparent)]
     Camera(#[from] CameraError),
+    /// The part of the image is not in it.
+    #[error("--crop {crop} is not a part of an image of {}x{} pixels; choose pixels of it (--crop, --size)", size[0], size[1])]
+    Crop {
+        /// The part.
+        crop: Crop,
+        /// Width and height of the image.
+        size: [u32; 2],
+    },
     /// A flag specifies a grid, but another structure is selected.
     #[error("{flag} specifies a grid, but --accel {chosen} selects another structure; remove one of them")]
     NoGrid {

@@ -8,6 +8,9 @@ use crate::value::Background;
 
 /// All settings except the camera, which is part of the scene.
 pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
+    if let Some(crop) = args.crop.filter(|crop| !crop.is_within(args.size.0)) {
+        return Err(PlanError::Crop { crop, size: args.size.0 });
+    }
     let mut settings = Settings::default()
         .with_mode(args.mode)
         .with_bounces(args.bounces)
@@ -22,6 +25,7 @@ pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
         .with_layers(args.layers.is_some())
         .with_transparent(args.background == Some(Background::Transparent));
     // Omitted flags leave their settings open.
+    settings.crop = args.crop;
     settings.step = args.step;
     settings.radius = args.radius.map(|radius| radius.0);
     settings.weight = args.weight;

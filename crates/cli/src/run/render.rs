@@ -4,8 +4,7 @@ use std::time::Instant;
 
 use glam::{DMat4, Vec3};
 use lightmesh::image::{self, Description, Format, Ready, SaveOptions};
-use lightmesh::render::Choice;
-use lightmesh::render::Stats;
+use lightmesh::render::{Choice, Crop, Stats};
 use lightmesh::scene::Falloff;
 use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene};
 use lightmesh_memory::Bytes;
@@ -39,7 +38,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 
     plan.choices.apply(&mut scene, &watcher)?;
     let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;
-    let render = || renderer.render_prepared(&prepared, &plan.settings, &watcher);
+    // An automatic exposure is that of the whole image.
+    let exposure = exposure(&scene, &plan.files);
+    let mut settings = plan.settings.clone();
+    let crop = settings.crop.take_if(|_| exposure == Exposure::Auto);
+    let render = || renderer.render_prepared(&prepared, &settings, &watcher);
     let mut frame = memory::during("rendering", || interrupt::watched(render))?;
     drop(prepared); // frees memory for the encoders
     if watcher.cancelled() {
@@ -54,7 +57,14 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
             "{odd} of {of} pixels have infinite or undefined colours: lower the intensities of lights or the coefficients of materials"
         ));
     }
-    memory::during("writing the image", || write(&renderer, &mut frame, &scene, &plan.files, &watcher))?;
+    let stops = stops(&frame.image, exposure, &watcher);
+    if let Some(Crop { first, size, .. }) = crop {
+        frame.image = frame.image.cropped(first, size).expect("the plan has checked that the crop is in the image");
+        frame.stats.settings.crop = Some([first[0], first[1], size[0], size[1]]);
+    }
+    let mut options = plan.files.options.clone().with_description(description(&frame, &scene));
+    options.display.exposure = stops;
+    memory::during("writing the image", || write(&renderer, &mut frame, &scene, &plan.files, &options))?;
     if args.verbose {
         details(&frame.stats).iter().for_each(|line| watcher.note(line));
     }
@@ -84,17 +94,14 @@ fn write(
     frame: &mut Frame,
     scene: &Scene,
     files: &PictureFiles,
-    watcher: &Watcher,
+    options: &SaveOptions,
 ) -> Result<(), Failure> {
     let start = Instant::now();
-    let stops = exposure(&frame.image, scene, files, watcher);
-    let mut options = files.options.clone().with_description(description(frame, scene));
-    options.display.exposure = stops;
-    let mut outputs = renderer.install(|| encode(&frame.image, files, &options))?;
+    let mut outputs = renderer.install(|| encode(&frame.image, files, options))?;
     frame.stats.seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &files.stats {
         let lights = scene.info().lights;
-        let report = Report::new(&frame.stats, files, &options, &lights);
+        let report = Report::new(&frame.stats, files, options, &lights);
         outputs.push(output::ready(path, output::json(&report).as_bytes())?);
     }
     Ok(output::publish(outputs)?)
@@ -124,7 +131,7 @@ fn description(frame: &Frame, scene: &Scene) -> Description {
         .with_scene(&*frame.stats.scene.name)
         .with_settings(settings.to_string());
     let Some(camera) = scene.cameras.first() else { return description };
-    let [width, height] = frame.size().map(f64::from);
+    let [width, height] = frame.stats.settings.size.map(f64::from);
     let origin = scene.to_world(Vec3::ZERO);
     // Columns of a matrix for column vectors are rows of one for row vectors.
     let rows = |matrix: DMat4| matrix.as_mat4().to_cols_array();
@@ -132,10 +139,19 @@ fn description(frame: &Frame, scene: &Scene) -> Description {
 }
 
 /// Exposure of the image file: none if it stores linear values. Candela and lux say nothing of the range of a screen.
-fn exposure(image: &image::Frame, scene: &Scene, files: &PictureFiles, watcher: &Watcher) -> f32 {
+fn exposure(scene: &Scene, files: &PictureFiles) -> Exposure {
     let photometric = scene.lights.iter().any(|light| light.falloff == Falloff::InverseSquare);
-    match files.exposure.unwrap_or(if photometric { Exposure::Auto } else { Exposure::Stops(0.0) }) {
-        _ if Format::from_path(&files.picture) == Some(Format::Exr) => 0.0,
+    match files.exposure {
+        _ if Format::from_path(&files.picture) == Some(Format::Exr) => Exposure::Stops(0.0),
+        Some(chosen) => chosen,
+        None if photometric => Exposure::Auto,
+        None => Exposure::Stops(0.0),
+    }
+}
+
+/// The exposure in stops.
+fn stops(image: &image::Frame, exposure: Exposure, watcher: &Watcher) -> f32 {
+    match exposure {
         Exposure::Stops(stops) => stops,
         Exposure::Auto => {
             let stops = image.auto_exposure();
@@ -147,7 +163,7 @@ fn exposure(image: &image::Frame, scene: &Scene, files: &PictureFiles, watcher: 
 
 fn summary(frame: &Frame, files: &PictureFiles) -> String {
     let (settings, seconds) = (&frame.stats.settings, &frame.stats.seconds);
-    let [width, height] = settings.size;
+    let [width, height] = settings.crop.map_or(settings.size, |[_, _, width, height]| [width, height]);
     format!(
         "{}, {width}x{height}, {}: {:.3} s (load {:.3} s, build {:.3} s, write {:.3} s), {}",
         frame.stats.scene.name,

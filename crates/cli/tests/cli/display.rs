@@ -101,3 +101,20 @@ fn halves_are_half_the_size_and_bytes_are_the_same_for_any_number_of_threads() {
     };
     assert!(written("1") == written("3"));
 }
+
+#[test]
+fn a_crop_is_a_part_of_the_whole_also_as_codes() {
+    let place = place();
+    // An automatic exposure and dithering depend on the whole image.
+    for flags in [&["--exposure", "auto"][..], &["--dither", "on", "--background", "transparent"]] {
+        let (whole, settings) = render(&place, "whole.png", flags);
+        assert_eq!(settings["crop"], Value::Null);
+        let (part, settings) = render(&place, "part.png", &[flags, &["--crop", "9,7,14,8"]].concat());
+        assert_eq!((&settings["crop"], &settings["size"]), (&json!([9, 7, 14, 8]), &json!([32, 24])));
+        let expected = whole.cropped([9, 7], [14, 8]).unwrap();
+        assert_eq!((part.width(), part.height()), (14, 8));
+        assert_eq!((part.color(), part.alpha()), (expected.color(), expected.alpha()), "{flags:?}");
+    }
+    let message = place.refused(&["render", "ball.toml", "-o", "a.png", "--size", "32x24", "--crop", "9,7,24,8"]);
+    assert!(message.contains("9,7,24,8") && message.contains("32x24") && message.contains("--crop"), "{message}");
+}

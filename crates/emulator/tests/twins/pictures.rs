@@ -4,7 +4,8 @@ use glam::Vec3;
 use lightmesh_image::{Layers, Transfer};
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{
-    Counts, Frame, GivenPoints, Lookup, Mode, PointVisibility, Settings, Step, Unobserved, render_on, visibility_on,
+    Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, Settings, Step, Unobserved, render_on,
+    visibility_on,
 };
 use lightmesh_scene::Bounds;
 use lightmesh_testkit::Random;
@@ -32,12 +33,17 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         for way in WAYS {
             let (name, ..) = way;
             let picture = format!("{}::picture::{name}", subject.name);
-            cases.push(Case::new(picture, move |cuda| same_picture(cuda, subject, way, 1)));
+            cases.push(Case::new(picture, move |cuda| same_picture(cuda, subject, settings(subject, way))));
             let samples = format!("{}::samples::{name}", subject.name);
-            cases.push(Case::new(samples, move |cuda| same_picture(cuda, subject, way, 6)));
+            cases.push(Case::new(samples, move |cuda| same_picture(cuda, subject, settings(subject, way).with_aa(6))));
             let points = format!("{}::points::{name}", subject.name);
             cases.push(Case::new(points, move |cuda| same_at_points(cuda, subject, way)));
         }
+    }
+    for way in WAYS {
+        let part = format!("{}::part::{}", TEXTURED.name, way.0);
+        let crop = move || settings(&TEXTURED, way).with_aa(3).with_crop(Crop::new([17, 9], [15, 11]));
+        cases.push(Case::new(part, move |cuda| same_picture(cuda, &TEXTURED, crop())));
     }
     cases
 }
@@ -48,10 +54,9 @@ fn settings(subject: &Subject, (_, mode, lookup): Way) -> Settings {
     settings.with_samples(4).with_step(Step::Fixed(subject.step)).with_radius(2.1).with_aa(1)
 }
 
-/// The image with `aa` samples of a pixel.
-fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, way: Way, aa: u32) {
+/// The image with these settings.
+fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, settings: Settings) {
     let scene = subject.prepared(0);
-    let settings = settings(subject, way).with_aa(aa);
     let host = render_on(&Cpu, scene, &settings, &Unobserved).unwrap();
     let device = render_on(cuda, scene, &settings, &Unobserved).unwrap();
     same_colors::<R>(&host, &device);

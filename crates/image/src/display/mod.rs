@@ -100,7 +100,9 @@ impl Display {
             (BitDepth::Eight, false, None) => transfer.encode_into(&shown, bytes),
             (BitDepth::Eight, false, _) => put(bytes, &shown, alpha, |_, value| [transfer.encode(value)], narrow),
             (BitDepth::Eight, true, _) => {
-                let code = |x, value| [transfer.encode_between(value, dither::threshold(x, y as u32))];
+                let [left, top] = frame.window().first;
+                let threshold = |x: u32| dither::threshold(left.wrapping_add(x), top.wrapping_add(y as u32));
+                let code = |x, value| [transfer.encode_between(value, threshold(x))];
                 put(bytes, &shown, alpha, code, narrow);
             }
             (BitDepth::Sixteen, ..) => {

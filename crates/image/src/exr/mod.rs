@@ -81,6 +81,28 @@ mod tests {
     }
 
     #[test]
+    fn a_part_of_an_image_says_where_it_lies() {
+        use ::exr::meta::MetaData;
+
+        let whole = layered(2);
+        for &compression in ExrCompression::ALL {
+            let part = whole.cropped([1, 1], [2, 1]).unwrap();
+            let options = SaveOptions::default().with_exr(ExrOptions::default().with_compression(compression));
+            let mut output = Cursor::new(Vec::new());
+            write_layers(&part, part.layers().unwrap(), &options, &mut output).unwrap();
+            let bytes = output.into_inner();
+            let meta = MetaData::read_from_buffered(Cursor::new(&bytes), true).unwrap();
+            let header = &meta.headers[0];
+            let shown = header.shared_attributes.display_window;
+            assert_eq!((shown.position.0, shown.position.1, shown.size.0, shown.size.1), (0, 0, 3, 2), "{compression}");
+            let data = header.own_attributes.layer_position;
+            assert_eq!((data.0, data.1), (1, 1), "{compression}");
+            let back = read(&bytes).unwrap();
+            assert_eq!((back.color(), back.layers()), (part.color(), part.layers()), "{compression}");
+        }
+    }
+
+    #[test]
     fn every_compression_and_kind_of_number_comes_back() {
         let frame = layered(2).with_alpha(vec![0.5, 1.0, 0.0, 0.25, 1.0, 0.75]).unwrap();
         let exact = frame.layers().unwrap();

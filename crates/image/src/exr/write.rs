@@ -12,7 +12,7 @@ use ::exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock};
 use ::exr::block::writer::ChunksWriter;
 use ::exr::block::{BlockIndex, UncompressedBlock};
 use ::exr::meta::BlockDescription;
-use ::exr::meta::attribute::{ChannelDescription, LineOrder, SampleType, Text};
+use ::exr::meta::attribute::{ChannelDescription, IntegerBounds, LineOrder, SampleType, Text};
 use ::exr::meta::header::Header;
 use ::exr::prelude::{Compression, Vec2, f16};
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use super::{ALPHA, COLOR, DEPTH, NORMAL, POSITION, USED, attributes, visibility_name};
 use crate::options::{ExrCompression, ExrSamples, SaveOptions};
 use crate::save::{EncodeError, check_fits};
-use crate::{Format, Frame, Layers, deflate};
+use crate::{Format, Frame, Layers, Window, deflate};
 
 /// Blocks that are held in memory at once.
 const AT_ONCE: usize = 32;
@@ -132,7 +132,12 @@ fn header(frame: &Frame, channels: &[Channel<'_>], options: &SaveOptions) -> Hea
         BlockDescription::ScanLines,
         LineOrder::Increasing,
     );
-    attributes::described(header, &options.description)
+    let mut header = attributes::described(header, &options.description);
+    // The crate and the format number pixels in 31 bits; images are smaller.
+    let Window { first, whole } = frame.window();
+    header.own_attributes.layer_position = Vec2(first[0] as i32, first[1] as i32);
+    header.shared_attributes.display_window = IntegerBounds::from_dimensions((whole[0] as usize, whole[1] as usize));
+    header
 }
 
 fn io_error(error: ::exr::error::Error) -> io::Error {
@@ -161,7 +166,8 @@ fn chunk(channels: &[Channel<'_>], header: &Header, rows: Range<usize>) -> ::exr
     let compressed = deflate::zlib(&differences(&bytes), LEVEL);
     // Blocks that are not shorter are stored as they are.
     let compressed_pixels_le = if compressed.len() < bytes.len() { compressed } else { bytes };
-    let block = CompressedScanLineBlock { y_coordinate: start as i32, compressed_pixels_le };
+    let y_coordinate = header.own_attributes.layer_position.y() + start as i32;
+    let block = CompressedScanLineBlock { y_coordinate, compressed_pixels_le };
     Ok(Chunk { layer_index: 0, compressed_block: CompressedBlock::ScanLine(block) })
 }
 

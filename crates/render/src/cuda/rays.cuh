@@ -33,7 +33,7 @@ DEVICE bool tile_ray_of_thread(const Rays &rays, unsigned block, unsigned thread
     return ray_in_tile<TILE_SIDE>(rays, block, thread, ray);
 }
 
-// The pixel of a ray, y · width + x of the whole image.
+// The pixel of a ray, y · width + x of the window.
 DEVICE unsigned pixel_of(const Rays &rays, unsigned ray) {
     return rays.list != nullptr ? __ldg(&rays.list[ray].pixel) : rays.first_pixel + ray;
 }
@@ -48,20 +48,30 @@ DEVICE Ray ray_towards(const View &view, float x, float y) {
     return Ray{view.origin + aside, view.forward, INFINITE};
 }
 
-// The camera ray through the centre of a pixel.
-DEVICE Ray view_ray(const View &view, unsigned pixel) {
-    const unsigned width = view.size[0], height = view.size[1];
-    const float x = (float)(pixel % width) + 0.5f - 0.5f * (float)width;
-    const float y = (float)(pixel / width) + 0.5f - 0.5f * (float)height;
-    return ray_towards(view, x, y);
+// The column (axis 0) or row (axis 1) in the image of a pixel of the window.
+DEVICE unsigned place_in_image(const View &view, unsigned pixel, unsigned axis) {
+    return (axis == 0 ? pixel % view.size[0] : pixel / view.size[0]) + view.first[axis];
 }
+
+// The number in the image of a pixel of the window.
+DEVICE unsigned number_in_image(const View &view, unsigned pixel) {
+    // Given points have no window.
+    if (view.size[0] == view.whole[0])
+        return view.first[1] * view.whole[0] + pixel;
+    return place_in_image(view, pixel, 1) * view.whole[0] + place_in_image(view, pixel, 0);
+}
+
+// The centre of a pixel along an axis, in pixels from that of the image.
+DEVICE float center_of(const View &view, unsigned pixel, unsigned axis) {
+    return (float)place_in_image(view, pixel, axis) + 0.5f - 0.5f * (float)view.whole[axis];
+}
+
+// The camera ray through the centre of a pixel.
+DEVICE Ray view_ray(const View &view, unsigned pixel) { return ray_towards(view, center_of(view, pixel, 0), center_of(view, pixel, 1)); }
 
 // The ray through the point of a pixel that is (`right`, `down`) from its centre, in pixels.
 DEVICE Ray view_ray_beside(const View &view, unsigned pixel, float right, float down) {
-    const unsigned width = view.size[0], height = view.size[1];
-    const float x = (float)(pixel % width) + 0.5f - 0.5f * (float)width;
-    const float y = (float)(pixel / width) + 0.5f - 0.5f * (float)height;
-    return ray_towards(view, x + right, y + down);
+    return ray_towards(view, center_of(view, pixel, 0) + right, center_of(view, pixel, 1) + down);
 }
 
 // Sixteen bytes of a listed ray: origin and pixel, direction, weight.
@@ -88,6 +98,6 @@ DEVICE unsigned sample_of(const Rays &rays, unsigned ray) { return rays.list != 
 // The key that distinguishes the random patterns of two surface points: the pixel, its sample, and whether it is in a list, such as that of
 // mirror rays.
 DEVICE unsigned long long ray_key(const Rays &rays, unsigned ray) {
-    const unsigned long long key = (unsigned long long)pixel_of(rays, ray) << 1 | (rays.list != nullptr ? 1 : 0);
+    const unsigned long long key = (unsigned long long)number_in_image(rays.view, pixel_of(rays, ray)) << 1 | (rays.list != nullptr ? 1 : 0);
     return (unsigned long long)sample_of(rays, ray) << 33 | key;
 }

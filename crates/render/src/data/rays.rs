@@ -5,10 +5,11 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::accel::{Hit, Ray, Triangle};
+use crate::antialiasing::Antialiasing;
 use crate::prepared::PreparedScene;
 use crate::shadow::terminator::ShadowPoint;
 use crate::surface::SurfacePoint;
-use crate::view::View;
+use crate::view::{View, Window};
 
 /// What the samples of some pixels see.
 #[derive(Clone, Debug)]
@@ -34,7 +35,7 @@ impl Sampled {
 pub struct RayList {
     /// The rays; directions have unit length.
     pub rays: Vec<Ray>,
-    /// The pixel of each ray, y · width + x.
+    /// The pixel of each ray, y · width + x of the window.
     pub pixels: Vec<u32>,
     /// The number of the pixel's sample that each ray goes through, and one. Empty if pixels have one sample.
     pub samples: Vec<u32>,
@@ -50,6 +51,8 @@ pub struct RayList {
     pub spacing: [f32; 2],
     /// The camera and its image, all pixels of some rows; `None` if the rays are not a camera's.
     pub view: Option<View>,
+    /// The pixels among those of the image.
+    pub window: Window,
     /// The triangles that the rays hit in place of the scene's, if they come from given points; else empty.
     pub probes: Vec<Triangle>,
 }
@@ -63,13 +66,13 @@ impl RayList {
 
     /// An empty list of rays from the same camera.
     pub(crate) fn empty(&self) -> RayList {
-        RayList { spacing: self.spacing, ..RayList::default() }
+        RayList { spacing: self.spacing, window: self.window, ..RayList::default() }
     }
 
-    /// The ray through the point of a pixel that is `aside` from its centre, in pixels. The rays must be a camera's.
+    /// The ray through a sample of a pixel. The rays must be a camera's.
     #[inline(always)]
-    pub(crate) fn beside(&self, pixel: u32, aside: [f32; 2]) -> Ray {
-        self.view.as_ref().expect("the rays are a camera's").ray_beside(pixel, aside)
+    pub(crate) fn through(&self, all: &Antialiasing, pixel: u32, sample: u32) -> Ray {
+        all.ray(self.view.as_ref().expect("the rays are a camera's"), pixel, sample)
     }
 
     /// Adds the rays of another list, which goes through samples of pixels as this does.
@@ -94,7 +97,8 @@ impl RayList {
     /// The key that distinguishes the random patterns of two surface points: the pixel, its sample, and whether it is in a list,
     /// such as that of mirror rays.
     pub(crate) fn key(&self, ray: usize) -> u64 {
-        u64::from(self.sample(ray)) << 33 | u64::from(self.pixels[ray]) << 1 | u64::from(!self.from_camera())
+        let pixel = self.window.number(self.pixels[ray]);
+        u64::from(self.sample(ray)) << 33 | u64::from(pixel) << 1 | u64::from(!self.from_camera())
     }
 }
 

@@ -27,7 +27,7 @@ use crate::observer::{Observer, Unobserved};
 use crate::passes::{Baking, Passes};
 use crate::prepared::{Preparations, PreparedScene};
 use crate::probes::{GivenPoints, PointVisibility};
-use crate::settings::Settings;
+use crate::settings::{Crop, Settings};
 use crate::stats::Stats;
 use resolve::Resolved;
 
@@ -284,7 +284,7 @@ fn picture_on<B: Backend>(
     let Resolved { technique, view, plan, .. } = &resolved;
     backend.check_host_memory(plan)?;
     let job = resolved.job(observer);
-    let mut picture = Picture::new(settings.size, plan.layers);
+    let mut picture = Picture::new(plan.size, plan.layers);
     if plan.coverage {
         picture = picture.with_coverage();
     }
@@ -303,5 +303,11 @@ fn picture_on<B: Backend>(
     if !settings.layers {
         picture.layers = None;
     }
-    Ok(Frame { image: picture.into_frame(), stats })
+    let window = view.window();
+    let image = picture.into_frame().with_window(window.first, window.whole);
+    let image = match settings.crop {
+        Some(Crop { first, size }) => image.cropped(first, size).expect("the window has all pixels of the crop"),
+        None => image,
+    };
+    Ok(Frame { image, stats })
 }

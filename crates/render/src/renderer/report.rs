@@ -6,6 +6,7 @@ use super::resolve::Resolved;
 use crate::backend::Backend;
 use crate::counters::Counts;
 use crate::job::Job;
+use crate::settings::Crop;
 use crate::stage::Seconds;
 use crate::stats::{CameraStats, DeviceStats, MemoryStats, SceneStats, SettingsStats, Stats};
 
@@ -54,6 +55,7 @@ fn settings(resolved: &Resolved, device: &'static str, rows_per_band: u32) -> Se
         mode: settings.mode.name(),
         bounces: settings.bounces,
         size: settings.size,
+        crop: settings.crop.map(|Crop { first: [x, y], size: [width, height] }| [x, y, width, height]),
         device,
         threads: rayon::current_num_threads(),
         step: None,

@@ -1,5 +1,6 @@
 //! Checks the settings, and chooses what they leave open.
 
+use lightmesh_layout::constants::AROUND;
 use lightmesh_memory::Budget;
 use lightmesh_scene::{Bounds, Camera};
 
@@ -11,9 +12,9 @@ use crate::observer::Observer;
 use crate::plan::{Footprint, Plan};
 use crate::prepared::PreparedScene;
 use crate::probes::{GivenPoints, Probes, ROW};
-use crate::settings::{Setting, Settings, Sharing};
+use crate::settings::{Crop, Setting, Settings, Sharing};
 use crate::techniques::{Request, Technique};
-use crate::view::View;
+use crate::view::{View, Window};
 
 /// More threads than any machine has logical CPUs would only wait for each other.
 const MAX_THREADS: usize = 1024;
@@ -78,8 +79,9 @@ impl<'a> Resolved<'a> {
         check(settings)?;
         scene.check(&settings.acceleration)?;
         let camera = camera(scene, settings);
-        let view = View::new(&camera, settings.size);
-        let technique = Technique::resolve(&Request { scene, settings, view: &view, observer, bounds })?;
+        // What is chosen does not depend on the part of the image.
+        let whole = View::new(&camera, settings.size);
+        let technique = Technique::resolve(&Request { scene, settings, view: &whole, observer, bounds })?;
         let lights = LightGroups { lights: scene.scene.lights.len(), at_once: technique.lights_at_once() };
         let samples = Technique::samples(settings);
         let antialiasing = match Technique::pixel_samples(settings) {
@@ -90,8 +92,9 @@ impl<'a> Resolved<'a> {
                 Some(Antialiasing { apart: all.apart || settings.sharing == Sharing::Never, mirrors, keeps, ..all })
             }
         };
+        let window = window(settings, &technique, antialiasing.as_ref());
         let plan = Plan {
-            size: settings.size,
+            size: window.size,
             // With one sample of a pixel, coverage is found from its depth.
             coverage: settings.transparent && antialiasing.is_some(),
             layers: (settings.layers || settings.transparent && antialiasing.is_none()).then_some(lights.lights),
@@ -105,7 +108,7 @@ impl<'a> Resolved<'a> {
         };
         let sampling = Sampling { samples, seed: settings.seed, spread: technique.spreads_points() };
         let pixels = plan.pixels();
-        Ok(Resolved { scene, settings, camera, view, technique, plan, sampling, pixels })
+        Ok(Resolved { scene, settings, camera, view: whole.with_window(window), technique, plan, sampling, pixels })
     }
 }
 
@@ -141,6 +144,13 @@ fn check(settings: &Settings) -> Result<(), RenderError> {
             remedy: "both sides must be at least 1, and the number of pixels below 4294967295",
         });
     }
+    if let Some(crop) = settings.crop.filter(|crop| !crop.is_within(settings.size)) {
+        return Err(RenderError::Setting {
+            setting: Setting::Crop,
+            value: crop.to_string(),
+            remedy: "choose pixels of the image, at least one",
+        });
+    }
     let samples = Technique::samples(settings);
     if !(1..=u32::from(u16::MAX)).contains(&samples) {
         return Err(RenderError::Setting {
@@ -158,6 +168,14 @@ fn check(settings: &Settings) -> Result<(), RenderError> {
         });
     }
     Ok(())
+}
+
+/// The pixels that are rendered: those that are asked for, and those around them on which they depend.
+fn window(settings: &Settings, technique: &Technique, antialiasing: Option<&Antialiasing>) -> Window {
+    let Some(Crop { first, size }) = settings.crop else { return Window::all(settings.size) };
+    let neighbours = if technique.needs_neighbours() { AROUND } else { 0 };
+    let margin = neighbours + antialiasing.map_or(0, Antialiasing::margin);
+    Window { size, first, whole: settings.size }.grown(margin)
 }
 
 fn camera(scene: &PreparedScene, settings: &Settings) -> Camera {

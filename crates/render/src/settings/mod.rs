@@ -2,12 +2,14 @@
 
 mod acceleration;
 mod choices;
+mod crop;
 mod setting;
 
 use lightmesh_scene::{Camera, Up, Weight};
 
 pub use acceleration::Acceleration;
 pub use choices::{Filter, Lookup, Mode, Quality, ShadowTests, Sharing, ShortTests, Step, UnknownStep};
+pub use crop::{Crop, UnknownCrop};
 pub use setting::Setting;
 
 /// All settings of an image, apart from the scene. Fields can be set, or methods chained; more may be added.
@@ -25,8 +27,10 @@ pub struct Settings {
     pub mode: Mode,
     /// Depth of mirror recursion.
     pub bounces: u32,
-    /// Width and height in pixels.
+    /// Width and height of the whole image in pixels.
     pub size: [u32; 2],
+    /// The part of the image that is rendered, with the same colours as in the whole; `None`: all of it.
+    pub crop: Option<Crop>,
     /// The camera; `None`: the scene's first, else one that frames the scene.
     pub camera: Option<Camera>,
     /// The up axis for a camera that frames the scene.
@@ -72,6 +76,7 @@ impl Default for Settings {
             mode: Mode::LightMesh,
             bounces: 0,
             size: [1024, 1024],
+            crop: None,
             camera: None,
             up: Up::Y,
             step: None,
@@ -115,6 +120,11 @@ impl Settings {
     /// Width and height in pixels.
     pub fn with_size(self, size: [u32; 2]) -> Settings {
         Settings { size, ..self }
+    }
+
+    /// This part of the image alone.
+    pub fn with_crop(self, crop: Crop) -> Settings {
+        Settings { crop: Some(crop), ..self }
     }
 
     /// This camera instead of the scene's.

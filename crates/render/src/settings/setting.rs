@@ -9,6 +9,8 @@ use std::fmt;
 pub enum Setting {
     /// [`Settings::size`](crate::Settings::size).
     Size,
+    /// [`Settings::crop`](crate::Settings::crop).
+    Crop,
     /// [`Settings::step`](crate::Settings::step).
     Step,
     /// [`Settings::radius`](crate::Settings::radius).
@@ -37,6 +39,7 @@ impl Setting {
     /// All settings.
     pub const ALL: &[Setting] = &[
         Setting::Size,
+        Setting::Crop,
         Setting::Step,
         Setting::Radius,
         Setting::Mode,
@@ -54,6 +57,7 @@ impl Setting {
     pub fn name(self) -> &'static str {
         match self {
             Setting::Size => "size",
+            Setting::Crop => "crop",
             Setting::Step => "step",
             Setting::Radius => "radius",
             Setting::Mode => "mode",

@@ -3,6 +3,7 @@
 mod adaptive;
 mod antialiasing;
 mod convergence;
+mod crop;
 mod degenerate;
 mod determinism;
 mod fallback;

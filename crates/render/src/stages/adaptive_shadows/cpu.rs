@@ -143,7 +143,7 @@ impl<'a> Band<'a> {
             let pixel = wave.rays.pixels[ray];
             let extent = Extent::new(emitter, &point, wave.scene.geometry.reach(point.origin));
             let Some(known) = extent.at_horizon(point.normal) else { continue };
-            let target = extent.target(point.origin, &self.places, place_of(pixel, self.width as u32));
+            let target = extent.target(point.origin, &self.places, place_of(wave.rays.window.place(pixel)));
             if point.normal.dot(target - point.origin) > 0.0 {
                 segments.push(long_segment(point.origin, target));
                 owners.push((pixel, known));

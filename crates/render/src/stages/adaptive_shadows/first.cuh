@@ -1,11 +1,12 @@
 // The first ray from a surface point to a light: twin of first.rs.
 #pragma once
 
+#include "cuda/rays.cuh"
 #include "shadow/sight.cuh"
 
-// The place of a pixel's ray.
-DEVICE unsigned place_of(unsigned pixel, unsigned width) {
-    return pixel / width % NEIGHBORHOOD * NEIGHBORHOOD + pixel % width % NEIGHBORHOOD;
+// The place of the ray of a pixel of a view's window.
+DEVICE unsigned place_of(const View &view, unsigned pixel) {
+    return place_in_image(view, pixel, 1) % NEIGHBORHOOD * NEIGHBORHOOD + place_in_image(view, pixel, 0) % NEIGHBORHOOD;
 }
 
 // A light as a surface point sees it: its points are at `center + x · u + y · v`.

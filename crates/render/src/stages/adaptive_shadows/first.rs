@@ -32,10 +32,10 @@ pub(super) fn places() -> Places {
     [discs, rectangles]
 }
 
-/// The place of a pixel's ray.
+/// The place of the ray of a pixel in column `x` and row `y` of the image.
 #[inline(always)]
-pub(super) fn place_of(pixel: u32, width: u32) -> u32 {
-    pixel / width % NEIGHBORHOOD * NEIGHBORHOOD + pixel % width % NEIGHBORHOOD
+pub(super) fn place_of([x, y]: [u32; 2]) -> u32 {
+    y % NEIGHBORHOOD * NEIGHBORHOOD + x % NEIGHBORHOOD
 }
 
 /// A light as a surface point sees it: its points are at `center + x · u + y · v`.
@@ -91,7 +91,7 @@ mod tests {
     fn every_neighborhood_has_all_places() {
         for (x, y) in [(0, 0), (3, 1), (7, 12)] {
             let pixels = (0..NEIGHBORHOOD).flat_map(|row| (0..NEIGHBORHOOD).map(move |column| (x + column, y + row)));
-            let found: BTreeSet<u32> = pixels.map(|(x, y)| place_of(y * 23 + x, 23)).collect();
+            let found: BTreeSet<u32> = pixels.map(|(x, y)| place_of([x, y])).collect();
             assert!(found.into_iter().eq(0..FIRST_TARGETS), "{x}, {y}");
         }
     }

@@ -28,7 +28,7 @@ DEVICE bool first_ray(const AdaptiveShadows &args, const Light &light, Shape sha
         return shadows.share != nullptr;
     }
     const Extent extent = extent_of(shadows.scene, light, shape, point);
-    const unsigned place = place_of(pixel_of(shadows.rays, ray), shadows.rays.view.size[0]);
+    const unsigned place = place_of(shadows.rays.view, pixel_of(shadows.rays, ray));
     target = first_target(extent, point.origin, args.places, place);
     return at_horizon(extent, point.normal, known);
 }

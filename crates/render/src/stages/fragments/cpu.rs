@@ -70,7 +70,7 @@ fn is_split(wave: &HostWave, samples: &PixelSamples, film: &Picture, all: &Antia
     let hit = |index: u32| samples.hit(samples.first + index, 0);
     let facet = |index: u32| {
         let pixel = samples.first + index;
-        Facet::new(wave.scene, wave.rays.spacing, &wave.rays.beside(pixel, all.aside(pixel, 0)), hit(index))
+        Facet::new(wave.scene, wave.rays.spacing, &wave.rays.through(all, pixel, 0), hit(index))
     };
     if !is_shared(index) || !hit(index).is_some() {
         return false;
@@ -147,7 +147,7 @@ impl Pixel<'_> {
     }
 
     fn facet(&self, sample: u32, hit: &Hit) -> Facet {
-        let ray = self.wave.rays.beside(self.pixel, self.all.aside(self.pixel, self.samples.numbers.start + sample));
+        let ray = self.wave.rays.through(self.all, self.pixel, self.samples.numbers.start + sample);
         Facet::new(self.wave.scene, self.wave.rays.spacing, &ray, hit)
     }
 
@@ -160,7 +160,7 @@ impl Pixel<'_> {
 
     fn add(&self, list: &mut RayList, sample: u32, shared: u32, weight: f32) {
         let sample = self.samples.numbers.start + sample;
-        list.rays.push(self.wave.rays.beside(self.pixel, self.all.aside(self.pixel, sample)));
+        list.rays.push(self.wave.rays.through(self.all, self.pixel, sample));
         list.pixels.push(self.pixel);
         list.samples.push(sample + 1);
         list.shared.push(shared);

@@ -8,7 +8,7 @@ use crate::data::wave::HostWave;
 use crate::shading::Surface;
 
 pub(crate) fn mirror_rays(wave: &HostWave) -> RayList {
-    let mut next = RayList::default();
+    let mut next = RayList { window: wave.rays.window, ..RayList::default() };
     for ray in (0..wave.hits.len()).filter(|&ray| wave.sees(ray)) {
         let surface = Surface::new(wave, ray);
         let weight = wave.rays.weight(ray) * surface.coefficients.ks;

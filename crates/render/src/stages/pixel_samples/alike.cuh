@@ -1,6 +1,7 @@
 // The samples of a pixel, and whether two of them lie on one surface: twin of alike.rs, and of antialiasing.rs.
 #pragma once
 
+#include "cuda/rays.cuh"
 #include "sampling.cuh"
 #include "surface.cuh"
 
@@ -15,7 +16,7 @@ DEVICE float quantile(const PixelSamples &args, float u) {
 // The ray through a sample of the pixel of ray number `ray`; `sample` is its number among those of the range.
 DEVICE Ray sample_ray(const PixelSamples &args, unsigned ray, unsigned sample) {
     const unsigned pixel = args.rays.first_pixel + ray;
-    const Pattern pattern = pattern_of(args.seed, pixel, PIXEL_PATTERN);
+    const Pattern pattern = pattern_of(args.seed, number_in_image(args.rays.view, pixel), PIXEL_PATTERN);
     const Vec3 point = pattern_point(pattern, args.samples[0] + sample);
     return view_ray_beside(args.rays.view, pixel, quantile(args, point.x), quantile(args, point.y));
 }

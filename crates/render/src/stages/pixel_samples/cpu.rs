@@ -38,7 +38,7 @@ pub(crate) fn pixel_samples(
     let found = rays.pixels.par_chunks(BATCH).map(|pixels| {
         job.piece(pixels.len() * count, || {
             let through = |&pixel: &u32| {
-                let pattern = all.pattern(pixel);
+                let pattern = all.pattern(view.window().number(pixel));
                 numbers.clone().map(move |sample| view.ray_beside(pixel, all.within(&pattern, sample)))
             };
             let rays: Vec<Ray> = pixels.iter().flat_map(through).collect();
@@ -69,7 +69,7 @@ pub(crate) fn pixel_samples(
         .map(|((&pixel, hit), ray)| {
             let shared = samples.of(pixel).enumerate().all(|(sample, other)| {
                 is_alike(hit, other, || {
-                    let beside = view.ray_beside(pixel, all.aside(pixel, sample as u32));
+                    let beside = all.ray(&view, pixel, sample as u32);
                     let facet = |ray, hit| Facet::new(scene, rays.spacing, ray, hit);
                     facet(ray, hit).continues(&facet(&beside, other))
                 })
@@ -109,7 +109,7 @@ fn nearest(scene: &PreparedScene, rays: &RayList, samples: &PixelSamples, film: 
     for (index, pixel) in (samples.first..).enumerate().take(samples.state.len()) {
         for (sample, hit) in numbers.clone().zip(samples.of(pixel)).filter(|(_, hit)| hit.is_some()) {
             if hit.t < layers.depth[index] {
-                let ray = view.ray_beside(pixel, all.aside(pixel, sample));
+                let ray = all.ray(&view, pixel, sample);
                 let point: (Vec3, Vec3) = {
                     let facet = Facet::new(scene, rays.spacing, &ray, hit);
                     (facet.point.position, facet.point.normal)
