@@ -169,6 +169,12 @@ constants! {
     LEAST_SQUARE: f32 = 1e-30;
     /// If the square of its length is below this, an interpolated normal has cancelled out.
     LEAST_SMOOTH_SQUARE: f32 = 1e-12;
+    /// Share of each channel in the brightness of a colour (ITU-R BT.709-6, item 3.2).
+    LUMINANCE_RED: f32 = 0.2126;
+    /// Of green.
+    LUMINANCE_GREEN: f32 = 0.7152;
+    /// Of blue.
+    LUMINANCE_BLUE: f32 = 0.0722;
     /// Vertex normals farther from the triangle's than this cosine says, 45°, do not tell a curved surface.
     LEAST_CURVED_COSINE: f32 = 0.707;
     /// How far the curved surface is from the triangle, as a share of the way to the planes that touch it at the corners (Boubekeur

@@ -78,8 +78,8 @@ records! {
         texture: u32,
         /// Emitted light.
         emission: Vec3,
-        /// Padding to a multiple of sixteen bytes.
-        spare_a: u32,
+        /// 1: only the shadows on it are seen.
+        catcher: u32,
         /// The specular part that is tinted.
         ks_tinted: Vec3,
         /// Padding to a multiple of sixteen bytes.

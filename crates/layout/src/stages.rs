@@ -160,6 +160,10 @@ records! {
         color: Out<Vec3>,
         /// While groups of lights follow, the radiance of each ray so far; null if that has its place in `color`.
         sums: Out<Vec3>,
+        /// How much light shadow catchers get, as a share of what they would get alone, by pixel; null if that is not kept.
+        caught: Out<f32>,
+        /// The same for each ray; null if a pixel has one.
+        ray_caught: Out<f32>,
         /// What the samples of the camera's pixels see, sample by sample; null if a pixel has one.
         samples: In<Hit>,
         /// Distance by pixel; null if no layers are kept, like all fields that follow.
@@ -190,6 +194,10 @@ records! {
         first_sampled: u32,
         /// Number of pixels of `samples`.
         sampled_pixels: u64,
+        /// 1 if the scene has shadow catchers.
+        catches: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
     }
 
     /// `pixel_samples`, `merge_samples`, `find_contrast`, `count_fragments` and `emit_fragments`: one thread per pixel of a camera's rows,
@@ -213,6 +221,8 @@ records! {
         fragments: [Out<ListedRay>; 2],
         /// Share of samples that see anything, by pixel; null if that is not kept.
         coverage: Out<f32>,
+        /// How much light shadow catchers get, by pixel; null if that is not kept.
+        caught: Out<f32>,
         /// Distance of the nearest sample by pixel; null if no layers are kept, like all fields that follow.
         depth: Out<f32>,
         /// Its geometric normal.

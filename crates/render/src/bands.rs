@@ -54,6 +54,7 @@ mod tests {
             antialiasing: None,
             bounces: 0,
             coverage: false,
+            caught: false,
             layers,
             lights,
             memory_limit: left,

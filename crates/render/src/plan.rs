@@ -24,6 +24,8 @@ pub struct Plan {
     pub bounces: u32,
     /// Whether the share of a pixel's samples that see anything is kept.
     pub coverage: bool,
+    /// Whether the light that shadow catchers get is kept.
+    pub caught: bool,
     /// Number of lights whose layers are kept; `None`: no layers.
     pub layers: Option<usize>,
     /// Groups of lights whose visibility is held at the same time.
@@ -67,6 +69,7 @@ impl Plan {
 
     /// Bytes of an image per pixel.
     pub(crate) fn film_bytes(&self) -> u64 {
-        12 + if self.coverage { 4 } else { 0 } + self.layers.map_or(0, |lights| 32 + 4 * lights as u64)
+        12 + 4 * (u64::from(self.coverage) + u64::from(self.caught))
+            + self.layers.map_or(0, |lights| 32 + 4 * lights as u64)
     }
 }

@@ -153,6 +153,11 @@ impl PreparedScene {
         lights.ambient.unwrap_or_else(|| lights.default_ambient(&self.geometry.bounds))
     }
 
+    /// Whether anything only shows the shadows on it.
+    pub(crate) fn catches(&self) -> bool {
+        self.scene.geometry.materials.iter().any(|material| material.catcher)
+    }
+
     /// The same geometry under other lights. Their positions are in the geometry's local frame.
     pub fn with_lights(&self, lights: impl Into<Lights>) -> PreparedScene {
         PreparedScene { scene: self.scene.clone().with_lights(lights), ..self.clone() }

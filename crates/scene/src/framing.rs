@@ -33,7 +33,7 @@ const FILL: f32 = 0.92;
 const VIEW: [f32; 3] = [0.55, 0.45, 1.0];
 
 /// Radius over which area mode distributes these lights, as a share of the scene's diagonal.
-const DEFAULT_LIGHT_SPREAD: f32 = 0.02;
+const DEFAULT_LIGHT_SPREAD: f32 = 0.05;
 
 /// Strength of the fill light; that of the key light is 1.
 const FILL_LIGHT: f32 = 0.25;

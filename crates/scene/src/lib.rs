@@ -20,6 +20,7 @@ mod formats;
 mod framing;
 mod geometry;
 mod geometry_check;
+mod ground;
 mod info;
 mod light;
 mod lights;

@@ -30,6 +30,9 @@ pub struct Material {
     pub emission_tinted: Vec3,
     /// An image that tints the surface.
     pub texture: Option<TextureUse>,
+    /// Whether only the shadows on it are seen: it shows the background, darker where it gets less light than it would alone, or is
+    /// transparent there. Then nothing but `ka` and `kd` counts.
+    pub catcher: bool,
 }
 
 impl Default for Material {
@@ -45,6 +48,7 @@ impl Default for Material {
             emission: Vec3::ZERO,
             emission_tinted: Vec3::ZERO,
             texture: None,
+            catcher: false,
         }
     }
 }
@@ -109,6 +113,11 @@ impl Material {
     /// The part of the emitted radiance that is tinted.
     pub fn with_emission_tinted(self, emission_tinted: impl Into<Vec3>) -> Material {
         Material { emission_tinted: emission_tinted.into(), ..self }
+    }
+
+    /// Whether only the shadows on it are seen.
+    pub fn with_catcher(self, catcher: bool) -> Material {
+        Material { catcher, ..self }
     }
 
     /// An image that tints the surface.

@@ -113,6 +113,11 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "COLOUR|transparent", allow_hyphen_values = true, help_heading = "Image")]
     pub(crate) background: Option<Background>,
 
+    /// Catch the scene's shadows on a ground below it, which shows the background, or is transparent with it
+    /// [background: the scene's, else 0.8]
+    #[arg(long, help_heading = "Scene")]
+    pub(crate) ground: bool,
+
     /// Write per-pixel data as a multilayer exr: colour, depth, normal, position, visibility of each light, number of light
     /// points used [default: off]
     #[arg(long, value_name = "F.exr", help_heading = "Image")]

@@ -17,7 +17,11 @@ pub(crate) struct SceneChoices {
     falloff: lightmesh::scene::Falloff,
     ambient: Option<Color>,
     background: Option<Background>,
+    ground: bool,
 }
+
+/// The background of a scene with a ground if none is set: shadows on black would not be seen.
+const GROUND_BACKGROUND: f32 = 0.8;
 
 impl SceneChoices {
     pub(super) fn new(args: &RenderArgs) -> Result<SceneChoices, CameraError> {
@@ -34,6 +38,7 @@ impl SceneChoices {
             falloff: args.falloff,
             ambient: args.ambient,
             background: args.background,
+            ground: args.ground,
         })
     }
 
@@ -63,6 +68,13 @@ impl SceneChoices {
                 "the scene has no lights: using a key light above the camera and a weaker fill light on the other side \
                  (--light replaces them)",
             );
+        }
+        // Cameras and lights that were added look at the scene alone.
+        if self.ground {
+            scene.add_ground(self.up);
+            if self.background.is_none() {
+                scene.lights.background.get_or_insert(Vec3::splat(GROUND_BACKGROUND));
+            }
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use lightmesh_render::{
     Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, Settings, Step, Unobserved, render_on,
     visibility_on,
 };
-use lightmesh_scene::Bounds;
+use lightmesh_scene::{Bounds, Up};
 use lightmesh_testkit::Random;
 
 use crate::scenes::{SUBJECTS, Subject, TEXTURED};
@@ -44,6 +44,11 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         let part = format!("{}::part::{}", TEXTURED.name, way.0);
         let crop = move || settings(&TEXTURED, way).with_aa(3).with_crop(Crop::new([17, 9], [15, 11]));
         cases.push(Case::new(part, move |cuda| same_picture(cuda, &TEXTURED, crop())));
+        for aa in [1, 3] {
+            let ground = format!("{}::ground::{}::{aa}", TEXTURED.name, way.0);
+            let settings = move || settings(&TEXTURED, way).with_aa(aa).with_size([21, 17]);
+            cases.push(Case::new(ground, move |cuda| same_shadows(cuda, &TEXTURED, settings())));
+        }
     }
     cases
 }
@@ -56,7 +61,18 @@ fn settings(subject: &Subject, (_, mode, lookup): Way) -> Settings {
 
 /// The image with these settings.
 fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, settings: Settings) {
-    let scene = subject.prepared(0);
+    same_frame(cuda, subject.prepared(0), settings);
+}
+
+/// What a ground under the scene catches, with alpha.
+fn same_shadows<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, settings: Settings) {
+    let mut scene = subject.scene().clone();
+    scene.add_ground(Up::Y);
+    let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
+    same_frame(cuda, &scene, settings.with_transparent(true));
+}
+
+fn same_frame<R: Target>(cuda: &Cuda<R>, scene: &PreparedScene, settings: Settings) {
     let host = render_on(&Cpu, scene, &settings, &Unobserved).unwrap();
     let device = render_on(cuda, scene, &settings, &Unobserved).unwrap();
     same_colors::<R>(&host, &device);
@@ -106,6 +122,10 @@ fn same_colors<R: Target>(host: &Frame, device: &Frame) {
     let differ = || twins().filter(|(_, (a, b))| !a.iter().zip(*b).all(|(&a, &b)| near(a, b)));
     let allowed = R::allowed(twins().count(), 1000);
     assert!(differ().count() <= allowed, "pixels, on the CPU and on the device: {:?}", differ().collect::<Vec<_>>());
+    let [host, device] = [host, device].map(|frame| frame.image.alpha().unwrap_or_default());
+    assert_eq!(host.len(), device.len());
+    let differ = host.iter().zip(device).filter(|&(&a, &b)| !alike(a, b, SHARE_TOLERANCE)).count();
+    assert!(differ <= allowed, "{differ} alphas differ");
 }
 
 /// What pixels see is bit-identical; visibility differs by no more than the order of a sum can change.

@@ -82,7 +82,8 @@ impl Backend for Cpu {
 
     fn film(&self, plan: &Plan, rows: [Range<u32>; 2]) -> Result<Picture, RenderError> {
         let film = Picture::band(plan.size, rows, plan.layers);
-        Ok(if plan.coverage { film.with_coverage() } else { film })
+        let film = if plan.coverage { film.with_coverage() } else { film };
+        Ok(if plan.caught { film.with_caught() } else { film })
     }
 
     fn camera_rays(&self, view: &View, rows: Range<u32>) -> Result<RayList, RenderError> {

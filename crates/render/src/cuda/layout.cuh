@@ -82,6 +82,12 @@
 #define LEAST_SQUARE 0x1.4484cp-100f
 // If the square of its length is below this, an interpolated normal has cancelled out.
 #define LEAST_SMOOTH_SQUARE 0x1.197998p-40f
+// Share of each channel in the brightness of a colour (ITU-R BT.709-6, item 3.2).
+#define LUMINANCE_RED 0x1.b367ap-3f
+// Of green.
+#define LUMINANCE_GREEN 0x1.6e2eb2p-1f
+// Of blue.
+#define LUMINANCE_BLUE 0x1.27bb3p-4f
 // Vertex normals farther from the triangle's than this cosine says, 45°, do not tell a curved surface.
 #define LEAST_CURVED_COSINE 0x1.69fbe8p-1f
 // How far the curved surface is from the triangle, as a share of the way to the planes that touch it at the corners (Boubekeur
@@ -528,7 +534,7 @@ struct alignas(4) Material {
     Vec3 ks;
     unsigned texture;
     Vec3 emission;
-    unsigned spare_a;
+    unsigned catcher;
     Vec3 ks_tinted;
     unsigned spare_b;
     Vec3 emission_tinted;
@@ -542,7 +548,7 @@ static_assert(PLACE_OF(Material, tinted) == 28, "place of Material::tinted");
 static_assert(PLACE_OF(Material, ks) == 32, "place of Material::ks");
 static_assert(PLACE_OF(Material, texture) == 44, "place of Material::texture");
 static_assert(PLACE_OF(Material, emission) == 48, "place of Material::emission");
-static_assert(PLACE_OF(Material, spare_a) == 60, "place of Material::spare_a");
+static_assert(PLACE_OF(Material, catcher) == 60, "place of Material::catcher");
 static_assert(PLACE_OF(Material, ks_tinted) == 64, "place of Material::ks_tinted");
 static_assert(PLACE_OF(Material, spare_b) == 76, "place of Material::spare_b");
 static_assert(PLACE_OF(Material, emission_tinted) == 80, "place of Material::emission_tinted");
@@ -884,6 +890,8 @@ struct alignas(8) Shade {
     unsigned long long film_pixel;
     Vec3 *color;
     Vec3 *sums;
+    float *caught;
+    float *ray_caught;
     const Hit *samples;
     float *depth;
     Vec3 *normal;
@@ -899,8 +907,10 @@ struct alignas(8) Shade {
     unsigned sample_count;
     unsigned first_sampled;
     unsigned long long sampled_pixels;
+    unsigned catches;
+    unsigned spare;
 };
-static_assert(sizeof(Shade) == 544, "size of Shade");
+static_assert(sizeof(Shade) == 568, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
 static_assert(PLACE_OF(Shade, rays) == 304, "place of Shade::rays");
 static_assert(PLACE_OF(Shade, hits) == 400, "place of Shade::hits");
@@ -909,21 +919,25 @@ static_assert(PLACE_OF(Shade, used) == 416, "place of Shade::used");
 static_assert(PLACE_OF(Shade, film_pixel) == 424, "place of Shade::film_pixel");
 static_assert(PLACE_OF(Shade, color) == 432, "place of Shade::color");
 static_assert(PLACE_OF(Shade, sums) == 440, "place of Shade::sums");
-static_assert(PLACE_OF(Shade, samples) == 448, "place of Shade::samples");
-static_assert(PLACE_OF(Shade, depth) == 456, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 464, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 472, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 480, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 488, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, film_pixels) == 496, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 504, "place of Shade::first_block");
-static_assert(PLACE_OF(Shade, first_light) == 512, "place of Shade::first_light");
-static_assert(PLACE_OF(Shade, end_light) == 516, "place of Shade::end_light");
-static_assert(PLACE_OF(Shade, several) == 520, "place of Shade::several");
-static_assert(PLACE_OF(Shade, sampled) == 524, "place of Shade::sampled");
-static_assert(PLACE_OF(Shade, sample_count) == 528, "place of Shade::sample_count");
-static_assert(PLACE_OF(Shade, first_sampled) == 532, "place of Shade::first_sampled");
-static_assert(PLACE_OF(Shade, sampled_pixels) == 536, "place of Shade::sampled_pixels");
+static_assert(PLACE_OF(Shade, caught) == 448, "place of Shade::caught");
+static_assert(PLACE_OF(Shade, ray_caught) == 456, "place of Shade::ray_caught");
+static_assert(PLACE_OF(Shade, samples) == 464, "place of Shade::samples");
+static_assert(PLACE_OF(Shade, depth) == 472, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 480, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 488, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 496, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 504, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, film_pixels) == 512, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 520, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, first_light) == 528, "place of Shade::first_light");
+static_assert(PLACE_OF(Shade, end_light) == 532, "place of Shade::end_light");
+static_assert(PLACE_OF(Shade, several) == 536, "place of Shade::several");
+static_assert(PLACE_OF(Shade, sampled) == 540, "place of Shade::sampled");
+static_assert(PLACE_OF(Shade, sample_count) == 544, "place of Shade::sample_count");
+static_assert(PLACE_OF(Shade, first_sampled) == 548, "place of Shade::first_sampled");
+static_assert(PLACE_OF(Shade, sampled_pixels) == 552, "place of Shade::sampled_pixels");
+static_assert(PLACE_OF(Shade, catches) == 560, "place of Shade::catches");
+static_assert(PLACE_OF(Shade, spare) == 564, "place of Shade::spare");
 
 struct alignas(8) PixelSamples {
     Scene scene;
@@ -935,6 +949,7 @@ struct alignas(8) PixelSamples {
     unsigned *counts[2];
     ListedRay *fragments[2];
     float *coverage;
+    float *caught;
     float *depth;
     Vec3 *normal;
     Vec3 *position;
@@ -957,7 +972,7 @@ struct alignas(8) PixelSamples {
     unsigned spare;
     float quantiles[64];
 };
-static_assert(sizeof(PixelSamples) == 856, "size of PixelSamples");
+static_assert(sizeof(PixelSamples) == 864, "size of PixelSamples");
 static_assert(PLACE_OF(PixelSamples, scene) == 0, "place of PixelSamples::scene");
 static_assert(PLACE_OF(PixelSamples, rays) == 304, "place of PixelSamples::rays");
 static_assert(PLACE_OF(PixelSamples, hits) == 400, "place of PixelSamples::hits");
@@ -967,27 +982,28 @@ static_assert(PLACE_OF(PixelSamples, color) == 424, "place of PixelSamples::colo
 static_assert(PLACE_OF(PixelSamples, counts) == 432, "place of PixelSamples::counts");
 static_assert(PLACE_OF(PixelSamples, fragments) == 448, "place of PixelSamples::fragments");
 static_assert(PLACE_OF(PixelSamples, coverage) == 464, "place of PixelSamples::coverage");
-static_assert(PLACE_OF(PixelSamples, depth) == 472, "place of PixelSamples::depth");
-static_assert(PLACE_OF(PixelSamples, normal) == 480, "place of PixelSamples::normal");
-static_assert(PLACE_OF(PixelSamples, position) == 488, "place of PixelSamples::position");
-static_assert(PLACE_OF(PixelSamples, visibility) == 496, "place of PixelSamples::visibility");
-static_assert(PLACE_OF(PixelSamples, light_points) == 504, "place of PixelSamples::light_points");
-static_assert(PLACE_OF(PixelSamples, tally) == 512, "place of PixelSamples::tally");
-static_assert(PLACE_OF(PixelSamples, first_block) == 520, "place of PixelSamples::first_block");
-static_assert(PLACE_OF(PixelSamples, seed) == 528, "place of PixelSamples::seed");
-static_assert(PLACE_OF(PixelSamples, film_pixels) == 536, "place of PixelSamples::film_pixels");
-static_assert(PLACE_OF(PixelSamples, spacing) == 544, "place of PixelSamples::spacing");
-static_assert(PLACE_OF(PixelSamples, samples) == 552, "place of PixelSamples::samples");
-static_assert(PLACE_OF(PixelSamples, inner) == 560, "place of PixelSamples::inner");
-static_assert(PLACE_OF(PixelSamples, all_samples) == 568, "place of PixelSamples::all_samples");
-static_assert(PLACE_OF(PixelSamples, light_count) == 572, "place of PixelSamples::light_count");
-static_assert(PLACE_OF(PixelSamples, weight) == 576, "place of PixelSamples::weight");
-static_assert(PLACE_OF(PixelSamples, contrast) == 580, "place of PixelSamples::contrast");
-static_assert(PLACE_OF(PixelSamples, apart) == 584, "place of PixelSamples::apart");
-static_assert(PLACE_OF(PixelSamples, mirrors) == 588, "place of PixelSamples::mirrors");
-static_assert(PLACE_OF(PixelSamples, keeps) == 592, "place of PixelSamples::keeps");
-static_assert(PLACE_OF(PixelSamples, spare) == 596, "place of PixelSamples::spare");
-static_assert(PLACE_OF(PixelSamples, quantiles) == 600, "place of PixelSamples::quantiles");
+static_assert(PLACE_OF(PixelSamples, caught) == 472, "place of PixelSamples::caught");
+static_assert(PLACE_OF(PixelSamples, depth) == 480, "place of PixelSamples::depth");
+static_assert(PLACE_OF(PixelSamples, normal) == 488, "place of PixelSamples::normal");
+static_assert(PLACE_OF(PixelSamples, position) == 496, "place of PixelSamples::position");
+static_assert(PLACE_OF(PixelSamples, visibility) == 504, "place of PixelSamples::visibility");
+static_assert(PLACE_OF(PixelSamples, light_points) == 512, "place of PixelSamples::light_points");
+static_assert(PLACE_OF(PixelSamples, tally) == 520, "place of PixelSamples::tally");
+static_assert(PLACE_OF(PixelSamples, first_block) == 528, "place of PixelSamples::first_block");
+static_assert(PLACE_OF(PixelSamples, seed) == 536, "place of PixelSamples::seed");
+static_assert(PLACE_OF(PixelSamples, film_pixels) == 544, "place of PixelSamples::film_pixels");
+static_assert(PLACE_OF(PixelSamples, spacing) == 552, "place of PixelSamples::spacing");
+static_assert(PLACE_OF(PixelSamples, samples) == 560, "place of PixelSamples::samples");
+static_assert(PLACE_OF(PixelSamples, inner) == 568, "place of PixelSamples::inner");
+static_assert(PLACE_OF(PixelSamples, all_samples) == 576, "place of PixelSamples::all_samples");
+static_assert(PLACE_OF(PixelSamples, light_count) == 580, "place of PixelSamples::light_count");
+static_assert(PLACE_OF(PixelSamples, weight) == 584, "place of PixelSamples::weight");
+static_assert(PLACE_OF(PixelSamples, contrast) == 588, "place of PixelSamples::contrast");
+static_assert(PLACE_OF(PixelSamples, apart) == 592, "place of PixelSamples::apart");
+static_assert(PLACE_OF(PixelSamples, mirrors) == 596, "place of PixelSamples::mirrors");
+static_assert(PLACE_OF(PixelSamples, keeps) == 600, "place of PixelSamples::keeps");
+static_assert(PLACE_OF(PixelSamples, spare) == 604, "place of PixelSamples::spare");
+static_assert(PLACE_OF(PixelSamples, quantiles) == 608, "place of PixelSamples::quantiles");
 
 struct alignas(8) MirrorRays {
     Scene scene;

@@ -18,6 +18,8 @@ pub struct Picture {
     pub color: Vec<[f32; 3]>,
     /// The share of each pixel's samples that see anything, if it was asked for.
     pub coverage: Option<Vec<f32>>,
+    /// How much light the shadow catchers in each pixel get, as a share of what they would get alone and of the pixel; if it is needed.
+    pub caught: Option<Vec<f32>>,
     /// What each of these pixels sees.
     pub layers: Option<Layers>,
     /// While groups of lights follow: the radiance of each ray of a wave so far.
@@ -40,7 +42,8 @@ impl Picture {
             visibility: vec![vec![0.0; pixels]; lights],
             used: vec![0; pixels],
         });
-        Picture { size, rows, kept, color: vec![[0.0; 3]; pixels], coverage: None, layers, sums: Vec::new() }
+        let color = vec![[0.0; 3]; pixels];
+        Picture { size, rows, kept, color, coverage: None, caught: None, layers, sums: Vec::new() }
     }
 
     /// The index of pixel y · width + x of the whole image in the planes.
@@ -61,9 +64,22 @@ impl Picture {
         *color = (glam::Vec3::from_array(*color) + radiance).to_array();
     }
 
+    /// Adds to what shadow catchers get in a pixel of the whole image, if that is kept.
+    pub(crate) fn catch(&mut self, pixel: u32, caught: f32) {
+        let index = self.index(pixel);
+        if let Some(plane) = &mut self.caught {
+            plane[index] += caught;
+        }
+    }
+
     /// Keeps the coverage of each pixel, none so far.
     pub fn with_coverage(self) -> Picture {
         Picture { coverage: Some(vec![0.0; self.color.len()]), ..self }
+    }
+
+    /// Keeps what shadow catchers get.
+    pub fn with_caught(self) -> Picture {
+        Picture { caught: Some(vec![0.0; self.color.len()]), ..self }
     }
 
     /// Copies the kept rows of a band into this image, with its layers and coverage if both have them.
@@ -76,6 +92,9 @@ impl Picture {
         self.color[to.clone()].copy_from_slice(&band.color[from.clone()]);
         if let (Some(coverage), Some(band)) = (&mut self.coverage, &band.coverage) {
             coverage[to.clone()].copy_from_slice(&band[from.clone()]);
+        }
+        if let (Some(caught), Some(band)) = (&mut self.caught, &band.caught) {
+            caught[to.clone()].copy_from_slice(&band[from.clone()]);
         }
         if let (Some(layers), Some(band)) = (&mut self.layers, &band.layers) {
             layers.depth[to.clone()].copy_from_slice(&band.depth[from.clone()]);
@@ -98,6 +117,13 @@ impl Picture {
         let depths = self.layers.as_ref().map(|layers| &layers.depth);
         self.coverage =
             depths.map(|depths| depths.iter().map(|depth| f32::from(u8::from(depth.is_finite()))).collect());
+    }
+
+    /// What a shadow catcher gets of its light is not covered.
+    pub(crate) fn uncover_caught(&mut self) {
+        if let (Some(coverage), Some(caught)) = (&mut self.coverage, self.caught.take()) {
+            coverage.iter_mut().zip(caught).for_each(|(coverage, caught)| *coverage = (*coverage - caught).max(0.0));
+        }
     }
 
     /// Takes the background out of all pixels, as far as they are not covered: what remains is premultiplied by the coverage.

@@ -21,9 +21,13 @@ pub struct DeviceFilm<R: Runtime> {
     width: u32,
     color: Buffer<R, Vec3>,
     coverage: Option<Buffer<R, f32>>,
+    /// What shadow catchers get, by pixel.
+    caught: Option<Buffer<R, f32>>,
     layers: Option<DeviceLayers<R>>,
     /// The radiance of each ray of a wave, while groups of lights follow or pixels have several rays.
     sums: Option<Buffer<R, Vec3>>,
+    /// What the shadow catcher that each of them sees gets.
+    ray_caught: Option<Buffer<R, f32>>,
 }
 
 struct DeviceLayers<R: Runtime> {
@@ -57,7 +61,9 @@ impl<R: Runtime> DeviceFilm<R> {
         });
         let layers = layers.transpose()?;
         let coverage = plan.coverage.then(|| pool.zeros("coverage", pixels)).transpose()?;
-        Ok(DeviceFilm { rows, kept, width, color: pool.zeros("radiance", pixels)?, coverage, layers, sums: None })
+        let caught = plan.caught.then(|| pool.zeros("light of shadow catchers", pixels)).transpose()?;
+        let color = pool.zeros("radiance", pixels)?;
+        Ok(DeviceFilm { rows, kept, width, color, coverage, caught, layers, sums: None, ray_caught: None })
     }
 
     /// Makes room for the sums of a wave of `rays` rays if they have to wait for other groups of lights, where there is none yet.
@@ -67,6 +73,9 @@ impl<R: Runtime> DeviceFilm<R> {
         }
         if wait && self.sums.is_none() {
             self.sums = Some(cuda.pool.room("radiance of rays", rays)?);
+            if self.caught.is_some() {
+                self.ray_caught = Some(cuda.pool.room("light of shadow catchers by ray", rays)?);
+            }
         }
         Ok(())
     }
@@ -77,7 +86,10 @@ impl<R: Runtime> DeviceFilm<R> {
         arguments.film_pixels = self.color.len() as u64;
         arguments.color = self.color.output();
         arguments.sums = self.sums.as_ref().map_or(Out::NULL, Buffer::output);
-        let layers = self.layers.as_ref().filter(|_| rays.is_from_camera() || rays.are_fragments);
+        let sees = rays.is_from_camera() || rays.are_fragments;
+        let caught = |plane: &Option<Buffer<R, f32>>| plane.as_ref().filter(|_| sees).map_or(Out::NULL, Buffer::output);
+        (arguments.caught, arguments.ray_caught) = (caught(&self.caught), caught(&self.ray_caught));
+        let layers = self.layers.as_ref().filter(|_| sees);
         arguments.visibility = layers.map_or(Out::NULL, |layers| layers.visibility.output());
         arguments.light_points = layers.map_or(Out::NULL, |layers| layers.used.output());
         // With several samples, these are the nearest one's.
@@ -92,6 +104,7 @@ impl<R: Runtime> DeviceFilm<R> {
         arguments.film_pixels = self.color.len() as u64;
         arguments.color = self.color.output();
         arguments.coverage = self.coverage.as_ref().map_or(Out::NULL, Buffer::output);
+        arguments.caught = self.caught.as_ref().map_or(Out::NULL, Buffer::output);
         if let Some(layers) = &self.layers {
             arguments.light_count = layers.lights;
             arguments.depth = layers.depth.output();
@@ -113,6 +126,9 @@ impl<R: Runtime> DeviceFilm<R> {
         let [first, _] = self.kept_places();
         self.color.read_into(first, bytemuck::cast_slice_mut(&mut picture.color[places.clone()]))?;
         if let (Some(from), Some(to)) = (&self.coverage, &mut picture.coverage) {
+            from.read_into(first, &mut to[places.clone()])?;
+        }
+        if let (Some(from), Some(to)) = (&self.caught, &mut picture.caught) {
             from.read_into(first, &mut to[places.clone()])?;
         }
         let (Some(from), Some(to)) = (&self.layers, &mut picture.layers) else { return Ok(()) };

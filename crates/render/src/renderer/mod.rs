@@ -288,6 +288,9 @@ fn picture_on<B: Backend>(
     if plan.coverage {
         picture = picture.with_coverage();
     }
+    if plan.caught {
+        picture = picture.with_caught();
+    }
     let run = Run::new(backend, &job, kept);
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
     let rows = Passes { run, scene: &on_device, technique, view, plan }.render(&mut picture)?;
@@ -298,6 +301,7 @@ fn picture_on<B: Backend>(
         if !plan.coverage {
             picture.find_coverage();
         }
+        picture.uncover_caught();
         picture.take_out(scene.scene.lights.background.unwrap_or_default());
     }
     if !settings.layers {

@@ -97,6 +97,7 @@ impl<'a> Resolved<'a> {
             size: window.size,
             // With one sample of a pixel, coverage is found from its depth.
             coverage: settings.transparent && antialiasing.is_some(),
+            caught: settings.transparent && scene.catches(),
             layers: (settings.layers || settings.transparent && antialiasing.is_none()).then_some(lights.lights),
             antialiasing,
             bounces: settings.bounces,

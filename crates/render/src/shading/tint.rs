@@ -70,7 +70,8 @@ impl Coefficients {
 /// Whether surface points of `material` may differ in colour.
 #[inline(always)]
 pub(crate) fn is_tinted(geometry: &Geometry, material: &Material) -> bool {
-    !geometry.mesh.colors.is_empty() || (material.texture.is_some() && texture_of(geometry, material).is_some())
+    let has_texture = || material.texture.is_some() && texture_of(geometry, material).is_some();
+    !material.catcher && (!geometry.mesh.colors.is_empty() || has_texture())
 }
 
 /// The texture of `material`, if it has one that can be looked up.

@@ -8,6 +8,7 @@ mod degenerate;
 mod determinism;
 mod fallback;
 mod figures;
+mod ground;
 mod kept;
 mod lists;
 mod lives;

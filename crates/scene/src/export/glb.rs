@@ -260,6 +260,7 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
         emission: material.emission.to_array(),
         ks_tinted: material.ks_tinted.to_array(),
         emission_tinted: material.emission_tinted.to_array(),
+        catcher: material.catcher,
         texture_transform: pictures.exact_transform(index),
     };
     let mut entry = json!({

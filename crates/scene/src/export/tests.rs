@@ -34,6 +34,7 @@ fn scene(offset: DVec3) -> Scene {
             emission: Vec3::new(0.0, 2.5, 0.1),
             ks_tinted: Vec3::new(0.3, 0.2, 0.1),
             emission_tinted: Vec3::new(0.0, 0.0, 0.7),
+            catcher: true,
             texture: Some(TextureUse {
                 texture: 0,
                 wrap: [Wrap::Clamp, Wrap::Mirror],

@@ -54,6 +54,9 @@ pub(crate) fn fragments(
         // 3. Begin anew.
         for (index, _) in samples.state.iter().enumerate().filter(|(_, state)| **state != PIXEL_SHARED) {
             film.color[index] = [0.0; 3];
+            if let Some(caught) = &mut film.caught {
+                caught[index] = 0.0;
+            }
             if let Some(layers) = &mut film.layers {
                 layers.used[index] = 0;
                 layers.visibility.iter_mut().for_each(|plane| plane[index] = 0.0);

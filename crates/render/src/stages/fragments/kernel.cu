@@ -176,6 +176,8 @@ KERNEL(emit_fragments, PixelSamples, BLOCK, 4) {
         return;
     // Begin anew.
     args.color[index] = splat(0.0f);
+    if (args.caught != nullptr)
+        args.caught[index] = 0.0f;
     if (args.light_points != nullptr)
         args.light_points[index] = 0;
     for (unsigned light = 0; light < args.light_count; ++light)

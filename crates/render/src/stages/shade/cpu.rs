@@ -1,6 +1,7 @@
 //! Formula (1) on the CPU.
 
 use glam::Vec3;
+use lightmesh_layout::constants::{LUMINANCE_BLUE, LUMINANCE_GREEN, LUMINANCE_RED};
 use rayon::prelude::*;
 
 use crate::data::picture::Picture;
@@ -25,8 +26,14 @@ pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, picture: &mut Pict
         });
     });
     if visibility.lights.end == wave.lights().len() {
+        let caught = if wave.scene.catches() { catch_shadows(wave, &targets, ambient, &mut sums) } else { Vec::new() };
         for (ray, (&pixel, sum)) in wave.rays.pixels.iter().zip(sums).enumerate() {
             picture.add(pixel, wave.rays.weight(ray) * sum);
+        }
+        if wave.rays.from_camera() || !wave.rays.shared.is_empty() {
+            for (ray, (&pixel, caught)) in wave.rays.pixels.iter().zip(caught).enumerate() {
+                picture.catch(pixel, wave.rays.weight(ray).x * caught);
+            }
         }
     } else {
         picture.sums = sums;
@@ -62,6 +69,41 @@ fn add_group(
             *radiance += share * targets.unshadowed(&surface, &wave.lights()[index], index, reach);
         }
     }
+}
+
+/// Shows the background on shadow catchers, as far as they get light. Returns how much they get, as a share of what they would get
+/// alone, by ray.
+fn catch_shadows(wave: &HostWave, targets: &LightTargets, ambient: Vec3, sums: &mut [Vec3]) -> Vec<f32> {
+    let background = wave.lights().background.unwrap_or(Vec3::ZERO);
+    let geometry = &wave.scene.scene.geometry;
+    let is_catcher = |ray: usize| {
+        let triangle = wave.hits[ray].triangle as usize;
+        wave.sees(ray) && geometry.materials[geometry.mesh.materials[triangle] as usize].catcher
+    };
+    let catch = |(ray, sum): (usize, &mut Vec3)| {
+        if !is_catcher(ray) {
+            return 0.0;
+        }
+        let share = lit_share(wave, &Surface::new(wave, ray), targets, ambient, *sum);
+        *sum = share * background;
+        share
+    };
+    sums.par_iter_mut().enumerate().map(catch).collect()
+}
+
+/// The light that a surface gets as a share of what it would get alone.
+fn lit_share(wave: &HostWave, surface: &Surface, targets: &LightTargets, ambient: Vec3, lit: Vec3) -> f32 {
+    let reach = wave.scene.geometry.reach(surface.point.origin);
+    let mut alone = ambient * surface.coefficients.ka + surface.coefficients.emission;
+    for (index, light) in wave.lights().iter().enumerate() {
+        alone += targets.unshadowed(surface, light, index, reach);
+    }
+    let alone = luminance(alone);
+    if alone > 0.0 { (luminance(lit) / alone).min(1.0) } else { 1.0 }
+}
+
+fn luminance(color: Vec3) -> f32 {
+    LUMINANCE_RED * color.x + LUMINANCE_GREEN * color.y + LUMINANCE_BLUE * color.z
 }
 
 /// Stores what each pixel sees.

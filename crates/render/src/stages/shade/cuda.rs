@@ -36,6 +36,7 @@ pub(crate) fn shade<R: Runtime>(
         first_light: lights.start as u32,
         end_light: lights.end as u32,
         several: u32::from(rays.several),
+        catches: u32::from(wave.scene.host.catches()),
         ..Shade::zeroed()
     };
     film.expose(rays, &mut record);

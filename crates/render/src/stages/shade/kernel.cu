@@ -55,6 +55,28 @@ DEVICE void share_tint(const Shade &args, unsigned ray, Material &own) {
     tint_by_all(tint_sources(args.scene), material, hits, &own);
 }
 
+DEVICE float luminance(Vec3 color) { return LUMINANCE_RED * color.x + LUMINANCE_GREEN * color.y + LUMINANCE_BLUE * color.z; }
+
+// The light that a surface gets as a share of what it would get alone.
+DEVICE float lit_share(const Shade &args, const Surface &surface, Vec3 lit) {
+    const float reach = scene_reach(args.scene, surface.point.origin);
+    Vec3 sum = args.scene.ambient * surface.material->ka + surface.material->emission;
+    for (unsigned light = 0; light < args.scene.light_count; ++light)
+        sum = sum + unshadowed(surface, args.scene, light, reach);
+    const float alone = luminance(sum);
+    return alone > 0.0f ? fminf(luminance(lit) / alone, 1.0f) : 1.0f;
+}
+
+// Shows the background on a shadow catcher, as far as it gets light.
+COLD Vec3 catch_shadow(const Shade &args, unsigned ray, unsigned long long place, const Surface &surface, Vec3 lit) {
+    const float share = lit_share(args, surface, lit);
+    if (args.several && args.ray_caught != nullptr)
+        args.ray_caught[ray] = share;
+    else if (!args.several && args.caught != nullptr)
+        args.caught[place] = share;
+    return share * args.scene.background;
+}
+
 KERNEL(shade, Shade, BLOCK, 4) {
     unsigned ray;
     if (!ray_of_thread(args.rays, args.first_block + blockIdx.x, threadIdx.x, ray))
@@ -65,12 +87,16 @@ KERNEL(shade, Shade, BLOCK, 4) {
     const bool fills = args.visibility != nullptr && !args.several;
     Vec3 &sum = args.sums != nullptr ? args.sums[ray] : args.color[place];
     Vec3 radiance = first ? args.scene.background : sum;
-    if (load_hit(args.hits, ray).triangle != Hit::NONE && (first || fills || sees_any(args, ray))) {
+    if (last && args.several && args.ray_caught != nullptr)
+        args.ray_caught[ray] = 0.0f;
+    if (load_hit(args.hits, ray).triangle != Hit::NONE && (first || fills || (last && args.catches) || sees_any(args, ray))) {
         Material own;
         Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
         if (args.samples != nullptr)
             share_tint(args, ray, own);
         radiance = add_group(args, ray, surface, radiance);
+        if (last && surface.material->catcher)
+            radiance = catch_shadow(args, ray, place, surface, radiance);
         if (fills)
             fill_layers(args, ray, surface, place);
     }
@@ -97,6 +123,8 @@ KERNEL(add_rays, Shade, BLOCK, 4) {
         const Vec3 weight = weight_of(args.rays, next);
         if (last)
             args.color[place] = args.color[place] + weight * args.sums[next];
+        if (last && args.caught != nullptr)
+            args.caught[place] += weight.x * args.ray_caught[next];
         if (args.visibility == nullptr || load_hit(args.hits, next).triangle == Hit::NONE)
             continue;
         if (args.used != nullptr)

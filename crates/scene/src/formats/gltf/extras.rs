@@ -22,6 +22,8 @@ pub(crate) struct MaterialExtras {
     pub(crate) ks_tinted: [f32; 3],
     #[serde(default, skip_serializing_if = "is_zero")]
     pub(crate) emission_tinted: [f32; 3],
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) catcher: bool,
     /// The transform from texture coordinates to the image's, by columns, if an angle and factors would round it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) texture_transform: Option<[f32; 6]>,
@@ -40,6 +42,7 @@ impl MaterialExtras {
             emission: self.emission.into(),
             emission_tinted: self.emission_tinted.into(),
             texture: None,
+            catcher: self.catcher,
         }
     }
 }

@@ -1,0 +1,77 @@
+//! A ground that catches shadows.
+
+use glam::{Vec2, Vec3};
+
+use crate::{Material, Scene, Up};
+
+/// Half the edge of the ground, as a multiple of the scene's diagonal: shadows of a light that stands 6° high end on it.
+const HALF: f32 = 10.0;
+/// How far it is below the scene, as a share of the diagonal: a floor that belongs to the scene hides it.
+const BELOW: f32 = 1e-4;
+
+impl Scene {
+    /// Adds a [shadow catcher](Material::catcher) just below the scene's lowest point; nothing to a scene without extent. Cameras and lights
+    /// that depend on the scene's size should have been [added](Scene::complete) before; ambient light stays what it was.
+    pub fn add_ground(&mut self, up: Up) {
+        let bounds = self.geometry.mesh.bounds();
+        let diagonal = bounds.diagonal();
+        if bounds.is_empty() || !(diagonal > 0.0 && (HALF * diagonal).is_finite()) {
+            return;
+        }
+        if self.lights.ambient.is_none() {
+            self.lights.ambient = Some(self.lights.default_ambient(&bounds));
+        }
+        let axis = up.axis();
+        let along = if axis == Vec3::Y { [Vec3::Z, Vec3::X] } else { [Vec3::X, Vec3::Y] };
+        let center = bounds.center();
+        let middle = center + (bounds.min.dot(axis) - BELOW * diagonal - center.dot(axis)) * axis;
+        let geometry = self.geometry_mut();
+        let material = geometry.materials.len() as u32;
+        geometry.materials.push(Material::matt([1.0; 3]).named("ground").with_catcher(true));
+        let mesh = &mut geometry.mesh;
+        let first = mesh.positions.len() as u32;
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        mesh.positions.extend(corners.map(|[a, b]: [f32; 2]| middle + HALF * diagonal * (a * along[0] + b * along[1])));
+        let attribute = |is_used: bool| if is_used { corners.len() } else { 0 };
+        mesh.normals.extend(vec![Vec3::ZERO; attribute(!mesh.normals.is_empty())]);
+        mesh.uvs.extend(vec![Vec2::ZERO; attribute(!mesh.uvs.is_empty())]);
+        mesh.colors.extend(vec![Vec3::ONE; attribute(!mesh.colors.is_empty())]);
+        mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        mesh.materials.extend([material; 2]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SceneBuilder;
+
+    #[test]
+    fn the_ground_is_below_the_scene_and_faces_up() {
+        for up in [Up::Y, Up::Z] {
+            let mut scene = SceneBuilder::new().finish_scene("test");
+            let mesh = &mut scene.geometry_mut().mesh;
+            mesh.positions = vec![Vec3::new(1.0, 2.0, 3.0), Vec3::new(2.0, 4.0, 4.0), Vec3::new(1.0, 2.0, 4.0)];
+            (mesh.triangles, mesh.materials) = (vec![[0, 1, 2]], vec![0]);
+            mesh.normals = vec![Vec3::X; 3];
+            scene.geometry_mut().materials.push(Material::default());
+            let lowest = scene.geometry.mesh.bounds().min.dot(up.axis());
+            scene.add_ground(up);
+            let mesh = &scene.geometry.mesh;
+            assert_eq!((mesh.triangles.len(), mesh.materials.len(), mesh.normals.len()), (3, 3, 7));
+            assert!(scene.geometry.materials[mesh.materials[2] as usize].catcher && scene.lights.ambient.is_some());
+            for triangle in &mesh.triangles[1..] {
+                let [a, b, c] = triangle.map(|vertex| mesh.positions[vertex as usize]);
+                assert!((b - a).cross(c - a).normalize().distance(up.axis()) < 1e-5, "{up:?}");
+                assert!([a, b, c].iter().all(|corner| corner.dot(up.axis()) < lowest), "{up:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_empty_scene_gets_none() {
+        let mut scene = SceneBuilder::new().finish_scene("empty");
+        scene.add_ground(Up::Y);
+        assert!(scene.geometry.mesh.triangles.is_empty());
+    }
+}
