@@ -9,6 +9,7 @@ mod grid;
 mod info;
 mod man;
 mod open;
+mod range;
 mod render;
 mod report;
 

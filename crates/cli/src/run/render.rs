@@ -9,7 +9,7 @@ use lightmesh::scene::Falloff;
 use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene};
 use lightmesh_memory::Bytes;
 
-use super::{BUILDING, open::open};
+use super::{BUILDING, open::open, range};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::plan::{PictureFiles, RenderPlan};
@@ -58,6 +58,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         ));
     }
     let stops = stops(&frame.image, exposure, &watcher);
+    if Format::from_path(&plan.files.picture) != Some(Format::Exr) {
+        let display = plan.files.options.display.with_exposure(stops);
+        range::warnings(&frame, &display).iter().for_each(|warning| watcher.warning(warning));
+    }
     if let Some(Crop { first, size, .. }) = crop {
         frame.image = frame.image.cropped(first, size).expect("the plan has checked that the crop is in the image");
         frame.stats.settings.crop = Some([first[0], first[1], size[0], size[1]]);

@@ -118,3 +118,36 @@ fn a_crop_is_a_part_of_the_whole_also_as_codes() {
     let message = place.refused(&["render", "ball.toml", "-o", "a.png", "--size", "32x24", "--crop", "9,7,24,8"]);
     assert!(message.contains("9,7,24,8") && message.contains("32x24") && message.contains("--crop"), "{message}");
 }
+
+#[test]
+fn a_ground_catches_shadows_on_the_background() {
+    let place = place();
+    let (plain, settings) = render(&place, "a.png", &["--ground", "--background", "0.5"]);
+    assert_eq!(settings["background"], json!([0.5, 0.5, 0.5]));
+    let corner = plain.pixel(0, 23).unwrap();
+    assert_eq!(corner, plain.pixel(31, 23).unwrap());
+    assert!(plain.color().iter().any(|color| color[0] == color[2] && color[0] < 0.7 * corner[0]), "a shadow");
+    let (clear, _) = render(&place, "b.png", &["--ground", "--background", "transparent"]);
+    let alpha = clear.alpha().unwrap();
+    assert!(alpha[23 * 32] == 0.0 && alpha.iter().any(|alpha| (0.05..0.95).contains(alpha)));
+}
+
+#[test]
+fn what_is_mostly_clipped_or_black_is_told_with_the_flag_that_helps() {
+    let place = place();
+    let render = |flags: &[&str]| {
+        place.good(&[&["render", "ball.toml", "-o", "a.png", "--size", "32x24"], flags].concat()).stderr
+    };
+    let said = render(&["--exposure", "-3"]);
+    assert!(!said.contains("clipped") && !said.contains("is black"), "{said}");
+    let said = render(&["--exposure", "6"]);
+    assert!(
+        said.contains("warning: ") && said.contains("clipped to white") && said.contains("--exposure auto"),
+        "{said}"
+    );
+    let said = render(&["--exposure", "-12", "--background", "0.5"]);
+    assert!(said.contains("is black") && said.contains("--ambient"), "{said}");
+    // The background does not count.
+    let said = render(&["--exposure", "-3", "--background", "70"]);
+    assert!(!said.contains("clipped"), "{said}");
+}
