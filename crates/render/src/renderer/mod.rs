@@ -64,6 +64,12 @@ impl Frame {
         self.image.layers()
     }
 
+    /// The number of finished rows, from the top: all, unless the observer cancelled the render and [`Settings::partial`] asked for what
+    /// is finished. The rows below have the background's colour, or are transparent, and their layers are those of pixels that see nothing.
+    pub fn finished_rows(&self) -> u32 {
+        self.stats.finished_rows.unwrap_or_else(|| self.image.height())
+    }
+
     /// The image's vectors; nothing is copied.
     pub fn into_parts(self) -> FrameParts {
         self.image.into_parts()
@@ -152,7 +158,8 @@ impl Renderer {
     /// Renders one image of a prepared scene.
     ///
     /// # Errors
-    /// As [`Renderer::render`], and [`RenderError::Cancelled`] if the observer requested cancellation.
+    /// As [`Renderer::render`], and [`RenderError::Cancelled`] if the observer requested cancellation. With [`Settings::partial`], that
+    /// is no error once any row is finished: see [`Frame::finished_rows`].
     pub fn render_prepared(
         &self,
         scene: &PreparedScene,
@@ -290,10 +297,16 @@ fn picture_on<B: Backend>(
     }
     let run = Run::new(backend, &job, kept);
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
-    let rows = Passes { run, scene: &on_device, technique, view, plan }.render(&mut picture)?;
+    let rows = match (Passes { run, scene: &on_device, technique, view, plan }).render(&mut picture) {
+        Err(RenderError::Cancelled) if settings.partial && picture.finished > 0 => plan.most_rows.unwrap_or_default(),
+        rows => rows?,
+    };
     let mut stats =
         report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
+    stats.finished_rows = (picture.finished < settings.size[1]).then_some(picture.finished);
+    stats.counts.pixels = u64::from(settings.size[0]) * u64::from(picture.finished);
     stats.counts.non_finite_pixels = picture.non_finite();
+    picture.fill_unfinished(scene.scene.lights.background.unwrap_or_default());
     if settings.transparent {
         if !plan.coverage {
             picture.find_coverage();
