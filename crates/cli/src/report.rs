@@ -12,6 +12,8 @@ use crate::plan::PictureFiles;
 #[derive(Serialize)]
 pub(crate) struct Report<'a> {
     version: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    finished_rows: Option<u32>,
     scene: &'a SceneStats,
     device: &'a DeviceStats,
     settings: AllSettings<'a>,
@@ -64,6 +66,7 @@ impl<'a> Report<'a> {
         };
         Report {
             version: stats.version,
+            finished_rows: stats.finished_rows,
             scene: &stats.scene,
             device: &stats.device,
             settings,

@@ -109,6 +109,11 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "COLOUR|transparent", allow_hyphen_values = true, help_heading = "Image")]
     pub(crate) background: Option<Background>,
 
+    /// Keep what is finished when the run is interrupted: the rows that are rendered by then, over the background or transparent, in all
+    /// files of the run; a second Ctrl-C ends it at once. The image is rendered in bands, with the same result
+    #[arg(long, help_heading = "Image")]
+    pub(crate) partial: bool,
+
     /// Write per-pixel data as a multilayer exr: colour, depth, normal, position, visibility of each light, number of light
     /// points used [default: off]
     #[arg(long, value_name = "F.exr", help_heading = "Image")]

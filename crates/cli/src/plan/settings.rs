@@ -20,6 +20,7 @@ pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
         .with_acceleration(acceleration(args)?)
         .with_seed(args.seed)
         .with_layers(args.layers.is_some())
+        .with_partial(args.partial)
         .with_transparent(args.background == Some(Background::Transparent));
     // Omitted flags leave their settings open.
     settings.step = args.step;

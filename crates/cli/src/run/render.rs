@@ -1,11 +1,11 @@
 //! `lightmesh render`.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
 use glam::{DMat4, Vec3};
 use lightmesh::image::{self, Description, Format, Ready, SaveOptions};
-use lightmesh::render::Choice;
-use lightmesh::render::Stats;
+use lightmesh::render::{Choice, PreparedScene, Stats};
 use lightmesh::scene::Falloff;
 use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene};
 use lightmesh_memory::Bytes;
@@ -39,13 +39,36 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 
     plan.choices.apply(&mut scene, &watcher)?;
     let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;
-    let render = || renderer.render_prepared(&prepared, &plan.settings, &watcher);
+    let finish = || finish(&renderer, prepared, &scene, &plan, load, &watcher);
+    let frame = if args.partial { interrupt::keeping(finish) } else { finish() }?;
+    if interrupt::requested() {
+        // The last message says what is written.
+        return Ok(());
+    }
+    if args.verbose {
+        details(&frame.stats).iter().for_each(|line| watcher.note(line));
+    }
+    watcher.summary(&summary(&frame, &plan.files));
+    Ok(())
+}
+
+/// Renders the image and writes all files.
+fn finish(
+    renderer: &Renderer,
+    prepared: PreparedScene,
+    scene: &Scene,
+    plan: &RenderPlan,
+    load: f64,
+    watcher: &Watcher,
+) -> Result<Frame, Failure> {
+    let render = || renderer.render_prepared(&prepared, &plan.settings, watcher);
     let mut frame = memory::during("rendering", || interrupt::watched(render))?;
     drop(prepared); // frees memory for the encoders
-    if watcher.cancelled() {
+    if plan.settings.partial {
+        interrupt::remark(rows(&frame));
+    } else if watcher.cancelled() {
         return Err(RenderError::Cancelled.into());
     }
-
     frame.stats.seconds.load = load;
     let odd = frame.stats.counts.non_finite_pixels;
     if odd > 0 {
@@ -54,12 +77,15 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
             "{odd} of {of} pixels have infinite or undefined colours: lower the intensities of lights or the coefficients of materials"
         ));
     }
-    memory::during("writing the image", || write(&renderer, &mut frame, &scene, &plan.files, &watcher))?;
-    if args.verbose {
-        details(&frame.stats).iter().for_each(|line| watcher.note(line));
-    }
-    watcher.summary(&summary(&frame, &plan.files));
-    Ok(())
+    memory::during("writing the image", || write(renderer, &mut frame, scene, &plan.files, watcher))?;
+    Ok(frame)
+}
+
+/// How much of an image is finished.
+fn rows(frame: &Frame) -> String {
+    let ([_, height], finished) = (frame.size(), frame.finished_rows());
+    let finished = if finished == height { "all".to_owned() } else { format!("{finished} of") };
+    format!("{finished} {height} rows are finished")
 }
 
 /// Seconds of each stage, counts, and memory, by their names in `--stats`.
@@ -87,7 +113,7 @@ fn write(
     watcher: &Watcher,
 ) -> Result<(), Failure> {
     let start = Instant::now();
-    let stops = exposure(&frame.image, scene, files, watcher);
+    let stops = exposure(frame, scene, files, watcher);
     let mut options = files.options.clone().with_description(description(frame, scene));
     options.display.exposure = stops;
     let mut outputs = renderer.install(|| encode(&frame.image, files, &options))?;
@@ -132,16 +158,26 @@ fn description(frame: &Frame, scene: &Scene) -> Description {
 }
 
 /// Exposure of the image file: none if it stores linear values. Candela and lux say nothing of the range of a screen.
-fn exposure(image: &image::Frame, scene: &Scene, files: &PictureFiles, watcher: &Watcher) -> f32 {
+fn exposure(frame: &Frame, scene: &Scene, files: &PictureFiles, watcher: &Watcher) -> f32 {
     let photometric = scene.lights.iter().any(|light| light.falloff == Falloff::InverseSquare);
     match files.exposure.unwrap_or(if photometric { Exposure::Auto } else { Exposure::Stops(0.0) }) {
         _ if Format::from_path(&files.picture) == Some(Format::Exr) => 0.0,
         Exposure::Stops(stops) => stops,
         Exposure::Auto => {
-            let stops = image.auto_exposure();
+            let stops = finished_part(frame).auto_exposure();
             watcher.note(&format!("exposure auto: using {stops} stops (--exposure {stops} keeps this value)"));
             stops
         }
+    }
+}
+
+/// The rows of an image that are finished.
+fn finished_part(frame: &Frame) -> Cow<'_, image::Frame> {
+    let ([width, height], rows) = (frame.size(), frame.finished_rows());
+    let finished = || frame.color()[..width as usize * rows as usize].to_vec();
+    match rows {
+        rows if rows == height => Cow::Borrowed(&frame.image),
+        rows => image::Frame::new(width, rows, finished()).map_or(Cow::Borrowed(&frame.image), Cow::Owned),
     }
 }
 

@@ -42,7 +42,16 @@ impl Picture {
             visibility: vec![vec![0.0; pixels]; lights],
             used: vec![0; pixels],
         });
-        Picture { size, rows, kept, finished: 0, color: vec![[0.0; 3]; pixels], coverage: None, layers, sums: Vec::new() }
+        Picture {
+            size,
+            rows,
+            kept,
+            finished: 0,
+            color: vec![[0.0; 3]; pixels],
+            coverage: None,
+            layers,
+            sums: Vec::new(),
+        }
     }
 
     /// The index of pixel y · width + x of the whole image in the planes.

@@ -3,7 +3,9 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DVec3, Vec3};
-use lightmesh_render::{Acceleration, Device, Frame, Lookup, Mode, Observer, RenderError, Renderer, Settings, Unobserved};
+use lightmesh_render::{
+    Acceleration, Device, Frame, Lookup, Mode, Observer, RenderError, Renderer, Settings, Unobserved,
+};
 use lightmesh_scene::{LightKind, Scene};
 use lightmesh_testkit::pile;
 
