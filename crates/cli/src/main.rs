@@ -4,6 +4,7 @@
 //! [`Failure`], which knows its exit code. Results go to standard output; notes, progress and errors go to standard error.
 
 mod args;
+mod destination;
 mod failure;
 mod flags;
 mod interrupt;

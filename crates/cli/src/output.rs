@@ -11,6 +11,8 @@ use lightmesh_files::{
 };
 use serde::Serialize;
 
+use crate::destination::is_standard;
+
 /// How long the last line may wait for someone to read standard error.
 const PATIENCE: Duration = Duration::from_millis(50);
 /// Removes a progress bar from the current line of a terminal.
@@ -31,6 +33,14 @@ pub(crate) enum OutputError {
     /// An output is an input, or another output.
     #[error("{first} and {second} are the same file, {}; give them different names", path.display())]
     SameFile { first: &'static str, second: &'static str, path: PathBuf },
+    /// Two outputs go to standard output.
+    #[error("{first} and {second} both go to standard output; send one of them to a file")]
+    Mixed { first: &'static str, second: &'static str },
+    /// Bytes that are no text go to a terminal.
+    #[error(
+        "{flag} would write binary data to the terminal; redirect standard output to a file or a pipe, or name a file"
+    )]
+    Terminal { flag: &'static str },
     /// An input is in a folder whose files are written.
     #[error("{what}, {}, is in a folder that {flag} fills, {}; choose another name for {flag}", path.display(), folder.display())]
     InFolder { what: &'static str, path: PathBuf, flag: &'static str, folder: PathBuf },
@@ -188,6 +198,11 @@ impl Outputs {
     pub(crate) fn keep_scene(&self, scene: &lightmesh::Scene) -> Result<(), OutputError> {
         self.keep("a file of the scene", scene.files.iter().map(PathBuf::as_path))
     }
+}
+
+/// The file of a scene on the command line; standard input may come from one, too.
+pub(crate) fn input(scene: &Path) -> Option<&Path> {
+    if is_standard(scene) { cfg!(unix).then_some(Path::new("/dev/stdin")) } else { Some(scene) }
 }
 
 #[cfg(test)]

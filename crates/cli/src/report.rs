@@ -48,8 +48,7 @@ impl<'a> Report<'a> {
         lights: &'a [LightInfo],
     ) -> Report<'a> {
         let (display, exr) = (&options.display, &options.exr);
-        let format = Format::from_path(&files.picture);
-        let is_exr = format == Some(Format::Exr);
+        let is_exr = files.format() == Some(Format::Exr);
         let has_exr = is_exr || files.layers.is_some();
         // Only 8-bit codes are dithered.
         let dither = display.dither && display.bit_depth == BitDepth::Eight;

@@ -6,9 +6,10 @@ mod bench;
 mod render;
 mod words;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Arg, Args, CommandFactory, Parser, Subcommand};
+use lightmesh::scene::SceneFormat;
 
 pub(crate) use bench::{BenchArgs, BenchCommand, BenchCompareArgs, SuiteArgs};
 pub(crate) use render::RenderArgs;
@@ -90,7 +91,7 @@ pub(crate) enum Command {
 #[derive(Clone, Debug, Args)]
 pub(crate) struct SceneArg {
     /// A .toml, .obj, .gltf, .glb, .ply or .stl file, or builtin:gazebo, builtin:childpark, builtin:garden (also with options, as
-    /// in builtin:garden?lights=3)
+    /// in builtin:garden?lights=3), or `-`: standard input, which needs --scene-format
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 
@@ -98,9 +99,27 @@ pub(crate) struct SceneArg {
     pub(crate) reading: ReadingArgs,
 }
 
+impl SceneArg {
+    /// The format of the scene; `None` if it is built in, or unknown.
+    pub(crate) fn format(&self) -> Option<SceneFormat> {
+        self.reading.format_of(&self.scene)
+    }
+}
+
+impl ReadingArgs {
+    /// The format of a scene: the given one, or by the extension.
+    pub(crate) fn format_of(self, scene: &Path) -> Option<SceneFormat> {
+        self.scene_format.or_else(|| SceneFormat::from_path(scene))
+    }
+}
+
 /// How a scene is read.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct ReadingArgs {
+    /// Format of the scene [default: by the extension]. Files to which a scene on standard input refers are looked for in the current folder
+    #[arg(long, value_parser = words::scene_format(), help_heading = "Reading")]
+    pub(crate) scene_format: Option<SceneFormat>,
+
     /// Allow references to files outside the scene's folder
     #[arg(long, help_heading = "Reading")]
     pub(crate) allow_outside: bool,
@@ -132,7 +151,7 @@ impl Command {
 /// Describe a scene, or list devices
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
-    /// The scene to describe
+    /// The scene to describe; `-` is standard input, which needs --scene-format
     #[arg(value_name = "SCENE", required_unless_present = "devices", conflicts_with = "devices")]
     pub(crate) scene: Option<PathBuf>,
 
@@ -211,7 +230,7 @@ pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArg,
 
-    /// NAME.glb: everything in one file; NAME.toml: cameras and lights as text, and the triangles in NAME.mesh.glb
+    /// NAME.glb: everything in one file; NAME.toml: cameras and lights as text, and the triangles in NAME.mesh.glb; `-`: GLB on standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
 

@@ -23,6 +23,9 @@ pub(crate) enum PlanError {
     Output(#[from] OutputError),
     #[error(transparent)]
     Camera(#[from] CameraError),
+    /// The image goes to standard output, which has no extension.
+    #[error("-o - needs the format of the image; add --format bmp, png, exr or jpg")]
+    NoFormat,
     /// A flag specifies a grid, but another structure is selected.
     #[error("{flag} specifies a grid, but --accel {chosen} selects another structure; remove one of them")]
     NoGrid {

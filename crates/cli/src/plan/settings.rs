@@ -12,7 +12,7 @@ pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
         .with_mode(args.mode)
         .with_bounces(args.bounces)
         .with_size(args.size.0)
-        .with_up(args.up.of(&args.scene.scene))
+        .with_up(args.up.of(args.scene.format()))
         .with_lookup(args.lookup)
         .with_quality(args.quality)
         .with_filter(args.filter)

@@ -118,10 +118,10 @@ fn write(
     options.display.exposure = stops;
     let mut outputs = renderer.install(|| encode(&frame.image, files, &options))?;
     frame.stats.seconds.write = start.elapsed().as_secs_f64();
-    if let Some(path) = &files.stats {
+    if let Some(destination) = &files.stats {
         let lights = scene.info().lights;
         let report = Report::new(&frame.stats, files, &options, &lights);
-        outputs.push(output::ready(path, output::json(&report).as_bytes())?);
+        outputs.push(destination.ready(output::json(&report).as_bytes())?);
     }
     Ok(output::publish(outputs)?)
 }
@@ -129,8 +129,8 @@ fn write(
 /// The image and the layers, encoded at the same time: while one waits for the disk, the other is compressed.
 fn encode(image: &image::Frame, files: &PictureFiles, options: &SaveOptions) -> Result<Vec<Ready>, SaveError> {
     let (picture, layers) = rayon::join(
-        || image.ready_with(&files.picture, options),
-        || files.layers.as_ref().map(|path| image.ready_layers_with(path, options)).transpose(),
+        || image.ready_to(files.picture.open()?, options),
+        || files.layers.as_ref().map(|layers| image.ready_layers_to(layers.open()?, options)).transpose(),
     );
     Ok(layers?.into_iter().chain([picture?]).collect())
 }
@@ -161,7 +161,7 @@ fn description(frame: &Frame, scene: &Scene) -> Description {
 fn exposure(frame: &Frame, scene: &Scene, files: &PictureFiles, watcher: &Watcher) -> f32 {
     let photometric = scene.lights.iter().any(|light| light.falloff == Falloff::InverseSquare);
     match files.exposure.unwrap_or(if photometric { Exposure::Auto } else { Exposure::Stops(0.0) }) {
-        _ if Format::from_path(&files.picture) == Some(Format::Exr) => 0.0,
+        _ if files.format() == Some(Format::Exr) => 0.0,
         Exposure::Stops(stops) => stops,
         Exposure::Auto => {
             let stops = finished_part(frame).auto_exposure();
@@ -192,6 +192,6 @@ fn summary(frame: &Frame, files: &PictureFiles) -> String {
         seconds.load,
         seconds.build,
         seconds.write,
-        files.picture.display()
+        files.picture
     )
 }

@@ -17,3 +17,5 @@ mod scenes;
 mod interrupt;
 #[cfg(unix)]
 mod outputs;
+#[cfg(unix)]
+mod streams;
