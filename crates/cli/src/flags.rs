@@ -28,6 +28,7 @@ pub(crate) fn that_mend(failure: &Failure) -> Vec<String> {
         }
         Failure::Render(RenderError::Grid(_)) | Failure::Grid(_) => &["--grid"],
         Failure::Render(RenderError::GridFile(_)) => &["lightmesh grid SCENE -o FILE"],
+        Failure::Render(RenderError::Device { .. }) => &["--device", "lightmesh info --devices"],
         Failure::Render(error) => return error.settings().into_iter().map(of).collect(),
         Failure::Plan(PlanError::Save(SaveError::UnknownExtension { .. })) => &["--format"],
         Failure::Load(error) => match error.root() {

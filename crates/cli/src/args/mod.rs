@@ -15,6 +15,7 @@ pub(crate) use bench::{BenchArgs, BenchCommand, BenchCompareArgs, SuiteArgs};
 pub(crate) use render::RenderArgs;
 pub(crate) use words::{Progress, Switch, Up};
 
+use crate::color::When;
 use crate::value::{Bound, ByteSize, Dims};
 
 /// Soft shadows by the light mesh method
@@ -23,6 +24,10 @@ use crate::value::{Bound, ByteSize, Dims};
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
+
+    /// When messages have colours
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = When::Auto)]
+    pub(crate) color: When,
 }
 
 /// The version, with the commit if it is known, and what the kernels need.

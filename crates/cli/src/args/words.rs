@@ -121,9 +121,9 @@ impl Up {
 /// How progress is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Progress {
-    /// A bar, unless --quiet
+    /// A bar on a terminal, elsewhere a line every ten seconds; nothing with --quiet
     Auto,
-    /// A bar, if stderr is a terminal
+    /// The same, also with --quiet
     Bar,
     /// One JSON object per line
     Json,

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use glam::{DMat4, Vec3};
 use lightmesh::image::{self, Description, Format, Ready, SaveOptions};
-use lightmesh::render::{Choice, PreparedScene, Stats};
+use lightmesh::render::{Choice, PreparedScene, Stats, devices};
 use lightmesh::scene::Falloff;
 use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene};
 use lightmesh_memory::Bytes;
@@ -22,19 +22,14 @@ use crate::{interrupt, memory, output};
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let plan = RenderPlan::new(args)?;
     let watcher = Watcher::new(args.progress, args.quiet);
-    let choice = Choice::of(plan.device)?;
-    let (reason, no_cuda) = (choice.reason.clone(), choice.no_cuda.clone());
+    let choice = Choice::of(plan.device).inspect_err(|_| explain_devices(args, &watcher))?;
+    let using = using(&choice, args.verbose);
     let renderer = Renderer::on(choice, plan.threads.map(usize::from))?;
     let start = Instant::now();
     let mut scene = open(&plan.scene, &plan.files.outputs, &watcher)?;
     let load = start.elapsed().as_secs_f64();
     if matches!(plan.device, Device::Auto | Device::Cuda(None)) {
-        let why = match no_cuda {
-            Some(why) if args.verbose => format!("; no CUDA device can be used: {why}"),
-            Some(_) => "; no CUDA device (-v says why)".to_owned(),
-            None => String::new(),
-        };
-        watcher.note(&format!("device {}: using {reason}{why}", plan.device));
+        watcher.note(&format!("device {}: using {using}", plan.device));
     }
 
     plan.choices.apply(&mut scene, &watcher)?;
@@ -52,6 +47,24 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The device that was chosen. That no CUDA device was, is only said where one could be expected, or to those who ask.
+fn using(choice: &Choice, verbose: bool) -> String {
+    let why = match &choice.no_cuda {
+        Some(why) if verbose => format!("; no CUDA device can be used: {why}"),
+        Some(_) if choice.misses_cuda => "; no CUDA device (-v says why)".to_owned(),
+        _ => String::new(),
+    };
+    format!("{}{why}", choice.reason)
+}
+
+/// All that is known of devices that cannot be used, for those who ask.
+fn explain_devices(args: &RenderArgs, watcher: &Watcher) {
+    if args.verbose {
+        let unusable = devices().into_iter().filter(|report| !report.usable);
+        unusable.for_each(|report| watcher.note(&format!("device {}: not usable: {}", report.device, report.remark)));
+    }
+}
+
 /// Renders the image and writes all files.
 fn finish(
     renderer: &Renderer,
@@ -62,7 +75,7 @@ fn finish(
     watcher: &Watcher,
 ) -> Result<Frame, Failure> {
     let render = || renderer.render_prepared(&prepared, &plan.settings, watcher);
-    let mut frame = memory::during("rendering", || interrupt::watched(render))?;
+    let mut frame = memory::during(memory::RENDERING, || interrupt::watched(render))?;
     drop(prepared); // frees memory for the encoders
     if plan.settings.partial {
         interrupt::remark(rows(&frame));

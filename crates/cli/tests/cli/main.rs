@@ -2,6 +2,7 @@
 
 mod bench;
 mod border;
+mod color;
 mod compare;
 mod devices;
 mod display;

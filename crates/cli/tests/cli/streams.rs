@@ -7,7 +7,7 @@ use std::process::{Output, Stdio};
 use lightmesh::image::Frame;
 use serde_json::Value;
 
-use crate::run::{Done, LAMP, Place};
+use crate::run::{LAMP, Place};
 
 /// Runs a command with this standard input.
 fn fed(place: &Place, args: &[&str], input: &[u8]) -> Output {
@@ -72,25 +72,20 @@ fn a_format_overrides_the_extension() {
     place.good(&["compare", "a.exr", "image.png", "--max-rmse", "0"]);
 }
 
-/// `script` gives the program a terminal.
 #[cfg(target_os = "linux")]
 #[test]
 fn terminals_get_no_bytes_and_have_no_scene() {
     let place = Place::new();
-    let on_terminal = |args: &str| {
-        let script = format!("script -qec \"'$0' {args}\" /dev/null");
-        Done::from(place.shell(&script, &[]).output().unwrap())
-    };
-    if place.shell("command -v script", &[]).output().is_ok_and(|found| !found.status.success()) {
-        return;
+    for output in ["-", "/dev/stdout"] {
+        let args = ["render", "room.toml", "-o", output, "--format", "png", "--color", "never"];
+        let (code, shown) = place.on_terminal(place.command(&args));
+        assert_eq!(code, Some(2), "{shown}");
+        assert!(shown.starts_with("error: -o would write binary data to the terminal; redirect"), "{shown}");
     }
-    for args in ["render room.toml -o - --format png", "render room.toml -o /dev/stdout --format png"] {
-        let done = on_terminal(args);
-        assert!(done.code == Some(2) && done.stdout.contains("-o would write binary data to the terminal"), "{done:?}");
-    }
-    assert!(on_terminal("export room.toml -o -").stdout.contains("binary data to the terminal"));
-    let done = on_terminal("info - --scene-format obj");
-    assert!(done.code == Some(2) && done.stdout.contains("standard input is a terminal"), "{done:?}");
+    let (_, shown) = place.on_terminal(place.command(&["export", "room.toml", "-o", "-"]));
+    assert!(shown.contains("binary data to the terminal"), "{shown}");
+    let (code, shown) = place.on_terminal(place.command(&["info", "-", "--scene-format", "obj"]));
+    assert!(code == Some(2) && shown.contains("standard input is a terminal"), "{shown}");
 }
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
