@@ -59,12 +59,15 @@ Exit codes: 0 success, 1 a comparison exceeded its threshold, 2 bad input or usa
 insufficient, 130 interrupted (143 by SIGTERM, 129 by SIGHUP).
 
 Environment: each flag of `lightmesh render` except -o, --light, -q and -v can be set by a variable, LIGHTMESH_DEVICE for \
---device or LIGHTMESH_MEMORY_LIMIT for --memory-limit; the flag wins. CUDA_VISIBLE_DEVICES hides GPUs.
+--device or LIGHTMESH_MEMORY_LIMIT for --memory-limit; the flag wins. CUDA_VISIBLE_DEVICES hides GPUs. NO_COLOR, \
+CLICOLOR_FORCE and CLICOLOR=0 decide about colours, unless --color does.
 
 Examples:
   lightmesh render builtin:childpark -o park.png
   lightmesh render house.glb -o house.png --size 1920x1080 --quality final
   lightmesh render room.toml -o room.exr --layers layers.exr --device cpu -v
+  lightmesh render room.toml -o room.png --quality final --partial
+  lightmesh export room.toml -o - | lightmesh render - --scene-format glb -o - --format png > room.png
   lightmesh compare before.png after.png --max-flip 0.01";
 
 /// What to do.
