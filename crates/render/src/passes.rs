@@ -83,8 +83,12 @@ impl<B: Backend> Passes<'_, B> {
         }
         let at_once = self.run.or_forget(|backend| backend.rows_at_once(self.scene, self.plan))?;
         let at_once = at_once.min(self.plan.most_rows.unwrap_or(u32::MAX));
-        in_bands(&self.run, self.view.size()[1], at_once, |rows| {
+        let height = self.view.size()[1];
+        in_bands(&self.run, height, at_once, |rows| {
             let finished = rows.end;
+            if self.plan.antialiasing.is_some() {
+                self.run.job.work.begin_part([rows.start, rows.end].map(|row| f64::from(row) / f64::from(height)));
+            }
             self.band(rows, picture)?;
             picture.finished = finished;
             Ok(())

@@ -27,7 +27,7 @@ const MEANS: [Mean; 6] = [
         experiment: WHOLE_FRAMES,
         of: ["method", "lists"],
         value: "faster_than_half_ball",
-        says: "as fast, by occluder lists, as with the thesis' half-ball",
+        says: "as fast by occluder lists as with the thesis' half-ball",
     },
     Mean {
         experiment: WHOLE_FRAMES,
@@ -39,25 +39,25 @@ const MEANS: [Mean; 6] = [
         experiment: "equal error",
         of: ["lookup", "lists"],
         value: "faster_than_area",
-        says: "as fast, by occluder lists, as with shadow rays of the same error",
+        says: "as fast by occluder lists as with shadow rays of the same error",
     },
     Mean {
         experiment: "programs at equal error",
         of: ["", ""],
         value: "times",
-        says: "the time of Lightmesh is that of other programs with the same error",
+        says: "the time of other programs with the same error, by that of Lightmesh",
     },
     Mean {
         experiment: ANTIALIASING,
         of: ["quality", "good"],
         value: "time_by_one",
-        says: "the time of one sample of a pixel is that of several",
+        says: "the time of several samples of a pixel, by that of one",
     },
     Mean {
         experiment: ANTIALIASING,
         of: ["quality", "good"],
         value: "error_by_one",
-        says: "the error of one sample of a pixel is left with several",
+        says: "the error of several samples of a pixel, by that of one",
     },
 ];
 
@@ -154,7 +154,7 @@ fn per_light(rows: &[Measured]) -> Option<Figure> {
         .max_by(|a, b| a.number("lights").partial_cmp(&b.number("lights")).unwrap_or(std::cmp::Ordering::Equal))?;
     Some(Figure {
         value: numbers::ratio(row.value("per_light_by_one")?),
-        label: format!("the cost of a single light is that of each of {}, on {place}", row.text("lights")),
+        label: format!("the time of each of {} lights, by that of a single one, on {place}", row.text("lights")),
     })
 }
 
