@@ -1,7 +1,7 @@
 //! Colours of messages: whether a stream gets them, and which words have which.
 //!
-//! In this order: `--color always` and `never`; `NO_COLOR`; `CLICOLOR_FORCE`; `CLICOLOR=0`; whether the stream is a terminal that
-//! knows them. See <https://no-color.org> and <https://bixense.com/clicolors>.
+//! In this order: `--color always` and `never`; `NO_COLOR`; `CLICOLOR_FORCE`; `CLICOLOR=0`; whether the stream is a
+//! terminal that knows them. See <https://no-color.org> and <https://bixense.com/clicolors>.
 
 use std::borrow::Cow;
 use std::ffi::{OsStr, OsString};

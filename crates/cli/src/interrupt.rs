@@ -1,7 +1,8 @@
 //! Requests to end: Ctrl-C and the signals INT, TERM and HUP.
 //!
-//! 1. A request is recorded. Work that [asks for it](watched) has a short time to end by itself: a suite saves its rows so far. Work that
-//!    [keeps](keeping) what it has takes the time it needs: a render finishes the files of its picture. A second request ends that, too.
+//! 1. A request is recorded. Work that [asks for it](watched) has a short time to end by itself: a suite saves its rows
+//!    so far. Work that [keeps](keeping) what it has takes the time it needs: a render finishes the files of its
+//!    picture. A second request ends that, too.
 //! 2. The process [leaves](leave): temporary files are removed, from then on none can be created or renamed, so that each output is
 //!    there completely or not at all; the message says which are there.
 //!
@@ -61,8 +62,8 @@ pub(crate) fn watched<T>(work: impl FnOnce() -> T) -> T {
     in_manner(Manner::Watched, work)
 }
 
-/// Does work that is not left when the program [shall end](requested): it ends by itself, and what it has then is written. Only a
-/// second request ends it at once.
+/// Does work that is not left when the program [shall end](requested): it ends by itself, and what it has then is
+/// written. Only a second request ends it at once.
 pub(crate) fn keeping<T>(work: impl FnOnce() -> T) -> T {
     in_manner(Manner::Keeping, work)
 }

@@ -117,7 +117,8 @@ pub(crate) fn is_usage_colored(message: &clap::Error) -> bool {
     is_wanted && quotes_are_visible()
 }
 
-/// Prints what the parser says: help, or an error that quotes arguments. Without colours, nothing in it controls the terminal.
+/// Prints what the parser says: help, or an error that quotes arguments. Without colours, nothing in it controls the
+/// terminal.
 pub(crate) fn print_usage(message: &clap::Error, is_colored: bool) {
     let text = message.render().ansi().to_string();
     let text = if is_colored { Cow::Borrowed(text.as_str()) } else { visible_lines(&text) };
@@ -129,7 +130,8 @@ pub(crate) fn print_usage(message: &clap::Error, is_colored: bool) {
     };
 }
 
-/// Whether nothing that the parser may quote, arguments and variables, could be taken for a colour, or control a terminal otherwise.
+/// Whether nothing that the parser may quote, arguments and variables, could be taken for a colour, or control a
+/// terminal otherwise.
 fn quotes_are_visible() -> bool {
     let variables = std::env::vars_os().filter(|(name, _)| name.to_string_lossy().starts_with("LIGHTMESH_"));
     let quoted = std::env::args_os().chain(variables.map(|(_, value)| value));

@@ -66,7 +66,8 @@ pub fn read_inside(folder: &Path, path: &Path, portion: Portion) -> Result<Vec<u
     read_portion(open_inside(&folder, inside)?, portion)
 }
 
-/// Everything that a stream yields, such as standard input. One that never ends is an error once the memory does not suffice.
+/// Everything that a stream yields, such as standard input. One that never ends is an error once the memory does not
+/// suffice.
 ///
 /// # Errors
 /// [`ReadError::System`] or [`ReadError::Memory`].

@@ -187,8 +187,8 @@ impl Frame {
         self.ready_to(Output::to(path)?, options)
     }
 
-    /// As [`Frame::ready_with`], to an output that is already open, such as standard output. Its format is that of the options, or by the
-    /// extension of its path.
+    /// As [`Frame::ready_with`], to an output that is already open, such as standard output. Its format is that of the
+    /// options, or by the extension of its path.
     ///
     /// # Errors
     /// [`SaveError`]; nothing is written then.
@@ -328,8 +328,8 @@ pub fn check_writable(path: impl AsRef<Path>) -> Result<(), SaveError> {
     Ok(lightmesh_files::check_writable(path)?)
 }
 
-/// Checks that the format of an image at `path` is known, and can store an image of this size with these options, and with alpha if
-/// it is to be transparent. Does not look at what is there.
+/// Checks that the format of an image at `path` is known, and can store an image of this size with these options, and
+/// with alpha if it is to be transparent. Does not look at what is there.
 ///
 /// # Errors
 /// The [`SaveError`] that [`Frame::ready_with`] would return.

@@ -74,7 +74,8 @@ pub(crate) struct Passes<'a, B: Backend> {
 }
 
 impl<B: Backend> Passes<'_, B> {
-    /// Renders the whole view into `picture`, which also counts its finished rows. Returns how many rows were rendered at once.
+    /// Renders the whole view into `picture`, which also counts its finished rows. Returns how many rows were rendered
+    /// at once.
     pub(crate) fn render(&self, picture: &mut Picture) -> Result<u32, RenderError> {
         if self.plan.antialiasing.is_none() {
             // With several samples it depends on what they see, and on the bands.

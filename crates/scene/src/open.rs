@@ -78,8 +78,9 @@ impl Scene {
         draft.finish()
     }
 
-    /// Reads a scene from a stream, such as standard input, up to its end. Messages and the scene call it `name`; files that it refers to
-    /// are looked for in the folder of that path, which is the current one for a name alone. There need not be a file of this name.
+    /// Reads a scene from a stream, such as standard input, up to its end. Messages and the scene call it `name`; files
+    /// that it refers to are looked for in the folder of that path, which is the current one for a name alone. There
+    /// need not be a file of this name.
     ///
     /// ```
     /// use lightmesh_scene::{LoadOptions, Scene, SceneFormat};

@@ -1,7 +1,7 @@
 //! The three figures with which a page begins: the most telling ones of the rows at hand.
 //!
-//! Each candidate is computed from the rows of one experiment, on the fastest device that measured it; the first three that exist are
-//! shown. Ratios of many rows are geometric means.
+//! Each candidate is computed from the rows of one experiment, on the fastest device that measured it; the first three
+//! that exist are shown. Ratios of many rows are geometric means.
 
 use super::layouts::lights::contests;
 use super::layouts::thesis::{SCENES, speed_up};

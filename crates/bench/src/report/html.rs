@@ -1,6 +1,7 @@
 //! A report as a self-contained HTML page: style, script, plots and images are embedded.
 //!
-//! The page begins with figures, then come the sections with plots and images. Tables can be folded, and sorted by scripts.
+//! The page begins with figures, then come the sections with plots and images. Tables can be folded, and sorted by
+//! scripts.
 //!
 //! Each image is embedded once, in a hidden list, and referenced wherever it appears. Without scripts an image is shown next to its
 //! reference; with scripts they are overlaid, with a slider.

@@ -48,7 +48,8 @@ for (const table of document.querySelectorAll("table")) {
   if (rows.length < 2) continue;
   const headings = [...table.tHead.rows[table.tHead.rows.length - 1].cells];
 
-  // A number behind the text, one in the text (digits are grouped by narrow spaces), or the text itself; empty cells are last.
+  // A number behind the text, one in the text (digits are grouped by narrow spaces), or the text itself; empty cells
+  // are last.
   const key = (row, column) => {
     const cell = row.cells[column];
     const text = cell.textContent.trim();

@@ -124,7 +124,8 @@ impl ReadingArgs {
 /// How a scene is read.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct ReadingArgs {
-    /// Format of the scene [default: by the extension]. Files to which a scene on standard input refers are looked for in the current folder
+    /// Format of the scene [default: by the extension]. Files to which a scene on standard input refers are looked for
+    /// in the current folder
     #[arg(long, value_parser = words::scene_format(), help_heading = "Reading")]
     pub(crate) scene_format: Option<SceneFormat>,
 
@@ -238,7 +239,8 @@ pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArg,
 
-    /// NAME.glb: everything in one file; NAME.toml: cameras and lights as text, and the triangles in NAME.mesh.glb; `-`: GLB on standard output
+    /// NAME.glb: everything in one file; NAME.toml: cameras and lights as text, and the triangles in NAME.mesh.glb;
+    /// `-`: GLB on standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
 

@@ -17,8 +17,8 @@ pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArg,
 
-    /// Output image; the extension determines the format: bmp, png, exr or jpg. `-` is standard output, which then has nothing else, and
-    /// needs --format
+    /// Output image; the extension determines the format: bmp, png, exr or jpg. `-` is standard output, which then has
+    /// nothing else, and needs --format
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
@@ -114,8 +114,9 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "COLOUR|transparent", allow_hyphen_values = true, help_heading = "Image")]
     pub(crate) background: Option<Background>,
 
-    /// Keep what is finished when the run is interrupted: the rows that are rendered by then, over the background or transparent, in all
-    /// files of the run; a second Ctrl-C ends it at once. The image is rendered in bands, with the same result
+    /// Keep what is finished when the run is interrupted: the rows that are rendered by then, over the background or
+    /// transparent, in all files of the run; a second Ctrl-C ends it at once. The image is rendered in bands, with the
+    /// same result
     #[arg(long, help_heading = "Image")]
     pub(crate) partial: bool,
 
@@ -172,8 +173,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "F", help_heading = "Machine")]
     pub(crate) grid_file: Option<PathBuf>,
 
-    /// Write counts, timings and all resolved settings as JSON; `-` is standard output. The time of the render excludes file input
-    /// and output [default: off]
+    /// Write counts, timings and all resolved settings as JSON; `-` is standard output. The time of the render excludes
+    /// file input and output [default: off]
     #[arg(long, value_name = "F.json", help_heading = "Reports")]
     pub(crate) stats: Option<PathBuf>,
 

@@ -106,7 +106,8 @@ impl Place {
         command
     }
 
-    /// Runs a command on a terminal: standard input, output and error are one. Returns its exit code and all that it shows.
+    /// Runs a command on a terminal: standard input, output and error are one. Returns its exit code and all that it
+    /// shows.
     #[cfg(target_os = "linux")]
     pub(crate) fn on_terminal(&self, mut command: Command) -> (Option<i32>, String) {
         use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};

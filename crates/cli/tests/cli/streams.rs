@@ -95,7 +95,8 @@ fn scenes_of_all_formats_come_from_standard_input() {
     let place = Place::new();
     place.write("t.obj", TRIANGLE);
     place.good(&["export", "t.obj", "-o", "t.glb"]);
-    place.write("t.stl", "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid t\n");
+    let corners = "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n";
+    place.write("t.stl", &format!("solid t\nfacet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\nendsolid t\n"));
     place.write(
         "t.ply",
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\

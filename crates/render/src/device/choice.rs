@@ -15,7 +15,8 @@ pub struct Choice {
     pub reason: String,
     /// Why no CUDA device was taken, and what to do, if the choice was left open and none works.
     pub no_cuda: Option<String>,
-    /// Whether that may be news to the user: there is a driver, or a card of NVIDIA's. Elsewhere no CUDA device was to be expected.
+    /// Whether that may be news to the user: there is a driver, or a card of NVIDIA's. Elsewhere no CUDA device was to
+    /// be expected.
     pub misses_cuda: bool,
     pub(crate) chosen: Chosen,
 }

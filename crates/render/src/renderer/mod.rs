@@ -64,8 +64,9 @@ impl Frame {
         self.image.layers()
     }
 
-    /// The number of finished rows, from the top: all, unless the observer cancelled the render and [`Settings::partial`] asked for what
-    /// is finished. The rows below have the background's colour, or are transparent, and their layers are those of pixels that see nothing.
+    /// The number of finished rows, from the top: all, unless the observer cancelled the render and
+    /// [`Settings::partial`] asked for what is finished. The rows below have the background's colour, or are
+    /// transparent, and their layers are those of pixels that see nothing.
     pub fn finished_rows(&self) -> u32 {
         self.stats.finished_rows.unwrap_or_else(|| self.image.height())
     }
@@ -158,8 +159,8 @@ impl Renderer {
     /// Renders one image of a prepared scene.
     ///
     /// # Errors
-    /// As [`Renderer::render`], and [`RenderError::Cancelled`] if the observer requested cancellation. With [`Settings::partial`], that
-    /// is no error once any row is finished: see [`Frame::finished_rows`].
+    /// As [`Renderer::render`], and [`RenderError::Cancelled`] if the observer requested cancellation. With
+    /// [`Settings::partial`], that is no error once any row is finished: see [`Frame::finished_rows`].
     pub fn render_prepared(
         &self,
         scene: &PreparedScene,

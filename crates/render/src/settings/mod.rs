@@ -61,8 +61,8 @@ pub struct Settings {
     pub layers: bool,
     /// Whether the background is left out: the image has an alpha, 0 where the camera sees nothing. Mirrors still show the background.
     pub transparent: bool,
-    /// Whether a render that the observer cancels yields the rows that are finished by then, in place of an error: the image is rendered in
-    /// at least 32 bands, or in bands of 8 rows. The same bits take a few percent longer.
+    /// Whether a render that the observer cancels yields the rows that are finished by then, in place of an error: the
+    /// image is rendered in 32 bands, fewer if these had less than 8 rows. The same bits take a few percent longer.
     pub partial: bool,
     /// Memory limit in bytes: of all that the process holds on the CPU, of the device's own memory on a GPU; `None`: what is free, less a
     /// reserve.

@@ -60,7 +60,8 @@ fn table(
     table.without_empty_columns()
 }
 
-/// Keys that differ between rows, apart from the device, and a sentence with those that do not. A device has its own name.
+/// Keys that differ between rows, apart from the device, and a sentence with those that do not. A device has its own
+/// name.
 pub(super) fn split_keys(rows: &[Measured]) -> (Vec<String>, String) {
     let same = |key: &str| rows.windows(2).all(|pair| pair[0].key(key) == pair[1].key(key));
     let keys = key_columns(rows).into_iter().filter(|key| !PLACES.contains(&key.as_str()));

@@ -65,7 +65,8 @@ impl Unavailable {
     pub(crate) fn explained(&self) -> String {
         match self {
             Unavailable::NoLibrary { library, needed } => format!(
-                "{self} ({library} was not found): install version {needed} or newer; a container must be started with access to the GPUs"
+                "{self} ({library} was not found): install version {needed} or newer; a container must be started with \
+                 access to the GPUs"
             ),
             other => other.to_string(),
         }
