@@ -1,7 +1,7 @@
 //! Everything that can end a run, and its exit code.
 
 use lightmesh::render::accel::{GridError, GridSaveError};
-use lightmesh::scene::{ExportError, UnknownCamera};
+use lightmesh::scene::{ExportError, SceneFormat, UnknownCamera};
 use lightmesh::{LoadError, RenderError, SaveError, image};
 use lightmesh_bench::BenchError;
 use lightmesh_bench::report::ReportError;
@@ -53,6 +53,12 @@ pub(crate) enum Failure {
     /// A measure of a comparison exceeds its threshold.
     #[error("{0}")]
     Exceeded(String),
+    /// A scene on standard input has no extension.
+    #[error("a scene on standard input needs its format; add --scene-format {}", scene_formats())]
+    NoSceneFormat,
+    /// Standard input is a terminal.
+    #[error("standard input is a terminal, which has no scene; redirect a file or a pipe to it, or name a file")]
+    NoScene,
     /// There is no manual page of this name.
     #[error("unknown subcommand `{name}`; available: {}", known.join(", "))]
     UnknownPage {
@@ -64,6 +70,12 @@ pub(crate) enum Failure {
     /// The threads that wait for signals and for the end of memory cannot be started.
     #[error("cannot listen for signals ({0}); end other programs or raise the limits of this one")]
     Signals(#[from] std::io::Error),
+}
+
+/// The names of all formats of scenes.
+fn scene_formats() -> String {
+    let names: Vec<&str> = SceneFormat::ALL.iter().map(|format| format.name()).collect();
+    names.join(", ")
 }
 
 impl From<BenchError> for Failure {

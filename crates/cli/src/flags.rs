@@ -4,11 +4,12 @@
 
 use lightmesh::render::Setting;
 use lightmesh::render::accel::GridError;
-use lightmesh::{LoadError, RenderError};
+use lightmesh::{LoadError, RenderError, SaveError};
 use lightmesh_bench::BenchError;
 use lightmesh_bench::report::ReportError;
 
 use crate::failure::Failure;
+use crate::plan::PlanError;
 
 /// The flag of a setting: it has the same name, except for the structure.
 pub(crate) fn of(setting: Setting) -> String {
@@ -27,7 +28,9 @@ pub(crate) fn that_mend(failure: &Failure) -> Vec<String> {
         }
         Failure::Render(RenderError::Grid(_)) | Failure::Grid(_) => &["--grid"],
         Failure::Render(RenderError::GridFile(_)) => &["lightmesh grid SCENE -o FILE"],
+        Failure::Render(RenderError::Device { .. }) => &["--device", "lightmesh info --devices"],
         Failure::Render(error) => return error.settings().into_iter().map(of).collect(),
+        Failure::Plan(PlanError::Save(SaveError::UnknownExtension { .. })) => &["--format"],
         Failure::Load(error) => match error.root() {
             LoadError::Memory { .. } => &["--memory-limit"],
             LoadError::Outside { .. } => &["--allow-outside"],

@@ -1,6 +1,8 @@
 //! Requests to end: Ctrl-C and the signals INT, TERM and HUP.
 //!
-//! 1. A request is recorded. Work that [asks for it](watched) has a short time to end by itself: a suite saves its rows so far.
+//! 1. A request is recorded. Work that [asks for it](watched) has a short time to end by itself: a suite saves its rows
+//!    so far. Work that [keeps](keeping) what it has takes the time it needs: a render finishes the files of its
+//!    picture. A second request ends that, too.
 //! 2. The process [leaves](leave): temporary files are removed, from then on none can be created or renamed, so that each output is
 //!    there completely or not at all; the message says which are there.
 //!
@@ -8,7 +10,8 @@
 //! by the driver.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
@@ -22,27 +25,60 @@ const GRACE: Duration = Duration::from_millis(100);
 
 /// The exit code of the request; 0: none so far.
 static REQUESTED: AtomicU8 = AtomicU8::new(0);
-/// Whether the work in progress asks for requests.
-static WATCHED: AtomicBool = AtomicBool::new(false);
+/// The [`Manner`] in which the work in progress ends.
+static MANNER: AtomicU8 = AtomicU8::new(Manner::AtOnce as u8);
+/// What the last message says about the outputs that are there.
+static REMARK: Mutex<String> = Mutex::new(String::new());
+
+/// How work ends when the program shall end; later ones take longer.
+#[derive(Clone, Copy)]
+#[repr(u8)]
+enum Manner {
+    /// It is left.
+    AtOnce,
+    /// It has a short time.
+    Watched,
+    /// It has the time it needs, unless there is a second request.
+    Keeping,
+}
 
 /// Obeys requests from now on.
 pub(crate) fn install() -> Result<(), Failure> {
     record_written();
     listen(|code| {
-        REQUESTED.store(code, Ordering::SeqCst);
-        if WATCHED.load(Ordering::SeqCst) {
-            thread::sleep(GRACE);
+        // The first one decides about the exit code.
+        let first = REQUESTED.compare_exchange(0, code, Ordering::SeqCst, Ordering::SeqCst);
+        match MANNER.load(Ordering::SeqCst) {
+            manner if manner == Manner::Keeping as u8 && first.is_ok() => return,
+            manner if manner == Manner::Watched as u8 => thread::sleep(GRACE),
+            _ => {}
         }
-        leave(code)
+        leave(first.err().unwrap_or(code))
     })
 }
 
 /// Does work that ends by itself when the program [shall end](requested).
 pub(crate) fn watched<T>(work: impl FnOnce() -> T) -> T {
-    WATCHED.store(true, Ordering::SeqCst);
+    in_manner(Manner::Watched, work)
+}
+
+/// Does work that is not left when the program [shall end](requested): it ends by itself, and what it has then is
+/// written. Only a second request ends it at once.
+pub(crate) fn keeping<T>(work: impl FnOnce() -> T) -> T {
+    in_manner(Manner::Keeping, work)
+}
+
+/// Work within work that keeps what it has does so, too.
+fn in_manner<T>(manner: Manner, work: impl FnOnce() -> T) -> T {
+    let outer = MANNER.fetch_max(manner as u8, Ordering::SeqCst);
     let result = work();
-    WATCHED.store(false, Ordering::SeqCst);
+    MANNER.store(outer, Ordering::SeqCst);
     result
+}
+
+/// What the last message says about the outputs, if they are there.
+pub(crate) fn remark(text: String) {
+    *REMARK.lock().unwrap_or_else(PoisonError::into_inner) = text;
 }
 
 /// Whether the program shall end.
@@ -60,7 +96,14 @@ pub(crate) fn leave_if_requested() {
 
 /// Removes what is unfinished, says what is written, and exits. Of two threads that call this, one waits for the other to exit.
 fn leave(code: u8) -> ! {
-    output::conclude(&message(&abandon()));
+    let abandoned = abandon();
+    // If it is being written, there is no picture.
+    let remark = REMARK.try_lock().map(|remark| remark.clone()).unwrap_or_default();
+    output::conclude(&if abandoned.written.is_empty() || remark.is_empty() {
+        message(&abandoned)
+    } else {
+        format!("{}; {remark}", message(&abandoned))
+    });
     exit(code)
 }
 
@@ -83,15 +126,15 @@ fn message(Abandoned { written, partial, .. }: &Abandoned) -> String {
     partial.as_deref().map_or_else(|| format!("interrupted: {whole}"), part)
 }
 
-/// Calls `end` with an exit code for the first request, on a thread of its own.
+/// Calls `end` with an exit code for each request, on a thread of its own.
 #[cfg(unix)]
 fn listen(end: impl Fn(u8) + Send + 'static) -> Result<(), Failure> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     // One that is ignored stays so: nohup and shells ask for it.
     let signals = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&signal| !is_ignored(signal));
     let mut signals = signal_hook::iterator::Signals::new(signals)?;
-    let first = move || signals.forever().for_each(|signal| end(128 + signal as u8));
-    thread::Builder::new().name("signals".to_owned()).spawn(first)?;
+    let each = move || signals.forever().for_each(|signal| end(128 + signal as u8));
+    thread::Builder::new().name("signals".to_owned()).spawn(each)?;
     Ok(())
 }
 

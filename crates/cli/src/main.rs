@@ -4,6 +4,8 @@
 //! [`Failure`], which knows its exit code. Results go to standard output; notes, progress and errors go to standard error.
 
 mod args;
+mod color;
+mod destination;
 mod failure;
 mod flags;
 mod interrupt;
@@ -20,25 +22,34 @@ use std::process::ExitCode;
 use std::sync::Once;
 
 use clap::FromArgMatches;
+use clap::builder::Styles;
 
 use crate::args::{Cli, Command};
 use crate::failure::{Failure, INTERRUPTED, UNABLE};
 
 fn main() -> ExitCode {
     panic::set_hook(Box::new(report_fault));
-    let result = panic::catch_unwind(|| match parse() {
+    color::set(color::asked(std::env::args_os()));
+    let result = panic::catch_unwind(|| match parse(Styles::plain()) {
         Ok(cli) => start(&cli.command).and_then(|()| run::run(cli.command)).unwrap_or_else(|failure| failed(&failure)),
-        Err(message) => {
-            output::print_usage(&message);
-            message.exit_code() as u8
-        }
+        Err(message) => explain(&message),
     });
     interrupt::leave_if_requested();
     ExitCode::from(result.unwrap_or(UNABLE))
 }
 
-fn parse() -> Result<Cli, clap::Error> {
-    Cli::from_arg_matches(&args::command().try_get_matches()?)
+fn parse(styles: Styles) -> Result<Cli, clap::Error> {
+    let cli = Cli::from_arg_matches(&args::command().styles(styles).try_get_matches()?)?;
+    color::set(cli.color);
+    Ok(cli)
+}
+
+/// Prints what the parser says, in colours if these are wanted where it goes; returns the exit code.
+fn explain(message: &clap::Error) -> u8 {
+    let is_colored = output::is_usage_colored(message);
+    let colored = is_colored.then(|| parse(Styles::styled()).err()).flatten();
+    output::print_usage(colored.as_ref().unwrap_or(message), is_colored);
+    message.exit_code() as u8
 }
 
 /// Prepares for the ends that may come at any moment.

@@ -25,6 +25,9 @@ const GAPS: u64 = 16;
 /// How long the message may take if the thread that wants memory holds what it waits for.
 const PATIENCE: Duration = Duration::from_secs(2);
 
+/// What messages call the work on the image itself.
+pub(crate) const RENDERING: &str = "rendering";
+
 static REFUSED: OnceLock<Refused> = OnceLock::new();
 /// The thread that ends the program.
 static ENDING: OnceLock<Thread> = OnceLock::new();
@@ -71,8 +74,8 @@ fn locked() -> std::sync::MutexGuard<'static, String> {
     TASK.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What the program does; if that is just being changed, nobody knows.
-fn task() -> String {
+/// What the program does, as messages call it; empty if that is just being changed.
+pub(crate) fn task() -> String {
     TASK.try_lock().map(|task| task.clone()).unwrap_or_default()
 }
 

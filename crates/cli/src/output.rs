@@ -1,5 +1,6 @@
 //! Output to standard output, standard error, and files that are written completely or not at all.
 
+use std::borrow::Cow;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
@@ -10,6 +11,9 @@ use lightmesh_files::{
     Identity, PublishError, Ready, TargetError, WriteError, directory, identity, visible, visible_json, visible_lines,
 };
 use serde::Serialize;
+
+use crate::color;
+use crate::destination::is_standard;
 
 /// How long the last line may wait for someone to read standard error.
 const PATIENCE: Duration = Duration::from_millis(50);
@@ -31,6 +35,14 @@ pub(crate) enum OutputError {
     /// An output is an input, or another output.
     #[error("{first} and {second} are the same file, {}; give them different names", path.display())]
     SameFile { first: &'static str, second: &'static str, path: PathBuf },
+    /// Two outputs go to standard output.
+    #[error("{first} and {second} both go to standard output; send one of them to a file")]
+    Mixed { first: &'static str, second: &'static str },
+    /// Bytes that are no text go to a terminal.
+    #[error(
+        "{flag} would write binary data to the terminal; redirect standard output to a file or a pipe, or name a file"
+    )]
+    Terminal { flag: &'static str },
     /// An input is in a folder whose files are written.
     #[error("{what}, {}, is in a folder that {flag} fills, {}; choose another name for {flag}", path.display(), folder.display())]
     InFolder { what: &'static str, path: PathBuf, flag: &'static str, folder: PathBuf },
@@ -68,7 +80,8 @@ fn write_stdout(text: &str) -> Result<(), OutputError> {
 /// Prints a line to standard error: names in it neither control the terminal nor begin new lines. If that fails, there is nowhere left
 /// to report it.
 pub(crate) fn complain(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{}", visible(text));
+    let mut stderr = io::stderr().lock();
+    let _ = writeln!(stderr, "{}", color::painted(visible(text), &stderr));
 }
 
 /// Prints one line of JSON to standard error.
@@ -81,7 +94,8 @@ pub(crate) fn complain_json(value: &impl Serialize) {
 
 /// Prints the last line to standard error, and lets no thread print after it. Does not wait long if nobody reads.
 pub(crate) fn conclude(text: &str) {
-    let line = format!("{}{}\n", if io::stderr().is_terminal() { CLEAR_LINE } else { "" }, visible(text));
+    let clear = if io::stderr().is_terminal() { CLEAR_LINE } else { "" };
+    let line = format!("{clear}{}\n", color::painted(visible(text), &io::stderr()));
     let (sender, printed) = mpsc::channel();
     let print = move || {
         let mut stderr = io::stderr().lock();
@@ -97,16 +111,31 @@ pub(crate) fn conclude(text: &str) {
     }
 }
 
-/// Prints what the parser of the command line says: help, or an error that quotes arguments.
-pub(crate) fn print_usage(message: &clap::Error) {
-    let text = message.render().to_string();
-    let text = visible_lines(&text);
+/// Whether what the parser of the command line says is shown in colours.
+pub(crate) fn is_usage_colored(message: &clap::Error) -> bool {
+    let is_wanted = if message.use_stderr() { color::on(&io::stderr()) } else { color::on(&io::stdout()) };
+    is_wanted && quotes_are_visible()
+}
+
+/// Prints what the parser says: help, or an error that quotes arguments. Without colours, nothing in it controls the
+/// terminal.
+pub(crate) fn print_usage(message: &clap::Error, is_colored: bool) {
+    let text = message.render().ansi().to_string();
+    let text = if is_colored { Cow::Borrowed(text.as_str()) } else { visible_lines(&text) };
     // If even this cannot be printed, there is nowhere left to report it.
     let _ = if message.use_stderr() {
         io::stderr().lock().write_all(text.as_bytes())
     } else {
         io::stdout().lock().write_all(text.as_bytes())
     };
+}
+
+/// Whether nothing that the parser may quote, arguments and variables, could be taken for a colour, or control a
+/// terminal otherwise.
+fn quotes_are_visible() -> bool {
+    let variables = std::env::vars_os().filter(|(name, _)| name.to_string_lossy().starts_with("LIGHTMESH_"));
+    let quoted = std::env::args_os().chain(variables.map(|(_, value)| value));
+    quoted.into_iter().all(|text| matches!(visible(&text.to_string_lossy()), Cow::Borrowed(_)))
 }
 
 /// Checks that a file could be written to `path`, without touching an existing one.
@@ -188,6 +217,11 @@ impl Outputs {
     pub(crate) fn keep_scene(&self, scene: &lightmesh::Scene) -> Result<(), OutputError> {
         self.keep("a file of the scene", scene.files.iter().map(PathBuf::as_path))
     }
+}
+
+/// The file of a scene on the command line; standard input may come from one, too.
+pub(crate) fn input(scene: &Path) -> Option<&Path> {
+    if is_standard(scene) { cfg!(unix).then_some(Path::new("/dev/stdin")) } else { Some(scene) }
 }
 
 #[cfg(test)]

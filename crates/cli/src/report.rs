@@ -12,6 +12,8 @@ use crate::plan::PictureFiles;
 #[derive(Serialize)]
 pub(crate) struct Report<'a> {
     version: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    finished_rows: Option<u32>,
     scene: &'a SceneStats,
     device: &'a DeviceStats,
     settings: AllSettings<'a>,
@@ -46,8 +48,7 @@ impl<'a> Report<'a> {
         lights: &'a [LightInfo],
     ) -> Report<'a> {
         let (display, exr) = (&options.display, &options.exr);
-        let format = Format::from_path(&files.picture);
-        let is_exr = format == Some(Format::Exr);
+        let is_exr = files.format() == Some(Format::Exr);
         let has_exr = is_exr || files.layers.is_some();
         // Only 8-bit codes are dithered.
         let dither = display.dither && display.bit_depth == BitDepth::Eight;
@@ -64,6 +65,7 @@ impl<'a> Report<'a> {
         };
         Report {
             version: stats.version,
+            finished_rows: stats.finished_rows,
             scene: &stats.scene,
             device: &stats.device,
             settings,

@@ -1,6 +1,7 @@
 //! What happens to an image when a device's memory does not suffice, and what a second image costs.
 #![cfg(unix)]
 
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 
 use glam::{DVec3, Vec3};
@@ -46,6 +47,48 @@ fn bits(frame: &Frame) -> (Vec<[u32; 3]>, Vec<u32>) {
 #[test]
 fn a_picture_in_bands_is_the_same_picture() {
     same_in_bands(settings);
+}
+
+/// Requests cancellation when some bands have begun.
+struct AfterBands {
+    left: AtomicU32,
+}
+
+impl Observer for AfterBands {
+    fn begin(&self, stage: Stage, _: u64) {
+        if stage == Stage::Film {
+            self.left.fetch_sub(1, Ordering::Relaxed);
+        }
+    }
+
+    fn cancelled(&self) -> bool {
+        self.left.load(Ordering::Relaxed) == 0
+    }
+}
+
+#[test]
+fn what_is_finished_when_an_image_is_stopped_is_that_of_the_whole_image() {
+    let settings = || settings().with_lookup(Lookup::Lists).with_samples(9).with_aa(4);
+    let (whole, ..) = render(&scene(), Emulator::new(), &settings());
+    let (colors, _) = bits(&whole.unwrap());
+    let stopped = |bands: u32| {
+        let emulator = Arc::new(Emulator::new());
+        let cuda = Cuda::new(Arc::clone(&emulator));
+        let prepared = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
+        let observer = AfterBands { left: AtomicU32::new(bands) };
+        let frame = render_on(&cuda, &prepared, &settings().with_partial(true), &observer);
+        drop((cuda, prepared));
+        assert_eq!(emulator.taken(), 0, "all memory is given back");
+        frame
+    };
+    assert!(matches!(stopped(1), Err(RenderError::Cancelled)));
+    for bands in 2..=4 {
+        let frame = stopped(bands).unwrap();
+        assert_eq!(frame.finished_rows(), 8 * (bands - 1));
+        let places = (50 * frame.finished_rows()) as usize;
+        let (found, _) = bits(&frame);
+        assert!(found[..places] == colors[..places] && found[places..].iter().all(|color| *color == [0; 3]));
+    }
 }
 
 #[test]

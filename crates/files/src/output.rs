@@ -12,6 +12,8 @@ use crate::temporary::Temporary;
 
 /// What is written through is held in memory up to so many bytes, and then in a file without a name.
 const SPOOLED: usize = 64 << 20;
+/// What messages call standard output.
+const STANDARD_OUTPUT: &str = "standard output";
 /// Data become durable in steps of so many bytes. A process cannot end while the system writes, so none may take long.
 const SYNCED: u64 = 16 << 20;
 
@@ -62,6 +64,27 @@ impl Output {
             Target::Stream(stream) => Sink::Stream { bytes: spooled_tempfile(SPOOLED), stream },
         };
         Ok(Output { path: path.to_owned(), sink })
+    }
+
+    /// An empty output for standard output, which is written when it is published.
+    pub fn to_stdout() -> Output {
+        let sink = Sink::Stream { bytes: spooled_tempfile(SPOOLED), stream: Stream::Stdout };
+        Output { path: PathBuf::from(STANDARD_OUTPUT), sink }
+    }
+
+    /// The path that was given, or what messages call standard output.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Fills an output that is ready then.
+    ///
+    /// # Errors
+    /// [`WriteError`], which names the file.
+    pub fn filled(mut self, bytes: &[u8]) -> Result<Ready, WriteError> {
+        let path = self.path.clone();
+        let written = self.write_all(bytes).and_then(|()| self.ready());
+        written.map_err(|reason| WriteError::Data { path, reason })
     }
 
     /// Makes the data durable. A file is not yet visible under its name.
@@ -135,10 +158,7 @@ impl Ready {
     /// # Errors
     /// [`WriteError`], which names the file.
     pub fn with(path: impl AsRef<Path>, bytes: &[u8]) -> Result<Ready, WriteError> {
-        let path = path.as_ref();
-        let mut file = Output::to(path)?;
-        let written = file.write_all(bytes).and_then(|()| file.ready());
-        written.map_err(|reason| WriteError::Data { path: path.to_owned(), reason })
+        Output::to(path)?.filled(bytes)
     }
 
     /// The path that was given.

@@ -10,6 +10,9 @@ use std::path::Path;
 
 use lightmesh_memory::{Budget, Short};
 
+/// Bytes of a stream that are read before more memory is asked for.
+const FIRST: usize = 1 << 16;
+
 /// Why a file cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -61,6 +64,26 @@ pub fn read_inside(folder: &Path, path: &Path, portion: Portion) -> Result<Vec<u
     let inside = real.strip_prefix(&folder).map_err(|_| ReadError::Outside)?;
     regular(&fs::symlink_metadata(&real)?)?;
     read_portion(open_inside(&folder, inside)?, portion)
+}
+
+/// Everything that a stream yields, such as standard input. One that never ends is an error once the memory does not
+/// suffice.
+///
+/// # Errors
+/// [`ReadError::System`] or [`ReadError::Memory`].
+pub fn read_stream(mut source: impl Read, budget: Budget) -> Result<Vec<u8>, ReadError> {
+    let mut bytes: Vec<u8> = Vec::new();
+    loop {
+        let more = bytes.len().max(FIRST);
+        let needed = (bytes.len() + more) as u64;
+        // While the content moves to a larger place, the smaller one is still held.
+        budget.check(needed)?;
+        let refused = |_| Short { needed, left: 0, limit: budget.limit() };
+        bytes.try_reserve_exact(more).map_err(refused)?;
+        if source.by_ref().take(more as u64).read_to_end(&mut bytes)? < more {
+            return Ok(bytes);
+        }
+    }
 }
 
 /// Looked at before opening, which may wait or have effects, and once more afterwards.
@@ -178,6 +201,18 @@ mod tests {
         fs::create_dir(&folder).unwrap();
         std::os::unix::fs::symlink("../out", folder.join("parts")).unwrap();
         assert!(open_inside(&folder, Path::new("parts/a")).is_err());
+    }
+
+    #[test]
+    fn a_stream_is_read_to_its_end_or_until_memory_is_short() {
+        for length in [0, 1, FIRST - 1, FIRST, FIRST + 1, 5 * FIRST + 7] {
+            let bytes: Vec<u8> = (0..length).map(|place| (place % 251) as u8).collect();
+            // In small portions, as from a pipe.
+            let (first, rest) = bytes.split_at(length / 3);
+            assert_eq!(read_stream(first.chain(rest), Budget::default()).unwrap(), bytes);
+        }
+        let endless = read_stream(io::repeat(0), Budget::new(Some(1 << 24)));
+        assert!(matches!(endless, Err(ReadError::Memory(Short { limit: Some(0x100_0000), .. }))), "{endless:?}");
     }
 
     #[test]

@@ -1,6 +1,5 @@
 //! Image formats: extensions for writing, signatures for reading.
 
-use std::fmt;
 use std::path::Path;
 
 #[cfg(feature = "bmp")]
@@ -23,9 +22,6 @@ pub enum Format {
 }
 
 impl Format {
-    /// The formats in the order used by messages.
-    pub const ALL: [Self; 4] = [Self::Bmp, Self::Png, Self::Exr, Self::Jpg];
-
     /// The extensions of the format, the preferred one first.
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
@@ -40,7 +36,8 @@ impl Format {
     pub fn from_path(path: &Path) -> Option<Self> {
         let extension = path.extension()?;
         Self::ALL
-            .into_iter()
+            .iter()
+            .copied()
             .find(|format| format.extensions().iter().any(|known| extension.eq_ignore_ascii_case(known)))
     }
 
@@ -79,7 +76,7 @@ impl Format {
 
     /// The format whose signature starts `bytes`.
     pub(crate) fn from_signature(bytes: &[u8]) -> Option<Self> {
-        Self::ALL.into_iter().find(|format| bytes.starts_with(format.signature()))
+        Self::ALL.iter().copied().find(|format| bytes.starts_with(format.signature()))
     }
 
     fn signature(self) -> &'static [u8] {
@@ -93,15 +90,9 @@ impl Format {
 
     /// The extensions of all formats that the crate was built with, for messages.
     pub(crate) fn known() -> String {
-        let built = Self::ALL.into_iter().filter(|format| format.is_built());
+        let built = Self::ALL.iter().copied().filter(|format| format.is_built());
         let extensions: Vec<_> = built.flat_map(|format| format.extensions()).copied().collect();
         extensions.join(", ")
-    }
-}
-
-impl fmt::Display for Format {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.extensions()[0])
     }
 }
 
@@ -115,14 +106,12 @@ mod tests {
         assert_eq!(Format::from_path(Path::new("b.jpeg")), Some(Format::Jpg));
         assert_eq!(Format::from_path(Path::new("b.tga")), None);
         assert_eq!(Format::from_path(Path::new("png")), None);
-        assert!(
-            Format::ALL.into_iter().all(|format| Format::known().contains(format.extensions()[0]) == format.is_built())
-        );
+        assert!(Format::ALL.iter().all(|format| Format::known().contains(format.extensions()[0]) == format.is_built()));
     }
 
     #[test]
     fn signatures_name_formats() {
-        for format in Format::ALL {
+        for &format in Format::ALL {
             let mut bytes = format.signature().to_vec();
             bytes.push(0);
             assert_eq!(Format::from_signature(&bytes), Some(format));

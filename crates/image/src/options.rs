@@ -1,14 +1,17 @@
 //! [`SaveOptions`]: everything about how a frame becomes a file.
 
 use std::fmt;
+use std::path::Path;
 use std::str::FromStr;
 
-use crate::{Display, Transfer};
+use crate::{Display, Format, Transfer};
 
 /// How a frame is saved.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct SaveOptions {
+    /// The format; `None`: by the extension of the path.
+    pub format: Option<Format>,
     /// For bmp, png and jpg.
     pub display: Display,
     /// For exr.
@@ -18,6 +21,16 @@ pub struct SaveOptions {
 }
 
 impl SaveOptions {
+    /// Sets the format, whatever the extension of the path; `None`: by the extension.
+    pub fn with_format(self, format: impl Into<Option<Format>>) -> Self {
+        Self { format: format.into(), ..self }
+    }
+
+    /// The format of an image at `path`; `None` if that is unknown.
+    pub fn format_of(&self, path: &Path) -> Option<Format> {
+        self.format.or_else(|| Format::from_path(path))
+    }
+
     /// Sets how bmp, png and jpg files show colours.
     pub fn with_display(self, display: Display) -> Self {
         Self { display, ..self }
@@ -66,7 +79,7 @@ impl ExrOptions {
 macro_rules! words {
     ($type:ident, $what:literal, $($variant:ident $name:literal $help:literal),+) => {
         impl $type {
-            /// All of them.
+            /// All of them, in the order used by messages.
             pub const ALL: &'static [$type] = &[$($type::$variant),+];
 
             /// Its name.
@@ -117,6 +130,14 @@ pub enum ExrSamples {
     /// 16 bits: 11 of precision up to 65504, to which larger values are lowered.
     Half,
 }
+
+words!(
+    Format, "image format",
+    Bmp "bmp" "8 bits, not compressed",
+    Png "png" "8 or 16 bits",
+    Exr "exr" "Linear floats",
+    Jpg "jpg" "8 bits, lossy"
+);
 
 words!(
     ExrSamples, "kind of numbers",
@@ -196,6 +217,7 @@ mod tests {
 
     #[test]
     fn words_are_read_and_written() {
+        Format::ALL.iter().for_each(|word| assert_eq!(word.to_string().parse(), Ok(*word)));
         ExrSamples::ALL.iter().for_each(|word| assert_eq!(word.to_string().parse(), Ok(*word)));
         ExrCompression::ALL.iter().for_each(|word| assert_eq!(word.to_string().parse(), Ok(*word)));
         let message = "dwaa".parse::<ExrCompression>().unwrap_err().to_string();

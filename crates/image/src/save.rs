@@ -183,8 +183,18 @@ impl Frame {
     /// [`SaveError`]; the target is then unchanged.
     pub fn ready_with(&self, path: impl AsRef<Path>, options: &SaveOptions) -> Result<Ready, SaveError> {
         let path = path.as_ref();
-        let format = known_format(path)?;
-        self.written(path, format, |output| {
+        known_format(path, options)?;
+        self.ready_to(Output::to(path)?, options)
+    }
+
+    /// As [`Frame::ready_with`], to an output that is already open, such as standard output. Its format is that of the
+    /// options, or by the extension of its path.
+    ///
+    /// # Errors
+    /// [`SaveError`]; nothing is written then.
+    pub fn ready_to(&self, output: Output, options: &SaveOptions) -> Result<Ready, SaveError> {
+        let format = known_format(output.path(), options)?;
+        self.written(output, format, |output| {
             check_storable(format, options, self.alpha().is_some())?;
             match format {
                 #[cfg(feature = "bmp")]
@@ -248,12 +258,20 @@ impl Frame {
     /// As [`Frame::save_layers`].
     pub fn ready_layers_with(&self, path: impl AsRef<Path>, options: &SaveOptions) -> Result<Ready, SaveError> {
         let path = path.as_ref();
-        let format = known_format(path)?;
-        if format != Format::Exr {
+        if known_format(path, &SaveOptions::default())? != Format::Exr {
             return Err(SaveError::LayersNeedExr { path: path.to_owned() });
         }
-        let layers = self.layers().ok_or_else(|| SaveError::NoLayers { path: path.to_owned() })?;
-        self.written(path, format, |output| exr::write_layers(self, layers, options, output))
+        self.ready_layers_to(Output::to(path)?, options)
+    }
+
+    #[cfg(feature = "exr")]
+    /// As [`Frame::ready_layers_with`], to an output that is already open, such as standard output.
+    ///
+    /// # Errors
+    /// [`SaveError::NoLayers`] or [`SaveError::Write`].
+    pub fn ready_layers_to(&self, output: Output, options: &SaveOptions) -> Result<Ready, SaveError> {
+        let layers = self.layers().ok_or_else(|| SaveError::NoLayers { path: output.path().to_owned() })?;
+        self.written(output, Format::Exr, |output| exr::write_layers(self, layers, options, output))
     }
 
     #[cfg(feature = "exr")]
@@ -268,25 +286,25 @@ impl Frame {
         Ok(output.into_inner())
     }
 
-    /// Calls `write` to fill a file, which may then replace the one at `path`.
+    /// Calls `write` to fill an output.
     fn written(
         &self,
-        path: &Path,
+        mut file: Output,
         format: Format,
         write: impl FnOnce(&mut BufWriter<&mut Output>) -> Result<(), EncodeError>,
     ) -> Result<Ready, SaveError> {
+        let path = file.path().to_owned();
         let failed = |error| match error {
             EncodeError::TooLarge { limit } => {
                 let (width, height) = (self.width(), self.height());
-                SaveError::TooLarge { path: path.to_owned(), format, width, height, limit }
+                SaveError::TooLarge { path: path.clone(), format, width, height, limit }
             }
-            EncodeError::BitDepth { format } => SaveError::BitDepth { path: path.to_owned(), format },
-            EncodeError::Alpha { format } => SaveError::Alpha { path: path.to_owned(), format },
-            EncodeError::NotBuilt { format, .. } => SaveError::NotBuilt { path: path.to_owned(), format },
-            EncodeError::NoLayers => SaveError::NoLayers { path: path.to_owned() },
-            EncodeError::Io(reason) => SaveError::Write { path: path.to_owned(), reason },
+            EncodeError::BitDepth { format } => SaveError::BitDepth { path: path.clone(), format },
+            EncodeError::Alpha { format } => SaveError::Alpha { path: path.clone(), format },
+            EncodeError::NotBuilt { format, .. } => SaveError::NotBuilt { path: path.clone(), format },
+            EncodeError::NoLayers => SaveError::NoLayers { path: path.clone() },
+            EncodeError::Io(reason) => SaveError::Write { path: path.clone(), reason },
         };
-        let mut file = Output::to(path)?;
         let mut output = BufWriter::new(&mut file);
         write(&mut output).map_err(failed)?;
         output.flush().map_err(|reason| failed(reason.into()))?;
@@ -306,8 +324,27 @@ fn publish(file: Ready) -> Result<(), SaveError> {
 /// The [`SaveError`] that [`Frame::save`] would return.
 pub fn check_writable(path: impl AsRef<Path>) -> Result<(), SaveError> {
     let path = path.as_ref();
-    known_format(path)?;
+    known_format(path, &SaveOptions::default())?;
     Ok(lightmesh_files::check_writable(path)?)
+}
+
+/// Checks that the format of an image at `path` is known, and can store an image of this size with these options, and
+/// with alpha if it is to be transparent. Does not look at what is there.
+///
+/// # Errors
+/// The [`SaveError`] that [`Frame::ready_with`] would return.
+pub fn check_image(
+    path: impl AsRef<Path>,
+    options: &SaveOptions,
+    [width, height]: [u32; 2],
+    has_alpha: bool,
+) -> Result<(), SaveError> {
+    let path = path.as_ref();
+    let format = known_format(path, options)?;
+    if let Some(limit) = format.exceeded_limit(width, height) {
+        return Err(SaveError::TooLarge { path: path.to_owned(), format, width, height, limit });
+    }
+    check_options(path, options, has_alpha)
 }
 
 /// Checks that the format of `path` supports images of this size.
@@ -315,12 +352,7 @@ pub fn check_writable(path: impl AsRef<Path>) -> Result<(), SaveError> {
 /// # Errors
 /// [`SaveError::TooLarge`] or [`SaveError::UnknownExtension`], as [`Frame::save`] would return.
 pub fn check_size(path: impl AsRef<Path>, width: u32, height: u32) -> Result<(), SaveError> {
-    let path = path.as_ref();
-    let format = known_format(path)?;
-    match format.exceeded_limit(width, height) {
-        Some(limit) => Err(SaveError::TooLarge { path: path.to_owned(), format, width, height, limit }),
-        None => Ok(()),
-    }
+    check_image(path, &SaveOptions::default(), [width, height], false)
 }
 
 /// Checks that the format of `path` can store an image with these options, and with alpha if it is to be transparent.
@@ -329,14 +361,14 @@ pub fn check_size(path: impl AsRef<Path>, width: u32, height: u32) -> Result<(),
 /// [`SaveError::BitDepth`], [`SaveError::Alpha`] or [`SaveError::UnknownExtension`], as [`Frame::ready_with`] would return.
 pub fn check_options(path: impl AsRef<Path>, options: &SaveOptions, has_alpha: bool) -> Result<(), SaveError> {
     let path = path.as_ref();
-    let format = known_format(path)?;
+    let format = known_format(path, options)?;
     check_storable(format, options, has_alpha).map_err(|error| match error {
         EncodeError::Alpha { .. } => SaveError::Alpha { path: path.to_owned(), format },
         _ => SaveError::BitDepth { path: path.to_owned(), format },
     })
 }
 
-fn known_format(path: &Path) -> Result<Format, SaveError> {
-    let format = Format::from_path(path).ok_or_else(|| SaveError::UnknownExtension { path: path.to_owned() })?;
+fn known_format(path: &Path, options: &SaveOptions) -> Result<Format, SaveError> {
+    let format = options.format_of(path).ok_or_else(|| SaveError::UnknownExtension { path: path.to_owned() })?;
     if format.is_built() { Ok(format) } else { Err(SaveError::NotBuilt { path: path.to_owned(), format }) }
 }

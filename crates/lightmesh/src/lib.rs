@@ -24,7 +24,8 @@
 //!   [`render::devices`] lists the devices.
 //! * [`Renderer::visibility`] finds the visible share of each light at points of your own, to bake vertex colours or lightmaps;
 //!   [`MeshCache`] keeps what light points see from image to image.
-//! * [`Frame`] is the image with its [`Stats`]; an [`Observer`] receives progress and can stop the work.
+//! * [`Frame`] is the image with its [`Stats`]; an [`Observer`] receives progress and can stop the work, and with
+//!   [`Settings::partial`] gets what is finished by then.
 //!
 //! The parts are separate crates, which are re-exported completely as [`scene`], [`image`] and [`render`].
 #![forbid(unsafe_code)]

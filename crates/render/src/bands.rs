@@ -9,6 +9,16 @@ use crate::plan::Plan;
 /// Memory reserved for everything that is not counted below: stacks, the segments in flight, allocator overhead.
 const RESERVE: u64 = 32 << 20;
 
+/// Parts of an image whose finished rows may be asked for at any time.
+const PARTS: u32 = 32;
+/// Fewer rows in a part would mostly repeat those around it.
+const LEAST_ROWS: u32 = 8;
+
+/// Most rows to render at once if the finished ones may be asked for at any time.
+pub(crate) fn rows_in_parts(height: u32) -> u32 {
+    height.div_ceil(PARTS).max(LEAST_ROWS)
+}
+
 /// Rejects an image that does not fit into the host's memory, before any of it is allocated.
 pub(crate) fn check_picture(plan: &Plan) -> Result<(), RenderError> {
     fits(plan, "the image and its layers", plan.image_bytes())
@@ -57,6 +67,7 @@ mod tests {
             caught: false,
             layers,
             lights,
+            most_rows: None,
             memory_limit: left,
             left,
             kept: 0,
@@ -73,6 +84,12 @@ mod tests {
         assert_eq!(needed(60_000, None), 43_200_000_000);
         assert_eq!(needed(256, Some(3)), 65_536 * (12 + 32 + 12));
         assert!(check_picture(&plan([256; 2], None, Some(1 << 20))).is_ok());
+    }
+
+    #[test]
+    fn parts_are_small_but_not_tiny() {
+        let parts = |height: u32| height.div_ceil(rows_in_parts(height));
+        assert_eq!([1, 8, 9, 64, 256, 1024, 10_000].map(parts), [1, 1, 2, 8, 32, 32, 32]);
     }
 
     #[test]

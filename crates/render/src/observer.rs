@@ -48,7 +48,9 @@ pub trait Observer: Sync {
         let _ = text;
     }
 
-    /// Queried between pieces of work: `true` ends the render with [`RenderError::Cancelled`](crate::RenderError::Cancelled).
+    /// Queried between pieces of work: `true` ends the render with
+    /// [`RenderError::Cancelled`](crate::RenderError::Cancelled), or with the rows that are finished if
+    /// [`Settings::partial`](crate::Settings::partial) asks for them.
     fn cancelled(&self) -> bool {
         false
     }

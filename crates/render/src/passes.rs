@@ -74,7 +74,8 @@ pub(crate) struct Passes<'a, B: Backend> {
 }
 
 impl<B: Backend> Passes<'_, B> {
-    /// Renders the whole view into `picture`. Returns how many rows were rendered at once.
+    /// Renders the whole view into `picture`, which also counts its finished rows. Returns how many rows were rendered
+    /// at once.
     pub(crate) fn render(&self, picture: &mut Picture) -> Result<u32, RenderError> {
         if self.plan.antialiasing.is_none() {
             // With several samples it depends on what they see, and on the bands.
@@ -82,7 +83,17 @@ impl<B: Backend> Passes<'_, B> {
             self.run.job.work.expect(camera_rays + self.pieces_of_wave(0, camera_rays));
         }
         let at_once = self.run.or_forget(|backend| backend.rows_at_once(self.scene, self.plan))?;
-        in_bands(&self.run, self.view.size()[1], at_once, |rows| self.band(rows, picture))
+        let at_once = at_once.min(self.plan.most_rows.unwrap_or(u32::MAX));
+        let height = self.view.size()[1];
+        in_bands(&self.run, height, at_once, |rows| {
+            let finished = rows.end;
+            if self.plan.antialiasing.is_some() {
+                self.run.job.work.begin_part([rows.start, rows.end].map(|row| f64::from(row) / f64::from(height)));
+            }
+            self.band(rows, picture)?;
+            picture.finished = finished;
+            Ok(())
+        })
     }
 
     /// Renders some rows.
@@ -209,7 +220,11 @@ pub(crate) fn in_bands<B: Backend>(
                 at_once = rows.len() as u32 / 2;
                 job.observer.note(&format!("device memory is short: {at_once} rows at once"));
             }
-            Err(error) => return Err(error),
+            Err(error) => {
+                // What is counted are the bands that are finished.
+                job.tally.restore(&counted);
+                return Err(error);
+            }
         }
     }
     Ok(at_once)
@@ -296,6 +311,7 @@ mod tests {
                 caught: false,
                 layers,
                 lights,
+                most_rows: None,
                 memory_limit: left,
                 left,
                 kept: 0,
@@ -377,6 +393,7 @@ mod tests {
                     caught: false,
                     layers: None,
                     lights,
+                    most_rows: None,
                     memory_limit: left,
                     left,
                     kept: 0,

@@ -30,6 +30,8 @@ pub struct Plan {
     pub layers: Option<usize>,
     /// Groups of lights whose visibility is held at the same time.
     pub lights: LightGroups,
+    /// Most rows to render at once; `None`: as many as fit into memory.
+    pub most_rows: Option<u32>,
     /// Memory limit in bytes; `None`: what is free, less a reserve.
     pub memory_limit: Option<u64>,
     /// Bytes that the host could still allocate before the image was; `None`: unknown.

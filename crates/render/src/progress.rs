@@ -21,8 +21,21 @@ pub(crate) struct Work {
     done: AtomicU64,
     /// The stage in progress.
     current: Mutex<Option<Current>>,
+    /// The part in progress of an image whose total is known part by part.
+    part: Mutex<Option<Part>>,
     /// Milliseconds between the start and the latest progress report on the whole image.
     reported: AtomicU64,
+}
+
+/// A part of an image, such as a band, whose total is not known before it begins.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    /// The share of the image that was done before it, and after it.
+    before: f64,
+    after: f64,
+    /// Pieces done and expected when it began.
+    done: u64,
+    total: u64,
 }
 
 /// A stage in progress.
@@ -42,6 +55,7 @@ impl Work {
             total: AtomicU64::new(0),
             done: AtomicU64::new(0),
             current: Mutex::new(None),
+            part: Mutex::new(None),
             reported: AtomicU64::new(0),
         }
     }
@@ -49,6 +63,11 @@ impl Work {
     /// Adds pieces to the image's total.
     pub(crate) fn expect(&self, pieces: u64) {
         self.total.fetch_add(pieces, Ordering::Relaxed);
+    }
+
+    /// A part begins that is the share of the image from `before` to `after`: what is expected from now on is its own.
+    pub(crate) fn begin_part(&self, [before, after]: [f64; 2]) {
+        *self.part() = Some(Part { before, after, done: self.done(), total: self.total() });
     }
 
     /// Pieces of the image that are done, for [`rewind`](Work::rewind).
@@ -106,12 +125,23 @@ impl Work {
             return;
         }
         self.reported.store(now, Ordering::Relaxed);
-        let total = self.total();
-        if total > 0 {
-            let done = self.done() as f64 / total as f64;
+        if self.total() > 0 {
+            let done = self.share();
             let left = (done > 0.0).then(|| seconds * (1.0 - done) / done);
             observer.progress(Progress { done, seconds, left });
         }
+    }
+
+    /// The share of the image that is done.
+    fn share(&self) -> f64 {
+        let whole = Part { before: 0.0, after: 1.0, done: 0, total: 0 };
+        let Part { before, after, done, total } = self.part().unwrap_or(whole);
+        let (done, total) = (self.done().saturating_sub(done), self.total().saturating_sub(total));
+        before + (after - before) * done as f64 / total.max(1) as f64
+    }
+
+    fn part(&self) -> std::sync::MutexGuard<'_, Option<Part>> {
+        self.part.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
     fn current(&self) -> std::sync::MutexGuard<'_, Option<Current>> {
@@ -124,5 +154,37 @@ impl Current {
     fn of_picture(&self) -> u64 {
         let share = u128::from(self.share) * u128::from(self.done) / u128::from(self.total.max(1));
         share as u64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Keeps the latest progress.
+    #[derive(Default)]
+    struct Latest(Mutex<Progress>);
+
+    impl Observer for Latest {
+        fn progress(&self, progress: Progress) {
+            *self.0.lock().unwrap() = progress;
+        }
+    }
+
+    #[test]
+    fn parts_count_by_their_share_of_the_image() {
+        let (work, latest) = (Work::new(), Latest::default());
+        let mut shares = Vec::new();
+        for (part, pieces) in [([0.0, 0.25], 10), ([0.25, 0.5], 1000), ([0.5, 1.0], 10)] {
+            work.begin_part(part);
+            work.expect(2 * pieces);
+            for _ in 0..2 {
+                work.begin(&latest, Stage::Shade, pieces, pieces);
+                work.end(&latest, Stage::Shade);
+                shares.push(latest.0.lock().unwrap().done);
+            }
+        }
+        assert_eq!(shares, [0.125, 0.25, 0.375, 0.5, 0.75, 1.0]);
+        assert_eq!(work.done(), work.total());
     }
 }

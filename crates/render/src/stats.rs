@@ -12,6 +12,9 @@ use crate::stage::Seconds;
 pub struct Stats {
     /// Version of this format.
     pub version: u32,
+    /// If the render was stopped: the number of rows that are finished, from the top; counts are theirs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub finished_rows: Option<u32>,
     /// What was rendered.
     pub scene: SceneStats,
     /// The device that rendered it.

@@ -1,9 +1,10 @@
 //! The files that a scene may be made of: those in the folder of the file that was opened, links resolved, unless the options allow
 //! others; and what fits into memory.
 
+use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
-use lightmesh_files::{Portion, ReadError, read, read_inside};
+use lightmesh_files::{Portion, ReadError, read, read_inside, read_stream};
 use lightmesh_memory::Budget;
 
 use crate::{LoadError, LoadOptions, error::Place};
@@ -31,6 +32,15 @@ impl Border {
     pub(crate) fn read_scene(&self) -> Result<Vec<u8>, LoadError> {
         let portion = Portion { budget: self.budget, ..Portion::ALL };
         read(&self.scene, portion).map_err(|error| unreadable(&self.scene, error))
+    }
+
+    /// The content of a scene that has no file.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError::Read`] or [`LoadError::Memory`].
+    pub(crate) fn read_stream(&self, source: impl Read) -> Result<Vec<u8>, LoadError> {
+        read_stream(source, self.budget).map_err(|error| unreadable(&self.scene, error))
     }
 
     /// The path that `source`, one of the scene's files, refers to as `name`: relative to the file's own folder, with either

@@ -1,22 +1,22 @@
-//! Opening a scene by its name: the file extension determines the format.
+//! Opening a scene: the file extension determines the format, unless it is given.
 
+use std::io::Read;
 use std::path::Path;
 
 use glam::DMat4;
 
 use crate::{
-    LoadError, Scene,
+    LoadError, Scene, SceneFormat,
     draft::{Draft, Placement},
     formats,
 };
-
-/// Supported extensions of scene files.
-const SCENE_FORMATS: [&str; 6] = ["toml", "obj", "gltf", "glb", "ply", "stl"];
 
 /// How strictly a scene is read, and which files it may refer to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LoadOptions {
+    /// The format of the opened file; `None`: by its extension. Files that it refers to are those of their extensions.
+    pub format: Option<SceneFormat>,
     /// Follow references, and links in the folder of the opened file, that lead outside of it. Off by default: an untrusted scene must
     /// not read other files.
     pub allow_outside: bool,
@@ -27,6 +27,11 @@ pub struct LoadOptions {
 }
 
 impl LoadOptions {
+    /// The format of the opened file; `None`: by its extension.
+    pub fn with_format(self, format: impl Into<Option<SceneFormat>>) -> LoadOptions {
+        LoadOptions { format: format.into(), ..self }
+    }
+
     /// Whether to follow references outside the folder of the opened file.
     pub fn with_allow_outside(self, allow_outside: bool) -> LoadOptions {
         LoadOptions { allow_outside, ..self }
@@ -66,34 +71,77 @@ impl Scene {
         if let Some(query) = path.to_str().and_then(|name| name.strip_prefix("builtin:")) {
             return crate::builtin::open(query);
         }
+        let format = options.format.map_or_else(|| known_format(path), Ok)?;
         let mut draft = Draft::new(path, options);
-        if extension(path) == "toml" {
-            formats::toml::read(path, &draft.border.read_scene()?, &mut draft)?;
-        } else {
-            reader(path)?(path, draft.border.read_scene()?, &Placement::default(), &mut draft)?;
-        }
+        let bytes = draft.border.read_scene()?;
+        read(path, format, bytes, &mut draft)?;
         draft.finish()
+    }
+
+    /// Reads a scene from a stream, such as standard input, up to its end. Messages and the scene call it `name`; files
+    /// that it refers to are looked for in the folder of that path, which is the current one for a name alone. There
+    /// need not be a file of this name.
+    ///
+    /// ```
+    /// use lightmesh_scene::{LoadOptions, Scene, SceneFormat};
+    ///
+    /// let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    /// let scene = Scene::from_reader(text.as_bytes(), "triangle", SceneFormat::Obj, &LoadOptions::default())?;
+    /// assert_eq!((scene.name.as_str(), scene.geometry.mesh.triangles.len()), ("triangle", 1));
+    /// # Ok::<(), lightmesh_scene::LoadError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError`] names the stream, the line if possible, and the remedy.
+    pub fn from_reader(
+        source: impl Read,
+        name: impl AsRef<Path>,
+        format: SceneFormat,
+        options: &LoadOptions,
+    ) -> Result<Scene, LoadError> {
+        let name = name.as_ref();
+        let mut draft = Draft::new(name, options);
+        let bytes = draft.border.read_stream(source)?;
+        read(name, format, bytes, &mut draft)?;
+        let mut scene = draft.finish()?;
+        scene.files.retain(|file| file != name);
+        Ok(scene)
+    }
+}
+
+/// Reads a whole scene.
+fn read(path: &Path, format: SceneFormat, bytes: Vec<u8>, draft: &mut Draft) -> Result<(), LoadError> {
+    match reader(format) {
+        Some(reader) => reader(path, bytes, &Placement::default(), draft),
+        None => formats::toml::read(path, &bytes, draft),
     }
 }
 
 /// Reads a model from a file's path and bytes.
 type Reader = fn(&Path, Vec<u8>, &Placement, &mut Draft) -> Result<(), LoadError>;
 
-/// The reader for this kind of file.
-fn reader(path: &Path) -> Result<Reader, LoadError> {
-    Ok(match extension(path).as_str() {
-        "obj" => formats::obj::read,
-        "gltf" | "glb" => formats::gltf::read,
-        "ply" => formats::ply::read,
-        "stl" => formats::stl::read,
-        extension => {
-            return Err(LoadError::UnknownFormat {
-                path: path.to_owned(),
-                extension: extension.to_owned(),
-                known: SCENE_FORMATS.map(|known| format!(".{known}")).to_vec(),
-            });
-        }
-    })
+/// The reader of a model; `None` for scenes that are made of models.
+fn reader(format: SceneFormat) -> Option<Reader> {
+    match format {
+        SceneFormat::Toml => None,
+        SceneFormat::Obj => Some(formats::obj::read),
+        SceneFormat::Gltf | SceneFormat::Glb => Some(formats::gltf::read),
+        SceneFormat::Ply => Some(formats::ply::read),
+        SceneFormat::Stl => Some(formats::stl::read),
+    }
+}
+
+fn known_format(path: &Path) -> Result<SceneFormat, LoadError> {
+    SceneFormat::from_path(path).ok_or_else(|| unknown_format(path))
+}
+
+fn unknown_format(path: &Path) -> LoadError {
+    LoadError::UnknownFormat {
+        path: path.to_owned(),
+        extension: path.extension().unwrap_or_default().to_string_lossy().to_lowercase(),
+        known: SceneFormat::ALL.iter().map(|known| format!(".{known}")).collect(),
+    }
 }
 
 /// Reads a model as a part of a larger scene: its triangles, and its materials unless the placement has one.
@@ -104,12 +152,8 @@ pub(crate) fn read_part(
     material: Option<u32>,
     draft: &mut Draft,
 ) -> Result<(), LoadError> {
-    reader(path)?(path, bytes, &Placement { transform, material, part: true }, draft)
-}
-
-/// The file extension in lower case, without the dot.
-fn extension(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+    let reader = reader(known_format(path)?).ok_or_else(|| unknown_format(path))?;
+    reader(path, bytes, &Placement { transform, material, part: true }, draft)
 }
 
 #[cfg(test)]
@@ -143,6 +187,34 @@ mod tests {
         let path = folder.path().join("scene.obj");
         fs::create_dir(&path).unwrap();
         assert!(error(path.to_str().unwrap()).starts_with("this is not a regular file"));
+    }
+
+    #[test]
+    fn a_stream_is_read_like_a_file_and_refers_to_files_next_to_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("part.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        let name = folder.path().join("standard input");
+        let read = |text: &str, format| Scene::from_reader(text.as_bytes(), &name, format, &LoadOptions::default());
+        let scene = read("[[mesh]]\nfile = \"part.obj\"\n", SceneFormat::Toml).unwrap();
+        assert_eq!(scene.geometry.mesh.triangles.len(), 1);
+        assert_eq!(scene.files, [folder.path().join("part.obj")]);
+        let outside = read("[[mesh]]\nfile = \"../part.obj\"\n", SceneFormat::Toml).unwrap_err();
+        assert!(matches!(outside.root(), LoadError::Outside { .. }), "{outside}");
+        let syntax = read("v 0 0\n", SceneFormat::Obj).unwrap_err().to_string();
+        assert!(syntax.contains("standard input:1"), "{syntax}");
+        let options = LoadOptions::default().with_memory_limit(1 << 24);
+        let endless = Scene::from_reader(std::io::repeat(b'v'), "endless", SceneFormat::Obj, &options);
+        assert!(matches!(endless, Err(LoadError::Memory { .. })));
+    }
+
+    #[test]
+    fn a_given_format_replaces_the_extension() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        assert!(Scene::open(&path).is_err());
+        let options = LoadOptions::default().with_format(SceneFormat::Obj);
+        assert_eq!(Scene::open_with(&path, &options).unwrap().geometry.mesh.triangles.len(), 1);
     }
 
     #[test]

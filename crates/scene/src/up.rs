@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 use serde::Serialize;
 
-use crate::{Scene, parse_by_name};
+use crate::{Scene, SceneFormat, parse_by_name};
 
 /// The axis that points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,13 +34,9 @@ const LEAST_GROUND: f32 = 0.01;
 const CLEARLY: f32 = 2.0;
 
 impl Up {
-    /// The usual up axis for this kind of file: Z for STL, Y for all others. Only glTF defines it; for the others it is a
-    /// convention.
+    /// The [usual](SceneFormat::usual_up) up axis for this kind of file.
     pub fn of_file(path: &Path) -> Up {
-        match path.extension() {
-            Some(extension) if extension.eq_ignore_ascii_case("stl") => Up::Z,
-            _ => Up::Y,
-        }
+        SceneFormat::from_path(path).map_or(Up::Y, SceneFormat::usual_up)
     }
 
     /// Both axes.

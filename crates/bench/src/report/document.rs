@@ -1,12 +1,15 @@
 //! The content of a report, independent of its presentation: [`markdown`](super::markdown) and [`html`](super::html) both render
 //! it.
 
+use super::headline::Figure;
 use super::plot::Plot;
 
 /// A whole report.
 #[derive(Clone, Debug)]
 pub(crate) struct Document {
     pub(crate) title: String,
+    /// What a page begins with.
+    pub(crate) figures: Vec<Figure>,
     pub(crate) sections: Vec<Section>,
 }
 
@@ -92,6 +95,8 @@ pub(crate) struct Column {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Cell {
     pub(crate) text: String,
+    /// The number behind the text, by which a page sorts.
+    pub(crate) value: Option<f64>,
     /// Length of the bar behind the number, in [0, 1].
     pub(crate) bar: Option<f64>,
 }
@@ -146,13 +151,13 @@ impl Column {
 impl Cell {
     /// A number, or an empty cell if there is none.
     pub(crate) fn number(value: Option<f64>, text: impl Fn(f64) -> String) -> Cell {
-        Cell { text: value.map(text).unwrap_or_default(), bar: None }
+        Cell { text: value.map(text).unwrap_or_default(), value, bar: None }
     }
 }
 
 impl<T: Into<String>> From<T> for Cell {
     fn from(text: T) -> Cell {
-        Cell { text: text.into(), bar: None }
+        Cell { text: text.into(), value: None, bar: None }
     }
 }
 

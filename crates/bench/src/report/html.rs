@@ -1,5 +1,8 @@
 //! A report as a self-contained HTML page: style, script, plots and images are embedded.
 //!
+//! The page begins with figures, then come the sections with plots and images. Tables can be folded, and sorted by
+//! scripts.
+//!
 //! Each image is embedded once, in a hidden list, and referenced wherever it appears. Without scripts an image is shown next to its
 //! reference; with scripts they are overlaid, with a slider.
 
@@ -10,6 +13,7 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::assets::Assets;
 use super::document::{Block, Cell, Column, Document, Finding, Pair, Section, Shot, Table};
+use super::headline::Figure;
 use super::plot::Plot;
 use super::{numbers, summary};
 
@@ -35,22 +39,58 @@ pub(crate) fn escaped(text: &str) -> String {
 /// The whole page.
 pub(crate) fn page(document: &Document, assets: &Assets) -> String {
     let title = escaped(&document.title);
-    let contents: String = document
-        .sections
+    let ordered = ordered(&document.sections);
+    let contents: String = ordered
         .iter()
         .enumerate()
         .map(|(index, section)| format!("<li><a href=\"#s{index}\">{}</a></li>\n", escaped(&section.title)))
         .collect();
     let sections: String =
-        document.sections.iter().enumerate().map(|(index, section)| self::section(index, section, assets)).collect();
+        ordered.iter().enumerate().map(|(index, section)| self::section(index, section, assets)).collect();
+    let figures = figures(&document.figures);
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
          <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{}\
-         <header>\n<h1>{title}</h1>\n<nav><ol>\n{contents}</ol></nav>\n</header>\n<main>\n{sections}</main>\n\
+         <header>\n<h1>{title}</h1>\n{figures}<nav><ol>\n{contents}</ol></nav>\n</header>\n<main>\n{sections}</main>\n\
          <script>\n{SCRIPT}</script>\n</body>\n</html>\n",
         pictures(assets)
     )
+}
+
+/// What can be seen comes before what must be read: sections with plots, those with images, then the others.
+fn ordered(sections: &[Section]) -> Vec<&Section> {
+    let mut ordered: Vec<&Section> = sections.iter().collect();
+    ordered.sort_by_key(|section| section.blocks.iter().map(rank).min());
+    ordered
+}
+
+/// The place of a block in a section, and of its section in the page.
+fn rank(block: &Block) -> u8 {
+    match block {
+        Block::Plot(_) => 0,
+        Block::Strip(_) | Block::Pair(_) => 1,
+        Block::Text(_) | Block::Findings(_) | Block::Table(_) => 2,
+    }
+}
+
+/// The blocks of a section in the same order. A text stays with the block that follows it.
+fn ordered_blocks(blocks: &[Block]) -> Vec<&Block> {
+    let mut parts: Vec<&[Block]> = blocks.split_inclusive(|block| !matches!(block, Block::Text(_))).collect();
+    parts.sort_by_key(|part| part.last().map(rank));
+    parts.into_iter().flatten().collect()
+}
+
+/// The figures with which the page begins.
+fn figures(figures: &[Figure]) -> String {
+    if figures.is_empty() {
+        return String::new();
+    }
+    let items: String = figures
+        .iter()
+        .map(|Figure { value, label }| format!("<div><dd>{}</dd><dt>{}</dt></div>\n", escaped(value), escaped(label)))
+        .collect();
+    format!("<dl class=\"figures\">\n{items}</dl>\n")
 }
 
 /// All images, to be referenced.
@@ -73,7 +113,7 @@ fn anchor(file: &str) -> String {
 }
 
 fn section(index: usize, section: &Section, assets: &Assets) -> String {
-    let blocks: String = section.blocks.iter().map(|block| self::block(block, assets)).collect();
+    let blocks: String = ordered_blocks(&section.blocks).into_iter().map(|block| self::block(block, assets)).collect();
     format!("<section id=\"s{index}\">\n<h2>{}</h2>\n{blocks}</section>\n", escaped(&section.title))
 }
 
@@ -112,16 +152,14 @@ fn table(table: &Table) -> String {
         .collect();
     let above = std::iter::once(None).chain(table.rows.iter().map(Some));
     let rows: String = table.rows.iter().zip(above).map(|(row, above)| line(row, above, &table.columns)).collect();
-    let caption = escaped(&table.caption);
+    let caption = if table.caption.is_empty() { "All rows.".to_owned() } else { escaped(&table.caption) };
     let scroll = format!(
         "<div class=\"scroll\" tabindex=\"0\">\n<table>\n<thead>\n{groups}<tr>{titles}</tr>\n</thead>\n\
          <tbody>\n{rows}</tbody>\n</table>\n</div>\n"
     );
     let kind = if table.name == summary::TABLE { "table facts" } else { "table" };
-    if table.folded {
-        return format!("<details class=\"{kind}\">\n<summary>{caption}</summary>\n{scroll}</details>\n");
-    }
-    format!("<figure class=\"{kind}\">\n<figcaption>{caption}</figcaption>\n{scroll}</figure>\n")
+    let open = if table.folded { "" } else { " open=\"\"" };
+    format!("<details class=\"{kind}\"{open}>\n<summary>{caption}</summary>\n{scroll}</details>\n")
 }
 
 /// A row. Leading cells that repeat the cells above are dimmed, to make groups visible.
@@ -145,15 +183,16 @@ fn class(column: &Column) -> &'static str {
 
 fn cell(cell: &Cell, column: &Column, repeated: bool) -> String {
     let text = escaped(&cell.text);
+    let value = cell.value.map_or_else(String::new, |value| format!(" data-value=\"{value}\""));
     match cell.bar {
         Some(share) => {
             let width = 100.0 * share.clamp(0.0, 1.0);
-            format!("<td class=\"number bar\"><i style=\"width:{width:.1}%\"></i><span>{text}</span></td>")
+            format!("<td class=\"number bar\"{value}><i style=\"width:{width:.1}%\"></i><span>{text}</span></td>")
         }
         None => match (column.number, repeated) {
-            (true, true) => format!("<td class=\"number repeated\">{text}</td>"),
-            (false, true) => format!("<td class=\"repeated\">{text}</td>"),
-            (_, false) => format!("<td{}>{text}</td>", class(column)),
+            (true, true) => format!("<td class=\"number repeated\"{value}>{text}</td>"),
+            (false, true) => format!("<td class=\"repeated\"{value}>{text}</td>"),
+            (_, false) => format!("<td{}{value}>{text}</td>", class(column)),
         },
     }
 }

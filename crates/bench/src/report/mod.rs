@@ -10,6 +10,7 @@ mod assets;
 mod document;
 mod error;
 mod findings;
+mod headline;
 mod html;
 mod layouts;
 mod likeness;
@@ -139,7 +140,7 @@ fn document(runs: &Runs, gallery: &Gallery, assets: &mut Assets) -> Result<Docum
     }
     sections.extend(summary::notes(runs));
     let suites = runs::distinct(runs.0.iter().map(|run| run.results.suite.as_str()));
-    Ok(Document { title: format!("Lightmesh: {}", suites.join(", ")), sections })
+    Ok(Document { title: format!("Lightmesh: {}", suites.join(", ")), figures: headline::figures(runs), sections })
 }
 
 /// Runs with distinct names: those of their files, numbered if they are the same.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::{Key, Results, Row};
 
 /// Keys that say where a row was measured rather than what.
-const PLACES: [&str; 2] = ["device", "threads"];
+pub(crate) const PLACES: [&str; 2] = ["device", "threads"];
 
 /// A result file.
 #[derive(Clone, Debug)]
@@ -123,9 +123,12 @@ impl Case {
 }
 
 impl Runs {
-    /// Rows of an experiment, run by run.
+    /// Rows of an experiment, run by run; those of the same case on several devices are neighbours.
     pub(crate) fn rows(&self, experiment: &str) -> Vec<Measured<'_>> {
-        self.all().filter(|measured| measured.row.experiment == experiment).collect()
+        let rows: Vec<Measured> = self.all().filter(|measured| measured.row.experiment == experiment).collect();
+        let cases = distinct(rows.iter().map(|measured| measured.case(&[])));
+        let of = |case: &Case| rows.iter().filter(|measured| measured.case(&[]) == *case).copied().collect::<Vec<_>>();
+        cases.iter().flat_map(of).collect()
     }
 
     /// All rows, run by run.

@@ -108,7 +108,7 @@ fn caption(experiment: &str, runs: &Runs, ratios: &[Vec<f64>]) -> String {
     format!("{}: rows with the same id.{means}", layouts::title(experiment))
 }
 
-fn geometric_mean(ratios: &[f64]) -> Option<f64> {
+pub(crate) fn geometric_mean(ratios: &[f64]) -> Option<f64> {
     let logs: Vec<f64> = ratios.iter().filter(|ratio| **ratio > 0.0).map(|ratio| ratio.ln()).collect();
     (!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
 }

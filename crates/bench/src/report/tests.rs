@@ -46,7 +46,7 @@ fn timed(experiment: &str, keys: &[(&'static str, Key)], seconds: f64) -> Row {
 }
 
 /// The method takes `mesh` seconds, hard shadows one; figure 11 crosses at 8 lights; one row has no layout.
-fn thesis(mesh: f64) -> Results {
+pub(crate) fn thesis(mesh: f64) -> Results {
     let mut results = results("thesis", |rows| {
         let common = |mode: &str| {
             vec![("scene", "garden".into()), ("lights", 1.0.into()), ("mode", mode.into()), ("device", "cuda".into())]
@@ -129,7 +129,7 @@ fn tags(html: &str) -> BTreeSet<String> {
 fn the_page_is_whole_and_asks_for_nothing() {
     let html = report(thesis(2.0)).unwrap().html();
     let names = tags(&html);
-    for name in ["table", "svg", "image", "use", "figure", "polyline"] {
+    for name in ["table", "svg", "image", "use", "figure", "polyline", "dl", "details"] {
         assert!(names.contains(name), "{name} in {names:?}");
     }
     for address in ["http:", "https:", "src=", "url(", "@import"] {
@@ -144,6 +144,58 @@ fn the_page_is_whole_and_asks_for_nothing() {
     for fact in ["Some CPU, 8 threads", "Some GPU, 16.0\u{a0}GiB, CUDA 13.0", "c0ffee", "bench thesis --quick"] {
         assert!(html.contains(fact), "{fact}");
     }
+}
+
+#[test]
+fn the_page_begins_with_figures_plots_and_pictures() {
+    let html = report(thesis(2.0)).unwrap().html();
+    let place = |text: &str| html.find(text).unwrap_or_else(|| panic!("no {text}"));
+    assert_eq!(html.matches("<dd>").count(), 3);
+    let order =
+        ["<dl class=\"figures\">", "<nav>", "<figure class=\"plot\">", "<figure class=\"pair\">", "<h2>What was run"];
+    assert!(order.map(place).is_sorted(), "{:?}", order.map(place));
+    // In a section, too: the table of figure 11 follows its plot.
+    let section = &html[place("<h2>Figure 11")..];
+    assert!(section.find("class=\"plot\"") < section.find("<table>"));
+}
+
+#[test]
+fn every_table_folds_and_has_numbers_to_sort_by() {
+    let html = report(thesis(2.0)).unwrap().html();
+    let tables = html.matches("<table>").count();
+    assert_eq!(html.matches("<details class=\"table").count(), tables);
+    let folded = html.matches("<details class=\"table\">").count();
+    assert!(0 < folded && folded < tables, "{folded} of {tables}");
+    // Milliseconds are shown, seconds are behind them.
+    assert!(html.contains("<td class=\"number\" data-value=\"2.2\">2200</td>"), "{html}");
+}
+
+#[test]
+fn ratios_to_the_thesis_say_that_its_scenes_are_others() {
+    let report = report(thesis(2.0)).unwrap();
+    for text in [report.html().replace("&#39;", "'"), report.markdown()] {
+        assert!(text.contains(layouts::thesis::SCENES), "{text}");
+    }
+    let captions = report.tables().filter(|table| table.columns.iter().any(|column| column.name.contains("faster")));
+    assert!(captions.into_iter().all(|table| table.caption.contains(layouts::thesis::SCENES)));
+}
+
+#[test]
+fn devices_stand_side_by_side_under_their_names() {
+    let results = results("new", |rows| {
+        for (device, seconds) in [("cpu", 4.0), ("cuda", 1.0)] {
+            for scene in ["a", "b"] {
+                rows.push(timed("some", &[("scene", scene.into()), ("device", device.into())], seconds));
+            }
+        }
+    });
+    let text = report(results).unwrap().markdown();
+    let rows = text.split_once("## Some").unwrap().1;
+    let lines: Vec<&str> =
+        rows.lines().filter(|line| line.starts_with("| CPU") || line.starts_with("| Some GPU")).collect();
+    let starts = ["| CPU | a |", "| Some GPU | a |", "| CPU | b |", "| Some GPU | b |"];
+    assert_eq!(lines.len(), 4, "{text}");
+    assert!(lines.iter().zip(starts).all(|(line, start)| line.starts_with(start)), "{lines:?}");
 }
 
 #[test]

@@ -6,14 +6,16 @@ mod bench;
 mod render;
 mod words;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Arg, Args, CommandFactory, Parser, Subcommand};
+use lightmesh::scene::SceneFormat;
 
 pub(crate) use bench::{BenchArgs, BenchCommand, BenchCompareArgs, SuiteArgs};
 pub(crate) use render::RenderArgs;
 pub(crate) use words::{Progress, Switch, Up};
 
+use crate::color::When;
 use crate::value::{Bound, ByteSize, Dims};
 
 /// Soft shadows by the light mesh method
@@ -22,6 +24,10 @@ use crate::value::{Bound, ByteSize, Dims};
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
+
+    /// When messages have colours
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = When::Auto)]
+    pub(crate) color: When,
 }
 
 /// The version, with the commit if it is known, and what the kernels need.
@@ -53,12 +59,15 @@ Exit codes: 0 success, 1 a comparison exceeded its threshold, 2 bad input or usa
 insufficient, 130 interrupted (143 by SIGTERM, 129 by SIGHUP).
 
 Environment: each flag of `lightmesh render` except -o, --light, -q and -v can be set by a variable, LIGHTMESH_DEVICE for \
---device or LIGHTMESH_MEMORY_LIMIT for --memory-limit; the flag wins. CUDA_VISIBLE_DEVICES hides GPUs.
+--device or LIGHTMESH_MEMORY_LIMIT for --memory-limit; the flag wins. CUDA_VISIBLE_DEVICES hides GPUs. NO_COLOR, \
+CLICOLOR_FORCE and CLICOLOR=0 decide about colours, unless --color does.
 
 Examples:
   lightmesh render builtin:childpark -o park.png
   lightmesh render house.glb -o house.png --size 1920x1080 --quality final
   lightmesh render room.toml -o room.exr --layers layers.exr --device cpu -v
+  lightmesh render room.toml -o room.png --quality final --partial
+  lightmesh export room.toml -o - | lightmesh render - --scene-format glb -o - --format png > room.png
   lightmesh compare before.png after.png --max-flip 0.01";
 
 /// What to do.
@@ -90,7 +99,7 @@ pub(crate) enum Command {
 #[derive(Clone, Debug, Args)]
 pub(crate) struct SceneArg {
     /// A .toml, .obj, .gltf, .glb, .ply or .stl file, or builtin:gazebo, builtin:childpark, builtin:garden (also with options, as
-    /// in builtin:garden?lights=3)
+    /// in builtin:garden?lights=3), or `-`: standard input, which needs --scene-format
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 
@@ -98,9 +107,28 @@ pub(crate) struct SceneArg {
     pub(crate) reading: ReadingArgs,
 }
 
+impl SceneArg {
+    /// The format of the scene; `None` if it is built in, or unknown.
+    pub(crate) fn format(&self) -> Option<SceneFormat> {
+        self.reading.format_of(&self.scene)
+    }
+}
+
+impl ReadingArgs {
+    /// The format of a scene: the given one, or by the extension.
+    pub(crate) fn format_of(self, scene: &Path) -> Option<SceneFormat> {
+        self.scene_format.or_else(|| SceneFormat::from_path(scene))
+    }
+}
+
 /// How a scene is read.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct ReadingArgs {
+    /// Format of the scene [default: by the extension]. Files to which a scene on standard input refers are looked for
+    /// in the current folder
+    #[arg(long, value_parser = words::scene_format(), help_heading = "Reading")]
+    pub(crate) scene_format: Option<SceneFormat>,
+
     /// Allow references to files outside the scene's folder
     #[arg(long, help_heading = "Reading")]
     pub(crate) allow_outside: bool,
@@ -132,7 +160,7 @@ impl Command {
 /// Describe a scene, or list devices
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
-    /// The scene to describe
+    /// The scene to describe; `-` is standard input, which needs --scene-format
     #[arg(value_name = "SCENE", required_unless_present = "devices", conflicts_with = "devices")]
     pub(crate) scene: Option<PathBuf>,
 
@@ -211,7 +239,8 @@ pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArg,
 
-    /// NAME.glb: everything in one file; NAME.toml: cameras and lights as text, and the triangles in NAME.mesh.glb
+    /// NAME.glb: everything in one file; NAME.toml: cameras and lights as text, and the triangles in NAME.mesh.glb;
+    /// `-`: GLB on standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
 

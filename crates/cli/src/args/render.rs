@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lightmesh::image::{BitDepth, ExrCompression, ExrSamples, View};
+use lightmesh::image::{BitDepth, ExrCompression, ExrSamples, Format, View};
 use lightmesh::render::{Crop, Filter, Quality, ShortTests};
 use lightmesh::scene::{Falloff, Weight};
 use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
@@ -17,9 +17,14 @@ pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArg,
 
-    /// Output image; the extension determines the format: bmp, png, exr or jpg
+    /// Output image; the extension determines the format: bmp, png, exr or jpg. `-` is standard output, which then has
+    /// nothing else, and needs --format
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
+
+    /// Format of the output image [default: by the extension]
+    #[arg(long, value_parser = words::image_format(), help_heading = "Image")]
+    pub(crate) format: Option<Format>,
 
     /// How visibility is computed
     #[arg(long, value_parser = words::mode(), default_value_t = Mode::LightMesh, help_heading = "Method")]
@@ -118,8 +123,14 @@ pub(crate) struct RenderArgs {
     #[arg(long, help_heading = "Scene")]
     pub(crate) ground: bool,
 
+    /// Keep what is finished when the run is interrupted: the rows that are rendered by then, over the background or
+    /// transparent, in all files of the run; a second Ctrl-C ends it at once. The image is rendered in bands, with the
+    /// same result
+    #[arg(long, help_heading = "Image")]
+    pub(crate) partial: bool,
+
     /// Write per-pixel data as a multilayer exr: colour, depth, normal, position, visibility of each light, number of light
-    /// points used [default: off]
+    /// points used; `-` is standard output [default: off]
     #[arg(long, value_name = "F.exr", help_heading = "Image")]
     pub(crate) layers: Option<PathBuf>,
 
@@ -171,8 +182,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "F", help_heading = "Machine")]
     pub(crate) grid_file: Option<PathBuf>,
 
-    /// Write counts, timings and all resolved settings as JSON. The time of the render excludes file input and output [default:
-    /// off]
+    /// Write counts, timings and all resolved settings as JSON; `-` is standard output. The time of the render excludes
+    /// file input and output [default: off]
     #[arg(long, value_name = "F.json", help_heading = "Reports")]
     pub(crate) stats: Option<PathBuf>,
 

@@ -1,14 +1,13 @@
 //! Flag values that are chosen from a list. Where the library has the list, names and help texts come from there.
 
-use std::path::Path;
 use std::str::FromStr;
 
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use lightmesh::scene::{Falloff, Weight};
+use lightmesh::scene::{Falloff, SceneFormat, Weight};
 use lightmesh::{
     Acceleration, Lookup, Mode, Transfer,
-    image::{BitDepth, ExrCompression, ExrSamples, View},
+    image::{BitDepth, ExrCompression, ExrSamples, Format, View},
     render::{Filter, Quality, ShortTests},
     scene,
 };
@@ -63,6 +62,15 @@ pub(super) fn view() -> impl TypedValueParser<Value = View> {
     one_of(View::ALL.iter().map(|view| (view.name(), view.help())))
 }
 
+pub(super) fn image_format() -> impl TypedValueParser<Value = Format> {
+    let built = Format::ALL.iter().filter(|format| format.is_built());
+    one_of(built.map(|format| (format.name(), format.help())))
+}
+
+pub(super) fn scene_format() -> impl TypedValueParser<Value = SceneFormat> {
+    one_of(SceneFormat::ALL.iter().map(|format| (format.name(), format.help())))
+}
+
 pub(super) fn exr_type() -> impl TypedValueParser<Value = ExrSamples> {
     one_of(ExrSamples::ALL.iter().map(|samples| (samples.name(), samples.help())))
 }
@@ -100,10 +108,10 @@ pub(crate) enum Up {
 }
 
 impl Up {
-    /// The up axis of the scene in this file.
-    pub(crate) fn of(self, scene: &Path) -> scene::Up {
+    /// The up axis of a scene of this format; built-in ones have none.
+    pub(crate) fn of(self, format: Option<SceneFormat>) -> scene::Up {
         match self {
-            Up::Auto => scene::Up::of_file(scene),
+            Up::Auto => format.map_or(scene::Up::Y, SceneFormat::usual_up),
             Up::Y => scene::Up::Y,
             Up::Z => scene::Up::Z,
         }
@@ -113,9 +121,9 @@ impl Up {
 /// How progress is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Progress {
-    /// A bar, unless --quiet
+    /// A bar on a terminal, elsewhere a line every ten seconds; nothing with --quiet
     Auto,
-    /// A bar, if stderr is a terminal
+    /// The same, also with --quiet
     Bar,
     /// One JSON object per line
     Json,

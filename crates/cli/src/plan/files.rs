@@ -1,27 +1,28 @@
 //! Files written by a render.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use lightmesh::SaveError;
-use lightmesh::image::{Display, ExrOptions, Format, SaveOptions, check_options, check_size, check_writable};
+use lightmesh::image::{Display, ExrOptions, Format, SaveOptions, check_image};
 
 use super::PlanError;
 use crate::args::{RenderArgs, Switch};
-use crate::output::{self, Outputs};
+use crate::destination::{Destination, check_one_on_stdout};
+use crate::output::{OutputError, Outputs, input};
 use crate::value::{Background, Exposure};
 
 /// The output files.
 pub(crate) struct PictureFiles {
     /// The image.
-    pub(crate) picture: PathBuf,
+    pub(crate) picture: Destination,
     /// How it is stored, except for the exposure.
     pub(crate) options: SaveOptions,
     /// Exposure of 8-bit and 16-bit images; `None`: by the unit of the lights.
     pub(crate) exposure: Option<Exposure>,
     /// The multilayer exr.
-    pub(crate) layers: Option<PathBuf>,
+    pub(crate) layers: Option<Destination>,
     /// The statistics.
-    pub(crate) stats: Option<PathBuf>,
+    pub(crate) stats: Option<Destination>,
     /// All of them.
     pub(crate) outputs: Outputs,
 }
@@ -29,33 +30,28 @@ pub(crate) struct PictureFiles {
 impl PictureFiles {
     /// Checks that each file can be written, that its format can store the image, and that it overwrites none of the others.
     pub(super) fn new(args: &RenderArgs) -> Result<PictureFiles, PlanError> {
-        check_writable(&args.output)?;
-        let [width, height] = args.crop.map_or(args.size.0, |crop| crop.size);
-        // Images that the format cannot store are rejected now rather than after the render.
-        check_size(&args.output, width, height)?;
+        let picture = Destination::new(&args.output);
+        let layers = args.layers.as_deref().map(Destination::new);
+        let stats = args.stats.as_deref().map(Destination::new);
         let options = options(args);
-        check_options(&args.output, &options, args.background == Some(Background::Transparent))?;
-        if let Some(layers) = &args.layers {
+        check_picture(&picture, args, &options)?;
+        if let Some(layers) = &layers {
             check_layers(layers)?;
         }
-        if let Some(stats) = &args.stats {
-            output::check_writable(stats)?;
+        if let Some(stats) = &stats {
+            stats.check_writable().map_err(OutputError::from)?;
         }
-        let outputs = Outputs::new([
-            ("-o", Some(&*args.output)),
-            ("--layers", args.layers.as_deref()),
-            ("--stats", args.stats.as_deref()),
-        ])?;
-        outputs.keep("the scene", [&*args.scene.scene])?;
+        let all = [("-o", Some(&picture)), ("--layers", layers.as_ref()), ("--stats", stats.as_ref())];
+        check_one_on_stdout(all)?;
+        let outputs = Outputs::new(all.map(|(flag, output)| (flag, output.and_then(Destination::file))))?;
+        outputs.keep("the scene", input(&args.scene.scene))?;
         outputs.keep("--grid-file", args.grid_file.as_deref())?;
-        Ok(PictureFiles {
-            picture: args.output.clone(),
-            options,
-            exposure: args.exposure,
-            layers: args.layers.clone(),
-            stats: args.stats.clone(),
-            outputs,
-        })
+        Ok(PictureFiles { picture, options, exposure: args.exposure, layers, stats, outputs })
+    }
+
+    /// The format of the image.
+    pub(crate) fn format(&self) -> Option<Format> {
+        self.options.format_of(self.picture.file().unwrap_or(Path::new("")))
     }
 }
 
@@ -66,14 +62,29 @@ fn options(args: &RenderArgs) -> SaveOptions {
         .with_bit_depth(args.bit_depth)
         .with_dither(args.dither == Switch::On);
     let exr = ExrOptions::default().with_samples(args.exr_type).with_compression(args.exr_compression);
-    SaveOptions::default().with_display(display).with_exr(exr)
+    SaveOptions::default().with_format(args.format).with_display(display).with_exr(exr)
 }
 
-fn check_layers(path: &Path) -> Result<(), SaveError> {
-    check_writable(path)?;
-    match Format::from_path(path) {
-        Some(Format::Exr) => Ok(()),
-        _ => Err(SaveError::LayersNeedExr { path: path.to_owned() }),
+/// Images that the format cannot store are rejected now rather than after the render.
+fn check_picture(picture: &Destination, args: &RenderArgs, options: &SaveOptions) -> Result<(), PlanError> {
+    picture.check_binary("-o")?;
+    let path = match picture {
+        Destination::Stdout if args.format.is_none() => return Err(PlanError::NoFormat),
+        Destination::Stdout => Path::new("standard output"),
+        Destination::File(path) => path,
+    };
+    let size = args.crop.map_or(args.size.0, |crop| crop.size);
+    check_image(path, options, size, args.background == Some(Background::Transparent))?;
+    Ok(picture.check_writable().map_err(SaveError::from)?)
+}
+
+fn check_layers(layers: &Destination) -> Result<(), PlanError> {
+    layers.check_binary("--layers")?;
+    match layers.file() {
+        Some(path) if Format::from_path(path) != Some(Format::Exr) => {
+            Err(SaveError::LayersNeedExr { path: path.to_owned() }.into())
+        }
+        _ => Ok(layers.check_writable().map_err(SaveError::from)?),
     }
 }
 
@@ -83,7 +94,7 @@ mod tests {
 
     #[test]
     fn pictures_too_large_for_their_format_are_refused() {
-        let fits = |name, [width, height]: [u32; 2]| check_size(name, width, height).is_ok();
+        let fits = |name, size: [u32; 2]| check_image(name, &SaveOptions::default(), size, false).is_ok();
         assert!(fits("a.jpg", [65535, 65535]) && !fits("a.jpg", [65536, 1]) && !fits("a.jpeg", [1, 65536]));
         assert!(fits("a.bmp", [40_000, 30_000]) && !fits("a.bmp", [40_000, 40_000]));
         assert!(fits("a.png", [i32::MAX as u32, 1]) && !fits("a.exr", [1 << 31, 1]));

@@ -32,6 +32,9 @@ pub(crate) enum PlanError {
         /// Width and height of the image.
         size: [u32; 2],
     },
+    /// The image goes to standard output, which has no extension.
+    #[error("-o - needs the format of the image; add --format bmp, png, exr or jpg")]
+    NoFormat,
     /// A flag specifies a grid, but another structure is selected.
     #[error("{flag} specifies a grid, but --accel {chosen} selects another structure; remove one of them")]
     NoGrid {

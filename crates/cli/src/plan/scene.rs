@@ -25,7 +25,7 @@ const GROUND_BACKGROUND: f32 = 0.8;
 
 impl SceneChoices {
     pub(super) fn new(args: &RenderArgs) -> Result<SceneChoices, CameraError> {
-        let up = args.up.of(&args.scene.scene);
+        let up = args.up.of(args.scene.format());
         let camera = args.camera.map(|view| {
             let camera = Camera::look_to(Vec3::ZERO, view.direction, up.axis(), view.vfov);
             camera.map(|camera| (camera, view.position))

@@ -15,7 +15,7 @@ pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
         .with_mode(args.mode)
         .with_bounces(args.bounces)
         .with_size(args.size.0)
-        .with_up(args.up.of(&args.scene.scene))
+        .with_up(args.up.of(args.scene.format()))
         .with_lookup(args.lookup)
         .with_quality(args.quality)
         .with_filter(args.filter)
@@ -23,6 +23,7 @@ pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
         .with_acceleration(acceleration(args)?)
         .with_seed(args.seed)
         .with_layers(args.layers.is_some())
+        .with_partial(args.partial)
         .with_transparent(args.background == Some(Background::Transparent));
     // Omitted flags leave their settings open.
     settings.crop = args.crop;

@@ -1,7 +1,8 @@
-//! Output on standard error during a computation: messages, a bar, or JSON.
+//! Output on standard error during a computation: messages, a bar, a line now and then, or JSON.
 
 mod bar;
 mod json;
+mod lines;
 
 use std::io::{self, IsTerminal};
 
@@ -12,6 +13,7 @@ use crate::args::Progress;
 use crate::{flags, interrupt, output};
 use bar::Bar;
 use json::Json;
+use lines::Lines;
 
 /// Observes a render and reports on it.
 pub(crate) struct Watcher {
@@ -22,18 +24,20 @@ pub(crate) struct Watcher {
 enum Sink {
     Plain,
     Bar(Bar),
+    Lines(Lines),
     Json(Json),
 }
 
 impl Watcher {
-    /// Shows progress as requested; `quiet` suppresses messages, and the bar unless requested.
+    /// Shows progress as requested; `quiet` suppresses messages, and progress unless requested.
     pub(crate) fn new(progress: Progress, quiet: bool) -> Watcher {
         let terminal = io::stderr().is_terminal();
         let sink = match progress {
             Progress::Json => Sink::Json(Json::new()),
-            Progress::Bar if terminal => Sink::Bar(Bar::new()),
-            Progress::Auto if terminal && !quiet => Sink::Bar(Bar::new()),
-            Progress::Auto | Progress::Bar | Progress::None => Sink::Plain,
+            Progress::None => Sink::Plain,
+            Progress::Auto if quiet => Sink::Plain,
+            Progress::Auto | Progress::Bar if terminal => Sink::Bar(Bar::new()),
+            Progress::Auto | Progress::Bar => Sink::Lines(Lines::new()),
         };
         Watcher { quiet, sink }
     }
@@ -61,7 +65,7 @@ impl Watcher {
             return;
         }
         match &self.sink {
-            Sink::Plain => output::complain(line),
+            Sink::Plain | Sink::Lines(_) => output::complain(line),
             Sink::Bar(bar) => bar.aside(line),
             Sink::Json(json) => json.text(event, text),
         }
@@ -73,13 +77,14 @@ impl Observer for Watcher {
         match &self.sink {
             Sink::Plain => {}
             Sink::Bar(bar) => bar.begin(stage, total),
+            Sink::Lines(lines) => lines.begin(stage),
             Sink::Json(json) => json.begin(stage, total),
         }
     }
 
     fn advance(&self, pieces: u64) {
         match &self.sink {
-            Sink::Plain => {}
+            Sink::Plain | Sink::Lines(_) => {}
             Sink::Bar(bar) => bar.advance(pieces),
             Sink::Json(json) => json.advance(pieces),
         }
@@ -89,6 +94,7 @@ impl Observer for Watcher {
         match &self.sink {
             Sink::Plain => {}
             Sink::Bar(bar) => bar.whole(progress),
+            Sink::Lines(lines) => lines.whole(progress),
             Sink::Json(json) => json.whole(progress),
         }
     }
@@ -96,6 +102,7 @@ impl Observer for Watcher {
     fn end(&self, stage: Stage) {
         match &self.sink {
             Sink::Plain | Sink::Bar(_) => {}
+            Sink::Lines(lines) => lines.end(),
             Sink::Json(json) => json.end(stage),
         }
     }

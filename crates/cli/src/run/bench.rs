@@ -10,6 +10,7 @@ use lightmesh_files::{is_standard_output, stand_by};
 use crate::args::{BenchArgs, BenchCommand, SuiteArgs};
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::memory;
 use crate::output::{self, Outputs};
 use crate::progress::Watcher;
 
@@ -29,7 +30,7 @@ fn measure(suite: Suite, args: &SuiteArgs) -> Result<(), Failure> {
     let outputs = outputs(args)?;
     keep_scenes(&outputs, &args.scenes)?;
     let watcher = Watcher::new(args.progress, args.quiet);
-    interrupt::watched(|| run_and_write(suite, args, &watcher))
+    memory::during(format!("suite {}", suite.name()), || interrupt::watched(|| run_and_write(suite, args, &watcher)))
 }
 
 fn run_and_write(suite: Suite, args: &SuiteArgs, watcher: &Watcher) -> Result<(), Failure> {

@@ -1,28 +1,47 @@
 //! `lightmesh export`.
 
+use std::path::Path;
+
 use lightmesh::Scene;
 
 use super::open::open;
 use crate::args::ExportArgs;
+use crate::destination::Destination;
 use crate::failure::Failure;
 use crate::memory;
 use crate::output::{self, Outputs};
 use crate::progress::Watcher;
 
+/// What messages call the export.
+const EXPORTING: &str = "exporting the scene";
+
 pub(super) fn run(args: &ExportArgs) -> Result<(), Failure> {
-    let mesh = Scene::export_mesh(&args.output)?;
-    for path in std::iter::once(&args.output).chain(&mesh) {
+    let watcher = Watcher::plain(args.quiet);
+    let destination = Destination::new(&args.output);
+    let scene = match destination.file() {
+        Some(path) => to_file(path, args, &watcher),
+        None => to_stdout(&destination, args, &watcher),
+    }?;
+    watcher.summary(&format!("{}, {} triangles: {destination}", scene.name, scene.geometry.mesh.triangles.len()));
+    Ok(())
+}
+
+fn to_file(path: &Path, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, Failure> {
+    let mesh = Scene::export_mesh(path)?;
+    for path in std::iter::once(path).chain(mesh.as_deref()) {
         output::check_writable(path)?;
     }
-    let outputs = Outputs::new([("-o", Some(&*args.output)), ("the triangles of -o", mesh.as_deref())])?;
-    let watcher = Watcher::plain(args.quiet);
-    let scene = open(&args.scene, &outputs, &watcher)?;
-    memory::during("exporting the scene", || scene.export(&args.output))?;
-    watcher.summary(&format!(
-        "{}, {} triangles: {}",
-        scene.name,
-        scene.geometry.mesh.triangles.len(),
-        args.output.display()
-    ));
-    Ok(())
+    let outputs = Outputs::new([("-o", Some(path)), ("the triangles of -o", mesh.as_deref())])?;
+    let scene = open(&args.scene, &outputs, watcher)?;
+    memory::during(EXPORTING, || scene.export(path))?;
+    Ok(scene)
+}
+
+/// As one GLB file, the only format that is one.
+fn to_stdout(destination: &Destination, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, Failure> {
+    destination.check_binary("-o")?;
+    let scene = open(&args.scene, &Outputs::default(), watcher)?;
+    let file = memory::during(EXPORTING, || Ok::<_, Failure>(destination.ready(&scene.to_glb()?)?))?;
+    output::publish(vec![file])?;
+    Ok(scene)
 }

@@ -1,9 +1,7 @@
 //! `lightmesh info`.
 
-use std::path::Path;
-
 use lightmesh::render::{DeviceReport, devices};
-use lightmesh::scene::{Up, UpInfo};
+use lightmesh::scene::{SceneFormat, Up, UpInfo};
 use lightmesh_files::visible;
 use serde::Serialize;
 
@@ -22,7 +20,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
         Some(path) => {
             let scene = read(path, args.reading)?;
             let mut info = scene.info();
-            info.up.get_or_insert_with(|| usual_up(path));
+            info.up.get_or_insert_with(|| usual_up(args.reading.format_of(path)));
             if args.json {
                 output::print_json(&info)
             } else {
@@ -36,11 +34,10 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
 }
 
 /// For scenes whose geometry does not indicate it.
-fn usual_up(path: &Path) -> UpInfo {
-    let kind =
-        path.extension().map_or_else(|| "built-in scenes".to_owned(), |ending| format!(".{} files", ending.display()));
+fn usual_up(format: Option<SceneFormat>) -> UpInfo {
+    let kind = format.map_or_else(|| "built-in scenes".to_owned(), |format| format!(".{format} files"));
     UpInfo {
-        axis: Up::of_file(path).name(),
+        axis: format.map_or(Up::Y, SceneFormat::usual_up).name(),
         reason: format!("its shape gives no indication, and it is the usual axis of {kind}"),
     }
 }

@@ -1,19 +1,24 @@
 //! Opening the scene given on the command line.
 
+use std::io::{self, IsTerminal};
 use std::path::Path;
 
+use lightmesh::Scene;
 use lightmesh::scene::LoadOptions;
-use lightmesh::{LoadError, Scene};
 
 use crate::args::{ReadingArgs, SceneArg};
+use crate::destination::is_standard;
 use crate::failure::Failure;
 use crate::memory;
-use crate::output::Outputs;
+use crate::output::{Outputs, input};
 use crate::progress::Watcher;
+
+/// What messages call the scene that is read from standard input.
+const STANDARD_INPUT: &str = "standard input";
 
 /// Reads the scene, of which outputs must not overwrite any file, and prints its warnings.
 pub(super) fn open(arg: &SceneArg, outputs: &Outputs, watcher: &Watcher) -> Result<Scene, Failure> {
-    outputs.keep("the scene", [&*arg.scene])?;
+    outputs.keep("the scene", input(&arg.scene))?;
     let scene = read(&arg.scene, arg.reading)?;
     outputs.keep_scene(&scene)?;
     scene.warnings.iter().for_each(|warning| watcher.warning(warning));
@@ -21,10 +26,20 @@ pub(super) fn open(arg: &SceneArg, outputs: &Outputs, watcher: &Watcher) -> Resu
 }
 
 /// Reads the scene.
-pub(super) fn read(path: &Path, reading: ReadingArgs) -> Result<Scene, LoadError> {
+pub(super) fn read(path: &Path, reading: ReadingArgs) -> Result<Scene, Failure> {
     let options = LoadOptions::default()
+        .with_format(reading.scene_format)
         .with_allow_outside(reading.allow_outside)
         .with_strict(reading.strict)
         .with_memory_limit(reading.memory_limit.map(|limit| limit.0));
-    memory::during(format!("reading {}", path.display()), || Scene::open_with(path, &options))
+    if !is_standard(path) {
+        let open = || Scene::open_with(path, &options);
+        return Ok(memory::during(format!("reading {}", path.display()), open)?);
+    }
+    let format = reading.scene_format.ok_or(Failure::NoSceneFormat)?;
+    if io::stdin().is_terminal() {
+        return Err(Failure::NoScene);
+    }
+    let read = || Scene::from_reader(io::stdin().lock(), STANDARD_INPUT, format, &options);
+    Ok(memory::during(format!("reading {STANDARD_INPUT}"), read)?)
 }

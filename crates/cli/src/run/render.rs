@@ -1,10 +1,11 @@
 //! `lightmesh render`.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
 use glam::{DMat4, Vec3};
 use lightmesh::image::{self, Description, Format, Ready, SaveOptions};
-use lightmesh::render::{Choice, Crop, Stats};
+use lightmesh::render::{Choice, PreparedScene, Stats, devices};
 use lightmesh::scene::Falloff;
 use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene};
 use lightmesh_memory::Bytes;
@@ -21,34 +22,70 @@ use crate::{interrupt, memory, output};
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let plan = RenderPlan::new(args)?;
     let watcher = Watcher::new(args.progress, args.quiet);
-    let choice = Choice::of(plan.device)?;
-    let (reason, no_cuda) = (choice.reason.clone(), choice.no_cuda.clone());
+    let choice = Choice::of(plan.device).inspect_err(|_| explain_devices(args, &watcher))?;
+    let using = using(&choice, args.verbose);
     let renderer = Renderer::on(choice, plan.threads.map(usize::from))?;
     let start = Instant::now();
     let mut scene = open(&plan.scene, &plan.files.outputs, &watcher)?;
     let load = start.elapsed().as_secs_f64();
     if matches!(plan.device, Device::Auto | Device::Cuda(None)) {
-        let why = match no_cuda {
-            Some(why) if args.verbose => format!("; no CUDA device can be used: {why}"),
-            Some(_) => "; no CUDA device (-v says why)".to_owned(),
-            None => String::new(),
-        };
-        watcher.note(&format!("device {}: using {reason}{why}", plan.device));
+        watcher.note(&format!("device {}: using {using}", plan.device));
     }
 
     plan.choices.apply(&mut scene, &watcher)?;
     let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;
+    let finish = || finish(&renderer, prepared, &scene, &plan, load, &watcher);
+    let frame = if args.partial { interrupt::keeping(finish) } else { finish() }?;
+    if interrupt::requested() {
+        // The last message says what is written.
+        return Ok(());
+    }
+    if args.verbose {
+        details(&frame.stats).iter().for_each(|line| watcher.note(line));
+    }
+    watcher.summary(&summary(&frame, &plan.files));
+    Ok(())
+}
+
+/// The device that was chosen. That no CUDA device was, is only said where one could be expected, or to those who ask.
+fn using(choice: &Choice, verbose: bool) -> String {
+    let why = match &choice.no_cuda {
+        Some(why) if verbose => format!("; no CUDA device can be used: {why}"),
+        Some(_) if choice.misses_cuda => "; no CUDA device (-v says why)".to_owned(),
+        _ => String::new(),
+    };
+    format!("{}{why}", choice.reason)
+}
+
+/// All that is known of devices that cannot be used, for those who ask.
+fn explain_devices(args: &RenderArgs, watcher: &Watcher) {
+    if args.verbose {
+        let unusable = devices().into_iter().filter(|report| !report.usable);
+        unusable.for_each(|report| watcher.note(&format!("device {}: not usable: {}", report.device, report.remark)));
+    }
+}
+
+/// Renders the image and writes all files.
+fn finish(
+    renderer: &Renderer,
+    prepared: PreparedScene,
+    scene: &Scene,
+    plan: &RenderPlan,
+    load: f64,
+    watcher: &Watcher,
+) -> Result<Frame, Failure> {
     // An automatic exposure is that of the whole image.
-    let exposure = exposure(&scene, &plan.files);
+    let exposure = exposure(scene, &plan.files);
     let mut settings = plan.settings.clone();
     let crop = settings.crop.take_if(|_| exposure == Exposure::Auto);
-    let render = || renderer.render_prepared(&prepared, &settings, &watcher);
-    let mut frame = memory::during("rendering", || interrupt::watched(render))?;
+    let render = || renderer.render_prepared(&prepared, &settings, watcher);
+    let mut frame = memory::during(memory::RENDERING, || interrupt::watched(render))?;
     drop(prepared); // frees memory for the encoders
-    if watcher.cancelled() {
+    if plan.settings.partial {
+        interrupt::remark(rows(&frame));
+    } else if watcher.cancelled() {
         return Err(RenderError::Cancelled.into());
     }
-
     frame.stats.seconds.load = load;
     let odd = frame.stats.counts.non_finite_pixels;
     if odd > 0 {
@@ -57,23 +94,25 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
             "{odd} of {of} pixels have infinite or undefined colours: lower the intensities of lights or the coefficients of materials"
         ));
     }
-    let stops = stops(&frame.image, exposure, &watcher);
-    if Format::from_path(&plan.files.picture) != Some(Format::Exr) {
+    let stops = stops(&frame, exposure, watcher);
+    if plan.files.format() != Some(Format::Exr) {
         let display = plan.files.options.display.with_exposure(stops);
         range::warnings(&frame, &display).iter().for_each(|warning| watcher.warning(warning));
     }
-    if let Some(Crop { first, size, .. }) = crop {
-        frame.image = frame.image.cropped(first, size).expect("the plan has checked that the crop is in the image");
-        frame.stats.settings.crop = Some([first[0], first[1], size[0], size[1]]);
+    if let Some(crop) = crop {
+        frame = frame.cropped(crop).expect("the plan has checked that the crop is in the image");
     }
-    let mut options = plan.files.options.clone().with_description(description(&frame, &scene));
+    let mut options = plan.files.options.clone().with_description(description(&frame, scene));
     options.display.exposure = stops;
-    memory::during("writing the image", || write(&renderer, &mut frame, &scene, &plan.files, &options))?;
-    if args.verbose {
-        details(&frame.stats).iter().for_each(|line| watcher.note(line));
-    }
-    watcher.summary(&summary(&frame, &plan.files));
-    Ok(())
+    memory::during("writing the image", || write(renderer, &mut frame, scene, &plan.files, &options))?;
+    Ok(frame)
+}
+
+/// How much of an image is finished.
+fn rows(frame: &Frame) -> String {
+    let ([_, height], finished) = (frame.size(), frame.finished_rows());
+    let finished = if finished == height { "all".to_owned() } else { format!("{finished} of") };
+    format!("{finished} {height} rows are finished")
 }
 
 /// Seconds of each stage, counts, and memory, by their names in `--stats`.
@@ -103,10 +142,10 @@ fn write(
     let start = Instant::now();
     let mut outputs = renderer.install(|| encode(&frame.image, files, options))?;
     frame.stats.seconds.write = start.elapsed().as_secs_f64();
-    if let Some(path) = &files.stats {
+    if let Some(destination) = &files.stats {
         let lights = scene.info().lights;
         let report = Report::new(&frame.stats, files, options, &lights);
-        outputs.push(output::ready(path, output::json(&report).as_bytes())?);
+        outputs.push(destination.ready(output::json(&report).as_bytes())?);
     }
     Ok(output::publish(outputs)?)
 }
@@ -114,8 +153,8 @@ fn write(
 /// The image and the layers, encoded at the same time: while one waits for the disk, the other is compressed.
 fn encode(image: &image::Frame, files: &PictureFiles, options: &SaveOptions) -> Result<Vec<Ready>, SaveError> {
     let (picture, layers) = rayon::join(
-        || image.ready_with(&files.picture, options),
-        || files.layers.as_ref().map(|path| image.ready_layers_with(path, options)).transpose(),
+        || image.ready_to(files.picture.open()?, options),
+        || files.layers.as_ref().map(|layers| image.ready_layers_to(layers.open()?, options)).transpose(),
     );
     Ok(layers?.into_iter().chain([picture?]).collect())
 }
@@ -146,7 +185,7 @@ fn description(frame: &Frame, scene: &Scene) -> Description {
 fn exposure(scene: &Scene, files: &PictureFiles) -> Exposure {
     let photometric = scene.lights.iter().any(|light| light.falloff == Falloff::InverseSquare);
     match files.exposure {
-        _ if Format::from_path(&files.picture) == Some(Format::Exr) => Exposure::Stops(0.0),
+        _ if files.format() == Some(Format::Exr) => Exposure::Stops(0.0),
         Some(chosen) => chosen,
         None if photometric => Exposure::Auto,
         None => Exposure::Stops(0.0),
@@ -154,14 +193,24 @@ fn exposure(scene: &Scene, files: &PictureFiles) -> Exposure {
 }
 
 /// The exposure in stops.
-fn stops(image: &image::Frame, exposure: Exposure, watcher: &Watcher) -> f32 {
+fn stops(frame: &Frame, exposure: Exposure, watcher: &Watcher) -> f32 {
     match exposure {
         Exposure::Stops(stops) => stops,
         Exposure::Auto => {
-            let stops = image.auto_exposure();
+            let stops = finished_part(frame).auto_exposure();
             watcher.note(&format!("exposure auto: using {stops} stops (--exposure {stops} keeps this value)"));
             stops
         }
+    }
+}
+
+/// The rows of an image that are finished.
+fn finished_part(frame: &Frame) -> Cow<'_, image::Frame> {
+    let ([width, height], rows) = (frame.size(), frame.finished_rows());
+    let finished = || frame.color()[..width as usize * rows as usize].to_vec();
+    match rows {
+        rows if rows == height => Cow::Borrowed(&frame.image),
+        rows => image::Frame::new(width, rows, finished()).map_or(Cow::Borrowed(&frame.image), Cow::Owned),
     }
 }
 
@@ -176,6 +225,6 @@ fn summary(frame: &Frame, files: &PictureFiles) -> String {
         seconds.load,
         seconds.build,
         seconds.write,
-        files.picture.display()
+        files.picture
     )
 }

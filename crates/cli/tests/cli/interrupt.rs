@@ -218,6 +218,144 @@ fn what_a_killed_run_left_is_removed_by_the_next_and_what_a_living_one_writes_is
     assert_eq!(place.files(), ["b.png", "c.png", "pipe", "room.toml"]);
 }
 
+/// A picture that takes a second or so, in files of several kinds.
+struct Kept {
+    place: Place,
+    /// Arguments without the outputs.
+    args: Vec<&'static str>,
+    outputs: Vec<[&'static str; 2]>,
+    whole: Vec<Frame>,
+}
+
+const KEPT: [u32; 2] = [300, 256];
+
+impl Kept {
+    fn new(mode: &'static str, flags: &[&'static str], outputs: &[[&'static str; 2]]) -> Kept {
+        let place = Place::new();
+        let base = ["render", "room.toml", "--size", "300x256", "--light", "3,5,2;1;0.5", "--mode", mode];
+        let (args, outputs) = ([&base, flags].concat(), outputs.to_vec());
+        place.good(&[&args[..], outputs.as_flattened()].concat());
+        let whole = outputs.iter().map(|[_, name]| Frame::load(place.path(name)).unwrap()).collect();
+        let kept = Kept { place, args: [&args[..], &["--partial", "--progress", "json"]].concat(), outputs, whole };
+        kept.clear();
+        kept
+    }
+
+    fn clear(&self) {
+        self.outputs.iter().for_each(|[_, name]| drop(std::fs::remove_file(self.place.path(name))));
+    }
+
+    fn start(&self) -> Running {
+        Running::new(&self.place, &[&self.args[..], self.outputs.as_flattened()].concat())
+    }
+
+    /// Checks what a run has left, and removes it. Returns the number of finished rows.
+    fn check(&self, message: &str) -> u32 {
+        if message == NOTHING {
+            assert_eq!(self.place.files(), ["room.toml"]);
+            return 0;
+        }
+        let rows = message.strip_suffix(" 256 rows are finished").unwrap_or_else(|| panic!("{message}"));
+        let rows = rows.rsplit_once("; ").unwrap().1;
+        let rows = if rows == "all" { KEPT[1] } else { rows.strip_suffix(" of").unwrap().parse().unwrap() };
+        for ([_, name], whole) in self.outputs.iter().zip(&self.whole) {
+            assert!(message.contains(name), "{message}");
+            let frame = Frame::load(self.place.path(name)).unwrap();
+            let places = (rows * KEPT[0]) as usize;
+            assert_eq!([frame.width(), frame.height()], KEPT);
+            assert!(frame.color()[..places] == whole.color()[..places], "{name}: {rows} rows");
+            assert!(frame.color()[places..].iter().all(|color| *color == [0.0; 3]), "{name}: below {rows} rows");
+            assert_eq!(frame.alpha().is_some(), whole.alpha().is_some());
+            if let Some((alpha, all)) = frame.alpha().zip(whole.alpha()) {
+                assert!(alpha[..places] == all[..places] && alpha[places..].iter().all(|alpha| *alpha == 0.0));
+            }
+        }
+        assert_eq!(self.place.files().len(), 1 + self.outputs.len());
+        self.clear();
+        rows
+    }
+}
+
+#[test]
+fn partial_keeps_the_finished_rows_of_all_outputs() {
+    for (mode, flags, outputs) in [
+        ("area", &[][..], &[["-o", "a.png"], ["--layers", "b.exr"]][..]),
+        ("area", &["--background", "transparent"], &[["-o", "a.exr"]]),
+        ("light-mesh", &["--background", "transparent"], &[["-o", "a.png"], ["--layers", "b.exr"]]),
+    ] {
+        let kept = Kept::new(mode, flags, outputs);
+        for (signal, code) in SIGNALS {
+            let mut running = kept.start();
+            // The first band is finished when the third begins.
+            (0..3).for_each(|_| running.await_event("begin", "camera_rays"));
+            let (ended, message) = running.end_by(signal);
+            assert_eq!(ended, Some(code));
+            assert!(kept.check(&message) >= 8, "{message}");
+        }
+    }
+}
+
+#[test]
+fn partial_leaves_a_valid_picture_or_none_at_any_moment() {
+    let kept = Kept::new("area", &[], &[["-o", "a.bmp"], ["--layers", "b.exr"]]);
+    let start = Instant::now();
+    let mut running = kept.start();
+    assert!(wait(&mut running.child).success());
+    let whole = start.elapsed();
+    kept.clear();
+    let mut random = 0x9e37_79b9_u32;
+    for turn in 0..20 {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let (signal, code) = SIGNALS[turn % 3];
+        let mut running = kept.start();
+        await_start(&running.child);
+        sleep(whole.mul_f32((random >> 8) as f32 / (1 << 24) as f32));
+        if let Some(status) = running.child.try_wait().unwrap() {
+            assert!(status.success(), "{status}");
+            kept.clear();
+            continue;
+        }
+        match running.end_by(signal) {
+            // It was about to exit.
+            (Some(0), _) => kept.clear(),
+            (ended, message) => {
+                assert_eq!(ended, Some(code), "{message}");
+                kept.check(&message);
+            }
+        }
+    }
+}
+
+#[test]
+fn partial_statistics_are_those_of_the_finished_rows() {
+    let kept = Kept::new("area", &["--stats", "a.json"], &[["-o", "a.png"]]);
+    let mut running = kept.start();
+    (0..3).for_each(|_| running.await_event("begin", "camera_rays"));
+    running.end_by("INT");
+    let stats = kept.place.json("a.json");
+    let rows = stats["finished_rows"].as_u64().unwrap();
+    assert!((8..256).contains(&rows), "{rows}");
+    assert_eq!(stats["counts"]["pixels"], rows * 300);
+    let compared = kept.place.run(&["compare", "a.png", "a.png"]);
+    assert_eq!(compared.code, Some(0), "{compared:?}");
+}
+
+/// What is kept waits for a reader of the statistics, who never comes.
+#[test]
+fn a_second_signal_ends_what_is_kept() {
+    let place = Place::new();
+    assert!(Command::new("mkfifo").arg(place.path("pipe")).status().unwrap().success());
+    let flags = ["-o", "a.png", "--size", "16x16", "--stats", "pipe", "--progress", "json", "--partial"];
+    let mut running = Running::new(&place, &[&["render", "room.toml"], &flags[..]].concat());
+    running.await_event("end", "shade");
+    await_temporary(&place);
+    send(&running.child, "TERM");
+    sleep(Duration::from_millis(300));
+    assert!(running.child.try_wait().unwrap().is_none(), "the first one keeps what there is");
+    assert_eq!(running.end_by("INT"), (Some(143), NOTHING.to_owned()));
+    assert_eq!(place.files(), ["pipe", "room.toml"]);
+}
+
 #[test]
 fn a_suite_keeps_the_rows_it_has() {
     let place = Place::new();

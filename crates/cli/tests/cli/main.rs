@@ -2,6 +2,7 @@
 
 mod bench;
 mod border;
+mod color;
 mod compare;
 mod devices;
 mod display;
@@ -17,3 +18,5 @@ mod scenes;
 mod interrupt;
 #[cfg(unix)]
 mod outputs;
+#[cfg(unix)]
+mod streams;

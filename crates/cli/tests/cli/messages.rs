@@ -108,7 +108,7 @@ fn an_unwritable_output_is_found_before_rendering() {
     };
     assert_eq!(
         render("a.foo", &[]),
-        "error: cannot save a.foo: unknown image format; use one of these extensions: bmp, png, exr, jpg, jpeg"
+        "error: cannot save a.foo: unknown image format; use one of these extensions: bmp, png, exr, jpg, jpeg (--format)"
     );
     assert_eq!(
         render("no/a.png", &[]),

@@ -106,6 +106,25 @@ impl Place {
         command
     }
 
+    /// Runs a command on a terminal: standard input, output and error are one. Returns its exit code and all that it
+    /// shows.
+    #[cfg(target_os = "linux")]
+    pub(crate) fn on_terminal(&self, mut command: Command) -> (Option<i32>, String) {
+        use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+        use std::io::Read;
+        let screen = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+        grantpt(&screen).and_then(|()| unlockpt(&screen)).unwrap();
+        let name = ptsname(&screen, Vec::new()).unwrap().into_string().unwrap();
+        let terminal = || std::fs::OpenOptions::new().read(true).write(true).open(&name).unwrap();
+        let mut child = command.stdin(terminal()).stdout(terminal()).stderr(terminal()).spawn().unwrap();
+        // Closes the other ends here, so that the last one closes with the child.
+        drop(command);
+        let mut shown = Vec::new();
+        // The end of a terminal is an error.
+        let _ = std::fs::File::from(screen).read_to_end(&mut shown);
+        (child.wait().unwrap().code(), String::from_utf8(shown).unwrap())
+    }
+
     pub(crate) fn run(&self, args: &[&str]) -> Done {
         self.command(args).output().unwrap().into()
     }

@@ -4,8 +4,8 @@ use glam::Vec3;
 use lightmesh_image::{Layers, Transfer};
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{
-    Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, Settings, Step, Unobserved, render_on,
-    visibility_on,
+    Acceleration, Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, PreparedScene, Settings, Step,
+    Unobserved, render_on, visibility_on,
 };
 use lightmesh_scene::{Bounds, Up};
 use lightmesh_testkit::Random;

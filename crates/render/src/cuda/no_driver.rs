@@ -26,9 +26,25 @@ pub(crate) struct Library {
     pub(crate) devices: Vec<Gpu>,
 }
 
+/// Why CUDA cannot be used: always for the same reason.
+#[derive(Debug)]
+pub(crate) struct Unavailable;
+
+impl Unavailable {
+    /// Why, and what to do.
+    pub(crate) fn explained(&self) -> String {
+        WHY.to_owned()
+    }
+
+    /// Whether there is nothing to mend: CUDA was left out on purpose.
+    pub(crate) fn is_ordinary(&self) -> bool {
+        true
+    }
+}
+
 impl Library {
-    pub(crate) fn open() -> Result<Library, &'static str> {
-        Err(WHY)
+    pub(crate) fn open() -> Result<Library, Unavailable> {
+        Err(Unavailable)
     }
 
     pub(crate) fn ready(&self, _: &Gpu) -> Result<Driver, String> {

@@ -14,6 +14,8 @@ pub struct Picture {
     pub rows: Range<u32>,
     /// Those of them that are finished here; the others are needed by their neighbours.
     pub kept: Range<u32>,
+    /// The number of finished rows, from the top of the image.
+    pub(crate) finished: u32,
     /// Linear radiance by pixel of these rows.
     pub color: Vec<[f32; 3]>,
     /// The share of each pixel's samples that see anything, if it was asked for.
@@ -43,7 +45,7 @@ impl Picture {
             used: vec![0; pixels],
         });
         let color = vec![[0.0; 3]; pixels];
-        Picture { size, rows, kept, color, coverage: None, caught: None, layers, sums: Vec::new() }
+        Picture { size, rows, kept, finished: 0, color, coverage: None, caught: None, layers, sums: Vec::new() }
     }
 
     /// The index of pixel y · width + x of the whole image in the planes.
@@ -110,6 +112,12 @@ impl Picture {
     /// Number of pixels with a colour that is infinite or not a number.
     pub fn non_finite(&self) -> u64 {
         self.color.par_iter().filter(|color| !color.iter().all(|channel| channel.is_finite())).count() as u64
+    }
+
+    /// Gives the rows that are not finished the colour of the background. In their layers, nothing is in sight.
+    pub(crate) fn fill_unfinished(&mut self, background: glam::Vec3) {
+        let first = self.places(&(self.finished..self.size[1])).start;
+        self.color[first..].fill(background.to_array());
     }
 
     /// Finds what is covered: pixels with a depth.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::Device;
 use super::report::{cpu, ready};
-use crate::cuda::{Driver, open_cuda};
+use crate::cuda::{Driver, Library, open_cuda};
 use crate::error::RenderError;
 
 /// The result of choosing a [`Device`].
@@ -15,6 +15,9 @@ pub struct Choice {
     pub reason: String,
     /// Why no CUDA device was taken, and what to do, if the choice was left open and none works.
     pub no_cuda: Option<String>,
+    /// Whether that may be news to the user: there is a driver, or a card of NVIDIA's. Elsewhere no CUDA device was to
+    /// be expected.
+    pub misses_cuda: bool,
     pub(crate) chosen: Chosen,
 }
 
@@ -34,31 +37,32 @@ impl Choice {
     /// [`RenderError::Device`] if a CUDA device is requested and cannot be used.
     pub fn of(device: Device) -> Result<Choice, RenderError> {
         match device {
-            Device::Cpu => Ok(Choice::cpu(None)),
+            Device::Cpu => Ok(Choice::cpu()),
             Device::Cuda(number) => open_cuda(number).map(Choice::cuda),
             Device::Auto => Ok(open_cuda(None).map_or_else(Choice::instead_of_cuda, Choice::cuda)),
         }
     }
 
     fn instead_of_cuda(error: RenderError) -> Choice {
-        let why = match error {
-            RenderError::Device { reason, .. } => reason,
-            other => other.to_string(),
+        let (why, is_ordinary) = match (Library::open(), error) {
+            (Err(why), _) => (why.explained(), why.is_ordinary()),
+            (Ok(_), RenderError::Device { reason, .. }) => (reason, false),
+            (Ok(_), other) => (other.to_string(), false),
         };
-        Choice::cpu(Some(why))
+        Choice { no_cuda: Some(why), misses_cuda: !is_ordinary, ..Choice::cpu() }
     }
 
-    fn cpu(no_cuda: Option<String>) -> Choice {
+    fn cpu() -> Choice {
         let report = cpu();
         let reason = format!("{} ({}, {})", report.device, report.name, report.remark);
-        Choice { device: Device::Cpu, reason, no_cuda, chosen: Chosen::Cpu }
+        Choice { device: Device::Cpu, reason, no_cuda: None, misses_cuda: false, chosen: Chosen::Cpu }
     }
 
     fn cuda(driver: Arc<Driver>) -> Choice {
         let report = ready(&driver);
         let device = Device::Cuda(Some(driver.number()));
         let reason = format!("{} ({}, {})", report.device, report.name, report.remark);
-        Choice { device, reason, no_cuda: None, chosen: Chosen::Cuda(driver) }
+        Choice { device, reason, no_cuda: None, misses_cuda: false, chosen: Chosen::Cuda(driver) }
     }
 }
 

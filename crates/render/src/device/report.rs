@@ -33,7 +33,7 @@ pub fn devices() -> Vec<DeviceReport> {
     let cuda = match Library::open() {
         Ok(library) => library.devices.iter().map(|gpu| report(&library, gpu)).collect(),
         Err(why) => {
-            vec![DeviceReport { device: "cuda".to_owned(), remark: why.to_string(), ..DeviceReport::default() }]
+            vec![DeviceReport { device: "cuda".to_owned(), remark: why.explained(), ..DeviceReport::default() }]
         }
     };
     std::iter::once(cpu()).chain(cuda).collect()

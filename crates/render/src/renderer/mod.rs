@@ -54,6 +54,18 @@ impl Frame {
         [self.image.width(), self.image.height()]
     }
 
+    /// A part of the image, with what was finished of it; `None` if the frame does not have all of it.
+    pub fn cropped(self, crop: Crop) -> Option<Frame> {
+        let Crop { first: [x, y], size: [width, height] } = crop;
+        let above = y.saturating_sub(self.image.window().first[1]);
+        let finished = self.finished_rows().saturating_sub(above).min(height);
+        let image = self.image.cropped(crop.first, crop.size)?;
+        let mut stats = self.stats;
+        stats.settings.crop = Some([x, y, width, height]);
+        stats.finished_rows = (finished < height).then_some(finished);
+        Some(Frame { image, stats })
+    }
+
     /// Linear colours, row-major, row 0 at the top.
     pub fn color(&self) -> &[[f32; 3]] {
         self.image.color()
@@ -62,6 +74,13 @@ impl Frame {
     /// What each pixel sees, if [`Settings::layers`] requested it.
     pub fn layers(&self) -> Option<&Layers> {
         self.image.layers()
+    }
+
+    /// The number of finished rows, from the top: all, unless the observer cancelled the render and
+    /// [`Settings::partial`] asked for what is finished. The rows below have the background's colour, or are
+    /// transparent, and their layers are those of pixels that see nothing.
+    pub fn finished_rows(&self) -> u32 {
+        self.stats.finished_rows.unwrap_or_else(|| self.image.height())
     }
 
     /// The image's vectors; nothing is copied.
@@ -152,7 +171,8 @@ impl Renderer {
     /// Renders one image of a prepared scene.
     ///
     /// # Errors
-    /// As [`Renderer::render`], and [`RenderError::Cancelled`] if the observer requested cancellation.
+    /// As [`Renderer::render`], and [`RenderError::Cancelled`] if the observer requested cancellation. With
+    /// [`Settings::partial`], that is no error once any row is finished: see [`Frame::finished_rows`].
     pub fn render_prepared(
         &self,
         scene: &PreparedScene,
@@ -293,10 +313,16 @@ fn picture_on<B: Backend>(
     }
     let run = Run::new(backend, &job, kept);
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
-    let rows = Passes { run, scene: &on_device, technique, view, plan }.render(&mut picture)?;
+    let rows = match (Passes { run, scene: &on_device, technique, view, plan }).render(&mut picture) {
+        Err(RenderError::Cancelled) if settings.partial && picture.finished > 0 => plan.most_rows.unwrap_or_default(),
+        rows => rows?,
+    };
     let mut stats =
         report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
+    stats.finished_rows = (picture.finished < plan.size[1]).then_some(picture.finished);
+    stats.counts.pixels = u64::from(plan.size[0]) * u64::from(picture.finished);
     stats.counts.non_finite_pixels = picture.non_finite();
+    picture.fill_unfinished(scene.scene.lights.background.unwrap_or_default());
     if settings.transparent {
         if !plan.coverage {
             picture.find_coverage();
@@ -308,10 +334,12 @@ fn picture_on<B: Backend>(
         picture.layers = None;
     }
     let window = view.window();
-    let image = picture.into_frame().with_window(window.first, window.whole);
-    let image = match settings.crop {
-        Some(Crop { first, size }) => image.cropped(first, size).expect("the window has all pixels of the crop"),
-        None => image,
-    };
-    Ok(Frame { image, stats })
+    let frame = Frame { image: picture.into_frame().with_window(window.first, window.whole), stats };
+    match settings.crop {
+        Some(crop) => {
+            let part = frame.cropped(crop).expect("the window has all pixels of the crop");
+            if part.finished_rows() == 0 { Err(RenderError::Cancelled) } else { Ok(part) }
+        }
+        None => Ok(frame),
+    }
 }

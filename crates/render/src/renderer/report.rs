@@ -34,6 +34,7 @@ pub(super) fn stats(job: &Job, resolved: &Resolved, device: DeviceFacts, rows: u
     }
     Stats {
         version: 1,
+        finished_rows: None,
         scene: SceneStats {
             name: scene.scene.name.clone(),
             triangles: scene.geometry.triangles.len(),

@@ -5,6 +5,7 @@ use lightmesh_memory::Budget;
 use lightmesh_scene::{Bounds, Camera};
 
 use crate::antialiasing::Antialiasing;
+use crate::bands;
 use crate::data::lights::LightGroups;
 use crate::error::RenderError;
 use crate::job::{Job, Sampling};
@@ -62,6 +63,7 @@ impl<'a> Resolved<'a> {
             bounces: 0,
             layers: None,
             lights,
+            most_rows: None,
             footprint,
             ..resolved.plan
         };
@@ -102,6 +104,7 @@ impl<'a> Resolved<'a> {
             antialiasing,
             bounces: settings.bounces,
             lights,
+            most_rows: settings.partial.then(|| bands::rows_in_parts(window.size[1])),
             memory_limit: settings.memory_limit,
             left: Budget::new(settings.memory_limit).left(),
             kept: 0,

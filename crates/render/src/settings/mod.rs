@@ -65,6 +65,9 @@ pub struct Settings {
     pub layers: bool,
     /// Whether the background is left out: the image has an alpha, 0 where the camera sees nothing. Mirrors still show the background.
     pub transparent: bool,
+    /// Whether a render that the observer cancels yields the rows that are finished by then, in place of an error: the
+    /// image is rendered in 32 bands, fewer if these had less than 8 rows. The same bits take a few percent longer.
+    pub partial: bool,
     /// Memory limit in bytes: of all that the process holds on the CPU, of the device's own memory on a GPU; `None`: what is free, less a
     /// reserve.
     pub memory_limit: Option<u64>,
@@ -94,6 +97,7 @@ impl Default for Settings {
             seed: 0,
             layers: false,
             transparent: false,
+            partial: false,
             memory_limit: None,
         }
     }
@@ -210,6 +214,11 @@ impl Settings {
     /// Whether the background is left out, and the image has an alpha.
     pub fn with_transparent(self, transparent: bool) -> Settings {
         Settings { transparent, ..self }
+    }
+
+    /// Whether a cancelled render yields the rows that are finished.
+    pub fn with_partial(self, partial: bool) -> Settings {
+        Settings { partial, ..self }
     }
 
     /// Memory limit in bytes, of the process on the CPU, of the device's own memory on a GPU.

@@ -13,6 +13,7 @@ mod kept;
 mod lists;
 mod lives;
 mod mirrors;
+mod partial;
 mod placement;
 mod points;
 mod progress;

@@ -71,6 +71,15 @@ impl Scene {
         Ok(publish(files)?)
     }
 
+    /// The bytes that [`Scene::export`] would write as `.glb`.
+    ///
+    /// # Errors
+    ///
+    /// [`ExportError::TooLarge`], or [`ExportError::Write`] if a texture cannot be encoded.
+    pub fn to_glb(&self) -> Result<Vec<u8>, ExportError> {
+        glb::encode(self, glb::Content::Everything, Path::new(&self.name))
+    }
+
     /// The file of triangles that [`Scene::export`] writes next to `path`: `a.mesh.glb` next to `a.toml`, none next to `a.glb`.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use super::{key_column, key_columns};
 use crate::report::document::{Block, Cell, Column, Table};
 use crate::report::numbers;
-use crate::report::runs::{Measured, distinct};
+use crate::report::runs::{Measured, PLACES, distinct};
 
 /// Significant digits of an unknown value.
 const DIGITS: usize = 3;
@@ -37,10 +37,10 @@ fn table(
     values: &[(String, String)],
 ) -> Table {
     let (keys, common) = split_keys(rows);
-    let several = distinct(rows.iter().map(|measured| measured.run.label.as_str())).len() > 1;
+    let several = distinct(rows.iter().map(Measured::place)).len() > 1;
     let mut columns: Vec<Column> = Vec::new();
     if several {
-        columns.push(Column::words("run", "run"));
+        columns.push(Column::words("place", "on"));
     }
     columns.extend(keys.iter().map(|key| key_column(key, rows)));
     columns
@@ -50,7 +50,7 @@ fn table(
     for measured in rows {
         let mut cells: Vec<Cell> = Vec::new();
         if several {
-            cells.push(measured.run.label.as_str().into());
+            cells.push(measured.place().into());
         }
         cells.extend(keys.iter().map(|key| Cell::from(measured.text(key))));
         cells.extend(stages.iter().map(|(stage, _)| Cell::number(measured.median(stage), numbers::milliseconds)));
@@ -60,13 +60,17 @@ fn table(
     table.without_empty_columns()
 }
 
-/// Keys that differ between rows, and a sentence with those that do not.
+/// Keys that differ between rows, apart from the device, and a sentence with those that do not. A device has its own
+/// name.
 pub(super) fn split_keys(rows: &[Measured]) -> (Vec<String>, String) {
     let same = |key: &str| rows.windows(2).all(|pair| pair[0].key(key) == pair[1].key(key));
-    let (common, keys): (Vec<String>, Vec<String>) =
-        key_columns(rows).into_iter().partition(|key| rows.len() > 1 && same(key));
-    let common: Vec<String> =
+    let keys = key_columns(rows).into_iter().filter(|key| !PLACES.contains(&key.as_str()));
+    let (common, keys): (Vec<String>, Vec<String>) = keys.partition(|key| rows.len() > 1 && same(key));
+    let mut common: Vec<String> =
         common.iter().map(|key| format!("{} {}", key.replace('_', " "), rows[0].text(key))).collect();
+    if let [place] = &distinct(rows.iter().map(Measured::place))[..] {
+        common.extend((!place.is_empty()).then(|| format!("on {place}")));
+    }
     (keys, if common.is_empty() { String::new() } else { format!("All rows: {}.", common.join(", ")) })
 }
 

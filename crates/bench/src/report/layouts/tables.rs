@@ -1,6 +1,7 @@
 //! The smaller tables of the thesis.
 
 use super::generic::{chosen, split_keys};
+use super::thesis::SCENES;
 use super::{WHOLE, key_column};
 use crate::report::document::{Block, Cell, Column, Table};
 use crate::report::numbers;
@@ -15,7 +16,7 @@ pub(super) fn table_1(rows: &[Measured]) -> Vec<Block> {
     ];
     let caption =
         "Time spent listing the used light points. The thesis did this on the CPU, even when rendering on the GPU.";
-    vec![chosen("table 1", caption, rows, &[], &values)]
+    vec![chosen("table 1", &format!("{caption} {SCENES}"), rows, &[], &values)]
 }
 
 /// S_total compared with the thesis, and per pixel.
@@ -26,8 +27,8 @@ pub(super) fn table_2(rows: &[Measured]) -> Vec<Block> {
     columns.push(Column::numbers("per_pixel", "per pixel"));
     columns.push(Column::numbers("thesis_light_points", "S_total in the thesis"));
     columns.push(Column::numbers("ratio", "ratio"));
-    let caption = "Light points used: S_total. The scenes are modelled on those of the thesis, but not the same.";
-    let mut table = Table::new("table 2", [caption, &common].join(" ").trim(), columns);
+    let caption = "Light points used: S_total. Ratio: by that of the thesis.";
+    let mut table = Table::new("table 2", [caption, SCENES, &common].join(" ").trim(), columns);
     for row in rows {
         let (ours, thesis) = (row.value("light_points"), row.value("thesis_light_points"));
         let mut cells: Vec<Cell> = keys.iter().map(|key| row.text(key).into()).collect();

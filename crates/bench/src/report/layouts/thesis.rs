@@ -13,6 +13,9 @@ const OF_A_MODE: [&str; 7] = ["mode", "step", "radius", "weight", "lookup", "sam
 /// Seconds of the thesis on its CPU and its GPU.
 const THESIS: [&str; 2] = ["thesis_cpu_seconds", "thesis_gpu_seconds"];
 
+/// To be said beside every ratio to the thesis' figures.
+pub(crate) const SCENES: &str = "The three scenes are in the spirit of the thesis' scenes, not the same.";
+
 const TIMES: &str = "Milliseconds per frame with the method. Hard: the median with hard shadows, one shadow ray per pixel and light; the ratio \
                      is the method's median over that. Speed-up: relative to the thesis' seconds on a CPU (Core i7-950) or a GPU (Tesla \
                      C2070), according to the device used here.";
@@ -93,6 +96,9 @@ fn times(rows: &[Measured]) -> Table {
     if let [place] = &places[..] {
         caption = format!("{caption} All rows: {place}.");
     }
+    if mesh.iter().any(|row| speed_up(row).is_some()) {
+        caption = format!("{caption} {SCENES}");
+    }
     let mut table = Table::new("timings", caption, columns);
     for case in &cases {
         for row in mesh.iter().filter(|row| row.case(&["mode"]) == *case) {
@@ -114,7 +120,6 @@ fn time_cells(row: &Measured, rows: &[Measured]) -> [Cell; 10] {
     let (median, hard) = (row.median(WHOLE), companion.and_then(|row| row.median(WHOLE)));
     let (stages, hard_stages) = (on_gpu(row), companion.and_then(on_gpu));
     let thesis = THESIS.map(|name| row.value(name));
-    let same_kind = thesis[usize::from(row.is("device", "cuda"))];
     let seconds = |seconds| numbers::significant(seconds, 3);
     [
         Cell::number(row.min(WHOLE), numbers::milliseconds),
@@ -126,8 +131,14 @@ fn time_cells(row: &Measured, rows: &[Measured]) -> [Cell; 10] {
         Cell::number(ratio(stages, hard_stages), numbers::ratio),
         Cell::number(thesis[0], seconds),
         Cell::number(thesis[1], seconds),
-        Cell::number(ratio(same_kind, median), numbers::ratio),
+        Cell::number(speed_up(row), numbers::ratio),
     ]
+}
+
+/// How many times faster a frame is than the thesis' on the same kind of device.
+pub(crate) fn speed_up(row: &Measured) -> Option<f64> {
+    let thesis = row.value(THESIS[usize::from(row.is("device", "cuda"))])?;
+    row.median(WHOLE).map(|seconds| thesis / seconds)
 }
 
 /// Seconds of a frame's stages on a GPU, without transfers: the sum of their medians. `None` on a CPU, where the stages add up to

@@ -22,10 +22,7 @@ pub(crate) enum Unavailable {
     #[error("CUDA is not available for {0}")]
     NoPlatform(&'static str),
     /// The driver is not installed.
-    #[error(
-        "NVIDIA's driver is not installed ({library} was not found): install version {needed} or newer; a container must be started \
-         with access to the GPUs"
-    )]
+    #[error("NVIDIA's driver is not installed")]
     NoLibrary {
         /// The file that was searched for.
         library: &'static str,
@@ -61,6 +58,39 @@ pub(crate) enum Unavailable {
     /// Any other error, as described by the driver.
     #[error("the driver does not start ({0}): check whether `nvidia-smi` works; after a driver update, reboot")]
     Failed(String),
+}
+
+impl Unavailable {
+    /// Why, and what to do. A machine without a driver is an ordinary one, so that the short message says no more.
+    pub(crate) fn explained(&self) -> String {
+        match self {
+            Unavailable::NoLibrary { library, needed } => format!(
+                "{self} ({library} was not found): install version {needed} or newer; a container must be started with \
+                 access to the GPUs"
+            ),
+            other => other.to_string(),
+        }
+    }
+
+    /// Whether the machine may have no CUDA device at all, so that there is nothing to mend.
+    pub(crate) fn is_ordinary(&self) -> bool {
+        match self {
+            Unavailable::NoPlatform(_) => true,
+            Unavailable::NoLibrary { .. } => !has_nvidia_card(),
+            _ => false,
+        }
+    }
+}
+
+/// Whether the system lists a graphics card of NVIDIA's. Known on Linux only.
+fn has_nvidia_card() -> bool {
+    const NVIDIA: &str = "0x10de";
+    /// Display controllers, in the upper byte of the class.
+    const DISPLAY: &str = "0x03";
+    let cards = std::fs::read_dir("/sys/bus/pci/devices").into_iter().flatten().flatten();
+    let starts =
+        |path: std::path::PathBuf, start| std::fs::read_to_string(path).is_ok_and(|text| text.starts_with(start));
+    cards.map(|card| card.path()).any(|card| starts(card.join("vendor"), NVIDIA) && starts(card.join("class"), DISPLAY))
 }
 
 /// The initialised driver, with the devices it reports.
@@ -177,9 +207,19 @@ mod tests {
             (Unavailable::Failed("unknown".into()), ["does not start (unknown)", "nvidia-smi"]),
         ];
         for (reason, parts) in messages {
-            let text = reason.to_string();
+            let text = reason.explained();
             assert!(parts.iter().all(|part| text.contains(part)), "{text}");
         }
+    }
+
+    #[test]
+    fn a_driver_that_is_missing_is_said_in_a_few_words() {
+        let missing = Unavailable::NoLibrary { library: "libcuda.so.1", needed: 550 };
+        assert_eq!(missing.to_string(), "NVIDIA's driver is not installed");
+        assert!(
+            missing.explained().starts_with("NVIDIA's driver is not installed (libcuda.so.1 was not found): install")
+        );
+        assert!(Unavailable::NoPlatform("macos").is_ordinary() && !Unavailable::NoDevice.is_ordinary());
     }
 
     #[test]
