@@ -1,7 +1,8 @@
 //! A scene as binary glTF 2.0.
 //!
-//! Triangles keep their order: each run of triangles with the same material becomes a primitive. Vertices are stored in the
-//! local frame, below a node that is translated to the frame's origin.
+//! Triangles keep their order: each run of triangles with the same material, all of them with normals or all flat, becomes a primitive. In
+//! this format flat triangles are those without normals; a normal must not be zero. Vertices are stored in the local frame, below a node
+//! that is translated to the frame's origin.
 
 use std::{collections::HashMap, path::Path};
 
@@ -112,6 +113,11 @@ struct Primitive {
     has_normals: bool,
 }
 
+/// Whether a triangle has a corner without a normal.
+fn is_flat(mesh: &Mesh, triangle: &[u32; 3]) -> bool {
+    triangle.iter().any(|&vertex| mesh.normals.get(vertex as usize).is_none_or(|&normal| normal == Vec3::ZERO))
+}
+
 /// Indices of the buffer views, in the order of the bytes.
 #[derive(Default)]
 struct Views {
@@ -135,14 +141,20 @@ impl Arrays {
     fn new(mesh: &Mesh) -> Arrays {
         let mut arrays = Arrays::default();
         let mut first = 0;
-        for run in mesh.materials.chunk_by(|a, b| a == b) {
+        let kinds: Vec<(u32, bool)> = mesh
+            .materials
+            .iter()
+            .zip(&mesh.triangles)
+            .map(|(&material, triangle)| (material, is_flat(mesh, triangle)))
+            .collect();
+        for run in kinds.chunk_by(|a, b| a == b) {
             arrays.add(mesh, &mesh.triangles[first..first + run.len()], run[0]);
             first += run.len();
         }
         arrays
     }
 
-    fn add(&mut self, mesh: &Mesh, triangles: &[[u32; 3]], material: u32) {
+    fn add(&mut self, mesh: &Mesh, triangles: &[[u32; 3]], (material, is_flat): (u32, bool)) {
         let (first_vertex, first_index) = (self.positions.len(), self.indices.len());
         let mut renumbered = HashMap::new();
         for &vertex in triangles.iter().flatten() {
@@ -157,14 +169,13 @@ impl Arrays {
             });
             self.indices.push(index);
         }
-        let normals = self.normals.get(first_vertex..).unwrap_or_default();
         self.primitives.push(Primitive {
             material,
             first_vertex,
             vertices: renumbered.len(),
             first_index,
             indices: 3 * triangles.len(),
-            has_normals: normals.iter().any(|normal| *normal != [0.0; 3]),
+            has_normals: !is_flat,
         });
     }
 
