@@ -30,6 +30,7 @@ pub(crate) fn that_mend(failure: &Failure) -> Vec<String> {
         Failure::Render(error) => return error.settings().into_iter().map(of).collect(),
         Failure::Load(error) => match error.root() {
             LoadError::Memory { .. } => &["--memory-limit"],
+            LoadError::SmoothMemory { .. } => &["--memory-limit", "--smooth off"],
             LoadError::Outside { .. } => &["--allow-outside"],
             LoadError::Warnings { .. } => &["--strict"],
             _ => &[],

@@ -14,7 +14,7 @@ pub(crate) use bench::{BenchArgs, BenchCommand, BenchCompareArgs, SuiteArgs};
 pub(crate) use render::RenderArgs;
 pub(crate) use words::{Progress, Switch, Up};
 
-use crate::value::{Bound, ByteSize, Dims};
+use crate::value::{Bound, ByteSize, Dims, Smooth};
 
 /// Soft shadows by the light mesh method
 #[derive(Debug, Parser)]
@@ -59,6 +59,7 @@ Examples:
   lightmesh render builtin:childpark -o park.png
   lightmesh render house.glb -o house.png --size 1920x1080 --quality final
   lightmesh render room.toml -o room.exr --layers layers.exr --device cpu -v
+  lightmesh render crystal.stl -o crystal.png --smooth off
   lightmesh compare before.png after.png --max-flip 0.01";
 
 /// What to do.
@@ -139,6 +140,10 @@ pub(crate) struct InfoArgs {
     #[command(flatten)]
     pub(crate) reading: ReadingArgs,
 
+    /// Crease angle of OBJ, PLY and STL files without normals, in degrees, or off, as for `lightmesh render`
+    #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, default_value_t, help_heading = "Reading")]
+    pub(crate) smooth: Smooth,
+
     /// List devices, and why some cannot be used
     #[arg(long)]
     pub(crate) devices: bool,
@@ -214,6 +219,10 @@ pub(crate) struct ExportArgs {
     /// NAME.glb: everything in one file; NAME.toml: cameras and lights as text, and the triangles in NAME.mesh.glb
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
+
+    /// Crease angle of OBJ, PLY and STL files without normals, in degrees: the normals that they get are exported. off exports facets
+    #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, default_value_t, help_heading = "Reading")]
+    pub(crate) smooth: Smooth,
 
     /// Print only errors
     #[arg(short, long)]

@@ -16,13 +16,13 @@ pub(super) fn run(args: &ExportArgs) -> Result<(), Failure> {
     }
     let outputs = Outputs::new([("-o", Some(&*args.output)), ("the triangles of -o", mesh.as_deref())])?;
     let watcher = Watcher::plain(args.quiet);
-    let scene = open(&args.scene, &outputs, &watcher)?;
+    let scene = open(&args.scene, args.smooth.0, &outputs, &watcher)?;
     memory::during("exporting the scene", || scene.export(&args.output))?;
-    watcher.summary(&format!(
-        "{}, {} triangles: {}",
-        scene.name,
-        scene.geometry.mesh.triangles.len(),
-        args.output.display()
-    ));
+    let normals = match scene.smooth_normals {
+        0 => String::new(),
+        made => format!(", {made} smooth normals"),
+    };
+    let (name, triangles) = (&scene.name, scene.geometry.mesh.triangles.len());
+    watcher.summary(&format!("{name}, {triangles} triangles{normals}: {}", args.output.display()));
     Ok(())
 }

@@ -26,7 +26,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let (reason, no_cuda) = (choice.reason.clone(), choice.no_cuda.clone());
     let renderer = Renderer::on(choice, plan.threads.map(usize::from))?;
     let start = Instant::now();
-    let mut scene = open(&plan.scene, &plan.files.outputs, &watcher)?;
+    let mut scene = open(&plan.scene, plan.smooth, &plan.files.outputs, &watcher)?;
     let load = start.elapsed().as_secs_f64();
     if matches!(plan.device, Device::Auto | Device::Cuda(None)) {
         let why = match no_cuda {
@@ -35,6 +35,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
             None => String::new(),
         };
         watcher.note(&format!("device {}: using {reason}{why}", plan.device));
+    }
+    if let Some(crease) = plan.smooth.filter(|_| args.verbose) {
+        let (made, degrees) = (scene.smooth_normals, crease.degrees());
+        watcher.note(&format!("smooth {degrees}: {made} normals were made (--smooth off makes none)"));
     }
 
     plan.choices.apply(&mut scene, &watcher)?;
@@ -54,7 +58,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
             "{odd} of {of} pixels have infinite or undefined colours: lower the intensities of lights or the coefficients of materials"
         ));
     }
-    memory::during("writing the image", || write(&renderer, &mut frame, &scene, &plan.files, &watcher))?;
+    memory::during("writing the image", || write(&renderer, &mut frame, &scene, &plan, &watcher))?;
     if args.verbose {
         details(&frame.stats).iter().for_each(|line| watcher.note(line));
     }
@@ -83,9 +87,10 @@ fn write(
     renderer: &Renderer,
     frame: &mut Frame,
     scene: &Scene,
-    files: &PictureFiles,
+    plan: &RenderPlan,
     watcher: &Watcher,
 ) -> Result<(), Failure> {
+    let files = &plan.files;
     let start = Instant::now();
     let stops = exposure(&frame.image, scene, files, watcher);
     let mut options = files.options.clone().with_description(description(frame, scene));
@@ -94,7 +99,7 @@ fn write(
     frame.stats.seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &files.stats {
         let lights = scene.info().lights;
-        let report = Report::new(&frame.stats, files, &options, &lights);
+        let report = Report::new(&frame.stats, plan, &options, &lights);
         outputs.push(output::ready(path, output::json(&report).as_bytes())?);
     }
     Ok(output::publish(outputs)?)
