@@ -1,8 +1,8 @@
 //! A scene as binary glTF 2.0.
 //!
-//! Triangles keep their order: each run of triangles with the same material, all of them with normals or all flat, becomes a primitive. In
-//! this format flat triangles are those without normals; a normal must not be zero. Vertices are stored in the local frame, below a node
-//! that is translated to the frame's origin.
+//! Triangles keep their order: each run of triangles with the same material becomes a primitive. In this format a primitive has normals for
+//! all of its vertices, of unit length, or for none: then it is flat. Flat triangles among others get the normals of their planes. Vertices
+//! are stored in the local frame, below a node that is translated to the frame's origin.
 
 use std::{collections::HashMap, path::Path};
 
@@ -113,9 +113,17 @@ struct Primitive {
     has_normals: bool,
 }
 
-/// Whether a triangle has a corner without a normal.
-fn is_flat(mesh: &Mesh, triangle: &[u32; 3]) -> bool {
-    triangle.iter().any(|&vertex| mesh.normals.get(vertex as usize).is_none_or(|&normal| normal == Vec3::ZERO))
+/// The normals of a triangle's corners, if each has one; else it is flat.
+fn normals_of(mesh: &Mesh, triangle: &[u32; 3]) -> Option<[Vec3; 3]> {
+    let normals = triangle.map(|vertex| mesh.normals.get(vertex as usize).copied().unwrap_or_default());
+    (!normals.contains(&Vec3::ZERO)).then_some(normals)
+}
+
+/// The normal of a flat triangle, as exactly as it can be written.
+fn plane_normal(mesh: &Mesh, triangle: &[u32; 3]) -> Vec3 {
+    let [a, b, c] = triangle.map(|vertex| mesh.positions[vertex as usize].as_dvec3());
+    // A degenerate triangle has none, but the format asks for one.
+    (b - a).cross(c - a).try_normalize().map_or(Vec3::Z, |normal| normal.as_vec3())
 }
 
 /// Indices of the buffer views, in the order of the bytes.
@@ -141,33 +149,35 @@ impl Arrays {
     fn new(mesh: &Mesh) -> Arrays {
         let mut arrays = Arrays::default();
         let mut first = 0;
-        let kinds: Vec<(u32, bool)> = mesh
-            .materials
-            .iter()
-            .zip(&mesh.triangles)
-            .map(|(&material, triangle)| (material, is_flat(mesh, triangle)))
-            .collect();
-        for run in kinds.chunk_by(|a, b| a == b) {
+        for run in mesh.materials.chunk_by(|a, b| a == b) {
             arrays.add(mesh, &mesh.triangles[first..first + run.len()], run[0]);
             first += run.len();
         }
         arrays
     }
 
-    fn add(&mut self, mesh: &Mesh, triangles: &[[u32; 3]], (material, is_flat): (u32, bool)) {
+    fn add(&mut self, mesh: &Mesh, triangles: &[[u32; 3]], material: u32) {
         let (first_vertex, first_index) = (self.positions.len(), self.indices.len());
+        let has_normals = triangles.iter().any(|triangle| normals_of(mesh, triangle).is_some());
         let mut renumbered = HashMap::new();
-        for &vertex in triangles.iter().flatten() {
-            let next = renumbered.len() as u32;
-            let index = *renumbered.entry(vertex).or_insert_with(|| {
-                let vertex = vertex as usize;
-                self.positions.push(mesh.positions[vertex].to_array());
-                self.normals.extend(mesh.normals.get(vertex).map(|normal| normal.to_array()));
-                self.uvs.extend(mesh.uvs.get(vertex).map(|uv| uv.to_array()));
-                self.colors.extend(mesh.colors.get(vertex).map(|color| color.to_array()));
-                next
-            });
-            self.indices.push(index);
+        for triangle in triangles {
+            let normals = match normals_of(mesh, triangle) {
+                Some(normals) => normals,
+                None if has_normals => [plane_normal(mesh, triangle); 3],
+                None => [Vec3::ZERO; 3],
+            };
+            for (vertex, normal) in triangle.iter().zip(normals) {
+                let next = renumbered.len() as u32;
+                let index = *renumbered.entry((vertex, normal.to_array().map(f32::to_bits))).or_insert_with(|| {
+                    let vertex = *vertex as usize;
+                    self.positions.push(mesh.positions[vertex].to_array());
+                    self.normals.extend(mesh.normals.get(vertex).map(|_| normal.to_array()));
+                    self.uvs.extend(mesh.uvs.get(vertex).map(|uv| uv.to_array()));
+                    self.colors.extend(mesh.colors.get(vertex).map(|color| color.to_array()));
+                    next
+                });
+                self.indices.push(index);
+            }
         }
         self.primitives.push(Primitive {
             material,
@@ -175,7 +185,7 @@ impl Arrays {
             vertices: renumbered.len(),
             first_index,
             indices: 3 * triangles.len(),
-            has_normals: !is_flat,
+            has_normals,
         });
     }
 
