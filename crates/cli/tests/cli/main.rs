@@ -12,6 +12,7 @@ mod render;
 mod report;
 mod run;
 mod scenes;
+mod smooth;
 
 #[cfg(unix)]
 mod interrupt;
