@@ -70,7 +70,7 @@ class Scene:
         """Exports the scene `source` with `program`, lightmesh; files go to `folder`."""
         quiet = {"check": True, "stdout": subprocess.PIPE}
         glb, stats = folder / "scene.glb", folder / "camera.json"
-        subprocess.run([program, "export", source, "-o", glb, "-q"], **quiet)
+        subprocess.run([program, "export", source, "-o", glb, "--smooth", "off", "-q"], **quiet)
         positions, triangles = read_glb(glb)
         info = json.loads(subprocess.run([program, "info", source, "--json"], **quiet).stdout)
         one_pixel = ["--size", "1x1", "--mode", "ray-trace", "--device", "cpu", "-o", folder / "pixel.png", "-q"]

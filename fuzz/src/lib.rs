@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use lightmesh::Scene;
-use lightmesh::scene::{Mesh, Up};
+use lightmesh::scene::{CreaseAngle, LoadOptions, Mesh, Up};
 use tempfile::TempDir;
 
 /// Folder of the scene in the temporary one.
@@ -56,16 +56,29 @@ pub fn read_alone(name: &str, bytes: &[u8]) {
     read(&folder.write(name, bytes));
 }
 
-/// Reads a scene and queries it like the program. Panics if a result is invalid.
+/// Reads a scene and queries it like the program, without and with smooth normals. Panics if a result is invalid.
 pub fn read(path: &Path) {
     match Scene::open(path) {
-        Ok(scene) => check(&scene),
+        Ok(scene) => {
+            check(&scene);
+            check_smooth(&scene, path);
+        }
         Err(error) => {
             let (message, folder) = (error.to_string(), path.parent().expect("a folder"));
             assert!(message.contains(&*folder.to_string_lossy()), "the file is not named: {message}");
             check_message(&message);
         }
     }
+}
+
+/// Smooth normals change nothing else.
+fn check_smooth(flat: &Scene, path: &Path) {
+    let options = LoadOptions::default().with_smooth(CreaseAngle::default());
+    let smooth = Scene::open_with(path, &options).expect("what opens without normals opens with them");
+    check(&smooth);
+    let (flat, smooth) = (&flat.geometry.mesh, &smooth.geometry.mesh);
+    assert_eq!((smooth.triangles.len(), &smooth.materials), (flat.triangles.len(), &flat.materials));
+    assert!((0..flat.triangles.len()).all(|triangle| smooth.corners(triangle) == flat.corners(triangle)));
 }
 
 /// A message is of a size to be read, and tells nothing of files outside of the folder.

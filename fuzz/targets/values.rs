@@ -12,7 +12,7 @@ use libfuzzer_sys::fuzz_target;
 #[path = "../../crates/cli/src/value/mod.rs"]
 mod value;
 
-use value::{Background, Bound, Budget, ByteSize, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size};
+use value::{Background, Bound, Budget, ByteSize, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size, Smooth};
 
 /// Messages quote a part of the text and explain the rest.
 const EXPLANATION: usize = 200;
@@ -34,6 +34,10 @@ fuzz_target!(|text: &str| {
         assert!(*time > Duration::ZERO);
         // A nanosecond is the smallest part of a time.
         format!("{:.9}", time.as_secs_f64())
+    });
+    read::<Smooth>(text, |smooth| {
+        assert!(smooth.0.is_none_or(|crease| crease.degrees() > 0.0 && crease.degrees() <= 180.0));
+        smooth.to_string()
     });
     read_numbers(text);
     read_places(text);

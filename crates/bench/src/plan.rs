@@ -6,6 +6,7 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use lightmesh::Device;
+use lightmesh::scene::CreaseAngle;
 
 use crate::BenchError;
 
@@ -96,6 +97,8 @@ pub struct Plan {
     pub shrink: u32,
     /// Scenes to measure instead of the suite's own, if it accepts any.
     pub scenes: Vec<PathBuf>,
+    /// The crease angle of scenes without normals; `None`: they are flat.
+    pub smooth: Option<CreaseAngle>,
     /// The command line, to be recorded in the results.
     pub command: String,
 }
@@ -121,6 +124,7 @@ impl Plan {
             size: None,
             shrink: 1,
             scenes: Vec::new(),
+            smooth: None,
             command: String::new(),
         }
     }

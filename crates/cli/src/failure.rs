@@ -112,7 +112,11 @@ impl Failure {
                 | RenderError::DeviceFault { .. } => UNABLE,
                 _ => BAD_INPUT,
             },
-            Failure::Load(error) if matches!(error.root(), LoadError::Memory { .. }) => UNABLE,
+            Failure::Load(error)
+                if matches!(error.root(), LoadError::Memory { .. } | LoadError::SmoothMemory { .. }) =>
+            {
+                UNABLE
+            }
             Failure::Grid(GridError::Memory { .. }) => UNABLE,
             _ => BAD_INPUT,
         }

@@ -33,6 +33,7 @@ pub(crate) fn that_mend(failure: &Failure) -> Vec<String> {
         Failure::Plan(PlanError::Save(SaveError::UnknownExtension { .. })) => &["--format"],
         Failure::Load(error) => match error.root() {
             LoadError::Memory { .. } => &["--memory-limit"],
+            LoadError::SmoothMemory { .. } => &["--memory-limit", "--smooth off"],
             LoadError::Outside { .. } => &["--allow-outside"],
             LoadError::Warnings { .. } => &["--strict"],
             _ => &[],

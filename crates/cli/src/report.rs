@@ -3,10 +3,10 @@
 use lightmesh::Stats;
 use lightmesh::image::{BitDepth, Format, SaveOptions};
 use lightmesh::render::{Counts, DeviceStats, MemoryStats, SceneStats, Seconds, SettingsStats};
-use lightmesh::scene::LightInfo;
+use lightmesh::scene::{CreaseAngle, LightInfo};
 use serde::Serialize;
 
-use crate::plan::PictureFiles;
+use crate::plan::RenderPlan;
 
 /// [`Stats`] with the command line's settings added.
 #[derive(Serialize)]
@@ -27,6 +27,8 @@ struct AllSettings<'a> {
     #[serde(flatten)]
     render: &'a SettingsStats,
     transfer: &'static str,
+    /// The crease angle of files without normals, degrees; none if off.
+    smooth: Option<f64>,
     /// Stops, 0 for an exr.
     exposure: f32,
     /// None for an exr, as the next two.
@@ -43,17 +45,19 @@ struct AllSettings<'a> {
 impl<'a> Report<'a> {
     pub(crate) fn new(
         stats: &'a Stats,
-        files: &PictureFiles,
+        plan: &RenderPlan,
         options: &SaveOptions,
         lights: &'a [LightInfo],
     ) -> Report<'a> {
         let (display, exr) = (&options.display, &options.exr);
+        let files = &plan.files;
         let is_exr = files.format() == Some(Format::Exr);
         let has_exr = is_exr || files.layers.is_some();
         // Only 8-bit codes are dithered.
         let dither = display.dither && display.bit_depth == BitDepth::Eight;
         let settings = AllSettings {
             render: &stats.settings,
+            smooth: plan.smooth.map(CreaseAngle::degrees),
             transfer: display.transfer.name(),
             exposure: display.exposure,
             view: (!is_exr).then(|| display.view.name()),

@@ -1,6 +1,6 @@
 //! Collects the parts of a scene and chooses the local frame once all are known.
 
-use glam::{DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 
 use crate::{
     Geometry, GeometryError, Material, Mesh, MeshPart, Position, Scene,
@@ -190,10 +190,19 @@ pub(crate) fn reserve<T>(elements: &mut Vec<T>, more: usize) -> bool {
     reserved.is_ok()
 }
 
-/// Normals are transformed by the inverse transpose of the transform of positions.
+/// Normals are transformed by the inverse transpose of the transform of positions. Those of unit length keep their bits if they are not
+/// turned: a scene that is written and read again stays the same.
 fn normal_placement(transform: &DMat4) -> impl Fn(Vec3) -> Vec3 + use<> {
+    const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
+    let stays = DMat3::from_mat4(*transform) == DMat3::IDENTITY;
     let matrix = transform.inverse().transpose();
-    move |normal| matrix.transform_vector3(normal.as_dvec3()).normalize_or_zero().as_vec3()
+    move |normal| {
+        let exact = normal.as_dvec3();
+        if stays && (exact.length_squared() - 1.0).abs() < ROUNDING {
+            return normal;
+        }
+        matrix.transform_vector3(exact).normalize_or_zero().as_vec3()
+    }
 }
 
 fn mirrors(transform: &DMat4) -> bool {
@@ -268,6 +277,7 @@ mod tests {
                 colors: vec![Vec3::X; 3],
                 triangles: vec![[0, 1, 2]],
                 materials: vec![7],
+                groups: Vec::new(),
             };
             let (mut added, mut taken) = (SceneBuilder::new(), SceneBuilder::new());
             // The first is moved in, the second is appended as a copy.

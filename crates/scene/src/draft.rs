@@ -9,12 +9,13 @@ use glam::{DMat4, DVec3, Vec3};
 use lightmesh_memory::Short;
 
 use crate::{
-    Camera, Geometry, Light, LightKind, LightMeshDefaults, Lights, LoadError, LoadOptions, Material, MeshPart,
-    Position, Scene, SceneBuilder, Texture,
+    Camera, CreaseAngle, Geometry, Light, LightKind, LightMeshDefaults, Lights, LoadError, LoadOptions, Material,
+    MeshPart, Position, Scene, SceneBuilder, Texture,
     border::{Border, beside},
     loaded_mesh::LoadedMesh,
     mesh_part::Room,
     quote::reference,
+    smooth::{Unsmooth, smooth},
     texture::{TextureFiles, untextured},
     usable::{is_place, keep_finite, keep_passive, keep_placed},
     warnings::Warnings,
@@ -45,6 +46,9 @@ pub(crate) const LARGEST_COORDINATE: f64 = 1e18;
 pub(crate) struct Draft {
     path: PathBuf,
     strict: bool,
+    smooth: Option<CreaseAngle>,
+    /// Vertices that got a normal.
+    smooth_normals: usize,
     /// Where the scene's files may lie.
     pub(crate) border: Border,
     builder: SceneBuilder,
@@ -76,6 +80,8 @@ impl Draft {
         Draft {
             path: path.to_owned(),
             strict: options.strict,
+            smooth: options.smooth,
+            smooth_normals: 0,
             border: Border::new(path, options),
             builder: SceneBuilder::new(),
             unusable_triangles: 0,
@@ -149,8 +155,14 @@ impl Draft {
         Ok(())
     }
 
-    /// [`Draft::add`] for a mesh passed by value.
-    pub(crate) fn take<P: Position>(&mut self, mesh: LoadedMesh<P>, transform: &DMat4) -> Result<(), LoadError> {
+    /// Whether meshes without normals get smooth ones.
+    pub(crate) fn smooths(&self) -> bool {
+        self.smooth.is_some()
+    }
+
+    /// [`Draft::add`] for a mesh passed by value. If it has no normals, it gets smooth ones, if the options ask for them.
+    pub(crate) fn take<P: Position>(&mut self, mut mesh: LoadedMesh<P>, transform: &DMat4) -> Result<(), LoadError> {
+        self.smooth(&mut mesh, transform)?;
         // The first mesh of a scene is not copied.
         let copied = if self.builder.vertex_count() > 0 { mesh.part() } else { MeshPart::default() };
         self.check_room(&copied)?;
@@ -161,6 +173,20 @@ impl Draft {
             self.note_uvs(triangles, has_uvs);
         } else {
             self.add_usable(mesh.part(), transform, |index| mesh.materials[index], usable);
+        }
+        Ok(())
+    }
+
+    /// Gives a mesh without normals smooth ones. Angles are those of the mesh as it is in its file.
+    fn smooth<P: Position>(&mut self, mesh: &mut LoadedMesh<P>, transform: &DMat4) -> Result<(), LoadError> {
+        let Some(crease) = self.smooth.filter(|_| mesh.normals.is_empty()) else { return Ok(()) };
+        match smooth(mesh, crease, usable_in(transform), &self.border.budget) {
+            Ok(count) => self.smooth_normals += count,
+            Err(Unsmooth::TooMany) => return Err(LoadError::TooLarge { path: self.path.clone() }),
+            Err(Unsmooth::Memory(short)) => {
+                let (path, triangles) = (self.path.clone(), mesh.triangles.len());
+                return Err(LoadError::SmoothMemory { path, triangles, short });
+            }
         }
         Ok(())
     }
@@ -300,6 +326,7 @@ impl Draft {
             light_mesh: self.light_mesh,
             files: self.files.into_iter().collect(),
             warnings,
+            smooth_normals: self.smooth_normals,
         })
     }
 }

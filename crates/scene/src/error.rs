@@ -210,6 +210,19 @@ pub enum LoadError {
         /// Bytes needed and left.
         short: Short,
     },
+    /// Not enough memory for smooth normals.
+    #[error(
+        "there is not enough memory for smooth normals of {triangles} triangles: {short}, {}; raise the memory limit, or do not smooth",
+        path.display()
+    )]
+    SmoothMemory {
+        /// The file that was opened.
+        path: PathBuf,
+        /// Triangles of the mesh.
+        triangles: usize,
+        /// Bytes needed and left.
+        short: Short,
+    },
     /// More vertices or triangles than 32-bit indices can address.
     #[error("the scene has more than {} vertices or triangles, {}; split or simplify it", u32::MAX, path.display())]
     TooLarge {

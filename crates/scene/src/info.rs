@@ -13,6 +13,10 @@ use crate::{Camera, Fov, Light, LightKind, Projection, Scene, UpInfo};
 pub struct SceneInfo {
     /// Number of triangles.
     pub triangles: usize,
+    /// Number of vertices with a normal; triangles of others are flat.
+    pub normals: usize,
+    /// How many of these normals were made while the scene was read.
+    pub smooth_normals: usize,
     /// Box around all triangles; `None` if there are none.
     pub bounds: Option<BoundsInfo>,
     /// Lights in the file's order.
@@ -105,6 +109,8 @@ impl Scene {
         let world = |local| self.to_world(local).to_array();
         SceneInfo {
             triangles: self.geometry.mesh.triangles.len(),
+            normals: self.geometry.mesh.normal_count(),
+            smooth_normals: self.smooth_normals,
             bounds: (!bounds.is_empty()).then(|| BoundsInfo { min: world(bounds.min), max: world(bounds.max) }),
             lights: self.lights.iter().map(|light| light_info(self, light)).collect(),
             cameras: self.cameras.iter().map(|camera| camera_info(self, camera)).collect(),
@@ -184,6 +190,11 @@ impl fmt::Display for SceneInfo {
         match self.textures {
             0 => writeln!(f)?,
             textures => writeln!(f, ", {textures} textures")?,
+        }
+        match self.smooth_normals {
+            0 if self.normals == 0 => {}
+            0 => writeln!(f, "normals {}", self.normals)?,
+            made => writeln!(f, "normals {}, {made} of them made from the triangles", self.normals)?,
         }
         if let Some(bounds) = &self.bounds {
             writeln!(f, "bounds  {} .. {}", triple(&bounds.min), triple(&bounds.max))?;

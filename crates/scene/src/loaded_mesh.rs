@@ -19,6 +19,8 @@ pub(crate) struct LoadedMesh<P> {
     pub(crate) triangles: Vec<[u32; 3]>,
     /// Material by triangle.
     pub(crate) materials: Vec<u32>,
+    /// Smoothing group by triangle, 0 for those that are flat; or none: all are in one.
+    pub(crate) groups: Vec<u32>,
 }
 
 impl<P: Position> LoadedMesh<P> {
@@ -39,6 +41,19 @@ impl<P: Position> LoadedMesh<P> {
         choose(&mut self.normals, chosen.clone());
         choose(&mut self.uvs, chosen.clone());
         choose(&mut self.colors, chosen);
+    }
+
+    /// Adds a copy of a vertex without its normal.
+    pub(crate) fn copy_vertex(&mut self, vertex: usize) {
+        fn copy<T: Copy>(values: &mut Vec<T>, vertex: usize) {
+            if !values.is_empty() {
+                values.push(values[vertex]);
+            }
+        }
+        copy(&mut self.positions, vertex);
+        copy(&mut self.uvs, vertex);
+        copy(&mut self.colors, vertex);
+        self.normals.push(Vec3::ZERO);
     }
 
     /// Drops vertices that no triangle uses: one that is far away would move the local frame.
@@ -71,6 +86,7 @@ mod tests {
             normals: Vec::new(),
             uvs: Vec::new(),
             materials: vec![0; 2],
+            groups: Vec::new(),
             positions: (0..6).map(|x| DVec3::splat(f64::from(x))).collect(),
             colors: (0..6).map(|x| Vec3::splat(x as f32)).collect(),
             triangles: vec![[5, 1, 3], [1, 3, 4]],

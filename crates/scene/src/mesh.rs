@@ -85,6 +85,11 @@ impl Mesh {
         self.triangles[index].map(|vertex| self.positions[vertex as usize])
     }
 
+    /// Number of vertices with a normal.
+    pub fn normal_count(&self) -> usize {
+        self.normals.iter().filter(|&&normal| normal != Vec3::ZERO).count()
+    }
+
     /// The box around all vertices that a triangle uses.
     pub fn bounds(&self) -> Bounds {
         Bounds::around(self.triangles.iter().flatten().map(|&vertex| self.positions[vertex as usize]))

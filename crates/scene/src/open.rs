@@ -6,12 +6,12 @@ use std::path::Path;
 use glam::DMat4;
 
 use crate::{
-    LoadError, Scene, SceneFormat,
+    CreaseAngle, LoadError, Scene, SceneFormat,
     draft::{Draft, Placement},
     formats,
 };
 
-/// How strictly a scene is read, and which files it may refer to.
+/// How strictly a scene is read, which files it may refer to, and whether normals are added.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LoadOptions {
@@ -24,6 +24,13 @@ pub struct LoadOptions {
     pub strict: bool,
     /// Most bytes that the process may hold while it reads; `None`: what is free, less a reserve.
     pub memory_limit: Option<u64>,
+    /// Gives smooth normals to OBJ, PLY and STL files without any, also to those that a TOML scene refers to; `None`, the default: their
+    /// triangles are flat. Files with normals, glTF, whose triangles without normals are flat, and built-in scenes stay as they are.
+    ///
+    /// Triangles that meet at less than this angle get common normals where they meet, and vertices are duplicated at creases; the order of
+    /// triangles and the positions of their corners stay. In an OBJ file with smoothing groups (`s`), triangles of different groups meet in
+    /// creases, too, and those of no group stay flat.
+    pub smooth: Option<CreaseAngle>,
 }
 
 impl LoadOptions {
@@ -40,6 +47,18 @@ impl LoadOptions {
     /// Most bytes that the process may hold while it reads.
     pub fn with_memory_limit(self, memory_limit: impl Into<Option<u64>>) -> LoadOptions {
         LoadOptions { memory_limit: memory_limit.into(), ..self }
+    }
+
+    /// The crease angle of files without normals.
+    ///
+    /// ```
+    /// use lightmesh_scene::{CreaseAngle, LoadOptions};
+    ///
+    /// let options = LoadOptions::default().with_smooth(CreaseAngle::from_degrees(40.0));
+    /// assert_eq!(options.smooth.map(CreaseAngle::degrees), Some(40.0));
+    /// ```
+    pub fn with_smooth(self, smooth: impl Into<Option<CreaseAngle>>) -> LoadOptions {
+        LoadOptions { smooth: smooth.into(), ..self }
     }
 
     /// Whether warnings are errors.

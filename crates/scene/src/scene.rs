@@ -77,6 +77,8 @@ pub struct Scene {
     /// What a loader corrected, ignored or guessed: one sentence each, at most about a hundred. Names in them are as in
     /// the files; make them visible before they reach a terminal.
     pub warnings: Vec<String>,
+    /// How many vertices got a normal while the scene was read, see [`LoadOptions::smooth`](crate::LoadOptions::smooth).
+    pub smooth_normals: usize,
 }
 
 impl Scene {
@@ -90,6 +92,7 @@ impl Scene {
             light_mesh: LightMeshDefaults::default(),
             files: Vec::new(),
             warnings: Vec::new(),
+            smooth_normals: 0,
         }
     }
 

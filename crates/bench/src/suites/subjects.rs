@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use lightmesh::scene::{LightKind, Up};
+use lightmesh::scene::{CreaseAngle, LightKind, LoadOptions, Up};
 use lightmesh::{LoadError, Observer, Scene};
 
 use crate::{BenchError, Plan};
@@ -31,7 +31,7 @@ pub(super) fn each(
 ) -> Result<(), BenchError> {
     let (begin, paths) = (Instant::now(), paths(plan));
     for index in 0..paths.len() {
-        let subject = Subject::open(&paths, index)?;
+        let subject = Subject::open(&paths, index, plan.smooth)?;
         observer.note(&format!("scene {} of {}: {}", index + 1, paths.len(), subject.name));
         study(&subject, plan.budget.saturating_sub(begin.elapsed()) / (paths.len() - index) as u32)?;
     }
@@ -48,9 +48,9 @@ fn paths(plan: &Plan) -> Vec<PathBuf> {
 
 impl Subject {
     /// Opens the scene `paths[index]`. Its name is short, or its path if another scene has the same short name.
-    fn open(paths: &[PathBuf], index: usize) -> Result<Subject, LoadError> {
+    fn open(paths: &[PathBuf], index: usize, smooth: Option<CreaseAngle>) -> Result<Subject, LoadError> {
         let path = &paths[index];
-        let mut scene = Scene::open(path)?;
+        let mut scene = Scene::open_with(path, &LoadOptions::default().with_smooth(smooth))?;
         if scene.cameras.is_empty() {
             scene.cameras.push(scene.default_camera(Up::default()));
         }
@@ -95,13 +95,13 @@ mod tests {
         assert_eq!(short(Path::new("builtin:garden?lights=3")), "garden?lights=3");
         assert_eq!(short(Path::new("models/bunny.ply")), "bunny");
         let paths = ["builtin:gazebo", "builtin:gazebo?lights=1", "builtin:gazebo"].map(PathBuf::from);
-        let names: Vec<String> = (0..2).map(|index| Subject::open(&paths, index).unwrap().name).collect();
+        let names: Vec<String> = (0..2).map(|index| Subject::open(&paths, index, None).unwrap().name).collect();
         assert_eq!(names, ["builtin:gazebo", "gazebo?lights=1"]);
     }
 
     #[test]
     fn point_lights_become_balls_where_area_mode_strews_them() {
-        let subject = Subject::open(&[PathBuf::from("builtin:childpark")], 0).unwrap();
+        let subject = Subject::open(&[PathBuf::from("builtin:childpark")], 0, None).unwrap();
         assert_eq!(subject.step, Some(1.0));
         for (point, ball) in subject.scene.lights.iter().zip(subject.with_balls().lights) {
             let LightKind::Point { position, spread } = point.kind else { panic!("{point:?}") };

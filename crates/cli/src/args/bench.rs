@@ -7,7 +7,7 @@ use lightmesh::Device;
 use lightmesh_bench::{Plan, Suite};
 
 use super::Progress;
-use crate::value::Budget;
+use crate::value::{Budget, Smooth};
 
 /// Run a suite of experiments, or compare two runs
 ///
@@ -41,7 +41,7 @@ pub(crate) struct SuiteArgs {
     pub(crate) suite: Option<Suite>,
 
     /// List the suites
-    #[arg(long, conflicts_with_all = ["suite", "json", "pictures", "report", "short", "budget", "device", "threads", "scenes", "size", "repeat"])]
+    #[arg(long, conflicts_with_all = ["suite", "json", "pictures", "report", "short", "budget", "device", "threads", "scenes", "smooth", "size", "repeat"])]
     pub(crate) list: bool,
 
     /// Save rows and notes as JSON [default: off]
@@ -76,6 +76,10 @@ pub(crate) struct SuiteArgs {
     /// Scene to measure, for suites that accept any; repeatable [default: the suite's own]
     #[arg(long = "scene", id = "scenes", value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
+
+    /// Crease angle of OBJ, PLY and STL files without normals, in degrees, or off, as for `lightmesh render`
+    #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, default_value_t = Smooth::OFF)]
+    pub(crate) smooth: Smooth,
 
     /// Pixels along a side, for suites that accept any [default: the suite's own]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]

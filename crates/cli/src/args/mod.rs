@@ -16,7 +16,7 @@ pub(crate) use render::RenderArgs;
 pub(crate) use words::{Progress, Switch, Up};
 
 use crate::color::When;
-use crate::value::{Bound, ByteSize, Dims};
+use crate::value::{Bound, ByteSize, Dims, Smooth};
 
 /// Soft shadows by the light mesh method
 #[derive(Debug, Parser)]
@@ -68,6 +68,7 @@ Examples:
   lightmesh render room.toml -o room.exr --layers layers.exr --device cpu -v
   lightmesh render room.toml -o room.png --quality final --partial
   lightmesh export room.toml -o - | lightmesh render - --scene-format glb -o - --format png > room.png
+  lightmesh render crystal.stl -o crystal.png --smooth off
   lightmesh compare before.png after.png --max-flip 0.01";
 
 /// What to do.
@@ -167,6 +168,10 @@ pub(crate) struct InfoArgs {
     #[command(flatten)]
     pub(crate) reading: ReadingArgs,
 
+    /// Crease angle of OBJ, PLY and STL files without normals, in degrees, or off, as for `lightmesh render`
+    #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, default_value_t, help_heading = "Reading")]
+    pub(crate) smooth: Smooth,
+
     /// List devices, and why some cannot be used
     #[arg(long)]
     pub(crate) devices: bool,
@@ -243,6 +248,10 @@ pub(crate) struct ExportArgs {
     /// `-`: GLB on standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
+
+    /// Crease angle of OBJ, PLY and STL files without normals, in degrees: the normals that they get are exported. off exports facets
+    #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, default_value_t, help_heading = "Reading")]
+    pub(crate) smooth: Smooth,
 
     /// Print only errors
     #[arg(short, long)]

@@ -9,7 +9,7 @@ use lightmesh::scene::{Falloff, Weight};
 use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
 
 use super::{Progress, SceneArg, Switch, Up, words};
-use crate::value::{Background, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size};
+use crate::value::{Background, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size, Smooth};
 
 /// Render an image of a scene
 #[derive(Debug, Args)]
@@ -161,6 +161,12 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "V", allow_hyphen_values = true, help_heading = "Scene")]
     pub(crate) ambient: Option<Color>,
 
+    /// Crease angle in degrees: OBJ, PLY and STL files without normals are smooth across edges where triangles meet at less, and across no
+    /// other edge. off shows every triangle as it is. OBJ smoothing groups are honoured; glTF files and files with normals are not changed
+    /// [default: 30; off with --lookup half-ball]
+    #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, help_heading = "Scene")]
+    pub(crate) smooth: Option<Smooth>,
+
     /// Device: auto, cpu, cuda (the first CUDA device that works) or cuda:N; auto uses the fastest that works, cuda before cpu,
     /// and reports which and why. `lightmesh info --devices` lists devices; CUDA_VISIBLE_DEVICES hides and renumbers them
     #[arg(long, value_name = "DEVICE", default_value = "auto", help_heading = "Machine")]
@@ -195,7 +201,7 @@ pub(crate) struct RenderArgs {
     #[arg(short, long, help_heading = "Reports")]
     pub(crate) quiet: bool,
 
-    /// Print more: why no CUDA device can be used; seconds of each stage, counts and memory
+    /// Print more: why no CUDA device can be used; how many normals were made (--smooth); seconds of each stage, counts and memory
     #[arg(short, long, conflicts_with = "quiet", help_heading = "Reports")]
     pub(crate) verbose: bool,
 }

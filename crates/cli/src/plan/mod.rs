@@ -7,11 +7,12 @@ mod settings;
 use std::num::NonZeroUsize;
 
 use lightmesh::render::Crop;
-use lightmesh::scene::CameraError;
-use lightmesh::{Device, SaveError, Settings};
+use lightmesh::scene::{CameraError, CreaseAngle};
+use lightmesh::{Device, Lookup, Mode, SaveError, Settings};
 
 use crate::args::{RenderArgs, SceneArg};
 use crate::output::OutputError;
+use crate::value::Smooth;
 pub(crate) use files::PictureFiles;
 pub(crate) use scene::SceneChoices;
 
@@ -49,6 +50,8 @@ pub(crate) enum PlanError {
 pub(crate) struct RenderPlan {
     /// The scene to open.
     pub(crate) scene: SceneArg,
+    /// The crease angle of files without normals, if they are to be smooth.
+    pub(crate) smooth: Option<CreaseAngle>,
     /// Overrides for parts of it.
     pub(crate) choices: SceneChoices,
     /// Everything else about the image.
@@ -68,6 +71,7 @@ impl RenderPlan {
         let files = PictureFiles::new(args)?;
         Ok(RenderPlan {
             scene: args.scene.clone(),
+            smooth: args.smooth.unwrap_or_else(|| usual_smooth(&settings)).0,
             choices: SceneChoices::new(args)?,
             settings,
             device: args.device,
@@ -75,4 +79,10 @@ impl RenderPlan {
             files,
         })
     }
+}
+
+/// The half-ball stands for the thesis, whose surfaces are facets.
+fn usual_smooth(settings: &Settings) -> Smooth {
+    let is_thesis = settings.mode == Mode::LightMesh && settings.resolved_lookup() == Lookup::HalfBall;
+    if is_thesis { Smooth::OFF } else { Smooth::default() }
 }

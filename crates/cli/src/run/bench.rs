@@ -116,6 +116,7 @@ fn plan(args: &SuiteArgs) -> Plan {
         device: args.device,
         threads: args.threads.map(|threads| threads as usize),
         scenes: args.scenes.clone(),
+        smooth: args.smooth.0,
         size: args.size,
         repetitions: args.repeat as usize,
         command: command_line(std::env::args().skip(1)),

@@ -22,7 +22,12 @@ pub(super) fn run(args: &ExportArgs) -> Result<(), Failure> {
         Some(path) => to_file(path, args, &watcher),
         None => to_stdout(&destination, args, &watcher),
     }?;
-    watcher.summary(&format!("{}, {} triangles: {destination}", scene.name, scene.geometry.mesh.triangles.len()));
+    let normals = match scene.smooth_normals {
+        0 => String::new(),
+        made => format!(", {made} smooth normals"),
+    };
+    let (name, triangles) = (&scene.name, scene.geometry.mesh.triangles.len());
+    watcher.summary(&format!("{name}, {triangles} triangles{normals}: {destination}"));
     Ok(())
 }
 
@@ -32,7 +37,7 @@ fn to_file(path: &Path, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, F
         output::check_writable(path)?;
     }
     let outputs = Outputs::new([("-o", Some(path)), ("the triangles of -o", mesh.as_deref())])?;
-    let scene = open(&args.scene, &outputs, watcher)?;
+    let scene = open(&args.scene, args.smooth.0, &outputs, watcher)?;
     memory::during(EXPORTING, || scene.export(path))?;
     Ok(scene)
 }
@@ -40,7 +45,7 @@ fn to_file(path: &Path, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, F
 /// As one GLB file, the only format that is one.
 fn to_stdout(destination: &Destination, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, Failure> {
     destination.check_binary("-o")?;
-    let scene = open(&args.scene, &Outputs::default(), watcher)?;
+    let scene = open(&args.scene, args.smooth.0, &Outputs::default(), watcher)?;
     let file = memory::during(EXPORTING, || Ok::<_, Failure>(destination.ready(&scene.to_glb()?)?))?;
     output::publish(vec![file])?;
     Ok(scene)

@@ -16,7 +16,8 @@ pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
     output::check_writable(&args.output)?;
     let outputs = Outputs::new([("-o", Some(&*args.output))])?;
     let watcher = Watcher::plain(args.quiet);
-    let scene = open(&args.scene, &outputs, &watcher)?;
+    // Normals are no part of the grid.
+    let scene = open(&args.scene, None, &outputs, &watcher)?;
 
     let start = Instant::now();
     let levels = if args.levels == 1 { Levels::One } else { Levels::Two };

@@ -4,7 +4,7 @@ use std::io::{self, IsTerminal};
 use std::path::Path;
 
 use lightmesh::Scene;
-use lightmesh::scene::LoadOptions;
+use lightmesh::scene::{CreaseAngle, LoadOptions};
 
 use crate::args::{ReadingArgs, SceneArg};
 use crate::destination::is_standard;
@@ -17,20 +17,26 @@ use crate::progress::Watcher;
 const STANDARD_INPUT: &str = "standard input";
 
 /// Reads the scene, of which outputs must not overwrite any file, and prints its warnings.
-pub(super) fn open(arg: &SceneArg, outputs: &Outputs, watcher: &Watcher) -> Result<Scene, Failure> {
+pub(super) fn open(
+    arg: &SceneArg,
+    smooth: Option<CreaseAngle>,
+    outputs: &Outputs,
+    watcher: &Watcher,
+) -> Result<Scene, Failure> {
     outputs.keep("the scene", input(&arg.scene))?;
-    let scene = read(&arg.scene, arg.reading)?;
+    let scene = read(&arg.scene, arg.reading, smooth)?;
     outputs.keep_scene(&scene)?;
     scene.warnings.iter().for_each(|warning| watcher.warning(warning));
     Ok(scene)
 }
 
 /// Reads the scene.
-pub(super) fn read(path: &Path, reading: ReadingArgs) -> Result<Scene, Failure> {
+pub(super) fn read(path: &Path, reading: ReadingArgs, smooth: Option<CreaseAngle>) -> Result<Scene, Failure> {
     let options = LoadOptions::default()
         .with_format(reading.scene_format)
         .with_allow_outside(reading.allow_outside)
         .with_strict(reading.strict)
+        .with_smooth(smooth)
         .with_memory_limit(reading.memory_limit.map(|limit| limit.0));
     if !is_standard(path) {
         let open = || Scene::open_with(path, &options);

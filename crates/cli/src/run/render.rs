@@ -26,10 +26,14 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let using = using(&choice, args.verbose);
     let renderer = Renderer::on(choice, plan.threads.map(usize::from))?;
     let start = Instant::now();
-    let mut scene = open(&plan.scene, &plan.files.outputs, &watcher)?;
+    let mut scene = open(&plan.scene, plan.smooth, &plan.files.outputs, &watcher)?;
     let load = start.elapsed().as_secs_f64();
     if matches!(plan.device, Device::Auto | Device::Cuda(None)) {
         watcher.note(&format!("device {}: using {using}", plan.device));
+    }
+    if let Some(crease) = plan.smooth.filter(|_| args.verbose) {
+        let (made, degrees) = (scene.smooth_normals, crease.degrees());
+        watcher.note(&format!("smooth {degrees}: {made} normals were made (--smooth off makes none)"));
     }
 
     plan.choices.apply(&mut scene, &watcher)?;
@@ -104,7 +108,7 @@ fn finish(
     }
     let mut options = plan.files.options.clone().with_description(description(&frame, scene));
     options.display.exposure = stops;
-    memory::during("writing the image", || write(renderer, &mut frame, scene, &plan.files, &options))?;
+    memory::during("writing the image", || write(renderer, &mut frame, scene, plan, &options))?;
     Ok(frame)
 }
 
@@ -136,15 +140,16 @@ fn write(
     renderer: &Renderer,
     frame: &mut Frame,
     scene: &Scene,
-    files: &PictureFiles,
+    plan: &RenderPlan,
     options: &SaveOptions,
 ) -> Result<(), Failure> {
+    let files = &plan.files;
     let start = Instant::now();
     let mut outputs = renderer.install(|| encode(&frame.image, files, options))?;
     frame.stats.seconds.write = start.elapsed().as_secs_f64();
     if let Some(destination) = &files.stats {
         let lights = scene.info().lights;
-        let report = Report::new(&frame.stats, files, options, &lights);
+        let report = Report::new(&frame.stats, plan, options, &lights);
         outputs.push(destination.ready(output::json(&report).as_bytes())?);
     }
     Ok(output::publish(outputs)?)

@@ -8,6 +8,7 @@ mod light;
 mod memory;
 mod number;
 mod size;
+mod smooth;
 
 pub(crate) use budget::Budget;
 pub(crate) use camera::CameraView;
@@ -15,6 +16,7 @@ pub(crate) use light::{Background, Color, LightSpec};
 pub(crate) use memory::ByteSize;
 pub(crate) use number::{Bound, Exposure, Positive};
 pub(crate) use size::{Dims, Size};
+pub(crate) use smooth::Smooth;
 
 /// Why a value is invalid. The command line parser prepends the flag and the text.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::run::Place;
 
 /// The flags of `render` that other programs rely on.
-const FLAGS: [&str; 39] = [
+const FLAGS: [&str; 42] = [
     "--mode",
     "--bounces",
     "--size",
@@ -24,6 +24,7 @@ const FLAGS: [&str; 39] = [
     "--up",
     "--light",
     "--falloff",
+    "--smooth",
     "--ambient",
     "--layers",
     "--transfer",
@@ -45,6 +46,8 @@ const FLAGS: [&str; 39] = [
     "--short-tests",
     "--output",
     "--help",
+    "--crop",
+    "--ground",
 ];
 
 #[test]

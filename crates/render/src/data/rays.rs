@@ -7,7 +7,6 @@ use glam::Vec3;
 use crate::accel::{Hit, Ray, Triangle};
 use crate::antialiasing::Antialiasing;
 use crate::prepared::PreparedScene;
-use crate::shadow::terminator::ShadowPoint;
 use crate::surface::SurfacePoint;
 use crate::view::{View, Window};
 
@@ -107,15 +106,4 @@ impl RayList {
 pub(crate) fn surface_point_of(scene: &PreparedScene, list: &RayList, hits: &[Hit], ray: usize) -> SurfacePoint {
     let triangles = if list.probes.is_empty() { &scene.geometry.triangles } else { &list.probes };
     SurfacePoint::new(&list.rays[ray], &hits[ray], &triangles[hits[ray].triangle as usize])
-}
-
-/// The same as a point that casts shadow rays.
-#[inline(always)]
-pub(crate) fn shadow_point_of(scene: &PreparedScene, list: &RayList, hits: &[Hit], ray: usize) -> ShadowPoint {
-    let point = surface_point_of(scene, list, hits, ray);
-    if !list.probes.is_empty() {
-        return ShadowPoint::flat(point);
-    }
-    let (hit, mesh) = (&hits[ray], &scene.scene.geometry.mesh);
-    ShadowPoint::new(point, mesh, hit, &scene.geometry.triangles[hit.triangle as usize])
 }

@@ -8,12 +8,11 @@ use super::cells::CellGroups;
 use super::lights::LightGroup;
 use super::lit::Lit;
 use super::masks::Masks;
-use super::rays::{RayList, shadow_point_of, surface_point_of};
+use super::rays::{RayList, surface_point_of};
 use crate::accel::Hit;
 use crate::job::{Job, Sampling};
 use crate::light_mesh::{LightMesh, UsedPoints};
 use crate::prepared::PreparedScene;
-use crate::shadow::terminator::ShadowPoint;
 use crate::surface::SurfacePoint;
 
 /// A wave of rays, those of the camera or of one bounce, with their hits and everything that all stages need.
@@ -75,12 +74,6 @@ impl<'a> HostWave<'a> {
     #[inline(always)]
     pub(crate) fn surface_point(&self, ray: usize) -> SurfacePoint {
         surface_point_of(self.scene, self.rays, self.hits, ray)
-    }
-
-    /// The same as a point that casts shadow rays.
-    #[inline(always)]
-    pub(crate) fn shadow_point(&self, ray: usize) -> ShadowPoint {
-        shadow_point_of(self.scene, self.rays, self.hits, ray)
     }
 
     /// Whether ray number `ray` sees anything.

@@ -161,6 +161,16 @@ impl Settings {
         Settings { lookup, ..self }
     }
 
+    /// The lookup that light-mesh mode uses: without a chosen one, settings that mean something to one lookup alone select it.
+    pub fn resolved_lookup(&self) -> Lookup {
+        let of_half_ball = self.step.is_some() || self.radius.is_some() || self.weight.is_some();
+        match self.lookup {
+            Lookup::Auto if of_half_ball => Lookup::HalfBall,
+            Lookup::Auto => Lookup::Lists,
+            chosen => chosen,
+        }
+    }
+
     /// How good soft shadows and edges are: the numbers of samples, unless they are set.
     pub fn with_quality(self, quality: Quality) -> Settings {
         Settings { quality, ..self }

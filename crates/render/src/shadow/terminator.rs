@@ -12,9 +12,24 @@ use lightmesh_scene::{Light, LightKind, Mesh};
 
 use super::size;
 use crate::accel::{Hit, Triangle};
+use crate::data::wave::HostWave;
 use crate::prepared::PreparedGeometry;
 use crate::sampling::light_center;
 use crate::surface::{SurfacePoint, shading_normal};
+
+impl HostWave<'_> {
+    /// The surface point that ray number `ray` sees, as shadow rays leave it; the ray must have hit something.
+    #[inline(always)]
+    pub(crate) fn shadow_point(&self, ray: usize) -> ShadowPoint {
+        let point = self.surface_point(ray);
+        if !self.rays.probes.is_empty() {
+            return ShadowPoint::flat(point);
+        }
+        let (hit, scene) = (&self.hits[ray], self.scene);
+        let triangle = &scene.geometry.triangles[hit.triangle as usize];
+        ShadowPoint::new(point, &scene.scene.geometry.mesh, hit, triangle)
+    }
+}
 
 /// A surface point P that casts shadow rays.
 #[derive(Clone, Copy, Debug)]

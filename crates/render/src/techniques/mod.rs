@@ -190,17 +190,7 @@ technique_table!(techniques);
 
 /// Whether the settings select the technique of `mode` and `lookup`; a mode that looks nothing up ignores it.
 fn chosen(settings: &Settings, mode: Mode, lookup: Option<Lookup>) -> bool {
-    settings.mode == mode && lookup.is_none_or(|lookup| lookup == resolved_lookup(settings))
-}
-
-/// Without a chosen lookup, settings that mean something to one lookup alone select it.
-fn resolved_lookup(settings: &Settings) -> Lookup {
-    let of_half_ball = settings.step.is_some() || settings.radius.is_some() || settings.weight.is_some();
-    match settings.lookup {
-        Lookup::Auto if of_half_ball => Lookup::HalfBall,
-        Lookup::Auto => Lookup::Lists,
-        chosen => chosen,
-    }
+    settings.mode == mode && lookup.is_none_or(|lookup| lookup == settings.resolved_lookup())
 }
 
 fn no_technique(settings: &Settings) -> RenderError {

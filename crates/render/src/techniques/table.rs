@@ -1,5 +1,5 @@
 //! The table of techniques. To add one, write its file next to this one and add its line here, with a mode or a lookup if it has a new
-//! name; `resolved_lookup` in the module above says which lookup is used if none is chosen.
+//! name; `Settings::resolved_lookup` says which lookup is used if none is chosen.
 
 /// Calls a macro with the table: the modes with their names, the lookups of light-mesh mode with theirs, and the techniques as
 /// `file::Type for Mode by Lookup`.

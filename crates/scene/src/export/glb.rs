@@ -1,7 +1,8 @@
 //! A scene as binary glTF 2.0.
 //!
-//! Triangles keep their order: each run of triangles with the same material becomes a primitive. Vertices are stored in the
-//! local frame, below a node that is translated to the frame's origin.
+//! Triangles keep their order: each run of triangles with the same material becomes a primitive. In this format a primitive has normals for
+//! all of its vertices, of unit length, or for none: then it is flat. Flat triangles among others get the normals of their planes. Vertices
+//! are stored in the local frame, below a node that is translated to the frame's origin.
 
 use std::{collections::HashMap, path::Path};
 
@@ -112,6 +113,19 @@ struct Primitive {
     has_normals: bool,
 }
 
+/// The normals of a triangle's corners, if each has one; else it is flat.
+fn normals_of(mesh: &Mesh, triangle: &[u32; 3]) -> Option<[Vec3; 3]> {
+    let normals = triangle.map(|vertex| mesh.normals.get(vertex as usize).copied().unwrap_or_default());
+    (!normals.contains(&Vec3::ZERO)).then_some(normals)
+}
+
+/// The normal of a flat triangle, as exactly as it can be written.
+fn plane_normal(mesh: &Mesh, triangle: &[u32; 3]) -> Vec3 {
+    let [a, b, c] = triangle.map(|vertex| mesh.positions[vertex as usize].as_dvec3());
+    // A degenerate triangle has none, but the format asks for one.
+    (b - a).cross(c - a).try_normalize().map_or(Vec3::Z, |normal| normal.as_vec3())
+}
+
 /// Indices of the buffer views, in the order of the bytes.
 #[derive(Default)]
 struct Views {
@@ -144,27 +158,34 @@ impl Arrays {
 
     fn add(&mut self, mesh: &Mesh, triangles: &[[u32; 3]], material: u32) {
         let (first_vertex, first_index) = (self.positions.len(), self.indices.len());
+        let has_normals = triangles.iter().any(|triangle| normals_of(mesh, triangle).is_some());
         let mut renumbered = HashMap::new();
-        for &vertex in triangles.iter().flatten() {
-            let next = renumbered.len() as u32;
-            let index = *renumbered.entry(vertex).or_insert_with(|| {
-                let vertex = vertex as usize;
-                self.positions.push(mesh.positions[vertex].to_array());
-                self.normals.extend(mesh.normals.get(vertex).map(|normal| normal.to_array()));
-                self.uvs.extend(mesh.uvs.get(vertex).map(|uv| uv.to_array()));
-                self.colors.extend(mesh.colors.get(vertex).map(|color| color.to_array()));
-                next
-            });
-            self.indices.push(index);
+        for triangle in triangles {
+            let normals = match normals_of(mesh, triangle) {
+                Some(normals) => normals,
+                None if has_normals => [plane_normal(mesh, triangle); 3],
+                None => [Vec3::ZERO; 3],
+            };
+            for (vertex, normal) in triangle.iter().zip(normals) {
+                let next = renumbered.len() as u32;
+                let index = *renumbered.entry((vertex, normal.to_array().map(f32::to_bits))).or_insert_with(|| {
+                    let vertex = *vertex as usize;
+                    self.positions.push(mesh.positions[vertex].to_array());
+                    self.normals.extend(mesh.normals.get(vertex).map(|_| normal.to_array()));
+                    self.uvs.extend(mesh.uvs.get(vertex).map(|uv| uv.to_array()));
+                    self.colors.extend(mesh.colors.get(vertex).map(|color| color.to_array()));
+                    next
+                });
+                self.indices.push(index);
+            }
         }
-        let normals = self.normals.get(first_vertex..).unwrap_or_default();
         self.primitives.push(Primitive {
             material,
             first_vertex,
             vertices: renumbered.len(),
             first_index,
             indices: 3 * triangles.len(),
-            has_normals: normals.iter().any(|normal| *normal != [0.0; 3]),
+            has_normals,
         });
     }
 

@@ -28,6 +28,8 @@ fn the_json_is_in_world_coordinates_and_degrees() {
     let json = serde_json::to_value(scene().info()).unwrap();
     let expected = serde_json::json!({
         "triangles": 1,
+        "normals": 0,
+        "smooth_normals": 0,
         "bounds": {"min": [1000.0, 0.0, 0.0], "max": [1001.0, 1.0, 0.0]},
         "lights": [
             {"kind": "point", "position": [1000.0, 0.0, 1.0], "direction": null, "intensity": [0.1, 0.1, 0.1],
@@ -57,7 +59,17 @@ fn people_read_the_same() {
     assert!(text.contains("light   point, at 1000 0 1, intensity 0.1 0.1 0.1, falloff none\n"), "{text}");
     assert!(text.contains("light   directional, along 0 -1 0, intensity 1 1 1, falloff none, angle 0.5\n"), "{text}");
     assert!(text.contains("camera  `main` at 1000 0 1, along 0 0 -1, vfov 50°"), "{text}");
+    assert!(!text.contains("normals"), "{text}");
     assert!(text.contains("0 materials\n") && text.contains("up      y: its cameras are oriented that way"), "{text}");
+}
+
+#[test]
+fn normals_are_counted() {
+    let mut scene = scene();
+    scene.geometry_mut().mesh.normals = vec![Vec3::Z, Vec3::ZERO, Vec3::Z];
+    assert!(scene.info().to_string().contains("\nnormals 2\n"));
+    scene.smooth_normals = 1;
+    assert!(scene.info().to_string().contains("\nnormals 2, 1 of them made from the triangles\n"));
 }
 
 #[test]

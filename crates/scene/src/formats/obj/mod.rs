@@ -10,13 +10,16 @@
 //!   no meaning for faces.
 //! - What other programs read is read with a warning: faces above their points, indices of attributes that the file lacks, words behind
 //!   numbers. What may mean several things, such as `1,5`, is an error.
-//! - Points, lines and free-form surfaces are ignored with a warning; groups and smoothing groups have no effect.
+//! - Smoothing groups (`s`) matter for smooth normals, which faces get if no face of the file has normals and the options ask for them. Faces
+//!   above the first `s` of a file are in no group, if there is one; without any, all are in the same.
+//! - Points, lines and free-form surfaces are ignored with a warning; groups of other kinds have no effect.
 
 mod face;
 mod lines;
 mod map;
 mod mtl;
 mod parse;
+mod smoothing;
 #[cfg(test)]
 mod tests;
 
@@ -42,7 +45,7 @@ use crate::{
 
 /// Reads an OBJ file and its material libraries into `draft`.
 pub(crate) fn read(path: &Path, mut bytes: Vec<u8>, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
-    let mut content = parse::parse(path, text::with_line_feeds(&mut bytes))?;
+    let mut content = parse::parse(path, text::with_line_feeds(&mut bytes), draft.smooths())?;
     // From here on its memory is needed for the vertices.
     drop(bytes);
     draft.warnings.extend(std::mem::take(&mut content.warnings));
@@ -95,7 +98,7 @@ fn find_materials(path: &Path, content: &Content, draft: &mut Draft) -> Result<V
 
 /// The vertices that faces use, with the attributes that any of them has.
 fn mesh(content: Content, materials: Vec<u32>) -> LoadedMesh<DVec3> {
-    let Content { points, corners, triangles, .. } = content;
+    let Content { points, corners, triangles, groups, .. } = content;
     let Points { positions, uvs, normals, colors } = points;
     let has = |kind: usize| corners.iter().any(|corner| corner[kind] != NONE);
     let at = |corner: &Corner, kind: usize| Some(corner[kind] as usize).filter(|_| corner[kind] != NONE);
@@ -113,6 +116,7 @@ fn mesh(content: Content, materials: Vec<u32>) -> LoadedMesh<DVec3> {
         positions: corners.iter().map(|corner| positions[corner[0] as usize]).collect::<Vec<DVec3>>(),
         triangles,
         materials,
+        groups,
     }
 }
 

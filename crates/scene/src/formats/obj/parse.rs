@@ -11,6 +11,7 @@ use super::{
     face::{self, Counts},
     lines::Lines,
     malformed,
+    smoothing::Smoothing,
 };
 use crate::{
     LoadError,
@@ -49,6 +50,8 @@ pub(super) struct Content {
     pub(super) triangles: Vec<[u32; 3]>,
     /// By triangle: index into `materials`.
     pub(super) material_of_triangle: Vec<u32>,
+    /// By triangle: its smoothing group, 0 for none; empty if the file has none, or if they are not wanted.
+    pub(super) groups: Vec<u32>,
     /// Names in the order of their first use; the empty one means none.
     pub(super) materials: Vec<String>,
     /// The lines `mtllib`, each once: number and names.
@@ -57,12 +60,13 @@ pub(super) struct Content {
 }
 
 /// Reads all lines. Faces may be above what they refer to: if one cannot be read, or lacks an attribute that is found later, all points are
-/// read before all faces.
-pub(super) fn parse(path: &Path, text: &[u8]) -> Result<Content, LoadError> {
-    let mut parser = Parser::default();
+/// read before all faces. Smoothing groups are read if `with_groups`.
+pub(super) fn parse(path: &Path, text: &[u8], with_groups: bool) -> Result<Content, LoadError> {
+    let new = || Parser { smoothing: with_groups.then(Smoothing::default), ..Parser::default() };
+    let mut parser = new();
     let read = parser.read(path, text, |_| true);
     if parser.refers_ahead() {
-        parser = Parser::default();
+        parser = new();
         parser.read(path, text, is_point)?;
         parser.above = Some([0; 3]);
         parser.read(path, text, |_| true)?;
@@ -93,6 +97,8 @@ struct Parser {
     known_libraries: HashSet<String>,
     points_and_lines: usize,
     notes: Notes,
+    /// If smoothing groups are wanted.
+    smoothing: Option<Smoothing>,
     /// If all points have been read: how many are above the current line.
     above: Option<[usize; 3]>,
     is_face_refused: bool,
@@ -157,7 +163,8 @@ impl Parser {
                     self.libraries.push((self.line, names));
                 }
             }
-            b"" | b"g" | b"o" | b"s" | b"mg" | b"lod" | b"bevel" | b"c_interp" | b"d_interp" => {}
+            b"s" => self.smoothing_group(rest),
+            b"" | b"g" | b"o" | b"mg" | b"lod" | b"bevel" | b"c_interp" | b"d_interp" => {}
             [b'#', ..] => {}
             _ => self.notes.add("is an unknown statement, which is ignored", || (self.line, quoted(word))),
         }
@@ -215,7 +222,18 @@ impl Parser {
             self.cutter.cut(&self.face_positions, |triangle| triangles.push(triangle.map(|corner| vertices[corner])));
         }
         self.material_of_triangle.resize(self.triangles.len(), material);
+        if let Some(smoothing) = &mut self.smoothing {
+            smoothing.extend_to(self.triangles.len());
+        }
         Ok(())
+    }
+
+    fn smoothing_group(&mut self, rest: &[u8]) {
+        let Some(smoothing) = &mut self.smoothing else { return };
+        let word = words(rest).next().unwrap_or_default();
+        if !smoothing.begin(word, self.triangles.len()) {
+            self.notes.add("is no smoothing group, and is ignored", || (self.line, quoted(word)));
+        }
     }
 
     fn finish(self, path: &Path) -> Content {
@@ -232,6 +250,7 @@ impl Parser {
             points: self.points,
             corners: self.vertices.into_corners(),
             triangles: self.triangles,
+            groups: self.smoothing.unwrap_or_default().groups,
             material_of_triangle: self.material_of_triangle,
             materials: materials.into_iter().map(|(name, _)| name).collect(),
             libraries: self.libraries,

@@ -71,7 +71,7 @@ fn mesh(points: Points, faces: Faces, material: u32) -> LoadedMesh<DVec3> {
     let Points { positions, normals, uvs, colors } = points;
     let materials = vec![material; faces.triangles.len()];
     let triangles = faces.triangles;
-    let mut mesh = LoadedMesh { positions, normals, uvs, colors, triangles, materials };
+    let mut mesh = LoadedMesh { positions, normals, uvs, colors, triangles, materials, groups: Vec::new() };
     match faces.split {
         None => mesh.drop_unused_vertices(),
         Some(split) => {

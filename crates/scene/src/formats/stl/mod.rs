@@ -6,8 +6,9 @@
 //! A file is binary if it has exactly the length implied by the count in its header, whatever it begins with. In text, lines between
 //! facets are ignored with a warning, unless they are parts of one; a count of 0 in front of facets, left by a program that did not know
 //! their number at the start, is corrected. Facet normals are not
-//! used: they follow from the corners, and the surface is flat. Colours in the attribute bytes, of which there are several
-//! conventions, are not used either. Corners are not merged: each facet has its own vertices.
+//! used: they follow from the corners. Colours in the attribute bytes, of which there are several
+//! conventions, are not used either. Corners are not merged: each facet has its own vertices, which get smooth normals if the options ask
+//! for them.
 
 mod ascii;
 mod binary;
@@ -64,6 +65,7 @@ fn hand_over<P: Position>(
         colors: Vec::new(),
         materials: vec![material; soup.triangles.len()],
         triangles: soup.triangles,
+        groups: Vec::new(),
     };
     draft.take(mesh, &placement.transform)
 }
