@@ -86,6 +86,7 @@ DEVICE void set_tint(const Material *material, const Vec3 &tint, Material *own) 
     own->ks = material->ks + material->ks_tinted * tint;
     own->emission = material->emission + material->emission_tinted * tint;
     own->shininess = material->shininess;
+    own->catcher = material->catcher;
 }
 
 // Sets `own` to the material with its coefficients at `hit`.
