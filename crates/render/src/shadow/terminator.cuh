@@ -66,6 +66,16 @@ DEVICE SurfacePoint toward(const Scene &scene, const Light &light, const ShadowP
     return SurfacePoint{flat.position, flat.origin + lift, normal / fmaxf(length(normal), F32_MIN_POSITIVE)};
 }
 
+// Whether it depends on the light from where ray number `ray`, which must have hit something, looks for it. The scene must have normals.
+COLD bool is_curved(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray) {
+    const Hit hit = load_hit(hits, ray);
+    // Flat parts of a scene have none.
+    if (load_normal(scene.normals, __ldg(scene.indices[hit.triangle].vertices)) == splat(0.0f))
+        return false;
+    const Corners corners = load_corners(scene.triangles + hit.triangle);
+    return shadow_point(scene, hit, corners, surface_point(ray_at(rays, ray), hit, corners)).is_curved;
+}
+
 // The point from which ray number `ray`, which must have hit something, looks for a light.
 COLD SurfacePoint curved_point_of(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray, const Light &light) {
     const Hit hit = load_hit(hits, ray);

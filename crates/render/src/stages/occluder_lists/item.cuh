@@ -63,6 +63,8 @@ struct ItemSight {
     Shape shape;
     // Whether the lane has a surface point.
     bool has;
+    // Whether it depends on the light where shadow rays of any lane start.
+    bool curved;
     // Whether the view is computed.
     bool looked;
     unsigned long long key;
@@ -230,7 +232,7 @@ DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, I
 
 // Places the surface points where a light is looked for.
 DEVICE void place(const Shadows &args, ItemSight &item, unsigned light, const ListMemory &memory) {
-    if (args.scene.normals == nullptr)
+    if (!item.curved)
         return;
     item.point = curved_point_of(args.scene, args.rays, args.hits, item.ray, args.scene.lights[light]);
     if (lane_of_thread() == 0)
@@ -248,6 +250,7 @@ DEVICE unsigned shadows_of_item(const Shadows &args, const Structure &structure,
     item.ray = args.members[slot + (item.has ? lane : 0)];
     item.point = surface_point_of(args.scene, args.rays, args.hits, item.ray);
     item.key = ray_key(args.rays, item.ray);
+    item.curved = args.scene.normals != nullptr && __any_sync(ALL_LANES, is_curved(args.scene, args.rays, args.hits, item.ray));
     item.asked = 0;
     if (lane == 0)
         memory.around->lanes = 0;

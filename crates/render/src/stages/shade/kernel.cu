@@ -95,7 +95,7 @@ KERNEL(shade, Shade, BLOCK, 4) {
         if (args.samples != nullptr)
             share_tint(args, ray, own);
         radiance = add_group(args, ray, surface, radiance);
-        if (last && surface.material->catcher)
+        if (last && args.catches && surface.material->catcher)
             radiance = catch_shadow(args, ray, place, surface, radiance);
         if (fills)
             fill_layers(args, ray, surface, place);
