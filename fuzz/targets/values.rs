@@ -12,7 +12,9 @@ use libfuzzer_sys::fuzz_target;
 #[path = "../../crates/cli/src/value/mod.rs"]
 mod value;
 
-use value::{Background, Bound, Budget, ByteSize, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size, Smooth};
+use value::{
+    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size, Smooth,
+};
 
 /// Messages quote a part of the text and explain the rest.
 const EXPLANATION: usize = 200;

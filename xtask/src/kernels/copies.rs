@@ -14,7 +14,7 @@ use std::path::Path;
 use super::{LAYOUT, sources_under};
 
 /// Macros and numbers that only kernels use, and why.
-const ALLOWED: [(&str, &str); 22] = [
+const ALLOWED: [(&str, &str); 23] = [
     ("0x7ff0000000000000ll", "the bits of a double's exponent; Rust has functions for them"),
     ("PLANE_BIAS", "a byte is converted to a float by adding to its bits; the host casts"),
     ("PLANE_BIAS_BITS", "the bits of PLANE_BIAS"),
@@ -29,6 +29,7 @@ const ALLOWED: [(&str, &str); 22] = [
     ("0xffff0000u", "lanes are exchanged between halves of a warp"),
     ("0xffff", "two 16-bit numbers in a word; Rust casts"),
     ("NO_POINT", "sorts threads without a surface point last"),
+    ("FLAT", "an item without curved surfaces skips what the host does for each point"),
     ("NO_TARGET", "ends a list in shared memory"),
     ("0x80000000u", "more bricks than fit into any table: it is full"),
     ("UNKNOWN", "passed from one kernel to the next"),

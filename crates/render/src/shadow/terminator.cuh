@@ -57,23 +57,44 @@ DEVICE SurfacePoint toward(const Scene &scene, const Light &light, const ShadowP
     const Vec3 way = light_center(light, flat.origin, reach) - flat.origin;
     const float radius = light.kind == Light::DIRECTIONAL ? reach * largest : largest;
     const float lowest = (dot(flat.normal, way) - radius) / fmaxf(length(way), F32_MIN_POSITIVE);
-    const Vec3 lift = fminf(fmaxf(1.0f - lowest / LOW_LIGHT, 0.0f), 1.0f) * point.lift;
+    const float share = fminf(fmaxf(1.0f - lowest / LOW_LIGHT, 0.0f), 1.0f);
+    if (share <= 0.0f)
+        return flat;
+    const Vec3 lift = share * point.lift, between = flat.normal + share * (point.normal - flat.normal);
     // Seen from there, a lamp is nearer to the horizon than it is to shading.
     const Vec3 lowered = way - lift;
     const float tilt =
-        light.kind == Light::DIRECTIONAL ? 0.0f : dot(point.normal, lift) / fmaxf(length_squared(lowered), F32_MIN_POSITIVE);
-    const Vec3 normal = point.normal + tilt * lowered;
+        light.kind == Light::DIRECTIONAL ? 0.0f : dot(between, lift) / fmaxf(length_squared(lowered), F32_MIN_POSITIVE);
+    const Vec3 normal = between + tilt * lowered;
     return SurfacePoint{flat.position, flat.origin + lift, normal / fmaxf(length(normal), F32_MIN_POSITIVE)};
 }
 
-// Whether it depends on the light from where ray number `ray`, which must have hit something, looks for it. The scene must have normals.
-COLD bool is_curved(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray) {
+// The sine of the angle between the triangle that ray number `ray` sees and its curved surface; FLAT if it does not depend on the light
+// from where the ray's point looks for it. The ray must have hit something, and the scene must have normals.
+#define FLAT -2.0f
+COLD float bend_of(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray) {
     const Hit hit = load_hit(hits, ray);
     // Flat parts of a scene have none.
     if (load_normal(scene.normals, __ldg(scene.indices[hit.triangle].vertices)) == splat(0.0f))
-        return false;
+        return FLAT;
     const Corners corners = load_corners(scene.triangles + hit.triangle);
-    return shadow_point(scene, hit, corners, surface_point(ray_at(rays, ray), hit, corners)).is_curved;
+    const ShadowPoint point = shadow_point(scene, hit, corners, surface_point(ray_at(rays, ray), hit, corners));
+    return point.is_curved ? length(cross(point.flat.normal, point.normal)) : FLAT;
+}
+
+// Whether a light may look different from the curved surface than from the point `flat` of its triangle: it is not high over it, and not so
+// far behind it that it is behind the curved surface, too. May say so for others.
+DEVICE bool is_low(const Scene &scene, const Light &light, const SurfacePoint &flat, float bend) {
+    const float reach = scene_reach(scene, flat.origin), largest = larger(light.size, light.radius);
+    const Vec3 way = light_center(light, flat.origin, reach) - flat.origin;
+    const float radius = light.kind == Light::DIRECTIONAL ? reach * largest : largest;
+    const float height = dot(flat.normal, way), distance = length(way), room = (GROWN - 1.0f) * distance;
+    return height - radius < LOW_LIGHT * distance + room && height + radius > -bend * distance - room;
+}
+
+// The point of ray number `ray` on its triangle.
+COLD SurfacePoint flat_point_of(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray) {
+    return surface_point_of(scene, rays, hits, ray);
 }
 
 // The point from which ray number `ray`, which must have hit something, looks for a light.

@@ -77,7 +77,11 @@ impl ShadowPoint {
         };
         // How high the lowest point of the light is above the triangle's horizon: the sine of an angle.
         let lowest = (flat.normal.dot(way) - radius) / way.length().max(f32::MIN_POSITIVE);
-        let lift = (1.0 - lowest / LOW_LIGHT).clamp(0.0, 1.0) * lift;
+        let share = (1.0 - lowest / LOW_LIGHT).clamp(0.0, 1.0);
+        if share <= 0.0 {
+            return flat;
+        }
+        let (lift, normal) = (share * lift, flat.normal + share * (normal - flat.normal));
         // Seen from there, a lamp is nearer to the horizon than it is to shading.
         let way = way - lift;
         let tilt = match light.kind {

@@ -63,8 +63,9 @@ struct ItemSight {
     Shape shape;
     // Whether the lane has a surface point.
     bool has;
-    // Whether it depends on the light where shadow rays of any lane start.
-    bool curved;
+    // How far the lane's surface is bent; whether any lane's is; whether the points are placed for a light.
+    float bend;
+    bool curved, placed;
     // Whether the view is computed.
     bool looked;
     unsigned long long key;
@@ -234,7 +235,14 @@ DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, I
 DEVICE void place(const Shadows &args, ItemSight &item, unsigned light, const ListMemory &memory) {
     if (!item.curved)
         return;
-    item.point = curved_point_of(args.scene, args.rays, args.hits, item.ray, args.scene.lights[light]);
+    const bool was_placed = item.placed;
+    if (was_placed)
+        item.point = flat_point_of(args.scene, args.rays, args.hits, item.ray);
+    item.placed = __any_sync(ALL_LANES, item.has && is_low(args.scene, args.scene.lights[light], item.point, item.bend));
+    if (item.placed)
+        item.point = curved_point_of(args.scene, args.rays, args.hits, item.ray, args.scene.lights[light]);
+    else if (!was_placed)
+        return;
     if (lane_of_thread() == 0)
         memory.around->lanes = 0;
     __syncwarp();
@@ -250,7 +258,9 @@ DEVICE unsigned shadows_of_item(const Shadows &args, const Structure &structure,
     item.ray = args.members[slot + (item.has ? lane : 0)];
     item.point = surface_point_of(args.scene, args.rays, args.hits, item.ray);
     item.key = ray_key(args.rays, item.ray);
-    item.curved = args.scene.normals != nullptr && __any_sync(ALL_LANES, is_curved(args.scene, args.rays, args.hits, item.ray));
+    item.bend = args.scene.normals != nullptr ? bend_of(args.scene, args.rays, args.hits, item.ray) : FLAT;
+    item.curved = __any_sync(ALL_LANES, item.bend != FLAT);
+    item.placed = false;
     item.asked = 0;
     if (lane == 0)
         memory.around->lanes = 0;
