@@ -45,7 +45,7 @@ def main():
         else:
             shutil.rmtree(folder)
         seed += 1
-    print(f"{seed - plan.seed} runs, {failures} failures; exit codes: {dict(sorted(codes.items()))}")
+    print(f"{seed - plan.seed} runs, {failures} failures; exit codes: {dict(sorted(codes.items(), key=str))}")
     return failures > 0
 
 
@@ -149,13 +149,16 @@ def arguments(scene, outputs, folder, dice):
         "--camera": (["0,2,5;0,1,0;45"], ["0,0,0;0,0,0;45", "1e30,0,0;0,0,0;1"]),
         "--smooth": (["off", "45", "180"], ["0", "181"]),
         "--exposure": (["auto", "3"], ["1e9"]),
+        "--aa": (["1", "3", "40"], ["0", "100000"]),
+        "--crop": (["0,0,64,48", "7,9,20,1"], ["0,0,0,1", "1,2,3", "4294967295,0,2,2", "60,40,100000,1"]),
+        "--background": (["transparent", "0.5", "1,0,0"], ["nan"]),
         "--threads": (["1", "3"], ["0", "100000"]),
     }
     for flag, (accepted, refused) in choices.items():
         if flag == "--size" or some(0.15):
             # With `=` a leading minus is a value's.
             words.append(f"{flag}={dice.choice(refused if some(0.08) else accepted)}")
-    return words
+    return words + ["--ground"] * some(0.2) + ["--partial"] * some(0.2)
 
 
 def whole_png(data):
