@@ -54,25 +54,10 @@ fn bytes_per_ray(plan: &Plan) -> u64 {
 mod tests {
     use super::*;
     use crate::data::lights::LightGroups;
-    use crate::plan::Footprint;
 
     fn plan(size: [u32; 2], layers: Option<usize>, left: Option<u64>) -> Plan {
         let lights = LightGroups { lights: 3, at_once: 3 };
-        let footprint = Footprint::default();
-        Plan {
-            size,
-            antialiasing: None,
-            bounces: 0,
-            coverage: false,
-            caught: false,
-            layers,
-            lights,
-            most_rows: None,
-            memory_limit: left,
-            left,
-            kept: 0,
-            footprint,
-        }
+        Plan { layers, ..Plan::plain(size, lights, left) }
     }
 
     #[test]

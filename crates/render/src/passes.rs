@@ -304,18 +304,12 @@ mod tests {
             let footprint = technique.footprint(lights.held() as u64);
             let (size, layers) = (settings.size, Some(LIGHTS));
             let plan = Plan {
-                size,
                 antialiasing: samples.clone(),
                 bounces: 2,
                 coverage: true,
-                caught: false,
                 layers,
-                lights,
-                most_rows: None,
-                memory_limit: left,
-                left,
-                kept: 0,
                 footprint,
+                ..Plan::plain(size, lights, left)
             };
             let job = Job::new(&Unobserved, Sampling { samples: 9, seed: 0, spread: true });
             let run = Run::new(&Cpu, &job, None);
@@ -385,20 +379,7 @@ mod tests {
             let footprint = technique.footprint(LIGHTS as u64);
             let size = [ROW, points.rows()];
             let baked = |left| {
-                let plan = Plan {
-                    size,
-                    antialiasing: None,
-                    bounces: 0,
-                    coverage: false,
-                    caught: false,
-                    layers: None,
-                    lights,
-                    most_rows: None,
-                    memory_limit: left,
-                    left,
-                    kept: 0,
-                    footprint,
-                };
+                let plan = Plan { footprint, ..Plan::plain(size, lights, left) };
                 let job = Job::new(&Unobserved, Sampling { samples: 9, seed: 0, spread: true });
                 let run = Run::new(&Cpu, &job, None);
                 Baking { run, scene: &scene, technique: &technique, plan: &plan }.bake(&points)

@@ -42,6 +42,27 @@ pub struct Plan {
     pub footprint: Footprint,
 }
 
+#[cfg(test)]
+impl Plan {
+    /// An image without anything that was not asked for, with `left` bytes.
+    pub(crate) fn plain(size: [u32; 2], lights: LightGroups, left: Option<u64>) -> Plan {
+        Plan {
+            size,
+            antialiasing: None,
+            bounces: 0,
+            coverage: false,
+            caught: false,
+            layers: None,
+            lights,
+            most_rows: None,
+            memory_limit: left,
+            left,
+            kept: 0,
+            footprint: Footprint::default(),
+        }
+    }
+}
+
 impl Plan {
     /// Pixels of the image.
     pub fn pixels(&self) -> u64 {

@@ -21,7 +21,7 @@ mod watch;
 
 pub use draft::SceneDraft;
 pub use families::{FAMILIES, Family};
-pub use matrix::{ACCELERATIONS, MODES, RADII, WEIGHTS, each_device, render};
+pub use matrix::{ACCELERATIONS, MODES, RADII, TECHNIQUES, WEIGHTS, each_device, render};
 pub use models::{MODELS, Model};
 pub use picture::{Picture, mean_difference, rms_difference};
 pub use random::Random;

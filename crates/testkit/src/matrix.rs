@@ -1,10 +1,19 @@
 //! The cases for which a guarantee must hold: devices, modes, accelerators, radii and weights.
 
-use lightmesh_render::{Acceleration, Device, Frame, Mode, Renderer, Settings, devices};
+use lightmesh_render::{Acceleration, Device, Frame, Lookup, Mode, Renderer, Settings, devices};
 use lightmesh_scene::{Scene, Weight};
 
 /// All modes.
 pub const MODES: [Mode; 3] = [Mode::LightMesh, Mode::RayTrace, Mode::Area];
+
+/// All techniques, by the mode and lookup that select them.
+pub const TECHNIQUES: [(Mode, Lookup); 5] = [
+    (Mode::LightMesh, Lookup::Lists),
+    (Mode::LightMesh, Lookup::Adaptive),
+    (Mode::LightMesh, Lookup::HalfBall),
+    (Mode::Area, Lookup::Auto),
+    (Mode::RayTrace, Lookup::Auto),
+];
 
 /// Accelerators without parameters; the grid chooses its own cells.
 pub const ACCELERATIONS: [Acceleration; 3] = [Acceleration::Bvh, Acceleration::Grid(None), Acceleration::BruteForce];

@@ -6,7 +6,6 @@ use super::resolve::Resolved;
 use crate::backend::Backend;
 use crate::counters::Counts;
 use crate::job::Job;
-use crate::settings::Crop;
 use crate::stage::Seconds;
 use crate::stats::{CameraStats, DeviceStats, MemoryStats, SceneStats, SettingsStats, Stats};
 
@@ -56,7 +55,8 @@ fn settings(resolved: &Resolved, device: &'static str, rows_per_band: u32) -> Se
         mode: settings.mode.name(),
         bounces: settings.bounces,
         size: settings.size,
-        crop: settings.crop.map(|Crop { first: [x, y], size: [width, height] }| [x, y, width, height]),
+        // Set where the part is cut out.
+        crop: None,
         device,
         threads: rayon::current_num_threads(),
         step: None,

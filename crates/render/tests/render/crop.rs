@@ -1,8 +1,8 @@
 //! A part of an image has the bits of the whole.
 
-use lightmesh_render::{Crop, Filter, Lookup, Mode, RenderError, Settings, Sharing};
+use lightmesh_render::{Crop, Filter, RenderError, Settings, Sharing};
 use lightmesh_scene::Material;
-use lightmesh_testkit::{pile, render};
+use lightmesh_testkit::{TECHNIQUES, pile, render};
 
 use crate::lists::kinds;
 
@@ -10,19 +10,12 @@ const SIZE: [u32; 2] = [61, 47];
 
 fn ways() -> Vec<Settings> {
     let settings = Settings::default().with_size(SIZE).with_samples(16).with_layers(true);
-    let modes = [
-        (Mode::LightMesh, Lookup::Lists),
-        (Mode::LightMesh, Lookup::Adaptive),
-        (Mode::LightMesh, Lookup::HalfBall),
-        (Mode::Area, Lookup::Auto),
-        (Mode::RayTrace, Lookup::Auto),
-    ];
     let of_mode = |(mode, lookup)| {
         let settings = settings.clone().with_mode(mode).with_lookup(lookup).with_step(0.3).with_bounces(1);
         let several = settings.clone().with_aa(5).with_filter(Filter::Gauss);
         [settings.with_aa(1), several.clone().with_sharing(Sharing::Never), several.with_transparent(true)]
     };
-    modes.into_iter().flat_map(of_mode).collect()
+    TECHNIQUES.into_iter().flat_map(of_mode).collect()
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! A ground that catches shadows.
 
 use glam::Vec3;
-use lightmesh_render::{Lookup, Mode, Settings, Sharing};
+use lightmesh_render::{Settings, Sharing};
 use lightmesh_scene::{LightKind, Scene, Up};
-use lightmesh_testkit::{SceneDraft, render};
+use lightmesh_testkit::{SceneDraft, TECHNIQUES, render};
 
 const BACKGROUND: Vec3 = Vec3::new(0.2, 0.5, 0.9);
 
@@ -23,18 +23,11 @@ fn scene() -> Scene {
 
 fn ways() -> Vec<Settings> {
     let settings = Settings::default().with_size([40, 30]).with_samples(16);
-    let modes = [
-        (Mode::LightMesh, Lookup::Lists),
-        (Mode::LightMesh, Lookup::Adaptive),
-        (Mode::LightMesh, Lookup::HalfBall),
-        (Mode::Area, Lookup::Auto),
-        (Mode::RayTrace, Lookup::Auto),
-    ];
     let of_mode = |(mode, lookup)| {
         let settings = settings.clone().with_mode(mode).with_lookup(lookup).with_step(0.2);
         [settings.clone().with_aa(1), settings.clone().with_aa(6), settings.with_aa(6).with_sharing(Sharing::Never)]
     };
-    modes.into_iter().flat_map(of_mode).collect()
+    TECHNIQUES.into_iter().flat_map(of_mode).collect()
 }
 
 #[test]
