@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::{
-    Bounds, Camera, Fov, Light, Projection, Scene, Up,
+    Bounds, Camera, Fov, Light, Mesh, Projection, Scene, Up,
     quote::{self, list},
 };
 
@@ -35,8 +35,10 @@ const VIEW: [f32; 3] = [0.55, 0.45, 1.0];
 /// Radius over which area mode distributes these lights, as a share of the scene's diagonal.
 const DEFAULT_LIGHT_SPREAD: f32 = 0.05;
 
-/// Strength of the fill light; that of the key light is 1.
-const FILL_LIGHT: f32 = 0.25;
+/// Strength of the key light. With the fill light and the ambient term, a white surface is not clipped.
+const KEY_LIGHT: f32 = 0.8;
+/// Strength of the fill light.
+const FILL_LIGHT: f32 = 0.2;
 
 /// What [`Scene::complete`] had to add.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,7 +77,7 @@ impl Scene {
             up: up.axis(),
             projection: Projection::Perspective(Fov::Vertical(VFOV)),
         };
-        camera.position -= direction * distance(&bounds, &camera);
+        camera.position = fitting(&self.geometry.mesh, &bounds, &camera);
         camera
     }
 
@@ -90,7 +92,7 @@ impl Scene {
             let position = camera.position + reach * (above * up + beside * right);
             Light::point(position).with_spread(spread).with_intensity(Vec3::splat(intensity)).named(name)
         };
-        [light("key", -0.5, 0.8, 1.0), light("fill", 0.9, 0.2, FILL_LIGHT)]
+        [light("key", -0.5, 0.8, KEY_LIGHT), light("fill", 0.9, 0.2, FILL_LIGHT)]
     }
 
     /// The camera of this name.
@@ -115,13 +117,31 @@ fn sides(up: Up) -> (Vec3, Vec3) {
     }
 }
 
-/// The distance from the box's centre at which all eight corners fit in a square image.
-fn distance(bounds: &Bounds, camera: &Camera) -> f32 {
+/// Where a camera of this direction has to be so that all vertices fit in a square image, in its middle.
+///
+/// In coordinates to the right, up and forward, with T the tangent of half the field of view, a point is left of the right border of a
+/// camera at c if `x - c.x <= T (z - c.z)`, so the largest `x - T z` of all points bounds `c.x - T c.z`; and so for each border. The
+/// two borders of an axis fix the camera's place across it, and the axis with the larger distance decides that.
+fn fitting(mesh: &Mesh, bounds: &Bounds, camera: &Camera) -> Vec3 {
     let (right, up, forward) = camera.basis();
     let tangent = FILL * (0.5 * VFOV).to_radians().tan();
-    let half = 0.5 * bounds.extent();
-    let corner = |i: u32| half * Vec3::from_array([1, 2, 4].map(|bit| if i & bit == 0 { -1.0 } else { 1.0 }));
-    (0..8).map(corner).map(|p| p.dot(right).abs().max(p.dot(up).abs()) / tangent - p.dot(forward)).fold(0.0, f32::max)
+    let center = bounds.center();
+    let mut borders = [f32::NEG_INFINITY; 4];
+    let mut include = |point: Vec3| {
+        let point = point - center;
+        let (x, y, z) = (point.dot(right), point.dot(up), point.dot(forward));
+        for (border, aside) in borders.iter_mut().zip([x, -x, y, -y]) {
+            *border = border.max(aside - tangent * z);
+        }
+    };
+    if mesh.bounds().diagonal() > 0.0 {
+        mesh.positions.iter().for_each(|&position| include(position));
+    } else {
+        [bounds.min, bounds.max].into_iter().for_each(include);
+    }
+    let [east, west, north, south] = borders;
+    let back = ((east + west).max(north + south) / (2.0 * tangent)).max(0.0);
+    center + 0.5 * (east - west) * right + 0.5 * (north - south) * up - back * forward
 }
 
 /// The box to frame: a unit cube if the scene is empty or a single point.
@@ -135,23 +155,39 @@ mod tests {
     use super::*;
     use crate::SceneBuilder;
 
+    fn corners(Bounds { min, max }: Bounds) -> [Vec3; 8] {
+        let pick = |i: u32, bit: u32, low: f32, high: f32| if i & bit == 0 { low } else { high };
+        std::array::from_fn(|i| i as u32).map(|i| {
+            Vec3::new(pick(i, 1, min.x, max.x), pick(i, 2, min.y, max.y), pick(i, 4, min.z, max.z))
+        })
+    }
+
+    /// The corners of a box.
     fn scene(min: Vec3, max: Vec3) -> Scene {
         let mut scene = SceneBuilder::new().finish_scene("test");
-        scene.geometry_mut().mesh.positions = vec![min, max, min];
+        scene.geometry_mut().mesh.positions = corners(Bounds { min, max }).to_vec();
         scene.geometry_mut().mesh.triangles = vec![[0, 1, 2]];
         scene
     }
 
-    /// Furthest corner from the image's centre in half heights.
-    fn extent_in_picture(bounds: &Bounds, camera: &Camera) -> f32 {
+    /// How far points go to the right, left, up and down from the image's centre, in half heights.
+    fn extents_in_picture(points: &[Vec3], camera: &Camera) -> [f32; 4] {
         let (right, up, forward) = camera.basis();
         let tangent = (0.5 * VFOV).to_radians().tan();
-        let corners = (0..8).map(|i| {
-            let pick = |bit: u32, low: f32, high: f32| if i & bit == 0 { low } else { high };
-            let (min, max) = (bounds.min, bounds.max);
-            Vec3::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z)) - camera.position
-        });
-        corners.map(|p| p.dot(right).abs().max(p.dot(up).abs()) / (tangent * p.dot(forward))).fold(0.0, f32::max)
+        points.iter().map(|&point| point - camera.position).fold([f32::NEG_INFINITY; 4], |extents, p| {
+            let scale = 1.0 / (tangent * p.dot(forward));
+            let sides = [p.dot(right), -p.dot(right), p.dot(up), -p.dot(up)];
+            std::array::from_fn(|side| extents[side].max(scale * sides[side]))
+        })
+    }
+
+    fn assert_framed(points: &[Vec3], camera: &Camera) {
+        let extents = extents_in_picture(points, camera);
+        let most = extents.into_iter().fold(0.0, f32::max);
+        assert!((most - FILL).abs() < 1e-3, "{extents:?}");
+        // It fills the image from one border to the other.
+        let fills = |axis: usize| extents[axis].min(extents[axis + 1]) > FILL - 1e-3;
+        assert!(fills(0) || fills(2), "{extents:?}");
     }
 
     #[test]
@@ -164,11 +200,22 @@ mod tests {
         ];
         for (min, max) in boxes {
             for up in [Up::Y, Up::Z] {
-                let scene = scene(min, max);
-                let extent = extent_in_picture(&scene.geometry.mesh.bounds(), &scene.default_camera(up));
-                assert!((extent - FILL).abs() < 1e-3, "{min} {max} {up:?}: {extent}");
+                assert_framed(&corners(Bounds { min, max }), &scene(min, max).default_camera(up));
             }
         }
+    }
+
+    #[test]
+    fn what_does_not_fill_its_box_fills_the_picture() {
+        let ball: Vec<Vec3> = (0..200)
+            .map(|i| {
+                let (z, turn) = (i as f32 / 99.5 - 1.0, 2.4 * i as f32);
+                Vec3::new((1.0 - z * z).sqrt() * turn.cos(), (1.0 - z * z).sqrt() * turn.sin(), z)
+            })
+            .collect();
+        let mut round = scene(Vec3::ZERO, Vec3::ONE);
+        round.geometry_mut().mesh.positions = ball.clone();
+        assert_framed(&ball, &round.default_camera(Up::Y));
     }
 
     #[test]

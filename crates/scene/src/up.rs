@@ -32,6 +32,8 @@ const GROUND: f32 = 1e-3;
 const LEAST_GROUND: f32 = 0.01;
 /// How much larger it must be than the flat bottom along the other axis.
 const CLEARLY: f32 = 2.0;
+/// How closely a model that stands at height 0 begins there, and is centred on the other axis, as a share of its size there.
+const NEARLY: f64 = 1e-3;
 
 impl Up {
     /// The [usual](SceneFormat::usual_up) up axis for this kind of file.
@@ -62,7 +64,8 @@ impl Up {
 parse_by_name!(Up, "axis");
 
 impl Scene {
-    /// The up axis according to the scene's cameras, or to the ground that it stands on; `None` if neither indicates it.
+    /// The up axis according to the scene's cameras, to the ground that it stands on, or to where it lies: at height 0, and centred on
+    /// the other axis. `None` if nothing indicates it.
     pub fn suggested_up(&self) -> Option<UpInfo> {
         let by = |up: Up, reason: &str| Some(UpInfo { axis: up.name(), reason: reason.to_owned() });
         let upper: Vec3 = self.cameras.iter().map(|camera| camera.up).sum();
@@ -73,8 +76,29 @@ impl Scene {
         match (y.max(z) >= LEAST_GROUND, y > CLEARLY * z, z > CLEARLY * y) {
             (true, true, _) => by(Up::Y, "it has a flat ground at its lowest y"),
             (true, _, true) => by(Up::Z, "it has a flat ground at its lowest z"),
-            _ => None,
+            _ => match [Up::Y, Up::Z].map(|up| self.starts_at_zero(up)) {
+                [true, false] => by(Up::Y, "it begins at y = 0, and is centred on z"),
+                [false, true] => by(Up::Z, "it begins at z = 0, and is centred on y"),
+                _ => None,
+            },
         }
+    }
+
+    /// Whether the scene begins at height 0, and is centred on the other axis that may point up.
+    fn starts_at_zero(&self, up: Up) -> bool {
+        let bounds = self.geometry.mesh.bounds();
+        if bounds.is_empty() {
+            return false;
+        }
+        let (min, max) = (self.geometry.to_world(bounds.min), self.geometry.to_world(bounds.max));
+        let along = |up: Up| {
+            let axis = up.axis().as_dvec3();
+            (min.dot(axis), max.dot(axis))
+        };
+        let other = if up == Up::Y { Up::Z } else { Up::Y };
+        let ((low, high), (near, far)) = (along(up), along(other));
+        let begins = high > 0.0 && low.abs() <= NEARLY * high;
+        begins && far > 0.0 && (near + far).abs() <= NEARLY * far
     }
 
     /// Area of the triangles at the very bottom, as a share of the box's base.
@@ -129,9 +153,23 @@ mod tests {
         for up in [Up::Y, Up::Z] {
             let info = tent(up, true).suggested_up().unwrap();
             assert_eq!((info.axis, info.reason.contains(up.name())), (up.name(), true));
-            assert_eq!(tent(up, false).suggested_up(), None);
         }
         assert_eq!(SceneBuilder::new().finish_scene("empty").suggested_up(), None);
+    }
+
+    #[test]
+    fn a_model_without_a_ground_stands_at_height_0() {
+        for up in [Up::Y, Up::Z] {
+            let mut open = tent(up, false);
+            let info = open.suggested_up().unwrap();
+            assert_eq!((info.axis, info.reason.contains(&format!("begins at {} = 0", up.name()))), (up.name(), true));
+            // Centred on nothing, or in the air.
+            let positions = open.geometry.mesh.positions.clone();
+            for shift in [Vec3::new(0.0, 0.5, 0.5), up.axis()] {
+                open.geometry_mut().mesh.positions = positions.iter().map(|position| position + shift).collect();
+                assert_eq!(open.suggested_up(), None);
+            }
+        }
     }
 
     #[test]

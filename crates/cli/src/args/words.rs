@@ -99,7 +99,7 @@ pub(crate) enum Switch {
 /// The up axis.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Up {
-    /// By file format: z for STL, else y
+    /// By file format: z for STL, else y; for a camera that is added to OBJ, PLY and STL also by what the model stands on
     Auto,
     /// glTF, most OBJ
     Y,

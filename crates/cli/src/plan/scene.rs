@@ -1,10 +1,10 @@
 //! Scene overrides from the command line, and defaults for what a scene lacks.
 
 use glam::{DVec3, Vec3};
-use lightmesh::scene::{Camera, CameraError, Light, LightKind, UnknownCamera, Up};
+use lightmesh::scene::{Camera, CameraError, Light, LightKind, SceneFormat, UnknownCamera, Up};
 use lightmesh::{Observer, Scene};
 
-use crate::args::RenderArgs;
+use crate::args::{self, RenderArgs};
 use crate::value::{Background, Color, LightSpec};
 
 /// Camera, lights, ambient term and background as typed.
@@ -13,6 +13,8 @@ pub(crate) struct SceneChoices {
     camera: Option<(Camera, DVec3)>,
     camera_name: Option<String>,
     up: Up,
+    /// Whether the scene may know better: by its geometry, if neither a flag nor its format says what is up.
+    asks_scene: bool,
     lights: Vec<LightSpec>,
     falloff: lightmesh::scene::Falloff,
     ambient: Option<Color>,
@@ -25,7 +27,9 @@ const GROUND_BACKGROUND: f32 = 0.8;
 
 impl SceneChoices {
     pub(super) fn new(args: &RenderArgs) -> Result<SceneChoices, CameraError> {
-        let up = args.up.of(args.scene.format());
+        let format = args.scene.format();
+        let up = args.up.of(format);
+        let is_open = |format| matches!(format, SceneFormat::Obj | SceneFormat::Ply | SceneFormat::Stl);
         let camera = args.camera.map(|view| {
             let camera = Camera::look_to(Vec3::ZERO, view.direction, up.axis(), view.vfov);
             camera.map(|camera| (camera, view.position))
@@ -34,6 +38,7 @@ impl SceneChoices {
             camera: camera.transpose()?,
             camera_name: args.camera_name.clone(),
             up,
+            asks_scene: matches!(args.up, args::Up::Auto) && format.is_some_and(is_open),
             lights: args.lights.clone(),
             falloff: args.falloff,
             ambient: args.ambient,
@@ -56,11 +61,12 @@ impl SceneChoices {
         if let Some(Background::Color(Color(background))) = self.background {
             scene.lights.background = Some(background);
         }
-        let added = scene.complete(self.up);
+        let (up, why) = self.up(scene);
+        let added = scene.complete(up);
         if added.camera {
-            let up = self.up.name();
             observer.note(&format!(
-                "the scene has no camera: using one that frames it from the front, with {up} up (--camera and --up override it)"
+                "the scene has no camera: using one that frames it from the front, with {} up{why} (--camera and --up override it)",
+                up.name()
             ));
         }
         if added.lights {
@@ -71,12 +77,23 @@ impl SceneChoices {
         }
         // Cameras and lights that were added look at the scene alone.
         if self.ground {
-            scene.add_ground(self.up);
+            scene.add_ground(up);
             if self.background.is_none() {
                 scene.lights.background.get_or_insert(Vec3::splat(GROUND_BACKGROUND));
             }
         }
         Ok(())
+    }
+
+    /// What is up, and why it is not what is usual.
+    fn up(&self, scene: &Scene) -> (Up, String) {
+        let suggested = || {
+            let info = scene.suggested_up()?;
+            let up: Up = info.axis.parse().ok()?;
+            (up != self.up).then(|| (up, format!(", since {}", info.reason)))
+        };
+        let asks = self.asks_scene && scene.cameras.is_empty();
+        asks.then(suggested).flatten().unwrap_or((self.up, String::new()))
     }
 
     /// The requested camera.

@@ -18,8 +18,8 @@ fn is_black(color: &[f32; 3]) -> bool {
     color.iter().all(|channel| *channel < BLACK)
 }
 
-/// The warnings for an image that is shown by `display`.
-pub(super) fn warnings(frame: &Frame, display: &Display) -> Vec<String> {
+/// The warnings for an image that is shown by `display`; `has_ground` if the scene has a shadow catcher.
+pub(super) fn warnings(frame: &Frame, display: &Display, has_ground: bool) -> Vec<String> {
     let counts = &frame.stats.counts;
     let shown: Vec<[f32; 3]> = frame.color().iter().step_by(STRIDE).map(|color| display.show(*color)).collect();
     let seen = shown.len() as f64 * counts.hits as f64 / counts.pixels.max(1) as f64;
@@ -44,7 +44,9 @@ pub(super) fn warnings(frame: &Frame, display: &Display) -> Vec<String> {
             display.exposure
         ));
     }
-    if black > MANY {
+    // Shadows on a transparent ground are black, as they should be.
+    let has_shadows = frame.image.alpha().is_some() && has_ground;
+    if black > MANY && !has_shadows {
         warnings.push(format!(
             "{:.0} % of what is seen of the scene is black: add light (--light, --ambient), or raise the exposure (--exposure auto, \
              or a number of stops above {})",

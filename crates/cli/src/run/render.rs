@@ -51,6 +51,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Whether a scene has a shadow catcher.
+fn catches(scene: &Scene) -> bool {
+    scene.geometry.materials.iter().any(|material| material.catcher)
+}
+
 /// The device that was chosen. That no CUDA device was, is only said where one could be expected, or to those who ask.
 fn using(choice: &Choice, verbose: bool) -> String {
     let why = match &choice.no_cuda {
@@ -101,7 +106,7 @@ fn finish(
     let stops = stops(&frame, exposure, watcher);
     if plan.files.format() != Some(Format::Exr) {
         let display = plan.files.options.display.with_exposure(stops);
-        range::warnings(&frame, &display).iter().for_each(|warning| watcher.warning(warning));
+        range::warnings(&frame, &display, catches(scene)).iter().for_each(|warning| watcher.warning(warning));
     }
     if let Some(crop) = crop {
         frame = frame.cropped(crop).expect("the plan has checked that the crop is in the image");
