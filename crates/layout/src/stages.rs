@@ -213,12 +213,16 @@ records! {
         centers: Out<Hit>,
         /// State of each pixel.
         state: Out<u32>,
+        /// The owner of each sample: sample by sample, then by pixel. Only those of pixels that are not shared are known.
+        owners: Out<u8>,
         /// Radiance by pixel, with what samples share.
         color: Out<Vec3>,
         /// Number of large and of small fragments of each block; after the scans, of all blocks before it.
         counts: [Out<u32>; 2],
         /// Large fragments, and small ones.
         fragments: [Out<ListedRay>; 2],
+        /// What they see.
+        fragment_hits: [Out<Hit>; 2],
         /// Share of samples that see anything, by pixel; null if that is not kept.
         coverage: Out<f32>,
         /// How much light shadow catchers get, by pixel; null if that is not kept.
@@ -249,6 +253,10 @@ records! {
         inner: [u32; 2],
         /// Number of samples of a pixel in all ranges.
         all_samples: u32,
+        /// Number of samples of a pixel that neighbouring threads cast: a power of two.
+        together: u32,
+        /// Number of threads that take the samples of a pixel: a power of two.
+        lanes: u32,
         /// Number of lights with layers.
         light_count: u32,
         /// Share of a sample in its pixel.

@@ -6,12 +6,16 @@
 //! ([`Pattern`]), the same on all devices. The filter is a product of two functions of one coordinate.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, f32x8, u32x8};
 use lightmesh_layout::constants::{FILTER_PLACES, FILTER_STEPS, MARGIN_ROWS, MOST_SHARED, PIXEL_PATTERN};
 
 use crate::accel::Ray;
 use crate::sampling::Pattern;
 use crate::settings::Filter;
+use crate::simd::{LANES, dispatch};
 use crate::view::View;
 
 /// Samples in a wave if none are shared.
@@ -84,6 +88,46 @@ impl Antialiasing {
         view.ray_beside(pixel, self.aside(view.window().number(pixel), sample))
     }
 
+    /// The rays through samples `numbers` of the pixels `pixels` of a view, pixel by pixel: the same bits as [`Antialiasing::ray`].
+    pub(crate) fn rays(&self, level: Level, view: &View, pixels: Range<u32>, numbers: Range<u32>, rays: &mut Vec<Ray>) {
+        rays.clear();
+        dispatch!(level, simd => self.add_rays(simd, view, pixels, numbers, rays));
+    }
+
+    #[inline(always)]
+    fn add_rays<S: Simd>(
+        &self,
+        simd: S,
+        view: &View,
+        pixels: Range<u32>,
+        numbers: Range<u32>,
+        rays: &mut Vec<Ray>,
+    ) {
+        let lanes = u32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+        for pixel in pixels {
+            let pattern = self.pattern(view.window().number(pixel));
+            let mut first = numbers.start;
+            while first < numbers.end {
+                let [x, y] = pattern.planar_points(simd, lanes + u32x8::splat(simd, first));
+                let aside = [self.quantiles_of(simd, x), self.quantiles_of(simd, y)];
+                let count = LANES.min((numbers.end - first) as usize);
+                rays.extend_from_slice(&view.rays_beside(simd, pixel, aside)[..count]);
+                first += LANES as u32;
+            }
+        }
+    }
+
+    /// The offsets below which the shares `u` of the filter lie.
+    #[inline(always)]
+    fn quantiles_of<S: Simd>(&self, simd: S, u: f32x8<S>) -> f32x8<S> {
+        let u: [f32; LANES] = u.into();
+        let mut offsets = [0.0; LANES];
+        for lane in 0..LANES {
+            offsets[lane] = self.quantile(u[lane]);
+        }
+        f32x8::from_slice(simd, &offsets)
+    }
+
     /// Where sample number `sample` of a pixel with this pattern lies.
     #[inline(always)]
     pub(crate) fn within(&self, pattern: &Pattern, sample: u32) -> [f32; 2] {
@@ -138,7 +182,11 @@ fn weight(filter: Filter, offset: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+    use lightmesh_scene::{Camera, Projection};
+
     use super::*;
+    use crate::view::Window;
 
     const FILTERS: [Filter; 3] = [Filter::Box, Filter::Gauss, Filter::BlackmanHarris];
 
@@ -156,6 +204,26 @@ mod tests {
             for step in offsets.windows(2) {
                 let share = area(f64::from(step[0]), f64::from(step[1])) / all;
                 assert!((share - 1.0 / 63.0).abs() < 1e-4, "{filter:?}: {share}");
+            }
+        }
+    }
+
+    #[test]
+    fn many_rays_are_the_same_as_single_ones() {
+        let camera = Camera::look_at(Vec3::new(1.0, 2.0, 3.0), Vec3::ZERO, Vec3::Y, 40.0).unwrap();
+        for projection in [camera.projection, Projection::Orthographic { height: 3.0 }] {
+            let view = View::new(&camera.clone().with_projection(projection), [7, 5]);
+            let view = view.with_window(Window { size: [4, 3], first: [2, 1], whole: [7, 5] });
+            for (filter, numbers) in [(Filter::BlackmanHarris, 0..8), (Filter::Box, 0..3), (Filter::Gauss, 8..27)] {
+                let samples = Antialiasing::new(32, filter, 5, 64);
+                let mut rays = Vec::new();
+                samples.rays(Level::new(), &view, 1..12, numbers.clone(), &mut rays);
+                let single = (1..12).flat_map(|pixel| numbers.clone().map(move |sample| (pixel, sample)));
+                let single: Vec<Ray> = single.map(|(pixel, sample)| samples.ray(&view, pixel, sample)).collect();
+                let bits = |rays: &[Ray]| -> Vec<_> {
+                    rays.iter().map(|ray| [ray.origin, ray.direction].map(|v| v.to_array().map(f32::to_bits))).collect()
+                };
+                assert_eq!(bits(&rays), bits(&single), "{filter:?}");
             }
         }
     }

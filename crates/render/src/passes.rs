@@ -109,15 +109,22 @@ impl<B: Backend> Passes<'_, B> {
         }
         let rays = run.stage(Stage::CameraRays, [pixels; 2], |backend| backend.camera_rays(view, all))?;
         match &plan.antialiasing {
-            None => self.waves(rays, 1, &mut film)?,
+            None => self.waves(rays, None, 1, &mut film)?,
             Some(samples) => self.samples(rays, samples, &mut film)?,
         }
         run.backend.finish(run.job)?;
         run.on_host(Stage::Download, |backend| backend.develop(scene, film, picture))
     }
 
-    /// Renders a wave of rays, and those that mirrors reflect. Each ray takes one of `parts` parts of the samples of lights.
-    fn waves(&self, mut rays: B::Rays, parts: u32, film: &mut B::Film) -> Result<(), RenderError> {
+    /// Renders a wave of rays, and those that mirrors reflect. `known` is what they see, if that is known. Each ray takes one of
+    /// `parts` parts of the samples of lights.
+    fn waves(
+        &self,
+        mut rays: B::Rays,
+        mut known: Option<B::Hits>,
+        parts: u32,
+        film: &mut B::Film,
+    ) -> Result<(), RenderError> {
         let Passes { run, scene, plan, .. } = self;
         for depth in 0..=plan.bounces {
             let n = run.backend.ray_count(&rays);
@@ -127,7 +134,12 @@ impl<B: Backend> Passes<'_, B> {
             if depth > 0 {
                 run.job.work.expect(self.pieces_of_wave(depth, n as u64));
             }
-            let hits = run.stage(Stage::PrimaryRays, [n; 2], |backend| backend.primary_rays(run.job, scene, &rays))?;
+            let hits = match known.take() {
+                Some(hits) => hits,
+                None => {
+                    run.stage(Stage::PrimaryRays, [n; 2], |backend| backend.primary_rays(run.job, scene, &rays))?
+                }
+            };
             let wave = WaveOf::<B> { job: run.job, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts };
             self.light(&wave, film)?;
             if depth < plan.bounces {
@@ -172,9 +184,10 @@ impl<B: Backend> Passes<'_, B> {
             // The others, by surface or sample by sample.
             let lists =
                 run.stage(Stage::CameraRays, [n; 2], |backend| backend.fragments(&wave, &mut samples, film, all))?;
-            for (list, parts) in lists.into_iter().zip([2, all.samples]) {
-                run.job.work.expect(self.pieces_of_wave(0, run.backend.ray_count(&list) as u64));
-                self.waves(list, parts, film)?;
+            for ((list, hits), parts) in lists.into_iter().zip([2, all.samples]) {
+                let fragments = run.backend.ray_count(&list) as u64;
+                run.job.work.expect(self.pieces_of_wave(0, fragments) - fragments);
+                self.waves(list, Some(hits), parts, film)?;
             }
         }
         Ok(())

@@ -74,9 +74,9 @@ impl Plan {
         self.antialiasing.as_ref().map_or(1, |all| u64::from(all.at_once()))
     }
 
-    /// Bytes of the samples of a pixel: a hit each, and the pixel's state.
+    /// Bytes of the samples of a pixel: a hit and an owner each, and the pixel's state.
     pub(crate) fn sample_bytes(&self) -> u64 {
-        self.antialiasing.as_ref().map_or(0, |all| size_of::<Hit>() as u64 * u64::from(all.at_once()) + 8)
+        self.antialiasing.as_ref().map_or(0, |all| (size_of::<Hit>() as u64 + 1) * u64::from(all.at_once()) + 8)
     }
 
     /// Rows above and below a band that are rendered with it, together.

@@ -9,7 +9,7 @@ use glam::Vec3;
 use lightmesh_memory::Budget;
 use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Scene};
 
-use crate::accel::{Accelerator, BruteForce, Bvh, Grid, GridOptions, Triangle};
+use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Grid, GridOptions, Triangle};
 use crate::error::RenderError;
 use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
@@ -37,6 +37,11 @@ pub struct PreparedGeometry {
 }
 
 impl PreparedGeometry {
+    /// For rays that lie close together.
+    pub(crate) fn beams(&self) -> Beams<'_> {
+        Beams::new(&*self.accelerator, &self.triangles, &self.bounds)
+    }
+
     /// Builds the acceleration structure over `geometry`.
     ///
     /// # Errors

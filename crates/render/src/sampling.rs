@@ -4,6 +4,8 @@
 //! are well distributed, and each surface point or light point gets its own scrambling from a hash, so that errors do not form
 //! patterns and the result depends on the seed alone.
 
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, u32x8};
 use glam::Vec3;
 use lightmesh_layout::constants::{
     GOLDEN_RATIO, LAST_DIGIT, MIX_1, MIX_2, OWEN_1, OWEN_2, OWEN_3, OWEN_4, SAMPLE_DIGITS, UPPER_BITS, UPPER_BYTES,
@@ -34,6 +36,55 @@ impl Pattern {
         let axis = |digits: u32, seed: u32| first_digits(scramble(digits, seed)) as f32 * LAST_DIGIT;
         Vec3::new(axis(index, self.seeds[1]), axis(sobol_1(index), self.seeds[2]), axis(sobol_2(index), self.seeds[3]))
     }
+
+    /// The first two components of eight points, the same bits as [`Pattern::point`].
+    #[inline(always)]
+    pub(crate) fn planar_points<S: Simd>(&self, simd: S, index: u32x8<S>) -> [f32x8<S>; 2] {
+        let index = reversed(simd, scrambled(simd, reversed(simd, index), self.seeds[0]));
+        let second = second_dimension(simd, index);
+        [first_digits(simd, index, self.seeds[1]), first_digits(simd, second, self.seeds[2])]
+    }
+}
+
+#[inline(always)]
+fn first_digits<S: Simd>(simd: S, digits: u32x8<S>, seed: u32) -> f32x8<S> {
+    let first = reversed(simd, scrambled(simd, digits, seed)) >> (u32::BITS - SAMPLE_DIGITS);
+    first.to_float::<f32x8<S>>() * f32x8::splat(simd, LAST_DIGIT)
+}
+
+/// [`u32::reverse_bits`]
+#[inline(always)]
+fn reversed<S: Simd>(simd: S, digits: u32x8<S>) -> u32x8<S> {
+    let swap = |digits: u32x8<S>, upper: u32, shift: u32| {
+        let upper = u32x8::splat(simd, upper);
+        (digits & upper) >> shift | (digits << shift) & upper
+    };
+    let digits = swap(digits, UPPER_BITS, 1);
+    let digits = swap(digits, UPPER_PAIRS, 2);
+    let digits = swap(digits, UPPER_NIBBLES, 4);
+    let digits = swap(digits, UPPER_BYTES, 8);
+    digits >> 16 | digits << 16
+}
+
+/// [`scramble`]
+#[inline(always)]
+fn scrambled<S: Simd>(simd: S, digits: u32x8<S>, seed: u32) -> u32x8<S> {
+    let mut x = digits + u32x8::splat(simd, seed);
+    x = x ^ x * u32x8::splat(simd, OWEN_1);
+    x = x ^ x * u32x8::splat(simd, OWEN_2);
+    x = x ^ x * u32x8::splat(simd, OWEN_3);
+    x ^ x * u32x8::splat(simd, OWEN_4)
+}
+
+/// [`sobol_1`]
+#[inline(always)]
+fn second_dimension<S: Simd>(simd: S, index: u32x8<S>) -> u32x8<S> {
+    let mut digits = index;
+    digits = digits ^ digits >> 16;
+    digits = digits ^ (digits & u32x8::splat(simd, UPPER_BYTES)) >> 8;
+    digits = digits ^ (digits & u32x8::splat(simd, UPPER_NIBBLES)) >> 4;
+    digits = digits ^ (digits & u32x8::splat(simd, UPPER_PAIRS)) >> 2;
+    digits ^ (digits & u32x8::splat(simd, UPPER_BITS)) >> 1
 }
 
 /// Random bits of `key` (a pixel or light point), light number `light` and the user's `seed`.

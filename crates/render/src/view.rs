@@ -1,10 +1,13 @@
 //! The mapping from pixels to rays.
 
+use fearless_simd::f32x8;
+use fearless_simd::prelude::*;
 use glam::Vec3;
 use lightmesh_layout::geometry as layout;
 use lightmesh_scene::{Camera, Projection};
 
 use crate::accel::Ray;
+use crate::simd::{Axes, LANES, dot, scaled, splat, sum};
 
 /// A rectangle of an image's pixels.
 ///
@@ -155,6 +158,31 @@ impl View {
         };
         Ray { origin, direction, t_max: f32::INFINITY }
     }
+
+    /// The rays through points of pixel `index` that are `aside` from its centre, in pixels; the same bits as [`View::ray_beside`].
+    #[inline(always)]
+    pub(crate) fn rays_beside<S: Simd>(&self, simd: S, index: u32, aside: [f32x8<S>; 2]) -> [Ray; LANES] {
+        let [x, y] = self.center(index);
+        let (x, y) = (f32x8::splat(simd, x) + aside[0], f32x8::splat(simd, y) + aside[1]);
+        let aside = sum(scaled(x, splat(simd, self.right)), scaled(y, splat(simd, self.down)));
+        let (origin, direction) = if self.perspective {
+            let direction = sum(splat(simd, self.forward), aside);
+            let length = dot(direction, direction).sqrt();
+            (splat(simd, self.origin), [direction[0] / length, direction[1] / length, direction[2] / length])
+        } else {
+            (sum(splat(simd, self.origin), aside), splat(simd, self.forward))
+        };
+        let (origin, direction) = (lanes_of(origin), lanes_of(direction));
+        std::array::from_fn(|lane| {
+            let of = |axes: &[[f32; LANES]; 3]| Vec3::new(axes[0][lane], axes[1][lane], axes[2][lane]);
+            Ray { origin: of(&origin), direction: of(&direction), t_max: f32::INFINITY }
+        })
+    }
+}
+
+#[inline(always)]
+fn lanes_of<S: Simd>([x, y, z]: Axes<S>) -> [[f32; LANES]; 3] {
+    [x.into(), y.into(), z.into()]
 }
 
 #[cfg(test)]

@@ -58,12 +58,19 @@ impl Approach {
         self.radius
     }
 
+    /// Whether a ray is traced as it is.
+    #[inline(always)]
+    pub(super) fn is_near(&self, ray: &Ray) -> bool {
+        let Ray { origin, direction, t_max } = *ray;
+        let near = (origin - self.center).abs().cmple(Vec3::splat(REACH * self.radius)).all();
+        near && DIRECTION_RANGE.contains(&direction.abs().max_element()) && direction.is_finite() && t_max > 0.0
+    }
+
     /// The ray to trace; `None` if it cannot hit anything.
     #[inline(always)]
     pub(super) fn ray(&self, ray: &Ray) -> Option<NearRay> {
         let Ray { origin, direction, t_max } = *ray;
-        let near = (origin - self.center).abs().cmple(Vec3::splat(REACH * self.radius)).all();
-        if near && DIRECTION_RANGE.contains(&direction.abs().max_element()) && direction.is_finite() && t_max > 0.0 {
+        if self.is_near(ray) {
             return Some(NearRay { origin, direction, t_max, start: 0.0, scale: 1.0 });
         }
         self.far_ray(ray)

@@ -17,6 +17,7 @@
 //! ones, with the same promises. `walk.cuh` and `search.cuh` are the twins of the trait.
 
 mod approach;
+mod beam;
 mod brute_force;
 mod bvh;
 mod distinct;
@@ -32,6 +33,7 @@ mod visit;
 use glam::Vec3;
 use lightmesh_scene::Bounds;
 
+pub(crate) use beam::Beams;
 pub use brute_force::BruteForce;
 pub use bvh::{Bvh, BvhCost};
 pub use grid::{Grid, GridError, GridFault, GridFileError, GridOptions, GridSaveError, Levels};

@@ -16,13 +16,14 @@ macro_rules! stage_table {
                 film: &mut Self::Film,
                 range: &SampleRange
             ) -> Self::Samples;
-            /// Parts the samples of the pixels that are not shared, or should not be: large fragments, and small ones.
+            /// Parts the samples of the pixels that are not shared, or should not be: large fragments, and small ones, with what they
+            /// see.
             fragments(
                 wave: &WaveOf<Self>,
                 samples: &mut Self::Samples,
                 film: &mut Self::Film,
                 all: &Antialiasing
-            ) -> [Self::Rays; 2];
+            ) -> [(Self::Rays, Self::Hits); 2];
             /// Groups surface points by cell of the light mesh.
             cells(wave: &WaveOf<Self>, mesh: &LightMesh) -> Self::Cells;
             /// Tests which light points each surface point sees. Formula (2).

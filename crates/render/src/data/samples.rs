@@ -12,6 +12,9 @@ pub struct PixelSamples {
     pub(crate) hits: Arc<Vec<Hit>>,
     /// The state of each pixel.
     pub(crate) state: Vec<u32>,
+    /// For each sample, the first sample of its pixel that lies on one surface with it: pixel by pixel, then by sample. Only those of
+    /// pixels that are not shared are known; empty if none are.
+    pub(crate) owners: Vec<u8>,
     /// The first pixel.
     pub(crate) first: u32,
     /// The numbers of the samples.
@@ -21,9 +24,21 @@ pub struct PixelSamples {
 impl PixelSamples {
     /// What those of a pixel see.
     #[inline(always)]
-    pub(crate) fn of(&self, pixel: u32) -> impl Iterator<Item = &Hit> {
+    pub(crate) fn of(&self, pixel: u32) -> &[Hit] {
+        &self.hits[self.places(pixel)]
+    }
+
+    /// The owners of those of a pixel that is not shared.
+    #[inline(always)]
+    pub(crate) fn owners_of(&self, pixel: u32) -> &[u8] {
+        &self.owners[self.places(pixel)]
+    }
+
+    #[inline(always)]
+    fn places(&self, pixel: u32) -> Range<usize> {
         let count = self.numbers.len();
-        self.hits[(pixel - self.first) as usize * count..][..count].iter()
+        let start = (pixel - self.first) as usize * count;
+        start..start + count
     }
 
     /// What one of them sees, counted from the first.

@@ -115,6 +115,11 @@ impl<R: Runtime> DeviceFilm<R> {
         }
     }
 
+    /// Whether samples add to coverage or layers.
+    pub(crate) fn keeps_samples(&self) -> bool {
+        self.coverage.is_some() || self.layers.is_some()
+    }
+
     /// The places of the first pixel that is kept, and of the end.
     pub(crate) fn kept_places(&self) -> [usize; 2] {
         [self.kept.start, self.kept.end].map(|row| (row - self.rows.start) as usize * self.width as usize)

@@ -13,6 +13,8 @@ pub struct DeviceSamples<R: Runtime> {
     pub(crate) hits: Arc<Buffer<R, Hit>>,
     /// The state of each pixel, to which the arguments point.
     pub(crate) _state: Buffer<R, u32>,
+    /// The owner of each sample, to which they point, too.
+    pub(crate) _owners: Buffer<R, u8>,
     /// The arguments of kernels.
     pub(crate) record: PixelSamples,
 }

@@ -253,7 +253,7 @@ pub enum Filter {
     Box,
     /// A bell with a standard deviation of a quarter of a pixel, cut off at three.
     Gauss,
-    /// Blackman and Harris' window, 1.5 pixels wide: smooth edges, hardly blurred.
+    /// Blackman and Harris' window, 1.5 pixels to either side: smooth edges, hardly blurred.
     #[default]
     BlackmanHarris,
 }
@@ -275,8 +275,8 @@ impl Filter {
     pub fn help(self) -> &'static str {
         match self {
             Filter::Box => "The pixel's square",
-            Filter::Gauss => "A bell with a standard deviation of 0.25 pixels",
-            Filter::BlackmanHarris => "1.5 pixels wide: smooth edges, hardly blurred",
+            Filter::Gauss => "A bell with a standard deviation of 0.375 pixels",
+            Filter::BlackmanHarris => "1.5 pixels to either side: smooth edges, hardly blurred",
         }
     }
 
@@ -284,7 +284,9 @@ impl Filter {
     pub(crate) fn width(self) -> f64 {
         match self {
             Filter::Box => 1.0,
-            Filter::Gauss | Filter::BlackmanHarris => 1.5,
+            Filter::Gauss => 2.25,
+            // Widths of this filter are usually stated from the centre: this is "1.5" in Cycles.
+            Filter::BlackmanHarris => 3.0,
         }
     }
 }

@@ -1,12 +1,13 @@
 //! Brute force, grids and BVH agree.
 
 use glam::Vec3;
+use lightmesh_scene::Bounds;
 use proptest::prelude::*;
 
 use super::rays::Targets;
 use super::scenes::{self, Scene};
 use super::{Random, grids, structures};
-use crate::accel::{Accelerator, BruteForce, Bvh, Hit, Ray, ShortSegments, ShortTest, Triangle};
+use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Hit, Ray, ShortSegments, ShortTest, Triangle};
 
 fn closest(accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<Hit> {
     // Previous content must not matter.
@@ -106,6 +107,33 @@ proptest! {
                 let alone = closest(&bvh, &[*ray])[0];
                 prop_assert_eq!(bits(&hits[index]), bits(&alone), "{} of {}: {:?}", index, rays.len(), ray);
                 prop_assert_eq!(shadows[index], occluded(&bvh, &[*ray])[0], "{} of {}: {:?}", index, rays.len(), ray);
+            }
+        }
+    }
+
+    #[test]
+    fn beams_agree(scene in prop::sample::select(&scenes::ALL), seed: u64) {
+        let random = &mut Random(seed);
+        let triangles = scene.triangles(random);
+        let grids = grids(&triangles);
+        let targets = Targets { triangles: &triangles, grids: &grids };
+        let bvh = Bvh::new(&triangles);
+        let usable = triangles.iter().filter(|triangle| triangle.is_usable());
+        let mut beams = Beams::new(&bvh, &triangles, &Bounds::around(usable.flat_map(Triangle::corners)));
+        for _ in 0..20 {
+            let unit = |ray: Ray| Ray { direction: ray.direction.try_normalize().unwrap_or(ray.direction), ..ray };
+            let rays: Vec<Ray> = targets.bundle(random).into_iter().map(unit).collect();
+            let expected = closest(&bvh, &rays);
+            // Nothing, about as far as they go, or exactly so far; wrong guesses cost time alone.
+            let depths: Vec<f32> = expected.iter().map(|hit| hit.t).filter(|t| t.is_finite()).collect();
+            let exact = depths.iter().copied().fold(0.0, f32::max);
+            let size = random.pick(&[1, 8, 20, 64]);
+            for far in [None, Some(exact), Some(1.1 * exact), Some(0.5 * exact), Some(0.0)] {
+                let mut hits = vec![Hit { t: 0.5, u: 0.5, v: 0.5, triangle: 0 }; rays.len()];
+                beams.closest_hits(&rays, size, |_| far, &mut hits);
+                for (index, (hit, expected)) in hits.iter().zip(&expected).enumerate() {
+                    prop_assert_eq!(bits(hit), bits(expected), "{:?}: {:?} / {:?}", rays[index], hit, expected);
+                }
             }
         }
     }

@@ -1,28 +1,31 @@
 //! Fragments on the CPU.
 
+use std::cell::OnceCell;
+
 use glam::Vec3;
 use lightmesh_layout::constants::{CONTRAST_FLOOR, PIXEL_SHARED, PIXEL_SPLIT};
 use rayon::prelude::*;
 
 use crate::accel::Hit;
 use crate::antialiasing::Antialiasing;
+use crate::counters::Tally;
 use crate::data::picture::Picture;
 use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
 use crate::data::wave::HostWave;
+use crate::sampling::Pattern;
 use crate::stages::pixel_samples::alike::Facet;
-use crate::stages::pixel_samples::cpu::is_alike;
 
 /// Number of pixels per task.
 const BATCH: usize = 1024;
 
-/// The shared fragments and the single samples of the pixels that count.
+/// The shared fragments and the single samples of the pixels that count, with what they see.
 pub(crate) fn fragments(
     wave: &HostWave,
     samples: &mut PixelSamples,
     film: &mut Picture,
     all: &Antialiasing,
-) -> [RayList; 2] {
+) -> [(RayList, Vec<Hit>); 2] {
     // 1. Which shared pixels are split?
     if !all.apart {
         let indices = 0..samples.state.len() as u32;
@@ -35,22 +38,26 @@ pub(crate) fn fragments(
     let width = film.size[0];
     let kept = film.kept.start * width..film.kept.end * width;
     let of_batch = |pixels: &[u32]| {
-        let mut lists = [wave.rays.empty(), wave.rays.empty()];
+        let mut lists = [(); 2].map(|()| (wave.rays.empty(), Vec::new()));
         for &pixel in pixels.iter().filter(|pixel| kept.contains(pixel)) {
             Pixel { wave, samples, all, pixel }.add_fragments(&mut lists);
         }
         wave.job.piece(pixels.len(), || ());
         lists
     };
-    let parts: Vec<[RayList; 2]> = wave.rays.pixels.par_chunks(BATCH).map(of_batch).collect();
-    let mut lists = [wave.rays.empty(), wave.rays.empty()];
+    let parts: Vec<[(RayList, Vec<Hit>); 2]> = wave.rays.pixels.par_chunks(BATCH).map(of_batch).collect();
+    let mut lists = [(); 2].map(|()| (wave.rays.empty(), Vec::new()));
     for part in parts {
-        lists.iter_mut().zip(part).for_each(|(list, part)| list.append(part));
+        for ((rays, hits), (part_rays, mut part_hits)) in lists.iter_mut().zip(part) {
+            rays.append(part_rays);
+            hits.append(&mut part_hits);
+        }
     }
+    let found = lists.iter().flat_map(|(_, hits)| hits).filter(|hit| hit.is_some()).count();
+    Tally::add(&wave.job.tally.surface_points, found as u64);
     if !all.apart {
         let sampled = Sampled { hits: samples.hits.clone(), first: samples.first, count: samples.numbers.len() };
-        lists[0].sampled = Some(sampled.clone());
-        lists[1].sampled = Some(sampled);
+        lists.iter_mut().for_each(|(rays, _)| rays.sampled = Some(sampled.clone()));
         // 3. Begin anew.
         for (index, _) in samples.state.iter().enumerate().filter(|(_, state)| **state != PIXEL_SHARED) {
             film.color[index] = [0.0; 3];
@@ -75,15 +82,17 @@ fn is_split(wave: &HostWave, samples: &PixelSamples, film: &Picture, all: &Antia
         let pixel = samples.first + index;
         Facet::new(wave.scene, wave.rays.spacing, &wave.rays.through(all, pixel, 0), hit(index))
     };
-    if !is_shared(index) || !hit(index).is_some() {
+    if !is_shared(index) {
         return false;
     }
     let color = |index: u32| Vec3::from_array(film.color[index as usize]);
+    let own = OnceCell::new();
     around(index, film.size[0], film.rows.len() as u32).any(|other| {
         is_shared(other)
-            && hit(other).is_some()
             && differs(color(index), color(other), all.contrast)
-            && facet(index).is_near(&facet(other))
+            && hit(index).is_some()
+            && hit(other).is_some()
+            && own.get_or_init(|| facet(index)).is_near(&facet(other))
     })
 }
 
@@ -111,47 +120,34 @@ struct Pixel<'a> {
 
 impl Pixel<'_> {
     /// Adds its shared fragments and its single samples.
-    fn add_fragments(&self, lists: &mut [RayList; 2]) {
+    fn add_fragments(&self, lists: &mut [(RayList, Vec<Hit>); 2]) {
         let Pixel { samples, all, pixel, .. } = *self;
         let state = samples.state[(pixel - samples.first) as usize];
         if state == PIXEL_SHARED {
             return;
         }
         let count = samples.numbers.len() as u32;
-        let singles = all.apart || state & PIXEL_SPLIT != 0;
-        let mut rest = if count == u32::BITS { u32::MAX } else { (1 << count) - 1 };
-        while rest != 0 {
-            let first = rest.trailing_zeros();
-            let part = if all.apart { 1 << first } else { self.part(first, rest) };
-            rest &= !part;
-            let (size, hit) = (part.count_ones(), samples.hit(pixel, first));
+        let pattern = all.pattern(self.wave.rays.window.number(pixel));
+        let mut add = |list: usize, sample, shared, weight| self.add(&mut lists[list], &pattern, sample, shared, weight);
+        let single = 1.0 / all.samples as f32;
+        if all.apart || state & PIXEL_SPLIT != 0 {
+            (0..count).for_each(|sample| add(1, sample, 0, single));
+            return;
+        }
+        let owners = samples.owners_of(pixel);
+        let owned = |first: u32| (first..count).filter(move |&sample| u32::from(owners[sample as usize]) == first);
+        for first in (0..count).filter(|&sample| u32::from(owners[sample as usize]) == sample) {
             // What sees nothing costs nothing.
-            if !all.apart && (!hit.is_some() || !singles && !self.mirrors(hit)) {
-                let is_large = 4 * size > count;
-                self.add(&mut lists[usize::from(!is_large)], first, part, size as f32 / all.samples as f32);
+            let hit = samples.hit(pixel, first);
+            if hit.is_some() && self.mirrors(hit) {
+                owned(first).for_each(|sample| add(1, sample, 0, single));
                 continue;
             }
-            for sample in (0..count).filter(|sample| part >> sample & 1 != 0) {
-                self.add(&mut lists[1], sample, 0, 1.0 / all.samples as f32);
-            }
+            let part = owned(first).fold(0_u32, |part, sample| part | 1 << sample);
+            let size = part.count_ones();
+            let is_large = 4 * size > count;
+            add(usize::from(!is_large), first, part, size as f32 / all.samples as f32);
         }
-    }
-
-    /// The samples among `rest` that lie on a surface with `first`.
-    fn part(&self, first: u32, rest: u32) -> u32 {
-        let hit = self.samples.hit(self.pixel, first);
-        let others = (0..self.samples.numbers.len() as u32).filter(|sample| rest >> sample & 1 != 0);
-        others
-            .filter(|&sample| {
-                let other = self.samples.hit(self.pixel, sample);
-                is_alike(hit, other, || self.facet(first, hit).continues(&self.facet(sample, other)))
-            })
-            .fold(0, |part, sample| part | 1 << sample)
-    }
-
-    fn facet(&self, sample: u32, hit: &Hit) -> Facet {
-        let ray = self.wave.rays.through(self.all, self.pixel, self.samples.numbers.start + sample);
-        Facet::new(self.wave.scene, self.wave.rays.spacing, &ray, hit)
     }
 
     /// Whether rays that a mirror reflects are followed from here.
@@ -161,9 +157,18 @@ impl Pixel<'_> {
         self.all.mirrors && (material.ks != Vec3::ZERO || material.ks_tinted != Vec3::ZERO)
     }
 
-    fn add(&self, list: &mut RayList, sample: u32, shared: u32, weight: f32) {
+    fn add(
+        &self,
+        (list, hits): &mut (RayList, Vec<Hit>),
+        pattern: &Pattern,
+        sample: u32,
+        shared: u32,
+        weight: f32,
+    ) {
+        hits.push(*self.samples.hit(self.pixel, sample));
         let sample = self.samples.numbers.start + sample;
-        list.rays.push(self.wave.rays.through(self.all, self.pixel, sample));
+        let view = self.wave.rays.view.expect("the rays are a camera's");
+        list.rays.push(view.ray_beside(self.pixel, self.all.within(pattern, sample)));
         list.pixels.push(self.pixel);
         list.samples.push(sample + 1);
         list.shared.push(shared);

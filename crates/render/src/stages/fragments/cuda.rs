@@ -4,10 +4,10 @@ use lightmesh_layout::geometry::{ListedRay, Rays};
 use lightmesh_layout::stages::PixelSamples;
 
 use crate::antialiasing::Antialiasing;
-use crate::cuda::{Kernel, Runtime};
+use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gpu::film::DeviceFilm;
-use crate::gpu::rays::{DeviceRays, DeviceWave};
+use crate::gpu::rays::{DeviceHits, DeviceRays, DeviceWave};
 use crate::gpu::samples::{DeviceSampled, DeviceSamples};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, Work, blocks_for};
 
@@ -17,14 +17,14 @@ const EMIT: Kernel = Kernel { module: "fragments", name: "emit_fragments" };
 /// Number of blocks in the first launch.
 const FIRST: u64 = 256;
 
-/// The shared fragments and the single samples of the pixels that count.
+/// The shared fragments and the single samples of the pixels that count, with what they see.
 pub(crate) fn fragments<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
     samples: &mut DeviceSamples<R>,
     film: &mut DeviceFilm<R>,
     all: &Antialiasing,
-) -> Result<[DeviceRays<R>; 2], RenderError> {
+) -> Result<[(DeviceRays<R>, DeviceHits<R>); 2], RenderError> {
     let (pool, rays) = (cuda.pool(), wave.rays);
     let blocks = rays.blocks(BLOCK_SIDE);
     let launch = |kernel: Kernel, progress: usize, record: PixelSamples| {
@@ -50,22 +50,27 @@ pub(crate) fn fragments<R: Runtime>(
     // 3. The fragments.
     let lists =
         [pool.room::<ListedRay>("large fragments", totals[0])?, pool.room::<ListedRay>("small fragments", totals[1])?];
+    let hits = [pool.room("hits of fragments", totals[0])?, pool.room("hits of fragments", totals[1])?];
     record.fragments = [lists[0].output(), lists[1].output()];
+    record.fragment_hits = [hits[0].output(), hits[1].output()];
     launch(EMIT, 0, record)?;
-    let [shared, single] = lists;
-    let list = |list: crate::cuda::Buffer<R, ListedRay>, total: usize, sampled| DeviceRays {
-        record: Rays { list: list.input(), first_pixel: 0, count: total as u32, ..rays.record },
-        list: Some(list),
-        spacing: rays.spacing,
-        several: true,
-        are_fragments: true,
-        sampled,
-    };
     let sampled = || DeviceSampled {
         hits: samples.hits.clone(),
         first: rays.record.first_pixel,
         pixels: rays.len() as u64,
         count: record.samples[1],
     };
-    Ok([(shared, totals[0]), (single, totals[1])].map(|(rays, total)| list(rays, total, (!all.apart).then(sampled))))
+    let fragments = |list: Buffer<R, ListedRay>, hits| {
+        let several = DeviceRays {
+            record: Rays { list: list.input(), first_pixel: 0, count: list.len() as u32, ..rays.record },
+            list: Some(list),
+            spacing: rays.spacing,
+            several: true,
+            are_fragments: true,
+            sampled: (!all.apart).then(sampled),
+        };
+        (several, DeviceHits { hits })
+    };
+    let ([large, small], [large_hits, small_hits]) = (lists, hits);
+    Ok([fragments(large, large_hits), fragments(small, small_hits)])
 }

@@ -2,10 +2,10 @@
 //
 // 1. `find_contrast`: which shared pixels are split?
 // 2. `count_fragments`: how many fragments the pixels of each block have; then a scan of each list.
-// 3. `emit_fragments`: the fragments, in the order of blocks, threads and samples; their pixels begin anew.
+// 3. `emit_fragments`: the fragments and what they see, in the order of blocks, threads and samples; their pixels begin anew.
 #include "cuda/prelude.cuh"
 
-#include "cuda/warp.cuh"
+#include "cuda/tally.cuh"
 #include "stages/pixel_samples/alike.cuh"
 
 // The columns or rows around a place, and it.
@@ -31,18 +31,22 @@ COLD Facet first_facet(const PixelSamples &args, unsigned index, Hit hit) {
 DEVICE bool is_split(const PixelSamples &args, unsigned index) {
     if ((args.state[index] & PIXEL_SHARED) == 0)
         return false;
-    const Hit hit = sample_hit(args, index, 0);
-    if (hit.triangle == Hit::NONE)
-        return false;
     const unsigned width = args.rays.view.size[0];
     const Around columns = around(index % width, width), rows = around(index / width, args.rays.count / width);
+    bool has_own = false;
+    Facet own = {};
     for (unsigned row = rows.start; row < rows.end; ++row)
         for (unsigned column = columns.start; column < columns.end; ++column) {
             const unsigned other = row * width + column;
             if ((args.state[other] & PIXEL_SHARED) == 0 || !differs(args.color[index], args.color[other], args.contrast))
                 continue;
-            const Hit beside = sample_hit(args, other, 0);
-            if (beside.triangle != Hit::NONE && is_near(first_facet(args, index, hit), first_facet(args, other, beside)))
+            const Hit hit = sample_hit(args, index, 0), beside = sample_hit(args, other, 0);
+            if (hit.triangle == Hit::NONE || beside.triangle == Hit::NONE)
+                continue;
+            if (!has_own)
+                own = first_facet(args, index, hit);
+            has_own = true;
+            if (is_near(own, first_facet(args, other, beside)))
                 return true;
         }
     return false;
@@ -57,24 +61,20 @@ KERNEL(find_contrast, PixelSamples, BLOCK, 4) {
         args.state[index] |= PIXEL_SPLIT;
 }
 
-// The samples among `rest` that lie on a surface with `first`.
-DEVICE unsigned part_of(const PixelSamples &args, unsigned index, unsigned first, unsigned rest) {
-    const Hit hit = sample_hit(args, index, first);
-    const Ray through = sample_ray(args, index, first);
+// The samples that one of them owns, from the owner on.
+DEVICE unsigned part_of(const PixelSamples &args, unsigned index, unsigned owner) {
     unsigned part = 0;
-    for (unsigned left = rest; left != 0; left &= left - 1) {
-        const unsigned sample = __ffs(left) - 1;
-        const Hit other = sample_hit(args, index, sample);
-        if (is_alike(args, through, hit, sample_ray(args, index, sample), other))
-            part |= 1u << sample;
-    }
+    for (unsigned sample = owner; sample < args.samples[1]; ++sample)
+        part |= (args.owners[(unsigned long long)sample * args.rays.count + index] == owner ? 1u : 0u) << sample;
     return part;
 }
 
 // Whether rays that a mirror reflects are followed from here.
 DEVICE bool mirrors(const PixelSamples &args, const Hit &hit) {
+    if (!args.mirrors)
+        return false;
     const Material &material = args.scene.materials[__ldg(args.scene.triangle_materials + hit.triangle)];
-    return args.mirrors && (material.ks != splat(0.0f) || material.ks_tinted != splat(0.0f));
+    return material.ks != splat(0.0f) || material.ks_tinted != splat(0.0f);
 }
 
 // The number of fragments in each list.
@@ -84,16 +84,20 @@ struct Counted {
 
 DEVICE void take(const PixelSamples &, unsigned, Counted &counted, unsigned list, unsigned, unsigned, float) { ++counted.counts[list]; }
 
-// Where the next fragment of each list is written.
+// Where the next fragment of each list is written, and how many see a surface so far.
 struct Written {
-    unsigned places[2];
+    unsigned places[2], found;
 };
 
 DEVICE void take(const PixelSamples &args, unsigned index, Written &written, unsigned list, unsigned sample, unsigned shared,
                  float weight) {
     const Ray ray = sample_ray(args, index, sample);
-    args.fragments[list][written.places[list]++] = ListedRay{
+    const unsigned place = written.places[list]++;
+    args.fragments[list][place] = ListedRay{
         ray.origin, args.rays.first_pixel + index, ray.direction, args.samples[0] + sample + 1, splat(weight), shared};
+    const Hit hit = sample_hit(args, index, sample);
+    store_hit(args.fragment_hits[list], place, hit);
+    written.found += hit.triangle != Hit::NONE;
 }
 
 // Hands the large fragments and the small ones of a pixel to `taker`.
@@ -102,22 +106,25 @@ DEVICE void add_fragments(const PixelSamples &args, unsigned index, Taker &taker
     const unsigned state = args.state[index], count = args.samples[1];
     if (state == PIXEL_SHARED || index < args.inner[0] || index >= args.inner[1])
         return;
-    const bool singles = args.apart || (state & PIXEL_SPLIT);
+    if (args.apart || (state & PIXEL_SPLIT)) {
+        for (unsigned sample = 0; sample < count; ++sample)
+            take(args, index, taker, 1, sample, 0, args.weight);
+        return;
+    }
     unsigned rest = count == WARP ? ALL_LANES : (1u << count) - 1;
     while (rest != 0) {
-        const unsigned first = __ffs(rest) - 1;
-        const unsigned part = args.apart ? 1u << first : part_of(args, index, first, rest);
+        const unsigned first = __ffs(rest) - 1, part = part_of(args, index, first);
         rest &= ~part;
-        const unsigned size = __popc(part);
-        const Hit hit = sample_hit(args, index, first);
         // What sees nothing costs nothing.
-        if (!args.apart && (hit.triangle == Hit::NONE || (!singles && !mirrors(args, hit)))) {
-            const bool is_large = 4 * size > count;
-            take(args, index, taker, is_large ? 0 : 1, first, part, (float)size / (float)args.all_samples);
+        const Hit hit = sample_hit(args, index, first);
+        if (hit.triangle != Hit::NONE && mirrors(args, hit)) {
+            for (unsigned left = part; left != 0; left &= left - 1)
+                take(args, index, taker, 1, __ffs(left) - 1, 0, args.weight);
             continue;
         }
-        for (unsigned left = part; left != 0; left &= left - 1)
-            take(args, index, taker, 1, __ffs(left) - 1, 0, args.weight);
+        const unsigned size = __popc(part);
+        const bool is_large = 4 * size > count;
+        take(args, index, taker, is_large ? 0 : 1, first, part, (float)size / (float)args.all_samples);
     }
 }
 
@@ -169,10 +176,10 @@ KERNEL(emit_fragments, PixelSamples, BLOCK, 4) {
         unsigned all;
         written.places[list] = args.counts[list][block] + sum_before(counted.counts[list], all);
     }
-    if (!has)
-        return;
-    add_fragments(args, index, written);
-    if (args.apart || args.state[index] == PIXEL_SHARED)
+    if (has)
+        add_fragments(args, index, written);
+    count(tally_shard(args.tally).surface_points, written.found);
+    if (!has || args.apart || args.state[index] == PIXEL_SHARED)
         return;
     // Begin anew.
     args.color[index] = splat(0.0f);

@@ -59,15 +59,3 @@ DEVICE bool continues(const Facet &a, const Facet &b) {
 
 // Whether the surface of a neighbouring pixel may be compared.
 DEVICE bool is_near(const Facet &a, const Facet &b) { return dot(a.smooth, b.smooth) >= NEAR_COSINE && is_level(a, b, NEAR_HEIGHT); }
-
-// The same for different triangles: seldom, and too much for registers.
-COLD bool triangles_continue(const PixelSamples &args, Ray a, Hit hit_a, Ray b, Hit hit_b) {
-    return continues(facet_of(args, a, hit_a), facet_of(args, b, hit_b));
-}
-
-// Whether two hits of a pixel may be shaded together.
-DEVICE bool is_alike(const PixelSamples &args, const Ray &a, const Hit &hit_a, const Ray &b, const Hit &hit_b) {
-    if (hit_a.triangle == hit_b.triangle)
-        return true;
-    return hit_a.triangle != Hit::NONE && hit_b.triangle != Hit::NONE && triangles_continue(args, a, hit_a, b, hit_b);
-}

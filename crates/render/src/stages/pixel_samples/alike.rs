@@ -1,13 +1,18 @@
 //! Whether two samples lie on one surface. Twin: `alike.cuh`.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{NEAR_COSINE, NEAR_HEIGHT, SAME_COSINE, SAME_FACET_COSINE, SAME_HEIGHT};
+use lightmesh_layout::constants::{
+    MOST_SHARED, NEAR_COSINE, NEAR_HEIGHT, SAME_COSINE, SAME_FACET_COSINE, SAME_HEIGHT,
+};
 
 use crate::accel::{Hit, Ray};
+use crate::antialiasing::Antialiasing;
+use crate::data::rays::RayList;
 use crate::prepared::PreparedScene;
 use crate::surface::{SurfacePoint, shading_normal};
 
 /// A piece of a surface, about as large as a pixel.
+#[derive(Clone, Copy)]
 pub(crate) struct Facet {
     pub(crate) point: SurfacePoint,
     /// The normal that shading uses.
@@ -55,5 +60,78 @@ impl Facet {
         self.material == other.material
             && self.point.normal.dot(between).abs() <= height * self.width
             && other.point.normal.dot(between).abs() <= height * other.width
+    }
+}
+
+/// Stands for the centre of a pixel in place of a sample's number.
+const CENTER: usize = MOST_SHARED as usize;
+
+/// What the samples of a pixel and its centre see.
+pub(crate) struct Surfaces<'a> {
+    scene: &'a PreparedScene,
+    rays: &'a RayList,
+    all: &'a Antialiasing,
+    center: (&'a Ray, Hit),
+    pixel: u32,
+    hits: &'a [Hit],
+    /// Computed when they are asked for.
+    facets: [Option<Facet>; CENTER + 1],
+}
+
+impl<'a> Surfaces<'a> {
+    /// Those of a pixel whose samples see `hits`; `rays` are a camera's.
+    #[inline(always)]
+    pub(crate) fn new(
+        scene: &'a PreparedScene,
+        rays: &'a RayList,
+        all: &'a Antialiasing,
+        center: (&'a Ray, Hit),
+        (pixel, hits): (u32, &'a [Hit]),
+    ) -> Surfaces<'a> {
+        Surfaces { scene, rays, all, center, pixel, hits, facets: [None; CENTER + 1] }
+    }
+
+    /// Whether all samples lie on one surface with the centre.
+    #[inline(always)]
+    pub(crate) fn is_shared(&mut self) -> bool {
+        (0..self.hits.len()).all(|sample| self.is_alike(CENTER, sample))
+    }
+
+    /// Adds the owner of each sample: the first one that lies on a surface with it, and is not owned by another.
+    pub(crate) fn add_owners(&mut self, owners: &mut Vec<u8>) {
+        const NONE: u8 = u8::MAX;
+        let start = owners.len();
+        owners.resize(start + self.hits.len(), NONE);
+        for first in 0..self.hits.len() {
+            if owners[start + first] != NONE {
+                continue;
+            }
+            for sample in first..self.hits.len() {
+                if owners[start + sample] == NONE && self.is_alike(first, sample) {
+                    owners[start + sample] = first as u8;
+                }
+            }
+        }
+    }
+
+    /// Whether two of them may be shaded together.
+    #[inline(always)]
+    fn is_alike(&mut self, a: usize, b: usize) -> bool {
+        let (hit_a, hit_b) = (self.hit(a), self.hit(b));
+        hit_a.triangle == hit_b.triangle || hit_a.is_some() && hit_b.is_some() && self.facet(a).continues(&self.facet(b))
+    }
+
+    #[inline(always)]
+    fn hit(&self, sample: usize) -> Hit {
+        if sample == CENTER { self.center.1 } else { self.hits[sample] }
+    }
+
+    fn facet(&mut self, sample: usize) -> Facet {
+        let Surfaces { scene, rays, all, center, pixel, .. } = *self;
+        let hit = self.hit(sample);
+        *self.facets[sample].get_or_insert_with(|| {
+            let ray = if sample == CENTER { *center.0 } else { rays.through(all, pixel, sample as u32) };
+            Facet::new(scene, rays.spacing, &ray, &hit)
+        })
     }
 }

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
+use fearless_simd::Level;
 use glam::Vec3;
 use lightmesh_layout::constants::PIXEL_SHARED;
 use rayon::prelude::*;
 
 use super::SampleRange;
-use super::alike::Facet;
-use crate::accel::{Hit, Ray};
+use super::alike::{Facet, Surfaces};
+use crate::accel::Hit;
 use crate::counters::Tally;
 use crate::data::picture::Picture;
 use crate::data::rays::{RayList, Sampled};
@@ -18,6 +19,8 @@ use crate::prepared::PreparedScene;
 
 /// Number of pixels per task.
 const BATCH: usize = 256;
+/// Number of pixels of a beam.
+const BEAM: usize = 8;
 
 /// What the samples of pixels see. Takes away from `hits`, those of the centres, what is not shared.
 pub(crate) fn pixel_samples(
@@ -32,65 +35,102 @@ pub(crate) fn pixel_samples(
     let view = rays.view.expect("the rays are a camera's");
     let (pixels, first) = (rays.pixels.len(), film.rows.start * view.size()[0]);
 
-    // 1. What each sample sees. Rays through a pixel follow each other: they are coherent.
-    let count = numbers.len();
-    let mut all_hits = vec![Hit::MISS; pixels * count];
-    let found = rays.pixels.par_chunks(BATCH).map(|pixels| {
-        job.piece(pixels.len() * count, || {
-            let through = |&pixel: &u32| {
-                let pattern = all.pattern(view.window().number(pixel));
-                numbers.clone().map(move |sample| view.ray_beside(pixel, all.within(&pattern, sample)))
-            };
-            let rays: Vec<Ray> = pixels.iter().flat_map(through).collect();
-            let mut hits = vec![Hit::MISS; rays.len()];
-            scene.geometry.accelerator.closest_hits(&rays, &mut hits);
-            hits
-        })
-    });
-    let found: Vec<Vec<Hit>> = found.collect();
-    let in_order = found.iter().flat_map(|hits| hits.chunks_exact(count));
-    for (&pixel, hits) in rays.pixels.iter().zip(in_order) {
-        all_hits[(pixel - first) as usize * count..][..count].copy_from_slice(hits);
-    }
+    // 1. What each sample sees. The rays through a pixel follow each other: they are coherent.
+    let (level, count) = (Level::new(), numbers.len());
+    let depths = Depths::new(rays, hits, first);
+    let mut all_hits: Vec<Hit> = bytemuck::zeroed_vec(pixels * count);
+    all_hits.par_chunks_mut(BATCH * count).enumerate().for_each_init(
+        || (Vec::new(), scene.geometry.beams()),
+        |(rays, beams), (batch, hits)| {
+            job.piece(hits.len(), || {
+                let start = batch * BATCH;
+                let pixels = first + start as u32..first + (start + hits.len() / count) as u32;
+                all.rays(level, &view, pixels, numbers.clone(), rays);
+                beams.closest_hits(rays, BEAM * count, |beam| depths.around(start + beam * BEAM), hits);
+            });
+        },
+    );
     Tally::add(&job.tally.rays, all_hits.len() as u64);
-    let mut samples =
-        PixelSamples { hits: Arc::new(all_hits), state: vec![0; pixels], first, numbers: numbers.clone() };
+    let mut samples = PixelSamples {
+        hits: Arc::new(all_hits),
+        state: vec![0; pixels],
+        owners: Vec::new(),
+        first,
+        numbers: numbers.clone(),
+    };
     nearest(scene, rays, &samples, film, range);
     if all.apart {
         return samples;
     }
 
-    // 2. Which pixels are shared?
-    let states: Vec<u32> = rays
-        .pixels
-        .par_iter()
-        .zip(&mut *hits)
-        .zip(&rays.rays)
-        .map(|((&pixel, hit), ray)| {
-            let shared = samples.of(pixel).enumerate().all(|(sample, other)| {
-                is_alike(hit, other, || {
-                    let beside = all.ray(&view, pixel, sample as u32);
-                    let facet = |ray, hit| Facet::new(scene, rays.spacing, ray, hit);
-                    facet(ray, hit).continues(&facet(&beside, other))
-                })
-            });
-            if !shared && !all.keeps {
-                *hit = Hit::MISS;
+    // 2. Which pixels are shared, and which samples of the others lie on one surface?
+    samples.owners = vec![0; pixels * count];
+    let parted: Vec<Parted> = (rays.pixels.par_chunks(BATCH), hits.par_chunks_mut(BATCH), rays.rays.par_chunks(BATCH))
+        .into_par_iter()
+        .map(|(pixels, hits, through)| {
+            let mut parted = Parted::default();
+            for ((&pixel, hit), ray) in pixels.iter().zip(hits).zip(through) {
+                let others = samples.of(pixel);
+                // Most pixels need no surfaces.
+                if others.iter().all(|other| other.triangle == hit.triangle) {
+                    parted.shared.push(pixel);
+                    continue;
+                }
+                let mut surfaces = Surfaces::new(scene, rays, all, (ray, *hit), (pixel, others));
+                if surfaces.is_shared() {
+                    parted.shared.push(pixel);
+                    continue;
+                }
+                parted.others.push(pixel);
+                surfaces.add_owners(&mut parted.owners);
+                if !all.keeps {
+                    *hit = Hit::MISS;
+                }
             }
-            u32::from(shared) * PIXEL_SHARED
+            parted
         })
         .collect();
-    for (&pixel, state) in rays.pixels.iter().zip(states) {
-        samples.state[(pixel - first) as usize] = state;
+    for Parted { shared, others, owners } in parted {
+        for pixel in shared {
+            samples.state[(pixel - first) as usize] = PIXEL_SHARED;
+        }
+        for (pixel, owners) in others.into_iter().zip(owners.chunks_exact(count)) {
+            samples.owners[(pixel - first) as usize * count..][..count].copy_from_slice(owners);
+        }
     }
     rays.sampled = Some(Sampled { hits: Arc::clone(&samples.hits), first, count });
     samples
 }
 
-/// Whether two hits of a pixel may be shaded together; `continues` decides for different triangles.
-#[inline(always)]
-pub(crate) fn is_alike(a: &Hit, b: &Hit, continues: impl FnOnce() -> bool) -> bool {
-    a.triangle == b.triangle || a.is_some() && b.is_some() && continues()
+/// How far the centres of pixels see.
+struct Depths {
+    by_pixel: Vec<f32>,
+}
+
+impl Depths {
+    fn new(rays: &RayList, hits: &[Hit], first: u32) -> Depths {
+        let mut by_pixel = vec![0.0; hits.len()];
+        for (&pixel, hit) in rays.pixels.iter().zip(hits) {
+            by_pixel[(pixel - first) as usize] = hit.t;
+        }
+        Depths { by_pixel }
+    }
+
+    /// About how far the samples of the pixels of a beam see; `None` if some centre sees nothing.
+    fn around(&self, start: usize) -> Option<f32> {
+        let depths = &self.by_pixel[start..self.by_pixel.len().min(start + BEAM)];
+        let (nearest, farthest) =
+            depths.iter().fold((f32::INFINITY, 0.0_f32), |(low, high), &depth| (low.min(depth), high.max(depth)));
+        (farthest < f32::INFINITY).then(|| farthest + 1.5 * (farthest - nearest) + 0.01 * farthest)
+    }
+}
+
+/// The pixels of a batch: those that are shared, and the others with the owners of their samples.
+#[derive(Default)]
+struct Parted {
+    shared: Vec<u32>,
+    others: Vec<u32>,
+    owners: Vec<u8>,
 }
 
 /// Coverage, and the layers of the nearest samples.
@@ -100,7 +140,7 @@ fn nearest(scene: &PreparedScene, rays: &RayList, samples: &PixelSamples, film: 
     let weight = 1.0 / all.samples as f32;
     if let Some(coverage) = &mut film.coverage {
         for (pixel, coverage) in (samples.first..).zip(coverage) {
-            for _ in samples.of(pixel).filter(|hit| hit.is_some()) {
+            for _ in samples.of(pixel).iter().filter(|hit| hit.is_some()) {
                 *coverage += weight;
             }
         }

@@ -16,7 +16,10 @@ use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerStructure, Work, block
 use crate::job::Job;
 
 const CAST: PerStructure = per_structure!("pixel_samples", "pixel_samples");
+const NEAREST: Kernel = Kernel { module: "pixel_samples", name: "nearest_samples" };
 const MERGE: Kernel = Kernel { module: "pixel_samples", name: "merge_samples" };
+/// Logarithm of the number of samples of a pixel that neighbouring threads cast.
+const MOST_TOGETHER: u32 = 3;
 /// Number of blocks in the first launch.
 const FIRST: u64 = 256;
 
@@ -34,17 +37,21 @@ pub(crate) fn pixel_samples<R: Runtime>(
     let (pixels, count) = (rays.len(), numbers.len());
     let planes = cuda.pool().room("hits of samples", pixels * count)?;
     let state = cuda.pool().room("states of pixels", pixels)?;
+    let owners = cuda.pool().room("owners of samples", if all.apart { 0 } else { pixels * count })?;
     let mut record = PixelSamples {
         scene: scene.record,
         rays: rays.record,
         hits: planes.output(),
         centers: hits.hits.output(),
         state: state.output(),
+        owners: owners.output(),
         tally: cuda.tally()?,
         seed: all.seed,
         spacing: rays.spacing,
         samples: [numbers.start, count as u32],
         all_samples: all.samples,
+        together: 1 << (count as u32).trailing_zeros().min(MOST_TOGETHER),
+        lanes: (count as u32).next_power_of_two(),
         weight: 1.0 / all.samples as f32,
         contrast: all.contrast,
         apart: u32::from(all.apart),
@@ -64,11 +71,23 @@ pub(crate) fn pixel_samples<R: Runtime>(
     })?;
     Tally::add(&job.tally.rays, (pixels * count) as u64);
 
-    // 2. Which pixels are shared?
-    let work = Work { units: blocks, cost: count as u64, first: FIRST, progress: 0 };
-    cuda.in_pieces(job, MERGE, work, |piece| {
-        cuda.launch(MERGE, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
-    })?;
+    // Coverage and layers.
+    if film.keeps_samples() {
+        let work = Work { units: blocks, cost: count as u64, first: FIRST, progress: 0 };
+        cuda.in_pieces(job, NEAREST, work, |piece| {
+            cuda.launch(NEAREST, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
+        })?;
+    }
+
+    // 2. Which pixels are shared, and which samples of the others lie on one surface?
+    if all.apart {
+        state.clear()?;
+    } else {
+        let work = Work { units: blocks * u64::from(record.lanes), cost: 1, first: FIRST, progress: 0 };
+        cuda.in_pieces(job, MERGE, work, |piece| {
+            cuda.launch(MERGE, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
+        })?;
+    }
     let hits = Arc::new(planes);
     if !all.apart {
         let sampled = DeviceSampled {
@@ -79,5 +98,5 @@ pub(crate) fn pixel_samples<R: Runtime>(
         };
         rays.sampled = Some(sampled);
     }
-    Ok(DeviceSamples { hits, _state: state, record })
+    Ok(DeviceSamples { hits, _state: state, _owners: owners, record })
 }

@@ -1,19 +1,40 @@
-// The samples of pixels on a CUDA device: twin of cpu.rs, one thread per sample, then one per pixel.
+// The samples of pixels on a CUDA device: twin of cpu.rs, one thread per sample.
 #include "cuda/prelude.cuh"
 
 #include "accel/walk.cuh"
 #include "cuda/tally.cuh"
+#include "cuda/warp.cuh"
 #include "stages/pixel_samples/alike.cuh"
 
-// 1. What each sample sees.
+// The threads of a warp along a curve: any four, eight or sixteen from a multiple of their number on take neighbouring pixels.
+DEVICE unsigned along_curve(unsigned thread) {
+    const unsigned column = (thread & 1) | (thread >> 1 & 2) | (thread >> 2 & 4), row = (thread >> 1 & 1) | (thread >> 2 & 2);
+    return (thread & ~(WARP - 1)) | row << 3 | column;
+}
+
+// The pixel and the sample of a thread, where each of `width` neighbouring threads takes a sample of a pixel.
+struct Place {
+    unsigned ray, sample;
+    bool has_ray;
+};
+
+// Neighbouring threads take neighbouring pixels, too.
+DEVICE Place place_of(const PixelSamples &args, unsigned tile, unsigned part, unsigned width) {
+    const unsigned thread = along_curve(part * (BLOCK / width) + threadIdx.x / width);
+    Place place = {0, threadIdx.x % width, false};
+    place.has_ray = ray_of_thread(args.rays, tile, thread, place.ray);
+    return place;
+}
+
+// 1. What each sample sees. A warp casts several samples of each of a few pixels: its rays are as close together as they can be.
 template <class Structure>
 DEVICE void pixel_samples(const PixelSamples &args, const Structure &structure) {
-    const unsigned width = args.rays.view.size[0], rows = args.rays.count / width;
-    const unsigned blocks = (width + BLOCK_SIDE - 1) / BLOCK_SIDE * ((rows + BLOCK_SIDE - 1) / BLOCK_SIDE);
     const unsigned long long block = args.first_block + blockIdx.x;
-    const unsigned sample = (unsigned)(block / blocks);
-    unsigned ray;
-    if (ray_of_thread(args.rays, (unsigned)(block % blocks), threadIdx.x, ray)) {
+    const unsigned tile = (unsigned)(block / args.samples[1]), part = (unsigned)(block % args.samples[1]);
+    const unsigned first = part / args.together * args.together;
+    const Place place = place_of(args, tile, part - first, args.together);
+    if (place.has_ray) {
+        const unsigned ray = place.ray, sample = first + place.sample;
         const Hit hit = closest_hit(structure, args.tally, sample_ray(args, ray, sample));
         store_hit(args.hits + (unsigned long long)sample * args.rays.count, ray, hit);
     }
@@ -22,7 +43,10 @@ DEVICE void pixel_samples(const PixelSamples &args, const Structure &structure) 
 KERNEL_PER_STRUCTURE(pixel_samples, PixelSamples, BLOCK, 4)
 
 // Coverage, and the layers of the nearest sample.
-DEVICE void take_nearest(const PixelSamples &args, unsigned ray) {
+KERNEL(nearest_samples, PixelSamples, BLOCK, 4) {
+    unsigned ray;
+    if (!ray_of_thread(args.rays, (unsigned)(args.first_block + blockIdx.x), threadIdx.x, ray))
+        return;
     for (unsigned sample = 0; sample < args.samples[1]; ++sample) {
         const Hit hit = sample_hit(args, ray, sample);
         if (hit.triangle == Hit::NONE)
@@ -39,22 +63,82 @@ DEVICE void take_nearest(const PixelSamples &args, unsigned ray) {
     }
 }
 
-// 2. Which pixels are shared?
-KERNEL(merge_samples, PixelSamples, BLOCK, 4) {
-    unsigned ray;
-    if (!ray_of_thread(args.rays, (unsigned)(args.first_block + blockIdx.x), threadIdx.x, ray))
-        return;
-    take_nearest(args, ray);
-    unsigned state = 0;
-    if (!args.apart) {
-        const Hit center = load_hit(args.centers, ray);
-        const Ray through = ray_at(args.rays, ray);
-        bool shared = true;
-        for (unsigned sample = 0; shared && sample < args.samples[1]; ++sample)
-            shared = is_alike(args, through, center, sample_ray(args, ray, sample), sample_hit(args, ray, sample));
-        if (!shared && !args.keeps)
-            store_hit(args.centers, ray, Hit{INFINITE, 0.0f, 0.0f, Hit::NONE});
-        state = shared ? PIXEL_SHARED : 0;
+// The facet of one lane.
+DEVICE Facet broadcast(const Facet &facet, unsigned lane) {
+    Facet answer = facet;
+    answer.point.position = warp_broadcast(facet.point.position, lane);
+    answer.point.normal = warp_broadcast(facet.point.normal, lane);
+    answer.smooth = warp_broadcast(facet.smooth, lane);
+    answer.material = __shfl_sync(ALL_LANES, facet.material, lane);
+    answer.width = __shfl_sync(ALL_LANES, facet.width, lane);
+    return answer;
+}
+
+// What a thread knows of its sample.
+struct Sampled {
+    Hit hit;
+    Facet facet;
+};
+
+// Whether two samples of a pixel may be shaded together.
+DEVICE bool is_alike(unsigned triangle, const Facet &facet, const Sampled &other) {
+    return triangle == other.hit.triangle ||
+           (triangle != Hit::NONE && other.hit.triangle != Hit::NONE && continues(facet, other.facet));
+}
+
+// The owner of each thread's sample: the first one of its pixel that lies on a surface with it, and is not owned by another. `lanes` are
+// those of the pixel that have a sample, `base` is the first. All lanes of the warp take part.
+DEVICE unsigned owner_of(const Sampled &own, unsigned lanes, unsigned base) {
+    const unsigned lane = lane_of_thread();
+    unsigned rest = lanes, owner = 0;
+    while (__ballot_sync(ALL_LANES, rest != 0) != 0) {
+        const unsigned first = rest != 0 ? __ffs(rest) - 1 : lane;
+        const unsigned triangle = __shfl_sync(ALL_LANES, own.hit.triangle, first);
+        const Facet facet = broadcast(own.facet, first);
+        const bool joins = (rest >> lane & 1) != 0 && is_alike(triangle, facet, own);
+        const unsigned joined = __ballot_sync(ALL_LANES, joins) & lanes;
+        owner = joins ? first - base : owner;
+        rest &= ~joined;
     }
-    args.state[ray] = state;
+    return owner;
+}
+
+// 2. Which pixels are shared, and which samples of the others lie on one surface? A thread for each sample, those of a pixel in one warp.
+KERNEL(merge_samples, PixelSamples, BLOCK, 4) {
+    const unsigned long long block = args.first_block + blockIdx.x;
+    const unsigned width = args.lanes, lane = lane_of_thread();
+    const Place place = place_of(args, (unsigned)(block / width), (unsigned)(block % width), width);
+    const bool has = place.has_ray && place.sample < args.samples[1];
+    const unsigned base = lane / width * width;
+    const unsigned lanes = __ballot_sync(ALL_LANES, has) & (width == WARP ? ALL_LANES : ((1u << width) - 1) << base);
+
+    const Hit center = place.has_ray ? load_hit(args.centers, place.ray) : Hit{INFINITE, 0.0f, 0.0f, Hit::NONE};
+    Sampled own = {};
+    own.hit = has ? sample_hit(args, place.ray, place.sample) : center;
+    // Most pixels need no facets.
+    const unsigned others = __ballot_sync(ALL_LANES, own.hit.triangle != center.triangle);
+    bool shared = true;
+    unsigned owner = 0;
+    if (others != 0) {
+        if ((others & lanes) != 0) {
+            if (has && own.hit.triangle != Hit::NONE)
+                own.facet = facet_of(args, sample_ray(args, place.ray, place.sample), own.hit);
+            Facet middle = {};
+            if (place.has_ray && center.triangle != Hit::NONE)
+                middle = facet_of(args, ray_at(args.rays, place.ray), center);
+            shared = !has || is_alike(center.triangle, middle, own);
+        }
+        const unsigned apart = __ballot_sync(ALL_LANES, !shared) & lanes;
+        shared = apart == 0;
+        owner = owner_of(own, shared ? 0 : lanes, base);
+    }
+    if (!place.has_ray)
+        return;
+    if (has && !shared)
+        args.owners[(unsigned long long)place.sample * args.rays.count + place.ray] = (unsigned char)owner;
+    if (place.sample == 0) {
+        args.state[place.ray] = shared ? PIXEL_SHARED : 0;
+        if (!shared && !args.keeps)
+            store_hit(args.centers, place.ray, Hit{INFINITE, 0.0f, 0.0f, Hit::NONE});
+    }
 }
