@@ -35,7 +35,7 @@ deny:
 kernels:
     cargo xtask kernels
 
-# Generate the tables of README and METHOD from the results they name
+# Generate the tables of docs/results and METHOD from the results they name
 readme:
     cargo xtask readme
 
