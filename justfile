@@ -26,6 +26,10 @@ doc:
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
     cargo xtask check-docs
 
+# The book, as target/book/index.html; needs mdbook
+book:
+    mdbook build book
+
 # Licences, sources and versions of all dependencies; needs cargo-deny
 deny:
     cargo deny --locked check --hide-inclusion-graph licenses bans sources

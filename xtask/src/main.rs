@@ -8,6 +8,8 @@ mod corpus;
 mod docs;
 mod examples;
 mod kernels;
+mod pages;
+mod references;
 
 use std::error::Error;
 use std::path::Path;
