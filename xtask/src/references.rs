@@ -1,4 +1,4 @@
-//! References in documents to files of the repository: links, and paths in backticks.
+//! References in documents to files of the repository: links, and paths in backticks. Fenced blocks are skipped.
 
 use std::path::Path;
 use std::{fmt, fs};
