@@ -26,6 +26,10 @@ doc:
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
     cargo xtask check-docs
 
+# The book, as target/book/index.html; needs mdbook
+book:
+    mdbook build book
+
 # Licences, sources and versions of all dependencies; needs cargo-deny
 deny:
     cargo deny --locked check --hide-inclusion-graph licenses bans sources
@@ -35,7 +39,7 @@ deny:
 kernels:
     cargo xtask kernels
 
-# Generate the tables of README and METHOD from the results they name
+# Generate the tables of docs/results and METHOD from the results they name
 readme:
     cargo xtask readme
 

@@ -8,9 +8,9 @@ use std::process::Command;
 
 use crate::{Outcome, Verdict};
 
-/// Writes the tables of README and METHOD from the results they name; with `check` only compares them.
+/// Writes the tables of METHOD and of the page of results from the results they name; with `check` only compares them.
 pub(crate) fn readme(root: &Path, check: bool) -> Outcome {
-    run(root, "lightmesh-bench", "readme", &["README.md", "METHOD.md"], check)
+    run(root, "lightmesh-bench", "readme", &["docs/results/README.md", "METHOD.md"], check)
 }
 
 /// Writes the drawings of METHOD; with `check` only compares them.

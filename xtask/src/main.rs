@@ -8,6 +8,8 @@ mod corpus;
 mod docs;
 mod examples;
 mod kernels;
+mod pages;
+mod references;
 
 use std::error::Error;
 use std::path::Path;
@@ -17,7 +19,7 @@ const USAGE: &str = "\
 usage: cargo xtask check-docs          checks that every file that the documents name exists
        cargo xtask circles             checks that no modules of the renderer import each other in a circle
        cargo xtask kernels [--check]   writes the layout header, the kernels' PTX and docs/kernels.md
-       cargo xtask readme [--check]    writes the tables of README and METHOD from the results they name
+       cargo xtask readme [--check]    writes the tables of docs/results and METHOD from the results they name
        cargo xtask drawings [--check]  writes the drawings of METHOD to docs/drawings
        cargo xtask fuzz-corpus [DIR]   fills fuzz/corpus with the seeds, the scenes here and the models in DIR
 

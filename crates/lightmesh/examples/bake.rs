@@ -22,11 +22,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     scene.complete(Up::of_file(path.as_ref()));
     let fine = Fine::new(&scene.geometry);
 
+    // ANCHOR: visibility
     // 1. What does each vertex see of each light?
     let renderer = Renderer::new(Device::Auto)?;
     let settings = Settings::default().with_mode(Mode::Area).with_samples(64);
     let prepared = renderer.prepare(&scene, &settings, &Unobserved)?;
     let seen = renderer.visibility(&prepared, &fine.positions, &fine.normals, &settings, &Unobserved)?;
+    // ANCHOR_END: visibility
     println!("{} vertices, {} lights: {:.2} s", seen.points(), seen.lights(), seen.stats.seconds.render);
 
     // 2. The light that arrives there multiplies the materials' colours.

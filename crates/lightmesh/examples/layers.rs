@@ -16,10 +16,12 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let mut scene = Scene::open(&path)?;
     scene.complete(Up::of_file(path.as_ref()));
+    // ANCHOR: layers
     let settings = Settings::default().with_size([512, 384]).with_layers(true);
     let frame = Renderer::new(Device::Auto)?.render(&scene, &settings)?;
     frame.save(folder.join("picture.png"))?;
     frame.image.save_layers(folder.join("layers.exr"))?;
+    // ANCHOR_END: layers
 
     let [width, height] = frame.size();
     let Some(layers) = frame.layers() else { return Err("layers were asked for".into()) };

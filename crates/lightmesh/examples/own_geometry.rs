@@ -15,6 +15,7 @@ const SIDE: u32 = 128;
 fn main() -> Result<(), Box<dyn Error>> {
     let picture = std::env::args().nth(1).unwrap_or_else(|| "hill.png".to_owned());
 
+    // ANCHOR: builder
     let mut builder = SceneBuilder::new();
     let grass = builder.add_material(Material::matt([0.8; 3]).named("grass"));
     let clay = builder.add_material(Material::matt([0.7, 0.35, 0.2]).with_ks([0.2; 3]).named("clay"));
@@ -34,6 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let sun = Light::directional(Vec3::new(-0.8, -0.5, -0.4))?.with_intensity([0.8; 3]);
     let lights = Lights::from(vec![sun]).with_ambient([0.25; 3]).with_background([0.5, 0.65, 0.9]);
     let scene = builder.finish_scene("hill").with_lights(lights).with_cameras(vec![camera]);
+    // ANCHOR_END: builder
 
     let frame = Renderer::new(Device::Auto)?.render(&scene, &Settings::default().with_size([768, 512]))?;
     frame.save(&picture)?;

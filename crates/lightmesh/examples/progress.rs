@@ -16,6 +16,7 @@ struct Watcher {
     tenths: AtomicU32,
 }
 
+// ANCHOR: observer
 impl Observer for Watcher {
     fn begin(&self, stage: Stage, total: u64) {
         println!("{}: {total} pieces", stage.name());
@@ -37,6 +38,7 @@ impl Observer for Watcher {
         Instant::now() > self.deadline
     }
 }
+// ANCHOR_END: observer
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);

@@ -20,6 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scene = Scene::open(scene)?;
     let renderer = Renderer::new(Device::Auto)?;
     let settings = Settings::default().with_size([512, 512]);
+    // ANCHOR: images
     let prepared = renderer.prepare(&scene, &settings, &Unobserved)?;
     for picture in 0..pictures {
         let hour = 8.0 + 8.0 * f32::from(picture) / f32::from(pictures.max(2) - 1);
@@ -31,12 +32,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (points, build, upload) = (counts.light_points, seconds.build, seconds.upload);
         println!("{}: {points} light points, {build:.3} s building, {upload:.3} s uploading", path.display());
     }
+    // ANCHOR_END: images
     Ok(())
 }
 
+// ANCHOR: sun
 /// A sun that rises at 6 in the east (+X), is in the south (+Z) at noon and sets at 18 in the west.
 fn sun(hour: f32) -> Result<Light, LightError> {
     let angle = (hour - 6.0) / 12.0 * std::f32::consts::PI;
     let to_sun = Vec3::new(angle.cos(), angle.sin(), 0.6);
     Ok(Light::directional(-to_sun)?.with_intensity([0.9, 0.87, 0.8]).named(format!("sun at {hour}")))
 }
+// ANCHOR_END: sun

@@ -1,7 +1,8 @@
-//! Noise-free soft shadows by the light mesh method.
+//! Soft shadows by the light mesh.
 //!
-//! Visibility to the lights is computed once at the nodes of a lattice in space (*light points*) and interpolated at every
-//! surface point that a pixel sees, so that many shadow rays per pixel become a few short segment tests.
+//! The triangles that can hide a light are found once for a group of neighbouring surface points, and clear the samples of the light that
+//! they hide from each of them: the shadows of many rays per pixel, exactly. The method of the thesis, which interpolates visibility from
+//! the nodes of a lattice, is another [`Lookup`].
 //!
 //! ```no_run
 //! use lightmesh::{Device, Renderer, Scene, Settings};

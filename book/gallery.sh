@@ -1,0 +1,29 @@
+#!/bin/sh
+# Renders the pictures of the gallery: one command each, without any tuning.
+#
+#     book/gallery.sh ../shared/scenes target/release/lightmesh
+#
+# The first argument is a folder with the models that book/src/gallery.md names, the second one the program. PYTHON is one with pillow.
+set -eu
+models=$1
+program=$2
+book=$(dirname "$0")
+new=$(mktemp -d)
+trap 'rm -rf "$new"' EXIT
+
+picture() {
+    name=$1
+    shift
+    "$program" render "$@" --size 640x480 -q -o "$new/$name.png"
+}
+
+picture gazebo builtin:gazebo
+picture childpark builtin:childpark
+picture garden builtin:garden
+picture sponza "$models/sponza/sponza.obj" --camera "-13,3,0;10,5,0;60"
+picture bunny "$models/bunny/bunny.ply"
+picture balloon "$models/balloon/scene.gltf"
+picture chess "$models/chess/chess-board.glb"
+picture house "$models/house/house.glb"
+picture milk_truck "$models/milk_truck/CesiumMilkTruck.glb"
+"${PYTHON:-python3}" "$book/shrink.py" "$book/src/gallery" "$new"/*.png
