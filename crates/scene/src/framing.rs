@@ -134,14 +134,20 @@ fn fitting(mesh: &Mesh, bounds: &Bounds, camera: &Camera) -> Vec3 {
             *border = border.max(aside - tangent * z);
         }
     };
-    if mesh.bounds().diagonal() > 0.0 {
+    if mesh.bounds() == *bounds {
         mesh.positions.iter().for_each(|&position| include(position));
     } else {
-        [bounds.min, bounds.max].into_iter().for_each(include);
+        (0..8).map(|i| corner(bounds, i)).for_each(include);
     }
     let [east, west, north, south] = borders;
     let back = ((east + west).max(north + south) / (2.0 * tangent)).max(0.0);
     center + 0.5 * (east - west) * right + 0.5 * (north - south) * up - back * forward
+}
+
+/// One of the eight corners of a box.
+fn corner(Bounds { min, max }: &Bounds, i: u32) -> Vec3 {
+    let pick = |bit: u32, low: f32, high: f32| if i & bit == 0 { low } else { high };
+    Vec3::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z))
 }
 
 /// The box to frame: a unit cube if the scene is empty or a single point.
@@ -155,11 +161,8 @@ mod tests {
     use super::*;
     use crate::SceneBuilder;
 
-    fn corners(Bounds { min, max }: Bounds) -> [Vec3; 8] {
-        let pick = |i: u32, bit: u32, low: f32, high: f32| if i & bit == 0 { low } else { high };
-        std::array::from_fn(|i| i as u32).map(|i| {
-            Vec3::new(pick(i, 1, min.x, max.x), pick(i, 2, min.y, max.y), pick(i, 4, min.z, max.z))
-        })
+    fn corners(bounds: Bounds) -> [Vec3; 8] {
+        std::array::from_fn(|i| corner(&bounds, i as u32))
     }
 
     /// The corners of a box.
