@@ -13,6 +13,7 @@ use crate::accel::{Accelerator, BruteForce, Bvh, Grid, GridOptions, Triangle};
 use crate::error::RenderError;
 use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
+use crate::shading::ids::MaterialIds;
 use crate::stage::Stage;
 
 /// Bytes that a triangle takes at most while a BVH is built, with what is kept of it.
@@ -27,6 +28,8 @@ pub struct PreparedGeometry {
     pub accelerator: Box<dyn Accelerator>,
     /// The box around all triangles that can be hit.
     pub bounds: Bounds,
+    /// The numbers and names of materials.
+    pub(crate) materials: MaterialIds,
     /// The setting that chose the structure.
     acceleration: Acceleration,
     /// Build time in seconds, until the first image reports it.
@@ -77,6 +80,7 @@ impl PreparedGeometry {
             triangles,
             accelerator,
             bounds,
+            materials: MaterialIds::new(geometry),
             acceleration: acceleration.clone(),
             unreported,
             center,

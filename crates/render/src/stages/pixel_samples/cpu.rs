@@ -15,6 +15,7 @@ use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
 use crate::job::Job;
 use crate::prepared::PreparedScene;
+use crate::shading::ids::ids_of;
 
 /// Number of pixels per task.
 const BATCH: usize = 256;
@@ -55,6 +56,7 @@ pub(crate) fn pixel_samples(
     Tally::add(&job.tally.rays, all_hits.len() as u64);
     let mut samples =
         PixelSamples { hits: Arc::new(all_hits), state: vec![0; pixels], first, numbers: numbers.clone() };
+    count_ids(scene, &samples, film);
     nearest(scene, rays, &samples, film, range);
     if all.apart {
         return samples;
@@ -91,6 +93,22 @@ pub(crate) fn pixel_samples(
 #[inline(always)]
 pub(crate) fn is_alike(a: &Hit, b: &Hit, continues: impl FnOnce() -> bool) -> bool {
     a.triangle == b.triangle || a.is_some() && b.is_some() && continues()
+}
+
+/// The numbers of what samples see: how many see each, and the nearest one's.
+fn count_ids(scene: &PreparedScene, samples: &PixelSamples, film: &mut Picture) {
+    let (Some(counted), Some(layers)) = (&mut film.counted, &mut film.layers) else { return };
+    for (index, pixel) in (samples.first..).enumerate().take(samples.state.len()) {
+        let mut depth = layers.depth[index];
+        for hit in samples.of(pixel).filter(|hit| hit.is_some()) {
+            let ids = ids_of(scene, hit);
+            counted.add(index, ids);
+            if hit.t < depth {
+                depth = hit.t;
+                [layers.object.nearest[index], layers.material.nearest[index]] = ids;
+            }
+        }
+    }
 }
 
 /// Coverage, and the layers of the nearest samples.

@@ -16,6 +16,7 @@ use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerStructure, Work, block
 use crate::job::Job;
 
 const CAST: PerStructure = per_structure!("pixel_samples", "pixel_samples");
+const IDS: Kernel = Kernel { module: "pixel_samples", name: "count_ids" };
 const MERGE: Kernel = Kernel { module: "pixel_samples", name: "merge_samples" };
 /// Number of blocks in the first launch.
 const FIRST: u64 = 256;
@@ -64,11 +65,17 @@ pub(crate) fn pixel_samples<R: Runtime>(
     })?;
     Tally::add(&job.tally.rays, (pixels * count) as u64);
 
-    // 2. Which pixels are shared?
+    // 2. What is it called, and which pixels are shared?
     let work = Work { units: blocks, cost: count as u64, first: FIRST, progress: 0 };
-    cuda.in_pieces(job, MERGE, work, |piece| {
-        cuda.launch(MERGE, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
-    })?;
+    let launch = |kernel: Kernel| {
+        cuda.in_pieces(job, kernel, work, |piece| {
+            cuda.launch(kernel, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
+        })
+    };
+    if film.has_mattes() {
+        launch(IDS)?;
+    }
+    launch(MERGE)?;
     let hits = Arc::new(planes);
     if !all.apart {
         let sampled = DeviceSampled {
