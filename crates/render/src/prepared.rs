@@ -11,9 +11,9 @@ use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Scene};
 
 use crate::accel::{Accelerator, BruteForce, Bvh, Grid, GridOptions, Triangle};
 use crate::error::RenderError;
+use crate::material_ids::MaterialIds;
 use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
-use crate::shading::ids::MaterialIds;
 use crate::stage::Stage;
 
 /// Bytes that a triangle takes at most while a BVH is built, with what is kept of it.

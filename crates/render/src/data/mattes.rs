@@ -1,6 +1,7 @@
 //! What the samples of pixels see, by object and by material, counted for mattes.
 
 use lightmesh_image::{MOST_RANKS, Matte};
+use rayon::prelude::*;
 
 /// The most objects or materials of a pixel whose samples are counted.
 const MATTE_SLOTS: u32 = 8;
@@ -33,14 +34,11 @@ impl Counted {
         Counted { samples, slots, counts: [(); 2].map(|()| vec![[0; 2]; slots * pixels]) }
     }
 
-    /// Counts a sample of a pixel, by the numbers of what it sees.
-    pub(crate) fn add(&mut self, pixel: usize, ids: [u32; 2]) {
-        for (counts, id) in self.counts.iter_mut().zip(ids) {
-            let slots = &mut counts[pixel * self.slots..][..self.slots];
-            if let Some(slot) = slots.iter_mut().find(|slot| slot[0] == id || slot[0] == 0) {
-                *slot = [id, slot[1] + 1];
-            }
-        }
+    /// The slots of each pixel: of objects, and of materials.
+    pub(crate) fn pixels(&mut self) -> impl IndexedParallelIterator<Item = [&mut [[u32; 2]]; 2]> {
+        let [objects, materials] = &mut self.counts;
+        let materials = materials.par_chunks_exact_mut(self.slots);
+        objects.par_chunks_exact_mut(self.slots).zip(materials).map(|(objects, materials)| [objects, materials])
     }
 
     /// Writes what pixels see to mattes, from place `first` on.
@@ -49,6 +47,16 @@ impl Counted {
             for (pixel, slots) in counts.chunks_exact(self.slots).enumerate() {
                 write_ranks(slots, self.samples, matte, first + pixel);
             }
+        }
+    }
+}
+
+/// Counts a sample of a pixel, by the numbers of what it sees.
+#[inline]
+pub(crate) fn count(slots: &mut [&mut [[u32; 2]]; 2], ids: [u32; 2]) {
+    for (slots, id) in slots.iter_mut().zip(ids) {
+        if let Some(slot) = slots.iter_mut().find(|slot| slot[0] == id || slot[0] == 0) {
+            *slot = [id, slot[1] + 1];
         }
     }
 }
@@ -87,12 +95,17 @@ mod tests {
         matte.ranks.iter().map(|rank| (rank.number[pixel], rank.share[pixel])).collect()
     }
 
+    /// Counts samples of the last pixel.
+    fn count_all(counted: &mut Counted, all: impl IntoIterator<Item = [u32; 2]>) {
+        let mut pixels: Vec<_> = counted.pixels().collect();
+        let slots = pixels.last_mut().unwrap();
+        all.into_iter().for_each(|ids| count(slots, ids));
+    }
+
     #[test]
     fn samples_are_counted_by_what_they_see() {
         let mut counted = Counted::none(16, 2);
-        for object in [3, 2, 2, 7, 3, 2, 9] {
-            counted.add(1, [object, 1]);
-        }
+        count_all(&mut counted, [3, 2, 2, 7, 3, 2, 9].map(|object| [object, 1]));
         let mut mattes = [6, 6].map(|ranks| Matte::nothing(Vec::new(), ranks, 3));
         let [objects, materials] = &mut mattes;
         counted.write([objects, materials], 1);
@@ -106,9 +119,7 @@ mod tests {
     #[test]
     fn the_largest_six_of_eight_are_kept_and_others_are_not_counted() {
         let mut counted = Counted::none(64, 1);
-        for object in 1..=9 {
-            (0..object).for_each(|_| counted.add(0, [object, 0]));
-        }
+        count_all(&mut counted, (1..=9).flat_map(|object| (0..object).map(move |_| [object, 0])));
         let mut mattes = [6, 6].map(|ranks| Matte::nothing(Vec::new(), ranks, 1));
         let [objects, materials] = &mut mattes;
         counted.write([objects, materials], 0);

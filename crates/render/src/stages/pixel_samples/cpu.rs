@@ -10,6 +10,7 @@ use super::SampleRange;
 use super::alike::Facet;
 use crate::accel::{Hit, Ray};
 use crate::counters::Tally;
+use crate::data::mattes::count;
 use crate::data::picture::Picture;
 use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
@@ -98,17 +99,19 @@ pub(crate) fn is_alike(a: &Hit, b: &Hit, continues: impl FnOnce() -> bool) -> bo
 /// The numbers of what samples see: how many see each, and the nearest one's.
 fn count_ids(scene: &PreparedScene, samples: &PixelSamples, film: &mut Picture) {
     let (Some(counted), Some(layers)) = (&mut film.counted, &mut film.layers) else { return };
-    for (index, pixel) in (samples.first..).enumerate().take(samples.state.len()) {
-        let mut depth = layers.depth[index];
-        for hit in samples.of(pixel).filter(|hit| hit.is_some()) {
+    let nearest = layers.object.nearest.par_iter_mut().zip(&mut layers.material.nearest).zip(&layers.depth);
+    let hits = samples.hits.par_chunks_exact(samples.numbers.len());
+    counted.pixels().zip(nearest).zip(hits).with_min_len(BATCH).for_each(|((mut slots, nearest), hits)| {
+        let ((object, material), &(mut depth)) = nearest;
+        for hit in hits.iter().filter(|hit| hit.is_some()) {
             let ids = ids_of(scene, hit);
-            counted.add(index, ids);
+            count(&mut slots, ids);
             if hit.t < depth {
                 depth = hit.t;
-                [layers.object.nearest[index], layers.material.nearest[index]] = ids;
+                [*object, *material] = ids;
             }
         }
-    }
+    });
 }
 
 /// Coverage, and the layers of the nearest samples.
