@@ -78,6 +78,7 @@ fn check_smooth(flat: &Scene, path: &Path) {
     check(&smooth);
     let (flat, smooth) = (&flat.geometry.mesh, &smooth.geometry.mesh);
     assert_eq!((smooth.triangles.len(), &smooth.materials), (flat.triangles.len(), &flat.materials));
+    assert_eq!(smooth.objects, flat.objects);
     assert!((0..flat.triangles.len()).all(|triangle| smooth.corners(triangle) == flat.corners(triangle)));
 }
 
@@ -118,6 +119,9 @@ fn check_mesh(mesh: &Mesh, materials: usize) {
     assert!(mesh.triangles.as_flattened().iter().all(|&vertex| (vertex as usize) < vertices));
     assert_eq!(mesh.materials.len(), mesh.triangles.len());
     assert!(mesh.materials.iter().all(|&material| (material as usize) < materials));
+    let (starts, objects) = mesh.objects.runs();
+    assert!(starts.is_sorted_by(|a, b| a < b) && starts.first().is_none_or(|&first| first == 0));
+    assert!(starts.len() == objects.len() && objects.iter().all(|&object| (object as usize) < mesh.objects.count()));
     for count in [mesh.normals.len(), mesh.uvs.len(), mesh.colors.len()] {
         assert!(count == 0 || count == vertices, "{count} of {vertices}");
     }

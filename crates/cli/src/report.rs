@@ -38,6 +38,8 @@ struct AllSettings<'a> {
     /// None if neither the image nor the layers are an exr, as the next.
     exr_type: Option<&'static str>,
     exr_compression: Option<&'static str>,
+    /// None without layers.
+    exr_parts: Option<&'static str>,
     /// The camera as described by `lightmesh info`.
     lights: &'a [LightInfo],
 }
@@ -65,6 +67,7 @@ impl<'a> Report<'a> {
             dither: (!is_exr).then_some(dither),
             exr_type: has_exr.then(|| exr.samples.name()),
             exr_compression: has_exr.then(|| exr.compression.name()),
+            exr_parts: files.layers.is_some().then(|| exr.parts.name()),
             lights,
         };
         Report {

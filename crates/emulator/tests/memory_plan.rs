@@ -40,7 +40,12 @@ fn render(scene: &Scene, emulator: Emulator, settings: &Settings) -> (Result<Fra
 
 fn bits(frame: &Frame) -> (Vec<[u32; 3]>, Vec<u32>) {
     let layers = frame.image.layers().expect("asked for");
-    let shares = layers.visibility.iter().flatten().map(|share| share.to_bits()).collect();
+    let groups = layers.lights.iter().chain([&layers.rest]).flat_map(|plane| plane.as_flattened());
+    let mattes = [&layers.object, &layers.material];
+    let ranks = || mattes.iter().flat_map(|matte| &matte.ranks);
+    let floats = layers.visibility.iter().flatten().chain(groups).chain(ranks().flat_map(|rank| &rank.share));
+    let numbers = ranks().map(|rank| &rank.number).chain(mattes.map(|matte| &matte.nearest)).flatten();
+    let shares = floats.map(|share| share.to_bits()).chain(numbers.copied()).collect();
     (frame.image.color().iter().map(|color| color.map(f32::to_bits)).collect(), shares)
 }
 
@@ -94,6 +99,11 @@ fn what_is_finished_when_an_image_is_stopped_is_that_of_the_whole_image() {
 #[test]
 fn pixels_see_neighbors_in_other_bands() {
     same_in_bands(|| settings().with_lookup(Lookup::Adaptive).with_samples(9));
+}
+
+#[test]
+fn samples_are_counted_by_what_they_see_in_bands_too() {
+    same_in_bands(|| settings().with_lookup(Lookup::Lists).with_samples(4).with_aa(5).with_bounces(1));
 }
 
 #[test]

@@ -7,6 +7,8 @@ use std::ops::Range;
 
 use thiserror::Error;
 
+use crate::Matte;
+
 /// An image of linear radiance with Rec. 709 primaries, and optionally its alpha and its [`Layers`].
 ///
 /// Alpha is the share of a pixel that is covered, in [0, 1]. Colours are what the covered part sends alone: they are premultiplied, and black
@@ -47,6 +49,15 @@ pub struct Layers {
     pub visibility: Vec<Vec<f32>>,
     /// Number of light points from which the pixel's visibility was interpolated.
     pub used: Vec<u32>,
+    /// One plane per light: the radiance that reaches the eye from this light by itself, mirrors included. No planes if that is not known.
+    pub lights: Vec<Vec<[f32; 3]>>,
+    /// The radiance that belongs to no light: ambient and emitted light, the background, and what shadow catchers show. Together with
+    /// `lights` it is the colour, but for rounding. Empty if that is not known.
+    pub rest: Vec<[f32; 3]>,
+    /// The objects that pixels see.
+    pub object: Matte,
+    /// The materials that pixels see.
+    pub material: Matte,
 }
 
 /// The parts of a [`Frame`], see [`Frame::into_parts`].
@@ -78,7 +89,7 @@ pub enum FrameError {
     /// The number of entries of a plane is not the number of pixels.
     #[error("plane '{plane}' has {found} entries, but a frame of {width}x{height} pixels needs {expected}")]
     Length {
-        /// Name of the plane: `color`, `alpha`, or a field of [`Layers`] (`visibility[i]` for light i).
+        /// Name of the plane: `color`, `alpha`, or a field of [`Layers`] (`visibility[i]` and `lights[i]` for light i).
         plane: String,
         /// Width in pixels.
         width: u32,
@@ -132,6 +143,10 @@ impl Frame {
             position: cut.of(&layers.position),
             visibility: layers.visibility.iter().map(|plane| cut.of(plane)).collect(),
             used: cut.of(&layers.used),
+            lights: layers.lights.iter().map(|plane| cut.of(plane)).collect(),
+            rest: cut.of(&layers.rest),
+            object: layers.object.cut(|plane| cut.of(plane), |plane| cut.of(plane)),
+            material: layers.material.cut(|plane| cut.of(plane), |plane| cut.of(plane)),
         });
         Some(Self {
             width: size[0],
@@ -155,6 +170,15 @@ impl Frame {
         check("used", layers.used.len())?;
         for (light, plane) in layers.visibility.iter().enumerate() {
             check(&format!("visibility[{light}]"), plane.len())?;
+        }
+        for (light, plane) in layers.lights.iter().enumerate() {
+            check(&format!("lights[{light}]"), plane.len())?;
+        }
+        if !layers.rest.is_empty() {
+            check("rest", layers.rest.len())?;
+        }
+        for (plane, length) in layers.object.lengths("object").into_iter().chain(layers.material.lengths("material")) {
+            check(&plane, length)?;
         }
         self.layers = Some(layers);
         Ok(self)
@@ -280,6 +304,10 @@ mod tests {
             position: vec![[0.0; 3]; pixels],
             visibility: vec![vec![1.0; pixels]; 2],
             used: vec![7; pixels],
+            lights: vec![vec![[0.25; 3]; pixels]; 2],
+            rest: vec![[0.5; 3]; pixels],
+            object: Matte::nothing(vec!["box".to_owned()], 2, pixels),
+            material: Matte::default(),
         }
     }
 

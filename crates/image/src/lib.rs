@@ -50,6 +50,7 @@ mod frame;
 #[cfg(feature = "jpeg")]
 mod jpg;
 mod load;
+mod matte;
 mod options;
 #[cfg(feature = "png")]
 mod png;
@@ -63,6 +64,7 @@ pub use format::Format;
 pub use frame::{Frame, FrameError, FrameParts, Layers, Window};
 pub use lightmesh_files::{Output, PublishError, Ready, publish};
 pub use load::{DecodeError, LoadError};
-pub use options::{Description, ExrCompression, ExrOptions, ExrSamples, SaveOptions, UnknownWord};
+pub use matte::{MOST_RANKS, Matte, Rank};
+pub use options::{Description, ExrCompression, ExrOptions, ExrParts, ExrSamples, SaveOptions, UnknownWord};
 pub use save::{EncodeError, SaveError, check_image, check_options, check_size, check_writable};
 pub use transfer::{Transfer, UnknownTransfer};

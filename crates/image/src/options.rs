@@ -57,10 +57,13 @@ impl From<Transfer> for SaveOptions {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct ExrOptions {
-    /// Numbers of colours, alpha, normals and visibility. Depth, positions and counts, which halves are too coarse for, are always floats.
+    /// Numbers of colours, alpha, normals and visibility. Depth, positions and counts, which halves are too coarse for, are always floats,
+    /// as are mattes; ids are whole numbers.
     pub samples: ExrSamples,
     /// How blocks are compressed; nothing is lost in any case.
     pub compression: ExrCompression,
+    /// How layers are divided.
+    pub parts: ExrParts,
 }
 
 impl ExrOptions {
@@ -72,6 +75,11 @@ impl ExrOptions {
     /// Sets the compression.
     pub fn with_compression(self, compression: ExrCompression) -> Self {
         Self { compression, ..self }
+    }
+
+    /// Sets how layers are divided.
+    pub fn with_parts(self, parts: ExrParts) -> Self {
+        Self { parts, ..self }
     }
 }
 
@@ -171,7 +179,24 @@ words!(
     None "none" "Nothing is compressed"
 );
 
-/// What an exr file says about its image, in the format's standard attributes.
+/// The parts of an exr file with layers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ExrParts {
+    /// One part with all channels, which every program reads.
+    #[default]
+    Single,
+    /// A part for each kind of layer, of which programs read only what they need.
+    Multi,
+}
+
+words!(
+    ExrParts, "number of parts",
+    Single "single" "One part with all channels, which every program reads",
+    Multi "multi" "One part for each kind of layer: programs read only what they need"
+);
+
+/// What an exr file says about in the format's standard attributes.
 ///
 /// Matrices multiply row vectors from the right, as in OpenEXR: (x, y, z, 1) · M, in row-major order.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -220,6 +245,7 @@ mod tests {
         Format::ALL.iter().for_each(|word| assert_eq!(word.to_string().parse(), Ok(*word)));
         ExrSamples::ALL.iter().for_each(|word| assert_eq!(word.to_string().parse(), Ok(*word)));
         ExrCompression::ALL.iter().for_each(|word| assert_eq!(word.to_string().parse(), Ok(*word)));
+        ExrParts::ALL.iter().for_each(|word| assert_eq!(word.to_string().parse(), Ok(*word)));
         let message = "dwaa".parse::<ExrCompression>().unwrap_err().to_string();
         assert_eq!(message, "unknown compression `dwaa`; available: zip, zips, piz, rle, none");
     }

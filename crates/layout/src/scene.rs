@@ -82,8 +82,8 @@ records! {
         catcher: u32,
         /// The specular part that is tinted.
         ks_tinted: Vec3,
-        /// Padding to a multiple of sixteen bytes.
-        spare_b: u32,
+        /// Its number among names, from 1.
+        number: u32,
         /// The emitted light that is tinted.
         emission_tinted: Vec3,
         /// Padding to a multiple of sixteen bytes.
@@ -111,6 +111,10 @@ records! {
         triangle_materials: In<u32>,
         /// Materials.
         materials: In<Material>,
+        /// The first triangle of each run of one object; null if nothing has a name.
+        object_starts: In<u32>,
+        /// The object of each run, from 0.
+        objects: In<u32>,
         /// Lights.
         lights: In<Light>,
         /// [`LIGHT_TARGETS`](crate::constants::LIGHT_TARGETS) points on each light, from which its unshadowed light is computed; of a
@@ -132,8 +136,8 @@ records! {
         center: Vec3,
         /// Minimum distance of a directional light.
         far: f32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
+        /// Number of these runs.
+        object_runs: u32,
     }
 
     /// How area lights are sampled.

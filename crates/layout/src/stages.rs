@@ -142,7 +142,7 @@ records! {
         light_count: u32,
     }
 
-    /// `shade`: one thread per ray.
+    /// `shade`: one thread per ray; `add_rays` and `add_light_groups`: one thread per ray, of which the first of a pixel works.
     Shade {
         /// The scene.
         scene: Scene,
@@ -176,6 +176,10 @@ records! {
         visibility: Out<f32>,
         /// Number of light points used, by pixel.
         light_points: Out<u32>,
+        /// Radiance by light, then pixel of the film; after the lights what belongs to none. Null if that is not kept.
+        light_groups: Out<Vec3>,
+        /// Number of the object by pixel, then of the material; null if these are not kept.
+        ids: Out<u32>,
         /// Number of pixels of the film.
         film_pixels: u64,
         /// The first block of this launch among all blocks.
@@ -200,7 +204,7 @@ records! {
         spare: u32,
     }
 
-    /// `pixel_samples`, `merge_samples`, `find_contrast`, `count_fragments` and `emit_fragments`: one thread per pixel of a camera's rows,
+    /// `pixel_samples`, `count_ids`, `merge_samples`, `find_contrast`, `count_fragments` and `emit_fragments`: one thread per pixel of a camera's rows,
     /// the first also per sample.
     PixelSamples {
         /// The scene.
@@ -237,6 +241,12 @@ records! {
         visibility: Out<f32>,
         /// Number of light points used.
         light_points: Out<u32>,
+        /// Radiance by light, then pixel, then what belongs to none; null if that is not kept.
+        light_groups: Out<Vec3>,
+        /// Number of the nearest sample's object by pixel, then of its material; null if these are not kept, like the next.
+        ids: Out<u32>,
+        /// Samples by what they see: of objects, then of materials, slot by slot, a number by pixel and then a count by pixel.
+        mattes: Out<u32>,
         /// Counts grid walks.
         tally: Tally,
         /// The first block of this launch among all blocks.
@@ -269,8 +279,8 @@ records! {
         mirrors: u32,
         /// 1 if the hits of centres stay.
         keeps: u32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
+        /// Number of slots in `mattes`, of objects and of materials.
+        matte_slots: u32,
         /// Where the inverse of the filter's cumulative distribution is, at equal distances: offsets from the centre in pixels.
         quantiles: [f32; 64],
     }

@@ -53,7 +53,9 @@ fn bytes_per_ray(plan: &Plan) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::antialiasing::Antialiasing;
     use crate::data::lights::LightGroups;
+    use crate::settings::Filter;
 
     fn plan(size: [u32; 2], layers: Option<usize>, left: Option<u64>) -> Plan {
         let lights = LightGroups { lights: 3, at_once: 3 };
@@ -69,6 +71,11 @@ mod tests {
         assert_eq!(needed(60_000, None), 43_200_000_000);
         assert_eq!(needed(256, Some(3)), 65_536 * (12 + 32 + 12));
         assert!(check_picture(&plan([256; 2], None, Some(1 << 20))).is_ok());
+        // Colours of three lights and of none; of objects and of materials a number and a rank, or six ranks and eight slots.
+        let all = |antialiasing| Plan { antialiasing, compositing: true, ..plan([256; 2], Some(3), None) };
+        let several = Antialiasing::new(16, Filter::Box, 0, 1);
+        assert_eq!(all(None).film_bytes(), 12 + 32 + 12 + 48 + 2 * (4 + 8));
+        assert_eq!(all(Some(several)).film_bytes(), 12 + 32 + 12 + 48 + 2 * (4 + 8 * (6 + 8)));
     }
 
     #[test]

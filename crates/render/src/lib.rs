@@ -22,6 +22,7 @@ mod error;
 mod gpu;
 mod job;
 pub mod light_mesh;
+mod material_ids;
 mod observer;
 mod passes;
 mod plan;

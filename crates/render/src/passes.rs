@@ -246,6 +246,7 @@ pub(crate) fn in_bands<B: Backend>(
 #[cfg(test)]
 mod tests {
     use glam::{DVec3, Vec3};
+    use lightmesh_image::Layers;
     use lightmesh_scene::{Bounds, LightKind};
     use lightmesh_testkit::pile;
 
@@ -280,8 +281,8 @@ mod tests {
         samples: Option<Antialiasing>,
     }
 
-    /// Bits of colours, visibility and positions, with the rows at once.
-    type Bits = (Vec<[u32; 3]>, Vec<f32>, Vec<[f32; 3]>, u32);
+    /// Bits of colours, with layers and the rows at once.
+    type Bits = (Vec<[u32; 3]>, Layers, u32);
 
     impl Way {
         fn all() -> impl Iterator<Item = Way> {
@@ -321,12 +322,13 @@ mod tests {
                 bounces: 2,
                 coverage: true,
                 layers,
+                compositing: true,
                 footprint,
                 ..Plan::plain(size, lights, left)
             };
             let job = Job::new(&Unobserved, Sampling { samples: 9, seed: 0, spread: true });
             let run = Run::new(&Cpu, &job, None);
-            let mut picture = Picture::new(size, layers).with_coverage();
+            let mut picture = Picture::planned(&plan, [0..size[1], 0..size[1]]);
             let rows = Passes { run, scene, technique: &technique, view: &view, plan: &plan }.render(&mut picture)?;
             assert_eq!(job.work.done(), job.work.total(), "{settings:?}: progress");
             let layers = picture.layers.take().unwrap();
@@ -338,7 +340,7 @@ mod tests {
                     assert_eq!(*covered > 0.0, depth.is_finite(), "{settings:?}: coverage");
                 }
             }
-            Ok((bytemuck::cast_vec(picture.color), layers.visibility.concat(), layers.position, rows))
+            Ok((bytemuck::cast_vec(picture.color), layers, rows))
         }
     }
 
@@ -346,7 +348,7 @@ mod tests {
     fn groups_of_lights_give_the_same_picture() {
         for way in Way::all().filter(|way| way.settings.lookup != Lookup::HalfBall) {
             let whole = way.picture(usize::MAX, None).unwrap();
-            let soft = whole.1.iter().any(|share| *share > 0.0 && *share < 1.0);
+            let soft = whole.1.visibility.iter().flatten().any(|share| *share > 0.0 && *share < 1.0);
             assert!(soft || way.settings.mode == Mode::RayTrace);
             for at_once in [1, 4] {
                 assert!(way.picture(at_once, None).unwrap() == whole, "{:?}: {at_once} lights at once", way.settings);
@@ -357,7 +359,7 @@ mod tests {
     #[test]
     fn bands_give_the_same_picture() {
         for way in Way::all() {
-            let (color, visibility, positions, rows) = way.picture(usize::MAX, None).unwrap();
+            let (color, layers, rows) = way.picture(usize::MAX, None).unwrap();
             assert_eq!(rows, way.settings.size[1]);
             let Err(RenderError::Memory { short, .. }) = way.picture(usize::MAX, Some(1)) else {
                 panic!("one byte must not suffice")
@@ -365,12 +367,8 @@ mod tests {
             // Just enough for one row, then for some.
             for left in [short.needed, short.needed + if way.samples.is_some() { 100_000 } else { 40_000 }] {
                 let banded = way.picture(usize::MAX, Some(left)).unwrap();
-                assert!((1..rows).contains(&banded.3), "{:?}", way.settings);
-                assert!(
-                    banded == (color.clone(), visibility.clone(), positions.clone(), banded.3),
-                    "{:?}",
-                    way.settings
-                );
+                assert!((1..rows).contains(&banded.2), "{:?}", way.settings);
+                assert!(banded == (color.clone(), layers.clone(), banded.2), "{:?}", way.settings);
             }
         }
     }

@@ -3,6 +3,7 @@
 use crate::accel::Hit;
 use crate::antialiasing::Antialiasing;
 use crate::data::lights::LightGroups;
+use crate::data::mattes::{ranks_of, slots_of};
 
 /// Bytes that a technique needs per ray at its peak, on the host and on a device, with the shares of lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,6 +29,8 @@ pub struct Plan {
     pub caught: bool,
     /// Number of lights whose layers are kept; `None`: no layers.
     pub layers: Option<usize>,
+    /// Whether these have what compositors need, too: the radiance of each light by itself, numbers and mattes of objects and materials.
+    pub compositing: bool,
     /// Groups of lights whose visibility is held at the same time.
     pub lights: LightGroups,
     /// Most rows to render at once; `None`: as many as fit into memory.
@@ -53,6 +56,7 @@ impl Plan {
             coverage: false,
             caught: false,
             layers: None,
+            compositing: false,
             lights,
             most_rows: None,
             memory_limit: left,
@@ -93,6 +97,22 @@ impl Plan {
     /// Bytes of an image per pixel.
     pub(crate) fn film_bytes(&self) -> u64 {
         12 + 4 * (u64::from(self.coverage) + u64::from(self.caught))
-            + self.layers.map_or(0, |lights| 32 + 4 * lights as u64)
+            + self.layers.map_or(0, |lights| 32 + 4 * lights as u64 + self.compositing_bytes(lights as u64))
+    }
+
+    /// Samples of a pixel.
+    pub(crate) fn pixel_samples(&self) -> u32 {
+        self.antialiasing.as_ref().map_or(1, |all| all.samples)
+    }
+
+    /// What compositors need of `lights` lights: colours of each, and of the rest; of objects and of materials a number, and the numbers and
+    /// shares of ranks, and of slots while samples are counted.
+    fn compositing_bytes(&self, lights: u64) -> u64 {
+        if !self.compositing {
+            return 0;
+        }
+        let samples = self.pixel_samples();
+        let slots = if samples > 1 { slots_of(samples) } else { 0 };
+        12 * (lights + 1) + 2 * (4 + 8 * (ranks_of(samples) + slots) as u64)
     }
 }

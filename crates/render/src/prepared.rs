@@ -11,6 +11,7 @@ use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Scene};
 
 use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Grid, GridOptions, Triangle};
 use crate::error::RenderError;
+use crate::material_ids::MaterialIds;
 use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
 use crate::stage::Stage;
@@ -27,6 +28,8 @@ pub struct PreparedGeometry {
     pub accelerator: Box<dyn Accelerator>,
     /// The box around all triangles that can be hit.
     pub bounds: Bounds,
+    /// The numbers and names of materials.
+    pub(crate) materials: MaterialIds,
     /// The setting that chose the structure.
     acceleration: Acceleration,
     /// Build time in seconds, until the first image reports it.
@@ -82,6 +85,7 @@ impl PreparedGeometry {
             triangles,
             accelerator,
             bounds,
+            materials: MaterialIds::new(geometry),
             acceleration: acceleration.clone(),
             unreported,
             center,

@@ -3,7 +3,7 @@
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 
 use crate::{
-    Geometry, GeometryError, Material, Mesh, MeshPart, Position, Scene,
+    Geometry, GeometryError, Material, Mesh, MeshPart, Objects, Position, Scene,
     geometry_check::check_room,
     loaded_mesh::LoadedMesh,
     mesh_part::Room,
@@ -32,6 +32,7 @@ pub struct SceneBuilder {
     triangles: Vec<[u32; 3]>,
     /// Material by triangle.
     materials: Vec<u32>,
+    objects: Objects,
     palette: Vec<Material>,
     origin: Option<DVec3>,
 }
@@ -46,6 +47,16 @@ impl SceneBuilder {
     pub fn add_material(&mut self, material: Material) -> u32 {
         self.palette.push(material);
         self.palette.len() as u32 - 1
+    }
+
+    /// Triangles that are added from now on belong to the object `name`. Those before the first call are [`UNNAMED`](crate::UNNAMED).
+    pub fn begin_object(&mut self, name: &str) {
+        self.objects.begin(self.triangles.len(), name);
+    }
+
+    /// Triangles that are added from now on belong to the objects of another mesh; `place` says where each of its triangles is among them.
+    pub(crate) fn begin_objects(&mut self, objects: &Objects, place: impl Fn(u32) -> usize) {
+        self.objects.append(self.triangles.len(), objects, place);
     }
 
     /// Adds `part`, placed by `transform`; `material` returns the material of each of its triangles. If the transform mirrors,
@@ -166,6 +177,7 @@ impl SceneBuilder {
             colors: self.colors,
             triangles: self.triangles,
             materials: self.materials,
+            objects: self.objects,
         };
         (origin, mesh)
     }
@@ -278,6 +290,7 @@ mod tests {
                 triangles: vec![[0, 1, 2]],
                 materials: vec![7],
                 groups: Vec::new(),
+                objects: Objects::default(),
             };
             let (mut added, mut taken) = (SceneBuilder::new(), SceneBuilder::new());
             // The first is moved in, the second is appended as a copy.

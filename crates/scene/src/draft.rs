@@ -10,7 +10,7 @@ use lightmesh_memory::Short;
 
 use crate::{
     Camera, CreaseAngle, Geometry, Light, LightKind, LightMeshDefaults, Lights, LoadError, LoadOptions, Material,
-    MeshPart, Position, Scene, SceneBuilder, Texture,
+    MeshPart, Objects, Position, Scene, SceneBuilder, Texture,
     border::{Border, beside},
     loaded_mesh::LoadedMesh,
     mesh_part::Room,
@@ -28,13 +28,22 @@ pub(crate) struct Placement {
     pub(crate) transform: DMat4,
     /// Replaces the model's own materials.
     pub(crate) material: Option<u32>,
+    /// Replaces the names of the model's objects.
+    pub(crate) object: Option<String>,
     /// Use only the triangles: the surrounding scene has its own lights and cameras.
     pub(crate) part: bool,
 }
 
+impl Placement {
+    /// The name of the object of the model in a file without names: its own, or else that of the file.
+    pub(crate) fn object_in(&self, path: &Path) -> String {
+        self.object.clone().unwrap_or_else(|| path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
+    }
+}
+
 impl Default for Placement {
     fn default() -> Placement {
-        Placement { transform: DMat4::IDENTITY, material: None, part: false }
+        Placement { transform: DMat4::IDENTITY, material: None, object: None, part: false }
     }
 }
 
@@ -49,6 +58,8 @@ pub(crate) struct Draft {
     smooth: Option<CreaseAngle>,
     /// Vertices that got a normal.
     smooth_normals: usize,
+    /// The object of triangles that are added, unless their mesh names its own.
+    object: String,
     /// Where the scene's files may lie.
     pub(crate) border: Border,
     builder: SceneBuilder,
@@ -82,6 +93,7 @@ impl Draft {
             strict: options.strict,
             smooth: options.smooth,
             smooth_normals: 0,
+            object: String::new(),
             border: Border::new(path, options),
             builder: SceneBuilder::new(),
             unusable_triangles: 0,
@@ -147,12 +159,31 @@ impl Draft {
         self.check_room(&part)?;
         let usable = usable_in(transform);
         if part.positions.iter().all(&usable) {
+            self.begin_objects(&Objects::default(), part.triangles.len(), |triangle| triangle as usize);
             self.builder.append(part, transform, material);
             self.note_uvs(part.triangles.len(), !part.uvs.is_empty());
         } else {
-            self.add_usable(part, transform, material, usable);
+            self.add_usable(part, &Objects::default(), transform, material, usable);
         }
         Ok(())
+    }
+
+    /// Triangles that are added from now on belong to the object `name`, unless their mesh names its own.
+    pub(crate) fn begin_object(&mut self, name: impl Into<String>) {
+        self.object = name.into();
+    }
+
+    /// Names `count` triangles that are going to be added: by the objects of their mesh, or the one that was begun. `place` says where
+    /// each of the mesh's triangles is among them.
+    fn begin_objects(&mut self, objects: &Objects, count: usize, place: impl Fn(u32) -> usize) {
+        if count == 0 {
+            return;
+        }
+        if objects.runs().0.is_empty() {
+            self.builder.begin_object(&self.object);
+        } else {
+            self.builder.begin_objects(objects, place);
+        }
     }
 
     /// Whether meshes without normals get smooth ones.
@@ -169,10 +200,11 @@ impl Draft {
         let usable = usable_in(transform);
         if mesh.positions.iter().all(&usable) {
             let (triangles, has_uvs) = (mesh.triangles.len(), !mesh.uvs.is_empty());
+            self.begin_objects(&std::mem::take(&mut mesh.objects), triangles, |triangle| triangle as usize);
             self.builder.take(mesh, transform);
             self.note_uvs(triangles, has_uvs);
         } else {
-            self.add_usable(mesh.part(), transform, |index| mesh.materials[index], usable);
+            self.add_usable(mesh.part(), &mesh.objects, transform, |index| mesh.materials[index], usable);
         }
         Ok(())
     }
@@ -206,6 +238,7 @@ impl Draft {
     fn add_usable<P: Position>(
         &mut self,
         part: MeshPart<P>,
+        objects: &Objects,
         transform: &DMat4,
         material: impl Fn(usize) -> u32,
         usable: impl Fn(&P) -> bool,
@@ -222,6 +255,7 @@ impl Draft {
         self.unusable_triangles += part.triangles.len() - kept.len();
         let triangles: Vec<[u32; 3]> = kept.iter().map(|&index| part.triangles[index]).collect();
         let part = MeshPart { positions: &positions, triangles: &triangles, ..part };
+        self.begin_objects(objects, kept.len(), |triangle| kept.partition_point(|&index| index < triangle as usize));
         self.builder.append(part, transform, |index| material(kept[index]));
         self.note_uvs(part.triangles.len(), !part.uvs.is_empty());
     }

@@ -36,6 +36,7 @@ impl Scene {
         mesh.normals.extend(vec![Vec3::ZERO; attribute(!mesh.normals.is_empty())]);
         mesh.uvs.extend(vec![Vec2::ZERO; attribute(!mesh.uvs.is_empty())]);
         mesh.colors.extend(vec![Vec3::ONE; attribute(!mesh.colors.is_empty())]);
+        mesh.objects.begin(mesh.triangles.len(), "ground");
         mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
         mesh.materials.extend([material; 2]);
     }

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::{MeshPart, Position};
+use crate::{MeshPart, Objects, Position};
 
 /// One mesh as assembled by a loader. It is passed by value: no part of a large file is held twice.
 #[derive(Debug)]
@@ -21,6 +21,8 @@ pub(crate) struct LoadedMesh<P> {
     pub(crate) materials: Vec<u32>,
     /// Smoothing group by triangle, 0 for those that are flat; or none: all are in one.
     pub(crate) groups: Vec<u32>,
+    /// The object of each triangle; none if the file has no names.
+    pub(crate) objects: Objects,
 }
 
 impl<P: Position> LoadedMesh<P> {
@@ -87,6 +89,7 @@ mod tests {
             uvs: Vec::new(),
             materials: vec![0; 2],
             groups: Vec::new(),
+            objects: Objects::default(),
             positions: (0..6).map(|x| DVec3::splat(f64::from(x))).collect(),
             colors: (0..6).map(|x| Vec3::splat(x as f32)).collect(),
             triangles: vec![[5, 1, 3], [1, 3, 4]],

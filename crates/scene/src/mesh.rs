@@ -2,6 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
+use crate::Objects;
+
 /// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
@@ -76,6 +78,8 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Material index by triangle.
     pub materials: Vec<u32>,
+    /// The object of each triangle.
+    pub objects: Objects,
 }
 
 impl Mesh {

@@ -163,16 +163,17 @@ fn unknown_format(path: &Path) -> LoadError {
     }
 }
 
-/// Reads a model as a part of a larger scene: its triangles, and its materials unless the placement has one.
+/// Reads a model as a part of a larger scene: its triangles, and its materials and objects unless others are given.
 pub(crate) fn read_part(
     path: &Path,
     bytes: Vec<u8>,
     transform: DMat4,
     material: Option<u32>,
+    object: Option<String>,
     draft: &mut Draft,
 ) -> Result<(), LoadError> {
     let reader = reader(known_format(path)?).ok_or_else(|| unknown_format(path))?;
-    reader(path, bytes, &Placement { transform, material, part: true }, draft)
+    reader(path, bytes, &Placement { transform, material, object, part: true }, draft)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A rendered frame, read plane by plane and checked.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use lightmesh_image::Layers;
 use lightmesh_render::Frame;
 
@@ -106,13 +106,32 @@ impl<'a> Picture<'a> {
         self.hit(pixel) && self.hit(other) && n.dot(m) > 0.98 && n.dot(chord).abs() < 0.2 * chord.length()
     }
 
+    /// The first pixel whose colour is not the sum of the light groups, but for rounding.
+    pub fn ungrouped(&self) -> Option<String> {
+        let groups = || self.layers.lights.iter().chain([&self.layers.rest]);
+        self.frame.image.color().iter().enumerate().find_map(|(pixel, color)| {
+            let sum = groups().map(|plane| DVec3::from(plane[pixel].map(f64::from))).sum::<DVec3>();
+            let apart = (sum - DVec3::from(color.map(f64::from))).abs();
+            // Sums of some hundreds of terms. What is no number is not within.
+            let within = apart.cmple(DVec3::splat(1e-6) + 1e-5 * sum.abs()).all();
+            (!within).then(|| format!("pixel {pixel}: {color:?}, but groups of {sum}"))
+        })
+    }
+
     /// All values of the image as bits: equal images have equal lists.
     pub fn bits(&self) -> Vec<u32> {
         let colors = self.frame.image.color().as_flattened();
         let vectors = [&self.layers.normal, &self.layers.position].into_iter().flat_map(|plane| plane.as_flattened());
         let floats =
             colors.iter().chain(vectors).chain(&self.layers.depth).chain(self.layers.visibility.iter().flatten());
-        floats.map(|value| value.to_bits()).chain(self.layers.used.iter().copied()).collect()
+        let groups = self.layers.lights.iter().chain([&self.layers.rest]).flat_map(|plane| plane.as_flattened());
+        let floats = floats.chain(groups);
+        let mattes = [&self.layers.object, &self.layers.material];
+        let ranks = || mattes.into_iter().flat_map(|matte| &matte.ranks);
+        let floats = floats.chain(ranks().flat_map(|rank| &rank.share));
+        let numbers = mattes.into_iter().map(|matte| &matte.nearest).chain(ranks().map(|rank| &rank.number));
+        let numbers = numbers.chain([&self.layers.used]).flatten().copied();
+        floats.map(|value| value.to_bits()).chain(numbers).collect()
     }
 }
 
@@ -168,6 +187,19 @@ mod tests {
             spoiled(|_, layers| layers.depth[7] = f32::INFINITY),
             spoiled(|_, layers| layers.position[7][0] = f32::NAN),
         ];
+        for spoil in [(|layers: &mut Layers| layers.lights[0][7][1] += 0.1) as fn(&mut Layers), |layers| {
+            layers.rest[7][1] = f32::NAN
+        }] {
+            let frame = spoiled(|_, layers| spoil(layers));
+            assert_eq!(Picture::new(&whole).ungrouped(), None);
+            assert!(Picture::new(&frame).ungrouped().is_some_and(|found| found.starts_with("pixel 7:")));
+            assert!(Picture::new(&frame).bits() != Picture::new(&whole).bits());
+        }
+        for spoil in [(|layers: &mut Layers| layers.object.nearest[7] = 9) as fn(&mut Layers), |layers| {
+            layers.material.ranks[0].share[7] = 0.5
+        }] {
+            assert!(Picture::new(&spoiled(|_, layers| spoil(layers))).bits() != Picture::new(&whole).bits());
+        }
         for (index, frame) in frames.iter().enumerate() {
             assert!(Picture::new(frame).fault().is_some_and(|fault| fault.contains("pixel 7")), "frame {index}");
             assert!(Picture::new(frame).bits() != Picture::new(&whole).bits(), "frame {index}");

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lightmesh::image::{BitDepth, ExrCompression, ExrSamples, Format, View};
+use lightmesh::image::{BitDepth, ExrCompression, ExrParts, ExrSamples, Format, View};
 use lightmesh::render::{Crop, Filter, Quality, ShortTests};
 use lightmesh::scene::{Falloff, Weight};
 use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
@@ -105,13 +105,17 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_enum, default_value_t = Switch::Off, help_heading = "Image")]
     pub(crate) dither: Switch,
 
-    /// Numbers of exr files; depth, positions and counts of --layers are always float
+    /// Numbers of exr files; depth, positions, counts and mattes of --layers are always float, ids whole numbers
     #[arg(long, value_parser = words::exr_type(), default_value_t = ExrSamples::Float, help_heading = "Image")]
     pub(crate) exr_type: ExrSamples,
 
     /// Lossless compression of exr files
     #[arg(long, value_parser = words::exr_compression(), default_value_t = ExrCompression::Zip, help_heading = "Image")]
     pub(crate) exr_compression: ExrCompression,
+
+    /// How --layers are divided
+    #[arg(long, value_parser = words::exr_parts(), default_value_t = ExrParts::Single, help_heading = "Image")]
+    pub(crate) exr_parts: ExrParts,
 
     /// What is behind the scene: a colour, as one number, r,g,b or "#rrggbb" (sRGB), or transparent, which writes an alpha channel to png and exr
     /// files; mirrors then still reflect the scene's background [default: the scene's, else black]
@@ -129,8 +133,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, help_heading = "Image")]
     pub(crate) partial: bool,
 
-    /// Write per-pixel data as a multilayer exr: colour, depth, normal, position, visibility of each light, number of light
-    /// points used; `-` is standard output [default: off]
+    /// Write per-pixel data as a multilayer exr: colour, depth, normal, position, visibility and radiance of each light, number of light
+    /// points used, ids and Cryptomattes of objects and materials; `-` is standard output [default: off]
     #[arg(long, value_name = "F.exr", help_heading = "Image")]
     pub(crate) layers: Option<PathBuf>,
 

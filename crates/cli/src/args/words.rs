@@ -7,7 +7,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use lightmesh::scene::{Falloff, SceneFormat, Weight};
 use lightmesh::{
     Acceleration, Lookup, Mode, Transfer,
-    image::{BitDepth, ExrCompression, ExrSamples, Format, View},
+    image::{BitDepth, ExrCompression, ExrParts, ExrSamples, Format, View},
     render::{Filter, Quality, ShortTests},
     scene,
 };
@@ -77,6 +77,10 @@ pub(super) fn exr_type() -> impl TypedValueParser<Value = ExrSamples> {
 
 pub(super) fn exr_compression() -> impl TypedValueParser<Value = ExrCompression> {
     one_of(ExrCompression::ALL.iter().map(|method| (method.name(), method.help())))
+}
+
+pub(super) fn exr_parts() -> impl TypedValueParser<Value = ExrParts> {
+    one_of(ExrParts::ALL.iter().map(|parts| (parts.name(), parts.help())))
 }
 
 pub(super) fn bit_depth() -> impl TypedValueParser<Value = BitDepth> {

@@ -61,7 +61,10 @@ fn options(args: &RenderArgs) -> SaveOptions {
         .with_transfer(args.transfer)
         .with_bit_depth(args.bit_depth)
         .with_dither(args.dither == Switch::On);
-    let exr = ExrOptions::default().with_samples(args.exr_type).with_compression(args.exr_compression);
+    let exr = ExrOptions::default()
+        .with_samples(args.exr_type)
+        .with_compression(args.exr_compression)
+        .with_parts(args.exr_parts);
     SaveOptions::default().with_format(args.format).with_display(display).with_exr(exr)
 }
 

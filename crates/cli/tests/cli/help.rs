@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::run::Place;
 
 /// The flags of `render` that other programs rely on.
-const FLAGS: [&str; 42] = [
+const FLAGS: [&str; 43] = [
     "--mode",
     "--bounces",
     "--size",
@@ -34,6 +34,7 @@ const FLAGS: [&str; 42] = [
     "--dither",
     "--exr-type",
     "--exr-compression",
+    "--exr-parts",
     "--background",
     "--partial",
     "--allow-outside",

@@ -185,8 +185,24 @@ fn layers_say_what_each_pixel_saw() {
     place.room(&["--layers", "layers.exr"]);
     let frame = Frame::load(place.path("layers.exr")).unwrap();
     let layers = frame.layers().unwrap();
-    assert_eq!(layers.visibility.len(), 1);
+    assert_eq!((layers.visibility.len(), layers.lights.len(), layers.rest.len()), (1, 1, layers.depth.len()));
     assert!(layers.depth.iter().any(|depth| depth.is_finite()));
+    for matte in [&layers.object, &layers.material] {
+        assert!(!matte.names.is_empty() && matte.nearest.contains(&1) && matte.ranks.len() == 6);
+    }
+}
+
+#[test]
+fn layers_in_one_part_or_several_are_the_same() {
+    let place = Place::new();
+    place.room(&["--layers", "one.exr", "--exr-parts", "single", "--aa", "3"]);
+    place.room(&["--layers", "several.exr", "--exr-parts", "multi", "--aa", "3", "--stats", "several.json"]);
+    assert!(Frame::load(place.path("one.exr")).unwrap() == Frame::load(place.path("several.exr")).unwrap());
+    assert!(place.read("one.exr") != place.read("several.exr"));
+    assert_eq!(place.json("several.json")["settings"]["exr_parts"], "multi");
+    place.good(&["compare", "one.exr", "several.exr", "--max-flip", "0"]);
+    place.room(&["--layers", "again.exr", "--aa", "3"]);
+    assert!(place.read("again.exr") == place.read("one.exr"));
 }
 
 #[test]

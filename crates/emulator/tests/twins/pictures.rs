@@ -8,7 +8,7 @@ use lightmesh_render::{
     Unobserved, render_on, visibility_on,
 };
 use lightmesh_scene::{Bounds, Up};
-use lightmesh_testkit::Random;
+use lightmesh_testkit::{Picture, Random};
 
 use crate::scenes::{SUBJECTS, Subject, TEXTURED};
 use crate::stages::{SHARE_TOLERANCE, alike};
@@ -80,8 +80,10 @@ fn same_frame<R: Target>(cuda: &Cuda<R>, scene: &PreparedScene, settings: Settin
     assert_eq!(counts(&host.stats.counts), counts(&device.stats.counts));
 
     let again = render_on(cuda, scene, &settings, &Unobserved).unwrap();
-    let bits = |frame: &Frame| frame.image.color().iter().map(|color| color.map(f32::to_bits)).collect::<Vec<_>>();
-    assert!(bits(&device) == bits(&again), "the same image twice");
+    assert!(Picture::new(&device).bits() == Picture::new(&again).bits(), "the same image twice");
+    for frame in [&host, &device] {
+        assert_eq!(Picture::new(frame).ungrouped(), None, "the radiance of single lights adds up");
+    }
 }
 
 /// Given points, all over the scene and a little outside of it, see the same.
@@ -139,4 +141,13 @@ fn same_layers<R: Target>(host: &Layers, device: &Layers) {
         let differ = a.iter().zip(b).filter(|&(&a, &b)| !alike(a, b, SHARE_TOLERANCE)).count();
         assert!(differ <= R::allowed(a.len(), 100), "{differ} visibilities of light {light} differ");
     }
+    assert!(host.object == device.object && host.material == device.material, "mattes");
+    assert!(!host.object.is_empty() && host.object.names.len() == device.object.names.len());
+    assert_eq!((host.lights.len(), host.rest.len()), (host.visibility.len(), host.depth.len()));
+    let groups = |layers: &Layers| layers.lights.iter().chain([&layers.rest]).flatten().copied().collect::<Vec<_>>();
+    let near = |a: f32, b: f32| Transfer::Srgb.encode(a).abs_diff(Transfer::Srgb.encode(b)) <= 1;
+    let (a, b) = (groups(host), groups(device));
+    assert_eq!(a.len(), b.len());
+    let differ = a.as_flattened().iter().zip(b.as_flattened()).filter(|&(&a, &b)| !near(a, b)).count();
+    assert!(differ <= R::allowed(a.len(), 1000), "{differ} values of light groups differ");
 }

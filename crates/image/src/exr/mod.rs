@@ -1,9 +1,13 @@
-//! OpenEXR: linear floats, or halves on request, in one part, with lossless compression.
+//! OpenEXR: linear floats, or halves on request, with lossless compression.
 //!
-//! Channels of a multilayer file, one plane each: `R G B`, `A` if there is alpha, `Z`, `N.X N.Y N.Z`, `P.X P.Y P.Z`, `V.0 V.1 …`, `M`. They are in one
-//! part with their full names because this is what readers of single-part files support.
+//! Channels of a multilayer file, one plane each: `R G B`, `A` if there is alpha, `Z`, `N.X N.Y N.Z`, `P.X P.Y P.Z`, `V.0 V.1 …`, `M`, and the
+//! radiance of each light by itself, `L.0.R L.0.G L.0.B L.1.R …`, with that of no light, `L.rest.R L.rest.G L.rest.B`; numbers of
+//! objects and materials, `id.object`, `id.material`, and their [mattes](cryptomatte). They have their full names, in one part, because this is
+//! what readers of single-part files support; or in several parts that compositors read by themselves.
 
 mod attributes;
+mod cryptomatte;
+mod order;
 mod read;
 mod write;
 
@@ -18,6 +22,13 @@ const NORMAL: [&str; 3] = ["N.X", "N.Y", "N.Z"];
 const POSITION: [&str; 3] = ["P.X", "P.Y", "P.Z"];
 const USED: &str = "M";
 
+const REST: [&str; 3] = ["L.rest.R", "L.rest.G", "L.rest.B"];
+
+/// Names of the planes with the radiance of light `light`.
+fn light_names(light: usize) -> [String; 3] {
+    COLOR.map(|channel| format!("L.{light}.{channel}"))
+}
+
 /// Name of the plane with the visibility of light `light`.
 fn visibility_name(light: usize) -> String {
     format!("V.{light}")
@@ -28,7 +39,19 @@ mod tests {
     use std::io::Cursor;
 
     use super::*;
-    use crate::{DecodeError, Description, ExrCompression, ExrOptions, ExrSamples, Frame, Layers, SaveOptions};
+    use crate::{
+        DecodeError, Description, ExrCompression, ExrOptions, ExrParts, ExrSamples, Frame, Layers, MOST_RANKS, Matte,
+        Rank, SaveOptions,
+    };
+
+    /// Six ranks, in which pixels see up to two things.
+    fn matte(names: [&str; 3]) -> Matte {
+        let mut matte = Matte::nothing(names.map(str::to_owned).to_vec(), MOST_RANKS, 6);
+        matte.nearest = vec![0, 1, 2, 3, 1, 2];
+        matte.ranks[0] = Rank { number: vec![0, 2, 2, 3, 1, 2], share: vec![0.0, 0.75, 1.0, 0.5, 0.3, 0.6] };
+        matte.ranks[1] = Rank { number: vec![0, 1, 0, 1, 0, 3], share: vec![0.0, 0.25, 0.0, 0.5, 0.0, 0.4] };
+        matte
+    }
 
     fn layered(lights: usize) -> Frame {
         let value = |pixel: usize, plane: usize| (pixel * 100 + plane) as f32 / 7.0;
@@ -40,6 +63,10 @@ mod tests {
             position: vectors(20),
             visibility: (0..lights).map(|light| (0..6).map(|pixel| value(pixel, 30 + light)).collect()).collect(),
             used: vec![0, 1, 2, 3, 1 << 24, 5],
+            lights: (0..lights).map(|light| vectors(40 + 3 * light)).collect(),
+            rest: vectors(90),
+            object: matte(["floor", "ball \"1\"", "ß"]),
+            material: matte(["grey", "", "红"]),
         };
         Frame::new(3, 2, vectors(0)).unwrap().with_layers(layers).unwrap()
     }
@@ -58,6 +85,79 @@ mod tests {
         }
     }
 
+    /// The file in parts, with these options.
+    fn in_parts(frame: &Frame, exr: ExrOptions) -> Vec<u8> {
+        let mut output = Cursor::new(Vec::new());
+        let options = SaveOptions::default().with_exr(exr.with_parts(ExrParts::Multi));
+        write_layers(frame, frame.layers().unwrap(), &options, &mut output).unwrap();
+        output.into_inner()
+    }
+
+    #[test]
+    fn layers_come_back_from_parts() {
+        use ::exr::meta::MetaData;
+
+        for &compression in ExrCompression::ALL {
+            for lights in [0, 3] {
+                let frame = layered(lights);
+                let bytes = in_parts(&frame, ExrOptions::default().with_compression(compression));
+                assert_eq!(read(&bytes).unwrap(), frame, "{compression} {lights}");
+                let meta = MetaData::read_from_buffered(Cursor::new(bytes), true).unwrap();
+                let names: Vec<String> =
+                    meta.headers.iter().map(|it| it.own_attributes.layer_name.as_ref().unwrap().to_string()).collect();
+                let expected = "rgba depth normal position visibility lights ids CryptoObject CryptoMaterial";
+                assert_eq!(names.join(" "), expected);
+            }
+        }
+    }
+
+    #[test]
+    fn equal_images_are_equal_files() {
+        let frame = layered(3);
+        let description = Description::default().with_scene("scene").with_software("software").with_settings("{}");
+        let options = SaveOptions::default().with_description(description);
+        let written = || {
+            let mut output = Cursor::new(Vec::new());
+            write_layers(&frame, frame.layers().unwrap(), &options, &mut output).unwrap();
+            output.into_inner()
+        };
+        let (first, parts) = (written(), in_parts(&frame, ExrOptions::default()));
+        for _ in 0..8 {
+            assert!(written() == first && in_parts(&frame, ExrOptions::default()) == parts);
+        }
+    }
+
+    #[test]
+    fn mattes_are_floats_and_described() {
+        use ::exr::meta::MetaData;
+        use ::exr::meta::attribute::{AttributeValue, SampleType};
+
+        let frame = layered(1);
+        let exr = ExrOptions::default().with_samples(ExrSamples::Half);
+        let mut output = Cursor::new(Vec::new());
+        write_layers(&frame, frame.layers().unwrap(), &SaveOptions::default().with_exr(exr), &mut output).unwrap();
+        output.set_position(0);
+        let meta = MetaData::read_from_buffered(&mut output, true).unwrap();
+        let header = &meta.headers[0];
+        for channel in header.channels.list.iter().filter(|channel| channel.name.to_string().starts_with("Crypto")) {
+            assert_eq!(channel.sample_type, SampleType::F32, "{}", channel.name);
+        }
+        let texts: Vec<(String, String)> = header
+            .own_attributes
+            .other
+            .iter()
+            .filter_map(|(name, value)| match value {
+                AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(texts.iter().filter(|(name, _)| name.starts_with("cryptomatte/")).count(), 8);
+        assert!(texts.iter().any(|(name, text)| name.ends_with("/name") && text == "CryptoObject"));
+        let back = read(&output.into_inner()).unwrap();
+        let (found, expected) = (back.layers().unwrap(), frame.layers().unwrap());
+        assert_eq!((&found.object, &found.material), (&expected.object, &expected.material));
+    }
+
     #[test]
     fn channels_have_their_names_in_one_part_of_floats() {
         use ::exr::compression::Compression;
@@ -74,10 +174,21 @@ mod tests {
             .split(' ')
             .map(str::to_owned)
             .chain((0..11).map(visibility_name))
+            .chain((0..11).flat_map(light_names))
+            .chain(REST.map(str::to_owned))
+            .chain(["id.object", "id.material"].map(str::to_owned))
+            .chain(
+                [cryptomatte::OBJECTS, cryptomatte::MATERIALS]
+                    .into_iter()
+                    .flat_map(|naming| (0..MOST_RANKS).flat_map(move |rank| naming.channels(rank))),
+            )
             .collect();
         expected.sort();
         assert_eq!(channels.iter().map(|channel| channel.name.to_string()).collect::<Vec<_>>(), expected);
-        assert!(channels.iter().all(|channel| channel.sample_type == SampleType::F32));
+        let (ids, others): (Vec<_>, Vec<_>) =
+            channels.iter().partition(|channel| channel.name.to_string().starts_with("id."));
+        assert!(others.iter().all(|channel| channel.sample_type == SampleType::F32));
+        assert!(ids.iter().all(|channel| channel.sample_type == SampleType::U32) && ids.len() == 2);
     }
 
     #[test]

@@ -1,16 +1,19 @@
-//! Reading EXR: the full-resolution level of the first part, with any number type and compression.
+//! Reading EXR: the full-resolution level of the first part, and of others of its size and place, with any number type and compression.
 
+use std::collections::BTreeMap;
 use std::io::Cursor;
 
 use ::exr::compression::Compression;
 use ::exr::image::FlatSamples;
 use ::exr::image::read::read as reader;
+use ::exr::meta::attribute::AttributeValue;
 use ::exr::meta::header::Header;
 use ::exr::prelude::{ReadChannels, ReadLayers};
 
-use super::{ALPHA, COLOR, DEPTH, LUMINANCE, NORMAL, POSITION, USED, visibility_name};
+use super::cryptomatte::{MATERIALS, Naming, OBJECTS};
+use super::{ALPHA, COLOR, DEPTH, LUMINANCE, NORMAL, POSITION, REST, USED, light_names, visibility_name};
 use crate::load::{DecodeError, checked_pixels};
-use crate::{Format, Frame, Layers};
+use crate::{Format, Frame, Layers, Matte};
 
 /// Maximum decompressed size of the channels of a file, in bytes.
 const MAX_BYTES: u64 = 1 << 36;
@@ -22,21 +25,29 @@ const MAX_EXPANSION: u64 = 1376;
 /// is the file's data window.
 pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
     let chunks = ::exr::block::read(Cursor::new(bytes), false).map_err(malformed)?;
-    for header in chunks.headers() {
-        check_header(header, bytes.len() as u64)?;
-    }
-    let image = reader()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_chunks(chunks)
-        .map_err(malformed)?;
+    check_headers(chunks.headers(), bytes.len() as u64)?;
+    let flat = chunks.headers().iter().all(|header| !header.deep);
+    let channels = reader().no_deep_data().largest_resolution_level().all_channels();
+    let layers = if flat {
+        channels.all_layers().all_attributes().from_chunks(chunks).map_err(malformed)?.layer_data.into_vec()
+    } else {
+        vec![channels.first_valid_layer().all_attributes().from_chunks(chunks).map_err(malformed)?.layer_data]
+    };
 
-    let size = image.layer_data.size;
-    let planes =
-        Planes(image.layer_data.channel_data.list.into_iter().map(|c| (c.name.to_string(), c.sample_data)).collect());
+    let first = layers.first().ok_or_else(|| malformed("it has no parts"))?;
+    let (size, position) = (first.size, first.attributes.layer_position);
+    let mut planes = Planes::default();
+    for layer in layers.into_iter().filter(|layer| (layer.size, layer.attributes.layer_position) == (size, position)) {
+        planes.texts.extend(layer.attributes.other.into_iter().filter_map(|(name, value)| match value {
+            // UTF-8, as which the crate does not show it.
+            AttributeValue::Text(text) => Some((name.to_string(), String::from_utf8(text.as_slice().to_vec()).ok()?)),
+            _ => None,
+        }));
+        for channel in layer.channel_data.list {
+            // Of channels with the same name in several parts, such as those of two eyes, the first counts.
+            planes.channels.entry(channel.name.to_string()).or_insert(channel.sample_data);
+        }
+    }
     let frame = Frame::new(size.0 as u32, size.1 as u32, planes.color()?).map_err(malformed)?;
     let frame = match planes.get(ALPHA) {
         Some(alpha) => frame.with_alpha(alpha).map_err(malformed)?,
@@ -52,32 +63,51 @@ fn malformed(message: impl ToString) -> DecodeError {
     DecodeError::malformed(Format::Exr, message)
 }
 
-/// Rejects files that would take too much memory, or more than `length` bytes can contain, and unsupported ones: DWA compression,
-/// and channels of reduced resolution.
-fn check_header(header: &Header, length: u64) -> Result<(), DecodeError> {
+/// Rejects files that would take too much memory, or more than `length` bytes can contain, and unsupported ones.
+fn check_headers(headers: &[Header], length: u64) -> Result<(), DecodeError> {
+    let needed = headers.iter().map(check_header).sum::<Result<u64, DecodeError>>()?;
+    if needed > MAX_BYTES.min(length.saturating_mul(MAX_EXPANSION)) {
+        return Err(malformed(format_args!("channels of {needed} bytes cannot be stored in {length} bytes")));
+    }
+    Ok(())
+}
+
+/// The bytes of a part's channels. Rejects DWA compression, and channels of reduced resolution.
+fn check_header(header: &Header) -> Result<u64, DecodeError> {
     if matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) {
         return Err(malformed("DWA compression is not supported; use ZIP or another method"));
     }
     let [width, height] =
         [header.layer_size.0, header.layer_size.1].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
     let pixels = checked_pixels(Format::Exr, width, height)? as u64;
-    let needed = pixels.saturating_mul(header.channels.bytes_per_pixel as u64);
-    if needed > MAX_BYTES.min(length.saturating_mul(MAX_EXPANSION)) {
-        return Err(malformed(format_args!("channels of {needed} bytes cannot be stored in {length} bytes")));
-    }
     if header.channels.list.iter().any(|channel| (channel.sampling.0, channel.sampling.1) != (1, 1)) {
         return Err(malformed("it has channels of reduced resolution"));
     }
-    Ok(())
+    // The sum of those of all parts does not overflow.
+    Ok(pixels.saturating_mul(header.channels.bytes_per_pixel as u64).min(MAX_BYTES + 1))
 }
 
-/// The channels of a file by name.
-struct Planes(Vec<(String, FlatSamples)>);
+/// The channels and texts of a file by name.
+#[derive(Default)]
+struct Planes {
+    channels: BTreeMap<String, FlatSamples>,
+    texts: BTreeMap<String, String>,
+}
 
 impl Planes {
     fn get(&self, name: &str) -> Option<Vec<f32>> {
-        let (_, samples) = self.0.iter().find(|(known, _)| known == name)?;
-        Some(samples.values_as_f32().collect())
+        Some(self.channels.get(name)?.values_as_f32().collect())
+    }
+
+    fn numbers(&self, name: &str) -> Option<Vec<u32>> {
+        match self.channels.get(name)? {
+            FlatSamples::U32(numbers) => Some(numbers.clone()),
+            _ => None,
+        }
+    }
+
+    fn matte(&self, naming: Naming) -> Matte {
+        naming.read(|name| self.numbers(name), |name| self.get(name), |name| self.texts.get(name).cloned())
     }
 
     fn vectors(&self, names: [&str; 3]) -> Option<Vec<[f32; 3]>> {
@@ -87,7 +117,7 @@ impl Planes {
 
     fn color(&self) -> Result<Vec<[f32; 3]>, DecodeError> {
         let grey = || Some(self.get(LUMINANCE)?.into_iter().map(|value| [value; 3]).collect());
-        let names = || self.0.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
+        let names = || self.channels.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
         self.vectors(COLOR).or_else(grey).ok_or_else(|| DecodeError::Channels { found: names() })
     }
 
@@ -98,6 +128,10 @@ impl Planes {
             position: self.vectors(POSITION)?,
             visibility: (0..).map_while(|light| self.get(&visibility_name(light))).collect(),
             used: self.get(USED)?.into_iter().map(|count| count as u32).collect(),
+            lights: (0..).map_while(|light| self.vectors(light_names(light).each_ref().map(|name| &**name))).collect(),
+            rest: self.vectors(REST).unwrap_or_default(),
+            object: self.matte(OBJECTS),
+            material: self.matte(MATERIALS),
         })
     }
 }

@@ -5,6 +5,7 @@
 //! a block in two halves, those at even and those at odd places, and replaces each byte by its difference from the one before, plus 128
 //! (OpenEXR, `ImfZip.cpp`). Other methods are the crate's.
 
+use std::cell::Cell;
 use std::io::{self, Seek, Write};
 use std::ops::Range;
 
@@ -17,10 +18,13 @@ use ::exr::meta::header::Header;
 use ::exr::prelude::{Compression, Vec2, f16};
 use rayon::prelude::*;
 
-use super::{ALPHA, COLOR, DEPTH, NORMAL, POSITION, USED, attributes, visibility_name};
-use crate::options::{ExrCompression, ExrSamples, SaveOptions};
+use super::cryptomatte::{MATERIALS, Naming, OBJECTS, identifiers};
+use super::order::Sorted;
+use super::{ALPHA, COLOR, DEPTH, NORMAL, POSITION, REST, USED, attributes, light_names, visibility_name};
+use crate::matte::MOST_RANKS;
+use crate::options::{ExrCompression, ExrParts, ExrSamples, SaveOptions};
 use crate::save::{EncodeError, check_fits};
-use crate::{Format, Frame, Layers, Window, deflate};
+use crate::{Format, Frame, Layers, Matte, Window, deflate};
 
 /// Blocks that are held in memory at once.
 const AT_ONCE: usize = 32;
@@ -33,76 +37,147 @@ enum Plane<'a> {
     Value(&'a [f32]),
     Count(&'a [u32]),
     Component(&'a [[f32; 3]], usize),
+    Number(&'a [u32]),
+    /// Numbers of things, and the identifier of each as bits of a float.
+    Identifier(&'a [u32], &'a [u32]),
+    Nothing,
 }
 
 /// A plane with the name and the numbers of its channel.
 struct Channel<'a> {
     name: Text,
-    samples: ExrSamples,
+    kind: SampleType,
     plane: Plane<'a>,
+}
+
+/// Channels that belong together, with texts that describe them.
+struct Part<'a> {
+    /// What compositors call it.
+    name: &'static str,
+    channels: Vec<Channel<'a>>,
+    texts: Vec<(String, String)>,
+}
+
+impl<'a> Part<'a> {
+    fn new(name: &'static str, channels: impl IntoIterator<Item = Channel<'a>>) -> Part<'a> {
+        Part { name, channels: channels.into_iter().collect(), texts: Vec::new() }
+    }
 }
 
 /// Writes the colours of `frame`, and its alpha if it has it; OpenEXR's colours are premultiplied, as the frame's.
 pub(crate) fn write(frame: &Frame, options: &SaveOptions, output: impl Write + Seek) -> Result<(), EncodeError> {
-    write_channels(frame, color(frame, options), options, output)
+    write_parts(frame, vec![color(frame, options)], options, output)
 }
 
-/// Writes the colours of `frame` and all of its `layers`.
+/// Writes the colours of `frame` and all of its `layers`, in one part or in one for each kind of layer.
 pub(crate) fn write_layers(
     frame: &Frame,
     layers: &Layers,
     options: &SaveOptions,
     output: impl Write + Seek,
 ) -> Result<(), EncodeError> {
-    let samples = options.exr.samples;
-    let exact = |name: &str, plane| Channel { name: Text::from(name), samples: ExrSamples::Float, plane };
-    let mut channels = color(frame, options);
-    channels.push(exact(DEPTH, Plane::Value(&layers.depth)));
-    channels.extend(components(NORMAL, &layers.normal, samples));
-    channels.extend(components(POSITION, &layers.position, ExrSamples::Float));
-    channels.extend(layers.visibility.iter().enumerate().map(|(light, plane)| {
-        let name = Text::from(&*visibility_name(light));
-        Channel { name, samples, plane: Plane::Value(plane) }
+    let kind = sample_type(options);
+    let values = |name: String, plane| Channel { name: Text::from(&*name), kind, plane: Plane::Value(plane) };
+    let visibility = layers.visibility.iter().enumerate().map(|(light, plane)| values(visibility_name(light), plane));
+    let used = exact(USED, Plane::Count(&layers.used));
+    let names = (0..layers.lights.len()).map(light_names).chain([REST.map(str::to_owned)]);
+    let groups = layers.lights.iter().chain(Some(&layers.rest).filter(|rest| !rest.is_empty()));
+    let mut parts = vec![
+        color(frame, options),
+        Part::new("depth", [exact(DEPTH, Plane::Value(&layers.depth))]),
+        Part::new("normal", components(NORMAL, &layers.normal, kind)),
+        Part::new("position", components(POSITION, &layers.position, SampleType::F32)),
+        Part::new("visibility", visibility.chain([used])),
+        Part::new(
+            "lights",
+            groups.zip(names).flat_map(|(plane, names)| components(names.each_ref().map(|name| &**name), plane, kind)),
+        ),
+    ];
+    let mattes = [(&layers.object, OBJECTS), (&layers.material, MATERIALS)];
+    let mattes: Vec<(&Matte, Naming, Vec<u32>)> = mattes
+        .into_iter()
+        .filter(|(matte, _)| !matte.is_empty())
+        .map(|(matte, naming)| (matte, naming, identifiers(&matte.names)))
+        .collect();
+    let numbers = mattes.iter().map(|(matte, naming, _)| Channel {
+        name: Text::from(naming.nearest),
+        kind: SampleType::U32,
+        plane: Plane::Number(&matte.nearest),
+    });
+    parts.push(Part::new("ids", numbers));
+    parts.extend(mattes.iter().map(|(matte, naming, identifiers)| Part {
+        texts: naming.attributes(matte).to_vec(),
+        ..Part::new(naming.layer, (0..MOST_RANKS).flat_map(|rank| ranks(matte, *naming, identifiers, rank)))
     }));
-    channels.push(exact(USED, Plane::Count(&layers.used)));
-    write_channels(frame, channels, options, output)
+    parts.retain(|part| !part.channels.is_empty());
+    if options.exr.parts == ExrParts::Single {
+        let mut all = Part::new("", []);
+        for part in parts {
+            all.channels.extend(part.channels);
+            all.texts.extend(part.texts);
+        }
+        parts = vec![all];
+    }
+    write_parts(frame, parts, options, output)
 }
 
-fn color<'a>(frame: &'a Frame, options: &SaveOptions) -> Vec<Channel<'a>> {
-    let samples = options.exr.samples;
-    let alpha = frame.alpha().map(|alpha| Channel { name: Text::from(ALPHA), samples, plane: Plane::Value(alpha) });
-    components(COLOR, frame.color(), samples).chain(alpha).collect()
+fn color<'a>(frame: &'a Frame, options: &SaveOptions) -> Part<'a> {
+    let kind = sample_type(options);
+    let alpha = frame.alpha().map(|alpha| Channel { name: Text::from(ALPHA), kind, plane: Plane::Value(alpha) });
+    Part::new("rgba", components(COLOR, frame.color(), kind).into_iter().chain(alpha))
 }
 
-fn components<'a>(
-    names: [&'static str; 3],
-    vectors: &'a [[f32; 3]],
-    samples: ExrSamples,
-) -> impl Iterator<Item = Channel<'a>> {
-    let channel =
-        move |(axis, name)| Channel { name: Text::from(name), samples, plane: Plane::Component(vectors, axis) };
-    names.into_iter().enumerate().map(channel)
+/// A channel that halves are too coarse for.
+fn exact<'a>(name: &str, plane: Plane<'a>) -> Channel<'a> {
+    Channel { name: Text::from(name), kind: SampleType::F32, plane }
 }
 
-fn write_channels(
+fn components<'a>(names: [&str; 3], vectors: &'a [[f32; 3]], kind: SampleType) -> [Channel<'a>; 3] {
+    [0, 1, 2].map(|axis| Channel { name: Text::from(names[axis]), kind, plane: Plane::Component(vectors, axis) })
+}
+
+/// The channels of a rank; empty ones if the matte has fewer.
+fn ranks<'a>(matte: &'a Matte, naming: Naming, identifiers: &'a [u32], rank: usize) -> [Channel<'a>; 2] {
+    let [identifier, share] = naming.channels(rank);
+    let planes = match matte.ranks.get(rank) {
+        Some(rank) => [Plane::Identifier(&rank.number, identifiers), Plane::Value(&rank.share)],
+        None => [Plane::Nothing; 2],
+    };
+    [exact(&identifier, planes[0]), exact(&share, planes[1])]
+}
+
+fn sample_type(options: &SaveOptions) -> SampleType {
+    match options.exr.samples {
+        ExrSamples::Float => SampleType::F32,
+        ExrSamples::Half => SampleType::F16,
+    }
+}
+
+fn write_parts(
     frame: &Frame,
-    mut channels: Vec<Channel<'_>>,
+    mut parts: Vec<Part<'_>>,
     options: &SaveOptions,
     output: impl Write + Seek,
 ) -> Result<(), EncodeError> {
     check_fits(Format::Exr, frame)?;
     // The format requires this order.
-    channels.sort_by(|a, b| a.name.cmp(&b.name));
-    let header = header(frame, &channels, options);
-    let (height, rows) = (frame.height() as usize, header.compression.scan_lines_per_block());
-    let starts: Vec<usize> = (0..height).step_by(rows).collect();
-    let written = ::exr::block::write(output, [header].into_iter().collect(), true, |meta, writer| {
-        let header = &meta.headers[0];
-        for (batch, starts) in starts.chunks(AT_ONCE).enumerate() {
-            let chunk = |&start: &usize| chunk(&channels, header, start..height.min(start + rows));
-            let chunks = starts.par_iter().map(chunk).collect::<Result<Vec<Chunk>, _>>()?;
-            for (index, chunk) in chunks.into_iter().enumerate() {
-                writer.write_chunk(batch * AT_ONCE + index, chunk)?;
+    parts.iter_mut().for_each(|part| part.channels.sort_by(|a, b| a.name.cmp(&b.name)));
+    let several = parts.len() > 1;
+    let headers = parts.iter().map(|part| header(frame, part, several, options)).collect();
+    let complete = Cell::new(false);
+    let output = Sorted::new(output, parts.len(), &complete);
+    let written = ::exr::block::write(output, headers, true, |meta, writer| {
+        complete.set(true);
+        let (headers, height) = (&meta.headers[..], frame.height() as usize);
+        for (number, part) in parts.iter().enumerate() {
+            let rows = headers[number].compression.scan_lines_per_block();
+            let starts: Vec<usize> = (0..height).step_by(rows).collect();
+            for (batch, starts) in starts.chunks(AT_ONCE).enumerate() {
+                let chunk = |&start: &usize| chunk(&part.channels, headers, number, start..height.min(start + rows));
+                let chunks = starts.par_iter().map(chunk).collect::<Result<Vec<Chunk>, _>>()?;
+                for (index, chunk) in chunks.into_iter().enumerate() {
+                    writer.write_chunk(batch * AT_ONCE + index, chunk)?;
+                }
             }
         }
         Ok(())
@@ -111,7 +186,7 @@ fn write_channels(
 }
 
 /// Scan lines in a fixed order, so that every reader supports the file and its bytes do not depend on threads.
-fn header(frame: &Frame, channels: &[Channel<'_>], options: &SaveOptions) -> Header {
+fn header(frame: &Frame, part: &Part<'_>, several: bool, options: &SaveOptions) -> Header {
     let compression = match options.exr.compression {
         ExrCompression::Zip => Compression::ZIP16,
         ExrCompression::Zips => Compression::ZIP1,
@@ -119,20 +194,15 @@ fn header(frame: &Frame, channels: &[Channel<'_>], options: &SaveOptions) -> Hea
         ExrCompression::Rle => Compression::RLE,
         ExrCompression::None => Compression::Uncompressed,
     };
-    let described = |channel: &Channel<'_>| {
-        let samples = match channel.samples {
-            ExrSamples::Float => SampleType::F32,
-            ExrSamples::Half => SampleType::F16,
-        };
-        ChannelDescription::named(channel.name.clone(), samples)
-    };
+    let described = |channel: &Channel<'_>| ChannelDescription::named(channel.name.clone(), channel.kind);
     let size = (frame.width() as usize, frame.height() as usize);
-    let header = Header::new(Text::default(), size, channels.iter().map(described).collect()).with_encoding(
+    let header = Header::new(Text::default(), size, part.channels.iter().map(described).collect()).with_encoding(
         compression,
         BlockDescription::ScanLines,
         LineOrder::Increasing,
     );
-    let mut header = attributes::described(header, &options.description);
+    let mut header = attributes::described(header, &options.description, &part.texts);
+    header.own_attributes.layer_name = several.then(|| Text::from(part.name));
     // The crate and the format number pixels in 31 bits; images are smaller.
     let Window { first, whole } = frame.window();
     header.own_attributes.layer_position = Vec2(first[0] as i32, first[1] as i32);
@@ -147,8 +217,9 @@ fn io_error(error: ::exr::error::Error) -> io::Error {
     }
 }
 
-/// Some rows of all channels, compressed.
-fn chunk(channels: &[Channel<'_>], header: &Header, rows: Range<usize>) -> ::exr::error::Result<Chunk> {
+/// Some rows of all channels of a part, compressed.
+fn chunk(channels: &[Channel<'_>], headers: &[Header], part: usize, rows: Range<usize>) -> ::exr::error::Result<Chunk> {
+    let header = &headers[part];
     let (width, start) = (header.layer_size.width(), rows.start);
     let mut bytes = Vec::with_capacity(header.channels.bytes_per_pixel * width * rows.len());
     for y in rows.clone() {
@@ -156,19 +227,19 @@ fn chunk(channels: &[Channel<'_>], header: &Header, rows: Range<usize>) -> ::exr
     }
     if !matches!(header.compression, Compression::ZIP16 | Compression::ZIP1) {
         let index = BlockIndex {
-            layer: 0,
+            layer: part,
             pixel_position: Vec2(0, start),
             pixel_size: Vec2(width, rows.len()),
             level: Vec2(0, 0),
         };
-        return UncompressedBlock { index, data: bytes }.compress_to_chunk(std::slice::from_ref(header));
+        return UncompressedBlock { index, data: bytes }.compress_to_chunk(headers);
     }
     let compressed = deflate::zlib(&differences(&bytes), LEVEL);
     // Blocks that are not shorter are stored as they are.
     let compressed_pixels_le = if compressed.len() < bytes.len() { compressed } else { bytes };
     let y_coordinate = header.own_attributes.layer_position.y() + start as i32;
     let block = CompressedScanLineBlock { y_coordinate, compressed_pixels_le };
-    Ok(Chunk { layer_index: 0, compressed_block: CompressedBlock::ScanLine(block) })
+    Ok(Chunk { layer_index: part, compressed_block: CompressedBlock::ScanLine(block) })
 }
 
 impl Channel<'_> {
@@ -178,13 +249,19 @@ impl Channel<'_> {
             Plane::Value(values) => self.put_all(values[pixels].iter().copied(), bytes),
             Plane::Count(counts) => self.put_all(counts[pixels].iter().map(|&count| count as f32), bytes),
             Plane::Component(vectors, axis) => self.put_all(vectors[pixels].iter().map(|vector| vector[axis]), bytes),
+            Plane::Number(numbers) => bytes.extend(numbers[pixels].iter().flat_map(|number| number.to_le_bytes())),
+            Plane::Identifier(numbers, bits) => {
+                let bits = |&number: &u32| bits.get(number as usize).copied().unwrap_or(0).to_le_bytes();
+                bytes.extend(numbers[pixels].iter().flat_map(bits));
+            }
+            Plane::Nothing => self.put_all(pixels.map(|_| 0.0), bytes),
         }
     }
 
     fn put_all(&self, values: impl Iterator<Item = f32>, bytes: &mut Vec<u8>) {
-        match self.samples {
-            ExrSamples::Float => bytes.extend(values.flat_map(f32::to_le_bytes)),
-            ExrSamples::Half => bytes.extend(values.flat_map(|value| half(value).to_le_bytes())),
+        match self.kind {
+            SampleType::F16 => bytes.extend(values.flat_map(|value| half(value).to_le_bytes())),
+            SampleType::F32 | SampleType::U32 => bytes.extend(values.flat_map(f32::to_le_bytes)),
         }
     }
 }

@@ -81,9 +81,7 @@ impl Backend for Cpu {
     }
 
     fn film(&self, plan: &Plan, rows: [Range<u32>; 2]) -> Result<Picture, RenderError> {
-        let film = Picture::band(plan.size, rows, plan.layers);
-        let film = if plan.coverage { film.with_coverage() } else { film };
-        Ok(if plan.caught { film.with_caught() } else { film })
+        Ok(Picture::planned(plan, rows).with_counted(plan))
     }
 
     fn camera_rays(&self, view: &View, rows: Range<u32>) -> Result<RayList, RenderError> {
@@ -120,7 +118,8 @@ impl Backend for Cpu {
         Ok(visibility)
     }
 
-    fn develop(&self, _: &PreparedScene, film: Picture, picture: &mut Picture) -> Result<(), RenderError> {
+    fn develop(&self, _: &PreparedScene, mut film: Picture, picture: &mut Picture) -> Result<(), RenderError> {
+        film.write_counted();
         picture.take(film);
         Ok(())
     }

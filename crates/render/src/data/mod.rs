@@ -8,6 +8,7 @@ pub(crate) mod items;
 pub(crate) mod lights;
 pub(crate) mod lit;
 pub(crate) mod masks;
+pub(crate) mod mattes;
 pub(crate) mod picture;
 pub(crate) mod rays;
 pub(crate) mod samples;

@@ -2,8 +2,11 @@
 
 use std::ops::Range;
 
-use lightmesh_image::{Frame, Layers};
+use lightmesh_image::{Frame, Layers, Matte, Rank};
 use rayon::prelude::*;
+
+use super::mattes::{Counted, ranks_of, take_away};
+use crate::plan::Plan;
 
 /// Linear colours and, on request, layers of some rows of an image; row 0 is the top.
 #[derive(Clone, Debug)]
@@ -24,6 +27,8 @@ pub struct Picture {
     pub caught: Option<Vec<f32>>,
     /// What each of these pixels sees.
     pub layers: Option<Layers>,
+    /// What the samples of these pixels see, if they have several and mattes are kept.
+    pub(crate) counted: Option<Counted>,
     /// While groups of lights follow: the radiance of each ray of a wave so far.
     pub(crate) sums: Vec<glam::Vec3>,
 }
@@ -43,9 +48,36 @@ impl Picture {
             position: vec![[0.0; 3]; pixels],
             visibility: vec![vec![0.0; pixels]; lights],
             used: vec![0; pixels],
+            ..Layers::default()
         });
         let color = vec![[0.0; 3]; pixels];
-        Picture { size, rows, kept, finished: 0, color, coverage: None, caught: None, layers, sums: Vec::new() }
+        Picture {
+            size,
+            rows,
+            kept,
+            finished: 0,
+            color,
+            coverage: None,
+            caught: None,
+            layers,
+            counted: None,
+            sums: Vec::new(),
+        }
+    }
+
+    /// Black rows with all that `plan` asks for.
+    pub(crate) fn planned(plan: &Plan, rows: [Range<u32>; 2]) -> Picture {
+        let mut picture = Picture::band(plan.size, rows, plan.layers);
+        if plan.coverage {
+            picture = picture.with_coverage();
+        }
+        if plan.caught {
+            picture = picture.with_caught();
+        }
+        if plan.compositing {
+            picture = picture.with_light_groups().with_mattes(ranks_of(plan.pixel_samples()));
+        }
+        picture
     }
 
     /// The index of pixel y · width + x of the whole image in the planes.
@@ -84,6 +116,54 @@ impl Picture {
         Picture { caught: Some(vec![0.0; self.color.len()]), ..self }
     }
 
+    /// Keeps the radiance of each light by itself, if there are layers.
+    pub(crate) fn with_light_groups(mut self) -> Picture {
+        if let Some(layers) = &mut self.layers {
+            let black = vec![[0.0; 3]; self.color.len()];
+            layers.lights = vec![black.clone(); layers.visibility.len()];
+            layers.rest = black;
+        }
+        self
+    }
+
+    /// Keeps numbers and mattes of objects and materials of `ranks` ranks, if there are layers.
+    fn with_mattes(mut self, ranks: usize) -> Picture {
+        let pixels = self.color.len();
+        if let Some(layers) = &mut self.layers {
+            layers.object = Matte::nothing(Vec::new(), ranks, pixels);
+            layers.material = layers.object.clone();
+        }
+        self
+    }
+
+    /// Counts what several samples of pixels see, if mattes are kept.
+    pub(crate) fn with_counted(mut self, plan: &Plan) -> Picture {
+        let samples = plan.pixel_samples();
+        self.counted = (plan.compositing && samples > 1).then(|| Counted::none(samples, self.color.len()));
+        self
+    }
+
+    /// Writes what was counted to the mattes.
+    pub(crate) fn write_counted(&mut self) {
+        if let (Some(counted), Some(Layers { object, material, .. })) = (self.counted.take(), &mut self.layers) {
+            counted.write([object, material], 0);
+        }
+    }
+
+    /// Completes the mattes with names; pixels with one sample see one thing.
+    pub(crate) fn complete_mattes(&mut self, names: [Vec<String>; 2], one_sample: bool) {
+        let Some(Layers { object, material, .. }) = &mut self.layers else { return };
+        for (matte, names) in [object, material].into_iter().zip(names) {
+            matte.names = names;
+            if let [Rank { number, share }] = &mut matte.ranks[..]
+                && one_sample
+            {
+                number.copy_from_slice(&matte.nearest);
+                share.iter_mut().zip(number).for_each(|(share, number)| *share = f32::from(u8::from(*number != 0)));
+            }
+        }
+    }
+
     /// Copies the kept rows of a band into this image, with its layers and coverage if both have them.
     pub fn take(&mut self, band: Picture) {
         if band.kept == self.rows && band.rows == self.rows {
@@ -106,6 +186,12 @@ impl Picture {
             for (plane, band) in layers.visibility.iter_mut().zip(&band.visibility) {
                 plane[to.clone()].copy_from_slice(&band[from.clone()]);
             }
+            for (matte, band) in [(&mut layers.object, &band.object), (&mut layers.material, &band.material)] {
+                take_matte(matte, band, &to, &from);
+            }
+            for (plane, band) in light_groups_of(layers).zip(band.lights.iter().chain([&band.rest])) {
+                plane[to.clone()].copy_from_slice(&band[from.clone()]);
+            }
         }
     }
 
@@ -118,6 +204,9 @@ impl Picture {
     pub(crate) fn fill_unfinished(&mut self, background: glam::Vec3) {
         let first = self.places(&(self.finished..self.size[1])).start;
         self.color[first..].fill(background.to_array());
+        if let Some(layers) = self.layers.as_mut().filter(|layers| !layers.rest.is_empty()) {
+            layers.rest[first..].fill(background.to_array());
+        }
     }
 
     /// Finds what is covered: pixels with a depth.
@@ -127,23 +216,35 @@ impl Picture {
             depths.map(|depths| depths.iter().map(|depth| f32::from(u8::from(depth.is_finite()))).collect());
     }
 
-    /// What a shadow catcher gets of its light is not covered.
-    pub(crate) fn uncover_caught(&mut self) {
-        if let (Some(coverage), Some(caught)) = (&mut self.coverage, self.caught.take()) {
-            coverage.iter_mut().zip(caught).for_each(|(coverage, caught)| *coverage = (*coverage - caught).max(0.0));
+    /// What a shadow catcher gets of its light is not covered. `catchers` are the numbers of objects, and of materials, that catch shadows.
+    pub(crate) fn uncover_caught(&mut self, catchers: [Vec<u32>; 2]) {
+        let (Some(coverage), Some(caught)) = (&mut self.coverage, self.caught.take()) else { return };
+        coverage.iter_mut().zip(&caught).for_each(|(coverage, caught)| *coverage = (*coverage - caught).max(0.0));
+        let Some(Layers { object, material, .. }) = &mut self.layers else { return };
+        for (matte, catchers) in [object, material].into_iter().zip(&catchers) {
+            let uncovered = caught.iter().enumerate().filter(|(_, caught)| **caught > 0.0);
+            uncovered.for_each(|(pixel, &caught)| take_away(matte, catchers, pixel, caught));
         }
     }
 
     /// Takes the background out of all pixels, as far as they are not covered: what remains is premultiplied by the coverage.
     pub(crate) fn take_out(&mut self, background: glam::Vec3) {
         let Some(coverage) = &self.coverage else { return };
-        for (color, &coverage) in self.color.iter_mut().zip(coverage) {
-            if coverage <= 0.0 {
-                *color = [0.0; 3];
-            } else if coverage < 1.0 {
-                let covered = glam::Vec3::from_array(*color) - (1.0 - coverage) * background;
-                *color = covered.max(glam::Vec3::ZERO).to_array();
+        let take_out = |plane: &mut [[f32; 3]], background: glam::Vec3| {
+            for (color, &coverage) in plane.iter_mut().zip(coverage) {
+                if coverage <= 0.0 {
+                    *color = [0.0; 3];
+                } else if coverage < 1.0 {
+                    let covered = glam::Vec3::from_array(*color) - (1.0 - coverage) * background;
+                    *color = covered.max(glam::Vec3::ZERO).to_array();
+                }
             }
+        };
+        take_out(&mut self.color, background);
+        if let Some(layers) = &mut self.layers {
+            // The background belongs to no light.
+            take_out(&mut layers.rest, background);
+            layers.lights.iter_mut().for_each(|plane| take_out(plane, glam::Vec3::ZERO));
         }
     }
 
@@ -160,6 +261,23 @@ impl Picture {
             None => frame,
         }
     }
+}
+
+/// Copies the pixels `from` a band's matte `to` their places.
+fn take_matte(matte: &mut Matte, band: &Matte, to: &Range<usize>, from: &Range<usize>) {
+    if !matte.nearest.is_empty() {
+        matte.nearest[to.clone()].copy_from_slice(&band.nearest[from.clone()]);
+    }
+    for (rank, band) in matte.ranks.iter_mut().zip(&band.ranks) {
+        rank.number[to.clone()].copy_from_slice(&band.number[from.clone()]);
+        rank.share[to.clone()].copy_from_slice(&band.share[from.clone()]);
+    }
+}
+
+/// The planes of radiance by light, and then that of no light; none if they are not kept.
+pub(crate) fn light_groups_of(layers: &mut Layers) -> impl Iterator<Item = &mut Vec<[f32; 3]>> {
+    let rest = Some(&mut layers.rest).filter(|rest| !rest.is_empty());
+    layers.lights.iter_mut().chain(rest)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use lightmesh_image::Matte;
 use lightmesh_layout::Out;
 use lightmesh_layout::geometry::Vec3;
 use lightmesh_layout::stages::{PixelSamples, Shade};
@@ -10,7 +11,8 @@ use lightmesh_scene::Geometry;
 use super::device::Cuda;
 use super::rays::DeviceRays;
 use crate::cuda::{Buffer, Runtime};
-use crate::data::picture::Picture;
+use crate::data::mattes::{slots_of, write_ranks};
+use crate::data::picture::{Picture, light_groups_of};
 use crate::error::RenderError;
 use crate::plan::Plan;
 
@@ -38,6 +40,19 @@ struct DeviceLayers<R: Runtime> {
     /// By light, then pixel.
     visibility: Buffer<R, f32>,
     used: Buffer<R, u32>,
+    /// By light, then pixel, and then what belongs to no light.
+    light_groups: Option<Buffer<R, Vec3>>,
+    /// Number of the object by pixel, then of the material.
+    ids: Option<Buffer<R, u32>>,
+    /// If pixels have several samples: these by what they see.
+    mattes: Option<DeviceMattes<R>>,
+}
+
+/// The samples of pixels by object, then by material: slot by slot a number by pixel, then a count by pixel.
+struct DeviceMattes<R: Runtime> {
+    samples: u32,
+    slots: usize,
+    words: Buffer<R, u32>,
 }
 
 impl<R: Runtime> DeviceFilm<R> {
@@ -49,6 +64,7 @@ impl<R: Runtime> DeviceFilm<R> {
     ) -> Result<DeviceFilm<R>, RenderError> {
         let pool = &cuda.pool;
         let (width, pixels) = (plan.size[0], plan.size[0] as usize * rows.len());
+        let mattes = plan.compositing && plan.pixel_samples() > 1;
         let layers = plan.layers.map(|lights| {
             Ok::<_, RenderError>(DeviceLayers {
                 lights: lights as u32,
@@ -57,6 +73,9 @@ impl<R: Runtime> DeviceFilm<R> {
                 position: pool.zeros("layer P", pixels)?,
                 visibility: pool.zeros("layers V", pixels * lights)?,
                 used: pool.zeros("layer M", pixels)?,
+                light_groups: plan.compositing.then(|| pool.zeros("layers L", pixels * (lights + 1))).transpose()?,
+                ids: plan.compositing.then(|| pool.zeros("layers id", 2 * pixels)).transpose()?,
+                mattes: mattes.then(|| DeviceMattes::new(cuda, plan.pixel_samples(), pixels)).transpose()?,
             })
         });
         let layers = layers.transpose()?;
@@ -92,11 +111,14 @@ impl<R: Runtime> DeviceFilm<R> {
         let layers = self.layers.as_ref().filter(|_| sees);
         arguments.visibility = layers.map_or(Out::NULL, |layers| layers.visibility.output());
         arguments.light_points = layers.map_or(Out::NULL, |layers| layers.used.output());
+        // Rays from mirrors add to these, too.
+        arguments.light_groups = self.light_groups().map_or(Out::NULL, Buffer::output);
         // With several samples, these are the nearest one's.
         let layers = layers.filter(|_| rays.is_from_camera() && rays.sampled.is_none());
         arguments.depth = layers.map_or(Out::NULL, |layers| layers.depth.output());
         arguments.normal = layers.map_or(Out::NULL, |layers| layers.normal.output());
         arguments.position = layers.map_or(Out::NULL, |layers| layers.position.output());
+        arguments.ids = layers.and_then(|layers| layers.ids.as_ref()).map_or(Out::NULL, Buffer::output);
     }
 
     /// The same for the samples of pixels.
@@ -112,12 +134,32 @@ impl<R: Runtime> DeviceFilm<R> {
             arguments.position = layers.position.output();
             arguments.visibility = layers.visibility.output();
             arguments.light_points = layers.used.output();
+            arguments.light_groups = self.light_groups().map_or(Out::NULL, Buffer::output);
+            arguments.ids = layers.ids.as_ref().map_or(Out::NULL, Buffer::output);
+            if let Some(mattes) = &layers.mattes {
+                arguments.mattes = mattes.words.output();
+                arguments.matte_slots = mattes.slots as u32;
+            }
         }
     }
 
     /// Whether samples add to coverage or layers.
     pub(crate) fn keeps_samples(&self) -> bool {
         self.coverage.is_some() || self.layers.is_some()
+    }
+
+    fn light_groups(&self) -> Option<&Buffer<R, Vec3>> {
+        self.layers.as_ref().and_then(|layers| layers.light_groups.as_ref())
+    }
+
+    /// Whether the radiance of each light by itself is kept.
+    pub(crate) fn has_light_groups(&self) -> bool {
+        self.light_groups().is_some()
+    }
+
+    /// Whether samples are counted by what they see.
+    pub(crate) fn has_mattes(&self) -> bool {
+        self.layers.as_ref().is_some_and(|layers| layers.mattes.is_some())
     }
 
     /// The places of the first pixel that is kept, and of the end.
@@ -144,6 +186,21 @@ impl<R: Runtime> DeviceFilm<R> {
         for (light, plane) in to.visibility.iter_mut().enumerate() {
             from.visibility.read_into(light * self.color.len() + first, &mut plane[places.clone()])?;
         }
+        if let Some(from) = &from.light_groups {
+            for (group, plane) in light_groups_of(to).enumerate() {
+                let plane = bytemuck::cast_slice_mut(&mut plane[places.clone()]);
+                from.read_into(group * self.color.len() + first, plane)?;
+            }
+        }
+        let pixels = self.color.len();
+        for (number, matte) in [&mut to.object, &mut to.material].into_iter().enumerate() {
+            if let Some(from) = &from.ids {
+                from.read_into(number * pixels + first, &mut matte.nearest[places.clone()])?;
+            }
+            if let Some(from) = &from.mattes {
+                from.develop(number, pixels, first, matte, &places)?;
+            }
+        }
         // The device uses the local frame, and 0 instead of infinity as the depth of a miss.
         for index in places {
             if to.depth[index] == 0.0 {
@@ -152,6 +209,36 @@ impl<R: Runtime> DeviceFilm<R> {
                 let local = glam::Vec3::from(to.position[index]);
                 to.position[index] = geometry.to_world(local).as_vec3().to_array();
             }
+        }
+        Ok(())
+    }
+}
+
+impl<R: Runtime> DeviceMattes<R> {
+    fn new(cuda: &Cuda<R>, samples: u32, pixels: usize) -> Result<DeviceMattes<R>, RenderError> {
+        let slots = slots_of(samples);
+        Ok(DeviceMattes { samples, slots, words: cuda.pool.zeros("mattes", 4 * slots * pixels)? })
+    }
+
+    /// Writes what the pixels from place `first` on see to their `places` in a matte; `number` is 0 for objects, 1 for materials.
+    fn develop(
+        &self,
+        number: usize,
+        pixels: usize,
+        first: usize,
+        matte: &mut Matte,
+        places: &Range<usize>,
+    ) -> Result<(), RenderError> {
+        let mut planes = vec![vec![0_u32; places.len()]; 2 * self.slots];
+        for (plane, words) in planes.iter_mut().enumerate() {
+            self.words.read_into((2 * number * self.slots + plane) * pixels + first, words)?;
+        }
+        let mut slots = vec![[0; 2]; self.slots];
+        for (index, pixel) in places.clone().enumerate() {
+            for (slot, words) in slots.iter_mut().zip(planes.chunks_exact(2)) {
+                *slot = [words[0][index], words[1][index]];
+            }
+            write_ranks(&slots, self.samples, matte, pixel);
         }
         Ok(())
     }

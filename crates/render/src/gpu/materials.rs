@@ -17,7 +17,12 @@ use crate::shading::tint::{Coefficients, is_tinted, texture_of};
 impl<R: Runtime> Upload<'_, R> {
     /// What determines the colours of surfaces. Texture coordinates and the sRGB table are uploaded only if a texture needs
     /// them.
-    pub(super) fn materials(&mut self, geometry: &Geometry, record: &mut Record) -> Result<(), RenderError> {
+    pub(super) fn materials(
+        &mut self,
+        geometry: &Geometry,
+        numbers: &[u32],
+        record: &mut Record,
+    ) -> Result<(), RenderError> {
         record.triangle_materials = self.array("materials of triangles", &geometry.mesh.materials)?;
         record.colors = self.array::<Vec3>("colours", bytemuck::cast_slice(&geometry.mesh.colors))?;
         let textures = self.textures(geometry)?;
@@ -31,9 +36,10 @@ impl<R: Runtime> Upload<'_, R> {
         let materials: Vec<Material> = geometry
             .materials
             .iter()
-            .map(|material| {
+            .zip(numbers)
+            .map(|(material, &number)| {
                 let texture = texture_of(geometry, material).and_then(|_| used.next());
-                material_record(geometry, material, texture.unwrap_or(Material::NO_TEXTURE))
+                Material { number, ..material_record(geometry, material, texture.unwrap_or(Material::NO_TEXTURE)) }
             })
             .collect();
         record.materials = self.array("materials", &materials)?;

@@ -43,13 +43,13 @@ impl<R: Runtime> Cuda<R> {
 
 /// Bytes per pixel when memory use is highest.
 fn bytes_per_pixel(plan: &Plan) -> u64 {
-    // With more than one group of lights, mirror rays have sums of their own.
-    let sum = if plan.lights.iter().len() > 1 { size_of::<Vec3>() as u64 } else { 0 };
+    // With more than one group of lights, mirror rays have sums of their own; all rays may if lights are told apart.
+    let sum = if plan.lights.iter().len() > 1 || plan.compositing { size_of::<Vec3>() as u64 } else { 0 };
     let several = plan.antialiasing.is_some();
     let listed = if plan.bounces > 0 || several { 2 * size_of::<ListedRay>() as u64 } else { 0 };
     let sum = if several {
         size_of::<Vec3>() as u64
-    } else if plan.bounces > 0 {
+    } else if plan.bounces > 0 || plan.compositing {
         sum
     } else {
         0

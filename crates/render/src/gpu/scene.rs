@@ -131,7 +131,11 @@ impl<R: Runtime> Upload<'_, R> {
             far,
             ..bytemuck::Zeroable::zeroed()
         };
-        self.materials(geometry, &mut record)?;
+        self.materials(geometry, &prepared.materials.numbers, &mut record)?;
+        let (starts, objects) = mesh.objects.runs();
+        record.object_starts = self.array("runs of objects", starts)?;
+        record.objects = self.array("objects", objects)?;
+        record.object_runs = starts.len() as u32;
         let structure = match prepared.accelerator.form() {
             Form::Bvh(bvh) => {
                 record.bvh = self.bvh(bvh)?;

@@ -28,6 +28,7 @@ use crate::passes::{Baking, Passes};
 use crate::prepared::{Preparations, PreparedScene};
 use crate::probes::{GivenPoints, PointVisibility};
 use crate::settings::{Crop, Settings};
+use crate::shading::ids::catchers;
 use crate::stats::Stats;
 use resolve::Resolved;
 
@@ -304,13 +305,8 @@ fn picture_on<B: Backend>(
     let Resolved { technique, view, plan, .. } = &resolved;
     backend.check_host_memory(plan)?;
     let job = resolved.job(observer);
-    let mut picture = Picture::new(plan.size, plan.layers);
-    if plan.coverage {
-        picture = picture.with_coverage();
-    }
-    if plan.caught {
-        picture = picture.with_caught();
-    }
+    let rows = 0..plan.size[1];
+    let mut picture = Picture::planned(plan, [rows.clone(), rows]);
     let run = Run::new(backend, &job, kept);
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
     let rows = match (Passes { run, scene: &on_device, technique, view, plan }).render(&mut picture) {
@@ -322,12 +318,16 @@ fn picture_on<B: Backend>(
     stats.finished_rows = (picture.finished < plan.size[1]).then_some(picture.finished);
     stats.counts.pixels = u64::from(plan.size[0]) * u64::from(picture.finished);
     stats.counts.non_finite_pixels = picture.non_finite();
+    if plan.compositing {
+        let objects = scene.scene.geometry.mesh.objects.names().map(str::to_owned).collect();
+        picture.complete_mattes([objects, scene.geometry.materials.names.clone()], plan.antialiasing.is_none());
+    }
     picture.fill_unfinished(scene.scene.lights.background.unwrap_or_default());
     if settings.transparent {
         if !plan.coverage {
             picture.find_coverage();
         }
-        picture.uncover_caught();
+        picture.uncover_caught(if plan.caught { catchers(scene) } else { Default::default() });
         picture.take_out(scene.scene.lights.background.unwrap_or_default());
     }
     if !settings.layers {

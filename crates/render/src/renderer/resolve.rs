@@ -62,6 +62,7 @@ impl<'a> Resolved<'a> {
             antialiasing: None,
             bounces: 0,
             layers: None,
+            compositing: false,
             lights,
             most_rows: None,
             footprint,
@@ -100,6 +101,7 @@ impl<'a> Resolved<'a> {
             // With one sample of a pixel, coverage is found from its depth.
             coverage: settings.transparent && antialiasing.is_some(),
             caught: settings.transparent && scene.catches(),
+            compositing: settings.layers,
             layers: (settings.layers || settings.transparent && antialiasing.is_none()).then_some(lights.lights),
             antialiasing,
             bounces: settings.bounces,

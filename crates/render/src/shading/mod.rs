@@ -8,6 +8,7 @@
 //! that represent a light; the stages [`shade`](crate::stages::shade) and [`mirror_rays`](crate::stages::mirror_rays) combine them. Twins:
 //! `shading.cuh`, `tint.cuh`.
 
+pub(crate) mod ids;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tint;

@@ -87,6 +87,7 @@ DEVICE void set_tint(const Material *material, const Vec3 &tint, Material *own) 
     own->emission = material->emission + material->emission_tinted * tint;
     own->shininess = material->shininess;
     own->catcher = material->catcher;
+    own->number = material->number;
 }
 
 // Sets `own` to the material with its coefficients at `hit`.

@@ -60,6 +60,15 @@ fn check(frame: &Frame, whole: &Frame, settings: &Settings) {
     assert!(layers.visibility[0][..places] == all.visibility[0][..places]);
     assert!(layers.depth[places..].iter().all(|depth| *depth == f32::INFINITY));
     assert!(layers.visibility[0][places..].iter().all(|share| *share == 0.0));
+    assert!(layers.rest[..places] == all.rest[..places] && layers.lights[0][..places] == all.lights[0][..places]);
+    assert!(layers.rest[places..].iter().all(|color| *color == empty.to_array()));
+    for (matte, all) in [(&layers.object, &all.object), (&layers.material, &all.material)] {
+        assert!(matte.nearest[..places] == all.nearest[..places] && matte.of(1)[..places] == all.of(1)[..places]);
+        assert!(
+            matte.nearest[places..].iter().all(|id| *id == 0)
+                && matte.of(1)[places..].iter().all(|share| *share == 0.0)
+        );
+    }
     assert_eq!(frame.stats.counts.pixels, places as u64);
     assert!(frame.stats.counts.hits <= whole.stats.counts.hits);
 }

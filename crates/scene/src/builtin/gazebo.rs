@@ -35,6 +35,7 @@ pub fn gazebo(options: &BuiltinOptions) -> Scene {
     let paints = paints(&mut palette);
     let mut parts = Parts::default();
     grounds(&mut parts, &paints);
+    parts.object("pavilion");
     parts.put(Place::at(-0.3, 0.0, -3.0).turned(-74.0).scaled(0.9), |parts| pavilion(parts, &paints));
     Composition {
         name: "gazebo",
@@ -76,11 +77,15 @@ fn paints(palette: &mut Palette) -> Paints {
 /// Lawn, path, hedges and two shrubs next to the entrance.
 fn grounds(parts: &mut Parts, paints: &Paints) {
     let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
+    parts.object("lawn");
     parts.polygon(&[corner(-15.0, 20.0), corner(15.0, 20.0), corner(15.0, -20.0), corner(-15.0, -20.0)], paints.lawn);
+    parts.object("path");
     parts.put(Place::at(2.3, 0.0, 7.6).turned(16.0), |parts| {
         parts.cuboid(Vec3::new(-2.2, 0.0, -2.2), Vec3::new(2.2, 0.12, 12.3), Open::Bottom, paints.path);
     });
+    parts.object("hedge");
     hedge(parts, paints.hedge);
+    parts.object("shrubs");
     for (x, z) in [(-5.6, 8.0), (9.2, 4.4)] {
         let cone = [Vec2::new(1.5, 0.0), Vec2::new(0.0, 5.2)];
         parts.put(Place::at(x, 0.0, z), |parts| parts.lathe(&cone, 5, false, paints.shrub));

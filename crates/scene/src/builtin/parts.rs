@@ -86,6 +86,11 @@ impl Parts {
         self.mesh
     }
 
+    /// What is added from now on belongs to the object `name`.
+    pub(super) fn object(&mut self, name: &str) {
+        self.mesh.objects.begin(self.count(), name);
+    }
+
     /// Number of triangles so far.
     pub(super) fn count(&self) -> usize {
         self.mesh.triangles.len()

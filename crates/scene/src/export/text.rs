@@ -18,8 +18,14 @@ use crate::{
 
 /// The text of a scene file whose triangles are in `mesh_file`.
 pub(super) fn encode(scene: &Scene, mesh_file: &str) -> Result<String, toml::ser::Error> {
-    let mesh =
-        MeshEntry { file: anywhere(mesh_file.to_owned()), material: None, translate: None, rotate: None, scale: None };
+    let mesh = MeshEntry {
+        file: anywhere(mesh_file.to_owned()),
+        name: None,
+        material: None,
+        translate: None,
+        rotate: None,
+        scale: None,
+    };
     toml::to_string(&SceneFile {
         origin: (scene.geometry.origin != DVec3::ZERO).then(|| anywhere(scene.geometry.origin.to_array())),
         camera: scene.cameras.iter().map(|camera| anywhere(camera_entry(scene, camera))).collect(),

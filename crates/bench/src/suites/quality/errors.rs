@@ -138,6 +138,7 @@ mod tests {
             position: vec![[0.0; 3]; 4],
             visibility: vec![visibility.to_vec()],
             used: vec![0; 4],
+            ..Layers::default()
         };
         Frame::new(2, 2, vec![[0.5; 3]; 4]).unwrap().with_layers(layers).unwrap()
     }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::accel::Hit;
 use crate::antialiasing::Antialiasing;
 use crate::counters::Tally;
-use crate::data::picture::Picture;
+use crate::data::picture::{Picture, light_groups_of};
 use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
 use crate::data::wave::HostWave;
@@ -67,6 +67,7 @@ pub(crate) fn fragments(
             if let Some(layers) = &mut film.layers {
                 layers.used[index] = 0;
                 layers.visibility.iter_mut().for_each(|plane| plane[index] = 0.0);
+                light_groups_of(layers).for_each(|plane| plane[index] = [0.0; 3]);
             }
         }
     }

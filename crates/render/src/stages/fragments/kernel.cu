@@ -189,4 +189,7 @@ KERNEL(emit_fragments, PixelSamples, BLOCK, 4) {
         args.light_points[index] = 0;
     for (unsigned light = 0; light < args.light_count; ++light)
         args.visibility[light * args.film_pixels + index] = 0.0f;
+    if (args.light_groups != nullptr)
+        for (unsigned group = 0; group <= args.light_count; ++group)
+            args.light_groups[group * args.film_pixels + index] = splat(0.0f);
 }

@@ -11,11 +11,13 @@ use super::SampleRange;
 use super::alike::{Facet, Surfaces};
 use crate::accel::Hit;
 use crate::counters::Tally;
+use crate::data::mattes::count;
 use crate::data::picture::Picture;
 use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
 use crate::job::Job;
 use crate::prepared::PreparedScene;
+use crate::shading::ids::ids_of;
 
 /// Number of pixels per task.
 const BATCH: usize = 256;
@@ -58,6 +60,7 @@ pub(crate) fn pixel_samples(
         first,
         numbers: numbers.clone(),
     };
+    count_ids(scene, &samples, film);
     nearest(scene, rays, &samples, film, range);
     if all.apart {
         return samples;
@@ -131,6 +134,24 @@ struct Parted {
     shared: Vec<u32>,
     others: Vec<u32>,
     owners: Vec<u8>,
+}
+
+/// The numbers of what samples see: how many see each, and the nearest one's.
+fn count_ids(scene: &PreparedScene, samples: &PixelSamples, film: &mut Picture) {
+    let (Some(counted), Some(layers)) = (&mut film.counted, &mut film.layers) else { return };
+    let nearest = layers.object.nearest.par_iter_mut().zip(&mut layers.material.nearest).zip(&layers.depth);
+    let hits = samples.hits.par_chunks_exact(samples.numbers.len());
+    counted.pixels().zip(nearest).zip(hits).with_min_len(BATCH).for_each(|((mut slots, nearest), hits)| {
+        let ((object, material), &(mut depth)) = nearest;
+        for hit in hits.iter().filter(|hit| hit.is_some()) {
+            let ids = ids_of(scene, hit);
+            count(&mut slots, ids);
+            if hit.t < depth {
+                depth = hit.t;
+                [*object, *material] = ids;
+            }
+        }
+    });
 }
 
 /// Coverage, and the layers of the nearest samples.

@@ -17,6 +17,7 @@ use crate::job::Job;
 
 const CAST: PerStructure = per_structure!("pixel_samples", "pixel_samples");
 const NEAREST: Kernel = Kernel { module: "pixel_samples", name: "nearest_samples" };
+const IDS: Kernel = Kernel { module: "pixel_samples", name: "count_ids" };
 const MERGE: Kernel = Kernel { module: "pixel_samples", name: "merge_samples" };
 /// Logarithm of the number of samples of a pixel that neighbouring threads cast.
 const MOST_TOGETHER: u32 = 3;
@@ -71,12 +72,18 @@ pub(crate) fn pixel_samples<R: Runtime>(
     })?;
     Tally::add(&job.tally.rays, (pixels * count) as u64);
 
-    // Coverage and layers.
-    if film.keeps_samples() {
+    // What is it called? Coverage and layers.
+    let launch = |kernel: Kernel| {
         let work = Work { units: blocks, cost: count as u64, first: FIRST, progress: 0 };
-        cuda.in_pieces(job, NEAREST, work, |piece| {
-            cuda.launch(NEAREST, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
-        })?;
+        cuda.in_pieces(job, kernel, work, |piece| {
+            cuda.launch(kernel, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
+        })
+    };
+    if film.has_mattes() {
+        launch(IDS)?;
+    }
+    if film.keeps_samples() {
+        launch(NEAREST)?;
     }
 
     // 2. Which pixels are shared, and which samples of the others lie on one surface?

@@ -4,6 +4,7 @@
 #include "accel/walk.cuh"
 #include "cuda/tally.cuh"
 #include "cuda/warp.cuh"
+#include "shading/ids.cuh"
 #include "stages/pixel_samples/alike.cuh"
 
 // The threads of a warp along a curve: any four, eight or sixteen from a multiple of their number on take neighbouring pixels.
@@ -41,6 +42,40 @@ DEVICE void pixel_samples(const PixelSamples &args, const Structure &structure) 
 }
 
 KERNEL_PER_STRUCTURE(pixel_samples, PixelSamples, BLOCK, 4)
+
+// Counts a sample of a pixel by what it sees: `ids` is 0 for objects, 1 for materials. Further things than there are slots are not counted.
+DEVICE void count_sample(const PixelSamples &args, unsigned ids, unsigned ray, unsigned id) {
+    for (unsigned slot = 0; slot < args.matte_slots; ++slot) {
+        unsigned *number = args.mattes + (ids * args.matte_slots + slot) * 2ull * args.film_pixels + ray;
+        if (*number != 0 && *number != id)
+            continue;
+        *number = id;
+        number[args.film_pixels] += 1;
+        return;
+    }
+}
+
+// The numbers of what samples see: how many see each, and the nearest one's.
+KERNEL(count_ids, PixelSamples, BLOCK, 4) {
+    unsigned ray;
+    if (!ray_of_thread(args.rays, (unsigned)(args.first_block + blockIdx.x), threadIdx.x, ray))
+        return;
+    // Nothing so far is zero.
+    float depth = args.depth[ray];
+    for (unsigned sample = 0; sample < args.samples[1]; ++sample) {
+        const Hit hit = sample_hit(args, ray, sample);
+        if (hit.triangle == Hit::NONE)
+            continue;
+        const unsigned object = object_of(args.scene, hit.triangle), material = material_of(args.scene, hit.triangle);
+        count_sample(args, 0, ray, object);
+        count_sample(args, 1, ray, material);
+        if (depth != 0.0f && hit.t >= depth)
+            continue;
+        depth = hit.t;
+        args.ids[ray] = object;
+        args.ids[args.film_pixels + ray] = material;
+    }
+}
 
 // Coverage, and the layers of the nearest sample.
 KERNEL(nearest_samples, PixelSamples, BLOCK, 4) {

@@ -7,7 +7,7 @@
 //! Samples lie on one surface if they lie on one triangle; or on the same material, with nearly the same normals, in nearly the
 //! same plane.
 //!
-//! Layers and coverage are those of the samples: depth, normal and position of the nearest one.
+//! Layers and coverage are those of the samples: depth, normal, position and ids of the nearest one; how many see each object and material.
 
 pub(crate) mod alike;
 pub(crate) mod cpu;

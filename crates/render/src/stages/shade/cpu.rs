@@ -4,13 +4,16 @@ use glam::Vec3;
 use lightmesh_layout::constants::{LUMINANCE_BLUE, LUMINANCE_GREEN, LUMINANCE_RED};
 use rayon::prelude::*;
 
-use crate::data::picture::Picture;
+use crate::data::picture::{Picture, light_groups_of};
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
+use crate::shading::ids::ids_of;
 use crate::shading::{LightTargets, Surface};
 
 /// Number of rays per task.
 const BATCH: usize = 2048;
+/// Number of terms of single lights that are held at once.
+const TERMS: usize = 1 << 20;
 
 pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, picture: &mut Picture) {
     let (targets, ambient) = (LightTargets::new(wave.lights()), wave.scene.ambient());
@@ -27,7 +30,7 @@ pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, picture: &mut Pict
     });
     if visibility.lights.end == wave.lights().len() {
         let caught = if wave.scene.catches() { catch_shadows(wave, &targets, ambient, &mut sums) } else { Vec::new() };
-        for (ray, (&pixel, sum)) in wave.rays.pixels.iter().zip(sums).enumerate() {
+        for (ray, (&pixel, &sum)) in wave.rays.pixels.iter().zip(&sums).enumerate() {
             picture.add(pixel, wave.rays.weight(ray) * sum);
         }
         if wave.rays.from_camera() || !wave.rays.shared.is_empty() {
@@ -35,7 +38,9 @@ pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, picture: &mut Pict
                 picture.catch(pixel, wave.rays.weight(ray).x * caught);
             }
         }
-    } else {
+    }
+    add_light_groups(wave, visibility, &targets, ambient, &sums, picture);
+    if visibility.lights.end != wave.lights().len() {
         picture.sums = sums;
     }
     if wave.rays.from_camera() {
@@ -71,17 +76,99 @@ fn add_group(
     }
 }
 
+/// Adds what each ray gets from each light of this group by itself, and what belongs to no light, to their planes. The sums of rays are
+/// complete after the last group.
+fn add_light_groups(
+    wave: &HostWave,
+    visibility: &Visibility,
+    targets: &LightTargets,
+    ambient: Vec3,
+    sums: &[Vec3],
+    picture: &mut Picture,
+) {
+    let start = (picture.rows.start * picture.size[0]) as usize;
+    let Some(layers) = picture.layers.as_mut().filter(|layers| !layers.rest.is_empty()) else { return };
+    let lights = visibility.lights.clone();
+    let planes = lights.len() + 1;
+    let mut groups: Vec<&mut Vec<[f32; 3]>> = light_groups_of(layers).skip(lights.start).collect();
+    // The last one belongs to no light.
+    let rest = groups.len() - 1;
+    groups.swap(lights.len(), rest);
+    for (part, sums) in sums.chunks((TERMS / planes).max(1)).enumerate() {
+        let first = part * (TERMS / planes).max(1);
+        let mut terms = vec![Vec3::ZERO; planes * sums.len()];
+        terms.par_chunks_mut(BATCH * planes).zip(sums.par_chunks(BATCH)).enumerate().for_each(
+            |(batch, (terms, sums))| {
+                wave.job.piece(0, || {
+                    for (index, (terms, &sum)) in terms.chunks_exact_mut(planes).zip(sums).enumerate() {
+                        by_light(wave, visibility, targets, ambient, first + batch * BATCH + index, sum, terms);
+                    }
+                });
+            },
+        );
+        for (ray, terms) in (first..).zip(terms.chunks_exact(planes)) {
+            let (pixel, weight) = (wave.rays.pixels[ray] as usize - start, wave.rays.weight(ray));
+            for (plane, &term) in groups.iter_mut().zip(terms) {
+                plane[pixel] = (Vec3::from_array(plane[pixel]) + weight * term).to_array();
+            }
+        }
+    }
+}
+
+/// What a ray gets from each light of the group, and then what belongs to no light.
+fn by_light(
+    wave: &HostWave,
+    visibility: &Visibility,
+    targets: &LightTargets,
+    ambient: Vec3,
+    ray: usize,
+    sum: Vec3,
+    terms: &mut [Vec3],
+) {
+    let lights = visibility.lights.clone();
+    let (is_first, is_last) = (lights.start == 0, lights.end == wave.lights().len());
+    let rest = lights.len();
+    if !wave.sees(ray) {
+        if is_first {
+            terms[rest] = wave.lights().background.unwrap_or(Vec3::ZERO);
+        }
+        return;
+    }
+    if !is_first && !is_last && lights.clone().all(|light| visibility.of(light, ray) <= 0.0) {
+        return;
+    }
+    // A shadow catcher shows the background.
+    if catches(wave, ray) {
+        if is_last {
+            terms[rest] = sum;
+        }
+        return;
+    }
+    let surface = Surface::shared(wave, ray);
+    if is_first {
+        terms[rest] = ambient * surface.coefficients.ka + surface.coefficients.emission;
+    }
+    let reach = wave.scene.geometry.reach(surface.point.origin);
+    for (index, term) in lights.zip(terms) {
+        let share = visibility.of(index, ray);
+        if share > 0.0 {
+            *term = share * targets.unshadowed(&surface, &wave.lights()[index], index, reach);
+        }
+    }
+}
+
+/// Whether a ray sees a shadow catcher.
+fn catches(wave: &HostWave, ray: usize) -> bool {
+    let geometry = &wave.scene.scene.geometry;
+    wave.sees(ray) && geometry.materials[geometry.mesh.materials[wave.hits[ray].triangle as usize] as usize].catcher
+}
+
 /// Shows the background on shadow catchers, as far as they get light. Returns how much they get, as a share of what they would get
 /// alone, by ray.
 fn catch_shadows(wave: &HostWave, targets: &LightTargets, ambient: Vec3, sums: &mut [Vec3]) -> Vec<f32> {
     let background = wave.lights().background.unwrap_or(Vec3::ZERO);
-    let geometry = &wave.scene.scene.geometry;
-    let is_catcher = |ray: usize| {
-        let triangle = wave.hits[ray].triangle as usize;
-        wave.sees(ray) && geometry.materials[geometry.mesh.materials[triangle] as usize].catcher
-    };
     let catch = |(ray, sum): (usize, &mut Vec3)| {
-        if !is_catcher(ray) {
+        if !catches(wave, ray) {
             return 0.0;
         }
         let share = lit_share(wave, &Surface::new(wave, ray), targets, ambient, *sum);
@@ -118,6 +205,9 @@ fn fill_layers(wave: &HostWave, visibility: &Visibility, picture: &mut Picture) 
             layers.depth[pixel] = hit.t;
             layers.normal[pixel] = point.normal.to_array();
             layers.position[pixel] = wave.scene.scene.to_world(point.position).as_vec3().to_array();
+            if !layers.object.is_empty() {
+                [layers.object.nearest[pixel], layers.material.nearest[pixel]] = ids_of(wave.scene, hit);
+            }
         }
         layers.used[pixel] = visibility.used.get(ray).copied().unwrap_or(0);
         for light in visibility.lights.clone() {

@@ -11,6 +11,7 @@ use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, Work, blocks_for};
 
 const KERNEL: Kernel = Kernel { module: "shade", name: "shade" };
+const GROUPS: Kernel = Kernel { module: "shade", name: "add_light_groups" };
 const ADD: Kernel = Kernel { module: "shade", name: "add_rays" };
 /// Number of blocks in the first launch.
 const FIRST: u64 = 1024;
@@ -26,7 +27,9 @@ pub(crate) fn shade<R: Runtime>(
     let cost = lights.len().max(1) as u64;
     // A wave of the camera has a ray per pixel, which takes the sum until it is complete.
     let all = wave.scene.host.scene.lights.len();
-    film.begin_sums(cuda, rays.len(), rays.several || !rays.is_from_camera() && lights.len() < all)?;
+    let catches = wave.scene.host.catches();
+    let waits = rays.several || !rays.is_from_camera() && lights.len() < all || film.has_light_groups() && catches;
+    film.begin_sums(cuda, rays.len(), waits)?;
     let mut record = Shade {
         scene: wave.scene.record,
         rays: rays.record,
@@ -36,7 +39,7 @@ pub(crate) fn shade<R: Runtime>(
         first_light: lights.start as u32,
         end_light: lights.end as u32,
         several: u32::from(rays.several),
-        catches: u32::from(wave.scene.host.catches()),
+        catches: u32::from(catches),
         ..Shade::zeroed()
     };
     film.expose(rays, &mut record);
@@ -50,13 +53,16 @@ pub(crate) fn shade<R: Runtime>(
     cuda.in_pieces(wave.job, KERNEL, work, |piece| {
         cuda.launch(KERNEL, blocks_for(&piece, BLOCK), &Shade { first_block: piece.start, ..record })
     })?;
-    // The sums of rays that share a pixel, in their order.
-    let is_last = lights.end == all;
-    if !rays.several || !is_last && !rays.are_fragments {
-        return Ok(());
-    }
+    // The radiance of each light by itself; then the sums of rays that share a pixel, in their order.
     let work = Work { progress: 0, ..work };
-    cuda.in_pieces(wave.job, ADD, work, |piece| {
-        cuda.launch(ADD, blocks_for(&piece, BLOCK), &Shade { first_block: piece.start, ..record })
-    })
+    let launch = |kernel: Kernel| {
+        cuda.in_pieces(wave.job, kernel, work, |piece| {
+            cuda.launch(kernel, blocks_for(&piece, BLOCK), &Shade { first_block: piece.start, ..record })
+        })
+    };
+    if film.has_light_groups() {
+        launch(GROUPS)?;
+    }
+    let is_last = lights.end == all;
+    if !rays.several || !is_last && !rays.are_fragments { Ok(()) } else { launch(ADD) }
 }

@@ -2,6 +2,7 @@
 #include "cuda/prelude.cuh"
 
 #include "cuda/warp.cuh"
+#include "shading/ids.cuh"
 #include "shading/shading.cuh"
 
 // The share of a light for a ray.
@@ -37,6 +38,11 @@ DEVICE void fill_layers(const Shade &args, unsigned ray, const Surface &surface,
         args.depth[place] = load_hit(args.hits, ray).t;
         args.normal[place] = surface.point.normal;
         args.position[place] = surface.point.position;
+        if (args.ids != nullptr) {
+            const unsigned triangle = load_hit(args.hits, ray).triangle;
+            args.ids[place] = object_of(args.scene, triangle);
+            args.ids[args.film_pixels + place] = material_of(args.scene, triangle);
+        }
     }
     args.light_points[place] = args.used != nullptr ? args.used[ray] : 0;
     for (unsigned light = args.first_light; light < args.end_light; ++light)
@@ -104,6 +110,9 @@ KERNEL(shade, Shade, BLOCK, 4) {
         sum = radiance;
         return;
     }
+    // For its light group.
+    if (args.sums != nullptr)
+        sum = radiance;
     const Vec3 before = first || args.sums != nullptr ? args.color[place] : Vec3{};
     args.color[place] = before + weight_of(args.rays, ray) * radiance;
 }
@@ -132,4 +141,54 @@ KERNEL(add_rays, Shade, BLOCK, 4) {
         for (unsigned light = args.first_light; light < args.end_light; ++light)
             args.visibility[light * args.film_pixels + place] += weight.x * share_of(args, light, next);
     }
+}
+
+// Adds to a plane of light groups: that of a light, or after them what belongs to none.
+DEVICE void add_to_group(const Shade &args, unsigned group, unsigned long long place, Vec3 radiance) {
+    Vec3 &sum = args.light_groups[group * args.film_pixels + place];
+    sum = sum + radiance;
+}
+
+// Adds what a ray gets from each light of this group by itself, and what belongs to no light.
+DEVICE void add_by_light(const Shade &args, unsigned ray, unsigned long long place) {
+    const unsigned rest = args.scene.light_count;
+    const bool first = args.first_light == 0, last = args.end_light == args.scene.light_count;
+    const Vec3 weight = weight_of(args.rays, ray);
+    if (load_hit(args.hits, ray).triangle == Hit::NONE) {
+        if (first)
+            add_to_group(args, rest, place, weight * args.scene.background);
+        return;
+    }
+    if (!first && !last && !sees_any(args, ray))
+        return;
+    Material own;
+    const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
+    if (args.samples != nullptr)
+        share_tint(args, ray, own);
+    // A shadow catcher shows the background.
+    if (args.catches && surface.material->catcher) {
+        if (last)
+            add_to_group(args, rest, place, weight * args.sums[ray]);
+        return;
+    }
+    if (first)
+        add_to_group(args, rest, place, weight * (args.scene.ambient * surface.material->ka + surface.material->emission));
+    const float reach = scene_reach(args.scene, surface.point.origin);
+    for (unsigned light = args.first_light; light < args.end_light; ++light) {
+        const float share = share_of(args, light, ray);
+        if (share > 0.0f)
+            add_to_group(args, light, place, weight * (share * unshadowed(surface, args.scene, light, reach)));
+    }
+}
+
+// The radiance of each light by itself: rays of a pixel in their order, as above.
+KERNEL(add_light_groups, Shade, BLOCK, 4) {
+    const unsigned long long ray = (args.first_block + blockIdx.x) * BLOCK + threadIdx.x;
+    if (ray >= args.rays.count)
+        return;
+    const unsigned pixel = pixel_of(args.rays, (unsigned)ray);
+    if (ray > 0 && pixel_of(args.rays, (unsigned)ray - 1) == pixel)
+        return;
+    for (unsigned next = (unsigned)ray; next < args.rays.count && pixel_of(args.rays, next) == pixel; ++next)
+        add_by_light(args, next, pixel - args.film_pixel);
 }

@@ -48,9 +48,13 @@ pub fn childpark(options: &BuiltinOptions) -> Scene {
     let mut random = Random::new(27_000);
     grounds(&mut parts, &paints);
     playground(&mut parts, &paints);
+    parts.object("surroundings");
     surroundings(&mut parts, &paints);
+    parts.object("wood");
     wood(&mut parts, &mut random, &paints);
+    parts.object("bushes");
     bushes(&mut parts, &mut random, &paints);
+    parts.object("meadow");
     meadow(&mut parts, &mut random, &paints);
     Composition {
         name: "childpark",
@@ -106,10 +110,13 @@ fn ground_height(x: f32, z: f32) -> f32 {
 }
 
 fn grounds(parts: &mut Parts, paints: &Paints) {
+    parts.object("lawn");
     parts.terrain(Vec2::new(-80.0, -70.0), Vec2::new(80.0, 70.0), [24, 20], ground_height, |_, _| paints.lawn);
+    parts.object("mats");
     for (x, z, radius) in [(10.0, 26.0, 17.0), (-27.0, 28.0, 19.0)] {
         parts.put(Place::at(x, 0.0, z), |parts| mat(parts, radius, paints.rubber));
     }
+    parts.object("path");
     path(parts, paints.path);
 }
 
@@ -138,11 +145,17 @@ fn path(parts: &mut Parts, paint: Paint) {
 }
 
 fn playground(parts: &mut Parts, paints: &Paints) {
+    parts.object("slide");
     parts.put(Place::at(-33.0, 0.0, -13.0).turned(40.0), |parts| equipment::slide(parts, paints));
+    parts.object("swings");
     parts.put(Place::at(32.0, 0.0, -12.0).turned(-18.0), |parts| equipment::swings(parts, paints));
+    parts.object("climbing frame");
     parts.put(Place::at(-27.0, 0.25, 28.0).turned(9.0), |parts| equipment::climbing_frame(parts, paints));
+    parts.object("carousel");
     parts.put(Place::at(10.0, 0.25, 26.0), |parts| equipment::carousel(parts, paints));
+    parts.object("seesaw");
     parts.put(Place::at(2.0, 0.0, -8.0).turned(68.0), |parts| equipment::seesaw(parts, paints));
+    parts.object("sandpit");
     parts.put(Place::at(44.0, 0.0, 31.0).turned(-16.0), |parts| equipment::sandpit(parts, paints));
 }
 

@@ -68,16 +68,25 @@ pub fn garden(options: &BuiltinOptions) -> Scene {
     let mut parts = Parts::default();
     let mut random = Random::new(234_000);
     let cells = [20, 28];
+    parts.object("ground");
     parts.terrain(-HALF, HALF, cells, |_, _| 0.0, |_, _| paints.earth);
+    parts.object("walls");
     stonework::walls(&mut parts, &mut random, &paints);
+    parts.object("ivy");
     planting::ivy(&mut parts, &mut random, &paints);
+    parts.object("path");
     stonework::path(&mut parts, &mut random, &paints);
+    parts.object("fountain");
     parts.put(Place::at(FOUNTAIN.x, 0.0, FOUNTAIN.y), |parts| stonework::fountain(parts, &paints));
     for (index, bed) in BEDS.iter().enumerate() {
+        parts.object(&format!("bed {}", index + 1));
         planting::plant_bed(&mut parts, &mut random, bed, index, &paints);
     }
+    parts.object("trees");
     planting::trees(&mut parts, &mut random, &paints);
+    parts.object("bushes");
     planting::bushes(&mut parts, &mut random, &paints);
+    parts.object("lawn");
     planting::lawn(&mut parts, &mut random, &paints);
     Composition {
         name: "garden",

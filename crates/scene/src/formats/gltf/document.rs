@@ -153,6 +153,7 @@ pub(super) struct Instancing {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Mesh {
+    pub(super) name: Option<Box<str>>,
     pub(super) primitives: Vec<Primitive>,
     /// Weights of morph targets.
     #[serde(default)]

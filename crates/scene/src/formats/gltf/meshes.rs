@@ -59,6 +59,8 @@ struct Survey<'a> {
 /// A mesh at one position, or at many.
 pub(super) struct Shown<'a> {
     pub(super) mesh: u32,
+    /// Number and name of the node.
+    pub(super) node: (usize, Option<&'a str>),
     pub(super) transform: DMat4,
     /// The number of instances and their transforms.
     pub(super) instances: Option<(usize, &'a Instancing)>,
@@ -83,12 +85,13 @@ impl<'a> Meshes<'a> {
         Meshes { accessors, meshes, surveys: meshes.iter().map(|_| None).collect() }
     }
 
-    /// Adds all that is shown.
+    /// Adds all that is shown, as the object `object` or else those of the nodes' names, or their meshes'.
     pub(super) fn add(
         &mut self,
         all: &[Shown],
         materials: &mut Materials,
         left_out: &mut LeftOut,
+        object: Option<&str>,
         draft: &mut Draft,
     ) -> Result<(), LoadError> {
         let mut room = Room::default();
@@ -108,6 +111,9 @@ impl<'a> Meshes<'a> {
                 }
                 _ => None,
             };
+            let (number, name) = shown.node;
+            let named = object.or(name).or(self.meshes[shown.mesh as usize].name.as_deref());
+            draft.begin_object(named.map_or_else(|| format!("node {number}"), str::to_owned));
             for &(primitive, mode) in &survey.primitives {
                 let chosen = materials.choose(primitive, left_out, draft);
                 self.add_primitive(primitive, mode, &chosen, &shown.transform, instances.as_ref(), draft)?;

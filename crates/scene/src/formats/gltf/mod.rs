@@ -79,7 +79,7 @@ pub(crate) fn read(path: &Path, bytes: Vec<u8>, placement: &Placement, draft: &m
     let mut materials = Materials::read(path, &document, pictures, placement, &mut left_out, draft)?;
     let placed = nodes::placed(path, &document, placement.transform, draft)?;
     let shown = shown(&accessors, &placed, &mut left_out)?;
-    Meshes::new(accessors).add(&shown, &mut materials, &mut left_out, draft)?;
+    Meshes::new(accessors).add(&shown, &mut materials, &mut left_out, placement.object.as_deref(), draft)?;
     if placement.part {
         left_out.count_views(&placed);
     } else {
@@ -115,7 +115,7 @@ fn shown<'a>(
             Some(instancing) => Some((instances::count(accessors, index, instancing)?, instancing)),
             None => None,
         };
-        all.push(Shown { mesh, transform, instances });
+        all.push(Shown { mesh, node: (index, node.name.as_deref()), transform, instances });
         left_out.skinned += usize::from(node.skin.is_some());
         left_out.morphed += usize::from(is_morphed(accessors.document, node, mesh));
     }

@@ -36,7 +36,7 @@ use super::{
     vertices::{Corner, NONE},
 };
 use crate::{
-    LoadError,
+    LoadError, Objects,
     draft::{Draft, Placement},
     error::Place,
     loaded_mesh::LoadedMesh,
@@ -60,7 +60,11 @@ pub(crate) fn read(path: &Path, mut bytes: Vec<u8>, placement: &Placement, draft
             materials.iter_mut().for_each(|material| *material = indices[*material as usize]);
         }
     }
+    if placement.object.is_some() {
+        content.objects = Objects::default();
+    }
     let mesh = mesh(content, materials);
+    draft.begin_object(placement.object_in(path));
     draft.take(mesh, &placement.transform)
 }
 
@@ -98,7 +102,7 @@ fn find_materials(path: &Path, content: &Content, draft: &mut Draft) -> Result<V
 
 /// The vertices that faces use, with the attributes that any of them has.
 fn mesh(content: Content, materials: Vec<u32>) -> LoadedMesh<DVec3> {
-    let Content { points, corners, triangles, groups, .. } = content;
+    let Content { points, corners, triangles, groups, objects, .. } = content;
     let Points { positions, uvs, normals, colors } = points;
     let has = |kind: usize| corners.iter().any(|corner| corner[kind] != NONE);
     let at = |corner: &Corner, kind: usize| Some(corner[kind] as usize).filter(|_| corner[kind] != NONE);
@@ -117,6 +121,7 @@ fn mesh(content: Content, materials: Vec<u32>) -> LoadedMesh<DVec3> {
         triangles,
         materials,
         groups,
+        objects,
     }
 }
 

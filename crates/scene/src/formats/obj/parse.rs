@@ -14,7 +14,7 @@ use super::{
     smoothing::Smoothing,
 };
 use crate::{
-    LoadError,
+    LoadError, Objects,
     formats::{
         notes::Notes,
         polygon::Cutter,
@@ -52,6 +52,8 @@ pub(super) struct Content {
     pub(super) material_of_triangle: Vec<u32>,
     /// By triangle: its smoothing group, 0 for none; empty if the file has none, or if they are not wanted.
     pub(super) groups: Vec<u32>,
+    /// The object of each triangle: by `o`, else by `g`; none if the file has no names.
+    pub(super) objects: Objects,
     /// Names in the order of their first use; the empty one means none.
     pub(super) materials: Vec<String>,
     /// The lines `mtllib`, each once: number and names.
@@ -97,6 +99,10 @@ struct Parser {
     known_libraries: HashSet<String>,
     points_and_lines: usize,
     notes: Notes,
+    /// Those of the last lines `o` and `g`, and whether one of them is new.
+    names: [String; 2],
+    is_renamed: bool,
+    objects: Objects,
     /// If smoothing groups are wanted.
     smoothing: Option<Smoothing>,
     /// If all points have been read: how many are above the current line.
@@ -164,7 +170,11 @@ impl Parser {
                 }
             }
             b"s" => self.smoothing_group(rest),
-            b"" | b"g" | b"o" | b"mg" | b"lod" | b"bevel" | b"c_interp" | b"d_interp" => {}
+            b"o" | b"g" => {
+                self.names[usize::from(word == b"g")] = decoded(rest).trim().to_owned();
+                self.is_renamed = true;
+            }
+            b"" | b"mg" | b"lod" | b"bevel" | b"c_interp" | b"d_interp" => {}
             [b'#', ..] => {}
             _ => self.notes.add("is an unknown statement, which is ignored", || (self.line, quoted(word))),
         }
@@ -212,6 +222,10 @@ impl Parser {
         self.material = Some(material);
         self.face_vertices.clear();
         self.face_vertices.extend(self.face.iter().map(|&corner| self.vertices.of(corner)));
+        if std::mem::take(&mut self.is_renamed) {
+            let name = self.names.iter().find(|name| !name.is_empty());
+            self.objects.begin(self.triangles.len(), name.map_or("", |name| name));
+        }
         let vertices = &self.face_vertices;
         if let &[a, b, c] = &vertices[..] {
             self.triangles.push([a, b, c]);
@@ -252,6 +266,7 @@ impl Parser {
             triangles: self.triangles,
             groups: self.smoothing.unwrap_or_default().groups,
             material_of_triangle: self.material_of_triangle,
+            objects: self.objects,
             materials: materials.into_iter().map(|(name, _)| name).collect(),
             libraries: self.libraries,
             warnings,

@@ -31,7 +31,7 @@ use super::{
     text::{line_of, quoted},
 };
 use crate::{
-    LoadError, Material, TextureUse,
+    LoadError, Material, Objects, TextureUse,
     draft::{Draft, Placement},
     error::Place,
     loaded_mesh::LoadedMesh,
@@ -56,6 +56,7 @@ pub(crate) fn read(path: &Path, bytes: Vec<u8>, placement: &Placement, draft: &m
         Some(material) => material,
         None => textured(path, &header, &points, draft).unwrap_or_else(|| draft.default_material()),
     };
+    draft.begin_object(placement.object_in(path));
     draft.take(mesh(points, faces, material), &placement.transform)
 }
 
@@ -71,7 +72,8 @@ fn mesh(points: Points, faces: Faces, material: u32) -> LoadedMesh<DVec3> {
     let Points { positions, normals, uvs, colors } = points;
     let materials = vec![material; faces.triangles.len()];
     let triangles = faces.triangles;
-    let mut mesh = LoadedMesh { positions, normals, uvs, colors, triangles, materials, groups: Vec::new() };
+    let (groups, objects) = (Vec::new(), Objects::default());
+    let mut mesh = LoadedMesh { positions, normals, uvs, colors, triangles, materials, groups, objects };
     match faces.split {
         None => mesh.drop_unused_vertices(),
         Some(split) => {

@@ -19,7 +19,7 @@ use std::path::Path;
 
 use super::text::with_line_feeds;
 use crate::{
-    LoadError, Position,
+    LoadError, Objects, Position,
     draft::{Draft, Placement},
     error::Place,
     loaded_mesh::LoadedMesh,
@@ -32,10 +32,10 @@ const BEGINNING: usize = 4096;
 pub(crate) fn read(path: &Path, mut bytes: Vec<u8>, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
     if !binary::has_exact_length(&bytes) && is_text(&bytes) {
         let soup = ascii::read(path, with_line_feeds(&mut bytes))?;
-        hand_over(soup, bytes, placement, draft)
+        hand_over(path, soup, bytes, placement, draft)
     } else {
         let soup = binary::read(path, &bytes)?;
-        hand_over(soup, bytes, placement, draft)
+        hand_over(path, soup, bytes, placement, draft)
     }
 }
 
@@ -49,6 +49,7 @@ struct Soup<P> {
 }
 
 fn hand_over<P: Position>(
+    path: &Path,
     soup: Soup<P>,
     bytes: Vec<u8>,
     placement: &Placement,
@@ -66,7 +67,9 @@ fn hand_over<P: Position>(
         materials: vec![material; soup.triangles.len()],
         triangles: soup.triangles,
         groups: Vec::new(),
+        objects: Objects::default(),
     };
+    draft.begin_object(placement.object_in(path));
     draft.take(mesh, &placement.transform)
 }
 

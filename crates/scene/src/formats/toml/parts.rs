@@ -31,8 +31,9 @@ pub(super) fn read(
         Some(name) => source.index_of("material", name, names),
         None => Ok(draft.default_material()),
     };
-    let add = |draft: &mut Draft, shape: Shape, transform: &DMat4, name: &Option<Text>| {
+    let add = |draft: &mut Draft, shape: Shape, transform: &DMat4, name: &Option<Text>, object: String| {
         let material = material(draft, name)?;
+        draft.begin_object(object);
         let textured = draft.materials[material as usize].texture.is_some();
         let shape = if textured { shape.textured() } else { shape };
         draft.add(shape.part(), transform, |_| material)
@@ -40,27 +41,36 @@ pub(super) fn read(
     for entry in &file.mesh {
         read_mesh(source, entry.get_ref(), names, draft)?;
     }
-    for entry in file.sphere.iter().map(Spanned::get_ref) {
+    for (number, entry) in (1..).zip(file.sphere.iter().map(Spanned::get_ref)) {
         let center = source.vector("center", &entry.center)?;
         let radius = source.positive("radius", &entry.radius)?;
         let shape = Shape::sphere(DVec3::ZERO, radius, source.segments(&entry.segments)?);
-        add(draft, shape, &DMat4::from_translation(center), &entry.material)?;
+        add(draft, shape, &DMat4::from_translation(center), &entry.material, object(&entry.name, "sphere", number))?;
     }
-    for entry in &file.boxes {
+    for (number, entry) in (1..).zip(&file.boxes) {
         let (shape, transform) = cuboid(source, entry)?;
-        add(draft, shape, &transform, &entry.get_ref().material)?;
+        let (entry, kind) = (entry.get_ref(), "box");
+        add(draft, shape, &transform, &entry.material, object(&entry.name, kind, number))?;
     }
-    for entry in &file.cylinder {
-        add(draft, cylinder(source, entry)?, &DMat4::IDENTITY, &entry.get_ref().material)?;
+    for (number, entry) in (1..).zip(&file.cylinder) {
+        let (shape, entry) = (cylinder(source, entry)?, entry.get_ref());
+        add(draft, shape, &DMat4::IDENTITY, &entry.material, object(&entry.name, "cylinder", number))?;
     }
-    for entry in &file.triangle {
-        add(draft, triangle(source, entry)?, &DMat4::IDENTITY, &entry.get_ref().material)?;
+    for (number, entry) in (1..).zip(&file.triangle) {
+        let (shape, entry) = (triangle(source, entry)?, entry.get_ref());
+        add(draft, shape, &DMat4::IDENTITY, &entry.material, object(&entry.name, "triangle", number))?;
     }
     let rest = draft.bounds();
-    for entry in &file.plane {
-        add(draft, plane(source, entry, rest)?, &DMat4::IDENTITY, &entry.get_ref().material)?;
+    for (number, entry) in (1..).zip(&file.plane) {
+        let (shape, entry) = (plane(source, entry, rest)?, entry.get_ref());
+        add(draft, shape, &DMat4::IDENTITY, &entry.material, object(&entry.name, "plane", number))?;
     }
     Ok(())
+}
+
+/// The name of a solid's object: its own, or the kind with the number among those of this kind.
+fn object(name: &Option<Text>, kind: &str, number: usize) -> String {
+    name.as_ref().map_or_else(|| format!("{kind} {number}"), |name| name.get_ref().clone())
 }
 
 fn read_mesh(
@@ -76,7 +86,8 @@ fn read_mesh(
         Some(name) => Some(source.index_of("material", name, names)?),
         None => None,
     };
-    read_part(&path, bytes, mesh_transform(source, entry)?, material, draft).map_err(named)
+    let object = entry.name.as_ref().map(|name| name.get_ref().clone());
+    read_part(&path, bytes, mesh_transform(source, entry)?, material, object, draft).map_err(named)
 }
 
 /// Scale, then rotation, then translation.

@@ -246,6 +246,9 @@ pub(crate) enum TextureScale {
 #[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MeshEntry {
+    /// The name of its object; else those of the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) name: Option<Text>,
     /// Relative to the scene file.
     pub(crate) file: Text,
     /// Replaces the file's own materials.
@@ -273,6 +276,9 @@ pub(crate) enum Scale {
 #[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SphereEntry {
+    /// The name of its object; else `sphere` and its number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) name: Option<Text>,
     pub(crate) center: Vector,
     pub(crate) radius: Number,
     pub(crate) material: Option<Text>,
@@ -284,6 +290,9 @@ pub(crate) struct SphereEntry {
 #[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BoxEntry {
+    /// The name of its object; else `box` and its number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) name: Option<Text>,
     pub(crate) min: Option<Vector>,
     pub(crate) max: Option<Vector>,
     pub(crate) center: Option<Vector>,
@@ -297,6 +306,9 @@ pub(crate) struct BoxEntry {
 #[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PlaneEntry {
+    /// The name of its object; else `plane` and its number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) name: Option<Text>,
     pub(crate) point: Vector,
     pub(crate) normal: Vector,
     /// Edge lengths. Default: a square of 20 diagonals of the rest of the scene.
@@ -308,6 +320,9 @@ pub(crate) struct PlaneEntry {
 #[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CylinderEntry {
+    /// The name of its object; else `cylinder` and its number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) name: Option<Text>,
     pub(crate) base: Option<Vector>,
     pub(crate) top: Option<Vector>,
     pub(crate) center: Option<Vector>,
@@ -325,6 +340,9 @@ pub(crate) struct CylinderEntry {
 #[derive(Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TriangleEntry {
+    /// The name of its object; else `triangle` and its number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) name: Option<Text>,
     pub(crate) a: Option<Vector>,
     pub(crate) b: Option<Vector>,
     pub(crate) c: Option<Vector>,

@@ -17,7 +17,7 @@ thread_local! {
 fn mesh(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> LoadedMesh<DVec3> {
     let materials = vec![0; triangles.len()];
     let (normals, uvs, colors, groups) = Default::default();
-    LoadedMesh { positions, normals, uvs, colors, triangles, materials, groups }
+    LoadedMesh { positions, normals, uvs, colors, triangles, materials, groups, objects: crate::Objects::default() }
 }
 
 /// The same triangles, each with its own vertices.

@@ -1,0 +1,22 @@
+// Numbers of the objects and materials that rays see, from 1: twin of ids.rs.
+#pragma once
+
+#include "cuda/rays.cuh"
+
+// The number of a triangle's object: that of the last run that begins at it or before.
+DEVICE unsigned object_of(const Scene &scene, unsigned triangle) {
+    unsigned low = 0, high = scene.object_runs;
+    while (low < high) {
+        const unsigned middle = low + (high - low) / 2;
+        if (__ldg(scene.object_starts + middle) <= triangle)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low == 0 ? 1 : __ldg(scene.objects + low - 1) + 1;
+}
+
+// The number of a triangle's material.
+DEVICE unsigned material_of(const Scene &scene, unsigned triangle) {
+    return scene.materials[__ldg(scene.triangle_materials + triangle)].number;
+}

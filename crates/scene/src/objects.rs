@@ -1,0 +1,136 @@
+//! Which object each triangle belongs to.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// The object of triangles that nobody named.
+pub const UNNAMED: &str = "unnamed";
+
+/// The objects of a mesh by name. Triangles that follow each other mostly belong to one object: runs of them are stored. Objects of the same
+/// name are one.
+///
+/// ```
+/// use lightmesh_scene::Objects;
+///
+/// let mut objects = Objects::default();
+/// objects.begin(0, "floor");
+/// objects.begin(2, "box");
+/// assert_eq!([0, 1, 2, 9].map(|triangle| objects.name(objects.of(triangle))), ["floor", "floor", "box", "box"]);
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Objects {
+    names: Vec<Arc<str>>,
+    numbers: HashMap<Arc<str>, u32>,
+    /// The first triangle of each run, ascending; that of the first run is 0.
+    starts: Vec<u32>,
+    /// The object of each run.
+    objects: Vec<u32>,
+}
+
+impl Objects {
+    /// Triangles from number `first` on belong to the object `name`; an empty one is [`UNNAMED`]. Runs begin in the order of triangles: a
+    /// `first` below the last one counts as that.
+    pub fn begin(&mut self, first: usize, name: &str) {
+        let name = if name.is_empty() { UNNAMED } else { name };
+        // Triangles are numbered in 32 bits.
+        let first = u32::try_from(first).unwrap_or(u32::MAX).max(self.starts.last().copied().unwrap_or(0));
+        if self.starts.is_empty() && first > 0 {
+            self.begin(0, UNNAMED);
+        }
+        let object = self.number(name);
+        if self.starts.last() == Some(&first) {
+            self.starts.pop();
+            self.objects.pop();
+        }
+        if self.objects.last() != Some(&object) {
+            self.starts.push(first);
+            self.objects.push(object);
+        }
+    }
+
+    fn number(&mut self, name: &str) -> u32 {
+        if let Some(&known) = self.numbers.get(name) {
+            return known;
+        }
+        let (name, added) = (Arc::from(name), self.names.len() as u32);
+        self.names.push(Arc::clone(&name));
+        self.numbers.insert(name, added);
+        added
+    }
+
+    /// The number of a triangle's object.
+    #[inline]
+    pub fn of(&self, triangle: u32) -> u32 {
+        let run = self.starts.partition_point(|&start| start <= triangle);
+        run.checked_sub(1).map_or(0, |run| self.objects[run])
+    }
+
+    /// Number of objects, at least one: all triangles belong to some.
+    pub fn count(&self) -> usize {
+        self.names.len().max(1)
+    }
+
+    /// The name of an object by number.
+    pub fn name(&self, object: u32) -> &str {
+        self.names.get(object as usize).map_or(UNNAMED, |name| name)
+    }
+
+    /// All names by number.
+    pub fn names(&self) -> impl ExactSizeIterator<Item = &str> {
+        (0..self.count()).map(|object| self.name(object as u32))
+    }
+
+    /// The runs: the first triangle of each, ascending from 0, and its object. None if nothing was named.
+    pub fn runs(&self) -> (&[u32], &[u32]) {
+        (&self.starts, &self.objects)
+    }
+
+    /// Continues with the objects of another mesh, whose triangles are added from number `first` on: `place` says where each of its triangles
+    /// is among those that are added.
+    pub(crate) fn append(&mut self, first: usize, other: &Objects, place: impl Fn(u32) -> usize) {
+        for (&start, &object) in other.starts.iter().zip(&other.objects) {
+            self.begin(first + place(start), other.name(object));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn objects(runs: &[(usize, &str)]) -> Objects {
+        let mut objects = Objects::default();
+        runs.iter().for_each(|&(first, name)| objects.begin(first, name));
+        objects
+    }
+
+    #[test]
+    fn every_triangle_has_an_object() {
+        let none = Objects::default();
+        assert_eq!((none.count(), none.name(none.of(7)), none.runs()), (1, UNNAMED, (&[][..], &[][..])));
+        let late = objects(&[(3, "a"), (5, "")]);
+        assert_eq!([0, 2, 3, 4, 5].map(|triangle| late.of(triangle)), [0, 0, 1, 1, 0]);
+        assert_eq!(late.names().collect::<Vec<_>>(), [UNNAMED, "a"]);
+    }
+
+    #[test]
+    fn objects_of_one_name_are_one() {
+        let found = objects(&[(0, "a"), (2, "b"), (4, "a"), (6, "a"), (8, "c"), (8, "a")]);
+        assert_eq!([0, 2, 4, 6, 9].map(|triangle| found.of(triangle)), [0, 1, 0, 0, 0]);
+        assert_eq!(found.runs(), (&[0, 2, 4][..], &[0, 1, 0][..]));
+    }
+
+    #[test]
+    fn runs_without_triangles_leave_no_trace_in_runs() {
+        let found = objects(&[(0, "a"), (2, "b"), (2, "c"), (1, "d")]);
+        assert_eq!((found.runs().0, found.name(found.of(2)), found.name(found.of(1))), (&[0, 2][..], "d", "a"));
+    }
+
+    #[test]
+    fn a_mesh_continues_another() {
+        let mut whole = objects(&[(0, "a")]);
+        // Of its triangles 0 to 5, the second and third are left out.
+        whole.append(10, &objects(&[(0, "b"), (1, "c"), (3, "a")]), |triangle| [0, 1, 1, 1, 2, 3][triangle as usize]);
+        assert_eq!([9, 10, 11, 12].map(|triangle| whole.name(whole.of(triangle))), ["a", "b", "a", "a"]);
+    }
+}
