@@ -131,7 +131,7 @@ impl<R: Runtime> Upload<'_, R> {
             far,
             ..bytemuck::Zeroable::zeroed()
         };
-        self.materials(geometry, &mut record)?;
+        self.materials(geometry, &prepared.mip_levels, &mut record)?;
         let structure = match prepared.accelerator.form() {
             Form::Bvh(bvh) => {
                 record.bvh = self.bvh(bvh)?;

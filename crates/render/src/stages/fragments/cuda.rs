@@ -56,6 +56,7 @@ pub(crate) fn fragments<R: Runtime>(
     let list = |list: crate::cuda::Buffer<R, ListedRay>, total: usize, sampled| DeviceRays {
         record: Rays { list: list.input(), first_pixel: 0, count: total as u32, ..rays.record },
         list: Some(list),
+        cones: None,
         spacing: rays.spacing,
         several: true,
         are_fragments: true,

@@ -13,6 +13,7 @@ use crate::counters::Tally;
 use crate::data::picture::Picture;
 use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
+use crate::footprint::Cone;
 use crate::job::Job;
 use crate::prepared::PreparedScene;
 
@@ -31,6 +32,10 @@ pub(crate) fn pixel_samples(
     let SampleRange { all, numbers } = range;
     let view = rays.view.expect("the rays are a camera's");
     let (pixels, first) = (rays.pixels.len(), film.rows.start * view.size()[0]);
+
+    if !scene.geometry.mip_levels.is_empty() {
+        rays.cone = Cone::of_sample(rays.spacing, all.samples);
+    }
 
     // 1. What each sample sees. Rays through a pixel follow each other: they are coherent.
     let count = numbers.len();
