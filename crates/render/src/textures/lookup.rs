@@ -1,7 +1,7 @@
 //! What a footprint sees of a texture. Twin: `lookup.cuh`.
 //!
-//! 1. Where a clamped texture ends, so does the footprint. Its two axes, in texels, are conjugate diameters of an ellipse; its principal axes follow from them: their squares are the
-//!    eigenvalues of J Jᵀ, if the columns of J are the axes.
+//! 1. Where a clamped texture ends, so does the footprint. Its two axes, in texels, are conjugate diameters of an ellipse; its principal axes
+//!    follow from them: their squares are the eigenvalues of J Jᵀ, if the columns of J are the axes.
 //! 2. A footprint that is no longer than a texel is magnified: the four nearest texels of the image are interpolated bilinearly.
 //! 3. Longer ones are averaged along their major axis by up to 16 probes, each as wide as the minor axis (McCormack, Perry, Farkas, Jouppi:
 //!    *Feline: Fast Elliptical Lines for Anisotropic Texture Mapping*, SIGGRAPH 1999). Those that are longer than 16 times their width

@@ -101,11 +101,11 @@ fn checks_to_the_horizon_have_no_moire_and_keep_their_energy() {
 
 #[test]
 fn a_clamped_texture_ends_in_the_distance() {
-    // Checks from -20 to 20 across and to -40 in the distance.
+    // Checks from -20 to 20 across and to -40 in the distance; where they end, a pixel may see both.
     let mut scene = floor([800, 800], 2, Wrap::Clamp);
     let uses = scene.geometry_mut().materials[1].texture.as_mut().unwrap();
     uses.transform = Affine2::from_translation(Vec2::new(0.5, 1.0));
-    check(&scene, &Settings::default().with_size(SIZE), HORIZON..CLOSE, [0.2, 0.03], "clamped");
+    check(&scene, &Settings::default().with_size(SIZE), HORIZON..CLOSE, [0.45, 0.03], "clamped");
 }
 
 #[test]

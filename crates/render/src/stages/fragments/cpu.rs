@@ -10,7 +10,7 @@ use crate::data::picture::Picture;
 use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
 use crate::data::wave::HostWave;
-use crate::stages::pixel_samples::alike::Facet;
+use crate::stages::pixel_samples::alike::{Facet, mirrors};
 use crate::stages::pixel_samples::cpu::is_alike;
 
 /// Number of pixels per task.
@@ -112,7 +112,7 @@ struct Pixel<'a> {
 impl Pixel<'_> {
     /// Adds its shared fragments and its single samples.
     fn add_fragments(&self, lists: &mut [RayList; 2]) {
-        let Pixel { samples, all, pixel, .. } = *self;
+        let Pixel { wave, samples, all, pixel } = *self;
         let state = samples.state[(pixel - samples.first) as usize];
         if state == PIXEL_SHARED {
             return;
@@ -126,7 +126,7 @@ impl Pixel<'_> {
             rest &= !part;
             let (size, hit) = (part.count_ones(), samples.hit(pixel, first));
             // What sees nothing costs nothing.
-            if !all.apart && (!hit.is_some() || !singles && !self.mirrors(hit)) {
+            if !all.apart && (!hit.is_some() || !singles && !mirrors(wave.scene, all, hit)) {
                 let is_large = 4 * size > count;
                 self.add(&mut lists[usize::from(!is_large)], first, part, size as f32 / all.samples as f32);
                 continue;
@@ -152,13 +152,6 @@ impl Pixel<'_> {
     fn facet(&self, sample: u32, hit: &Hit) -> Facet {
         let ray = self.wave.rays.through(self.all, self.pixel, self.samples.numbers.start + sample);
         Facet::new(self.wave.scene, self.wave.rays.spacing, &ray, hit)
-    }
-
-    /// Whether rays that a mirror reflects are followed from here.
-    fn mirrors(&self, hit: &Hit) -> bool {
-        let geometry = &self.wave.scene.scene.geometry;
-        let material = &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize];
-        self.all.mirrors && (material.ks != Vec3::ZERO || material.ks_tinted != Vec3::ZERO)
     }
 
     fn add(&self, list: &mut RayList, sample: u32, shared: u32, weight: f32) {

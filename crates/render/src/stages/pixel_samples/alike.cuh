@@ -1,4 +1,4 @@
-// The samples of a pixel, and whether two of them lie on one surface: twin of alike.rs, and of antialiasing.rs.
+// The samples of a pixel, whether two of them lie on one surface, and whether it mirrors: twin of alike.rs, and of antialiasing.rs.
 #pragma once
 
 #include "cuda/rays.cuh"
@@ -70,4 +70,12 @@ DEVICE bool is_alike(const PixelSamples &args, const Ray &a, const Hit &hit_a, c
     if (hit_a.triangle == hit_b.triangle)
         return true;
     return hit_a.triangle != Hit::NONE && hit_b.triangle != Hit::NONE && triangles_continue(args, a, hit_a, b, hit_b);
+}
+
+// Whether rays that a mirror reflects are followed from here.
+DEVICE bool mirrors(const PixelSamples &args, const Hit &hit) {
+    if (!args.mirrors || hit.triangle == Hit::NONE)
+        return false;
+    const Material &material = args.scene.materials[__ldg(args.scene.triangle_materials + hit.triangle)];
+    return material.ks != splat(0.0f) || material.ks_tinted != splat(0.0f);
 }

@@ -1,9 +1,10 @@
-//! Whether two samples lie on one surface. Twin: `alike.cuh`.
+//! Whether two samples lie on one surface, and whether it mirrors. Twin: `alike.cuh`.
 
 use glam::Vec3;
 use lightmesh_layout::constants::{NEAR_COSINE, NEAR_HEIGHT, SAME_COSINE, SAME_FACET_COSINE, SAME_HEIGHT};
 
 use crate::accel::{Hit, Ray};
+use crate::antialiasing::Antialiasing;
 use crate::prepared::PreparedScene;
 use crate::surface::{SurfacePoint, shading_normal};
 
@@ -56,4 +57,15 @@ impl Facet {
             && self.point.normal.dot(between).abs() <= height * self.width
             && other.point.normal.dot(between).abs() <= height * other.width
     }
+}
+
+/// Whether rays that a mirror reflects are followed from here.
+#[inline(always)]
+pub(crate) fn mirrors(scene: &PreparedScene, all: &Antialiasing, hit: &Hit) -> bool {
+    if !all.mirrors || !hit.is_some() {
+        return false;
+    }
+    let geometry = &scene.scene.geometry;
+    let material = &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize];
+    material.ks != Vec3::ZERO || material.ks_tinted != Vec3::ZERO
 }

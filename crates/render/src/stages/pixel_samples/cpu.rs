@@ -7,7 +7,7 @@ use lightmesh_layout::constants::PIXEL_SHARED;
 use rayon::prelude::*;
 
 use super::SampleRange;
-use super::alike::Facet;
+use super::alike::{Facet, mirrors};
 use crate::accel::{Hit, Ray};
 use crate::counters::Tally;
 use crate::data::picture::Picture;
@@ -72,13 +72,15 @@ pub(crate) fn pixel_samples(
         .zip(&mut *hits)
         .zip(&rays.rays)
         .map(|((&pixel, hit), ray)| {
-            let shared = samples.of(pixel).enumerate().all(|(sample, other)| {
+            let alike = |(sample, other): (usize, &Hit)| {
                 is_alike(hit, other, || {
                     let beside = all.ray(&view, pixel, sample as u32);
                     let facet = |ray, hit| Facet::new(scene, rays.spacing, ray, hit);
                     facet(ray, hit).continues(&facet(&beside, other))
                 })
-            });
+            };
+            // Each sample has a mirror ray of its own.
+            let shared = !mirrors(scene, all, hit) && samples.of(pixel).enumerate().all(alike);
             if !shared && !all.keeps {
                 *hit = Hit::MISS;
             }

@@ -49,7 +49,8 @@ KERNEL(merge_samples, PixelSamples, BLOCK, 4) {
     if (!args.apart) {
         const Hit center = load_hit(args.centers, ray);
         const Ray through = ray_at(args.rays, ray);
-        bool shared = true;
+        // Each sample has a mirror ray of its own.
+        bool shared = !mirrors(args, center);
         for (unsigned sample = 0; shared && sample < args.samples[1]; ++sample)
             shared = is_alike(args, through, center, sample_ray(args, ray, sample), sample_hit(args, ray, sample));
         if (!shared && !args.keeps)
