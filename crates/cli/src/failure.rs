@@ -105,6 +105,7 @@ impl Failure {
                 RenderError::Cancelled => INTERRUPTED,
                 RenderError::Memory { .. }
                 | RenderError::BuildMemory { .. }
+                | RenderError::TextureMemory { .. }
                 | RenderError::Grid(GridError::Memory { .. })
                 | RenderError::Threads { .. }
                 | RenderError::Device { .. }

@@ -169,6 +169,14 @@ constants! {
     LEAST_SQUARE: f32 = 1e-30;
     /// If the square of its length is below this, an interpolated normal has cancelled out.
     LEAST_SMOOTH_SQUARE: f32 = 1e-12;
+    /// The ellipse in which a cone meets a surface is longer than wide by at most the reciprocal of this cosine.
+    LEAST_FOOTPRINT_COSINE: f32 = 1e-6;
+    /// Lookups along the major axis of a footprint in a texture, at most.
+    MOST_PROBES: u32 = 16;
+    /// Bits of a channel of a texel below the image itself.
+    TEXEL_BITS: u32 = 21;
+    /// White in such a channel.
+    TEXEL_ONE: f32 = (1u32 << (TEXEL_BITS - 1)) as f32;
     /// Share of each channel in the brightness of a colour (ITU-R BT.709-6, item 3.2).
     LUMINANCE_RED: f32 = 0.2126;
     /// Of green.
@@ -255,6 +263,8 @@ constants! {
     CELL_PIXELS: f32 = 32.0;
     /// The exponent's last bit in single precision.
     F32_EXPONENT_STEP: u32 = 1 << (f32::MANTISSA_DIGITS - 1);
+    /// The exponent of numbers from 1 to 2 in single precision.
+    F32_EXPONENT_BIAS: u32 = f32::MAX_EXP as u32 - 1;
     /// The largest hash of a cell.
     LAST_HASH: u32 = 0xfffe;
     /// Parts of four words of a candidate that may hide a light: three corners with the normal.

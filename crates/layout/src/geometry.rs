@@ -152,6 +152,14 @@ records! {
         shared: u32,
     }
 
+    /// The cone around a ray, or around each ray of a list.
+    Cone {
+        /// Its width where the ray begins.
+        width: f32,
+        /// By how much it widens per unit of distance.
+        spread: f32,
+    }
+
     /// Rays: those of some rows of a camera's image, generated where they are needed, or a list.
     ///
     /// Ray number `y' · width + x` of a camera belongs to column x of the y'-th of these rows.
@@ -160,10 +168,14 @@ records! {
         view: View,
         /// The rays of a list; null for a camera.
         list: In<ListedRay>,
+        /// The cone of each ray of a list; null if all have the same.
+        cones: In<Cone>,
         /// The first pixel of a camera's rows.
         first_pixel: u32,
         /// Number of rays.
         count: u32,
+        /// The cone of all rays; without a width, textures are looked up at points.
+        cone: Cone,
     }
 
     /// The counters that kernels add to.

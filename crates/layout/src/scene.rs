@@ -46,10 +46,20 @@ records! {
     /// Texture coordinates of a vertex.
     Uv { u: f32, v: f32, }
 
+    /// A level of a texture below the image itself.
+    TextureLevel {
+        /// Row by row, three channels of [`TEXEL_BITS`](crate::constants::TEXEL_BITS) bits, red in the lowest ones.
+        texels: In<u64>,
+        /// Width and height; at least 1.
+        size: [u32; 2],
+    }
+
     /// A texture on a material: the image, and how texture coordinates are mapped to it.
     Texture {
         /// Row by row, red in the lowest byte, encoded as sRGB.
         texels: In<u32>,
+        /// The levels below the image, from the largest to the one that is a single texel.
+        levels: In<TextureLevel>,
         /// Width and height; at least 1.
         size: [u32; 2],
         /// Wrapping beyond its edges, horizontally and vertically: see [`Texture`]'s constants.
@@ -60,6 +70,10 @@ records! {
         v_axis: [f32; 2],
         /// The position of texture coordinates (0, 0).
         translation: [f32; 2],
+        /// Number of levels below the image.
+        level_count: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
     }
 
     /// The coefficients of formula (1).

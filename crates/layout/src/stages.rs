@@ -1,7 +1,7 @@
 //! The arguments of every kernel: one record for the kernels of a stage.
 
 use crate::constants::FIRST_TARGETS;
-use crate::geometry::{Hit, ListedRay, Rays, Tally, Vec3};
+use crate::geometry::{Cone, Hit, ListedRay, Rays, Tally, Vec3};
 use crate::mesh::{BrickTable, Item, KeptBy, LightMesh, LitBy, UsedPoints};
 use crate::record::records;
 use crate::scene::{SampleRows, Sampling, Scene};
@@ -297,6 +297,8 @@ records! {
         counts: Out<u32>,
         /// The mirror rays, in the order of the rays.
         mirrored: Out<ListedRay>,
+        /// Their cones; null if textures are not filtered.
+        cones: Out<Cone>,
     }
 
     /// `group_points` and `gather_items`: one block per tile of 1024 rays.

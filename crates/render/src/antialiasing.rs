@@ -95,14 +95,7 @@ impl Antialiasing {
     }
 
     #[inline(always)]
-    fn add_rays<S: Simd>(
-        &self,
-        simd: S,
-        view: &View,
-        pixels: Range<u32>,
-        numbers: Range<u32>,
-        rays: &mut Vec<Ray>,
-    ) {
+    fn add_rays<S: Simd>(&self, simd: S, view: &View, pixels: Range<u32>, numbers: Range<u32>, rays: &mut Vec<Ray>) {
         let lanes = u32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
         for pixel in pixels {
             let pattern = self.pattern(view.window().number(pixel));

@@ -4,6 +4,7 @@ use lightmesh_memory::Short;
 
 use crate::accel::{Hit, Ray};
 use crate::error::RenderError;
+use crate::footprint::Cone;
 use crate::plan::Plan;
 
 /// Memory reserved for everything that is not counted below: stacks, the segments in flight, allocator overhead.
@@ -45,8 +46,8 @@ fn fits(plan: &Plan, buffer: &'static str, needed: u64) -> Result<(), RenderErro
 }
 
 fn bytes_per_ray(plan: &Plan) -> u64 {
-    // A ray with pixel and weight, twice (mirrors make the next list from this one), and its hit and radiance.
-    let ray = 2 * (size_of::<Ray>() as u64 + 4 + 12) + size_of::<Hit>() as u64 + 12;
+    // A ray with pixel, weight and cone, twice (mirrors make the next list from this one), and its hit and radiance.
+    let ray = 2 * (size_of::<Ray>() as u64 + 4 + 12 + size_of::<Cone>() as u64) + size_of::<Hit>() as u64 + 12;
     ray + plan.footprint.host
 }
 

@@ -88,6 +88,19 @@ pub enum RenderError {
         /// Bytes needed and left.
         short: Short,
     },
+    /// The smaller levels of a texture do not fit into the host's memory.
+    #[error(
+        "there is not enough memory for the mip levels of texture `{name}`, {} x {} texels: {short}; raise the limit, or use a smaller image",
+        size[0], size[1]
+    )]
+    TextureMemory {
+        /// The texture's name.
+        name: String,
+        /// Its width and height in texels.
+        size: [u32; 2],
+        /// Bytes needed and left.
+        short: Short,
+    },
     /// The device does not exist or cannot be used.
     #[error("device {device} cannot be used: {reason}")]
     Device {
@@ -134,7 +147,7 @@ impl RenderError {
             RenderError::Setting { setting, .. } => vec![*setting],
             RenderError::Threads { .. } => vec![Setting::Threads],
             RenderError::Memory { .. } => vec![Setting::MemoryLimit, Setting::Size, Setting::Step, Setting::Radius],
-            RenderError::BuildMemory { .. } => vec![Setting::MemoryLimit],
+            RenderError::BuildMemory { .. } | RenderError::TextureMemory { .. } => vec![Setting::MemoryLimit],
             RenderError::DeviceMemory { .. } => {
                 vec![Setting::Size, Setting::Step, Setting::Radius, Setting::Device]
             }

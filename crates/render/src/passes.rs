@@ -136,9 +136,7 @@ impl<B: Backend> Passes<'_, B> {
             }
             let hits = match known.take() {
                 Some(hits) => hits,
-                None => {
-                    run.stage(Stage::PrimaryRays, [n; 2], |backend| backend.primary_rays(run.job, scene, &rays))?
-                }
+                None => run.stage(Stage::PrimaryRays, [n; 2], |backend| backend.primary_rays(run.job, scene, &rays))?,
             };
             let wave = WaveOf::<B> { job: run.job, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts };
             self.light(&wave, film)?;

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use glam::Vec3;
 use lightmesh_memory::Budget;
-use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Scene};
+use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Scene, Texture};
 
 use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Grid, GridOptions, Triangle};
 use crate::error::RenderError;
@@ -15,6 +15,7 @@ use crate::material_ids::MaterialIds;
 use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
 use crate::stage::Stage;
+use crate::textures::MipLevels;
 
 /// Bytes that a triangle takes at most while a BVH is built, with what is kept of it.
 const BYTES_TO_BUILD: u64 = 400;
@@ -30,6 +31,8 @@ pub struct PreparedGeometry {
     pub bounds: Bounds,
     /// The numbers and names of materials.
     pub(crate) materials: MaterialIds,
+    /// The smaller levels of textures, by number; empty if no texture is seen.
+    pub(crate) mip_levels: Vec<MipLevels>,
     /// The setting that chose the structure.
     acceleration: Acceleration,
     /// Build time in seconds, until the first image reports it.
@@ -45,10 +48,11 @@ impl PreparedGeometry {
         Beams::new(&*self.accelerator, &self.triangles, &self.bounds)
     }
 
-    /// Builds the acceleration structure over `geometry`.
+    /// Builds the acceleration structure over `geometry`, and the smaller levels of its textures.
     ///
     /// # Errors
-    /// [`RenderError::Geometry`] if the geometry is inconsistent, [`RenderError::BuildMemory`] if there is not enough memory,
+    /// [`RenderError::Geometry`] if the geometry is inconsistent, [`RenderError::BuildMemory`] or [`RenderError::TextureMemory`] if there is
+    /// not enough memory,
     /// [`RenderError::Grid`] or [`RenderError::GridFile`] if a grid was requested and cannot be built or read.
     pub fn new(
         geometry: &Geometry,
@@ -73,6 +77,7 @@ impl PreparedGeometry {
             Acceleration::GridFile(path) => Box::new(Grid::load(path, &triangles)?),
             Acceleration::BruteForce => Box::new(BruteForce::new(&triangles)),
         };
+        let mip_levels = mip_levels(geometry, budget)?;
         let unreported = Mutex::new(start.elapsed().as_secs_f64());
         observer.advance(mesh.triangles.len() as u64);
         observer.end(Stage::Build);
@@ -86,6 +91,7 @@ impl PreparedGeometry {
             accelerator,
             bounds,
             materials: MaterialIds::new(geometry),
+            mip_levels,
             acceleration: acceleration.clone(),
             unreported,
             center,
@@ -109,15 +115,23 @@ impl PreparedGeometry {
         (self.center, self.far)
     }
 
-    /// Bytes that the geometry occupies on the host, including the acceleration structure.
+    /// Bytes that the geometry occupies on the host, including the acceleration structure and the smaller levels of textures.
     pub fn memory(&self) -> usize {
-        size_of_val(self.triangles.as_slice()) + self.accelerator.memory()
+        let levels: usize = self.mip_levels.iter().map(MipLevels::memory).sum();
+        size_of_val(self.triangles.as_slice()) + self.accelerator.memory() + levels
     }
 
     /// The build time in seconds at the first call; 0 at all later ones. So it counts for the first image alone.
     pub(crate) fn take_build_seconds(&self) -> f64 {
         std::mem::take(&mut *self.unreported.lock().unwrap_or_else(PoisonError::into_inner))
     }
+}
+
+fn mip_levels(geometry: &Geometry, budget: Budget) -> Result<Vec<MipLevels>, RenderError> {
+    MipLevels::of(geometry, budget).map_err(|(index, short)| {
+        let Texture { name, size, .. } = &geometry.textures[index];
+        RenderError::TextureMemory { name: name.clone(), size: *size, short }
+    })
 }
 
 /// A scene whose geometry is prepared. Any number of images can be rendered of it, on any device; clones share the geometry.

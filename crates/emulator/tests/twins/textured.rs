@@ -1,15 +1,23 @@
-//! Surfaces with textures and vertex colours: a scene with both, and a bit-identical image.
+//! Surfaces with textures and vertex colours: scenes with both, and bit-identical images, also of textures that are filtered.
 
 use glam::{Affine2, DVec3, Vec2, Vec3};
 use lightmesh_render::backend::{Cpu, Cuda};
-use lightmesh_render::{Acceleration, Frame, Mode, PreparedScene, Settings, Unobserved, render_on};
+use lightmesh_render::{Acceleration, Frame, Mode, PreparedScene, Settings, Sharing, Unobserved, render_on};
 use lightmesh_scene::{LightKind, Material, Scene, Texture, TextureUse, Wrap};
-use lightmesh_testkit::pile;
+use lightmesh_testkit::{SceneDraft, pile};
 
 use crate::trials::{Case, Target};
 
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
-    vec![Case::new("textured::bits".to_owned(), same_bits)]
+    let mut cases = vec![Case::new("textured::bits".to_owned(), same_bits)];
+    for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
+        for height in [None, Some(4.0)] {
+            let view = if height.is_some() { "orthographic" } else { "perspective" };
+            let name = format!("textured::filtered::{wrap:?}::{view}");
+            cases.push(Case::new(name, move |cuda: &Cuda<R>| same_filtered_bits(cuda, wrap, height)));
+        }
+    }
+    cases
 }
 
 /// A pile whose triangles alternate between all kinds of materials, two textures, and colours at some vertices.
@@ -65,5 +73,57 @@ fn same_bits<R: Target>(cuda: &Cuda<R>) {
         assert!(colors.len() > host.len() / 4, "{} colours: textures are to be seen", colors.len());
         let differ = host.iter().zip(&device).filter(|(a, b)| a != b).count();
         assert_eq!(differ, 0, "of {} pixels", host.len());
+    }
+}
+
+/// A floor to the horizon with a fine texture, and a convex and a concave mirror on it. What is seen is the ambient term: a device may round
+/// nothing differently.
+fn small_texels(wrap: Wrap, height: Option<f32>) -> Scene {
+    let plain = Material::default().with_ka([0.9; 3]).with_kd([0.0; 3]);
+    let transform = Affine2::from_scale_angle_translation(Vec2::new(3.1, -2.3), 0.3, Vec2::new(0.4, -1.2));
+    let uses = |texture| TextureUse { wrap: [wrap, Wrap::Repeat], transform, ..TextureUse::new(texture) };
+    let mirror = plain.clone().with_ka([0.1; 3]).with_ks([0.8, 0.7, 0.9]);
+    let draft = SceneDraft::new()
+        .ambient(1.0)
+        .painted(plain.clone().with_texture(uses(0)))
+        .floor(0.0, 300.0)
+        .painted(mirror.clone())
+        .smooth_ball(DVec3::new(-0.8, 1.0, 0.0), 0.9, [6, 8])
+        .painted(mirror.with_ks_tinted([0.1; 3]).with_texture(uses(1)))
+        .quad([[0.4, 0.1, -0.6], [2.0, 0.1, -1.0], [2.0, 1.9, -1.1], [0.4, 1.9, -0.7]]);
+    let (eye, target) = ([0.4, 1.7, 3.2], [0.1, 0.8, 0.0]);
+    let draft = match height {
+        Some(height) => draft.orthographic(eye, target, height),
+        None => draft.camera(eye, target),
+    };
+    let mut scene = draft.finish("small texels");
+    let geometry = scene.geometry_mut();
+    geometry.textures = vec![checks("large", [37, 64]), checks("narrow", [1, 50])];
+    let mesh = &mut geometry.mesh;
+    // The quadrilateral is a concave mirror.
+    mesh.normals.resize(mesh.positions.len(), Vec3::ZERO);
+    let corners = mesh.positions.len() - 4;
+    for (normal, position) in mesh.normals[corners..].iter_mut().zip(&mesh.positions[corners..]) {
+        *normal = Vec3::new(1.2 - position.x, 1.0 - position.y, 4.0).normalize();
+    }
+    mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(p.x + 0.2 * p.y, p.z - 0.7 * p.y)).collect();
+    scene
+}
+
+/// Textures that are smaller in the image than they are, seen directly and in mirrors, with samples that are shaded together and apart.
+fn same_filtered_bits<R: Target>(cuda: &Cuda<R>, wrap: Wrap, height: Option<f32>) {
+    let scene = PreparedScene::new(&small_texels(wrap, height), &Acceleration::Bvh, &Unobserved).unwrap();
+    for (aa, sharing) in [(4, Sharing::default()), (8, Sharing::Never)] {
+        let settings = Settings::default().with_mode(Mode::RayTrace).with_size([40, 30]);
+        let settings = settings.with_aa(aa).with_sharing(sharing).with_bounces(2);
+        let bits = |frame: Frame| frame.image.color().iter().map(|color| color.map(f32::to_bits)).collect::<Vec<_>>();
+        let host = bits(render_on(&Cpu, &scene, &settings, &Unobserved).unwrap());
+        let device = bits(render_on(cuda, &scene, &settings, &Unobserved).unwrap());
+        let mut colors = host.clone();
+        colors.sort_unstable();
+        colors.dedup();
+        assert!(colors.len() > host.len() / 3, "{} colours: textures are to be seen", colors.len());
+        let differ = host.iter().zip(&device).filter(|(a, b)| a != b).count();
+        assert_eq!(differ, 0, "of {} pixels with {aa} samples", host.len());
     }
 }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use bytemuck::Zeroable;
 use lightmesh_layout::In;
 use lightmesh_layout::geometry::Rays;
 use lightmesh_memory::Budget;
@@ -87,7 +88,8 @@ impl<R: Runtime> Backend for Cuda<R> {
     fn camera_rays(&self, view: &View, rows: Range<u32>) -> Result<DeviceRays<R>, RenderError> {
         let [width, _] = view.size();
         let count = width * rows.len() as u32;
-        let record = Rays { view: view.record(), list: In::NULL, first_pixel: rows.start * width, count };
+        let first_pixel = rows.start * width;
+        let record = Rays { view: view.record(), list: In::NULL, first_pixel, count, ..Rays::zeroed() };
         Ok(DeviceRays::new(record, None, view.spacing()))
     }
 

@@ -82,6 +82,14 @@
 #define LEAST_SQUARE 0x1.4484cp-100f
 // If the square of its length is below this, an interpolated normal has cancelled out.
 #define LEAST_SMOOTH_SQUARE 0x1.197998p-40f
+// The ellipse in which a cone meets a surface is longer than wide by at most the reciprocal of this cosine.
+#define LEAST_FOOTPRINT_COSINE 0x1.0c6f7ap-20f
+// Lookups along the major axis of a footprint in a texture, at most.
+#define MOST_PROBES 16u
+// Bits of a channel of a texel below the image itself.
+#define TEXEL_BITS 21u
+// White in such a channel.
+#define TEXEL_ONE 0x1p20f
 // Share of each channel in the brightness of a colour (ITU-R BT.709-6, item 3.2).
 #define LUMINANCE_RED 0x1.b367ap-3f
 // Of green.
@@ -159,6 +167,8 @@
 #define CELL_PIXELS 0x1p5f
 // The exponent's last bit in single precision.
 #define F32_EXPONENT_STEP 0x00800000u
+// The exponent of numbers from 1 to 2 in single precision.
+#define F32_EXPONENT_BIAS 127u
 // The largest hash of a cell.
 #define LAST_HASH 65534u
 // Parts of four words of a candidate that may hide a light: three corners with the normal.
@@ -418,17 +428,29 @@ static_assert(PLACE_OF(ListedRay, sample) == 28, "place of ListedRay::sample");
 static_assert(PLACE_OF(ListedRay, weight) == 32, "place of ListedRay::weight");
 static_assert(PLACE_OF(ListedRay, shared) == 44, "place of ListedRay::shared");
 
+struct alignas(4) Cone {
+    float width;
+    float spread;
+};
+static_assert(sizeof(Cone) == 8, "size of Cone");
+static_assert(PLACE_OF(Cone, width) == 0, "place of Cone::width");
+static_assert(PLACE_OF(Cone, spread) == 4, "place of Cone::spread");
+
 struct alignas(8) Rays {
     View view;
     const ListedRay *list;
+    const Cone *cones;
     unsigned first_pixel;
     unsigned count;
+    Cone cone;
 };
-static_assert(sizeof(Rays) == 96, "size of Rays");
+static_assert(sizeof(Rays) == 112, "size of Rays");
 static_assert(PLACE_OF(Rays, view) == 0, "place of Rays::view");
 static_assert(PLACE_OF(Rays, list) == 80, "place of Rays::list");
-static_assert(PLACE_OF(Rays, first_pixel) == 88, "place of Rays::first_pixel");
-static_assert(PLACE_OF(Rays, count) == 92, "place of Rays::count");
+static_assert(PLACE_OF(Rays, cones) == 88, "place of Rays::cones");
+static_assert(PLACE_OF(Rays, first_pixel) == 96, "place of Rays::first_pixel");
+static_assert(PLACE_OF(Rays, count) == 100, "place of Rays::count");
+static_assert(PLACE_OF(Rays, cone) == 104, "place of Rays::cone");
 
 struct alignas(8) Tally {
     enum : unsigned {
@@ -498,6 +520,14 @@ static_assert(sizeof(Uv) == 8, "size of Uv");
 static_assert(PLACE_OF(Uv, u) == 0, "place of Uv::u");
 static_assert(PLACE_OF(Uv, v) == 4, "place of Uv::v");
 
+struct alignas(8) TextureLevel {
+    const unsigned long long *texels;
+    unsigned size[2];
+};
+static_assert(sizeof(TextureLevel) == 16, "size of TextureLevel");
+static_assert(PLACE_OF(TextureLevel, texels) == 0, "place of TextureLevel::texels");
+static_assert(PLACE_OF(TextureLevel, size) == 8, "place of TextureLevel::size");
+
 struct alignas(8) Texture {
     enum : unsigned {
         // The same again.
@@ -508,19 +538,25 @@ struct alignas(8) Texture {
         CLAMP = 2u,
     };
     const unsigned *texels;
+    const TextureLevel *levels;
     unsigned size[2];
     unsigned wrap[2];
     float u_axis[2];
     float v_axis[2];
     float translation[2];
+    unsigned level_count;
+    unsigned spare;
 };
-static_assert(sizeof(Texture) == 48, "size of Texture");
+static_assert(sizeof(Texture) == 64, "size of Texture");
 static_assert(PLACE_OF(Texture, texels) == 0, "place of Texture::texels");
-static_assert(PLACE_OF(Texture, size) == 8, "place of Texture::size");
-static_assert(PLACE_OF(Texture, wrap) == 16, "place of Texture::wrap");
-static_assert(PLACE_OF(Texture, u_axis) == 24, "place of Texture::u_axis");
-static_assert(PLACE_OF(Texture, v_axis) == 32, "place of Texture::v_axis");
-static_assert(PLACE_OF(Texture, translation) == 40, "place of Texture::translation");
+static_assert(PLACE_OF(Texture, levels) == 8, "place of Texture::levels");
+static_assert(PLACE_OF(Texture, size) == 16, "place of Texture::size");
+static_assert(PLACE_OF(Texture, wrap) == 24, "place of Texture::wrap");
+static_assert(PLACE_OF(Texture, u_axis) == 32, "place of Texture::u_axis");
+static_assert(PLACE_OF(Texture, v_axis) == 40, "place of Texture::v_axis");
+static_assert(PLACE_OF(Texture, translation) == 48, "place of Texture::translation");
+static_assert(PLACE_OF(Texture, level_count) == 56, "place of Texture::level_count");
+static_assert(PLACE_OF(Texture, spare) == 60, "place of Texture::spare");
 
 struct alignas(4) Material {
     enum : unsigned {
@@ -773,17 +809,17 @@ struct alignas(8) GroupItems {
     unsigned long long first_block;
     float spacing[2];
 };
-static_assert(sizeof(GroupItems) == 480, "size of GroupItems");
+static_assert(sizeof(GroupItems) == 496, "size of GroupItems");
 static_assert(PLACE_OF(GroupItems, scene) == 0, "place of GroupItems::scene");
 static_assert(PLACE_OF(GroupItems, rays) == 320, "place of GroupItems::rays");
-static_assert(PLACE_OF(GroupItems, hits) == 416, "place of GroupItems::hits");
-static_assert(PLACE_OF(GroupItems, members) == 424, "place of GroupItems::members");
-static_assert(PLACE_OF(GroupItems, ends) == 432, "place of GroupItems::ends");
-static_assert(PLACE_OF(GroupItems, counts) == 440, "place of GroupItems::counts");
-static_assert(PLACE_OF(GroupItems, items) == 448, "place of GroupItems::items");
-static_assert(PLACE_OF(GroupItems, tiles) == 456, "place of GroupItems::tiles");
-static_assert(PLACE_OF(GroupItems, first_block) == 464, "place of GroupItems::first_block");
-static_assert(PLACE_OF(GroupItems, spacing) == 472, "place of GroupItems::spacing");
+static_assert(PLACE_OF(GroupItems, hits) == 432, "place of GroupItems::hits");
+static_assert(PLACE_OF(GroupItems, members) == 440, "place of GroupItems::members");
+static_assert(PLACE_OF(GroupItems, ends) == 448, "place of GroupItems::ends");
+static_assert(PLACE_OF(GroupItems, counts) == 456, "place of GroupItems::counts");
+static_assert(PLACE_OF(GroupItems, items) == 464, "place of GroupItems::items");
+static_assert(PLACE_OF(GroupItems, tiles) == 472, "place of GroupItems::tiles");
+static_assert(PLACE_OF(GroupItems, first_block) == 480, "place of GroupItems::first_block");
+static_assert(PLACE_OF(GroupItems, spacing) == 488, "place of GroupItems::spacing");
 
 struct alignas(8) Shadows {
     Scene scene;
@@ -805,25 +841,25 @@ struct alignas(8) Shadows {
     unsigned first_light;
     unsigned end_light;
 };
-static_assert(sizeof(Shadows) == 1856, "size of Shadows");
+static_assert(sizeof(Shadows) == 1872, "size of Shadows");
 static_assert(PLACE_OF(Shadows, scene) == 0, "place of Shadows::scene");
 static_assert(PLACE_OF(Shadows, rays) == 320, "place of Shadows::rays");
-static_assert(PLACE_OF(Shadows, hits) == 416, "place of Shadows::hits");
-static_assert(PLACE_OF(Shadows, members) == 424, "place of Shadows::members");
-static_assert(PLACE_OF(Shadows, items) == 432, "place of Shadows::items");
-static_assert(PLACE_OF(Shadows, tiles) == 440, "place of Shadows::tiles");
-static_assert(PLACE_OF(Shadows, starts) == 448, "place of Shadows::starts");
-static_assert(PLACE_OF(Shadows, taken) == 456, "place of Shadows::taken");
-static_assert(PLACE_OF(Shadows, share) == 464, "place of Shadows::share");
-static_assert(PLACE_OF(Shadows, sampling) == 472, "place of Shadows::sampling");
-static_assert(PLACE_OF(Shadows, tally) == 488, "place of Shadows::tally");
-static_assert(PLACE_OF(Shadows, first) == 496, "place of Shadows::first");
-static_assert(PLACE_OF(Shadows, count) == 504, "place of Shadows::count");
-static_assert(PLACE_OF(Shadows, sets) == 512, "place of Shadows::sets");
-static_assert(PLACE_OF(Shadows, set) == 1840, "place of Shadows::set");
-static_assert(PLACE_OF(Shadows, set_count) == 1844, "place of Shadows::set_count");
-static_assert(PLACE_OF(Shadows, first_light) == 1848, "place of Shadows::first_light");
-static_assert(PLACE_OF(Shadows, end_light) == 1852, "place of Shadows::end_light");
+static_assert(PLACE_OF(Shadows, hits) == 432, "place of Shadows::hits");
+static_assert(PLACE_OF(Shadows, members) == 440, "place of Shadows::members");
+static_assert(PLACE_OF(Shadows, items) == 448, "place of Shadows::items");
+static_assert(PLACE_OF(Shadows, tiles) == 456, "place of Shadows::tiles");
+static_assert(PLACE_OF(Shadows, starts) == 464, "place of Shadows::starts");
+static_assert(PLACE_OF(Shadows, taken) == 472, "place of Shadows::taken");
+static_assert(PLACE_OF(Shadows, share) == 480, "place of Shadows::share");
+static_assert(PLACE_OF(Shadows, sampling) == 488, "place of Shadows::sampling");
+static_assert(PLACE_OF(Shadows, tally) == 504, "place of Shadows::tally");
+static_assert(PLACE_OF(Shadows, first) == 512, "place of Shadows::first");
+static_assert(PLACE_OF(Shadows, count) == 520, "place of Shadows::count");
+static_assert(PLACE_OF(Shadows, sets) == 528, "place of Shadows::sets");
+static_assert(PLACE_OF(Shadows, set) == 1856, "place of Shadows::set");
+static_assert(PLACE_OF(Shadows, set_count) == 1860, "place of Shadows::set_count");
+static_assert(PLACE_OF(Shadows, first_light) == 1864, "place of Shadows::first_light");
+static_assert(PLACE_OF(Shadows, end_light) == 1868, "place of Shadows::end_light");
 
 struct alignas(8) AdaptiveShadows {
     Scene scene;
@@ -838,18 +874,18 @@ struct alignas(8) AdaptiveShadows {
     unsigned tiles;
     unsigned spare;
 };
-static_assert(sizeof(AdaptiveShadows) == 2632, "size of AdaptiveShadows");
+static_assert(sizeof(AdaptiveShadows) == 2648, "size of AdaptiveShadows");
 static_assert(PLACE_OF(AdaptiveShadows, scene) == 0, "place of AdaptiveShadows::scene");
 static_assert(PLACE_OF(AdaptiveShadows, shadows) == 320, "place of AdaptiveShadows::shadows");
-static_assert(PLACE_OF(AdaptiveShadows, answers) == 2176, "place of AdaptiveShadows::answers");
-static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2184, "place of AdaptiveShadows::answer_count");
-static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2192, "place of AdaptiveShadows::first_answer");
-static_assert(PLACE_OF(AdaptiveShadows, counts) == 2200, "place of AdaptiveShadows::counts");
-static_assert(PLACE_OF(AdaptiveShadows, entries) == 2208, "place of AdaptiveShadows::entries");
-static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2216, "place of AdaptiveShadows::entry_count");
-static_assert(PLACE_OF(AdaptiveShadows, places) == 2224, "place of AdaptiveShadows::places");
-static_assert(PLACE_OF(AdaptiveShadows, tiles) == 2624, "place of AdaptiveShadows::tiles");
-static_assert(PLACE_OF(AdaptiveShadows, spare) == 2628, "place of AdaptiveShadows::spare");
+static_assert(PLACE_OF(AdaptiveShadows, answers) == 2192, "place of AdaptiveShadows::answers");
+static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2200, "place of AdaptiveShadows::answer_count");
+static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2208, "place of AdaptiveShadows::first_answer");
+static_assert(PLACE_OF(AdaptiveShadows, counts) == 2216, "place of AdaptiveShadows::counts");
+static_assert(PLACE_OF(AdaptiveShadows, entries) == 2224, "place of AdaptiveShadows::entries");
+static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2232, "place of AdaptiveShadows::entry_count");
+static_assert(PLACE_OF(AdaptiveShadows, places) == 2240, "place of AdaptiveShadows::places");
+static_assert(PLACE_OF(AdaptiveShadows, tiles) == 2640, "place of AdaptiveShadows::tiles");
+static_assert(PLACE_OF(AdaptiveShadows, spare) == 2644, "place of AdaptiveShadows::spare");
 
 struct alignas(8) PrimaryRays {
     Scene scene;
@@ -858,12 +894,12 @@ struct alignas(8) PrimaryRays {
     Tally tally;
     unsigned long long first_block;
 };
-static_assert(sizeof(PrimaryRays) == 440, "size of PrimaryRays");
+static_assert(sizeof(PrimaryRays) == 456, "size of PrimaryRays");
 static_assert(PLACE_OF(PrimaryRays, scene) == 0, "place of PrimaryRays::scene");
 static_assert(PLACE_OF(PrimaryRays, rays) == 320, "place of PrimaryRays::rays");
-static_assert(PLACE_OF(PrimaryRays, hits) == 416, "place of PrimaryRays::hits");
-static_assert(PLACE_OF(PrimaryRays, tally) == 424, "place of PrimaryRays::tally");
-static_assert(PLACE_OF(PrimaryRays, first_block) == 432, "place of PrimaryRays::first_block");
+static_assert(PLACE_OF(PrimaryRays, hits) == 432, "place of PrimaryRays::hits");
+static_assert(PLACE_OF(PrimaryRays, tally) == 440, "place of PrimaryRays::tally");
+static_assert(PLACE_OF(PrimaryRays, first_block) == 448, "place of PrimaryRays::first_block");
 
 struct alignas(8) ShadowRays {
     Scene scene;
@@ -875,15 +911,15 @@ struct alignas(8) ShadowRays {
     unsigned first_light;
     unsigned light_count;
 };
-static_assert(sizeof(ShadowRays) == 456, "size of ShadowRays");
+static_assert(sizeof(ShadowRays) == 472, "size of ShadowRays");
 static_assert(PLACE_OF(ShadowRays, scene) == 0, "place of ShadowRays::scene");
 static_assert(PLACE_OF(ShadowRays, rays) == 320, "place of ShadowRays::rays");
-static_assert(PLACE_OF(ShadowRays, hits) == 416, "place of ShadowRays::hits");
-static_assert(PLACE_OF(ShadowRays, share) == 424, "place of ShadowRays::share");
-static_assert(PLACE_OF(ShadowRays, tally) == 432, "place of ShadowRays::tally");
-static_assert(PLACE_OF(ShadowRays, first_block) == 440, "place of ShadowRays::first_block");
-static_assert(PLACE_OF(ShadowRays, first_light) == 448, "place of ShadowRays::first_light");
-static_assert(PLACE_OF(ShadowRays, light_count) == 452, "place of ShadowRays::light_count");
+static_assert(PLACE_OF(ShadowRays, hits) == 432, "place of ShadowRays::hits");
+static_assert(PLACE_OF(ShadowRays, share) == 440, "place of ShadowRays::share");
+static_assert(PLACE_OF(ShadowRays, tally) == 448, "place of ShadowRays::tally");
+static_assert(PLACE_OF(ShadowRays, first_block) == 456, "place of ShadowRays::first_block");
+static_assert(PLACE_OF(ShadowRays, first_light) == 464, "place of ShadowRays::first_light");
+static_assert(PLACE_OF(ShadowRays, light_count) == 468, "place of ShadowRays::light_count");
 
 struct alignas(8) Shade {
     Scene scene;
@@ -916,36 +952,36 @@ struct alignas(8) Shade {
     unsigned catches;
     unsigned spare;
 };
-static_assert(sizeof(Shade) == 600, "size of Shade");
+static_assert(sizeof(Shade) == 616, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
 static_assert(PLACE_OF(Shade, rays) == 320, "place of Shade::rays");
-static_assert(PLACE_OF(Shade, hits) == 416, "place of Shade::hits");
-static_assert(PLACE_OF(Shade, share) == 424, "place of Shade::share");
-static_assert(PLACE_OF(Shade, used) == 432, "place of Shade::used");
-static_assert(PLACE_OF(Shade, film_pixel) == 440, "place of Shade::film_pixel");
-static_assert(PLACE_OF(Shade, color) == 448, "place of Shade::color");
-static_assert(PLACE_OF(Shade, sums) == 456, "place of Shade::sums");
-static_assert(PLACE_OF(Shade, caught) == 464, "place of Shade::caught");
-static_assert(PLACE_OF(Shade, ray_caught) == 472, "place of Shade::ray_caught");
-static_assert(PLACE_OF(Shade, samples) == 480, "place of Shade::samples");
-static_assert(PLACE_OF(Shade, depth) == 488, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 496, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 504, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 512, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 520, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, light_groups) == 528, "place of Shade::light_groups");
-static_assert(PLACE_OF(Shade, ids) == 536, "place of Shade::ids");
-static_assert(PLACE_OF(Shade, film_pixels) == 544, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 552, "place of Shade::first_block");
-static_assert(PLACE_OF(Shade, first_light) == 560, "place of Shade::first_light");
-static_assert(PLACE_OF(Shade, end_light) == 564, "place of Shade::end_light");
-static_assert(PLACE_OF(Shade, several) == 568, "place of Shade::several");
-static_assert(PLACE_OF(Shade, sampled) == 572, "place of Shade::sampled");
-static_assert(PLACE_OF(Shade, sample_count) == 576, "place of Shade::sample_count");
-static_assert(PLACE_OF(Shade, first_sampled) == 580, "place of Shade::first_sampled");
-static_assert(PLACE_OF(Shade, sampled_pixels) == 584, "place of Shade::sampled_pixels");
-static_assert(PLACE_OF(Shade, catches) == 592, "place of Shade::catches");
-static_assert(PLACE_OF(Shade, spare) == 596, "place of Shade::spare");
+static_assert(PLACE_OF(Shade, hits) == 432, "place of Shade::hits");
+static_assert(PLACE_OF(Shade, share) == 440, "place of Shade::share");
+static_assert(PLACE_OF(Shade, used) == 448, "place of Shade::used");
+static_assert(PLACE_OF(Shade, film_pixel) == 456, "place of Shade::film_pixel");
+static_assert(PLACE_OF(Shade, color) == 464, "place of Shade::color");
+static_assert(PLACE_OF(Shade, sums) == 472, "place of Shade::sums");
+static_assert(PLACE_OF(Shade, caught) == 480, "place of Shade::caught");
+static_assert(PLACE_OF(Shade, ray_caught) == 488, "place of Shade::ray_caught");
+static_assert(PLACE_OF(Shade, samples) == 496, "place of Shade::samples");
+static_assert(PLACE_OF(Shade, depth) == 504, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 512, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 520, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 528, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 536, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, light_groups) == 544, "place of Shade::light_groups");
+static_assert(PLACE_OF(Shade, ids) == 552, "place of Shade::ids");
+static_assert(PLACE_OF(Shade, film_pixels) == 560, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 568, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, first_light) == 576, "place of Shade::first_light");
+static_assert(PLACE_OF(Shade, end_light) == 580, "place of Shade::end_light");
+static_assert(PLACE_OF(Shade, several) == 584, "place of Shade::several");
+static_assert(PLACE_OF(Shade, sampled) == 588, "place of Shade::sampled");
+static_assert(PLACE_OF(Shade, sample_count) == 592, "place of Shade::sample_count");
+static_assert(PLACE_OF(Shade, first_sampled) == 596, "place of Shade::first_sampled");
+static_assert(PLACE_OF(Shade, sampled_pixels) == 600, "place of Shade::sampled_pixels");
+static_assert(PLACE_OF(Shade, catches) == 608, "place of Shade::catches");
+static_assert(PLACE_OF(Shade, spare) == 612, "place of Shade::spare");
 
 struct alignas(8) PixelSamples {
     Scene scene;
@@ -953,9 +989,11 @@ struct alignas(8) PixelSamples {
     Hit *hits;
     Hit *centers;
     unsigned *state;
+    unsigned char *owners;
     Vec3 *color;
     unsigned *counts[2];
     ListedRay *fragments[2];
+    Hit *fragment_hits[2];
     float *coverage;
     float *caught;
     float *depth;
@@ -974,6 +1012,8 @@ struct alignas(8) PixelSamples {
     unsigned samples[2];
     unsigned inner[2];
     unsigned all_samples;
+    unsigned together;
+    unsigned lanes;
     unsigned light_count;
     float weight;
     float contrast;
@@ -983,41 +1023,45 @@ struct alignas(8) PixelSamples {
     unsigned matte_slots;
     float quantiles[64];
 };
-static_assert(sizeof(PixelSamples) == 904, "size of PixelSamples");
+static_assert(sizeof(PixelSamples) == 952, "size of PixelSamples");
 static_assert(PLACE_OF(PixelSamples, scene) == 0, "place of PixelSamples::scene");
 static_assert(PLACE_OF(PixelSamples, rays) == 320, "place of PixelSamples::rays");
-static_assert(PLACE_OF(PixelSamples, hits) == 416, "place of PixelSamples::hits");
-static_assert(PLACE_OF(PixelSamples, centers) == 424, "place of PixelSamples::centers");
-static_assert(PLACE_OF(PixelSamples, state) == 432, "place of PixelSamples::state");
-static_assert(PLACE_OF(PixelSamples, color) == 440, "place of PixelSamples::color");
-static_assert(PLACE_OF(PixelSamples, counts) == 448, "place of PixelSamples::counts");
-static_assert(PLACE_OF(PixelSamples, fragments) == 464, "place of PixelSamples::fragments");
-static_assert(PLACE_OF(PixelSamples, coverage) == 480, "place of PixelSamples::coverage");
-static_assert(PLACE_OF(PixelSamples, caught) == 488, "place of PixelSamples::caught");
-static_assert(PLACE_OF(PixelSamples, depth) == 496, "place of PixelSamples::depth");
-static_assert(PLACE_OF(PixelSamples, normal) == 504, "place of PixelSamples::normal");
-static_assert(PLACE_OF(PixelSamples, position) == 512, "place of PixelSamples::position");
-static_assert(PLACE_OF(PixelSamples, visibility) == 520, "place of PixelSamples::visibility");
-static_assert(PLACE_OF(PixelSamples, light_points) == 528, "place of PixelSamples::light_points");
-static_assert(PLACE_OF(PixelSamples, light_groups) == 536, "place of PixelSamples::light_groups");
-static_assert(PLACE_OF(PixelSamples, ids) == 544, "place of PixelSamples::ids");
-static_assert(PLACE_OF(PixelSamples, mattes) == 552, "place of PixelSamples::mattes");
-static_assert(PLACE_OF(PixelSamples, tally) == 560, "place of PixelSamples::tally");
-static_assert(PLACE_OF(PixelSamples, first_block) == 568, "place of PixelSamples::first_block");
-static_assert(PLACE_OF(PixelSamples, seed) == 576, "place of PixelSamples::seed");
-static_assert(PLACE_OF(PixelSamples, film_pixels) == 584, "place of PixelSamples::film_pixels");
-static_assert(PLACE_OF(PixelSamples, spacing) == 592, "place of PixelSamples::spacing");
-static_assert(PLACE_OF(PixelSamples, samples) == 600, "place of PixelSamples::samples");
-static_assert(PLACE_OF(PixelSamples, inner) == 608, "place of PixelSamples::inner");
-static_assert(PLACE_OF(PixelSamples, all_samples) == 616, "place of PixelSamples::all_samples");
-static_assert(PLACE_OF(PixelSamples, light_count) == 620, "place of PixelSamples::light_count");
-static_assert(PLACE_OF(PixelSamples, weight) == 624, "place of PixelSamples::weight");
-static_assert(PLACE_OF(PixelSamples, contrast) == 628, "place of PixelSamples::contrast");
-static_assert(PLACE_OF(PixelSamples, apart) == 632, "place of PixelSamples::apart");
-static_assert(PLACE_OF(PixelSamples, mirrors) == 636, "place of PixelSamples::mirrors");
-static_assert(PLACE_OF(PixelSamples, keeps) == 640, "place of PixelSamples::keeps");
-static_assert(PLACE_OF(PixelSamples, matte_slots) == 644, "place of PixelSamples::matte_slots");
-static_assert(PLACE_OF(PixelSamples, quantiles) == 648, "place of PixelSamples::quantiles");
+static_assert(PLACE_OF(PixelSamples, hits) == 432, "place of PixelSamples::hits");
+static_assert(PLACE_OF(PixelSamples, centers) == 440, "place of PixelSamples::centers");
+static_assert(PLACE_OF(PixelSamples, state) == 448, "place of PixelSamples::state");
+static_assert(PLACE_OF(PixelSamples, owners) == 456, "place of PixelSamples::owners");
+static_assert(PLACE_OF(PixelSamples, color) == 464, "place of PixelSamples::color");
+static_assert(PLACE_OF(PixelSamples, counts) == 472, "place of PixelSamples::counts");
+static_assert(PLACE_OF(PixelSamples, fragments) == 488, "place of PixelSamples::fragments");
+static_assert(PLACE_OF(PixelSamples, fragment_hits) == 504, "place of PixelSamples::fragment_hits");
+static_assert(PLACE_OF(PixelSamples, coverage) == 520, "place of PixelSamples::coverage");
+static_assert(PLACE_OF(PixelSamples, caught) == 528, "place of PixelSamples::caught");
+static_assert(PLACE_OF(PixelSamples, depth) == 536, "place of PixelSamples::depth");
+static_assert(PLACE_OF(PixelSamples, normal) == 544, "place of PixelSamples::normal");
+static_assert(PLACE_OF(PixelSamples, position) == 552, "place of PixelSamples::position");
+static_assert(PLACE_OF(PixelSamples, visibility) == 560, "place of PixelSamples::visibility");
+static_assert(PLACE_OF(PixelSamples, light_points) == 568, "place of PixelSamples::light_points");
+static_assert(PLACE_OF(PixelSamples, light_groups) == 576, "place of PixelSamples::light_groups");
+static_assert(PLACE_OF(PixelSamples, ids) == 584, "place of PixelSamples::ids");
+static_assert(PLACE_OF(PixelSamples, mattes) == 592, "place of PixelSamples::mattes");
+static_assert(PLACE_OF(PixelSamples, tally) == 600, "place of PixelSamples::tally");
+static_assert(PLACE_OF(PixelSamples, first_block) == 608, "place of PixelSamples::first_block");
+static_assert(PLACE_OF(PixelSamples, seed) == 616, "place of PixelSamples::seed");
+static_assert(PLACE_OF(PixelSamples, film_pixels) == 624, "place of PixelSamples::film_pixels");
+static_assert(PLACE_OF(PixelSamples, spacing) == 632, "place of PixelSamples::spacing");
+static_assert(PLACE_OF(PixelSamples, samples) == 640, "place of PixelSamples::samples");
+static_assert(PLACE_OF(PixelSamples, inner) == 648, "place of PixelSamples::inner");
+static_assert(PLACE_OF(PixelSamples, all_samples) == 656, "place of PixelSamples::all_samples");
+static_assert(PLACE_OF(PixelSamples, together) == 660, "place of PixelSamples::together");
+static_assert(PLACE_OF(PixelSamples, lanes) == 664, "place of PixelSamples::lanes");
+static_assert(PLACE_OF(PixelSamples, light_count) == 668, "place of PixelSamples::light_count");
+static_assert(PLACE_OF(PixelSamples, weight) == 672, "place of PixelSamples::weight");
+static_assert(PLACE_OF(PixelSamples, contrast) == 676, "place of PixelSamples::contrast");
+static_assert(PLACE_OF(PixelSamples, apart) == 680, "place of PixelSamples::apart");
+static_assert(PLACE_OF(PixelSamples, mirrors) == 684, "place of PixelSamples::mirrors");
+static_assert(PLACE_OF(PixelSamples, keeps) == 688, "place of PixelSamples::keeps");
+static_assert(PLACE_OF(PixelSamples, matte_slots) == 692, "place of PixelSamples::matte_slots");
+static_assert(PLACE_OF(PixelSamples, quantiles) == 696, "place of PixelSamples::quantiles");
 
 struct alignas(8) MirrorRays {
     Scene scene;
@@ -1025,13 +1069,15 @@ struct alignas(8) MirrorRays {
     const Hit *hits;
     unsigned *counts;
     ListedRay *mirrored;
+    Cone *cones;
 };
-static_assert(sizeof(MirrorRays) == 440, "size of MirrorRays");
+static_assert(sizeof(MirrorRays) == 464, "size of MirrorRays");
 static_assert(PLACE_OF(MirrorRays, scene) == 0, "place of MirrorRays::scene");
 static_assert(PLACE_OF(MirrorRays, rays) == 320, "place of MirrorRays::rays");
-static_assert(PLACE_OF(MirrorRays, hits) == 416, "place of MirrorRays::hits");
-static_assert(PLACE_OF(MirrorRays, counts) == 424, "place of MirrorRays::counts");
-static_assert(PLACE_OF(MirrorRays, mirrored) == 432, "place of MirrorRays::mirrored");
+static_assert(PLACE_OF(MirrorRays, hits) == 432, "place of MirrorRays::hits");
+static_assert(PLACE_OF(MirrorRays, counts) == 440, "place of MirrorRays::counts");
+static_assert(PLACE_OF(MirrorRays, mirrored) == 448, "place of MirrorRays::mirrored");
+static_assert(PLACE_OF(MirrorRays, cones) == 456, "place of MirrorRays::cones");
 
 struct alignas(8) GroupCells {
     Scene scene;
@@ -1044,16 +1090,16 @@ struct alignas(8) GroupCells {
     Item *items;
     unsigned long long first_block;
 };
-static_assert(sizeof(GroupCells) == 544, "size of GroupCells");
+static_assert(sizeof(GroupCells) == 560, "size of GroupCells");
 static_assert(PLACE_OF(GroupCells, scene) == 0, "place of GroupCells::scene");
 static_assert(PLACE_OF(GroupCells, rays) == 320, "place of GroupCells::rays");
-static_assert(PLACE_OF(GroupCells, hits) == 416, "place of GroupCells::hits");
-static_assert(PLACE_OF(GroupCells, mesh) == 424, "place of GroupCells::mesh");
-static_assert(PLACE_OF(GroupCells, members) == 504, "place of GroupCells::members");
-static_assert(PLACE_OF(GroupCells, tile_items) == 512, "place of GroupCells::tile_items");
-static_assert(PLACE_OF(GroupCells, counts) == 520, "place of GroupCells::counts");
-static_assert(PLACE_OF(GroupCells, items) == 528, "place of GroupCells::items");
-static_assert(PLACE_OF(GroupCells, first_block) == 536, "place of GroupCells::first_block");
+static_assert(PLACE_OF(GroupCells, hits) == 432, "place of GroupCells::hits");
+static_assert(PLACE_OF(GroupCells, mesh) == 440, "place of GroupCells::mesh");
+static_assert(PLACE_OF(GroupCells, members) == 520, "place of GroupCells::members");
+static_assert(PLACE_OF(GroupCells, tile_items) == 528, "place of GroupCells::tile_items");
+static_assert(PLACE_OF(GroupCells, counts) == 536, "place of GroupCells::counts");
+static_assert(PLACE_OF(GroupCells, items) == 544, "place of GroupCells::items");
+static_assert(PLACE_OF(GroupCells, first_block) == 552, "place of GroupCells::first_block");
 
 struct alignas(8) ShortTests {
     Scene scene;
@@ -1067,17 +1113,17 @@ struct alignas(8) ShortTests {
     unsigned long long first_item;
     unsigned long long item_count;
 };
-static_assert(sizeof(ShortTests) == 552, "size of ShortTests");
+static_assert(sizeof(ShortTests) == 568, "size of ShortTests");
 static_assert(PLACE_OF(ShortTests, scene) == 0, "place of ShortTests::scene");
 static_assert(PLACE_OF(ShortTests, rays) == 320, "place of ShortTests::rays");
-static_assert(PLACE_OF(ShortTests, hits) == 416, "place of ShortTests::hits");
-static_assert(PLACE_OF(ShortTests, mesh) == 424, "place of ShortTests::mesh");
-static_assert(PLACE_OF(ShortTests, members) == 504, "place of ShortTests::members");
-static_assert(PLACE_OF(ShortTests, items) == 512, "place of ShortTests::items");
-static_assert(PLACE_OF(ShortTests, masks) == 520, "place of ShortTests::masks");
-static_assert(PLACE_OF(ShortTests, tally) == 528, "place of ShortTests::tally");
-static_assert(PLACE_OF(ShortTests, first_item) == 536, "place of ShortTests::first_item");
-static_assert(PLACE_OF(ShortTests, item_count) == 544, "place of ShortTests::item_count");
+static_assert(PLACE_OF(ShortTests, hits) == 432, "place of ShortTests::hits");
+static_assert(PLACE_OF(ShortTests, mesh) == 440, "place of ShortTests::mesh");
+static_assert(PLACE_OF(ShortTests, members) == 520, "place of ShortTests::members");
+static_assert(PLACE_OF(ShortTests, items) == 528, "place of ShortTests::items");
+static_assert(PLACE_OF(ShortTests, masks) == 536, "place of ShortTests::masks");
+static_assert(PLACE_OF(ShortTests, tally) == 544, "place of ShortTests::tally");
+static_assert(PLACE_OF(ShortTests, first_item) == 552, "place of ShortTests::first_item");
+static_assert(PLACE_OF(ShortTests, item_count) == 560, "place of ShortTests::item_count");
 
 struct alignas(8) LightPoints {
     LightMesh mesh;
@@ -1175,25 +1221,25 @@ struct alignas(8) Interpolate {
     unsigned long long first;
     unsigned long long count;
 };
-static_assert(sizeof(Interpolate) == 656, "size of Interpolate");
+static_assert(sizeof(Interpolate) == 672, "size of Interpolate");
 static_assert(PLACE_OF(Interpolate, scene) == 0, "place of Interpolate::scene");
 static_assert(PLACE_OF(Interpolate, rays) == 320, "place of Interpolate::rays");
-static_assert(PLACE_OF(Interpolate, hits) == 416, "place of Interpolate::hits");
-static_assert(PLACE_OF(Interpolate, mesh) == 424, "place of Interpolate::mesh");
-static_assert(PLACE_OF(Interpolate, members) == 504, "place of Interpolate::members");
-static_assert(PLACE_OF(Interpolate, items) == 512, "place of Interpolate::items");
-static_assert(PLACE_OF(Interpolate, masks) == 520, "place of Interpolate::masks");
-static_assert(PLACE_OF(Interpolate, points) == 528, "place of Interpolate::points");
-static_assert(PLACE_OF(Interpolate, slots) == 568, "place of Interpolate::slots");
-static_assert(PLACE_OF(Interpolate, lit) == 576, "place of Interpolate::lit");
-static_assert(PLACE_OF(Interpolate, share) == 584, "place of Interpolate::share");
-static_assert(PLACE_OF(Interpolate, used) == 592, "place of Interpolate::used");
-static_assert(PLACE_OF(Interpolate, fallback_rays) == 600, "place of Interpolate::fallback_rays");
-static_assert(PLACE_OF(Interpolate, fallback_count) == 608, "place of Interpolate::fallback_count");
-static_assert(PLACE_OF(Interpolate, sampling) == 616, "place of Interpolate::sampling");
-static_assert(PLACE_OF(Interpolate, tally) == 632, "place of Interpolate::tally");
-static_assert(PLACE_OF(Interpolate, first) == 640, "place of Interpolate::first");
-static_assert(PLACE_OF(Interpolate, count) == 648, "place of Interpolate::count");
+static_assert(PLACE_OF(Interpolate, hits) == 432, "place of Interpolate::hits");
+static_assert(PLACE_OF(Interpolate, mesh) == 440, "place of Interpolate::mesh");
+static_assert(PLACE_OF(Interpolate, members) == 520, "place of Interpolate::members");
+static_assert(PLACE_OF(Interpolate, items) == 528, "place of Interpolate::items");
+static_assert(PLACE_OF(Interpolate, masks) == 536, "place of Interpolate::masks");
+static_assert(PLACE_OF(Interpolate, points) == 544, "place of Interpolate::points");
+static_assert(PLACE_OF(Interpolate, slots) == 584, "place of Interpolate::slots");
+static_assert(PLACE_OF(Interpolate, lit) == 592, "place of Interpolate::lit");
+static_assert(PLACE_OF(Interpolate, share) == 600, "place of Interpolate::share");
+static_assert(PLACE_OF(Interpolate, used) == 608, "place of Interpolate::used");
+static_assert(PLACE_OF(Interpolate, fallback_rays) == 616, "place of Interpolate::fallback_rays");
+static_assert(PLACE_OF(Interpolate, fallback_count) == 624, "place of Interpolate::fallback_count");
+static_assert(PLACE_OF(Interpolate, sampling) == 632, "place of Interpolate::sampling");
+static_assert(PLACE_OF(Interpolate, tally) == 648, "place of Interpolate::tally");
+static_assert(PLACE_OF(Interpolate, first) == 656, "place of Interpolate::first");
+static_assert(PLACE_OF(Interpolate, count) == 664, "place of Interpolate::count");
 
 struct alignas(8) Scan {
     unsigned *values;

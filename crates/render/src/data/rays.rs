@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use crate::accel::{Hit, Ray, Triangle};
 use crate::antialiasing::Antialiasing;
+use crate::footprint::Cone;
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
 use crate::view::{View, Window};
@@ -48,6 +49,10 @@ pub struct RayList {
     /// The distance between the surface points of neighbouring pixels that face the camera: a constant, and a multiple of the
     /// distance from the camera. Zero if the rays are not a camera's.
     pub spacing: [f32; 2],
+    /// The cone around each ray, if they have none of their own.
+    pub cone: Cone,
+    /// The cone around each ray that a mirror reflected, where textures need them; else empty.
+    pub cones: Vec<Cone>,
     /// The camera and its image, all pixels of some rows; `None` if the rays are not a camera's.
     pub view: Option<View>,
     /// The pixels among those of the image.
@@ -63,9 +68,20 @@ impl RayList {
         self.weights.get(index).copied().unwrap_or(Vec3::ONE)
     }
 
+    /// The cone around a ray.
+    #[inline(always)]
+    pub(crate) fn cone_of(&self, ray: usize) -> Cone {
+        self.cones.get(ray).copied().unwrap_or(self.cone)
+    }
+
+    /// Whether textures are filtered.
+    pub(crate) fn has_cones(&self) -> bool {
+        !self.cones.is_empty() || !self.cone.is_point()
+    }
+
     /// An empty list of rays from the same camera.
     pub(crate) fn empty(&self) -> RayList {
-        RayList { spacing: self.spacing, window: self.window, ..RayList::default() }
+        RayList { spacing: self.spacing, cone: self.cone, window: self.window, ..RayList::default() }
     }
 
     /// The ray through a sample of a pixel. The rays must be a camera's.

@@ -6,13 +6,14 @@ use glam::Vec2;
 use lightmesh_image::Transfer;
 use lightmesh_layout::In;
 use lightmesh_layout::geometry::Vec3;
-use lightmesh_layout::scene::{Material, Scene as Record, Texture, Uv};
+use lightmesh_layout::scene::{Material, Scene as Record, Texture, TextureLevel, Uv};
 use lightmesh_scene::{Geometry, Wrap};
 
 use super::scene::{Upload, vec3};
 use crate::cuda::Runtime;
 use crate::error::RenderError;
-use crate::shading::tint::{Coefficients, is_tinted, texture_of};
+use crate::shading::tint::{Coefficients, is_tinted};
+use crate::textures::{Level, MipLevels, texture_of};
 
 impl<R: Runtime> Upload<'_, R> {
     /// What determines the colours of surfaces. Texture coordinates and the sRGB table are uploaded only if a texture needs
@@ -20,12 +21,12 @@ impl<R: Runtime> Upload<'_, R> {
     pub(super) fn materials(
         &mut self,
         geometry: &Geometry,
-        numbers: &[u32],
+        (numbers, levels): (&[u32], &[MipLevels]),
         record: &mut Record,
     ) -> Result<(), RenderError> {
         record.triangle_materials = self.array("materials of triangles", &geometry.mesh.materials)?;
         record.colors = self.array::<Vec3>("colours", bytemuck::cast_slice(&geometry.mesh.colors))?;
-        let textures = self.textures(geometry)?;
+        let textures = self.textures(geometry, levels)?;
         if !textures.is_empty() {
             let srgb: Vec<f32> = (0..=u8::MAX).map(|code| Transfer::Srgb.decode(code)).collect();
             record.srgb = self.array("table of sRGB", &srgb)?;
@@ -47,30 +48,47 @@ impl<R: Runtime> Upload<'_, R> {
     }
 
     /// The textures of the materials that have one, in their order. Each texture is uploaded once.
-    fn textures(&mut self, geometry: &Geometry) -> Result<Vec<Texture>, RenderError> {
-        let mut uploaded: HashMap<u32, In<u32>> = HashMap::new();
+    fn textures(&mut self, geometry: &Geometry, levels: &[MipLevels]) -> Result<Vec<Texture>, RenderError> {
+        let mut uploaded: HashMap<u32, (In<u32>, In<TextureLevel>)> = HashMap::new();
         let mut records = Vec::new();
         for (uses, texture) in geometry.materials.iter().filter_map(|material| texture_of(geometry, material)) {
-            let texels = match uploaded.get(&uses.texture) {
-                Some(&texels) => texels,
+            let lower = &levels[uses.texture as usize].levels;
+            let (texels, levels) = match uploaded.get(&uses.texture) {
+                Some(&known) => known,
                 None => {
                     let packed: Vec<u32> = texture.texels.iter().map(|&texel| u32::from_le_bytes(texel)).collect();
-                    let texels = self.array("texels", &packed)?;
-                    uploaded.insert(uses.texture, texels);
-                    texels
+                    let own = (self.array("texels", &packed)?, self.levels(lower)?);
+                    uploaded.insert(uses.texture, own);
+                    own
                 }
             };
             let axis = |axis: Vec2| axis.to_array();
             records.push(Texture {
                 texels,
+                levels,
                 size: texture.size,
                 wrap: uses.wrap.map(wrap),
                 u_axis: axis(uses.transform.matrix2.x_axis),
                 v_axis: axis(uses.transform.matrix2.y_axis),
                 translation: axis(uses.transform.translation),
+                level_count: lower.len() as u32,
+                spare: 0,
             });
         }
         Ok(records)
+    }
+
+    /// The levels of a texture below the image.
+    fn levels(&mut self, levels: &[Level]) -> Result<In<TextureLevel>, RenderError> {
+        let texels: Vec<u64> = levels.iter().flat_map(|level| &level.texels).copied().collect();
+        let mut next = self.array("mip levels", &texels)?.address();
+        let record = |level: &Level| {
+            let texels = In::to(next);
+            next += size_of_val(level.texels.as_slice()) as u64;
+            TextureLevel { texels, size: level.size }
+        };
+        let records: Vec<TextureLevel> = levels.iter().map(record).collect();
+        self.array("table of mip levels", &records)
     }
 }
 

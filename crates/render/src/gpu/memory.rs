@@ -1,6 +1,6 @@
 //! The memory plan: the size of every buffer, before the first is allocated.
 
-use lightmesh_layout::geometry::{Hit, ListedRay, Vec3};
+use lightmesh_layout::geometry::{Cone, Hit, ListedRay, Vec3};
 use lightmesh_layout::mesh::Item;
 
 use super::device::Cuda;
@@ -47,6 +47,8 @@ fn bytes_per_pixel(plan: &Plan) -> u64 {
     let sum = if plan.lights.iter().len() > 1 || plan.compositing { size_of::<Vec3>() as u64 } else { 0 };
     let several = plan.antialiasing.is_some();
     let listed = if plan.bounces > 0 || several { 2 * size_of::<ListedRay>() as u64 } else { 0 };
+    // Mirror rays with textures to be filtered.
+    let cones = if plan.bounces > 0 && several { 2 * size_of::<Cone>() as u64 } else { 0 };
     let sum = if several {
         size_of::<Vec3>() as u64
     } else if plan.bounces > 0 || plan.compositing {
@@ -54,7 +56,7 @@ fn bytes_per_pixel(plan: &Plan) -> u64 {
     } else {
         0
     };
-    let ray = listed + sum + size_of::<Hit>() as u64 + plan.footprint.device;
+    let ray = listed + cones + sum + size_of::<Hit>() as u64 + plan.footprint.device;
     plan.film_bytes() + plan.sample_bytes() + plan.rays_per_pixel() * ray
 }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use lightmesh_layout::Out;
-use lightmesh_layout::geometry::{Hit, ListedRay, Rays};
+use lightmesh_layout::geometry::{Cone, Hit, ListedRay, Rays};
 
 use super::device::Cuda;
 use super::samples::DeviceSampled;
@@ -21,6 +21,8 @@ pub struct DeviceRays<R: Runtime> {
     pub(crate) record: Rays,
     /// Keeps the list alive that the record points to.
     pub(crate) list: Option<Buffer<R, ListedRay>>,
+    /// Keeps the cones alive that the record points to.
+    pub(crate) cones: Option<Buffer<R, Cone>>,
     /// As in [`RayList`](crate::data::rays::RayList).
     pub(crate) spacing: [f32; 2],
     /// Whether a pixel may have several of them.
@@ -90,12 +92,18 @@ impl<R: Runtime> DeviceVisibility<R> {
 impl<R: Runtime> DeviceRays<R> {
     /// Rays of a list, at most one of each pixel, or without any the camera's.
     pub(crate) fn new(record: Rays, list: Option<Buffer<R, ListedRay>>, spacing: [f32; 2]) -> DeviceRays<R> {
-        DeviceRays { record, list, spacing, several: false, are_fragments: false, sampled: None }
+        DeviceRays { record, list, cones: None, spacing, several: false, are_fragments: false, sampled: None }
     }
 
     /// Whether the rays come from the camera rather than from mirrors.
     pub(crate) fn is_from_camera(&self) -> bool {
         self.list.is_none()
+    }
+
+    /// Whether textures are filtered.
+    pub(crate) fn has_cones(&self) -> bool {
+        let Cone { width, spread } = self.record.cone;
+        self.cones.is_some() || width != 0.0 || spread != 0.0
     }
 
     /// Number of rays.

@@ -131,7 +131,7 @@ impl<R: Runtime> Upload<'_, R> {
             far,
             ..bytemuck::Zeroable::zeroed()
         };
-        self.materials(geometry, &prepared.materials.numbers, &mut record)?;
+        self.materials(geometry, (&prepared.materials.numbers, &prepared.mip_levels), &mut record)?;
         let (starts, objects) = mesh.objects.runs();
         record.object_starts = self.array("runs of objects", starts)?;
         record.objects = self.array("objects", objects)?;

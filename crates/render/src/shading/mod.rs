@@ -39,7 +39,7 @@ impl Surface {
     #[inline(always)]
     pub(crate) fn new(wave: &HostWave, ray: usize) -> Surface {
         let point = wave.surface_point(ray);
-        let (ray, hit) = (&wave.rays.rays[ray], &wave.hits[ray]);
+        let (ray, cone, hit) = (&wave.rays.rays[ray], wave.rays.cone_of(ray), &wave.hits[ray]);
         let geometry = &wave.scene.scene.geometry;
         let mesh = &geometry.mesh;
         let material = &geometry.materials[mesh.materials[hit.triangle as usize] as usize];
@@ -47,7 +47,7 @@ impl Surface {
             normal: shading_normal(mesh, hit, point.normal),
             point,
             view: -ray.direction,
-            coefficients: Coefficients::at(geometry, material, hit),
+            coefficients: Coefficients::at(wave.scene, material, ray, cone, hit),
             shininess: material.shininess,
         }
     }
@@ -62,7 +62,9 @@ impl Surface {
             let shared = wave.rays.shared.get(ray).copied().unwrap_or(u32::MAX);
             if is_tinted(geometry, material) && shared != 0 {
                 let hits = sampled.hits_of(wave.rays.pixels[ray], shared);
-                surface.coefficients = Coefficients::mean(geometry, material, hits).unwrap_or(surface.coefficients);
+                let (ray, cone) = (&wave.rays.rays[ray], wave.rays.cone_of(ray));
+                let mean = Coefficients::mean(wave.scene, material, ray, cone, hits);
+                surface.coefficients = mean.unwrap_or(surface.coefficients);
             }
         }
         surface

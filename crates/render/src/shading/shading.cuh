@@ -18,7 +18,7 @@ DEVICE Surface surface_at(const Scene &scene, const Rays &rays, const Hit *hits,
     const Hit hit = load_hit(hits, ray);
     const Ray seen_along = ray_at(rays, ray);
     const SurfacePoint point = surface_point(seen_along, hit, load_corners(scene.triangles + hit.triangle));
-    const Material *material = material_at(scene, hit, own);
+    const Material *material = material_at(scene, rays, ray, hit, own);
     return Surface{point, shading_normal(scene, hit, point.normal), -seen_along.direction, material};
 }
 

@@ -1,17 +1,19 @@
 //! Textures and vertex colours: the coefficients of formula (1) at a surface point.
 //!
 //! ```text
-//! t = texel(A · uv) · colour      k_a t      k_d t      k_s + k_s' t
+//! t = texture(A · uv) · colour      k_a t      k_d t      k_s + k_s' t
 //! ```
 //!
-//! Texture coordinates and colours are interpolated barycentrically. Texels are decoded from sRGB and the four nearest are
-//! interpolated bilinearly. Limitation: minified textures are not filtered, and flicker.
+//! Texture coordinates and colours are interpolated barycentrically. Of the texture, the mean over the [footprint](crate::footprint) of a
+//! sample counts; without one, at a single sample of a pixel, it is the colour at a point, and minified textures flicker.
 
 use glam::{Vec2, Vec3};
-use lightmesh_image::Transfer;
-use lightmesh_scene::{Geometry, Material, Mesh, Texture, TextureUse, Wrap};
+use lightmesh_scene::{Geometry, Material, Mesh};
 
-use crate::accel::Hit;
+use crate::accel::{Hit, Ray};
+use crate::footprint::{self, Cone};
+use crate::prepared::PreparedScene;
+use crate::textures::{filtered, texture_of};
 
 /// The coefficients of formula (1) at a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,24 +25,26 @@ pub(crate) struct Coefficients {
 }
 
 impl Coefficients {
-    /// Those of `material` at `hit`.
+    /// Those of `material` where `ray` with a cone hits it.
     #[inline(always)]
-    pub(crate) fn at(geometry: &Geometry, material: &Material, hit: &Hit) -> Coefficients {
-        match is_tinted(geometry, material) {
-            true => Coefficients::tinted(material, tint(geometry, material, hit)),
+    pub(crate) fn at(scene: &PreparedScene, material: &Material, ray: &Ray, cone: Cone, hit: &Hit) -> Coefficients {
+        match is_tinted(&scene.scene.geometry, material) {
+            true => Coefficients::tinted(material, tint(scene, material, ray, cone, hit)),
             false => Coefficients::untinted(material),
         }
     }
 
-    /// The mean of those at some hits; `None` without any.
+    /// The mean of those at some hits of the samples of the pixel that `ray` belongs to; `None` without any.
     pub(crate) fn mean<'h>(
-        geometry: &Geometry,
+        scene: &PreparedScene,
         material: &Material,
+        ray: &Ray,
+        cone: Cone,
         hits: impl Iterator<Item = &'h Hit>,
     ) -> Option<Coefficients> {
         let (mut sum, mut count) = (Vec3::ZERO, 0.0);
         for hit in hits {
-            sum += tint(geometry, material, hit);
+            sum += tint(scene, material, ray, cone, hit);
             count += 1.0;
         }
         (count > 0.0).then(|| Coefficients::tinted(material, sum / count))
@@ -74,26 +78,31 @@ pub(crate) fn is_tinted(geometry: &Geometry, material: &Material) -> bool {
     !material.catcher && (!geometry.mesh.colors.is_empty() || has_texture())
 }
 
-/// The texture of `material`, if it has one that can be looked up.
-pub(crate) fn texture_of<'s>(geometry: &'s Geometry, material: &Material) -> Option<(TextureUse, &'s Texture)> {
-    let uses = material.texture.filter(|_| !geometry.mesh.uvs.is_empty())?;
-    let texture = geometry.textures.get(uses.texture as usize)?;
-    let count = u64::from(texture.size[0]) * u64::from(texture.size[1]);
-    (count > 0 && texture.texels.len() as u64 == count).then_some((uses, texture))
-}
-
 /// The product of texture and vertex colour at `hit`.
 #[inline(never)]
-fn tint(geometry: &Geometry, material: &Material, hit: &Hit) -> Vec3 {
+fn tint(scene: &PreparedScene, material: &Material, ray: &Ray, cone: Cone, hit: &Hit) -> Vec3 {
+    let geometry = &scene.scene.geometry;
     let texel = texture_of(geometry, material).map_or(Vec3::ONE, |(uses, texture)| {
-        let place = uses.transform.transform_point2(uv_at(&geometry.mesh, hit));
-        sampled(texture, uses.wrap, place)
+        let uvs = geometry.mesh.triangles[hit.triangle as usize].map(|vertex| geometry.mesh.uvs[vertex as usize]);
+        let place = uses.transform.transform_point2(interpolated(hit, uvs));
+        let axes = axes_of(scene, ray, cone, hit, uvs).map(|axis| uses.transform.matrix2 * axis);
+        filtered(texture, &scene.geometry.mip_levels[uses.texture as usize], uses.wrap, place, axes)
     });
     if geometry.mesh.colors.is_empty() { texel } else { texel * color_at(&geometry.mesh, hit) }
 }
 
-fn uv_at(mesh: &Mesh, hit: &Hit) -> Vec2 {
-    let [a, b, c] = mesh.triangles[hit.triangle as usize].map(|vertex| mesh.uvs[vertex as usize]);
+/// The axes of the footprint at `hit`, in texture coordinates.
+fn axes_of(scene: &PreparedScene, ray: &Ray, cone: Cone, hit: &Hit, uvs: [Vec2; 3]) -> [Vec2; 2] {
+    if cone.is_point() {
+        return [Vec2::ZERO; 2];
+    }
+    let [a, b, c] = scene.geometry.triangles[hit.triangle as usize].corners();
+    let position = (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
+    let direction = footprint::direction_to(position, ray, cone);
+    footprint::axes(direction, cone.after(hit.t).width, [a, b, c], uvs)
+}
+
+fn interpolated(hit: &Hit, [a, b, c]: [Vec2; 3]) -> Vec2 {
     (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c
 }
 
@@ -102,120 +111,21 @@ fn color_at(mesh: &Mesh, hit: &Hit) -> Vec3 {
     (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c
 }
 
-/// The image's colour at `place`: (0, 0) is its upper left corner, (1, 1) its lower right one.
-fn sampled(texture: &Texture, wrap: [Wrap; 2], place: Vec2) -> Vec3 {
-    let (columns, x) = neighbours(place.x, texture.size[0], wrap[0]);
-    let (rows, y) = neighbours(place.y, texture.size[1], wrap[1]);
-    let texel =
-        |column: u32, row: u32| linear(texture.texels[row as usize * texture.size[0] as usize + column as usize]);
-    let [upper, lower] = rows.map(|row| between(texel(columns[0], row), texel(columns[1], row), x));
-    between(upper, lower, y)
-}
-
-/// From `a` to `b`; exactly `a` where both are the same.
-fn between(a: Vec3, b: Vec3, share: f32) -> Vec3 {
-    a + share * (b - a)
-}
-
-fn linear(texel: [u8; 4]) -> Vec3 {
-    let [r, g, b, _] = texel;
-    Vec3::new(Transfer::Srgb.decode(r), Transfer::Srgb.decode(g), Transfer::Srgb.decode(b))
-}
-
-/// The two texels of a row or column of `size` whose centres are on either side of `place`, and the fraction of the way to the
-/// second.
-fn neighbours(place: f32, size: u32, wrap: Wrap) -> ([u32; 2], f32) {
-    // 1. Into the image.
-    let inside = match wrap {
-        Wrap::Repeat => place - place.floor(),
-        Wrap::Mirror => {
-            let twice = place - 2.0 * (0.5 * place).floor();
-            if twice > 1.0 { 2.0 - twice } else { twice }
-        }
-        Wrap::Clamp => place,
-    };
-    // Also if the position is infinite or NaN.
-    let inside = if inside > 0.0 { if inside < 1.0 { inside } else { 1.0 } } else { 0.0 };
-    // 2. In texels, counted from the centre of the first.
-    let middle = inside * size as f32 - 0.5;
-    let first = middle.floor();
-    // 3. Beyond the border the image continues with its opposite side, or with itself. From -1 to the size.
-    let last = size as i32 - 1;
-    let (first_texel, second_texel) = (first as i32, first as i32 + 1);
-    let texel = |index: i32| match wrap {
-        Wrap::Repeat if index < 0 => last,
-        Wrap::Repeat if index > last => 0,
-        _ => index.clamp(0, last),
-    };
-    ([texel(first_texel) as u32, texel(second_texel) as u32], middle - first)
-}
-
 #[cfg(test)]
 mod tests {
     use glam::Affine2;
+    use lightmesh_scene::{Scene, Texture, TextureUse};
 
     use super::*;
+    use crate::observer::Unobserved;
+    use crate::settings::Acceleration;
 
     fn texture(size: [u32; 2], texels: &[[u8; 3]]) -> Texture {
         Texture { name: String::new(), size, texels: texels.iter().map(|&[r, g, b]| [r, g, b, 255]).collect() }
     }
 
-    #[test]
-    fn middles_of_texels_are_their_colours_and_between_lies_the_linear_mean() {
-        let picture = texture([2, 1], &[[0, 0, 0], [255, 128, 0]]);
-        let at = |u| sampled(&picture, [Wrap::Clamp; 2], Vec2::new(u, 0.5));
-        let right = Vec3::new(1.0, Transfer::Srgb.decode(128), 0.0);
-        assert_eq!([at(0.25), at(0.75), at(0.5)], [Vec3::ZERO, right, 0.5 * right]);
-        assert_eq!([at(-7.0), at(0.0), at(1.0), at(8.0)], [Vec3::ZERO, Vec3::ZERO, right, right]);
-    }
-
-    #[test]
-    fn rows_run_down() {
-        let picture = texture([1, 2], &[[255; 3], [0; 3]]);
-        let at = |v| sampled(&picture, [Wrap::Clamp; 2], Vec2::new(0.5, v)).x;
-        assert_eq!([at(0.0), at(0.25), at(0.5), at(1.0)], [1.0, 1.0, 0.5, 0.0]);
-    }
-
-    #[test]
-    fn beyond_the_edge_the_picture_goes_on_as_it_is_told() {
-        let (black, white) = ([0; 3], [255; 3]);
-        let picture = texture([4, 1], &[black, black, black, white]);
-        let at = |wrap, u: f32| sampled(&picture, [wrap, Wrap::Repeat], Vec2::new(u, 0.0)).x;
-        let repeated = [-1.125, -0.125, 0.0, 0.875, 1.875, 5.875].map(|u| at(Wrap::Repeat, u));
-        assert_eq!(repeated, [1.0, 1.0, 0.5, 1.0, 1.0, 1.0]);
-        let mirrored = [-1.125, -0.875, -0.125, 0.875, 1.0, 1.125, 1.875, 2.875].map(|u| at(Wrap::Mirror, u));
-        assert_eq!(mirrored, [1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 0.0, 1.0]);
-        let clamped = [-1.125, 0.875, 1.125, 1.875].map(|u| at(Wrap::Clamp, u));
-        assert_eq!(clamped, [0.0, 1.0, 1.0, 1.0]);
-    }
-
-    #[test]
-    fn no_place_is_outside_of_the_picture() {
-        let far = [f32::NAN, f32::INFINITY, -f32::INFINITY, f32::MAX, -f32::MAX, -1e-30, 1e-30, -0.0, 0.99999994, 1e9];
-        for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
-            for size in [1, 2, 3, 16384] {
-                for place in far {
-                    let ([a, b], share) = neighbours(place, size, wrap);
-                    assert!(
-                        a < size && b < size && (0.0..=1.0).contains(&share),
-                        "{place} {size} {wrap:?}: {a} {b} {share}"
-                    );
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_picture_of_one_colour_is_that_colour_exactly() {
-        let picture = texture([3, 3], &[[77, 3, 200]; 9]);
-        for step in 0..100 {
-            let place = Vec2::new(0.037 * step as f32, -0.91 * step as f32);
-            assert_eq!(sampled(&picture, [Wrap::Repeat; 2], place), linear([77, 3, 200, 255]));
-        }
-    }
-
     /// A triangle with corners of all kinds, hit in the middle of its first edge.
-    fn scene(colors: bool) -> (lightmesh_scene::Scene, Hit) {
+    fn scene(colors: bool) -> (Scene, Hit) {
         let positions = [glam::DVec3::ZERO, glam::DVec3::X, glam::DVec3::Y];
         let uvs = [Vec2::ZERO, Vec2::new(0.5, 0.0), Vec2::Y];
         let colors = if colors { &[Vec3::X, Vec3::Y, Vec3::Z][..] } else { &[] };
@@ -233,22 +143,31 @@ mod tests {
         (scene, Hit { t: 1.0, u: 0.5, v: 0.0, triangle: 0 })
     }
 
+    /// The coefficients of `material` in a scene, seen with a cone from straight above.
+    fn seen(scene: &Scene, material: &Material, cone: Cone, hit: &Hit) -> Coefficients {
+        let mut scene = scene.clone();
+        scene.geometry_mut().materials = vec![material.clone()];
+        let scene = PreparedScene::new(&scene, &Acceleration::BruteForce, &Unobserved).unwrap();
+        let ray = Ray { origin: Vec3::new(0.5, 0.0, 1.0), direction: Vec3::NEG_Z, t_max: f32::INFINITY };
+        Coefficients::at(&scene, material, &ray, cone, hit)
+    }
+
     #[test]
     fn every_coefficient_takes_its_part_of_the_tint() {
         let (mut scene, hit) = scene(true);
         let (ka, kd, ks) = (Vec3::splat(0.25), Vec3::splat(0.5), Vec3::splat(0.125));
         let shift = Affine2::from_translation(Vec2::new(0.5, 0.0));
         let material =
-            Material::matt(kd).with_ka(ka).with_ks(ks).with_ks_tinted(2.0 * kd).with_emission_tinted(4.0 * kd);
+            Material::matt(kd).with_ka(ka).with_ks(ks).with_ks_tinted(1.5 * kd).with_emission_tinted(4.0 * kd);
         let material = material.with_texture(TextureUse { transform: shift, ..TextureUse::new(0) });
         // The texture's right half, and half red half green.
         let tint = Vec3::new(0.0, 1.0, 1.0) * Vec3::new(0.5, 0.5, 0.0);
-        let coefficients = Coefficients::at(&scene.geometry, &material, &hit);
+        let coefficients = seen(&scene, &material, Cone::default(), &hit);
         let expected =
-            Coefficients { ka: ka * tint, kd: kd * tint, ks: ks + 2.0 * kd * tint, emission: 4.0 * kd * tint };
+            Coefficients { ka: ka * tint, kd: kd * tint, ks: ks + 1.5 * kd * tint, emission: 4.0 * kd * tint };
         assert_eq!(coefficients, expected);
         scene.geometry_mut().mesh.colors.clear();
-        assert_eq!(Coefficients::at(&scene.geometry, &material, &hit).kd, kd * Vec3::new(0.0, 1.0, 1.0));
+        assert_eq!(seen(&scene, &material, Cone::default(), &hit).kd, kd * Vec3::new(0.0, 1.0, 1.0));
     }
 
     #[test]
@@ -257,12 +176,28 @@ mod tests {
         let material = Material::default().with_texture(TextureUse::new(0)).with_ks_tinted(Vec3::X);
         let untinted = Coefficients::untinted(&material);
         assert_eq!(untinted.ks, Vec3::X);
-        assert_ne!(Coefficients::at(&scene.geometry, &material, &hit), untinted);
+        assert_ne!(seen(&scene, &material, Cone::default(), &hit), untinted);
         let other = material.clone().with_texture(TextureUse::new(7));
-        assert_eq!(Coefficients::at(&scene.geometry, &other, &hit), untinted);
+        assert_eq!(seen(&scene, &other, Cone::default(), &hit), untinted);
         scene.geometry_mut().textures[0].texels.pop();
-        assert_eq!(Coefficients::at(&scene.geometry, &material, &hit), untinted);
+        assert_eq!(seen(&scene, &material, Cone::default(), &hit), untinted);
         scene.geometry_mut().textures[0] = texture([0, 1], &[]);
-        assert_eq!(Coefficients::at(&scene.geometry, &material, &hit), untinted);
+        assert_eq!(seen(&scene, &material, Cone::default(), &hit), untinted);
+    }
+
+    #[test]
+    fn a_cone_sees_the_mean_of_its_footprint() {
+        let (scene, hit) = scene(false);
+        // The border between the texels, and one texel's middle.
+        for (shift, point) in [(0.25, Vec3::new(0.5, 1.0, 0.5)), (0.5, Vec3::new(0.0, 1.0, 1.0))] {
+            let shift = Affine2::from_translation(Vec2::new(shift, 0.0));
+            let material =
+                Material::matt(Vec3::ONE).with_texture(TextureUse { transform: shift, ..TextureUse::new(0) });
+            let seen = |cone| seen(&scene, &material, cone, &hit).kd;
+            assert_eq!(seen(Cone { width: 0.0, spread: 0.0 }), point);
+            // Half of the image is as wide as the triangle's edge: a texel is as wide as it, too.
+            assert_eq!(seen(Cone { width: 1.0, spread: 0.0 }), point, "magnified");
+            assert_eq!(seen(Cone { width: 0.0, spread: 2.0 }), Vec3::new(0.5, 1.0, 0.5), "twice as wide: all of it");
+        }
     }
 }

@@ -21,6 +21,7 @@ mod points;
 mod progress;
 mod shading;
 mod shadow_rays;
+mod textures;
 mod walls;
 
 use glam::Vec3;

@@ -14,7 +14,7 @@ use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
 use crate::data::wave::HostWave;
 use crate::sampling::Pattern;
-use crate::stages::pixel_samples::alike::Facet;
+use crate::stages::pixel_samples::alike::{Facet, mirrors};
 
 /// Number of pixels per task.
 const BATCH: usize = 1024;
@@ -122,14 +122,15 @@ struct Pixel<'a> {
 impl Pixel<'_> {
     /// Adds its shared fragments and its single samples.
     fn add_fragments(&self, lists: &mut [(RayList, Vec<Hit>); 2]) {
-        let Pixel { samples, all, pixel, .. } = *self;
+        let Pixel { wave, samples, all, pixel } = *self;
         let state = samples.state[(pixel - samples.first) as usize];
         if state == PIXEL_SHARED {
             return;
         }
         let count = samples.numbers.len() as u32;
         let pattern = all.pattern(self.wave.rays.window.number(pixel));
-        let mut add = |list: usize, sample, shared, weight| self.add(&mut lists[list], &pattern, sample, shared, weight);
+        let mut add =
+            |list: usize, sample, shared, weight| self.add(&mut lists[list], &pattern, sample, shared, weight);
         let single = 1.0 / all.samples as f32;
         if all.apart || state & PIXEL_SPLIT != 0 {
             (0..count).for_each(|sample| add(1, sample, 0, single));
@@ -140,7 +141,7 @@ impl Pixel<'_> {
         for first in (0..count).filter(|&sample| u32::from(owners[sample as usize]) == sample) {
             // What sees nothing costs nothing.
             let hit = samples.hit(pixel, first);
-            if hit.is_some() && self.mirrors(hit) {
+            if mirrors(wave.scene, all, hit) {
                 owned(first).for_each(|sample| add(1, sample, 0, single));
                 continue;
             }
@@ -151,21 +152,7 @@ impl Pixel<'_> {
         }
     }
 
-    /// Whether rays that a mirror reflects are followed from here.
-    fn mirrors(&self, hit: &Hit) -> bool {
-        let geometry = &self.wave.scene.scene.geometry;
-        let material = &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize];
-        self.all.mirrors && (material.ks != Vec3::ZERO || material.ks_tinted != Vec3::ZERO)
-    }
-
-    fn add(
-        &self,
-        (list, hits): &mut (RayList, Vec<Hit>),
-        pattern: &Pattern,
-        sample: u32,
-        shared: u32,
-        weight: f32,
-    ) {
+    fn add(&self, (list, hits): &mut (RayList, Vec<Hit>), pattern: &Pattern, sample: u32, shared: u32, weight: f32) {
         hits.push(*self.samples.hit(self.pixel, sample));
         let sample = self.samples.numbers.start + sample;
         let view = self.wave.rays.view.expect("the rays are a camera's");

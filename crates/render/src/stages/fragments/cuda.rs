@@ -64,6 +64,7 @@ pub(crate) fn fragments<R: Runtime>(
         let several = DeviceRays {
             record: Rays { list: list.input(), first_pixel: 0, count: list.len() as u32, ..rays.record },
             list: Some(list),
+            cones: None,
             spacing: rays.spacing,
             several: true,
             are_fragments: true,

@@ -69,14 +69,6 @@ DEVICE unsigned part_of(const PixelSamples &args, unsigned index, unsigned owner
     return part;
 }
 
-// Whether rays that a mirror reflects are followed from here.
-DEVICE bool mirrors(const PixelSamples &args, const Hit &hit) {
-    if (!args.mirrors)
-        return false;
-    const Material &material = args.scene.materials[__ldg(args.scene.triangle_materials + hit.triangle)];
-    return material.ks != splat(0.0f) || material.ks_tinted != splat(0.0f);
-}
-
 // The number of fragments in each list.
 struct Counted {
     unsigned counts[2];

@@ -5,6 +5,7 @@ use glam::Vec3;
 use crate::accel::Ray;
 use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
+use crate::footprint::{Cone, curvature};
 use crate::shading::Surface;
 
 pub(crate) fn mirror_rays(wave: &HostWave) -> RayList {
@@ -20,6 +21,9 @@ pub(crate) fn mirror_rays(wave: &HostWave) -> RayList {
             direction: surface.mirrored().normalize(),
             t_max: f32::INFINITY,
         });
+        if wave.rays.has_cones() {
+            next.cones.push(reflected(wave, ray, &surface));
+        }
         next.pixels.push(wave.rays.pixels[ray]);
         next.weights.push(weight);
         if !wave.rays.samples.is_empty() {
@@ -27,4 +31,12 @@ pub(crate) fn mirror_rays(wave: &HostWave) -> RayList {
         }
     }
     next
+}
+
+/// The cone that a mirror reflects.
+fn reflected(wave: &HostWave, ray: usize, surface: &Surface) -> Cone {
+    let hit = &wave.hits[ray];
+    let corners = wave.scene.geometry.triangles[hit.triangle as usize].corners();
+    let curvature = curvature(&wave.scene.scene.geometry.mesh, hit, corners, surface.point.normal);
+    wave.rays.cone_of(ray).after(hit.t).reflected(curvature)
 }

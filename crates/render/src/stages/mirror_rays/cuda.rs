@@ -1,10 +1,11 @@
 //! Mirror rays on a CUDA device: counted, summed, written in the order of the rays.
 
 use bytemuck::Zeroable;
-use lightmesh_layout::geometry::Rays;
+use lightmesh_layout::geometry::{Cone, Rays};
 use lightmesh_layout::stages::MirrorRays;
+use lightmesh_layout::{In, Out};
 
-use crate::cuda::{Kernel, Runtime};
+use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceRays, DeviceWave};
 use crate::gpu::{BLOCK, Cuda, blocks_for};
@@ -31,9 +32,18 @@ pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> R
     let total = cuda.scan_total(&counts)?;
     // 3. The mirror rays.
     let list = cuda.pool().room("mirror rays", total)?;
+    let cones = match rays.has_cones() {
+        true => Some(cuda.pool().room("cones of mirror rays", total)?),
+        false => None,
+    };
+    let mirrored = list.output();
+    let outputs = cones.as_ref().map_or(Out::NULL, Buffer::output);
     if total > 0 {
-        cuda.launch(EMIT, launch, &MirrorRays { mirrored: list.output(), ..arguments })?;
+        cuda.launch(EMIT, launch, &MirrorRays { mirrored, cones: outputs, ..arguments })?;
     }
-    let record = Rays { list: list.input(), first_pixel: 0, count: total as u32, ..rays.record };
-    Ok(DeviceRays { several: rays.several, ..DeviceRays::new(record, Some(list), [0.0; 2]) })
+    let inputs = cones.as_ref().map_or(In::NULL, Buffer::input);
+    // Cones are those of the list alone.
+    let own = Rays { cones: inputs, cone: Cone::zeroed(), first_pixel: 0, count: total as u32, ..rays.record };
+    let record = Rays { list: list.input(), ..own };
+    Ok(DeviceRays { several: rays.several, cones, ..DeviceRays::new(record, Some(list), [0.0; 2]) })
 }

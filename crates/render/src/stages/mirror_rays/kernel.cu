@@ -15,7 +15,15 @@ DEVICE Vec3 mirror_weight(const MirrorRays &args, unsigned ray) {
     if (hit.triangle == Hit::NONE)
         return splat(0.0f);
     Material own;
-    return weight_of(args.rays, ray) * material_at(args.scene, hit, own)->ks;
+    return weight_of(args.rays, ray) * material_at(args.scene, args.rays, ray, hit, own)->ks;
+}
+
+// The cone that the mirror at a surface point reflects.
+DEVICE Cone reflected_cone(const MirrorRays &args, unsigned ray, const Surface &surface) {
+    const Hit hit = load_hit(args.hits, ray);
+    const Corners corners = load_corners(args.scene.triangles + hit.triangle);
+    const Cone cone = cone_after(cone_of(args.rays, ray), hit.t);
+    return cone_reflected(cone, curvature(args.scene, hit, corners, surface.point.normal));
 }
 
 // How many threads of the block before this one have the flag set, and how many in all.
@@ -54,6 +62,9 @@ KERNEL(mirror_rays_emit, MirrorRays, BLOCK, 4) {
     Material own;
     const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
     const Vec3 direction = normalize(mirrored(surface));
-    args.mirrored[args.counts[blockIdx.x] + before] =
+    const unsigned place = args.counts[blockIdx.x] + before;
+    if (args.cones != nullptr)
+        args.cones[place] = reflected_cone(args, ray, surface);
+    args.mirrored[place] =
         ListedRay{surface.point.origin, pixel_of(args.rays, ray), direction, sample_of(args.rays, ray), weight, 0};
 }

@@ -1,4 +1,4 @@
-// The samples of a pixel, and whether two of them lie on one surface: twin of alike.rs, and of antialiasing.rs.
+// The samples of a pixel, whether two of them lie on one surface, and whether it mirrors: twin of alike.rs, and of antialiasing.rs.
 #pragma once
 
 #include "cuda/rays.cuh"
@@ -59,3 +59,11 @@ DEVICE bool continues(const Facet &a, const Facet &b) {
 
 // Whether the surface of a neighbouring pixel may be compared.
 DEVICE bool is_near(const Facet &a, const Facet &b) { return dot(a.smooth, b.smooth) >= NEAR_COSINE && is_level(a, b, NEAR_HEIGHT); }
+
+// Whether rays that a mirror reflects are followed from here.
+DEVICE bool mirrors(const PixelSamples &args, const Hit &hit) {
+    if (!args.mirrors || hit.triangle == Hit::NONE)
+        return false;
+    const Material &material = args.scene.materials[__ldg(args.scene.triangle_materials + hit.triangle)];
+    return material.ks != splat(0.0f) || material.ks_tinted != splat(0.0f);
+}

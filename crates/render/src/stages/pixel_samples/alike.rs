@@ -1,9 +1,7 @@
-//! Whether two samples lie on one surface. Twin: `alike.cuh`.
+//! Whether two samples lie on one surface, and whether it mirrors. Twin: `alike.cuh`.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{
-    MOST_SHARED, NEAR_COSINE, NEAR_HEIGHT, SAME_COSINE, SAME_FACET_COSINE, SAME_HEIGHT,
-};
+use lightmesh_layout::constants::{MOST_SHARED, NEAR_COSINE, NEAR_HEIGHT, SAME_COSINE, SAME_FACET_COSINE, SAME_HEIGHT};
 
 use crate::accel::{Hit, Ray};
 use crate::antialiasing::Antialiasing;
@@ -118,7 +116,8 @@ impl<'a> Surfaces<'a> {
     #[inline(always)]
     fn is_alike(&mut self, a: usize, b: usize) -> bool {
         let (hit_a, hit_b) = (self.hit(a), self.hit(b));
-        hit_a.triangle == hit_b.triangle || hit_a.is_some() && hit_b.is_some() && self.facet(a).continues(&self.facet(b))
+        hit_a.triangle == hit_b.triangle
+            || hit_a.is_some() && hit_b.is_some() && self.facet(a).continues(&self.facet(b))
     }
 
     #[inline(always)]
@@ -134,4 +133,15 @@ impl<'a> Surfaces<'a> {
             Facet::new(scene, rays.spacing, &ray, &hit)
         })
     }
+}
+
+/// Whether rays that a mirror reflects are followed from here.
+#[inline(always)]
+pub(crate) fn mirrors(scene: &PreparedScene, all: &Antialiasing, hit: &Hit) -> bool {
+    if !all.mirrors || !hit.is_some() {
+        return false;
+    }
+    let geometry = &scene.scene.geometry;
+    let material = &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize];
+    material.ks != Vec3::ZERO || material.ks_tinted != Vec3::ZERO
 }

@@ -8,13 +8,14 @@ use lightmesh_layout::constants::PIXEL_SHARED;
 use rayon::prelude::*;
 
 use super::SampleRange;
-use super::alike::{Facet, Surfaces};
+use super::alike::{Facet, Surfaces, mirrors};
 use crate::accel::Hit;
 use crate::counters::Tally;
 use crate::data::mattes::count;
 use crate::data::picture::Picture;
 use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
+use crate::footprint::Cone;
 use crate::job::Job;
 use crate::prepared::PreparedScene;
 use crate::shading::ids::ids_of;
@@ -36,6 +37,10 @@ pub(crate) fn pixel_samples(
     let SampleRange { all, numbers } = range;
     let view = rays.view.expect("the rays are a camera's");
     let (pixels, first) = (rays.pixels.len(), film.rows.start * view.size()[0]);
+
+    if !scene.geometry.mip_levels.is_empty() {
+        rays.cone = Cone::of_sample(rays.spacing, all.samples);
+    }
 
     // 1. What each sample sees. The rays through a pixel follow each other: they are coherent.
     let (level, count) = (Level::new(), numbers.len());
@@ -74,13 +79,15 @@ pub(crate) fn pixel_samples(
             let mut parted = Parted::default();
             for ((&pixel, hit), ray) in pixels.iter().zip(hits).zip(through) {
                 let others = samples.of(pixel);
+                // Each sample has a mirror ray of its own.
+                let may_share = !mirrors(scene, all, hit);
                 // Most pixels need no surfaces.
-                if others.iter().all(|other| other.triangle == hit.triangle) {
+                if may_share && others.iter().all(|other| other.triangle == hit.triangle) {
                     parted.shared.push(pixel);
                     continue;
                 }
                 let mut surfaces = Surfaces::new(scene, rays, all, (ray, *hit), (pixel, others));
-                if surfaces.is_shared() {
+                if may_share && surfaces.is_shared() {
                     parted.shared.push(pixel);
                     continue;
                 }

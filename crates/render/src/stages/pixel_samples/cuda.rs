@@ -9,6 +9,7 @@ use super::SampleRange;
 use crate::counters::Tally;
 use crate::cuda::{Kernel, Runtime};
 use crate::error::RenderError;
+use crate::footprint::Cone;
 use crate::gpu::film::DeviceFilm;
 use crate::gpu::rays::{DeviceHits, DeviceRays};
 use crate::gpu::samples::{DeviceSampled, DeviceSamples};
@@ -35,6 +36,9 @@ pub(crate) fn pixel_samples<R: Runtime>(
     range: &SampleRange,
 ) -> Result<DeviceSamples<R>, RenderError> {
     let SampleRange { all, numbers } = range;
+    if !scene.host.geometry.mip_levels.is_empty() {
+        rays.record.cone = bytemuck::cast(Cone::of_sample(rays.spacing, all.samples));
+    }
     let (pixels, count) = (rays.len(), numbers.len());
     let planes = cuda.pool().room("hits of samples", pixels * count)?;
     let state = cuda.pool().room("states of pixels", pixels)?;

@@ -151,7 +151,9 @@ KERNEL(merge_samples, PixelSamples, BLOCK, 4) {
     Sampled own = {};
     own.hit = has ? sample_hit(args, place.ray, place.sample) : center;
     // Most pixels need no facets.
-    const unsigned others = __ballot_sync(ALL_LANES, own.hit.triangle != center.triangle);
+    // Each sample has a mirror ray of its own.
+    const bool may_share = !mirrors(args, center);
+    const unsigned others = __ballot_sync(ALL_LANES, own.hit.triangle != center.triangle || !may_share);
     bool shared = true;
     unsigned owner = 0;
     if (others != 0) {
@@ -161,7 +163,7 @@ KERNEL(merge_samples, PixelSamples, BLOCK, 4) {
             Facet middle = {};
             if (place.has_ray && center.triangle != Hit::NONE)
                 middle = facet_of(args, ray_at(args.rays, place.ray), center);
-            shared = !has || is_alike(center.triangle, middle, own);
+            shared = !has || (may_share && is_alike(center.triangle, middle, own));
         }
         const unsigned apart = __ballot_sync(ALL_LANES, !shared) & lanes;
         shared = apart == 0;

@@ -58,7 +58,7 @@ DEVICE void share_tint(const Shade &args, unsigned ray, Material &own) {
         return;
     const SharedHits hits = {args.samples + (pixel_of(args.rays, ray) - args.first_sampled), args.sampled_pixels, args.sample_count,
                              shared};
-    tint_by_all(tint_sources(args.scene), material, hits, &own);
+    tint_by_all(tint_sources(args.scene), material, sighting_of(args.rays, ray), hits, &own);
 }
 
 DEVICE float luminance(Vec3 color) { return LUMINANCE_RED * color.x + LUMINANCE_GREEN * color.y + LUMINANCE_BLUE * color.z; }

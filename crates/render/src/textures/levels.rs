@@ -1,0 +1,241 @@
+//! Mip levels: smaller and smaller means of a texture.
+//!
+//! A level has half as many texels as the one before, rounded up, until there is one. Each texel is the mean of the area that it covers:
+//! texels of the level before count by the share of their area, so that every texel of the image has the same weight in each level, and the
+//! mean of all levels is that of the image, whatever its size. Levels are averaged in linear light and single precision, and stored with 21
+//! bits per channel: a step is 2⁻²⁰, so that black and white are exact.
+
+use glam::Vec3;
+use lightmesh_image::Transfer;
+use lightmesh_layout::constants::{TEXEL_BITS, TEXEL_ONE};
+use lightmesh_memory::{Budget, Short};
+use lightmesh_scene::{Geometry, Texture};
+use rayon::prelude::*;
+
+use super::texture_of;
+
+/// Texels of one axis of a level that a texel of the next one covers, at most: two whole ones, or parts of three.
+const TAPS: usize = 3;
+
+/// The levels of a texture below the image itself.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MipLevels {
+    /// From the largest to the one that is a single texel.
+    pub(crate) levels: Vec<Level>,
+}
+
+/// A level: packed texels, row by row.
+#[derive(Clone, Debug)]
+pub(crate) struct Level {
+    pub(crate) size: [u32; 2],
+    pub(crate) texels: Vec<u64>,
+}
+
+/// Texels in linear light.
+struct Linear {
+    size: [u32; 2],
+    texels: Vec<Vec3>,
+}
+
+impl MipLevels {
+    /// Those of all textures of a geometry that can be seen, by number; the others have none.
+    ///
+    /// # Errors
+    /// The number of the texture whose levels do not fit into the budget.
+    pub(crate) fn of(geometry: &Geometry, budget: Budget) -> Result<Vec<MipLevels>, (usize, Short)> {
+        let mut all = Vec::new();
+        for (uses, texture) in geometry.materials.iter().filter_map(|material| texture_of(geometry, material)) {
+            let index = uses.texture as usize;
+            all.resize_with(geometry.textures.len(), MipLevels::default);
+            if all[index].levels.is_empty() {
+                budget.check(bytes_to_build(texture.size)).map_err(|short| (index, short))?;
+                all[index] = MipLevels::new(texture);
+            }
+        }
+        Ok(all)
+    }
+
+    /// The levels of `texture`, whose texels must be complete.
+    pub(crate) fn new(texture: &Texture) -> MipLevels {
+        let mut levels = Vec::new();
+        if texture.size == [1; 2] {
+            return MipLevels { levels };
+        }
+        let width = texture.size[0] as usize;
+        let mut last = halved(texture.size, |row, column| linear(texture.texels[row * width + column]));
+        while last.size != [1; 2] {
+            let next = halved(last.size, |row, column| last.texels[row * last.size[0] as usize + column]);
+            levels.push(last.packed());
+            last = next;
+        }
+        levels.push(last.packed());
+        MipLevels { levels }
+    }
+
+    /// Bytes on the heap.
+    pub(crate) fn memory(&self) -> usize {
+        self.levels.iter().map(|level| size_of_val(level.texels.as_slice())).sum()
+    }
+}
+
+/// Bytes of the levels of a texture and of what is held while they are built.
+fn bytes_to_build(size: [u32; 2]) -> u64 {
+    let half = |size: [u32; 2]| size.map(|side| side.div_ceil(2));
+    let count = |size: [u32; 2]| size.map(u64::from).iter().product::<u64>();
+    let (mut size, mut packed) = (size, 0);
+    let building = (count(half(size)) + count(half(half(size)))) * size_of::<Vec3>() as u64;
+    while size != [1; 2] {
+        size = half(size);
+        packed += count(size) * size_of::<u64>() as u64;
+    }
+    packed + building
+}
+
+/// The next level of one with this size and these texels, by row and column.
+fn halved(size: [u32; 2], texel: impl Fn(usize, usize) -> Vec3 + Sync) -> Linear {
+    let half = size.map(|side| side.div_ceil(2));
+    let mut texels = vec![Vec3::ZERO; half[0] as usize * half[1] as usize];
+    let columns: Vec<Taps> = (0..half[0]).map(|column| Taps::new(size[0], column)).collect();
+    texels.par_chunks_exact_mut(half[0] as usize).enumerate().for_each(|(row, texels)| {
+        let rows = Taps::new(size[1], row as u32);
+        for (texel_here, columns) in texels.iter_mut().zip(&columns) {
+            let along = |row: usize| columns.sum(|column| texel(row, column));
+            *texel_here = rows.sum(along);
+        }
+    });
+    Linear { size: half, texels }
+}
+
+/// The texels along one axis that a texel of the next level covers, and their shares of it.
+struct Taps {
+    first: u32,
+    shares: [f32; TAPS],
+}
+
+impl Taps {
+    /// Those of texel `place` of the level after one with `side` texels.
+    fn new(side: u32, place: u32) -> Taps {
+        // In units in which a texel before is as long as there are texels after, and the other way round: all borders are whole numbers.
+        let (before, after) = (u64::from(side), u64::from(side.div_ceil(2)));
+        let (start, end) = (u64::from(place) * before, (u64::from(place) + 1) * before);
+        let first = start / after;
+        let overlap = |index: u64| (end.min((index + 1) * after)).saturating_sub(start.max(index * after));
+        let share = |tap: usize| overlap(first + tap as u64) as f32 / before as f32;
+        Taps { first: first as u32, shares: std::array::from_fn(share) }
+    }
+
+    /// The mean of the values of these texels.
+    fn sum(&self, value: impl Fn(usize) -> Vec3) -> Vec3 {
+        let taps = self.shares.iter().enumerate().filter(|(_, share)| **share > 0.0);
+        taps.map(|(tap, &share)| share * value(self.first as usize + tap)).sum()
+    }
+}
+
+impl Linear {
+    fn packed(&self) -> Level {
+        Level { size: self.size, texels: self.texels.par_iter().map(|&color| packed(color)).collect() }
+    }
+}
+
+/// A texel of the image in linear light.
+pub(super) fn linear(texel: [u8; 4]) -> Vec3 {
+    let [r, g, b, _] = texel;
+    Vec3::new(Transfer::Srgb.decode(r), Transfer::Srgb.decode(g), Transfer::Srgb.decode(b))
+}
+
+/// Red in the lowest bits, then green and blue.
+fn packed(color: Vec3) -> u64 {
+    let [r, g, b] = color.to_array().map(|channel| (channel * TEXEL_ONE).round() as u64);
+    r | g << TEXEL_BITS | b << (2 * TEXEL_BITS)
+}
+
+/// A texel of a lower level.
+#[inline(always)]
+pub(super) fn unpacked(texel: u64) -> Vec3 {
+    let channel = |shift: u32| (texel >> shift & ((1 << TEXEL_BITS) - 1)) as u32 as f32 / TEXEL_ONE;
+    Vec3::new(channel(0), channel(TEXEL_BITS), channel(2 * TEXEL_BITS))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    fn texture(size: [u32; 2]) -> Texture {
+        let texel = |index: u32| [(37 * index) as u8, (91 * index + 5) as u8, (index % 101 * index) as u8, 255];
+        Texture { name: String::new(), size, texels: (0..size[0] * size[1]).map(texel).collect() }
+    }
+
+    fn mean(texels: impl ExactSizeIterator<Item = Vec3>) -> DVec3 {
+        let count = texels.len() as f64;
+        texels.map(|texel| texel.as_dvec3()).sum::<DVec3>() / count
+    }
+
+    #[test]
+    fn sizes_are_halved_and_rounded_up_down_to_one_texel() {
+        let sizes = |size| MipLevels::new(&texture(size)).levels.iter().map(|level| level.size).collect::<Vec<_>>();
+        assert_eq!(sizes([8, 8]), [[4, 4], [2, 2], [1, 1]]);
+        assert_eq!(sizes([5, 3]), [[3, 2], [2, 1], [1, 1]]);
+        assert_eq!(sizes([1, 6]), [[1, 3], [1, 2], [1, 1]]);
+        assert_eq!(sizes([1, 1]), [[0; 2]; 0]);
+        let largest = MipLevels::new(&texture([1, 16384])).levels;
+        assert_eq!((largest.len(), largest[13].size), (14, [1, 1]));
+    }
+
+    #[test]
+    fn every_level_has_the_mean_of_the_image() {
+        for size in [[8, 8], [5, 3], [7, 7], [1, 13], [17, 1], [100, 37], [33, 64], [2, 3]] {
+            let texture = texture(size);
+            let wanted = mean(texture.texels.iter().map(|&texel| linear(texel)));
+            for level in MipLevels::new(&texture).levels {
+                let found = mean(level.texels.iter().map(|&texel| unpacked(texel)));
+                // Half a step of the format, and rounding.
+                assert!((found - wanted).abs().max_element() < 7e-7, "{size:?}, {:?}: {found} {wanted}", level.size);
+            }
+        }
+    }
+
+    #[test]
+    fn texels_are_the_means_of_their_areas() {
+        let grey = |values: &[u8], size| Texture {
+            name: String::new(),
+            size,
+            texels: values.iter().map(|&value| [value, value, value, 255]).collect(),
+        };
+        let level = |texture: &Texture, level: usize| {
+            let texels = &MipLevels::new(texture).levels[level].texels;
+            texels.iter().map(|&texel| unpacked(texel).x).collect::<Vec<_>>()
+        };
+        // In linear light: half of white, not the code in the middle.
+        assert_eq!(level(&grey(&[0, 255, 255, 0], [4, 1]), 0), [0.5, 0.5]);
+        assert_eq!(level(&grey(&[255, 255, 255, 0], [2, 2]), 0), [0.75]);
+        // Three texels to two: the middle one belongs to both.
+        let thirds = level(&grey(&[255, 0, 0], [3, 1]), 0);
+        assert!((thirds[0] - 2.0 / 3.0).abs() < 1e-6 && thirds[1] == 0.0, "{thirds:?}");
+        // Seven to four: the third covers the texels from 3.5 to 5.25.
+        let sevenths = level(&grey(&[0, 0, 0, 255, 0, 255, 0], [7, 1]), 0);
+        let wanted = [0.0, 0.5 / 1.75, 0.75 / 1.75, 0.75 / 1.75];
+        assert!(sevenths.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-6), "{sevenths:?}");
+    }
+
+    #[test]
+    fn black_white_and_what_is_in_between_survive_packing() {
+        assert_eq!([0.0, 1.0, 0.5].map(|value| unpacked(packed(Vec3::splat(value))).y), [0.0, 1.0, 0.5]);
+        let color = Vec3::new(0.1, 0.7, 0.0123);
+        assert!((unpacked(packed(color)) - color).abs().max_element() <= 0.5 / TEXEL_ONE);
+    }
+
+    #[test]
+    fn levels_that_do_not_fit_are_refused() {
+        let mut scene = lightmesh_scene::Geometry::default();
+        scene.textures = vec![texture([2048, 1024])];
+        scene.materials = vec![lightmesh_scene::Material::default().with_texture(lightmesh_scene::TextureUse::new(0))];
+        scene.mesh.uvs = vec![glam::Vec2::ZERO];
+        assert_eq!(MipLevels::of(&scene, Budget::default()).unwrap()[0].levels.len(), 11);
+        let (index, short) = MipLevels::of(&scene, Budget::new(Some(1))).unwrap_err();
+        assert_eq!((index, short.needed), (0, bytes_to_build([2048, 1024])));
+        let levels = MipLevels::new(&scene.textures[0]);
+        assert!((short.needed as usize) > levels.memory() && levels.memory() > 2048 * 1024 * 8 / 4);
+    }
+}

@@ -1,0 +1,25 @@
+//! Textures at all sizes: mip levels, and what a footprint of any size sees.
+//!
+//! ```text
+//! level 0        the image: 8-bit sRGB texels
+//! level k + 1    half as many texels along each axis, rounded up; each is the mean of the area of level k that it covers, in linear light
+//! ```
+//!
+//! Levels are built once, with the acceleration structure ([`MipLevels`]). A footprint, the ellipse of the texture that a sample of a pixel
+//! sees ([`footprint`](crate::footprint)), is averaged by [`filtered`]. Twin of the lookups: `lookup.cuh`.
+
+mod levels;
+mod lookup;
+
+pub(crate) use levels::{Level, MipLevels};
+pub(crate) use lookup::filtered;
+
+use lightmesh_scene::{Geometry, Material, Texture, TextureUse};
+
+/// The texture of `material`, if it has one that can be looked up.
+pub(crate) fn texture_of<'s>(geometry: &'s Geometry, material: &Material) -> Option<(TextureUse, &'s Texture)> {
+    let uses = material.texture.filter(|_| !geometry.mesh.uvs.is_empty())?;
+    let texture = geometry.textures.get(uses.texture as usize)?;
+    let count = u64::from(texture.size[0]) * u64::from(texture.size[1]);
+    (count > 0 && texture.texels.len() as u64 == count).then_some((uses, texture))
+}
