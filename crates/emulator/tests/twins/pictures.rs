@@ -141,8 +141,15 @@ fn same_layers<R: Target>(host: &Layers, device: &Layers) {
         let differ = a.iter().zip(b).filter(|&(&a, &b)| !alike(a, b, SHARE_TOLERANCE)).count();
         assert!(differ <= R::allowed(a.len(), 100), "{differ} visibilities of light {light} differ");
     }
-    assert!(host.object == device.object && host.material == device.material, "mattes");
-    assert!(!host.object.is_empty() && host.object.names.len() == device.object.names.len());
+    for (a, b) in [(&host.object, &device.object), (&host.material, &device.material)] {
+        assert!(a.names == b.names && a.nearest == b.nearest && !a.is_empty(), "ids");
+        // What a shadow catcher covers follows from visibility.
+        for number in 1..=a.names.len() as u32 {
+            let (a, b) = (a.of(number), b.of(number));
+            let differ = a.iter().zip(&b).filter(|&(&a, &b)| !alike(a, b, SHARE_TOLERANCE)).count();
+            assert!(differ <= R::allowed(a.len(), 100), "{differ} shares of {number} differ");
+        }
+    }
     assert_eq!((host.lights.len(), host.rest.len()), (host.visibility.len(), host.depth.len()));
     let groups = |layers: &Layers| layers.lights.iter().chain([&layers.rest]).flatten().copied().collect::<Vec<_>>();
     let near = |a: f32, b: f32| Transfer::Srgb.encode(a).abs_diff(Transfer::Srgb.encode(b)) <= 1;
