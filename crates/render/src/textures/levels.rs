@@ -158,7 +158,8 @@ pub(super) fn unpacked(texel: u64) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
+    use glam::{DVec3, Vec2};
+    use lightmesh_scene::{Material, Mesh, TextureUse};
 
     use super::*;
 
@@ -228,10 +229,13 @@ mod tests {
 
     #[test]
     fn levels_that_do_not_fit_are_refused() {
-        let mut scene = lightmesh_scene::Geometry::default();
-        scene.textures = vec![texture([2048, 1024])];
-        scene.materials = vec![lightmesh_scene::Material::default().with_texture(lightmesh_scene::TextureUse::new(0))];
-        scene.mesh.uvs = vec![glam::Vec2::ZERO];
+        let uses = TextureUse::new(0);
+        let scene = Geometry {
+            textures: vec![texture([2048, 1024])],
+            materials: vec![Material::default().with_texture(uses)],
+            mesh: Mesh { uvs: vec![Vec2::ZERO], ..Mesh::default() },
+            ..Geometry::default()
+        };
         assert_eq!(MipLevels::of(&scene, Budget::default()).unwrap()[0].levels.len(), 11);
         let (index, short) = MipLevels::of(&scene, Budget::new(Some(1))).unwrap_err();
         assert_eq!((index, short.needed), (0, bytes_to_build([2048, 1024])));

@@ -72,6 +72,7 @@ impl Clipped {
     /// That of a footprint around `place` with these diameters. Beyond the border of a clamped texture all is as at the border: what lies there
     /// has no extent. Others have no border.
     #[inline(always)]
+    #[expect(clippy::manual_clamp, reason = "NaN becomes 0, as on devices")]
     fn new(wrap: Wrap, place: f32, diameters: [f32; 2]) -> Clipped {
         let reach = 0.5 * (diameters[0].abs() + diameters[1].abs());
         let (low, high) = (place - reach, place + reach);
