@@ -1,7 +1,7 @@
 //! Scene overrides from the command line, and defaults for what a scene lacks.
 
 use glam::{DVec3, Vec3};
-use lightmesh::scene::{Camera, CameraError, Light, LightKind, SceneFormat, UnknownCamera, Up};
+use lightmesh::scene::{Camera, CameraError, Light, LightKind, SceneFormat, UnknownCamera, Up, Viewpoint};
 use lightmesh::{Observer, Scene};
 
 use crate::args::{self, RenderArgs};
@@ -64,16 +64,24 @@ impl SceneChoices {
         let (up, why) = self.up(scene);
         let added = scene.complete(up);
         if added.camera {
+            let from = match added.viewpoint {
+                Viewpoint::OpenSide => "looks into it through its open side",
+                Viewpoint::Inside => "stands inside, since from outside hardly more than walls would be seen",
+                _ => "frames it from the front",
+            };
             observer.note(&format!(
-                "the scene has no camera: using one that frames it from the front, with {} up{why} (--camera and --up override it)",
+                "the scene has no camera: using one that {from}, with {} up{why} (--camera and --up override it)",
                 up.name()
             ));
         }
         if added.lights {
-            observer.note(
+            observer.note(if added.lights_inside {
+                "the scene has no lights, and those outside would not reach what the camera sees: using a key light in the space \
+                 ahead, a weaker fill light above the camera and more ambient light (--light replaces them, --ambient sets that)"
+            } else {
                 "the scene has no lights: using a key light above the camera and a weaker fill light on the other side \
-                 (--light replaces them)",
-            );
+                 (--light replaces them)"
+            });
         }
         // Cameras and lights that were added look at the scene alone.
         if self.ground {
