@@ -87,8 +87,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_parser = words::transfer(), default_value_t = Transfer::Srgb, help_heading = "Image")]
     pub(crate) transfer: Transfer,
 
-    /// Exposure of 8-bit files in stops, each of which doubles the brightness; auto brings any light level into range. Does not
-    /// affect exr files and --layers [default: auto if a light has a photometric unit (inverse-square falloff), else 0]
+    /// Exposure of 8-bit files in stops, each of which doubles the brightness; auto brings any light level into range, whatever a ground
+    /// shows. Does not affect exr files and --layers [default: auto if a light has a photometric unit (inverse-square falloff), else 0]
     #[arg(long, value_name = "STOPS|auto", allow_negative_numbers = true, help_heading = "Image")]
     pub(crate) exposure: Option<Exposure>,
 
@@ -119,7 +119,7 @@ pub(crate) struct RenderArgs {
     pub(crate) background: Option<Background>,
 
     /// Catch the scene's shadows on a ground below it, which shows the background, or is transparent with it
-    /// [background: the scene's, else 0.8]
+    /// [background: the scene's, else what is shown as 0.8 at the image's exposure]
     #[arg(long, help_heading = "Scene")]
     pub(crate) ground: bool,
 

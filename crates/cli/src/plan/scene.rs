@@ -22,7 +22,7 @@ pub(crate) struct SceneChoices {
     ground: bool,
 }
 
-/// The background of a scene with a ground if none is set: shadows on black would not be seen.
+/// What an image shows as the background of a scene with a ground if none is set: shadows on black would not be seen.
 const GROUND_BACKGROUND: f32 = 0.8;
 
 impl SceneChoices {
@@ -47,8 +47,9 @@ impl SceneChoices {
         })
     }
 
-    /// Applies camera, lights, ambient term and background to the scene; reports which defaults had to be added.
-    pub(crate) fn apply(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<(), UnknownCamera> {
+    /// Applies camera, lights, ambient term and background to the scene; reports which defaults had to be added. Returns what the image is to
+    /// show behind a ground, if no background is set.
+    pub(crate) fn apply(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<Option<f32>, UnknownCamera> {
         if let Some(camera) = self.camera(scene)? {
             scene.cameras = vec![camera];
         }
@@ -86,11 +87,9 @@ impl SceneChoices {
         // Cameras and lights that were added look at the scene alone.
         if self.ground {
             scene.add_ground(up);
-            if self.background.is_none() {
-                scene.lights.background.get_or_insert(Vec3::splat(GROUND_BACKGROUND));
-            }
         }
-        Ok(())
+        let is_open = self.background.is_none() && scene.lights.background.is_none();
+        Ok((self.ground && is_open).then_some(GROUND_BACKGROUND))
     }
 
     /// What is up, and why it is not what is usual.
