@@ -202,7 +202,11 @@ fn fitting(mesh: &Mesh, bounds: &Bounds, camera: &Camera) -> Vec3 {
     if mesh.bounds().diagonal() > 0.0 {
         mesh.positions.iter().for_each(|&position| include(position));
     } else {
-        [bounds.min, bounds.max].into_iter().for_each(include);
+        let corner = |bits: i32| {
+            let is_high = Vec3::new((bits & 1) as f32, (bits >> 1 & 1) as f32, (bits >> 2) as f32);
+            bounds.min + bounds.extent() * is_high
+        };
+        (0..8).map(corner).for_each(include);
     }
     let [east, west, north, south] = borders;
     let back = ((east + west).max(north + south) / (2.0 * tangent)).max(0.0);
