@@ -20,7 +20,8 @@ impl Frame {
         self.color_mut().as_flattened_mut().iter_mut().for_each(|value| *value *= factor);
     }
 
-    /// Exposure that brings the image into the range of a screen, in steps of a hundredth of a stop; 0 if nothing is lit.
+    /// Exposure that brings the image into the range of a screen, in steps of a hundredth of a stop; 0 if nothing is lit. Black does not count;
+    /// so of a frame with alpha, neither do pixels without cover, nor the shadows that a shadow catcher shows.
     pub fn auto_exposure(&self) -> f32 {
         let mut lit: Vec<f32> =
             self.color().iter().map(luminance).filter(|&value| value > 0.0 && value.is_finite()).collect();

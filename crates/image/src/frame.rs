@@ -194,6 +194,19 @@ impl Frame {
         Ok(self)
     }
 
+    /// The frame in front of a background of uniform radiance, without alpha; unchanged if it has none.
+    #[must_use]
+    pub fn over(mut self, background: [f32; 3]) -> Self {
+        for (color, alpha) in self.color.iter_mut().zip(self.alpha.take().unwrap_or_default()) {
+            let free = 1.0 - alpha;
+            // A background that does not show does not count, however bright it is.
+            if free > 0.0 {
+                color.iter_mut().zip(background).for_each(|(channel, behind)| *channel += free * behind);
+            }
+        }
+        self
+    }
+
     /// Width in pixels.
     pub fn width(&self) -> u32 {
         self.width
@@ -318,6 +331,16 @@ mod tests {
         assert_eq!(frame.pixel(0, 1), Some([2.0; 3]));
         assert_eq!((frame.pixel(2, 0), frame.pixel(0, 2)), (None, None));
         assert_eq!(frame.rows().last(), Some(&[[2.0; 3], [3.0; 3]][..]));
+    }
+
+    #[test]
+    fn what_is_not_covered_shows_the_background() {
+        let frame = Frame::new(3, 1, vec![[0.0; 3], [0.1, 0.2, 0.3], [0.4; 3]]).unwrap();
+        assert_eq!(frame.clone().over([9.0; 3]), frame);
+        let over = frame.with_alpha(vec![0.0, 0.5, 1.0]).unwrap().over([0.8, 0.4, f32::INFINITY]);
+        assert_eq!((over.pixel(0, 0), over.pixel(2, 0)), (Some([0.8, 0.4, f32::INFINITY]), Some([0.4; 3])));
+        assert_eq!(over.pixel(1, 0).map(|[red, green, _]| [red, green]), Some([0.5, 0.4]));
+        assert_eq!(over.alpha(), None);
     }
 
     #[test]

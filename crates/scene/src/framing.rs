@@ -1,4 +1,15 @@
 //! Cameras and lights for scenes without any, and cameras by name.
+//!
+//! What is seen from outside is framed from the front; what is an interior is seen from its open side or from inside (`rooms`). Lights are placed
+//! relative to the camera, or in the space that it sees if those do not reach it (`lights`). Both cast a few thousand rays (`rays`, `sight`).
+
+mod lights;
+mod rays;
+mod rooms;
+mod sight;
+
+use std::cell::LazyCell;
+use std::sync::Arc;
 
 use glam::Vec3;
 
@@ -6,6 +17,8 @@ use crate::{
     Bounds, Camera, Fov, Light, Mesh, Projection, Scene, Up,
     quote::{self, list},
 };
+use rooms::Interior;
+use sight::Sight;
 
 /// No camera of the scene has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -44,55 +57,107 @@ const FILL_LIGHT: f32 = 0.2;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Added {
-    /// A camera that frames the scene.
+    /// A camera that shows the scene.
     pub camera: bool,
+    /// From where it does.
+    pub viewpoint: Viewpoint,
     /// A key light and a fill light.
     pub lights: bool,
+    /// They are in the space that the camera sees, with more ambient light, since lights outside would not reach it.
+    pub lights_inside: bool,
+}
+
+/// From where a [default camera](Scene::default_camera) looks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Viewpoint {
+    /// From the front, the right and above, outside.
+    #[default]
+    Front,
+    /// Into an interior, through its open side.
+    OpenSide,
+    /// Inside, along the longest view.
+    Inside,
 }
 
 impl Scene {
     /// Completes the scene so that it can be rendered: adds [`Scene::default_camera`] if it has no camera, and
-    /// [`Scene::default_lights`], placed relative to its first camera, if it has no light. Returns what was added.
+    /// [`Scene::default_lights`], placed relative to its first camera, if it has no light; with lights inside, also an ambient term of 0.2
+    /// if none is set. Returns what was added.
     pub fn complete(&mut self, up: Up) -> Added {
-        let added = Added { camera: self.cameras.is_empty(), lights: self.lights.is_empty() };
+        let mut added = Added { camera: self.cameras.is_empty(), lights: self.lights.is_empty(), ..Added::default() };
+        // Needed for what is missing alone, and once for both.
+        let geometry = Arc::clone(&self.geometry);
+        let sight = LazyCell::new(|| Sight::new(&geometry.mesh));
         if added.camera {
-            self.cameras.push(self.default_camera(up));
+            let (camera, viewpoint) = self.view(&sight, up);
+            self.cameras.push(camera);
+            added.viewpoint = viewpoint;
         }
         if added.lights {
-            let lights = self.default_lights(&self.cameras[0]);
+            let (lights, inside) = self.lighting(&sight, &self.cameras[0]);
             self.lights.extend(lights);
+            added.lights_inside = inside;
+            if inside {
+                self.lights.ambient.get_or_insert(Vec3::splat(lights::AMBIENT));
+            }
         }
         added
     }
 
-    /// A camera that shows the whole scene from the front, the right and above, for square images and wider ones.
+    /// A camera that shows the whole scene from the front, the right and above, for square images and wider ones. An interior (most of its
+    /// ground plan is in rooms, and from there it shows backs of walls or hardly anything) is instead seen through its open side if it has
+    /// one, else from inside: at eye height, along the longest view, with a field of view of 60°.
     pub fn default_camera(&self, up: Up) -> Camera {
-        let bounds = framed(self.geometry.mesh.bounds());
+        self.view(&Sight::new(&self.geometry.mesh), up).0
+    }
+
+    fn view(&self, sight: &Sight, up: Up) -> (Camera, Viewpoint) {
+        let mesh = &self.geometry.mesh;
+        let bounds = framed(mesh.bounds());
         let (right, front) = sides(up);
-        let direction = -(VIEW[0] * right + VIEW[1] * up.axis() + VIEW[2] * front).normalize();
-        let mut camera = Camera {
-            name: "default".to_owned(),
-            position: bounds.center(),
-            direction,
-            up: up.axis(),
-            projection: Projection::Perspective(Fov::Vertical(VFOV)),
+        let from = |direction: Vec3| {
+            let mut camera = Camera {
+                name: "default".to_owned(),
+                position: bounds.center(),
+                direction,
+                up: up.axis(),
+                projection: Projection::Perspective(Fov::Vertical(VFOV)),
+            };
+            camera.position = fitting(mesh, &bounds, &camera);
+            camera
         };
-        camera.position = fitting(&self.geometry.mesh, &bounds, &camera);
-        camera
+        let camera = from(-(VIEW[0] * right + VIEW[1] * up.axis() + VIEW[2] * front).normalize());
+        match rooms::interior(sight, &bounds, up.axis(), &camera) {
+            None => (camera, Viewpoint::Front),
+            Some(Interior::OpenSide(direction)) => (from(direction), Viewpoint::OpenSide),
+            Some(Interior::Inside(camera)) => (camera, Viewpoint::Inside),
+        }
     }
 
     /// Two white point lights without falloff. The key light is above and to the side of the camera's eye, so that shadows fall away
-    /// from the viewer and to the side; the fill light, weaker and lower, is on the other side, so that they are not black.
+    /// from the viewer and to the side; the fill light, weaker and lower, is on the other side, so that they are not black. If the key light
+    /// reaches less than a fifth of what the camera sees, they are in the space that it sees: the key light high above the middle of the
+    /// way ahead, the fill light above the eye; then they are weaker, since an ambient term of 0.2 goes with them.
     pub fn default_lights(&self, camera: &Camera) -> [Light; 2] {
+        self.lighting(&Sight::new(&self.geometry.mesh), camera).0
+    }
+
+    /// The lights, and whether they are inside.
+    fn lighting(&self, sight: &Sight, camera: &Camera) -> ([Light; 2], bool) {
         let bounds = framed(self.geometry.mesh.bounds());
         let (right, up, _) = camera.basis();
         let reach = camera.position.distance(bounds.center()).max(bounds.diagonal());
         let spread = DEFAULT_LIGHT_SPREAD * bounds.diagonal();
-        let light = |name: &str, beside: f32, above: f32, intensity: f32| {
-            let position = camera.position + reach * (above * up + beside * right);
+        let place = |beside: f32, above: f32| camera.position + reach * (above * up + beside * right);
+        let key = place(-0.5, 0.8);
+        if let Some(lights) = lights::inside(sight, &bounds, camera, key, spread) {
+            return (lights, true);
+        }
+        let light = |name: &str, position: Vec3, intensity: f32| {
             Light::point(position).with_spread(spread).with_intensity(Vec3::splat(intensity)).named(name)
         };
-        [light("key", -0.5, 0.8, KEY_LIGHT), light("fill", 0.9, 0.2, FILL_LIGHT)]
+        ([light("key", key, KEY_LIGHT), light("fill", place(0.9, 0.2), FILL_LIGHT)], false)
     }
 
     /// The camera of this name.
@@ -247,14 +312,14 @@ mod tests {
     fn a_scene_is_completed_once() {
         let mut bare = scene(Vec3::ZERO, Vec3::ONE);
         let lit = bare.default_lights(&bare.default_camera(Up::Z));
-        assert_eq!(bare.complete(Up::Z), Added { camera: true, lights: true });
+        assert_eq!(bare.complete(Up::Z), Added { camera: true, lights: true, ..Added::default() });
         assert_eq!((bare.cameras.as_slice(), bare.lights.as_slice()), (&[bare.default_camera(Up::Z)][..], &lit[..]));
         assert_eq!(bare.complete(Up::Y), Added::default());
         // Existing content stays, and lights are placed relative to the first camera.
         let camera = Camera::look_at(Vec3::new(0.0, 0.0, 9.0), Vec3::ZERO, Vec3::Y, 30.0).unwrap();
         bare.cameras = vec![camera.clone(), bare.default_camera(Up::Y)];
         bare.lights.clear();
-        assert_eq!(bare.complete(Up::Y), Added { camera: false, lights: true });
+        assert_eq!(bare.complete(Up::Y), Added { lights: true, ..Added::default() });
         assert_eq!((bare.cameras.len(), bare.lights.as_slice()), (2, &bare.default_lights(&camera)[..]));
     }
 

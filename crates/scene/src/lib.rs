@@ -49,7 +49,7 @@ pub use builder::SceneBuilder;
 pub use camera::{Camera, CameraError, Fov, Projection};
 pub use error::{LoadError, Place};
 pub use export::ExportError;
-pub use framing::{Added, UnknownCamera};
+pub use framing::{Added, UnknownCamera, Viewpoint};
 pub use geometry::Geometry;
 pub use geometry_check::GeometryError;
 pub use info::{BoundsInfo, CameraInfo, LightInfo, SceneInfo};

@@ -87,8 +87,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_parser = words::transfer(), default_value_t = Transfer::Srgb, help_heading = "Image")]
     pub(crate) transfer: Transfer,
 
-    /// Exposure of 8-bit files in stops, each of which doubles the brightness; auto brings any light level into range. Does not
-    /// affect exr files and --layers [default: auto if a light has a photometric unit (inverse-square falloff), else 0]
+    /// Exposure of 8-bit files in stops, each of which doubles the brightness; auto brings any light level into range, whatever a ground
+    /// shows. Does not affect exr files and --layers [default: auto if a light has a photometric unit (inverse-square falloff), else 0]
     #[arg(long, value_name = "STOPS|auto", allow_negative_numbers = true, help_heading = "Image")]
     pub(crate) exposure: Option<Exposure>,
 
@@ -123,7 +123,7 @@ pub(crate) struct RenderArgs {
     pub(crate) background: Option<Background>,
 
     /// Catch the scene's shadows on a ground below it, which shows the background, or is transparent with it
-    /// [background: the scene's, else 0.8]
+    /// [background: the scene's, else what is shown as 0.8 at the image's exposure]
     #[arg(long, help_heading = "Scene")]
     pub(crate) ground: bool,
 
@@ -147,13 +147,14 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "NAME", conflicts_with = "camera", help_heading = "Scene")]
     pub(crate) camera_name: Option<String>,
 
-    /// Up axis for --camera and for the camera that frames the scene
+    /// Up axis for --camera and for the camera of a scene without one
     #[arg(long, value_enum, default_value_t = Up::Auto, help_heading = "Scene")]
     pub(crate) up: Up,
 
     /// Replace the scene's lights: position, intensity (one number or r,g,b; 1 if omitted) and radius, as in
     /// "3,8,2;0.9,0.8,0.7;0.25"; repeatable. With a radius above 0 the light is a ball, which area and light-mesh mode sample
-    /// [default: the scene's, else a key light above the camera and a weaker fill light on the other side]
+    /// [default: the scene's, else a key light above the camera and a weaker fill light on the other side, or, if that would not reach what
+    /// the camera sees, both in that space]
     #[arg(long = "light", value_name = "P[;I[;RADIUS]]", allow_hyphen_values = true, help_heading = "Scene")]
     pub(crate) lights: Vec<LightSpec>,
 
@@ -161,7 +162,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_parser = words::falloff(), default_value_t = Falloff::None, requires = "lights", help_heading = "Scene")]
     pub(crate) falloff: Falloff,
 
-    /// Ambient intensity: one number or r,g,b [default: the scene's, else 0.1, or a tenth of what photometric lights give]
+    /// Ambient intensity: one number or r,g,b [default: the scene's, else 0.1, or a tenth of what photometric lights give, or 0.2 with
+    /// default lights in the space that the camera sees]
     #[arg(long, value_name = "V", allow_hyphen_values = true, help_heading = "Scene")]
     pub(crate) ambient: Option<Color>,
 

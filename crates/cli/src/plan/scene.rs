@@ -1,7 +1,7 @@
 //! Scene overrides from the command line, and defaults for what a scene lacks.
 
 use glam::{DVec3, Vec3};
-use lightmesh::scene::{Camera, CameraError, Light, LightKind, SceneFormat, UnknownCamera, Up};
+use lightmesh::scene::{Camera, CameraError, Light, LightKind, SceneFormat, UnknownCamera, Up, Viewpoint};
 use lightmesh::{Observer, Scene};
 
 use crate::args::{self, RenderArgs};
@@ -22,7 +22,7 @@ pub(crate) struct SceneChoices {
     ground: bool,
 }
 
-/// The background of a scene with a ground if none is set: shadows on black would not be seen.
+/// What an image shows as the background of a scene with a ground if none is set: shadows on black would not be seen.
 const GROUND_BACKGROUND: f32 = 0.8;
 
 impl SceneChoices {
@@ -47,8 +47,9 @@ impl SceneChoices {
         })
     }
 
-    /// Applies camera, lights, ambient term and background to the scene; reports which defaults had to be added.
-    pub(crate) fn apply(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<(), UnknownCamera> {
+    /// Applies camera, lights, ambient term and background to the scene; reports which defaults had to be added. Returns what the image is to
+    /// show behind a ground, if no background is set.
+    pub(crate) fn apply(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<Option<f32>, UnknownCamera> {
         if let Some(camera) = self.camera(scene)? {
             scene.cameras = vec![camera];
         }
@@ -64,25 +65,31 @@ impl SceneChoices {
         let (up, why) = self.up(scene);
         let added = scene.complete(up);
         if added.camera {
+            let from = match added.viewpoint {
+                Viewpoint::OpenSide => "looks into it through its open side",
+                Viewpoint::Inside => "stands inside, since from outside hardly more than walls would be seen",
+                _ => "frames it from the front",
+            };
             observer.note(&format!(
-                "the scene has no camera: using one that frames it from the front, with {} up{why} (--camera and --up override it)",
+                "the scene has no camera: using one that {from}, with {} up{why} (--camera and --up override it)",
                 up.name()
             ));
         }
         if added.lights {
-            observer.note(
+            observer.note(if added.lights_inside {
+                "the scene has no lights, and those outside would not reach what the camera sees: using a key light in the space \
+                 ahead, a weaker fill light above the camera and more ambient light (--light replaces them, --ambient sets that)"
+            } else {
                 "the scene has no lights: using a key light above the camera and a weaker fill light on the other side \
-                 (--light replaces them)",
-            );
+                 (--light replaces them)"
+            });
         }
         // Cameras and lights that were added look at the scene alone.
         if self.ground {
             scene.add_ground(up);
-            if self.background.is_none() {
-                scene.lights.background.get_or_insert(Vec3::splat(GROUND_BACKGROUND));
-            }
         }
-        Ok(())
+        let is_open = self.background.is_none() && scene.lights.background.is_none();
+        Ok((self.ground && is_open).then_some(GROUND_BACKGROUND))
     }
 
     /// What is up, and why it is not what is usual.

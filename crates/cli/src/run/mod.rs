@@ -5,6 +5,7 @@ mod bench_compare;
 mod compare;
 mod completions;
 mod export;
+mod exposure;
 mod grid;
 mod info;
 mod man;

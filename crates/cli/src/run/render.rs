@@ -1,22 +1,20 @@
 //! `lightmesh render`.
 
-use std::borrow::Cow;
 use std::time::Instant;
 
 use glam::{DMat4, Vec3};
 use lightmesh::image::{self, Description, Format, Ready, SaveOptions};
 use lightmesh::render::{Choice, PreparedScene, Stats, devices};
-use lightmesh::scene::Falloff;
-use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene};
+use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene, Settings};
 use lightmesh_memory::Bytes;
 
+use super::exposure::Metering;
 use super::{BUILDING, open::open, range};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::plan::{PictureFiles, RenderPlan};
 use crate::progress::Watcher;
 use crate::report::Report;
-use crate::value::Exposure;
 use crate::{interrupt, memory, output};
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
@@ -36,9 +34,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         watcher.note(&format!("smooth {degrees}: {made} normals were made (--smooth off makes none)"));
     }
 
-    plan.choices.apply(&mut scene, &watcher)?;
+    let behind = plan.choices.apply(&mut scene, &watcher)?;
+    let metering = Metering::new(&mut scene, &plan, behind);
     let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;
-    let finish = || finish(&renderer, prepared, &scene, &plan, load, &watcher);
+    let finish = || finish(&renderer, prepared, &scene, &plan, &metering, load, &watcher);
     let frame = if args.partial { interrupt::keeping(finish) } else { finish() }?;
     if interrupt::requested() {
         // The last message says what is written.
@@ -49,11 +48,6 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     watcher.summary(&summary(&frame, &plan.files));
     Ok(())
-}
-
-/// Whether a scene has a shadow catcher.
-fn catches(scene: &Scene) -> bool {
-    scene.geometry.materials.iter().any(|material| material.catcher)
 }
 
 /// The device that was chosen. That no CUDA device was, is only said where one could be expected, or to those who ask.
@@ -80,15 +74,29 @@ fn finish(
     prepared: PreparedScene,
     scene: &Scene,
     plan: &RenderPlan,
+    metering: &Metering,
     load: f64,
     watcher: &Watcher,
 ) -> Result<Frame, Failure> {
     // An automatic exposure is that of the whole image.
-    let exposure = exposure(scene, &plan.files);
     let mut settings = plan.settings.clone();
-    let crop = settings.crop.take_if(|_| exposure == Exposure::Auto);
-    let render = || renderer.render_prepared(&prepared, &settings, watcher);
-    let mut frame = memory::during(memory::RENDERING, || interrupt::watched(render))?;
+    let crop = settings.crop.take_if(|_| metering.is_automatic());
+    settings.transparent |= metering.is_apart();
+    let render = |prepared: &PreparedScene, settings: &Settings| {
+        let render = || renderer.render_prepared(prepared, settings, watcher);
+        memory::during(memory::RENDERING, || interrupt::watched(render))
+    };
+    let mut frame = render(&prepared, &settings)?;
+    let stops = metering.stops(&frame, watcher);
+    if let Some(background) = metering.background(stops) {
+        if metering.is_reflected(&settings) && !watcher.cancelled() {
+            settings.transparent = false;
+            let lights = prepared.scene.lights.clone().with_background(background);
+            frame = render(&prepared.with_lights(lights), &settings)?;
+        } else {
+            frame = metering.put_behind(frame, background);
+        }
+    }
     drop(prepared); // frees memory for the encoders
     if plan.settings.partial {
         interrupt::remark(rows(&frame));
@@ -103,10 +111,9 @@ fn finish(
             "{odd} of {of} pixels have infinite or undefined colours: lower the intensities of lights or the coefficients of materials"
         ));
     }
-    let stops = stops(&frame, exposure, watcher);
     if plan.files.format() != Some(Format::Exr) {
         let display = plan.files.options.display.with_exposure(stops);
-        range::warnings(&frame, &display, catches(scene)).iter().for_each(|warning| watcher.warning(warning));
+        range::warnings(&frame, &display, metering.has_ground()).iter().for_each(|warning| watcher.warning(warning));
     }
     if let Some(crop) = crop {
         frame = frame.cropped(crop).expect("the plan has checked that the crop is in the image");
@@ -189,39 +196,6 @@ fn description(frame: &Frame, scene: &Scene) -> Description {
     // Columns of a matrix for column vectors are rows of one for row vectors.
     let rows = |matrix: DMat4| matrix.as_mat4().to_cols_array();
     description.with_camera(rows(camera.from_world(origin)), rows(camera.from_world_to_image(origin, width / height)))
-}
-
-/// Exposure of the image file: none if it stores linear values. Candela and lux say nothing of the range of a screen.
-fn exposure(scene: &Scene, files: &PictureFiles) -> Exposure {
-    let photometric = scene.lights.iter().any(|light| light.falloff == Falloff::InverseSquare);
-    match files.exposure {
-        _ if files.format() == Some(Format::Exr) => Exposure::Stops(0.0),
-        Some(chosen) => chosen,
-        None if photometric => Exposure::Auto,
-        None => Exposure::Stops(0.0),
-    }
-}
-
-/// The exposure in stops.
-fn stops(frame: &Frame, exposure: Exposure, watcher: &Watcher) -> f32 {
-    match exposure {
-        Exposure::Stops(stops) => stops,
-        Exposure::Auto => {
-            let stops = finished_part(frame).auto_exposure();
-            watcher.note(&format!("exposure auto: using {stops} stops (--exposure {stops} keeps this value)"));
-            stops
-        }
-    }
-}
-
-/// The rows of an image that are finished.
-fn finished_part(frame: &Frame) -> Cow<'_, image::Frame> {
-    let ([width, height], rows) = (frame.size(), frame.finished_rows());
-    let finished = || frame.color()[..width as usize * rows as usize].to_vec();
-    match rows {
-        rows if rows == height => Cow::Borrowed(&frame.image),
-        rows => image::Frame::new(width, rows, finished()).map_or(Cow::Borrowed(&frame.image), Cow::Owned),
-    }
 }
 
 fn summary(frame: &Frame, files: &PictureFiles) -> String {

@@ -132,6 +132,55 @@ fn a_ground_catches_shadows_on_the_background() {
     assert!(alpha[23 * 32] == 0.0 && alpha.iter().any(|alpha| (0.05..0.95).contains(alpha)));
 }
 
+/// The automatic exposure according to the note.
+fn noted_stops(said: &str) -> f32 {
+    let rest = said.split("exposure auto: using ").nth(1).unwrap_or_else(|| panic!("{said}"));
+    rest.split(' ').next().unwrap().parse().unwrap()
+}
+
+#[test]
+fn an_automatic_exposure_is_that_of_the_model_on_a_ground() {
+    let place = place();
+    let lamp = |candela: u32| format!("2,4,3;{candela};0.2");
+    let render = |candela: u32, flags: &[&str]| {
+        let lamp = lamp(candela);
+        let base =
+            ["render", "bare.toml", "-o", "a.png", "--size", "32x24", "--light", &lamp, "--falloff", "inverse-square"];
+        let done = place.good(&[&base, flags].concat());
+        (noted_stops(&done.stderr), Frame::load(place.path("a.png")).unwrap())
+    };
+    place.write("bare.toml", &BALL.replace("background = [0.2, 0.4, 0.8]\n", ""));
+    let (stops, dim) = render(40, &["--ground"]);
+    // The default background looks the same at any level of light, and so does the model.
+    let (other, bright) = render(40_960, &["--ground"]);
+    assert!((stops - other - 10.0).abs() < 0.02, "{stops} {other}");
+    let near = |a: [f32; 3], b: [f32; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.02);
+    for (x, y) in [(0, 0), (16, 10), (31, 23)] {
+        assert!(near(dim.pixel(x, y).unwrap(), bright.pixel(x, y).unwrap()), "{x} {y}");
+    }
+    assert!(near(dim.pixel(0, 23).unwrap(), [0.8; 3]), "{:?}", dim.pixel(0, 23));
+    // Neither a bright background that is asked for nor none changes the exposure.
+    for background in ["0.001", "3000", "transparent"] {
+        assert!((render(40, &["--ground", "--background", background]).0 - stops).abs() < 0.02, "{background}");
+    }
+    let (_, white) = render(40, &["--ground", "--background", "3000"]);
+    assert_eq!(white.pixel(0, 23), Some([1.0; 3]));
+    // A mirror's second image has the same exposure and background.
+    let (mirrored, seen) = render(40, &["--ground", "--bounces", "1"]);
+    assert!(mirrored == stops && near(seen.pixel(0, 23).unwrap(), [0.8; 3]));
+}
+
+#[test]
+fn the_ground_is_as_bright_at_any_exposure_that_is_set() {
+    let place = place();
+    place.write("bare.toml", &BALL.replace("background = [0.2, 0.4, 0.8]\n", ""));
+    for stops in ["-3", "0", "2.5"] {
+        place.good(&["render", "bare.toml", "-o", "a.png", "--size", "32x24", "--ground", "--exposure", stops]);
+        let [red, ..] = Frame::load(place.path("a.png")).unwrap().pixel(0, 23).unwrap();
+        assert!((red - 0.8).abs() < 0.02, "{stops}: {red}");
+    }
+}
+
 #[test]
 fn what_is_mostly_clipped_or_black_is_told_with_the_flag_that_helps() {
     let place = place();

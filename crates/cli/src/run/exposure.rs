@@ -1,0 +1,129 @@
+//! The exposure of an image file, and what a ground that catches shadows shows at that exposure.
+//!
+//! An automatic exposure is that of the model: what a shadow catcher shows is the background, whose brightness says nothing of the light. So the
+//! image is rendered without background, metered, and put in front of it. Only mirrors need a second image: they show the background, too.
+
+use std::borrow::Cow;
+
+use glam::Vec3;
+use lightmesh::image::{self, Format};
+use lightmesh::scene::Falloff;
+use lightmesh::{Frame, Observer, Scene, Settings};
+
+use crate::plan::{PictureFiles, RenderPlan};
+use crate::progress::Watcher;
+use crate::value::Exposure;
+
+/// How the exposure is found.
+pub(super) struct Metering {
+    exposure: Exposure,
+    has_ground: bool,
+    /// What a ground is metered without and put in front of.
+    behind: Option<Behind>,
+}
+
+#[derive(Clone, Copy)]
+enum Behind {
+    /// Radiance that was asked for.
+    Radiance(Vec3),
+    /// What an image shows at its exposure.
+    Shown(f32),
+}
+
+impl Metering {
+    /// Sets the background of a scene whose ground shows `shown` if the exposure is known; else a ground's is black until it is.
+    pub(super) fn new(scene: &mut Scene, plan: &RenderPlan, shown: Option<f32>) -> Metering {
+        let exposure = exposure(scene, &plan.files);
+        let has_ground = scene.geometry.materials.iter().any(|material| material.catcher);
+        let background = &mut scene.lights.background;
+        let behind = match (exposure, shown) {
+            (Exposure::Stops(stops), Some(shown)) => {
+                *background = Some(Behind::Shown(shown).radiance(stops));
+                None
+            }
+            (Exposure::Auto, Some(shown)) => {
+                *background = Some(Vec3::ZERO);
+                Some(Behind::Shown(shown))
+            }
+            (Exposure::Auto, None) if has_ground && !plan.settings.transparent => {
+                let radiance = background.replace(Vec3::ZERO);
+                Some(Behind::Radiance(radiance.unwrap_or_default()))
+            }
+            _ => None,
+        };
+        Metering { exposure, has_ground, behind }
+    }
+
+    pub(super) fn is_automatic(&self) -> bool {
+        self.exposure == Exposure::Auto
+    }
+
+    /// Whether the scene has a shadow catcher.
+    pub(super) fn has_ground(&self) -> bool {
+        self.has_ground
+    }
+
+    /// Whether the image is first rendered without its background.
+    pub(super) fn is_apart(&self) -> bool {
+        self.behind.is_some()
+    }
+
+    /// Whether mirrors show the background that is missing.
+    pub(super) fn is_reflected(&self, settings: &Settings) -> bool {
+        self.is_apart() && settings.bounces > 0
+    }
+
+    /// The background of an image that was rendered without it.
+    pub(super) fn background(&self, stops: f32) -> Option<Vec3> {
+        self.behind.map(|behind| behind.radiance(stops))
+    }
+
+    /// Puts a background behind such an image.
+    pub(super) fn put_behind(&self, frame: Frame, background: Vec3) -> Frame {
+        let Frame { image, mut stats } = frame;
+        (stats.settings.background, stats.settings.transparent) = (background.to_array(), false);
+        Frame { image: image.over(background.to_array()), stats }
+    }
+
+    /// The exposure in stops.
+    pub(super) fn stops(&self, frame: &Frame, watcher: &Watcher) -> f32 {
+        match self.exposure {
+            Exposure::Stops(stops) => stops,
+            Exposure::Auto => {
+                let stops = finished_part(frame).auto_exposure();
+                watcher.note(&format!("exposure auto: using {stops} stops (--exposure {stops} keeps this value)"));
+                stops
+            }
+        }
+    }
+}
+
+impl Behind {
+    fn radiance(self, stops: f32) -> Vec3 {
+        match self {
+            Behind::Radiance(radiance) => radiance,
+            Behind::Shown(shown) => Vec3::splat(shown * (-stops).exp2()),
+        }
+    }
+}
+
+/// Exposure of the image file: none if it stores linear values. Candela and lux say nothing of the range of a screen.
+fn exposure(scene: &Scene, files: &PictureFiles) -> Exposure {
+    let photometric = scene.lights.iter().any(|light| light.falloff == Falloff::InverseSquare);
+    match files.exposure {
+        _ if files.format() == Some(Format::Exr) => Exposure::Stops(0.0),
+        Some(chosen) => chosen,
+        None if photometric => Exposure::Auto,
+        None => Exposure::Stops(0.0),
+    }
+}
+
+/// The rows of an image that are finished.
+fn finished_part(frame: &Frame) -> Cow<'_, image::Frame> {
+    let ([width, height], rows) = (frame.size(), frame.finished_rows());
+    let finished = || frame.color()[..width as usize * rows as usize].to_vec();
+    match rows {
+        rows if rows == height => Cow::Borrowed(&frame.image),
+        rows => image::Frame::new(width, rows, finished()).map_or(Cow::Borrowed(&frame.image), Cow::Owned),
+    }
+}
