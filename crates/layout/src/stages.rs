@@ -221,9 +221,9 @@ records! {
         owners: Out<u8>,
         /// Radiance by pixel, with what samples share.
         color: Out<Vec3>,
-        /// Number of large and of small fragments of each block; after the scans, of all blocks before it.
+        /// Number of shared fragments and of single samples of each block; after the scans, of all blocks before it.
         counts: [Out<u32>; 2],
-        /// Large fragments, and small ones.
+        /// Shared fragments, and single samples.
         fragments: [Out<ListedRay>; 2],
         /// What they see.
         fragment_hits: [Out<Hit>; 2],

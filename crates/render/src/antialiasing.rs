@@ -43,6 +43,8 @@ pub struct Antialiasing {
     pub contrast: f32,
     pub(crate) seed: u64,
     pub(crate) quantiles: [f32; FILTER_PLACES as usize],
+    /// The width in pixels of a square over which evenly spread samples vary as much as over the filter.
+    pub(crate) breadth: f32,
 }
 
 impl Antialiasing {
@@ -56,6 +58,7 @@ impl Antialiasing {
             keeps: false,
             contrast: CONTRAST * noise,
             seed,
+            breadth: breadth(&quantiles(filter)),
             quantiles: quantiles(filter),
         }
     }
@@ -160,6 +163,14 @@ fn quantiles(filter: Filter) -> [f32; FILTER_PLACES as usize] {
     offsets
 }
 
+/// The width of the square with the variance of a filter.
+fn breadth(quantiles: &[f32; FILTER_PLACES as usize]) -> f32 {
+    // Between two of them samples are spread evenly.
+    let square = |ends: &[f32]| (ends[0] * ends[0] + ends[0] * ends[1] + ends[1] * ends[1]) / 3.0;
+    let variance = quantiles.windows(2).map(square).sum::<f32>() / FILTER_STEPS as f32;
+    (12.0 * variance).sqrt()
+}
+
 /// A filter at `offset` pixels from the centre, within its width.
 fn weight(filter: Filter, offset: f64) -> f64 {
     match filter {
@@ -198,6 +209,16 @@ mod tests {
                 let share = area(f64::from(step[0]), f64::from(step[1])) / all;
                 assert!((share - 1.0 / 63.0).abs() < 1e-4, "{filter:?}: {share}");
             }
+        }
+    }
+
+    #[test]
+    fn a_filter_is_as_broad_as_its_deviation() {
+        let breadths = FILTERS.map(|filter| Antialiasing::new(8, filter, 0, 64).breadth);
+        // The square root of 12 times the standard deviation: 0.375 for the Gaussian, 0.4155 for the other. Within the last steps of the
+        // table samples are spread evenly, which is a little more.
+        for (found, expected) in breadths.into_iter().zip([1.0, 1.299, 1.439]) {
+            assert!((0.999..1.05).contains(&(found / expected)), "{breadths:?}");
         }
     }
 

@@ -34,10 +34,10 @@ pub struct Cone {
 }
 
 impl Cone {
-    /// The cone of one of `samples` samples of a pixel: its share of the pixel's area. `spacing` is the distance between the surface points of
-    /// neighbouring pixels: a constant, and a multiple of their distance.
-    pub(crate) fn of_sample(spacing: [f32; 2], samples: u32) -> Cone {
-        let share = 1.0 / (samples as f32).sqrt();
+    /// The cone of one of `samples` samples of a pixel: its share of the area over which they are spread, a square `breadth` pixels wide.
+    /// `spacing` is the distance between the surface points of neighbouring pixels: a constant, and a multiple of their distance.
+    pub(crate) fn of_sample(spacing: [f32; 2], samples: u32, breadth: f32) -> Cone {
+        let share = breadth / (samples as f32).sqrt();
         Cone { width: share * spacing[0], spread: share * spacing[1] }
     }
 
@@ -190,8 +190,8 @@ mod tests {
 
     #[test]
     fn samples_share_the_area_of_their_pixel() {
-        assert_eq!(Cone::of_sample([0.0, 0.5], 4), Cone { width: 0.0, spread: 0.25 });
-        assert_eq!(Cone::of_sample([3.0, 0.0], 9), Cone { width: 1.0, spread: 0.0 });
+        assert_eq!(Cone::of_sample([0.0, 0.5], 4, 1.0), Cone { width: 0.0, spread: 0.25 });
+        assert_eq!(Cone::of_sample([3.0, 0.0], 9, 2.0), Cone { width: 2.0, spread: 0.0 });
     }
 
     #[test]

@@ -20,6 +20,9 @@ use crate::stages::pixel_samples::SampleRange;
 use crate::techniques::Technique;
 use crate::view::View;
 
+/// A shared fragment takes this part of a pixel's samples of lights. Two or three of them make most of these pixels.
+const PARTS_OF_FRAGMENT: u32 = 4;
+
 /// Visibility at given points, to be computed.
 pub(crate) struct Baking<'a, B: Backend> {
     pub(crate) run: Run<'a, B>,
@@ -182,7 +185,7 @@ impl<B: Backend> Passes<'_, B> {
             // The others, by surface or sample by sample.
             let lists =
                 run.stage(Stage::CameraRays, [n; 2], |backend| backend.fragments(&wave, &mut samples, film, all))?;
-            for ((list, hits), parts) in lists.into_iter().zip([2, all.samples]) {
+            for ((list, hits), parts) in lists.into_iter().zip([PARTS_OF_FRAGMENT, all.samples]) {
                 let fragments = run.backend.ray_count(&list) as u64;
                 run.job.work.expect(self.pieces_of_wave(0, fragments) - fragments);
                 self.waves(list, Some(hits), parts, film)?;

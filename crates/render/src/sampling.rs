@@ -70,10 +70,10 @@ fn reversed<S: Simd>(simd: S, digits: u32x8<S>) -> u32x8<S> {
 #[inline(always)]
 fn scrambled<S: Simd>(simd: S, digits: u32x8<S>, seed: u32) -> u32x8<S> {
     let mut x = digits + u32x8::splat(simd, seed);
-    x = x ^ x * u32x8::splat(simd, OWEN_1);
-    x = x ^ x * u32x8::splat(simd, OWEN_2);
-    x = x ^ x * u32x8::splat(simd, OWEN_3);
-    x ^ x * u32x8::splat(simd, OWEN_4)
+    x = x ^ (x * u32x8::splat(simd, OWEN_1));
+    x = x ^ (x * u32x8::splat(simd, OWEN_2));
+    x = x ^ (x * u32x8::splat(simd, OWEN_3));
+    x ^ (x * u32x8::splat(simd, OWEN_4))
 }
 
 /// [`sobol_1`]

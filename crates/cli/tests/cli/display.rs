@@ -196,7 +196,7 @@ fn what_is_mostly_clipped_or_black_is_told_with_the_flag_that_helps() {
     );
     let said = render(&["--exposure", "-12", "--background", "0.5"]);
     assert!(said.contains("is black") && said.contains("--ambient"), "{said}");
-    // The background does not count.
-    let said = render(&["--exposure", "-3", "--background", "70"]);
+    // The background does not count. (In so small an image, it is in many pixels with several samples.)
+    let said = render(&["--exposure", "-3", "--background", "70", "--aa", "1"]);
     assert!(!said.contains("clipped"), "{said}");
 }

@@ -16,7 +16,7 @@ macro_rules! stage_table {
                 film: &mut Self::Film,
                 range: &SampleRange
             ) -> Self::Samples;
-            /// Parts the samples of the pixels that are not shared, or should not be: large fragments, and small ones, with what they
+            /// Parts the samples of the pixels that are not shared, or should not be: shared fragments, and single samples, with what they
             /// see.
             fragments(
                 wave: &WaveOf<Self>,

@@ -31,10 +31,21 @@ impl<R: Runtime> Cuda<R> {
     /// The same for values with one extra element at the end, whose content is ignored: it receives the sum of all, which is
     /// returned. Waits for the device.
     pub(crate) fn scan_total(&self, values: &Buffer<R, u32>) -> Result<usize, RenderError> {
-        values.clear_last()?;
-        self.scan(values)?;
-        let mut total = [0];
-        values.read_into(values.len() - 1, &mut total)?;
-        Ok(total[0] as usize)
+        self.scan_totals([values]).map(|[total]| total)
+    }
+
+    /// The same for several buffers: the device is waited for once.
+    pub(crate) fn scan_totals<const N: usize>(&self, all: [&Buffer<R, u32>; N]) -> Result<[usize; N], RenderError> {
+        for values in all {
+            values.clear_last()?;
+            self.scan(values)?;
+        }
+        let mut totals = [0; N];
+        for (values, place) in all.into_iter().zip(&mut totals) {
+            let mut total = [0];
+            values.read_into(values.len() - 1, &mut total)?;
+            *place = total[0] as usize;
+        }
+        Ok(totals)
     }
 }

@@ -1,5 +1,7 @@
 //! What the launches of kernels that test samples share.
 
+use std::sync::Arc;
+
 use bytemuck::Zeroable;
 use lightmesh_layout::constants::WARP;
 use lightmesh_layout::scene::SampleRows;
@@ -14,7 +16,7 @@ use crate::gpu::{Cuda, PerStructure, Work, sampling, warps_for};
 
 /// The samples of an image, set by set.
 pub(crate) struct SampleSets {
-    rows: Rows,
+    rows: Arc<Rows>,
     /// Number of sets.
     pub(crate) count: u32,
 }

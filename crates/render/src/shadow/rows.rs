@@ -14,12 +14,14 @@
 //! sample each have 1.6 times the error.
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::{Arc, Mutex};
 
 use bytemuck::Zeroable;
 use lightmesh_layout::constants::{MOST_OF_ROW, MOST_ROWS, MOST_WORDS, SHIFTS};
 use lightmesh_layout::scene::SampleRows;
 
 use super::Aim;
+use crate::sync::locked;
 
 const ROWS: usize = MOST_ROWS as usize;
 const WORDS: usize = MOST_WORDS as usize;
@@ -27,6 +29,11 @@ const WORDS: usize = MOST_WORDS as usize;
 const WORD: u32 = u32::BITS;
 /// The inverse of the golden ratio: its multiples are spread evenly over the unit interval.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// Numbers of samples whose rows are kept: an image needs up to three, and finding them takes as long as a wave of rays in a small image.
+const MOST_KNOWN: usize = 8;
+/// The rows that were found last.
+static KNOWN: Mutex<Vec<(u32, Arc<Rows>)>> = Mutex::new(Vec::new());
 
 /// The rows of samples of each shape. Large numbers of samples are split into several sets, to be tested one after another.
 #[derive(Clone, Debug)]
@@ -49,11 +56,19 @@ struct Row {
 
 impl Rows {
     /// Those of the lights that rays are aimed at.
-    pub(crate) fn of(aim: &Aim) -> Rows {
-        Rows::new(match aim {
+    pub(crate) fn of(aim: &Aim) -> Arc<Rows> {
+        let samples = match aim {
             Aim::Middle => 1,
             Aim::Extent(sampling) => sampling.samples,
-        })
+        };
+        let mut known = locked(&KNOWN);
+        if let Some((_, rows)) = known.iter().find(|(number, _)| *number == samples) {
+            return Arc::clone(rows);
+        }
+        let rows = Arc::new(Rows::new(samples));
+        known.truncate(MOST_KNOWN - 1);
+        known.insert(0, (samples, Arc::clone(&rows)));
+        rows
     }
 
     /// `samples` samples, at least 1.
@@ -193,8 +208,19 @@ fn set(words: &[Vec<Row>], common: SampleRows) -> SampleRows {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::job::Sampling;
 
     const NUMBERS: [u32; 12] = [1, 2, 3, 5, 16, 17, 64, 225, 256, 300, 1000, 65535];
+
+    #[test]
+    fn rows_that_are_kept_are_those_of_their_number() {
+        let of = |samples| Rows::of(&Aim::Extent(Sampling { samples, seed: 0, spread: true }));
+        let count = |rows: &Rows| rows.disc.iter().flat_map(|set| set.count).sum::<u32>();
+        for samples in (1..=20).chain(1..=20) {
+            assert_eq!(count(&of(samples)), samples);
+        }
+        assert!(locked(&KNOWN).len() <= MOST_KNOWN);
+    }
 
     #[test]
     fn every_sample_has_a_bit() {

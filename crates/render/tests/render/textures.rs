@@ -1,7 +1,7 @@
 //! Textures that are smaller in the image than they are: no moiré, nothing brighter or darker, in mirrors as well.
 
 use glam::{Affine2, DVec3, Vec2, Vec3, Vec3Swizzles};
-use lightmesh_render::{Frame, Settings, Sharing};
+use lightmesh_render::{Filter, Frame, Settings, Sharing};
 use lightmesh_scene::{Material, Scene, Texture, TextureUse, Wrap};
 use lightmesh_testkit::{SceneDraft, render};
 
@@ -69,15 +69,16 @@ fn differences(frame: &Frame, other: &Frame, range: std::ops::Range<usize>) -> [
     [apart().fold(0.0, f64::max), mean(apart())]
 }
 
-/// Fails if rows of an image with 8 samples differ from those of many samples, each of which sees less than a texel.
-fn check(scene: &Scene, settings: &Settings, range: std::ops::Range<usize>, most: [f64; 2], what: &str) {
+/// Fails if rows of an image with 8 samples differ from those of many samples, each of which sees less than a texel: by more than `most` at
+/// one pixel, on average, or in their relative means.
+fn check(scene: &Scene, settings: &Settings, range: std::ops::Range<usize>, most: [f64; 3], what: &str) {
     let reference = render(scene, &settings.clone().with_aa(256));
     let frame = render(scene, &settings.clone().with_aa(8));
     let [largest, usual] = differences(&frame, &reference, range.clone());
     let means = [&frame, &reference].map(|frame| mean(rows(frame, range.clone())));
     assert!(largest < most[0] && usual < most[1], "{what}: {largest}, {usual} on average, {means:?}");
     let [found, wanted] = means;
-    assert!((found / wanted - 1.0).abs() < 0.01, "{what}: {found} instead of {wanted}");
+    assert!((found / wanted - 1.0).abs() < most[2], "{what}: {found} instead of {wanted}");
 }
 
 #[test]
@@ -89,7 +90,7 @@ fn checks_to_the_horizon_have_no_moire_and_keep_their_energy() {
     for (size, side, wrap) in kinds.into_iter().chain(odd) {
         let scene = floor(size, side, wrap);
         let settings = settings.clone().with_sharing(if side == 6 { Sharing::Never } else { Sharing::default() });
-        check(&scene, &settings, HORIZON..CLOSE, [0.2, 0.025], &format!("{size:?}, {wrap:?}"));
+        check(&scene, &settings, HORIZON..CLOSE, [0.2, 0.025, 0.01], &format!("{size:?}, {wrap:?}"));
         if size[0] % 2 == 0 && size[1] % 2 == 0 {
             // Many checks in a pixel: their mean.
             let most =
@@ -101,11 +102,11 @@ fn checks_to_the_horizon_have_no_moire_and_keep_their_energy() {
 
 #[test]
 fn a_clamped_texture_ends_in_the_distance() {
-    // Checks from -20 to 20 across and to -40 in the distance; where they end, a pixel may see both.
+    // Checks from -20 to 20 across and to -40 in the distance; where they end, a pixel may see both, and footprints end, too.
     let mut scene = floor([800, 800], 2, Wrap::Clamp);
     let uses = scene.geometry_mut().materials[1].texture.as_mut().unwrap();
     uses.transform = Affine2::from_translation(Vec2::new(0.5, 1.0));
-    check(&scene, &Settings::default().with_size(SIZE), HORIZON..CLOSE, [0.45, 0.03], "clamped");
+    check(&scene, &Settings::default().with_size(SIZE), HORIZON..CLOSE, [0.45, 0.03, 0.02], "clamped");
 }
 
 #[test]
@@ -121,7 +122,8 @@ fn a_pixel_of_a_whole_number_of_texels_sees_that_level() {
         let draft = SceneDraft::new().ambient(1.0).painted(shown([Wrap::Repeat; 2])).floor(0.0, 500.0);
         let height = (f64::from(SIZE[1]) * texels_per_pixel) as f32;
         let draft = draft.orthographic([0.0, 5.0, 0.0], [0.0, 0.0, 0.0], height);
-        let frame = with(&textured(draft, checks([16, 16], 1), Vec2::splat(1.0 / 16.0)), 4);
+        let scene = textured(draft, checks([16, 16], 1), Vec2::splat(1.0 / 16.0));
+        let frame = render(&scene, &Settings::default().with_size(SIZE).with_aa(4).with_filter(Filter::Box));
         rows(&frame, 0..SIZE[1] as usize).map(|value| (value - 0.5).abs()).fold(0.0, f64::max)
     };
     // A quarter of the pixel's area has an edge of two texels: the first level, in which all texels are grey.
@@ -141,6 +143,6 @@ fn mirrors_show_filtered_textures() {
         let draft = draft.camera([0.0, 1.5, 0.0], [0.0, 1.5, -1.0]);
         let scene = textured(draft, checks([32, 32], 8), Vec2::splat(CHECKS / 4.0));
         let settings = Settings::default().with_size(SIZE).with_bounces(1);
-        check(&scene, &settings, HORIZON..CLOSE, [0.25, 0.05], name);
+        check(&scene, &settings, HORIZON..CLOSE, [0.25, 0.05, 0.01], name);
     }
 }

@@ -146,9 +146,7 @@ impl Pixel<'_> {
                 continue;
             }
             let part = owned(first).fold(0_u32, |part, sample| part | 1 << sample);
-            let size = part.count_ones();
-            let is_large = 4 * size > count;
-            add(usize::from(!is_large), first, part, size as f32 / all.samples as f32);
+            add(0, first, part, part.count_ones() as f32 / all.samples as f32);
         }
     }
 

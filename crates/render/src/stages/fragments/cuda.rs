@@ -17,6 +17,9 @@ const EMIT: Kernel = Kernel { module: "fragments", name: "emit_fragments" };
 /// Number of blocks in the first launch.
 const FIRST: u64 = 256;
 
+/// Rays with what they see.
+type Fragments<R> = (DeviceRays<R>, DeviceHits<R>);
+
 /// The shared fragments and the single samples of the pixels that count, with what they see.
 pub(crate) fn fragments<R: Runtime>(
     cuda: &Cuda<R>,
@@ -24,7 +27,7 @@ pub(crate) fn fragments<R: Runtime>(
     samples: &mut DeviceSamples<R>,
     film: &mut DeviceFilm<R>,
     all: &Antialiasing,
-) -> Result<[(DeviceRays<R>, DeviceHits<R>); 2], RenderError> {
+) -> Result<[Fragments<R>; 2], RenderError> {
     let (pool, rays) = (cuda.pool(), wave.rays);
     let blocks = rays.blocks(BLOCK_SIDE);
     let launch = |kernel: Kernel, progress: usize, record: PixelSamples| {
@@ -34,8 +37,8 @@ pub(crate) fn fragments<R: Runtime>(
         })
     };
     let counts = [
-        pool.room("counts of large fragments", blocks as usize + 1)?,
-        pool.room("counts of small fragments", blocks as usize + 1)?,
+        pool.room("counts of shared fragments", blocks as usize + 1)?,
+        pool.room("counts of single samples", blocks as usize + 1)?,
     ];
     let mut record = PixelSamples { counts: [counts[0].output(), counts[1].output()], ..samples.record };
     record.inner = film.kept_places().map(|place| place as u32);
@@ -46,10 +49,10 @@ pub(crate) fn fragments<R: Runtime>(
     }
     // 2. How many fragments does each block have, and where do they begin?
     launch(COUNT, rays.len(), record)?;
-    let totals = [cuda.scan_total(&counts[0])?, cuda.scan_total(&counts[1])?];
+    let totals = cuda.scan_totals([&counts[0], &counts[1]])?;
     // 3. The fragments.
     let lists =
-        [pool.room::<ListedRay>("large fragments", totals[0])?, pool.room::<ListedRay>("small fragments", totals[1])?];
+        [pool.room::<ListedRay>("shared fragments", totals[0])?, pool.room::<ListedRay>("single samples", totals[1])?];
     let hits = [pool.room("hits of fragments", totals[0])?, pool.room("hits of fragments", totals[1])?];
     record.fragments = [lists[0].output(), lists[1].output()];
     record.fragment_hits = [hits[0].output(), hits[1].output()];
@@ -72,6 +75,6 @@ pub(crate) fn fragments<R: Runtime>(
         };
         (several, DeviceHits { hits })
     };
-    let ([large, small], [large_hits, small_hits]) = (lists, hits);
-    Ok([fragments(large, large_hits), fragments(small, small_hits)])
+    let ([shared, single], [shared_hits, single_hits]) = (lists, hits);
+    Ok([fragments(shared, shared_hits), fragments(single, single_hits)])
 }

@@ -92,7 +92,7 @@ DEVICE void take(const PixelSamples &args, unsigned index, Written &written, uns
     written.found += hit.triangle != Hit::NONE;
 }
 
-// Hands the large fragments and the small ones of a pixel to `taker`.
+// Hands the shared fragments and the single samples of a pixel to `taker`.
 template <class Taker>
 DEVICE void add_fragments(const PixelSamples &args, unsigned index, Taker &taker) {
     const unsigned state = args.state[index], count = args.samples[1];
@@ -114,9 +114,7 @@ DEVICE void add_fragments(const PixelSamples &args, unsigned index, Taker &taker
                 take(args, index, taker, 1, __ffs(left) - 1, 0, args.weight);
             continue;
         }
-        const unsigned size = __popc(part);
-        const bool is_large = 4 * size > count;
-        take(args, index, taker, is_large ? 0 : 1, first, part, (float)size / (float)args.all_samples);
+        take(args, index, taker, 0, first, part, (float)__popc(part) / (float)args.all_samples);
     }
 }
 

@@ -1,12 +1,11 @@
 //! Fragments: what is shaded of the pixels that are not shared.
 //!
-//! In: the samples of pixels, and the radiance of those that are shared. Out: two lists of rays, large fragments and small ones.
+//! In: the samples of pixels, and the radiance of those that are shared. Out: two lists of rays, shared fragments and single samples.
 //!
 //! 1. A shared pixel is *split* if a neighbour on the same surface differs so much in radiance that sharing may be seen: at the
 //!    edge of a hard shadow or at a highlight.
-//! 2. The samples of each pixel that is not shared are parted by surface. Each part is a fragment, shaded at
-//!    the first of its samples, and large if it has more than a quarter of them. But each sample of a split pixel, and of
-//!    mirrors, is a small fragment.
+//! 2. The samples of each pixel that is not shared are parted by surface. Each part is a shared fragment, shaded at the first of its
+//!    samples. But the samples of a split pixel, and of mirrors, are single.
 //! 3. The radiance of these pixels so far is discarded.
 
 pub(crate) mod cpu;

@@ -39,7 +39,7 @@ pub(crate) fn pixel_samples(
     let (pixels, first) = (rays.pixels.len(), film.rows.start * view.size()[0]);
 
     if !scene.geometry.mip_levels.is_empty() {
-        rays.cone = Cone::of_sample(rays.spacing, all.samples);
+        rays.cone = Cone::of_sample(rays.spacing, all.samples, all.breadth);
     }
 
     // 1. What each sample sees. The rays through a pixel follow each other: they are coherent.
@@ -131,7 +131,7 @@ impl Depths {
         let depths = &self.by_pixel[start..self.by_pixel.len().min(start + BEAM)];
         let (nearest, farthest) =
             depths.iter().fold((f32::INFINITY, 0.0_f32), |(low, high), &depth| (low.min(depth), high.max(depth)));
-        (farthest < f32::INFINITY).then(|| farthest + 1.5 * (farthest - nearest) + 0.01 * farthest)
+        (farthest < f32::INFINITY).then_some(farthest + 1.5 * (farthest - nearest) + 0.01 * farthest)
     }
 }
 

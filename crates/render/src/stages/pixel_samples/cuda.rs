@@ -37,7 +37,7 @@ pub(crate) fn pixel_samples<R: Runtime>(
 ) -> Result<DeviceSamples<R>, RenderError> {
     let SampleRange { all, numbers } = range;
     if !scene.host.geometry.mip_levels.is_empty() {
-        rays.record.cone = bytemuck::cast(Cone::of_sample(rays.spacing, all.samples));
+        rays.record.cone = bytemuck::cast(Cone::of_sample(rays.spacing, all.samples, all.breadth));
     }
     let (pixels, count) = (rays.len(), numbers.len());
     let planes = cuda.pool().room("hits of samples", pixels * count)?;
