@@ -7,6 +7,7 @@
 
 use std::f64::consts::TAU;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, f32x8, u32x8};
@@ -58,8 +59,8 @@ impl Antialiasing {
             keeps: false,
             contrast: CONTRAST * noise,
             seed,
-            breadth: breadth(&quantiles(filter)),
-            quantiles: quantiles(filter),
+            breadth: breadth(table(filter)),
+            quantiles: *table(filter),
         }
     }
 
@@ -141,6 +142,13 @@ impl Antialiasing {
     }
 }
 
+/// The [`quantiles`] of a filter. They are computed once, which takes about as long as a small image on a GPU.
+fn table(filter: Filter) -> &'static [f32; FILTER_PLACES as usize] {
+    static TABLES: [OnceLock<[f32; FILTER_PLACES as usize]>; 3] = [const { OnceLock::new() }; 3];
+    let number = Filter::ALL.iter().position(|&other| other == filter).unwrap_or_default();
+    TABLES[number].get_or_init(|| quantiles(filter))
+}
+
 /// The offsets below which each 1/63 of a filter lies.
 fn quantiles(filter: Filter) -> [f32; FILTER_PLACES as usize] {
     let radius = 0.5 * filter.width();
@@ -209,6 +217,13 @@ mod tests {
                 let share = area(f64::from(step[0]), f64::from(step[1])) / all;
                 assert!((share - 1.0 / 63.0).abs() < 1e-4, "{filter:?}: {share}");
             }
+        }
+    }
+
+    #[test]
+    fn every_filter_has_a_table_of_its_own() {
+        for &filter in Filter::ALL {
+            assert_eq!(*table(filter), quantiles(filter), "{filter}");
         }
     }
 
