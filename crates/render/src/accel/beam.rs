@@ -14,11 +14,11 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, f32x8};
-use glam::Vec3;
 use lightmesh_scene::Bounds;
 
 use super::approach::Approach;
 use super::packet::{ClosestPacket, LANES, PacketShear, PacketVisitor};
+use super::triangle::largest_axis;
 use super::{Accelerator, Form, Hit, Ray, Region, Triangle};
 use crate::simd::dispatch;
 
@@ -156,17 +156,4 @@ fn packet<S: Simd>(simd: S, rays: &[Ray]) -> Option<ClosestPacket<S>> {
     };
     let shear = PacketShear::new(&axes(&origin), &axes(&direction), axis);
     Some(ClosestPacket::new(simd, shear, f32x8::splat(simd, f32::INFINITY)))
-}
-
-/// As [`RayShear`](super::triangle::RayShear) chooses it.
-#[inline(always)]
-fn largest_axis(direction: Vec3) -> usize {
-    let size = direction.abs();
-    if size.x >= size.y && size.x >= size.z {
-        0
-    } else if size.y >= size.z {
-        1
-    } else {
-        2
-    }
 }

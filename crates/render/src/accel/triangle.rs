@@ -73,18 +73,24 @@ pub struct RayShear {
     depth: f32,
 }
 
+/// The axis of a direction's largest component; of equal ones the first.
+#[inline(always)]
+pub(super) fn largest_axis(direction: Vec3) -> usize {
+    let size = direction.abs();
+    if size.x >= size.y && size.x >= size.z {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    }
+}
+
 impl RayShear {
     /// Prepares the ray from `origin` along `direction`, which must not be zero.
     #[inline(always)]
     pub fn new(origin: Vec3, direction: Vec3) -> RayShear {
-        let size = direction.abs();
-        let z = if size.x >= size.y && size.x >= size.z {
-            0
-        } else if size.y >= size.z {
-            1
-        } else {
-            2
-        };
+        let z = largest_axis(direction);
         let axes = [(z + 1) % 3, (z + 2) % 3, z];
         let depth = direction[z];
         let shear = [direction[axes[0]] / depth, direction[axes[1]] / depth];

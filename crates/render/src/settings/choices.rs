@@ -251,7 +251,7 @@ parse_by_name!(Quality, "quality");
 pub enum Filter {
     /// The pixel's square.
     Box,
-    /// A bell with a standard deviation of a quarter of a pixel, cut off at three.
+    /// A bell with a standard deviation of 0.375 pixels, cut off at three of them.
     Gauss,
     /// Blackman and Harris' window, 1.5 pixels to either side: smooth edges, hardly blurred.
     #[default]

@@ -3,6 +3,7 @@
 use super::size::RAYS;
 use crate::accel::Ray;
 use crate::accel::approach::{Approach, NearRay};
+use crate::accel::triangle::largest_axis;
 
 /// Kinds of rays: three axes, eight octants.
 const KINDS: usize = 24;
@@ -67,13 +68,5 @@ fn kind(near: &NearRay) -> u8 {
     let direction = near.direction;
     let negative = |component: f32| u8::from(component.is_sign_negative());
     let signs = negative(direction.x) | negative(direction.y) << 1 | negative(direction.z) << 2;
-    let size = direction.abs();
-    let axis = if size.x >= size.y && size.x >= size.z {
-        0
-    } else if size.y >= size.z {
-        1
-    } else {
-        2
-    };
-    signs | axis << 3
+    signs | (largest_axis(direction) as u8) << 3
 }
