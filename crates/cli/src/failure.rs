@@ -1,13 +1,13 @@
 //! Everything that can end a run, and its exit code.
 
 use lightmesh::render::accel::{GridError, GridSaveError};
-use lightmesh::scene::{ExportError, SceneFormat, UnknownCamera};
+use lightmesh::scene::{EnvironmentError, ExportError, SceneFormat};
 use lightmesh::{LoadError, RenderError, SaveError, image};
 use lightmesh_bench::BenchError;
 use lightmesh_bench::report::ReportError;
 
 use crate::output::OutputError;
-use crate::plan::PlanError;
+use crate::plan::{ChoiceError, PlanError};
 
 /// A comparison exceeded its threshold.
 pub(crate) const EXCEEDED: u8 = 1;
@@ -26,7 +26,7 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Load(#[from] LoadError),
     #[error(transparent)]
-    Camera(#[from] UnknownCamera),
+    Choice(#[from] ChoiceError),
     #[error(transparent)]
     Render(#[from] RenderError),
     #[error(transparent)]
@@ -118,6 +118,7 @@ impl Failure {
             {
                 UNABLE
             }
+            Failure::Choice(ChoiceError::Environment(EnvironmentError::Memory { .. })) => UNABLE,
             Failure::Grid(GridError::Memory { .. }) => UNABLE,
             _ => BAD_INPUT,
         }

@@ -165,6 +165,20 @@ constants! {
 
     /// Bound on the relative error of a chain of 32 operations (Higham's gamma).
     GAMMA_32: f32 = 32.0 * UNIT_ROUNDOFF / (1.0 - 32.0 * UNIT_ROUNDOFF);
+    /// The tangent of a sixteenth of a turn: above, the polynomial below takes the difference from an eighth.
+    TANGENT_OF_EIGHTH: f32 = 0.414_213_56;
+    /// An eighth of a turn.
+    EIGHTH_OF_TURN: f32 = 0.125;
+    /// Coefficients of the polynomial for the arc tangent up to there, within 2^-22, from the highest power (Cephes, Moshier 1992).
+    ARC_TANGENT_9: f32 = 8.053_744_5e-2;
+    /// See above.
+    ARC_TANGENT_7: f32 = -1.387_768_6e-1;
+    /// See above.
+    ARC_TANGENT_5: f32 = 1.997_771_1e-1;
+    /// See above.
+    ARC_TANGENT_3: f32 = -3.333_295e-1;
+    /// A radian in turns.
+    TURN_OF_RADIAN: f32 = 0.159_154_94;
     /// If the square of twice its area is below this, a triangle's normal has lost its bits to underflow.
     LEAST_SQUARE: f32 = 1e-30;
     /// If the square of its length is below this, an interpolated normal has cancelled out.

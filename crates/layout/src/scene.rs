@@ -104,6 +104,44 @@ records! {
         spare_c: u32,
     }
 
+    /// A level of an environment.
+    EnvironmentLevel {
+        /// Radiances row by row, from the top.
+        texels: In<Vec3>,
+        /// Width and height; at least 1.
+        size: [u32; 2],
+    }
+
+    /// What surrounds a scene.
+    Environment {
+        /// The image, and its means from the largest to the one that is a single texel; null if nothing surrounds the scene.
+        levels: In<EnvironmentLevel>,
+        /// Unit vector to the right of the image's middle.
+        east: Vec3,
+        /// Number of means below the image.
+        lower: u32,
+        /// Unit vector to the image's top.
+        up: Vec3,
+        /// 1: the camera sees the background instead.
+        hidden: u32,
+        /// Unit vector to the image's middle.
+        north: Vec3,
+        /// The distance of the sun's edge from its centre, one unit away; negative if there is none.
+        sun_radius: f32,
+        /// Unit vector to the sun.
+        sun: Vec3,
+        /// Padding to a multiple of sixteen bytes.
+        spare: u32,
+        /// Radiance of the sun.
+        sun_radiance: Vec3,
+        /// 1: the ambient light is the irradiance of the environment by the terms below.
+        lights: u32,
+        /// Coefficients of 1, x, y, z, xy, yz, zx, z² and x² − y² of a normal: red, green and blue of each.
+        terms: [f32; 27],
+        /// Padding to a multiple of eight bytes.
+        spare_b: u32,
+    }
+
     /// Everything about a scene that kernels need. Of the three structures, the one that rays traverse is present; and the BVH, if
     /// short tests go by cell.
     Scene {
@@ -134,6 +172,8 @@ records! {
         /// [`LIGHT_TARGETS`](crate::constants::LIGHT_TARGETS) points on each light, from which its unshadowed light is computed; of a
         /// directional light at distance 1 from the origin.
         light_targets: In<Vec3>,
+        /// What surrounds it.
+        environment: Environment,
         /// The regular grid.
         grid: Grid,
         /// The wide BVH.

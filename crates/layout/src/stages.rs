@@ -200,8 +200,8 @@ records! {
         sampled_pixels: u64,
         /// 1 if the scene has shadow catchers.
         catches: u32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
+        /// 1 if the rays come from mirrors.
+        mirrored: u32,
     }
 
     /// `pixel_samples`, `count_ids`, `merge_samples`, `find_contrast`, `count_fragments` and `emit_fragments`: one thread per pixel of a camera's rows,

@@ -170,12 +170,6 @@ impl PreparedScene {
         Ok(PreparedScene { scene: scene.clone(), geometry })
     }
 
-    /// I_a of formula (1): what the scene sets, or the [default](Lights::default_ambient).
-    pub(crate) fn ambient(&self) -> Vec3 {
-        let lights = &self.scene.lights;
-        lights.ambient.unwrap_or_else(|| lights.default_ambient(&self.geometry.bounds))
-    }
-
     /// Whether anything only shows the shadows on it.
     pub(crate) fn catches(&self) -> bool {
         self.scene.geometry.materials.iter().any(|material| material.catcher)

@@ -100,6 +100,8 @@ pub struct SettingsStats {
     pub camera: CameraStats,
     pub ambient: [f32; 3],
     pub background: [f32; 3],
+    /// The name of the sky or the panorama.
+    pub environment: Option<String>,
     pub transparent: bool,
     pub seed: u64,
     pub memory_limit: Option<u64>,

@@ -10,7 +10,7 @@ use lightmesh_memory::Short;
 
 use crate::{
     Camera, CreaseAngle, Geometry, Light, LightKind, LightMeshDefaults, Lights, LoadError, LoadOptions, Material,
-    MeshPart, Objects, Position, Scene, SceneBuilder, Texture,
+    MeshPart, Objects, Position, Scene, SceneBuilder, Surroundings, Texture,
     border::{Border, beside},
     loaded_mesh::LoadedMesh,
     mesh_part::Room,
@@ -81,6 +81,7 @@ pub(crate) struct Draft {
     files: BTreeSet<PathBuf>,
     pub(crate) ambient: Option<Vec3>,
     pub(crate) background: Option<Vec3>,
+    pub(crate) surroundings: Option<Surroundings>,
     pub(crate) light_mesh: LightMeshDefaults,
     pub(crate) warnings: Warnings,
 }
@@ -108,6 +109,7 @@ impl Draft {
             files: BTreeSet::from([path.to_owned()]),
             ambient: None,
             background: None,
+            surroundings: None,
             light_mesh: LightMeshDefaults::default(),
             warnings: Warnings::default(),
         }
@@ -352,10 +354,16 @@ impl Draft {
         let cameras = cameras.map(|(camera, world)| Camera { position: geometry.to_local(world), ..camera }).collect();
         let lights = self.lights.into_iter();
         let list = lights.map(|(light, world)| moved(light, geometry.to_local(world))).collect();
+        let mut lights = Lights { list, ambient: self.ambient, background: self.background, environment: None };
+        // What else the file says of lights, it means.
+        if let Some(Surroundings { environment, sun }) = self.surroundings {
+            lights.list.splice(0..0, sun);
+            lights.environment = Some(environment.into());
+        }
         Ok(Scene {
             name,
             geometry: geometry.into(),
-            lights: Lights { list, ambient: self.ambient, background: self.background },
+            lights,
             cameras,
             light_mesh: self.light_mesh,
             files: self.files.into_iter().collect(),

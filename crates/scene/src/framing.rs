@@ -85,7 +85,11 @@ impl Scene {
     /// [`Scene::default_lights`], placed relative to its first camera, if it has no light; with lights inside, also an ambient term of 0.2
     /// if none is set. Returns what was added.
     pub fn complete(&mut self, up: Up) -> Added {
-        let mut added = Added { camera: self.cameras.is_empty(), lights: self.lights.is_empty(), ..Added::default() };
+        let mut added = Added {
+            camera: self.cameras.is_empty(),
+            lights: self.lights.is_empty() && self.lights.environment.is_none(),
+            ..Added::default()
+        };
         // Needed for what is missing alone, and once for both.
         let geometry = Arc::clone(&self.geometry);
         let sight = LazyCell::new(|| Sight::new(&geometry.mesh));

@@ -14,6 +14,7 @@ mod builder;
 pub mod builtin;
 mod camera;
 mod draft;
+mod environment;
 mod error;
 mod export;
 mod formats;
@@ -47,6 +48,10 @@ pub use glam;
 
 pub use builder::SceneBuilder;
 pub use camera::{Camera, CameraError, Fov, Projection};
+pub use environment::{
+    Environment, EnvironmentError, EnvironmentLevel, Moment, Sky, SkyError, SkyKind, Sun, SunError, SunPosition,
+    Surroundings,
+};
 pub use error::{LoadError, Place};
 pub use export::ExportError;
 pub use framing::{Added, UnknownCamera, Viewpoint};

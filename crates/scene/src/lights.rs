@@ -2,10 +2,11 @@
 
 use std::f32::consts::PI;
 use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::{Bounds, Falloff, Light};
+use crate::{Bounds, Environment, Falloff, Light, LightKind, Surroundings};
 
 /// The default ambient term as a share of what the lights give.
 const DEFAULT_AMBIENT: f32 = 0.1;
@@ -18,8 +19,10 @@ pub struct Lights {
     pub list: Vec<Light>,
     /// I_a of formula (1), per channel; `None` if the file does not set it.
     pub ambient: Option<Vec3>,
-    /// Radiance of rays that hit nothing; `None` if the file does not set it.
+    /// Radiance of camera rays that hit nothing, and of all rays if there is no environment; `None` if the file does not set it.
     pub background: Option<Vec3>,
+    /// What surrounds the scene: the camera sees it unless there is a background, mirrors always. A sun in it is also in the list.
+    pub environment: Option<Arc<Environment>>,
 }
 
 impl Lights {
@@ -33,10 +36,23 @@ impl Lights {
         Lights { ambient: Some(ambient.into()), ..self }
     }
 
-    /// I_a if it is not set, for a scene within `bounds`: a tenth of what a white surface shows that faces a light of intensity 1 without
+    /// The light of a sky or a panorama, in which the scene stands from now on: it takes the place of the ambient light, the background
+    /// and all directional lights; other lights stay.
+    pub fn surround(&mut self, surroundings: Surroundings) {
+        let Surroundings { environment, sun } = surroundings;
+        self.list.retain(|light| !matches!(light.kind, LightKind::Directional { .. }));
+        self.list.splice(0..0, sun);
+        (self.ambient, self.background) = (None, None);
+        self.environment = Some(environment.into());
+    }
+
+    /// I_a if it is not set, for a scene within `bounds`: the mean radiance of the environment, or else a tenth of what a white surface shows that faces a light of intensity 1 without
     /// falloff; and if all lights have falloff, a tenth of what it shows at the centre with all of them facing it. So the ambient term has
     /// the unit of the lights.
     pub fn default_ambient(&self, bounds: &Bounds) -> Vec3 {
+        if let Some(environment) = &self.environment {
+            return environment.mean();
+        }
         if self.list.is_empty() || self.list.iter().any(|light| light.falloff == Falloff::None) {
             return Vec3::splat(DEFAULT_AMBIENT);
         }
@@ -113,6 +129,20 @@ impl IntoIterator for Lights {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn surroundings_replace_suns_and_what_stood_for_them() {
+        let sun = || Light::directional(Vec3::NEG_Y).unwrap();
+        let mut lights = Lights::from(vec![sun().named("old"), Light::point(Vec3::Y)]);
+        (lights.ambient, lights.background) = (Some(Vec3::ONE), Some(Vec3::Z));
+        let environment = Environment::new("", [1; 2], vec![[0.25, 0.5, 1.0]], crate::Up::Y);
+        lights.surround(Surroundings { environment, sun: Some(sun().named("new")) });
+        let names: Vec<_> = lights.iter().map(|light| light.name.as_str()).collect();
+        assert_eq!(names, ["new", ""]);
+        assert_eq!((lights.ambient, lights.background), (None, None));
+        let bounds = Bounds { min: Vec3::ZERO, max: Vec3::ONE };
+        assert!((lights.default_ambient(&bounds) - Vec3::new(0.25, 0.5, 1.0)).length() < 1e-4);
+    }
 
     #[test]
     fn the_ambient_term_has_the_unit_of_the_lights() {

@@ -9,7 +9,9 @@ use lightmesh::scene::{Falloff, Weight};
 use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
 
 use super::{Progress, SceneArg, Switch, Up, words};
-use crate::value::{Background, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size, Smooth};
+use crate::value::{
+    Background, CameraView, Color, Dims, EnvironmentSpec, Exposure, LightSpec, Positive, Size, SkySpec, Smooth,
+};
 
 /// Render an image of a scene
 #[derive(Debug, Args)]
@@ -162,10 +164,24 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_parser = words::falloff(), default_value_t = Falloff::None, requires = "lights", help_heading = "Scene")]
     pub(crate) falloff: Falloff,
 
-    /// Ambient intensity: one number or r,g,b [default: the scene's, else 0.1, or a tenth of what photometric lights give, or 0.2 with
+    /// Ambient intensity: one number or r,g,b [default: the mean of --sky or --environment, else the scene's, else 0.1, or a tenth of what photometric lights give, or 0.2 with
     /// default lights in the space that the camera sees]
     #[arg(long, value_name = "V", allow_hyphen_values = true, help_heading = "Scene")]
     pub(crate) ambient: Option<Color>,
+
+    /// A sky around the scene: clear (Hosek and Wilkie's, with its sun), uniform or gradient, and after semicolons
+    /// sun=ELEVATION,AZIMUTH in degrees, clockwise from north, or place=LATITUDE,LONGITUDE and time=2026-06-21T15:00+02:00; turbidity=T
+    /// (haze, 1 to 10); ground=V (what it reflects; below a gradient its radiance); color=V; zenith=V; horizon=V; north=DEGREES (clockwise
+    /// from -Z if Y is up, from +Y if Z is); strength=S. It replaces the scene's directional lights, ambient light and background; with
+    /// alone, all its lights. The camera, mirrors and --ground see it. White that faces the sun shows about 1
+    /// [default: none; clear is sun=40,225;turbidity=3;ground=0.2]
+    #[arg(long, value_name = "SPEC", allow_hyphen_values = true, help_heading = "Scene")]
+    pub(crate) sky: Option<SkySpec>,
+
+    /// A panorama around the scene: an equirectangular .hdr or .exr image, north in its middle, and after semicolons rotation=DEGREES
+    /// (clockwise from above), strength=S, alone. Its sun, if it shows one, becomes a light. Replaces what --sky does
+    #[arg(long, value_name = "FILE[;OPTIONS]", conflicts_with = "sky", help_heading = "Scene")]
+    pub(crate) environment: Option<EnvironmentSpec>,
 
     /// Crease angle in degrees: OBJ, PLY and STL files without normals are smooth across edges where triangles meet at less, and across no
     /// other edge. off shows every triangle as it is. OBJ smoothing groups are honoured; glTF files and files with normals are not changed

@@ -14,7 +14,7 @@ use crate::args::{RenderArgs, SceneArg};
 use crate::output::OutputError;
 use crate::value::Smooth;
 pub(crate) use files::PictureFiles;
-pub(crate) use scene::SceneChoices;
+pub(crate) use scene::{ChoiceError, SceneChoices};
 
 /// Why a command line is invalid.
 #[derive(Debug, thiserror::Error)]

@@ -1,13 +1,30 @@
 //! Scene overrides from the command line, and defaults for what a scene lacks.
 
+use std::path::Path;
+
 use glam::{DVec3, Vec3};
-use lightmesh::scene::{Camera, CameraError, Light, LightKind, SceneFormat, UnknownCamera, Up, Viewpoint};
+use lightmesh::scene::{
+    Camera, CameraError, Environment, EnvironmentError, Light, LightKind, SceneFormat, SkyError, Surroundings,
+    UnknownCamera, Up, Viewpoint,
+};
 use lightmesh::{Observer, Scene};
+use lightmesh_memory::Budget;
 
 use crate::args::{self, RenderArgs};
-use crate::value::{Background, Color, LightSpec};
+use crate::value::{Background, Color, EnvironmentSpec, LightSpec, SkySpec};
 
-/// Camera, lights, ambient term and background as typed.
+/// Why a scene cannot be had as typed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum ChoiceError {
+    #[error(transparent)]
+    Camera(#[from] UnknownCamera),
+    #[error("--sky: {0}")]
+    Sky(#[from] SkyError),
+    #[error("--environment: {0}")]
+    Environment(#[from] EnvironmentError),
+}
+
+/// Camera, lights, surroundings, ambient term and background as typed.
 pub(crate) struct SceneChoices {
     /// At the local frame's origin, together with its world position.
     camera: Option<(Camera, DVec3)>,
@@ -19,7 +36,10 @@ pub(crate) struct SceneChoices {
     falloff: lightmesh::scene::Falloff,
     ambient: Option<Color>,
     background: Option<Background>,
+    sky: Option<SkySpec>,
+    environment: Option<EnvironmentSpec>,
     ground: bool,
+    budget: Budget,
 }
 
 /// What an image shows as the background of a scene with a ground if none is set: shadows on black would not be seen.
@@ -43,18 +63,28 @@ impl SceneChoices {
             falloff: args.falloff,
             ambient: args.ambient,
             background: args.background,
+            sky: args.sky,
+            environment: args.environment.clone(),
             ground: args.ground,
+            budget: Budget::new(args.scene.reading.memory_limit.map(|limit| limit.0)),
         })
     }
 
-    /// Applies camera, lights, ambient term and background to the scene; reports which defaults had to be added. Returns what the image is to
+    /// Applies camera, lights, surroundings, ambient term and background to the scene; reports which defaults had to be added. Returns what the image is to
     /// show behind a ground, if no background is set.
-    pub(crate) fn apply(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<Option<f32>, UnknownCamera> {
+    pub(crate) fn apply(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<Option<f32>, ChoiceError> {
         if let Some(camera) = self.camera(scene)? {
             scene.cameras = vec![camera];
         }
         if !self.lights.is_empty() {
             scene.lights.list = self.lights.iter().map(|light| self.light(scene, light)).collect();
+        }
+        let (up, why) = self.up(scene);
+        if let Some((surroundings, alone)) = self.surroundings(up)? {
+            if alone {
+                scene.lights.list.clear();
+            }
+            scene.lights.surround(surroundings);
         }
         if let Some(Color(ambient)) = self.ambient {
             scene.lights.ambient = Some(ambient);
@@ -62,7 +92,6 @@ impl SceneChoices {
         if let Some(Background::Color(Color(background))) = self.background {
             scene.lights.background = Some(background);
         }
-        let (up, why) = self.up(scene);
         let added = scene.complete(up);
         if added.camera {
             let from = match added.viewpoint {
@@ -88,7 +117,8 @@ impl SceneChoices {
         if self.ground {
             scene.add_ground(up);
         }
-        let is_open = self.background.is_none() && scene.lights.background.is_none();
+        let lights = &scene.lights;
+        let is_open = self.background.is_none() && lights.background.is_none() && lights.environment.is_none();
         Ok((self.ground && is_open).then_some(GROUND_BACKGROUND))
     }
 
@@ -101,6 +131,21 @@ impl SceneChoices {
         };
         let asks = self.asks_scene && scene.cameras.is_empty();
         asks.then(suggested).flatten().unwrap_or((self.up, String::new()))
+    }
+
+    /// The sky or the panorama, and whether it is the only light.
+    fn surroundings(&self, up: Up) -> Result<Option<(Surroundings, bool)>, ChoiceError> {
+        if let Some(spec) = &self.environment {
+            let panorama = Environment::open(&spec.file, up, self.budget)?;
+            return Ok(Some((panorama.turned(spec.rotation).scaled(spec.strength).into(), spec.alone)));
+        }
+        let Some(spec) = &self.sky else { return Ok(None) };
+        Ok(Some((spec.sky.surroundings(up)?, spec.alone)))
+    }
+
+    /// A file that is read besides the scene.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        self.environment.as_ref().map(|spec| &*spec.file)
     }
 
     /// The requested camera.

@@ -26,6 +26,9 @@ pub(super) fn run(args: &ExportArgs) -> Result<(), Failure> {
         0 => String::new(),
         made => format!(", {made} smooth normals"),
     };
+    if let Some(environment) = &scene.lights.environment {
+        watcher.warning(&format!("{}: skies and panoramas are not exported, only the sun in them", environment.name));
+    }
     let (name, triangles) = (&scene.name, scene.geometry.mesh.triangles.len());
     watcher.summary(&format!("{name}, {triangles} triangles{normals}: {destination}"));
     Ok(())

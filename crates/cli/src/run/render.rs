@@ -34,6 +34,9 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         watcher.note(&format!("smooth {degrees}: {made} normals were made (--smooth off makes none)"));
     }
 
+    if let Some(file) = plan.choices.file() {
+        plan.files.outputs.keep("the environment", Some(file))?;
+    }
     let behind = plan.choices.apply(&mut scene, &watcher)?;
     let metering = Metering::new(&mut scene, &plan, behind);
     let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;

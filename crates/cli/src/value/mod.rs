@@ -8,6 +8,7 @@ mod light;
 mod memory;
 mod number;
 mod size;
+mod sky;
 mod smooth;
 
 pub(crate) use budget::Budget;
@@ -16,10 +17,11 @@ pub(crate) use light::{Background, Color, LightSpec};
 pub(crate) use memory::ByteSize;
 pub(crate) use number::{Bound, Exposure, Positive};
 pub(crate) use size::{Dims, Size};
+pub(crate) use sky::{EnvironmentSpec, SkySpec};
 pub(crate) use smooth::Smooth;
 
 /// Why a value is invalid. The command line parser prepends the flag and the text.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum ValueError {
     /// The text has the wrong form.
     #[error("write {form}, for instance {example}")]
@@ -44,6 +46,12 @@ pub(crate) enum ValueError {
         text: String,
         /// Its valid range.
         range: &'static str,
+    },
+    /// There is no sun then, or there.
+    #[error("{problem}")]
+    Sun {
+        /// Why.
+        problem: lightmesh::scene::SunError,
     },
     /// The camera has no direction.
     #[error("position and target are the same point: move one of them")]

@@ -13,6 +13,7 @@ mod render;
 mod report;
 mod run;
 mod scenes;
+mod sky;
 mod smooth;
 
 #[cfg(unix)]

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Acceleration, PreparedScene, Unobserved, View};
-use lightmesh_scene::{Falloff, LightKind, Scene};
+use lightmesh_scene::{Falloff, LightKind, Scene, Sky, SunPosition, Up};
 use lightmesh_testkit::{SceneDraft, half_plane, pile, soup};
 
 /// The structures, in the order of [`Subject::prepared`].
@@ -43,6 +43,9 @@ pub(crate) static SUBJECTS: [Subject; 8] = [
 /// For images only: what it adds affects no other stage than shading.
 pub(crate) static TEXTURED: Subject = subject("textured", 0.25, true, crate::textured::textured);
 
+/// For images only, too.
+pub(crate) static SURROUNDED: Subject = subject("surrounded", 0.25, true, surrounded);
+
 impl Subject {
     /// The scene.
     pub(crate) fn scene(&'static self) -> &'static Scene {
@@ -74,6 +77,14 @@ fn still_life() -> Scene {
     let built_in = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/still_life.toml"));
     let path = if built_in.exists() { built_in } else { Path::new("scenes/still_life.toml") };
     Scene::open(path).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Textures, colours and mirrors under a sky with its sun.
+fn surrounded() -> Scene {
+    let mut scene = crate::textured::textured();
+    let sky = Sky { north: 20.0, ..Sky::clear(SunPosition { elevation: 30.0, azimuth: 170.0 }) };
+    scene.lights.surround(sky.surroundings(Up::Y).expect("there is such a sky"));
+    scene
 }
 
 /// A light of every kind over a pile and a mirror, far from the world's origin.

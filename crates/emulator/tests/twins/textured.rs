@@ -3,13 +3,17 @@
 use glam::{Affine2, DVec3, Vec2, Vec3};
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{Acceleration, Frame, Mode, PreparedScene, Settings, Sharing, Unobserved, render_on};
-use lightmesh_scene::{LightKind, Material, Scene, Texture, TextureUse, Wrap};
+use lightmesh_scene::{Environment, LightKind, Material, Scene, Sun, Texture, TextureUse, Up, Wrap};
 use lightmesh_testkit::{SceneDraft, pile};
 
 use crate::trials::{Case, Target};
 
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     let mut cases = vec![Case::new("textured::bits".to_owned(), same_bits)];
+    for aa in [1, 4, 40] {
+        let name = format!("textured::surrounded::{aa}");
+        cases.push(Case::new(name, move |cuda: &Cuda<R>| same_surrounded_bits(cuda, aa)));
+    }
     for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
         for height in [None, Some(4.0)] {
             let view = if height.is_some() { "orthographic" } else { "perspective" };
@@ -66,6 +70,19 @@ fn same_bits<R: Target>(cuda: &Cuda<R>) {
         let settings = Settings::default().with_mode(Mode::RayTrace).with_size([64, 48]);
         assert_same_bits(cuda, &scene, &settings, 4);
     }
+}
+
+/// A panorama with a sun, seen directly, in flat and curved mirrors and as ambient light.
+fn same_surrounded_bits<R: Target>(cuda: &Cuda<R>, aa: u32) {
+    let mut scene = small_texels(Wrap::Repeat, None);
+    let texel = |index: u32| [0.1 * (index % 7) as f32, (index % 1021) as f32 / 1021.0, 0.001 * (index / 331) as f32];
+    let map = Environment::new("noise", [331, 170], (0..331 * 170).map(texel).collect(), Up::Y).turned(17.0);
+    let sun = Sun::new(Vec3::new(0.1, 0.2, -1.0), 6.0, Vec3::new(3.0, 2.0, 1.0));
+    scene.lights.environment = Some(map.with_sun(Some(sun)).into());
+    (scene.lights.ambient, scene.lights.background) = (None, None);
+    let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
+    let settings = Settings::default().with_size([64, 48]).with_aa(aa).with_bounces(2);
+    assert_same_bits(cuda, &scene, &settings, 2);
 }
 
 /// Fails if any colour differs, or if there are not more colours than one for every `most` pixels.

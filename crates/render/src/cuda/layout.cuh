@@ -78,6 +78,20 @@
 #define ROOT_HIT 0x80000000u
 // Bound on the relative error of a chain of 32 operations (Higham's gamma).
 #define GAMMA_32 0x1.00002p-19f
+// The tangent of a sixteenth of a turn: above, the polynomial below takes the difference from an eighth.
+#define TANGENT_OF_EIGHTH 0x1.a8279ap-2f
+// An eighth of a turn.
+#define EIGHTH_OF_TURN 0x1p-3f
+// Coefficients of the polynomial for the arc tangent up to there, within 2^-22, from the highest power (Cephes, Moshier 1992).
+#define ARC_TANGENT_9 0x1.49e1a2p-4f
+// See above.
+#define ARC_TANGENT_7 -0x1.1c370ap-3f
+// See above.
+#define ARC_TANGENT_5 0x1.9924bep-3f
+// See above.
+#define ARC_TANGENT_3 -0x1.555454p-2f
+// A radian in turns.
+#define TURN_OF_RADIAN 0x1.45f306p-3f
 // If the square of twice its area is below this, a triangle's normal has lost its bits to underflow.
 #define LEAST_SQUARE 0x1.4484cp-100f
 // If the square of its length is below this, an interpolated normal has cancelled out.
@@ -590,6 +604,44 @@ static_assert(PLACE_OF(Material, number) == 76, "place of Material::number");
 static_assert(PLACE_OF(Material, emission_tinted) == 80, "place of Material::emission_tinted");
 static_assert(PLACE_OF(Material, spare_c) == 92, "place of Material::spare_c");
 
+struct alignas(8) EnvironmentLevel {
+    const Vec3 *texels;
+    unsigned size[2];
+};
+static_assert(sizeof(EnvironmentLevel) == 16, "size of EnvironmentLevel");
+static_assert(PLACE_OF(EnvironmentLevel, texels) == 0, "place of EnvironmentLevel::texels");
+static_assert(PLACE_OF(EnvironmentLevel, size) == 8, "place of EnvironmentLevel::size");
+
+struct alignas(8) Environment {
+    const EnvironmentLevel *levels;
+    Vec3 east;
+    unsigned lower;
+    Vec3 up;
+    unsigned hidden;
+    Vec3 north;
+    float sun_radius;
+    Vec3 sun;
+    unsigned spare;
+    Vec3 sun_radiance;
+    unsigned lights;
+    float terms[27];
+    unsigned spare_b;
+};
+static_assert(sizeof(Environment) == 200, "size of Environment");
+static_assert(PLACE_OF(Environment, levels) == 0, "place of Environment::levels");
+static_assert(PLACE_OF(Environment, east) == 8, "place of Environment::east");
+static_assert(PLACE_OF(Environment, lower) == 20, "place of Environment::lower");
+static_assert(PLACE_OF(Environment, up) == 24, "place of Environment::up");
+static_assert(PLACE_OF(Environment, hidden) == 36, "place of Environment::hidden");
+static_assert(PLACE_OF(Environment, north) == 40, "place of Environment::north");
+static_assert(PLACE_OF(Environment, sun_radius) == 52, "place of Environment::sun_radius");
+static_assert(PLACE_OF(Environment, sun) == 56, "place of Environment::sun");
+static_assert(PLACE_OF(Environment, spare) == 68, "place of Environment::spare");
+static_assert(PLACE_OF(Environment, sun_radiance) == 72, "place of Environment::sun_radiance");
+static_assert(PLACE_OF(Environment, lights) == 84, "place of Environment::lights");
+static_assert(PLACE_OF(Environment, terms) == 88, "place of Environment::terms");
+static_assert(PLACE_OF(Environment, spare_b) == 196, "place of Environment::spare_b");
+
 struct alignas(8) Scene {
     const Triangle *triangles;
     const Indices *indices;
@@ -604,6 +656,7 @@ struct alignas(8) Scene {
     const unsigned *objects;
     const Light *lights;
     const Vec3 *light_targets;
+    Environment environment;
     Grid grid;
     Bvh bvh;
     BruteForce brute_force;
@@ -614,7 +667,7 @@ struct alignas(8) Scene {
     float far;
     unsigned object_runs;
 };
-static_assert(sizeof(Scene) == 320, "size of Scene");
+static_assert(sizeof(Scene) == 520, "size of Scene");
 static_assert(PLACE_OF(Scene, triangles) == 0, "place of Scene::triangles");
 static_assert(PLACE_OF(Scene, indices) == 8, "place of Scene::indices");
 static_assert(PLACE_OF(Scene, normals) == 16, "place of Scene::normals");
@@ -628,15 +681,16 @@ static_assert(PLACE_OF(Scene, object_starts) == 72, "place of Scene::object_star
 static_assert(PLACE_OF(Scene, objects) == 80, "place of Scene::objects");
 static_assert(PLACE_OF(Scene, lights) == 88, "place of Scene::lights");
 static_assert(PLACE_OF(Scene, light_targets) == 96, "place of Scene::light_targets");
-static_assert(PLACE_OF(Scene, grid) == 104, "place of Scene::grid");
-static_assert(PLACE_OF(Scene, bvh) == 200, "place of Scene::bvh");
-static_assert(PLACE_OF(Scene, brute_force) == 240, "place of Scene::brute_force");
-static_assert(PLACE_OF(Scene, light_count) == 272, "place of Scene::light_count");
-static_assert(PLACE_OF(Scene, ambient) == 276, "place of Scene::ambient");
-static_assert(PLACE_OF(Scene, background) == 288, "place of Scene::background");
-static_assert(PLACE_OF(Scene, center) == 300, "place of Scene::center");
-static_assert(PLACE_OF(Scene, far) == 312, "place of Scene::far");
-static_assert(PLACE_OF(Scene, object_runs) == 316, "place of Scene::object_runs");
+static_assert(PLACE_OF(Scene, environment) == 104, "place of Scene::environment");
+static_assert(PLACE_OF(Scene, grid) == 304, "place of Scene::grid");
+static_assert(PLACE_OF(Scene, bvh) == 400, "place of Scene::bvh");
+static_assert(PLACE_OF(Scene, brute_force) == 440, "place of Scene::brute_force");
+static_assert(PLACE_OF(Scene, light_count) == 472, "place of Scene::light_count");
+static_assert(PLACE_OF(Scene, ambient) == 476, "place of Scene::ambient");
+static_assert(PLACE_OF(Scene, background) == 488, "place of Scene::background");
+static_assert(PLACE_OF(Scene, center) == 500, "place of Scene::center");
+static_assert(PLACE_OF(Scene, far) == 512, "place of Scene::far");
+static_assert(PLACE_OF(Scene, object_runs) == 516, "place of Scene::object_runs");
 
 struct alignas(8) Sampling {
     unsigned long long seed;
@@ -809,17 +863,17 @@ struct alignas(8) GroupItems {
     unsigned long long first_block;
     float spacing[2];
 };
-static_assert(sizeof(GroupItems) == 496, "size of GroupItems");
+static_assert(sizeof(GroupItems) == 696, "size of GroupItems");
 static_assert(PLACE_OF(GroupItems, scene) == 0, "place of GroupItems::scene");
-static_assert(PLACE_OF(GroupItems, rays) == 320, "place of GroupItems::rays");
-static_assert(PLACE_OF(GroupItems, hits) == 432, "place of GroupItems::hits");
-static_assert(PLACE_OF(GroupItems, members) == 440, "place of GroupItems::members");
-static_assert(PLACE_OF(GroupItems, ends) == 448, "place of GroupItems::ends");
-static_assert(PLACE_OF(GroupItems, counts) == 456, "place of GroupItems::counts");
-static_assert(PLACE_OF(GroupItems, items) == 464, "place of GroupItems::items");
-static_assert(PLACE_OF(GroupItems, tiles) == 472, "place of GroupItems::tiles");
-static_assert(PLACE_OF(GroupItems, first_block) == 480, "place of GroupItems::first_block");
-static_assert(PLACE_OF(GroupItems, spacing) == 488, "place of GroupItems::spacing");
+static_assert(PLACE_OF(GroupItems, rays) == 520, "place of GroupItems::rays");
+static_assert(PLACE_OF(GroupItems, hits) == 632, "place of GroupItems::hits");
+static_assert(PLACE_OF(GroupItems, members) == 640, "place of GroupItems::members");
+static_assert(PLACE_OF(GroupItems, ends) == 648, "place of GroupItems::ends");
+static_assert(PLACE_OF(GroupItems, counts) == 656, "place of GroupItems::counts");
+static_assert(PLACE_OF(GroupItems, items) == 664, "place of GroupItems::items");
+static_assert(PLACE_OF(GroupItems, tiles) == 672, "place of GroupItems::tiles");
+static_assert(PLACE_OF(GroupItems, first_block) == 680, "place of GroupItems::first_block");
+static_assert(PLACE_OF(GroupItems, spacing) == 688, "place of GroupItems::spacing");
 
 struct alignas(8) Shadows {
     Scene scene;
@@ -841,25 +895,25 @@ struct alignas(8) Shadows {
     unsigned first_light;
     unsigned end_light;
 };
-static_assert(sizeof(Shadows) == 1872, "size of Shadows");
+static_assert(sizeof(Shadows) == 2072, "size of Shadows");
 static_assert(PLACE_OF(Shadows, scene) == 0, "place of Shadows::scene");
-static_assert(PLACE_OF(Shadows, rays) == 320, "place of Shadows::rays");
-static_assert(PLACE_OF(Shadows, hits) == 432, "place of Shadows::hits");
-static_assert(PLACE_OF(Shadows, members) == 440, "place of Shadows::members");
-static_assert(PLACE_OF(Shadows, items) == 448, "place of Shadows::items");
-static_assert(PLACE_OF(Shadows, tiles) == 456, "place of Shadows::tiles");
-static_assert(PLACE_OF(Shadows, starts) == 464, "place of Shadows::starts");
-static_assert(PLACE_OF(Shadows, taken) == 472, "place of Shadows::taken");
-static_assert(PLACE_OF(Shadows, share) == 480, "place of Shadows::share");
-static_assert(PLACE_OF(Shadows, sampling) == 488, "place of Shadows::sampling");
-static_assert(PLACE_OF(Shadows, tally) == 504, "place of Shadows::tally");
-static_assert(PLACE_OF(Shadows, first) == 512, "place of Shadows::first");
-static_assert(PLACE_OF(Shadows, count) == 520, "place of Shadows::count");
-static_assert(PLACE_OF(Shadows, sets) == 528, "place of Shadows::sets");
-static_assert(PLACE_OF(Shadows, set) == 1856, "place of Shadows::set");
-static_assert(PLACE_OF(Shadows, set_count) == 1860, "place of Shadows::set_count");
-static_assert(PLACE_OF(Shadows, first_light) == 1864, "place of Shadows::first_light");
-static_assert(PLACE_OF(Shadows, end_light) == 1868, "place of Shadows::end_light");
+static_assert(PLACE_OF(Shadows, rays) == 520, "place of Shadows::rays");
+static_assert(PLACE_OF(Shadows, hits) == 632, "place of Shadows::hits");
+static_assert(PLACE_OF(Shadows, members) == 640, "place of Shadows::members");
+static_assert(PLACE_OF(Shadows, items) == 648, "place of Shadows::items");
+static_assert(PLACE_OF(Shadows, tiles) == 656, "place of Shadows::tiles");
+static_assert(PLACE_OF(Shadows, starts) == 664, "place of Shadows::starts");
+static_assert(PLACE_OF(Shadows, taken) == 672, "place of Shadows::taken");
+static_assert(PLACE_OF(Shadows, share) == 680, "place of Shadows::share");
+static_assert(PLACE_OF(Shadows, sampling) == 688, "place of Shadows::sampling");
+static_assert(PLACE_OF(Shadows, tally) == 704, "place of Shadows::tally");
+static_assert(PLACE_OF(Shadows, first) == 712, "place of Shadows::first");
+static_assert(PLACE_OF(Shadows, count) == 720, "place of Shadows::count");
+static_assert(PLACE_OF(Shadows, sets) == 728, "place of Shadows::sets");
+static_assert(PLACE_OF(Shadows, set) == 2056, "place of Shadows::set");
+static_assert(PLACE_OF(Shadows, set_count) == 2060, "place of Shadows::set_count");
+static_assert(PLACE_OF(Shadows, first_light) == 2064, "place of Shadows::first_light");
+static_assert(PLACE_OF(Shadows, end_light) == 2068, "place of Shadows::end_light");
 
 struct alignas(8) AdaptiveShadows {
     Scene scene;
@@ -874,18 +928,18 @@ struct alignas(8) AdaptiveShadows {
     unsigned tiles;
     unsigned spare;
 };
-static_assert(sizeof(AdaptiveShadows) == 2648, "size of AdaptiveShadows");
+static_assert(sizeof(AdaptiveShadows) == 3048, "size of AdaptiveShadows");
 static_assert(PLACE_OF(AdaptiveShadows, scene) == 0, "place of AdaptiveShadows::scene");
-static_assert(PLACE_OF(AdaptiveShadows, shadows) == 320, "place of AdaptiveShadows::shadows");
-static_assert(PLACE_OF(AdaptiveShadows, answers) == 2192, "place of AdaptiveShadows::answers");
-static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2200, "place of AdaptiveShadows::answer_count");
-static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2208, "place of AdaptiveShadows::first_answer");
-static_assert(PLACE_OF(AdaptiveShadows, counts) == 2216, "place of AdaptiveShadows::counts");
-static_assert(PLACE_OF(AdaptiveShadows, entries) == 2224, "place of AdaptiveShadows::entries");
-static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2232, "place of AdaptiveShadows::entry_count");
-static_assert(PLACE_OF(AdaptiveShadows, places) == 2240, "place of AdaptiveShadows::places");
-static_assert(PLACE_OF(AdaptiveShadows, tiles) == 2640, "place of AdaptiveShadows::tiles");
-static_assert(PLACE_OF(AdaptiveShadows, spare) == 2644, "place of AdaptiveShadows::spare");
+static_assert(PLACE_OF(AdaptiveShadows, shadows) == 520, "place of AdaptiveShadows::shadows");
+static_assert(PLACE_OF(AdaptiveShadows, answers) == 2592, "place of AdaptiveShadows::answers");
+static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2600, "place of AdaptiveShadows::answer_count");
+static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2608, "place of AdaptiveShadows::first_answer");
+static_assert(PLACE_OF(AdaptiveShadows, counts) == 2616, "place of AdaptiveShadows::counts");
+static_assert(PLACE_OF(AdaptiveShadows, entries) == 2624, "place of AdaptiveShadows::entries");
+static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2632, "place of AdaptiveShadows::entry_count");
+static_assert(PLACE_OF(AdaptiveShadows, places) == 2640, "place of AdaptiveShadows::places");
+static_assert(PLACE_OF(AdaptiveShadows, tiles) == 3040, "place of AdaptiveShadows::tiles");
+static_assert(PLACE_OF(AdaptiveShadows, spare) == 3044, "place of AdaptiveShadows::spare");
 
 struct alignas(8) PrimaryRays {
     Scene scene;
@@ -894,12 +948,12 @@ struct alignas(8) PrimaryRays {
     Tally tally;
     unsigned long long first_block;
 };
-static_assert(sizeof(PrimaryRays) == 456, "size of PrimaryRays");
+static_assert(sizeof(PrimaryRays) == 656, "size of PrimaryRays");
 static_assert(PLACE_OF(PrimaryRays, scene) == 0, "place of PrimaryRays::scene");
-static_assert(PLACE_OF(PrimaryRays, rays) == 320, "place of PrimaryRays::rays");
-static_assert(PLACE_OF(PrimaryRays, hits) == 432, "place of PrimaryRays::hits");
-static_assert(PLACE_OF(PrimaryRays, tally) == 440, "place of PrimaryRays::tally");
-static_assert(PLACE_OF(PrimaryRays, first_block) == 448, "place of PrimaryRays::first_block");
+static_assert(PLACE_OF(PrimaryRays, rays) == 520, "place of PrimaryRays::rays");
+static_assert(PLACE_OF(PrimaryRays, hits) == 632, "place of PrimaryRays::hits");
+static_assert(PLACE_OF(PrimaryRays, tally) == 640, "place of PrimaryRays::tally");
+static_assert(PLACE_OF(PrimaryRays, first_block) == 648, "place of PrimaryRays::first_block");
 
 struct alignas(8) ShadowRays {
     Scene scene;
@@ -911,15 +965,15 @@ struct alignas(8) ShadowRays {
     unsigned first_light;
     unsigned light_count;
 };
-static_assert(sizeof(ShadowRays) == 472, "size of ShadowRays");
+static_assert(sizeof(ShadowRays) == 672, "size of ShadowRays");
 static_assert(PLACE_OF(ShadowRays, scene) == 0, "place of ShadowRays::scene");
-static_assert(PLACE_OF(ShadowRays, rays) == 320, "place of ShadowRays::rays");
-static_assert(PLACE_OF(ShadowRays, hits) == 432, "place of ShadowRays::hits");
-static_assert(PLACE_OF(ShadowRays, share) == 440, "place of ShadowRays::share");
-static_assert(PLACE_OF(ShadowRays, tally) == 448, "place of ShadowRays::tally");
-static_assert(PLACE_OF(ShadowRays, first_block) == 456, "place of ShadowRays::first_block");
-static_assert(PLACE_OF(ShadowRays, first_light) == 464, "place of ShadowRays::first_light");
-static_assert(PLACE_OF(ShadowRays, light_count) == 468, "place of ShadowRays::light_count");
+static_assert(PLACE_OF(ShadowRays, rays) == 520, "place of ShadowRays::rays");
+static_assert(PLACE_OF(ShadowRays, hits) == 632, "place of ShadowRays::hits");
+static_assert(PLACE_OF(ShadowRays, share) == 640, "place of ShadowRays::share");
+static_assert(PLACE_OF(ShadowRays, tally) == 648, "place of ShadowRays::tally");
+static_assert(PLACE_OF(ShadowRays, first_block) == 656, "place of ShadowRays::first_block");
+static_assert(PLACE_OF(ShadowRays, first_light) == 664, "place of ShadowRays::first_light");
+static_assert(PLACE_OF(ShadowRays, light_count) == 668, "place of ShadowRays::light_count");
 
 struct alignas(8) Shade {
     Scene scene;
@@ -950,38 +1004,38 @@ struct alignas(8) Shade {
     unsigned first_sampled;
     unsigned long long sampled_pixels;
     unsigned catches;
-    unsigned spare;
+    unsigned mirrored;
 };
-static_assert(sizeof(Shade) == 616, "size of Shade");
+static_assert(sizeof(Shade) == 816, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
-static_assert(PLACE_OF(Shade, rays) == 320, "place of Shade::rays");
-static_assert(PLACE_OF(Shade, hits) == 432, "place of Shade::hits");
-static_assert(PLACE_OF(Shade, share) == 440, "place of Shade::share");
-static_assert(PLACE_OF(Shade, used) == 448, "place of Shade::used");
-static_assert(PLACE_OF(Shade, film_pixel) == 456, "place of Shade::film_pixel");
-static_assert(PLACE_OF(Shade, color) == 464, "place of Shade::color");
-static_assert(PLACE_OF(Shade, sums) == 472, "place of Shade::sums");
-static_assert(PLACE_OF(Shade, caught) == 480, "place of Shade::caught");
-static_assert(PLACE_OF(Shade, ray_caught) == 488, "place of Shade::ray_caught");
-static_assert(PLACE_OF(Shade, samples) == 496, "place of Shade::samples");
-static_assert(PLACE_OF(Shade, depth) == 504, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 512, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 520, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 528, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 536, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, light_groups) == 544, "place of Shade::light_groups");
-static_assert(PLACE_OF(Shade, ids) == 552, "place of Shade::ids");
-static_assert(PLACE_OF(Shade, film_pixels) == 560, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 568, "place of Shade::first_block");
-static_assert(PLACE_OF(Shade, first_light) == 576, "place of Shade::first_light");
-static_assert(PLACE_OF(Shade, end_light) == 580, "place of Shade::end_light");
-static_assert(PLACE_OF(Shade, several) == 584, "place of Shade::several");
-static_assert(PLACE_OF(Shade, sampled) == 588, "place of Shade::sampled");
-static_assert(PLACE_OF(Shade, sample_count) == 592, "place of Shade::sample_count");
-static_assert(PLACE_OF(Shade, first_sampled) == 596, "place of Shade::first_sampled");
-static_assert(PLACE_OF(Shade, sampled_pixels) == 600, "place of Shade::sampled_pixels");
-static_assert(PLACE_OF(Shade, catches) == 608, "place of Shade::catches");
-static_assert(PLACE_OF(Shade, spare) == 612, "place of Shade::spare");
+static_assert(PLACE_OF(Shade, rays) == 520, "place of Shade::rays");
+static_assert(PLACE_OF(Shade, hits) == 632, "place of Shade::hits");
+static_assert(PLACE_OF(Shade, share) == 640, "place of Shade::share");
+static_assert(PLACE_OF(Shade, used) == 648, "place of Shade::used");
+static_assert(PLACE_OF(Shade, film_pixel) == 656, "place of Shade::film_pixel");
+static_assert(PLACE_OF(Shade, color) == 664, "place of Shade::color");
+static_assert(PLACE_OF(Shade, sums) == 672, "place of Shade::sums");
+static_assert(PLACE_OF(Shade, caught) == 680, "place of Shade::caught");
+static_assert(PLACE_OF(Shade, ray_caught) == 688, "place of Shade::ray_caught");
+static_assert(PLACE_OF(Shade, samples) == 696, "place of Shade::samples");
+static_assert(PLACE_OF(Shade, depth) == 704, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 712, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 720, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 728, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 736, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, light_groups) == 744, "place of Shade::light_groups");
+static_assert(PLACE_OF(Shade, ids) == 752, "place of Shade::ids");
+static_assert(PLACE_OF(Shade, film_pixels) == 760, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 768, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, first_light) == 776, "place of Shade::first_light");
+static_assert(PLACE_OF(Shade, end_light) == 780, "place of Shade::end_light");
+static_assert(PLACE_OF(Shade, several) == 784, "place of Shade::several");
+static_assert(PLACE_OF(Shade, sampled) == 788, "place of Shade::sampled");
+static_assert(PLACE_OF(Shade, sample_count) == 792, "place of Shade::sample_count");
+static_assert(PLACE_OF(Shade, first_sampled) == 796, "place of Shade::first_sampled");
+static_assert(PLACE_OF(Shade, sampled_pixels) == 800, "place of Shade::sampled_pixels");
+static_assert(PLACE_OF(Shade, catches) == 808, "place of Shade::catches");
+static_assert(PLACE_OF(Shade, mirrored) == 812, "place of Shade::mirrored");
 
 struct alignas(8) PixelSamples {
     Scene scene;
@@ -1023,45 +1077,45 @@ struct alignas(8) PixelSamples {
     unsigned matte_slots;
     float quantiles[64];
 };
-static_assert(sizeof(PixelSamples) == 952, "size of PixelSamples");
+static_assert(sizeof(PixelSamples) == 1152, "size of PixelSamples");
 static_assert(PLACE_OF(PixelSamples, scene) == 0, "place of PixelSamples::scene");
-static_assert(PLACE_OF(PixelSamples, rays) == 320, "place of PixelSamples::rays");
-static_assert(PLACE_OF(PixelSamples, hits) == 432, "place of PixelSamples::hits");
-static_assert(PLACE_OF(PixelSamples, centers) == 440, "place of PixelSamples::centers");
-static_assert(PLACE_OF(PixelSamples, state) == 448, "place of PixelSamples::state");
-static_assert(PLACE_OF(PixelSamples, owners) == 456, "place of PixelSamples::owners");
-static_assert(PLACE_OF(PixelSamples, color) == 464, "place of PixelSamples::color");
-static_assert(PLACE_OF(PixelSamples, counts) == 472, "place of PixelSamples::counts");
-static_assert(PLACE_OF(PixelSamples, fragments) == 488, "place of PixelSamples::fragments");
-static_assert(PLACE_OF(PixelSamples, fragment_hits) == 504, "place of PixelSamples::fragment_hits");
-static_assert(PLACE_OF(PixelSamples, coverage) == 520, "place of PixelSamples::coverage");
-static_assert(PLACE_OF(PixelSamples, caught) == 528, "place of PixelSamples::caught");
-static_assert(PLACE_OF(PixelSamples, depth) == 536, "place of PixelSamples::depth");
-static_assert(PLACE_OF(PixelSamples, normal) == 544, "place of PixelSamples::normal");
-static_assert(PLACE_OF(PixelSamples, position) == 552, "place of PixelSamples::position");
-static_assert(PLACE_OF(PixelSamples, visibility) == 560, "place of PixelSamples::visibility");
-static_assert(PLACE_OF(PixelSamples, light_points) == 568, "place of PixelSamples::light_points");
-static_assert(PLACE_OF(PixelSamples, light_groups) == 576, "place of PixelSamples::light_groups");
-static_assert(PLACE_OF(PixelSamples, ids) == 584, "place of PixelSamples::ids");
-static_assert(PLACE_OF(PixelSamples, mattes) == 592, "place of PixelSamples::mattes");
-static_assert(PLACE_OF(PixelSamples, tally) == 600, "place of PixelSamples::tally");
-static_assert(PLACE_OF(PixelSamples, first_block) == 608, "place of PixelSamples::first_block");
-static_assert(PLACE_OF(PixelSamples, seed) == 616, "place of PixelSamples::seed");
-static_assert(PLACE_OF(PixelSamples, film_pixels) == 624, "place of PixelSamples::film_pixels");
-static_assert(PLACE_OF(PixelSamples, spacing) == 632, "place of PixelSamples::spacing");
-static_assert(PLACE_OF(PixelSamples, samples) == 640, "place of PixelSamples::samples");
-static_assert(PLACE_OF(PixelSamples, inner) == 648, "place of PixelSamples::inner");
-static_assert(PLACE_OF(PixelSamples, all_samples) == 656, "place of PixelSamples::all_samples");
-static_assert(PLACE_OF(PixelSamples, together) == 660, "place of PixelSamples::together");
-static_assert(PLACE_OF(PixelSamples, lanes) == 664, "place of PixelSamples::lanes");
-static_assert(PLACE_OF(PixelSamples, light_count) == 668, "place of PixelSamples::light_count");
-static_assert(PLACE_OF(PixelSamples, weight) == 672, "place of PixelSamples::weight");
-static_assert(PLACE_OF(PixelSamples, contrast) == 676, "place of PixelSamples::contrast");
-static_assert(PLACE_OF(PixelSamples, apart) == 680, "place of PixelSamples::apart");
-static_assert(PLACE_OF(PixelSamples, mirrors) == 684, "place of PixelSamples::mirrors");
-static_assert(PLACE_OF(PixelSamples, keeps) == 688, "place of PixelSamples::keeps");
-static_assert(PLACE_OF(PixelSamples, matte_slots) == 692, "place of PixelSamples::matte_slots");
-static_assert(PLACE_OF(PixelSamples, quantiles) == 696, "place of PixelSamples::quantiles");
+static_assert(PLACE_OF(PixelSamples, rays) == 520, "place of PixelSamples::rays");
+static_assert(PLACE_OF(PixelSamples, hits) == 632, "place of PixelSamples::hits");
+static_assert(PLACE_OF(PixelSamples, centers) == 640, "place of PixelSamples::centers");
+static_assert(PLACE_OF(PixelSamples, state) == 648, "place of PixelSamples::state");
+static_assert(PLACE_OF(PixelSamples, owners) == 656, "place of PixelSamples::owners");
+static_assert(PLACE_OF(PixelSamples, color) == 664, "place of PixelSamples::color");
+static_assert(PLACE_OF(PixelSamples, counts) == 672, "place of PixelSamples::counts");
+static_assert(PLACE_OF(PixelSamples, fragments) == 688, "place of PixelSamples::fragments");
+static_assert(PLACE_OF(PixelSamples, fragment_hits) == 704, "place of PixelSamples::fragment_hits");
+static_assert(PLACE_OF(PixelSamples, coverage) == 720, "place of PixelSamples::coverage");
+static_assert(PLACE_OF(PixelSamples, caught) == 728, "place of PixelSamples::caught");
+static_assert(PLACE_OF(PixelSamples, depth) == 736, "place of PixelSamples::depth");
+static_assert(PLACE_OF(PixelSamples, normal) == 744, "place of PixelSamples::normal");
+static_assert(PLACE_OF(PixelSamples, position) == 752, "place of PixelSamples::position");
+static_assert(PLACE_OF(PixelSamples, visibility) == 760, "place of PixelSamples::visibility");
+static_assert(PLACE_OF(PixelSamples, light_points) == 768, "place of PixelSamples::light_points");
+static_assert(PLACE_OF(PixelSamples, light_groups) == 776, "place of PixelSamples::light_groups");
+static_assert(PLACE_OF(PixelSamples, ids) == 784, "place of PixelSamples::ids");
+static_assert(PLACE_OF(PixelSamples, mattes) == 792, "place of PixelSamples::mattes");
+static_assert(PLACE_OF(PixelSamples, tally) == 800, "place of PixelSamples::tally");
+static_assert(PLACE_OF(PixelSamples, first_block) == 808, "place of PixelSamples::first_block");
+static_assert(PLACE_OF(PixelSamples, seed) == 816, "place of PixelSamples::seed");
+static_assert(PLACE_OF(PixelSamples, film_pixels) == 824, "place of PixelSamples::film_pixels");
+static_assert(PLACE_OF(PixelSamples, spacing) == 832, "place of PixelSamples::spacing");
+static_assert(PLACE_OF(PixelSamples, samples) == 840, "place of PixelSamples::samples");
+static_assert(PLACE_OF(PixelSamples, inner) == 848, "place of PixelSamples::inner");
+static_assert(PLACE_OF(PixelSamples, all_samples) == 856, "place of PixelSamples::all_samples");
+static_assert(PLACE_OF(PixelSamples, together) == 860, "place of PixelSamples::together");
+static_assert(PLACE_OF(PixelSamples, lanes) == 864, "place of PixelSamples::lanes");
+static_assert(PLACE_OF(PixelSamples, light_count) == 868, "place of PixelSamples::light_count");
+static_assert(PLACE_OF(PixelSamples, weight) == 872, "place of PixelSamples::weight");
+static_assert(PLACE_OF(PixelSamples, contrast) == 876, "place of PixelSamples::contrast");
+static_assert(PLACE_OF(PixelSamples, apart) == 880, "place of PixelSamples::apart");
+static_assert(PLACE_OF(PixelSamples, mirrors) == 884, "place of PixelSamples::mirrors");
+static_assert(PLACE_OF(PixelSamples, keeps) == 888, "place of PixelSamples::keeps");
+static_assert(PLACE_OF(PixelSamples, matte_slots) == 892, "place of PixelSamples::matte_slots");
+static_assert(PLACE_OF(PixelSamples, quantiles) == 896, "place of PixelSamples::quantiles");
 
 struct alignas(8) MirrorRays {
     Scene scene;
@@ -1071,13 +1125,13 @@ struct alignas(8) MirrorRays {
     ListedRay *mirrored;
     Cone *cones;
 };
-static_assert(sizeof(MirrorRays) == 464, "size of MirrorRays");
+static_assert(sizeof(MirrorRays) == 664, "size of MirrorRays");
 static_assert(PLACE_OF(MirrorRays, scene) == 0, "place of MirrorRays::scene");
-static_assert(PLACE_OF(MirrorRays, rays) == 320, "place of MirrorRays::rays");
-static_assert(PLACE_OF(MirrorRays, hits) == 432, "place of MirrorRays::hits");
-static_assert(PLACE_OF(MirrorRays, counts) == 440, "place of MirrorRays::counts");
-static_assert(PLACE_OF(MirrorRays, mirrored) == 448, "place of MirrorRays::mirrored");
-static_assert(PLACE_OF(MirrorRays, cones) == 456, "place of MirrorRays::cones");
+static_assert(PLACE_OF(MirrorRays, rays) == 520, "place of MirrorRays::rays");
+static_assert(PLACE_OF(MirrorRays, hits) == 632, "place of MirrorRays::hits");
+static_assert(PLACE_OF(MirrorRays, counts) == 640, "place of MirrorRays::counts");
+static_assert(PLACE_OF(MirrorRays, mirrored) == 648, "place of MirrorRays::mirrored");
+static_assert(PLACE_OF(MirrorRays, cones) == 656, "place of MirrorRays::cones");
 
 struct alignas(8) GroupCells {
     Scene scene;
@@ -1090,16 +1144,16 @@ struct alignas(8) GroupCells {
     Item *items;
     unsigned long long first_block;
 };
-static_assert(sizeof(GroupCells) == 560, "size of GroupCells");
+static_assert(sizeof(GroupCells) == 760, "size of GroupCells");
 static_assert(PLACE_OF(GroupCells, scene) == 0, "place of GroupCells::scene");
-static_assert(PLACE_OF(GroupCells, rays) == 320, "place of GroupCells::rays");
-static_assert(PLACE_OF(GroupCells, hits) == 432, "place of GroupCells::hits");
-static_assert(PLACE_OF(GroupCells, mesh) == 440, "place of GroupCells::mesh");
-static_assert(PLACE_OF(GroupCells, members) == 520, "place of GroupCells::members");
-static_assert(PLACE_OF(GroupCells, tile_items) == 528, "place of GroupCells::tile_items");
-static_assert(PLACE_OF(GroupCells, counts) == 536, "place of GroupCells::counts");
-static_assert(PLACE_OF(GroupCells, items) == 544, "place of GroupCells::items");
-static_assert(PLACE_OF(GroupCells, first_block) == 552, "place of GroupCells::first_block");
+static_assert(PLACE_OF(GroupCells, rays) == 520, "place of GroupCells::rays");
+static_assert(PLACE_OF(GroupCells, hits) == 632, "place of GroupCells::hits");
+static_assert(PLACE_OF(GroupCells, mesh) == 640, "place of GroupCells::mesh");
+static_assert(PLACE_OF(GroupCells, members) == 720, "place of GroupCells::members");
+static_assert(PLACE_OF(GroupCells, tile_items) == 728, "place of GroupCells::tile_items");
+static_assert(PLACE_OF(GroupCells, counts) == 736, "place of GroupCells::counts");
+static_assert(PLACE_OF(GroupCells, items) == 744, "place of GroupCells::items");
+static_assert(PLACE_OF(GroupCells, first_block) == 752, "place of GroupCells::first_block");
 
 struct alignas(8) ShortTests {
     Scene scene;
@@ -1113,17 +1167,17 @@ struct alignas(8) ShortTests {
     unsigned long long first_item;
     unsigned long long item_count;
 };
-static_assert(sizeof(ShortTests) == 568, "size of ShortTests");
+static_assert(sizeof(ShortTests) == 768, "size of ShortTests");
 static_assert(PLACE_OF(ShortTests, scene) == 0, "place of ShortTests::scene");
-static_assert(PLACE_OF(ShortTests, rays) == 320, "place of ShortTests::rays");
-static_assert(PLACE_OF(ShortTests, hits) == 432, "place of ShortTests::hits");
-static_assert(PLACE_OF(ShortTests, mesh) == 440, "place of ShortTests::mesh");
-static_assert(PLACE_OF(ShortTests, members) == 520, "place of ShortTests::members");
-static_assert(PLACE_OF(ShortTests, items) == 528, "place of ShortTests::items");
-static_assert(PLACE_OF(ShortTests, masks) == 536, "place of ShortTests::masks");
-static_assert(PLACE_OF(ShortTests, tally) == 544, "place of ShortTests::tally");
-static_assert(PLACE_OF(ShortTests, first_item) == 552, "place of ShortTests::first_item");
-static_assert(PLACE_OF(ShortTests, item_count) == 560, "place of ShortTests::item_count");
+static_assert(PLACE_OF(ShortTests, rays) == 520, "place of ShortTests::rays");
+static_assert(PLACE_OF(ShortTests, hits) == 632, "place of ShortTests::hits");
+static_assert(PLACE_OF(ShortTests, mesh) == 640, "place of ShortTests::mesh");
+static_assert(PLACE_OF(ShortTests, members) == 720, "place of ShortTests::members");
+static_assert(PLACE_OF(ShortTests, items) == 728, "place of ShortTests::items");
+static_assert(PLACE_OF(ShortTests, masks) == 736, "place of ShortTests::masks");
+static_assert(PLACE_OF(ShortTests, tally) == 744, "place of ShortTests::tally");
+static_assert(PLACE_OF(ShortTests, first_item) == 752, "place of ShortTests::first_item");
+static_assert(PLACE_OF(ShortTests, item_count) == 760, "place of ShortTests::item_count");
 
 struct alignas(8) LightPoints {
     LightMesh mesh;
@@ -1166,18 +1220,18 @@ struct alignas(8) LongTests {
     unsigned first_sample;
     unsigned sample_count;
 };
-static_assert(sizeof(LongTests) == 504, "size of LongTests");
+static_assert(sizeof(LongTests) == 704, "size of LongTests");
 static_assert(PLACE_OF(LongTests, scene) == 0, "place of LongTests::scene");
-static_assert(PLACE_OF(LongTests, mesh) == 320, "place of LongTests::mesh");
-static_assert(PLACE_OF(LongTests, points) == 400, "place of LongTests::points");
-static_assert(PLACE_OF(LongTests, lit) == 440, "place of LongTests::lit");
-static_assert(PLACE_OF(LongTests, sampling) == 456, "place of LongTests::sampling");
-static_assert(PLACE_OF(LongTests, tally) == 472, "place of LongTests::tally");
-static_assert(PLACE_OF(LongTests, light) == 480, "place of LongTests::light");
-static_assert(PLACE_OF(LongTests, point_count) == 484, "place of LongTests::point_count");
-static_assert(PLACE_OF(LongTests, first_point) == 488, "place of LongTests::first_point");
-static_assert(PLACE_OF(LongTests, first_sample) == 496, "place of LongTests::first_sample");
-static_assert(PLACE_OF(LongTests, sample_count) == 500, "place of LongTests::sample_count");
+static_assert(PLACE_OF(LongTests, mesh) == 520, "place of LongTests::mesh");
+static_assert(PLACE_OF(LongTests, points) == 600, "place of LongTests::points");
+static_assert(PLACE_OF(LongTests, lit) == 640, "place of LongTests::lit");
+static_assert(PLACE_OF(LongTests, sampling) == 656, "place of LongTests::sampling");
+static_assert(PLACE_OF(LongTests, tally) == 672, "place of LongTests::tally");
+static_assert(PLACE_OF(LongTests, light) == 680, "place of LongTests::light");
+static_assert(PLACE_OF(LongTests, point_count) == 684, "place of LongTests::point_count");
+static_assert(PLACE_OF(LongTests, first_point) == 688, "place of LongTests::first_point");
+static_assert(PLACE_OF(LongTests, first_sample) == 696, "place of LongTests::first_sample");
+static_assert(PLACE_OF(LongTests, sample_count) == 700, "place of LongTests::sample_count");
 
 struct alignas(8) Cache {
     UsedPoints points;
@@ -1221,25 +1275,25 @@ struct alignas(8) Interpolate {
     unsigned long long first;
     unsigned long long count;
 };
-static_assert(sizeof(Interpolate) == 672, "size of Interpolate");
+static_assert(sizeof(Interpolate) == 872, "size of Interpolate");
 static_assert(PLACE_OF(Interpolate, scene) == 0, "place of Interpolate::scene");
-static_assert(PLACE_OF(Interpolate, rays) == 320, "place of Interpolate::rays");
-static_assert(PLACE_OF(Interpolate, hits) == 432, "place of Interpolate::hits");
-static_assert(PLACE_OF(Interpolate, mesh) == 440, "place of Interpolate::mesh");
-static_assert(PLACE_OF(Interpolate, members) == 520, "place of Interpolate::members");
-static_assert(PLACE_OF(Interpolate, items) == 528, "place of Interpolate::items");
-static_assert(PLACE_OF(Interpolate, masks) == 536, "place of Interpolate::masks");
-static_assert(PLACE_OF(Interpolate, points) == 544, "place of Interpolate::points");
-static_assert(PLACE_OF(Interpolate, slots) == 584, "place of Interpolate::slots");
-static_assert(PLACE_OF(Interpolate, lit) == 592, "place of Interpolate::lit");
-static_assert(PLACE_OF(Interpolate, share) == 600, "place of Interpolate::share");
-static_assert(PLACE_OF(Interpolate, used) == 608, "place of Interpolate::used");
-static_assert(PLACE_OF(Interpolate, fallback_rays) == 616, "place of Interpolate::fallback_rays");
-static_assert(PLACE_OF(Interpolate, fallback_count) == 624, "place of Interpolate::fallback_count");
-static_assert(PLACE_OF(Interpolate, sampling) == 632, "place of Interpolate::sampling");
-static_assert(PLACE_OF(Interpolate, tally) == 648, "place of Interpolate::tally");
-static_assert(PLACE_OF(Interpolate, first) == 656, "place of Interpolate::first");
-static_assert(PLACE_OF(Interpolate, count) == 664, "place of Interpolate::count");
+static_assert(PLACE_OF(Interpolate, rays) == 520, "place of Interpolate::rays");
+static_assert(PLACE_OF(Interpolate, hits) == 632, "place of Interpolate::hits");
+static_assert(PLACE_OF(Interpolate, mesh) == 640, "place of Interpolate::mesh");
+static_assert(PLACE_OF(Interpolate, members) == 720, "place of Interpolate::members");
+static_assert(PLACE_OF(Interpolate, items) == 728, "place of Interpolate::items");
+static_assert(PLACE_OF(Interpolate, masks) == 736, "place of Interpolate::masks");
+static_assert(PLACE_OF(Interpolate, points) == 744, "place of Interpolate::points");
+static_assert(PLACE_OF(Interpolate, slots) == 784, "place of Interpolate::slots");
+static_assert(PLACE_OF(Interpolate, lit) == 792, "place of Interpolate::lit");
+static_assert(PLACE_OF(Interpolate, share) == 800, "place of Interpolate::share");
+static_assert(PLACE_OF(Interpolate, used) == 808, "place of Interpolate::used");
+static_assert(PLACE_OF(Interpolate, fallback_rays) == 816, "place of Interpolate::fallback_rays");
+static_assert(PLACE_OF(Interpolate, fallback_count) == 824, "place of Interpolate::fallback_count");
+static_assert(PLACE_OF(Interpolate, sampling) == 832, "place of Interpolate::sampling");
+static_assert(PLACE_OF(Interpolate, tally) == 848, "place of Interpolate::tally");
+static_assert(PLACE_OF(Interpolate, first) == 856, "place of Interpolate::first");
+static_assert(PLACE_OF(Interpolate, count) == 864, "place of Interpolate::count");
 
 struct alignas(8) Scan {
     unsigned *values;

@@ -74,6 +74,22 @@ impl RayList {
         self.cones.get(ray).copied().unwrap_or(self.cone)
     }
 
+    /// Whether mirrors reflected the rays.
+    pub(crate) fn are_mirrored(&self) -> bool {
+        !self.from_camera() && self.shared.is_empty()
+    }
+
+    /// The angle of the cone around a ray; of those of all samples that are shaded with it, if there are several.
+    #[inline(always)]
+    pub(crate) fn spread_of(&self, ray: usize) -> f32 {
+        let samples = match (&self.sampled, self.shared.get(ray)) {
+            (Some(sampled), None) if self.from_camera() => sampled.count as f32,
+            (_, Some(shared)) => shared.count_ones().max(1) as f32,
+            _ => 1.0,
+        };
+        self.cone_of(ray).spread.abs() * samples.sqrt()
+    }
+
     /// Whether textures are filtered.
     pub(crate) fn has_cones(&self) -> bool {
         !self.cones.is_empty() || !self.cone.is_point()

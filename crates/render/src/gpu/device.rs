@@ -7,12 +7,14 @@ use bytemuck::Pod;
 use lightmesh_layout::constants::WARP;
 use lightmesh_layout::counters::Counters;
 use lightmesh_layout::geometry::Tally;
+use lightmesh_scene::Environment;
 
-use super::held::{DeviceTemplate, Resident};
+use super::held::{DeviceEnvironment, DeviceGeometry, DeviceTemplate, Resident};
 use super::rates::Rates;
 use crate::cuda::{Buffer, Kernel, Launch, Pool, Runtime};
 use crate::error::RenderError;
 use crate::job::Job;
+use crate::prepared::PreparedGeometry;
 use crate::stage::Stage;
 use crate::sync::locked;
 
@@ -38,7 +40,9 @@ pub struct Cuda<R: Runtime> {
     /// The template that the device currently holds.
     pub(super) template: Mutex<Option<DeviceTemplate<R>>>,
     /// The geometry that the device currently holds.
-    pub(super) resident: Mutex<Resident<R>>,
+    pub(super) resident: Mutex<Resident<PreparedGeometry, DeviceGeometry<R>>>,
+    /// The environments that the device currently holds.
+    pub(super) environments: Mutex<Resident<Environment, DeviceEnvironment<R>>>,
 }
 
 /// A stage, and the points in the queue between which it ran.
@@ -54,6 +58,7 @@ impl<R: Runtime> Cuda<R> {
             counters: Mutex::default(),
             template: Mutex::default(),
             resident: Mutex::default(),
+            environments: Mutex::default(),
         }
     }
 

@@ -1,12 +1,11 @@
-//! What a device keeps from image to image: geometry, and the template of the light mesh.
+//! What a device keeps from image to image: geometry, environments, and the template of the light mesh.
 
 use std::sync::{Arc, Weak};
 
 use lightmesh_layout::Structure;
-use lightmesh_layout::scene::Scene;
+use lightmesh_layout::scene::{EnvironmentLevel, Scene};
 
 use crate::cuda::{Buffer, Runtime};
-use crate::prepared::PreparedGeometry;
 
 /// A template on a device.
 pub(super) struct DeviceTemplate<R: Runtime> {
@@ -26,29 +25,37 @@ pub(crate) struct DeviceGeometry<R: Runtime> {
     pub(super) buffers: Buffers<R>,
 }
 
-/// The copies of geometry that a device holds, each for as long as the prepared geometry lives.
-pub(super) struct Resident<R: Runtime> {
-    copies: Vec<(Weak<PreparedGeometry>, Arc<DeviceGeometry<R>>)>,
+/// An environment on a device: its levels.
+pub(super) struct DeviceEnvironment<R: Runtime> {
+    pub(super) levels: Buffer<R, EnvironmentLevel>,
+    /// What the levels point to.
+    #[expect(dead_code, reason = "only kept")]
+    pub(super) texels: Buffers<R>,
 }
 
-impl<R: Runtime> Default for Resident<R> {
-    fn default() -> Resident<R> {
+/// The copies that a device holds of what is on the host, each for as long as that lives there.
+pub(super) struct Resident<T, Copy> {
+    copies: Vec<(Weak<T>, Arc<Copy>)>,
+}
+
+impl<T, Copy> Default for Resident<T, Copy> {
+    fn default() -> Resident<T, Copy> {
         Resident { copies: Vec::new() }
     }
 }
 
-impl<R: Runtime> Resident<R> {
-    /// Frees the copies of geometry that no longer exists, and finds the copy of `geometry`.
-    pub(super) fn find(&mut self, geometry: &Arc<PreparedGeometry>) -> Option<Arc<DeviceGeometry<R>>> {
+impl<T, Copy> Resident<T, Copy> {
+    /// Frees the copies of what no longer exists, and finds the copy of `original`.
+    pub(super) fn find(&mut self, original: &Arc<T>) -> Option<Arc<Copy>> {
         self.copies.retain(|(known, _)| known.strong_count() > 0);
-        let (_, copy) = self.copies.iter().find(|(known, _)| known.as_ptr() == Arc::as_ptr(geometry))?;
+        let (_, copy) = self.copies.iter().find(|(known, _)| known.as_ptr() == Arc::as_ptr(original))?;
         Some(Arc::clone(copy))
     }
 
     /// Keeps a copy in place of an earlier one.
-    pub(super) fn keep(&mut self, geometry: &Arc<PreparedGeometry>, copy: Arc<DeviceGeometry<R>>) {
-        self.copies.retain(|(known, _)| known.as_ptr() != Arc::as_ptr(geometry));
-        self.copies.push((Arc::downgrade(geometry), copy));
+    pub(super) fn keep(&mut self, original: &Arc<T>, copy: Arc<Copy>) {
+        self.copies.retain(|(known, _)| known.as_ptr() != Arc::as_ptr(original));
+        self.copies.push((Arc::downgrade(original), copy));
     }
 }
 

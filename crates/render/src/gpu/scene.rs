@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use lightmesh_layout::constants::{BVH_STACK, GRID_FRAME_WORDS, RECENT_TRIANGLES, STACK_OF_ROUNDS, STACK_PER_LEVEL};
 use lightmesh_layout::geometry::{Approach, BruteForce, Bvh, BvhNode, DVec3, Grid, Triangle, Vec3};
-use lightmesh_layout::scene::{Indices, Light, Scene};
+use lightmesh_layout::scene::{self as layout, EnvironmentLevel, Indices, Light, Scene};
 use lightmesh_layout::{DeviceType, In, Structure};
-use lightmesh_scene::{Falloff, LightKind};
+use lightmesh_scene::{Environment, Falloff, LightKind};
 
 use super::device::Cuda;
-use super::held::{Buffers, DeviceGeometry};
+use super::held::{Buffers, DeviceEnvironment, DeviceGeometry};
 use crate::accel::{self, Form};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
@@ -17,6 +17,7 @@ use crate::job::Job;
 use crate::prepared::{PreparedGeometry, PreparedScene};
 use crate::sampling::disk_radius;
 use crate::shading::LightTargets;
+use crate::shading::ambient::AmbientLight;
 use crate::shading::tint::is_tinted;
 use crate::stage::Stage;
 use crate::sync::locked;
@@ -30,6 +31,7 @@ pub struct DeviceScene<R: Runtime> {
     /// What the record points to.
     _geometry: Arc<DeviceGeometry<R>>,
     _lights: Arc<Buffers<R>>,
+    _environment: Option<Arc<DeviceEnvironment<R>>>,
     _probes: Option<Arc<Buffer<R, Triangle>>>,
 }
 
@@ -43,6 +45,7 @@ impl<R: Runtime> DeviceScene<R> {
             host: self.host.clone(),
             _geometry: Arc::clone(&self._geometry),
             _lights: Arc::clone(&self._lights),
+            _environment: self._environment.clone(),
             _probes: Some(triangles),
         }
     }
@@ -74,13 +77,20 @@ impl<R: Runtime> Cuda<R> {
     pub(crate) fn device_scene(&self, job: &Job, scene: &PreparedScene) -> Result<DeviceScene<R>, RenderError> {
         let geometry = self.device_geometry(job, scene)?;
         let mut upload = Upload { cuda: self, buffers: Vec::new() };
-        let record = upload.lights(scene, geometry.record)?;
+        let mut record = upload.lights(scene, geometry.record)?;
+        let lights = &scene.scene.lights;
+        let environment =
+            lights.environment.as_ref().map(|original| self.device_environment(job, original)).transpose()?;
+        if let (Some(original), Some(copy)) = (&lights.environment, &environment) {
+            record.environment = environment_record(scene, original, copy.levels.input());
+        }
         Ok(DeviceScene {
             record,
             structure: geometry.structure,
             host: scene.clone(),
             _geometry: geometry,
             _lights: Arc::new(upload.buffers),
+            _environment: environment,
             _probes: None,
         })
     }
@@ -97,6 +107,66 @@ impl<R: Runtime> Cuda<R> {
         let copy = Arc::new(uploaded?);
         resident.keep(&scene.geometry, Arc::clone(&copy));
         Ok(copy)
+    }
+}
+
+impl<R: Runtime> Cuda<R> {
+    /// The levels of an environment on this device. They are uploaded if they are not there yet.
+    fn device_environment(
+        &self,
+        job: &Job,
+        original: &Arc<Environment>,
+    ) -> Result<Arc<DeviceEnvironment<R>>, RenderError> {
+        let mut resident = locked(&self.environments);
+        if let Some(copy) = resident.find(original) {
+            return Ok(copy);
+        }
+        let upload = || -> Result<DeviceEnvironment<R>, RenderError> {
+            let mut upload = Upload { cuda: self, buffers: Vec::new() };
+            let mut level = |size: [u32; 2], texels: &[[f32; 3]]| -> Result<EnvironmentLevel, RenderError> {
+                Ok(EnvironmentLevel {
+                    texels: upload.array::<Vec3>("environment", bytemuck::cast_slice(texels))?,
+                    size,
+                })
+            };
+            let mut levels = vec![level(original.size(), original.texels())?];
+            for lower in original.levels() {
+                levels.push(level(lower.size, &lower.texels)?);
+            }
+            Ok(DeviceEnvironment {
+                levels: self.pool.upload("levels of the environment", &levels)?,
+                texels: upload.buffers,
+            })
+        };
+        let copy = Arc::new(job.wall_time(Stage::Upload, upload)?);
+        resident.keep(original, Arc::clone(&copy));
+        Ok(copy)
+    }
+}
+
+/// An environment as kernels see it.
+fn environment_record(
+    scene: &PreparedScene,
+    original: &Environment,
+    levels: In<EnvironmentLevel>,
+) -> layout::Environment {
+    let terms = AmbientLight::of(scene).terms;
+    let [east, up, north] = original.frame().map(vec3);
+    let sun = original.sun();
+    layout::Environment {
+        levels,
+        east,
+        up,
+        north,
+        lower: original.levels().len() as u32,
+        hidden: u32::from(scene.scene.lights.background.is_some()),
+        sun_radius: sun.map_or(-1.0, |sun| sun.radius),
+        sun: vec3(sun.map_or(glam::Vec3::ZERO, |sun| sun.direction)),
+        sun_radiance: vec3(sun.map_or(glam::Vec3::ZERO, |sun| sun.radiance)),
+        lights: u32::from(terms.is_some()),
+        terms: bytemuck::cast(terms.unwrap_or_default().map(|term| term.to_array())),
+        spare: 0,
+        spare_b: 0,
     }
 }
 
@@ -162,7 +232,7 @@ impl<R: Runtime> Upload<'_, R> {
             lights: self.array("lights", &records)?,
             light_targets: self.array::<Vec3>("points on lights", bytemuck::cast_slice(&targets))?,
             light_count: records.len() as u32,
-            ambient: vec3(scene.ambient()),
+            ambient: vec3(AmbientLight::of(scene).mean),
             background: vec3(lights.background.unwrap_or_default()),
             ..geometry
         })

@@ -300,6 +300,10 @@ fn picture_on<B: Backend>(
     observer: &dyn Observer,
 ) -> Result<Frame, RenderError> {
     let start = Instant::now();
+    // Where the camera sees nothing, a transparent image has nothing; mirrors still reflect the environment.
+    let hidden = settings.transparent && scene.scene.lights.environment.is_some();
+    let open = hidden.then(|| scene.with_lights(scene.scene.lights.clone().with_background(glam::Vec3::ZERO)));
+    let scene = open.as_ref().unwrap_or(scene);
     let mut resolved = Resolved::new(scene, settings, observer)?;
     resolved.plan.kept = kept.as_ref().map_or(0, |kept| kept.memory());
     let Resolved { technique, view, plan, .. } = &resolved;

@@ -6,6 +6,7 @@ use super::resolve::Resolved;
 use crate::backend::Backend;
 use crate::counters::Counts;
 use crate::job::Job;
+use crate::shading::ambient::AmbientLight;
 use crate::stage::Seconds;
 use crate::stats::{CameraStats, DeviceStats, MemoryStats, SceneStats, SettingsStats, Stats};
 
@@ -71,8 +72,9 @@ fn settings(resolved: &Resolved, device: &'static str, rows_per_band: u32) -> Se
         samples: sampling.samples,
         accel: scene.geometry.accelerator.name(),
         camera: camera(resolved),
-        ambient: scene.ambient().to_array(),
+        ambient: AmbientLight::of(scene).mean.to_array(),
         background: lights.background.unwrap_or_default().to_array(),
+        environment: lights.environment.as_ref().map(|environment| environment.name.clone()),
         transparent: settings.transparent,
         seed: settings.seed,
         memory_limit: settings.memory_limit,

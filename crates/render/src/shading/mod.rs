@@ -8,6 +8,8 @@
 //! that represent a light; the stages [`shade`](crate::stages::shade) and [`mirror_rays`](crate::stages::mirror_rays) combine them. Twins:
 //! `shading.cuh`, `tint.cuh`.
 
+pub(crate) mod ambient;
+pub(crate) mod environment;
 pub(crate) mod ids;
 #[cfg(test)]
 mod tests;
@@ -22,6 +24,7 @@ use lightmesh_scene::{Falloff, Light, LightKind};
 use crate::data::wave::HostWave;
 use crate::sampling::{Pattern, light_center, light_point};
 use crate::surface::{SurfacePoint, shading_normal};
+use ambient::AmbientLight;
 use tint::{Coefficients, is_tinted};
 
 /// A surface point with what formula (1) needs.
@@ -50,6 +53,12 @@ impl Surface {
             coefficients: Coefficients::at(wave.scene, material, ray, cone, hit),
             shininess: material.shininess,
         }
+    }
+
+    /// What it shows without lights: ambient and emitted light.
+    #[inline(always)]
+    pub(crate) fn unlit(&self, ambient: &AmbientLight) -> Vec3 {
+        ambient.at(self.normal) * self.coefficients.ka + self.coefficients.emission
     }
 
     /// The same with the mean colour of the samples of its pixel that are shaded with it.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sampling.cuh"
+#include "shading/ambient.cuh"
 #include "shading/tint.cuh"
 #include "surface.cuh"
 
@@ -56,6 +57,11 @@ DEVICE Vec3 reflected(const Surface &surface, const Light &light, Vec3 target) {
         answer = answer + highlight * surface.material->ks;
     }
     return strength(light, direction, distance) * answer;
+}
+
+// What a surface shows without lights: ambient and emitted light.
+DEVICE Vec3 unlit(const Scene &scene, const Surface &surface) {
+    return ambient_at(scene, surface.normal) * surface.material->ka + surface.material->emission;
 }
 
 // Unshadowed light of light number `index`.

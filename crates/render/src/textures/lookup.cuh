@@ -64,8 +64,8 @@ DEVICE Vec3 texel(const LevelTexels &level, unsigned long long index) {
 
 // The four nearest of the texels of an image of this size, interpolated.
 template <class Texels>
-DEVICE Vec3 bilinear(const Texels &texels, unsigned width, unsigned height, const Texture &texture, Uv place) {
-    const Neighbours x = neighbours(place.u, width, texture.wrap[0]), y = neighbours(place.v, height, texture.wrap[1]);
+DEVICE Vec3 bilinear(const Texels &texels, unsigned width, unsigned height, const unsigned *wrap, Uv place) {
+    const Neighbours x = neighbours(place.u, width, wrap[0]), y = neighbours(place.v, height, wrap[1]);
     const unsigned long long above = (unsigned long long)y.first * width, below = (unsigned long long)y.second * width;
     const Vec3 upper = between(texel(texels, above + x.first), texel(texels, above + x.second), x.share);
     const Vec3 lower = between(texel(texels, below + x.first), texel(texels, below + x.second), x.share);
@@ -76,9 +76,9 @@ DEVICE Vec3 bilinear(const Texels &texels, unsigned width, unsigned height, cons
 // keep their registers.
 COLD Vec3 at_level(const float *srgb, const Texture *texture, Uv place, unsigned level) {
     if (level == 0)
-        return bilinear(ImageTexels{texture->texels, srgb}, texture->size[0], texture->size[1], *texture, place);
+        return bilinear(ImageTexels{texture->texels, srgb}, texture->size[0], texture->size[1], texture->wrap, place);
     const TextureLevel *lower = texture->levels + (level - 1);
-    return bilinear(LevelTexels{lower->texels}, __ldg(&lower->size[0]), __ldg(&lower->size[1]), *texture, place);
+    return bilinear(LevelTexels{lower->texels}, __ldg(&lower->size[0]), __ldg(&lower->size[1]), texture->wrap, place);
 }
 
 // The part of a footprint inside of the image, along one axis: its share of the whole, and its middle.

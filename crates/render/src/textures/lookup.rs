@@ -87,7 +87,7 @@ impl Clipped {
 /// The level whose texels are the largest that are not wider than `width` texels of the image, at least 1, and the fraction of the way to the
 /// next one. There are `lower` levels below the image.
 #[inline(always)]
-fn level_of(width: f32, lower: u32) -> (u32, f32) {
+pub(crate) fn level_of(width: f32, lower: u32) -> (u32, f32) {
     let bits = width.to_bits();
     let level = bits / F32_EXPONENT_STEP - F32_EXPONENT_BIAS;
     if level >= lower {
@@ -114,7 +114,7 @@ fn sampled(texture: &Texture, wrap: [Wrap; 2], place: Vec2) -> Vec3 {
 
 /// The four nearest of the texels of an image of this size, interpolated.
 #[inline(always)]
-fn bilinear(size: [u32; 2], wrap: [Wrap; 2], place: Vec2, texel: impl Fn(usize) -> Vec3) -> Vec3 {
+pub(crate) fn bilinear(size: [u32; 2], wrap: [Wrap; 2], place: Vec2, texel: impl Fn(usize) -> Vec3) -> Vec3 {
     let (columns, x) = neighbours(place.x, size[0], wrap[0]);
     let (rows, y) = neighbours(place.y, size[1], wrap[1]);
     let texel = |column: u32, row: u32| texel(row as usize * size[0] as usize + column as usize);
@@ -123,7 +123,7 @@ fn bilinear(size: [u32; 2], wrap: [Wrap; 2], place: Vec2, texel: impl Fn(usize) 
 }
 
 /// From `a` to `b`; exactly `a` where both are the same.
-fn between(a: Vec3, b: Vec3, share: f32) -> Vec3 {
+pub(crate) fn between(a: Vec3, b: Vec3, share: f32) -> Vec3 {
     a + share * (b - a)
 }
 

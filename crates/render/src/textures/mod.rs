@@ -12,7 +12,7 @@ mod levels;
 mod lookup;
 
 pub(crate) use levels::{Level, MipLevels};
-pub(crate) use lookup::filtered;
+pub(crate) use lookup::{between, bilinear, filtered, level_of};
 
 use lightmesh_scene::{Geometry, Material, Texture, TextureUse};
 

@@ -6,6 +6,7 @@ mod convergence;
 mod crop;
 mod degenerate;
 mod determinism;
+mod environment;
 mod fallback;
 mod figures;
 mod ground;

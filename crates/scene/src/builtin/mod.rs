@@ -79,7 +79,8 @@ impl Composition {
             projection: Projection::Perspective(Fov::Vertical(self.vfov)),
         };
         let geometry = Geometry { mesh: self.mesh, materials: self.palette.0, ..Geometry::default() };
-        let lights = Lights { list: self.lights, ambient: Some(self.ambient), background: Some(self.sky) };
+        let lights =
+            Lights { list: self.lights, ambient: Some(self.ambient), background: Some(self.sky), environment: None };
         Scene { lights, cameras: vec![camera], ..Scene::new(self.name, geometry) }
     }
 }

@@ -7,6 +7,8 @@ use rayon::prelude::*;
 use crate::data::picture::{Picture, light_groups_of};
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
+use crate::shading::ambient::AmbientLight;
+use crate::shading::environment::missed;
 use crate::shading::ids::ids_of;
 use crate::shading::{LightTargets, Surface};
 
@@ -16,20 +18,24 @@ const BATCH: usize = 2048;
 const TERMS: usize = 1 << 20;
 
 pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, picture: &mut Picture) {
-    let (targets, ambient) = (LightTargets::new(wave.lights()), wave.scene.ambient());
+    let (targets, ambient) = (LightTargets::new(wave.lights()), AmbientLight::of(wave.scene));
     let mut sums = match visibility.lights.start {
-        0 => vec![wave.lights().background.unwrap_or(Vec3::ZERO); wave.hits.len()],
+        0 => vec![Vec3::ZERO; wave.hits.len()],
         _ => std::mem::take(&mut picture.sums),
     };
     sums.par_chunks_mut(BATCH).enumerate().for_each(|(batch, sums)| {
         wave.job.piece(sums.len(), || {
-            for (index, sum) in sums.iter_mut().enumerate().filter(|(index, _)| wave.sees(batch * BATCH + index)) {
-                add_group(wave, visibility, &targets, ambient, batch * BATCH + index, sum);
+            for (ray, sum) in (batch * BATCH..).zip(sums) {
+                if wave.sees(ray) {
+                    add_group(wave, visibility, &targets, &ambient, ray, sum);
+                } else if visibility.lights.start == 0 {
+                    *sum = missed(wave, ray);
+                }
             }
         });
     });
     if visibility.lights.end == wave.lights().len() {
-        let caught = if wave.scene.catches() { catch_shadows(wave, &targets, ambient, &mut sums) } else { Vec::new() };
+        let caught = if wave.scene.catches() { catch_shadows(wave, &targets, &ambient, &mut sums) } else { Vec::new() };
         for (ray, (&pixel, &sum)) in wave.rays.pixels.iter().zip(&sums).enumerate() {
             picture.add(pixel, wave.rays.weight(ray) * sum);
         }
@@ -39,7 +45,7 @@ pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, picture: &mut Pict
             }
         }
     }
-    add_light_groups(wave, visibility, &targets, ambient, &sums, picture);
+    add_light_groups(wave, visibility, &targets, &ambient, &sums, picture);
     if visibility.lights.end != wave.lights().len() {
         picture.sums = sums;
     }
@@ -55,7 +61,7 @@ fn add_group(
     wave: &HostWave,
     visibility: &Visibility,
     targets: &LightTargets,
-    ambient: Vec3,
+    ambient: &AmbientLight,
     ray: usize,
     radiance: &mut Vec3,
 ) {
@@ -65,7 +71,7 @@ fn add_group(
     }
     let surface = Surface::shared(wave, ray);
     if is_first {
-        *radiance = ambient * surface.coefficients.ka + surface.coefficients.emission;
+        *radiance = surface.unlit(ambient);
     }
     let reach = wave.scene.geometry.reach(surface.point.origin);
     for index in visibility.lights.clone() {
@@ -82,7 +88,7 @@ fn add_light_groups(
     wave: &HostWave,
     visibility: &Visibility,
     targets: &LightTargets,
-    ambient: Vec3,
+    ambient: &AmbientLight,
     sums: &[Vec3],
     picture: &mut Picture,
 ) {
@@ -120,7 +126,7 @@ fn by_light(
     wave: &HostWave,
     visibility: &Visibility,
     targets: &LightTargets,
-    ambient: Vec3,
+    ambient: &AmbientLight,
     ray: usize,
     sum: Vec3,
     terms: &mut [Vec3],
@@ -130,14 +136,14 @@ fn by_light(
     let rest = lights.len();
     if !wave.sees(ray) {
         if is_first {
-            terms[rest] = wave.lights().background.unwrap_or(Vec3::ZERO);
+            terms[rest] = missed(wave, ray);
         }
         return;
     }
     if !is_first && !is_last && lights.clone().all(|light| visibility.of(light, ray) <= 0.0) {
         return;
     }
-    // A shadow catcher shows the background.
+    // A shadow catcher shows what is behind it.
     if catches(wave, ray) {
         if is_last {
             terms[rest] = sum;
@@ -146,7 +152,7 @@ fn by_light(
     }
     let surface = Surface::shared(wave, ray);
     if is_first {
-        terms[rest] = ambient * surface.coefficients.ka + surface.coefficients.emission;
+        terms[rest] = surface.unlit(ambient);
     }
     let reach = wave.scene.geometry.reach(surface.point.origin);
     for (index, term) in lights.zip(terms) {
@@ -163,25 +169,24 @@ fn catches(wave: &HostWave, ray: usize) -> bool {
     wave.sees(ray) && geometry.materials[geometry.mesh.materials[wave.hits[ray].triangle as usize] as usize].catcher
 }
 
-/// Shows the background on shadow catchers, as far as they get light. Returns how much they get, as a share of what they would get
+/// Shows what is behind shadow catchers, as far as they get light. Returns how much they get, as a share of what they would get
 /// alone, by ray.
-fn catch_shadows(wave: &HostWave, targets: &LightTargets, ambient: Vec3, sums: &mut [Vec3]) -> Vec<f32> {
-    let background = wave.lights().background.unwrap_or(Vec3::ZERO);
+fn catch_shadows(wave: &HostWave, targets: &LightTargets, ambient: &AmbientLight, sums: &mut [Vec3]) -> Vec<f32> {
     let catch = |(ray, sum): (usize, &mut Vec3)| {
         if !catches(wave, ray) {
             return 0.0;
         }
         let share = lit_share(wave, &Surface::new(wave, ray), targets, ambient, *sum);
-        *sum = share * background;
+        *sum = share * missed(wave, ray);
         share
     };
     sums.par_iter_mut().enumerate().map(catch).collect()
 }
 
 /// The light that a surface gets as a share of what it would get alone.
-fn lit_share(wave: &HostWave, surface: &Surface, targets: &LightTargets, ambient: Vec3, lit: Vec3) -> f32 {
+fn lit_share(wave: &HostWave, surface: &Surface, targets: &LightTargets, ambient: &AmbientLight, lit: Vec3) -> f32 {
     let reach = wave.scene.geometry.reach(surface.point.origin);
-    let mut alone = ambient * surface.coefficients.ka + surface.coefficients.emission;
+    let mut alone = surface.unlit(ambient);
     for (index, light) in wave.lights().iter().enumerate() {
         alone += targets.unshadowed(surface, light, index, reach);
     }

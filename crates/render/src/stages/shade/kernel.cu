@@ -2,12 +2,31 @@
 #include "cuda/prelude.cuh"
 
 #include "cuda/warp.cuh"
+#include "shading/environment.cuh"
 #include "shading/ids.cuh"
 #include "shading/shading.cuh"
 
 // The share of a light for a ray.
 DEVICE float share_of(const Shade &args, unsigned light, unsigned ray) {
     return __ldg(args.share + (unsigned long long)light * args.rays.count + ray);
+}
+
+// The angle of the cone around a ray; of those of all samples that are shaded with it, if there are several.
+DEVICE float spread_of(const Shade &args, unsigned ray) {
+    unsigned samples = 1;
+    if (args.rays.list != nullptr && !args.mirrored)
+        samples = max(__popc(__ldg(&args.rays.list[ray].shared)), 1);
+    else if (args.rays.list == nullptr && args.samples != nullptr)
+        samples = args.sample_count;
+    return fabsf(cone_of(args.rays, ray).spread) * sqrtf((float)samples);
+}
+
+// What a ray that hits nothing sees: the background or the environment.
+DEVICE Vec3 missed(const Shade &args, unsigned ray) {
+    const Environment &environment = args.scene.environment;
+    if (environment.levels == nullptr || (environment.hidden && !args.mirrored))
+        return args.scene.background;
+    return environment_radiance(&environment, ray_at(args.rays, ray).direction, spread_of(args, ray));
 }
 
 // Whether a ray gets anything from the lights of this group.
@@ -21,7 +40,7 @@ DEVICE bool sees_any(const Shade &args, unsigned ray) {
 // Formula (1) without its last term: the terms of a group of lights are added to those before.
 DEVICE Vec3 add_group(const Shade &args, unsigned ray, const Surface &surface, Vec3 radiance) {
     if (args.first_light == 0)
-        radiance = args.scene.ambient * surface.material->ka + surface.material->emission;
+        radiance = unlit(args.scene, surface);
     const float reach = scene_reach(args.scene, surface.point.origin);
     for (unsigned light = args.first_light; light < args.end_light; ++light) {
         const float share = share_of(args, light, ray);
@@ -66,21 +85,21 @@ DEVICE float luminance(Vec3 color) { return LUMINANCE_RED * color.x + LUMINANCE_
 // The light that a surface gets as a share of what it would get alone.
 DEVICE float lit_share(const Shade &args, const Surface &surface, Vec3 lit) {
     const float reach = scene_reach(args.scene, surface.point.origin);
-    Vec3 sum = args.scene.ambient * surface.material->ka + surface.material->emission;
+    Vec3 sum = unlit(args.scene, surface);
     for (unsigned light = 0; light < args.scene.light_count; ++light)
         sum = sum + unshadowed(surface, args.scene, light, reach);
     const float alone = luminance(sum);
     return alone > 0.0f ? fminf(luminance(lit) / alone, 1.0f) : 1.0f;
 }
 
-// Shows the background on a shadow catcher, as far as it gets light.
+// Shows what is behind a shadow catcher, as far as it gets light.
 COLD Vec3 catch_shadow(const Shade &args, unsigned ray, unsigned long long place, const Surface &surface, Vec3 lit) {
     const float share = lit_share(args, surface, lit);
     if (args.several && args.ray_caught != nullptr)
         args.ray_caught[ray] = share;
     else if (!args.several && args.caught != nullptr)
         args.caught[place] = share;
-    return share * args.scene.background;
+    return share * missed(args, ray);
 }
 
 KERNEL(shade, Shade, BLOCK, 4) {
@@ -92,10 +111,11 @@ KERNEL(shade, Shade, BLOCK, 4) {
     const bool first = args.first_light == 0, last = args.end_light == args.scene.light_count;
     const bool fills = args.visibility != nullptr && !args.several;
     Vec3 &sum = args.sums != nullptr ? args.sums[ray] : args.color[place];
-    Vec3 radiance = first ? args.scene.background : sum;
+    const bool sees = load_hit(args.hits, ray).triangle != Hit::NONE;
+    Vec3 radiance = first ? sees ? Vec3{} : missed(args, ray) : sum;
     if (last && args.several && args.ray_caught != nullptr)
         args.ray_caught[ray] = 0.0f;
-    if (load_hit(args.hits, ray).triangle != Hit::NONE && (first || fills || (last && args.catches) || sees_any(args, ray))) {
+    if (sees && (first || fills || (last && args.catches) || sees_any(args, ray))) {
         Material own;
         Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
         if (args.samples != nullptr)
@@ -156,7 +176,7 @@ DEVICE void add_by_light(const Shade &args, unsigned ray, unsigned long long pla
     const Vec3 weight = weight_of(args.rays, ray);
     if (load_hit(args.hits, ray).triangle == Hit::NONE) {
         if (first)
-            add_to_group(args, rest, place, weight * args.scene.background);
+            add_to_group(args, rest, place, weight * missed(args, ray));
         return;
     }
     if (!first && !last && !sees_any(args, ray))
@@ -165,14 +185,14 @@ DEVICE void add_by_light(const Shade &args, unsigned ray, unsigned long long pla
     const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
     if (args.samples != nullptr)
         share_tint(args, ray, own);
-    // A shadow catcher shows the background.
+    // A shadow catcher shows what is behind it.
     if (args.catches && surface.material->catcher) {
         if (last)
             add_to_group(args, rest, place, weight * args.sums[ray]);
         return;
     }
     if (first)
-        add_to_group(args, rest, place, weight * (args.scene.ambient * surface.material->ka + surface.material->emission));
+        add_to_group(args, rest, place, weight * unlit(args.scene, surface));
     const float reach = scene_reach(args.scene, surface.point.origin);
     for (unsigned light = args.first_light; light < args.end_light; ++light) {
         const float share = share_of(args, light, ray);

@@ -12,6 +12,7 @@ mod publish;
 pub(crate) mod schema;
 #[cfg(test)]
 mod schema_tests;
+mod sky;
 pub(crate) mod spanned;
 #[cfg(test)]
 mod tests;
@@ -52,6 +53,14 @@ fn convert(source: &Source, file: &SceneFile, draft: &mut Draft) -> Result<(), L
     }
     if let Some(ambient) = &file.ambient {
         read_ambient(source, ambient, draft)?;
+    }
+    match (&file.sky, &file.environment) {
+        (Some(sky), Some(_)) => {
+            return Err(source.refuse("sky", sky, "is given with an environment", "remove one of them"));
+        }
+        (Some(sky), None) => draft.surroundings = Some(sky::read(source, sky)?),
+        (None, Some(environment)) => draft.surroundings = Some(sky::panorama(source, environment, draft)?),
+        (None, None) => {}
     }
     if let Some(light_mesh) = &file.lightmesh {
         draft.light_mesh = read_light_mesh(source, light_mesh)?;

@@ -26,6 +26,10 @@ pub(crate) struct SceneFile {
     pub(crate) camera: Vec<Spanned<CameraEntry>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) ambient: Option<AmbientEntry>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) sky: Option<Spanned<SkyEntry>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) environment: Option<Spanned<EnvironmentEntry>>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) light: Vec<Spanned<LightEntry>>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -102,6 +106,80 @@ pub(crate) struct AmbientEntry {
     /// Radiance of rays that hit nothing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) background: Option<Spanned<Color>>,
+}
+
+/// `[sky]`: what surrounds the scene, and its sun. One table for all kinds; each kind uses some of the keys.
+#[derive(Debug, Deserialize, JsonSchema, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SkyEntry {
+    pub(crate) kind: Spanned<SkyName>,
+    /// Clear: elevation of the sun, and azimuth clockwise from north, degrees. Default: [40, 225].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) sun: Option<Spanned<[f64; 2]>>,
+    /// Clear: latitude and longitude, degrees, instead of `sun`; with `time`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) place: Option<Spanned<[f64; 2]>>,
+    /// Clear: date, time and offset from universal time, such as "2026-06-21T15:00+02:00".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) time: Option<Text>,
+    /// Clear: haze, from 1 to 10. Default: 3.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) turbidity: Option<Number>,
+    /// Clear: what the ground reflects; gradient: its radiance. Default: 0.2.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) ground: Option<Spanned<Color>>,
+    /// Uniform: radiance. Default: 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) color: Option<Spanned<Color>>,
+    /// Gradient: radiance straight above.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) zenith: Option<Spanned<Color>>,
+    /// Gradient: radiance at the horizon.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) horizon: Option<Spanned<Color>>,
+    /// The direction of the scene that is north, clockwise from -Z, or from +Y if Z is up, degrees. Default: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) north: Option<Number>,
+    /// Factor of all radiances. Default: 1, with which white that faces the sun of a clear sky shows 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) strength: Option<Number>,
+    /// The axis that points up. Default: y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) up: Option<UpName>,
+}
+
+/// Kinds of skies.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum SkyName {
+    Clear,
+    Uniform,
+    Gradient,
+}
+
+/// An axis that points up.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum UpName {
+    Y,
+    Z,
+}
+
+/// `[environment]`: a panorama around the scene.
+#[derive(Debug, Deserialize, JsonSchema, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct EnvironmentEntry {
+    /// An equirectangular .hdr or .exr image, north in its middle.
+    pub(crate) file: Text,
+    /// Clockwise as seen from above, degrees. Default: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) rotation: Option<Number>,
+    /// Factor of all radiances. Default: 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) strength: Option<Number>,
+    /// The axis that points up. Default: y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) up: Option<UpName>,
 }
 
 /// `[[light]]`: one table for all kinds; each kind uses some of the keys.

@@ -1,0 +1,100 @@
+//! Skies and panoramas around a scene.
+
+use lightmesh::image::Frame;
+use serde_json::json;
+
+use crate::run::Place;
+
+/// Above a floor, looking north to the horizon.
+const OPEN: &str = "[camera]\nposition = [0, 1, 0]\ntarget = [0, 1, -1]\nvfov = 60\n[[plane]]\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\n\
+                    size = [40, 40]\n[[light]]\nkind = \"directional\"\ndirection = [0, -1, 0]\n[ambient]\nbackground = 0\n";
+
+fn place() -> Place {
+    let place = Place::new();
+    place.write("open.toml", OPEN);
+    place
+}
+
+/// The colour in the middle of the first row, and in that of the last.
+fn render(place: &Place, flags: &[&str]) -> [[f32; 3]; 2] {
+    let base = ["render", "open.toml", "-o", "o.exr", "--size", "33x32", "--stats", "s.json"];
+    place.good(&[&base[..], flags].concat());
+    let frame = Frame::load(place.path("o.exr")).unwrap();
+    [frame.color()[16], frame.color()[31 * 33 + 16]]
+}
+
+#[test]
+fn a_sky_is_seen_and_lights() {
+    let place = place();
+    let [above, below] = render(&place, &["--sky", "clear;sun=50,180"]);
+    assert!(above[2] > 1.5 * above[0] && above[2] > 0.1, "{above:?}: blue");
+    assert!(below[0] > below[2] && below[0] > 0.3, "{below:?}: in the sun");
+    let stats = place.json("s.json");
+    assert_eq!(stats["settings"]["environment"], json!("clear sky"));
+    assert_eq!(stats["scene"]["lights"], 1, "the scene's own sun is gone");
+
+    let [above, shaded] = render(&place, &["--sky", "uniform;color=0.25,0.5,1;strength=2", "--background", "0.125"]);
+    assert_eq!(above, [0.125; 3], "the camera sees the background");
+    // Grey of 0.8 is lit from everywhere.
+    assert!((0..3).all(|k| (shaded[k] / [0.5, 1.0, 2.0][k] - shaded[0] / 0.5).abs() < 1e-3), "{shaded:?}");
+    assert_eq!(place.json("s.json")["scene"]["lights"], 0);
+
+    place.write("sky.toml", &format!("{OPEN}\n[sky]\nkind = \"gradient\"\nzenith = [0, 0, 1]\nhorizon = 1\n").replace("background = 0\n", ""));
+    place.good(&["render", "sky.toml", "-o", "o.exr", "--size", "33x32", "--stats", "s.json"]);
+    let frame = Frame::load(place.path("o.exr")).unwrap();
+    let [high, low] = [0, 12].map(|row| frame.color()[row * 33 + 16]);
+    assert!(high[0] < low[0] && high[2] > 0.99, "{high:?} {low:?}");
+    assert_eq!(place.json("s.json")["scene"]["lights"], 1, "the file means its own sun, too");
+}
+
+#[test]
+fn a_panorama_turns() {
+    let place = place();
+    // Red in the north, green elsewhere.
+    let texels = (0..16 * 8).map(|index| if (4..12).contains(&(index % 16)) { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] });
+    Frame::new(16, 8, texels.collect()).unwrap().save(place.path("p.exr")).unwrap();
+    let [north, _] = render(&place, &["--environment", "p.exr"]);
+    let [turned, _] = render(&place, &["--environment", "p.exr;rotation=180;strength=0.5"]);
+    assert_eq!((north, turned), ([1.0, 0.0, 0.0], [0.0, 0.5, 0.0]));
+    assert_eq!(place.json("s.json")["settings"]["environment"], "p.exr");
+
+    place.write("p.toml", &format!("{OPEN}\n[environment]\nfile = \"p.exr\"\nrotation = 180\n").replace("background = 0\n", ""));
+    place.good(&["render", "p.toml", "-o", "o.exr", "--size", "33x32"]);
+    assert_eq!(Frame::load(place.path("o.exr")).unwrap().color()[16], [0.0, 1.0, 0.0]);
+    // Outputs spare it, named by a flag or by the scene.
+    for scene in [&["open.toml", "--environment", "p.exr"][..], &["p.toml"]] {
+        let message = place.refused(&[&["render", "-o", "p.exr"], scene].concat());
+        assert!(message.contains("p.exr") && message.contains("-o"), "{message}");
+    }
+}
+
+#[test]
+fn what_cannot_surround_a_scene_is_refused() {
+    let place = place();
+    let error = |flags: &[&str]| place.refused(&[&["render", "open.toml", "-o", "o.png", "--size", "8x8"], flags].concat());
+    for (flags, expected) in [
+        (["--sky", "blue"], "clear, uniform or gradient"),
+        (["--sky", "clear;sun=-1,0"], "below the horizon"),
+        (["--sky", "clear;turbidity=11"], "from 1 to 10"),
+        (["--sky", "clear;place=55,83;time=2026-12-21T22:00+07:00"], "twilight"),
+        (["--sky", "clear;place=55,83;time=yesterday"], "2026-06-21T15:00+02:00"),
+        (["--environment", "none.hdr"], "none.hdr"),
+        (["--environment", "open.toml"], "neither a Radiance HDR nor an OpenEXR"),
+    ] {
+        let message = error(&flags);
+        assert!(message.contains(expected), "{flags:?}: {message}");
+    }
+    let both = error(&["--environment", "a.hdr", "--sky", "clear"]);
+    assert!(both.contains("cannot be used with"), "{both}");
+    for (text, expected) in [
+        ("[sky]\nkind = \"clear\"\nsun = [95, 0]\n", "sun"),
+        ("[sky]\nkind = \"clear\"\ncolor = 1\n", "has no `color`"),
+        ("[sky]\nkind = \"clear\"\nplace = [55, 83]\n", "time"),
+        ("[sky]\nkind = \"uniform\"\n[environment]\nfile = \"p.exr\"\n", "remove one of them"),
+        ("[environment]\nfile = \"open.toml\"\n", "neither a Radiance HDR"),
+    ] {
+        place.write("wrong.toml", &format!("{OPEN}\n{text}"));
+        let message = place.refused(&["render", "wrong.toml", "-o", "o.png", "--size", "8x8"]);
+        assert!(message.contains(expected) && message.contains("wrong.toml:"), "{text}: {message}");
+    }
+}

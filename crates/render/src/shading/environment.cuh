@@ -1,0 +1,62 @@
+// What rays see that leave the scene. Twin of environment.rs, with its steps.
+#pragma once
+
+#include "shading/tint.cuh"
+
+// Texels of an environment.
+struct RadianceTexels {
+    const Vec3 *texels;
+};
+
+DEVICE Vec3 texel(const RadianceTexels &level, unsigned long long index) {
+    const float *channels = reinterpret_cast<const float *>(level.texels + index);
+    return Vec3{__ldg(channels), __ldg(channels + 1), __ldg(channels + 2)};
+}
+
+DEVICE Vec3 radiance_at(const Environment &environment, Uv place, unsigned level) {
+    const unsigned wrap[2] = {Texture::REPEAT, Texture::CLAMP};
+    const EnvironmentLevel *of = environment.levels + level;
+    return bilinear(RadianceTexels{of->texels}, __ldg(&of->size[0]), __ldg(&of->size[1]), wrap, place);
+}
+
+// The angle of the point (x, y), counted from the x axis, as a share of a whole turn, from -0.5 to 0.5; 0 for the origin.
+DEVICE float turns(float y, float x) {
+    const float along = fabsf(x), aside = fabsf(y);
+    const float low = aside > along ? along : aside, high = aside > along ? aside : along;
+    const float ratio = high > 0.0f ? low / high : 0.0f;
+    const bool large = ratio > TANGENT_OF_EIGHTH;
+    const float first = large ? EIGHTH_OF_TURN : 0.0f, tangent = large ? (ratio - 1.0f) / (ratio + 1.0f) : ratio;
+    const float square = tangent * tangent;
+    const float sum = ((ARC_TANGENT_9 * square + ARC_TANGENT_7) * square + ARC_TANGENT_5) * square + ARC_TANGENT_3;
+    const float eighth = first + TURN_OF_RADIAN * (tangent + tangent * (square * sum));
+    const float quarter = aside > along ? 0.25f - eighth : eighth;
+    const float half = x < 0.0f ? 0.5f - quarter : quarter;
+    return y < 0.0f ? -half : half;
+}
+
+// The mean radiance that a cone of this angle around `direction` sees. A function of its own, so that its callers keep their registers.
+COLD Vec3 environment_radiance(const Environment *environment, Vec3 direction, float spread) {
+    // 1. Where?
+    const float east = dot(environment->east, direction), up = dot(environment->up, direction), north = dot(environment->north, direction);
+    const float across = sqrtf(east * east + north * north);
+    const Uv place = {0.5f + turns(east, north), 0.5f - 2.0f * turns(up, across)};
+
+    // 2. How much of it?
+    const float width = spread * (2.0f * TURN_OF_RADIAN) * (float)__ldg(&environment->levels->size[1]);
+    Vec3 seen;
+    if (width > 1.0f) {
+        const LevelOfDetail detail = level_of(width, environment->lower);
+        seen = radiance_at(*environment, place, detail.level);
+        if (detail.share > 0.0f)
+            seen = between(seen, radiance_at(*environment, place, detail.level + 1), detail.share);
+    } else {
+        seen = radiance_at(*environment, place, 0);
+    }
+
+    // 3. The sun.
+    if (environment->sun_radius < 0.0f)
+        return seen;
+    const float inside = environment->sun_radius - length(direction - environment->sun);
+    const float share = spread > 0.0f ? fminf(fmaxf(inside / spread + 0.5f, 0.0f), 1.0f) : inside >= 0.0f ? 1.0f : 0.0f;
+    return share > 0.0f ? between(seen, environment->sun_radiance, share) : seen;
+}

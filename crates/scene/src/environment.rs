@@ -1,0 +1,154 @@
+//! What surrounds a scene: radiance by direction, from beyond everything.
+
+mod decode;
+mod irradiance;
+mod levels;
+mod sky;
+mod sun;
+mod sun_position;
+#[cfg(test)]
+mod tests;
+
+use std::f32::consts::{FRAC_1_PI, PI, TAU};
+use std::sync::OnceLock;
+
+use glam::Vec3;
+
+pub use decode::EnvironmentError;
+pub use levels::EnvironmentLevel;
+pub use sky::{Sky, SkyError, SkyKind, Surroundings};
+pub use sun::Sun;
+pub use sun_position::{Moment, SunError, SunPosition};
+
+use crate::Up;
+
+/// Radiance by direction, as a panorama: an equirectangular image of everything around, straight up in its first row, straight down in its last.
+///
+/// In its middle is the north: −Z if Y is up, +Y if Z is up. East, +X, is to its right. The sun is kept apart from the image: it is a light of the
+/// scene, too, and a thousand times brighter than anything else.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Environment {
+    /// For display: the file's name, or the kind of sky.
+    pub name: String,
+    size: [u32; 2],
+    /// Unit vectors to the east, up and to the north.
+    frame: [Vec3; 3],
+    sun: Option<Sun>,
+    levels: Levels,
+}
+
+/// The image, and smaller and smaller means of it, which are made when they are asked for.
+#[derive(Clone, Debug)]
+struct Levels {
+    image: Vec<[f32; 3]>,
+    lower: OnceLock<Vec<EnvironmentLevel>>,
+}
+
+impl PartialEq for Levels {
+    fn eq(&self, other: &Levels) -> bool {
+        self.image == other.image
+    }
+}
+
+impl Environment {
+    /// From radiances row by row, `size` being width and height, for a scene in which `up` is up.
+    ///
+    /// # Panics
+    /// If there are not as many as the size says, or none.
+    pub fn new(name: impl Into<String>, size: [u32; 2], texels: Vec<[f32; 3]>, up: Up) -> Environment {
+        assert!(!texels.is_empty() && texels.len() as u64 == u64::from(size[0]) * u64::from(size[1]), "{size:?}");
+        let levels = Levels { image: texels, lower: OnceLock::new() };
+        Environment { name: name.into(), size, frame: frame(up), sun: None, levels }
+    }
+
+    /// Turned clockwise as seen from above, by an angle in degrees: by 90, what was in the north is in the east.
+    pub fn turned(mut self, degrees: f32) -> Environment {
+        let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+        let [east, up, north] = self.frame.map(Vec3::as_dvec3);
+        // Where a direction is after the turn: its part along up stays.
+        let turned = |way: glam::DVec3| {
+            let [right, ahead] = [east, north].map(|axis| axis.dot(way));
+            (up.dot(way) * up + (cos * right + sin * ahead) * east + (cos * ahead - sin * right) * north).as_vec3()
+        };
+        self.frame = [east, up, north].map(turned);
+        self.sun = self.sun.map(|sun| Sun { direction: turned(sun.direction.as_dvec3()), ..sun });
+        self
+    }
+
+    /// With all radiances multiplied, also that of the sun.
+    pub fn scaled(mut self, factor: f32) -> Environment {
+        let scale = |texel: &mut [f32; 3]| *texel = texel.map(|channel| channel * factor);
+        self.levels.image.iter_mut().for_each(scale);
+        self.levels.lower = OnceLock::new();
+        self.sun = self.sun.map(|sun| Sun { radiance: factor * sun.radiance, ..sun });
+        self
+    }
+
+    /// With a sun, which hides what is behind it.
+    pub fn with_sun(self, sun: Option<Sun>) -> Environment {
+        Environment { sun, ..self }
+    }
+
+    /// Width and height of the image.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// The image without the sun: radiances row by row, from the top.
+    pub fn texels(&self) -> &[[f32; 3]] {
+        &self.levels.image
+    }
+
+    /// Unit vectors to the east, up and to the north, in the scene.
+    pub fn frame(&self) -> [Vec3; 3] {
+        self.frame
+    }
+
+    /// The sun.
+    pub fn sun(&self) -> Option<&Sun> {
+        self.sun.as_ref()
+    }
+
+    /// Means of the image, each half as large as the one before, down to a single texel.
+    pub fn levels(&self) -> &[EnvironmentLevel] {
+        self.levels.lower.get_or_init(|| levels::of(self.size, &self.levels.image))
+    }
+
+    /// Bytes of the image and of its levels.
+    pub fn memory(&self) -> usize {
+        let lower: usize = self.levels().iter().map(|level| size_of_val(level.texels.as_slice())).sum();
+        size_of_val(self.levels.image.as_slice()) + lower
+    }
+
+    /// The direction of the middle of a texel, in the scene.
+    pub fn direction(&self, column: u32, row: u32) -> Vec3 {
+        self.direction_in(self.size, column, row)
+    }
+
+    /// The same for an image of another size.
+    fn direction_in(&self, size: [u32; 2], column: u32, row: u32) -> Vec3 {
+        let [width, height] = size.map(|side| side as f32);
+        self.from_angles(TAU * ((column as f32 + 0.5) / width - 0.5), PI * (0.5 - (row as f32 + 0.5) / height))
+    }
+
+    /// The direction with this azimuth, clockwise from north, and elevation, both in radians.
+    pub fn from_angles(&self, azimuth: f32, elevation: f32) -> Vec3 {
+        let [east, up, north] = self.frame;
+        elevation.cos() * (azimuth.sin() * east + azimuth.cos() * north) + elevation.sin() * up
+    }
+
+    /// The texel in which a direction of the scene lies: column and row.
+    pub fn texel(&self, direction: Vec3) -> [u32; 2] {
+        let [east, up, north] = self.frame.map(|axis| axis.dot(direction));
+        let place = [0.5 + 0.5 * FRAC_1_PI * east.atan2(north), 0.5 - FRAC_1_PI * up.atan2(east.hypot(north))];
+        [0, 1].map(|axis| ((place[axis] * self.size[axis] as f32) as u32).min(self.size[axis] - 1))
+    }
+}
+
+/// East, up and north of a scene.
+fn frame(up: Up) -> [Vec3; 3] {
+    match up {
+        Up::Y => [Vec3::X, Vec3::Y, Vec3::NEG_Z],
+        Up::Z => [Vec3::X, Vec3::Z, Vec3::Y],
+    }
+}

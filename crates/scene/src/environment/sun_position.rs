@@ -1,0 +1,176 @@
+//! Where the sun stands: by place and time, through NREL's solar position algorithm.
+
+use std::str::FromStr;
+
+use solar_positioning::time::JulianDate;
+use solar_positioning::{Location, RefractionCorrection, SolarPositions, delta_t};
+
+/// Where the sun stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SunPosition {
+    /// Angle above the horizon, degrees.
+    pub elevation: f64,
+    /// Clockwise from north, degrees.
+    pub azimuth: f64,
+}
+
+/// A date and a time of day, with the difference from universal time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Year, month and day.
+    pub date: [u32; 3],
+    /// Hour and minute.
+    pub time: [u32; 2],
+    /// Second.
+    pub second: f64,
+    /// Minutes by which the clock is ahead of universal time.
+    pub offset: i32,
+}
+
+/// Why there is no position of the sun.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SunError {
+    /// Not a date with a time.
+    #[error(
+        "`{text}` is not a date with a time and an offset from universal time; write 2026-06-21T15:00+02:00, or Z for universal time"
+    )]
+    Moment {
+        /// What was given.
+        text: String,
+    },
+    /// Latitude, longitude or date out of range.
+    #[error(
+        "there is no sun at latitude {latitude}, longitude {longitude} then ({problem}); latitudes are from -90 to 90, longitudes from -180 to 180, both in degrees"
+    )]
+    Place {
+        /// Degrees north.
+        latitude: f64,
+        /// Degrees east.
+        longitude: f64,
+        /// What is wrong.
+        problem: String,
+    },
+}
+
+impl SunPosition {
+    /// As seen from a place, `latitude` in degrees north and `longitude` in degrees east, at sea level, with the refraction of an ordinary
+    /// atmosphere.
+    ///
+    /// # Errors
+    /// [`SunError::Place`] if the place or the date does not exist.
+    pub fn of(latitude: f64, longitude: f64, moment: &Moment) -> Result<SunPosition, SunError> {
+        let place =
+            |error: solar_positioning::Error| SunError::Place { latitude, longitude, problem: error.to_string() };
+        let [year, month, day] = moment.date;
+        let [hour, minute] = moment.time;
+        let delta = delta_t::estimate_from_date(year as i32, month).map_err(place)?;
+        let there = JulianDate::from_utc(year as i32, month, day, hour, minute, moment.second, delta).map_err(place)?;
+        let days = f64::from(moment.offset) / (24.0 * 60.0);
+        let universal = JulianDate::new(there.julian_date() - days, delta).map_err(place)?;
+        let refraction = Some(RefractionCorrection::standard());
+        let position = SolarPositions::new()
+            .at_from_julian(universal, Location { latitude, longitude }, 0.0, refraction)
+            .map_err(place)?;
+        Ok(SunPosition { elevation: position.elevation_angle(), azimuth: position.azimuth() })
+    }
+}
+
+impl FromStr for Moment {
+    type Err = SunError;
+
+    fn from_str(text: &str) -> Result<Moment, SunError> {
+        moment(text.trim()).ok_or_else(|| SunError::Moment { text: text.chars().take(40).collect() })
+    }
+}
+
+/// `YYYY-MM-DDTHH:MM[:SS](Z|±HH:MM)`, also with a space in place of the T.
+fn moment(text: &str) -> Option<Moment> {
+    let (date, rest) = text.split_once(['T', 't', ' '])?;
+    let date = numbers::<3>(date, '-')?;
+    let at = rest.find(['Z', 'z', '+', '-'])?;
+    let (clock, zone) = rest.split_at(at);
+    let [hour, minute] = numbers::<2>(clock.get(..5)?, ':')?;
+    let second = match &clock[5..] {
+        "" => 0.0,
+        seconds => seconds.strip_prefix(':')?.parse::<f64>().ok().filter(|second| (0.0..60.0).contains(second))?,
+    };
+    let offset = match zone.split_at(1) {
+        ("Z" | "z", "") => 0,
+        (sign @ ("+" | "-"), zone) => {
+            let [hours, minutes] = numbers::<2>(zone, ':')?;
+            let offset = (60 * hours + minutes) as i32;
+            if minutes >= 60 || offset > 18 * 60 {
+                return None;
+            }
+            if sign == "-" { -offset } else { offset }
+        }
+        _ => return None,
+    };
+    (hour < 24 && minute < 60).then_some(Moment { date, time: [hour, minute], second, offset })
+}
+
+/// Numbers of digits alone.
+fn numbers<const N: usize>(text: &str, between: char) -> Option<[u32; N]> {
+    let parts: Vec<u32> = text
+        .split(between)
+        .map(|part| part.parse().ok().filter(|_| part.len() <= 4 && part.bytes().all(|byte| byte.is_ascii_digit())))
+        .collect::<Option<_>>()?;
+    parts.try_into().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_published_example_of_the_algorithm_is_found() {
+        // Reda and Andreas 2003, table A5.1: zenith 50.11162°, azimuth 194.34024°, at 1830 m; the height changes little.
+        let moment = "2003-10-17T12:30:30-07:00".parse().unwrap();
+        let found = SunPosition::of(39.742476, -105.1786, &moment).unwrap();
+        assert!((90.0 - found.elevation - 50.11162).abs() < 0.005, "{found:?}");
+        assert!((found.azimuth - 194.34024).abs() < 0.001, "{found:?}");
+    }
+
+    #[test]
+    fn the_sun_is_in_the_south_at_noon_and_in_the_north_south_of_the_equator() {
+        let at = |latitude, moment: &str| SunPosition::of(latitude, 0.0, &moment.parse().unwrap()).unwrap();
+        // At an equinox, noon: 90° less the latitude.
+        let noon = at(50.0, "2026-03-20T12:07Z");
+        assert!((noon.elevation - 40.0).abs() < 0.3 && (noon.azimuth - 180.0).abs() < 1.0, "{noon:?}");
+        let south = at(-50.0, "2026-03-20T12:07Z");
+        assert!((south.elevation - 40.0).abs() < 0.3, "{south:?}");
+        assert!(south.azimuth < 1.0 || south.azimuth > 359.0, "{south:?}");
+        assert!(at(50.0, "2026-03-20T00:00Z").elevation < -30.0, "midnight");
+        let morning = at(50.0, "2026-03-20 08:00Z");
+        assert!((90.0..150.0).contains(&morning.azimuth), "{morning:?}");
+        let same = |a: SunPosition, b: SunPosition| {
+            (a.elevation - b.elevation).abs() < 1e-5 && (a.azimuth - b.azimuth).abs() < 1e-5
+        };
+        assert!(same(morning, at(50.0, "2026-03-20T10:00:00+02:00")));
+        assert!(same(at(50.0, "2026-03-20T23:30Z"), at(50.0, "2026-03-21T01:00+01:30")), "another day there");
+    }
+
+    #[test]
+    fn what_is_no_moment_or_place_is_refused() {
+        for text in
+            ["", "2026-06-21", "2026-06-21T15:00", "15:00Z", "2026-06-21T15Z", "2026-06-21T24:00Z", "2026-6-21T15:60Z"]
+        {
+            let error = text.parse::<Moment>().unwrap_err().to_string();
+            assert!(error.contains("2026-06-21T15:00+02:00"), "{text}: {error}");
+        }
+        for text in [
+            "2026-06-21T15:00+2",
+            "2026-06-21T15:00+19:00",
+            "2026-06-21T15:00:61Z",
+            "äöü-06-21T15:00Z",
+            "2026-06-21Tä:00Z",
+        ] {
+            assert!(text.parse::<Moment>().is_err(), "{text}");
+        }
+        let moment: Moment = "2026-06-31T12:00Z".parse().unwrap();
+        assert!(SunPosition::of(0.0, 0.0, &moment).is_err(), "June has 30 days");
+        let moment: Moment = "2026-06-30T12:00Z".parse().unwrap();
+        let error = SunPosition::of(91.0, 0.0, &moment).unwrap_err().to_string();
+        assert!(error.contains("latitude 91") && error.contains("-90 to 90"), "{error}");
+    }
+}
