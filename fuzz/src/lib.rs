@@ -108,6 +108,12 @@ fn check(scene: &Scene) {
         let all = || lobes.iter().chain([&material.ka, &material.kd]);
         assert!(all().all(|color| color.is_finite() && color.min_element() >= 0.0), "{material:?}");
         assert!((material.ks + material.ks_tinted).max_element() < 1.00001, "{material:?}");
+        if let Some(cut_out) = material.cut_out {
+            let numbers = [cut_out.factor, cut_out.cutoff];
+            assert!(numbers.iter().all(|number| number.is_finite() && *number >= 0.0), "{material:?}");
+            let texture = cut_out.texture.map(|uses| uses.texture as usize);
+            assert!(texture.is_none_or(|texture| texture < scene.geometry.textures.len()), "{material:?}");
+        }
     }
     assert!(scene.cameras.iter().all(|camera| camera.position.is_finite() && camera.direction.is_normalized()));
     assert!(scene.lights.iter().all(|light| light.intensity.is_finite()));
@@ -127,9 +133,10 @@ fn check_mesh(mesh: &Mesh, materials: usize) {
     let (starts, objects) = mesh.objects.runs();
     assert!(starts.is_sorted_by(|a, b| a < b) && starts.first().is_none_or(|&first| first == 0));
     assert!(starts.len() == objects.len() && objects.iter().all(|&object| (object as usize) < mesh.objects.count()));
-    for count in [mesh.normals.len(), mesh.uvs.len(), mesh.colors.len()] {
+    for count in [mesh.normals.len(), mesh.uvs.len(), mesh.colors.len(), mesh.opacities.len()] {
         assert!(count == 0 || count == vertices, "{count} of {vertices}");
     }
     assert!(mesh.positions.iter().all(|position| position.is_finite()));
     assert!(mesh.normals.iter().all(|normal| normal.is_finite()));
+    assert!(mesh.opacities.iter().all(|opacity| (0.0..=1.0).contains(opacity)));
 }

@@ -7,13 +7,15 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use libfuzzer_sys::fuzz_target;
+use lightmesh::scene::SkyKind;
 
 // The program's own modules: they need nothing else of it.
 #[path = "../../crates/cli/src/value/mod.rs"]
 mod value;
 
 use value::{
-    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, Exposure, LightSpec, Positive, Size, Smooth,
+    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, LightSpec, Positive, Size,
+    SkySpec, Smooth,
 };
 
 /// Messages quote a part of the text and explain the rest.
@@ -74,6 +76,26 @@ fn read_places(text: &str) {
         assert!(light.radius >= 0.0 && light.radius.is_finite());
         let [x, y, z] = light.position.to_array();
         format!("{x},{y},{z};{};{}", color(&Color(light.intensity)), light.radius)
+    });
+    read::<SkySpec>(text, |SkySpec { sky, alone }| {
+        let kind = match sky.kind {
+            SkyKind::Clear { sun, turbidity, ground } => {
+                assert!(sun.elevation.is_finite() && sun.azimuth.is_finite() && turbidity.is_finite());
+                let ground = color(&Color(ground));
+                format!("clear;sun={},{};turbidity={turbidity};ground={ground}", sun.elevation, sun.azimuth)
+            }
+            SkyKind::Uniform { color: all } => format!("uniform;color={}", color(&Color(all))),
+            SkyKind::Gradient { zenith, horizon, ground } => {
+                let [zenith, horizon, ground] = [zenith, horizon, ground].map(|part| color(&Color(part)));
+                format!("gradient;zenith={zenith};horizon={horizon};ground={ground}")
+            }
+        };
+        format!("{kind};north={};strength={}{}", sky.north, sky.strength, if *alone { ";alone" } else { "" })
+    });
+    read::<EnvironmentSpec>(text, |spec| {
+        assert!(spec.rotation.is_finite() && spec.strength >= 0.0 && spec.strength.is_finite());
+        let alone = if spec.alone { ";alone" } else { "" };
+        format!("{};rotation={};strength={}{alone}", spec.file.display(), spec.rotation, spec.strength)
     });
     if let Some(CameraView { position, direction, vfov }) = parsed(text) {
         assert!(position.as_vec3().is_finite() && direction.normalize().is_finite());

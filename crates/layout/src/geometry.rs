@@ -23,10 +23,49 @@ records! {
         triangle: u32,
     }
 
-    /// Three corners as `float4`; the bits of the first `w` are the index in the mesh.
+    /// Three corners as `float4`; the bits of the first `w` are the index in the mesh, those of the second the number of its
+    /// [`CutTriangle`], from 1, or 0 if it is opaque.
     Triangle {
         /// Corners.
         corners: [[f32; 4]; 3],
+    }
+
+    /// How a triangle is cut out.
+    CutTriangle {
+        /// Texture coordinates of its corners.
+        uvs: [[f32; 2]; 3],
+        /// Opacities of its corners, by which those of the mask are multiplied.
+        opacities: [f32; 3],
+        /// Index of its mask.
+        mask: u32,
+    }
+
+    /// How a material is cut out: opacities in an image, and how texture coordinates are mapped to it.
+    Mask {
+        /// From 0 to 255, row by row.
+        texels: In<u8>,
+        /// Width and height; at least 1.
+        size: [u32; 2],
+        /// Wrapping beyond its edges, as a [`Texture`](crate::scene::Texture)'s.
+        wrap: [u32; 2],
+        /// The step in the image for a step in u.
+        u_axis: [f32; 2],
+        /// The step in the image for a step in v.
+        v_axis: [f32; 2],
+        /// The position of texture coordinates (0, 0).
+        translation: [f32; 2],
+        /// The least opacity at which there is a surface, as texels count.
+        limit: f32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
+    }
+
+    /// Where triangles are cut out.
+    Coverage {
+        /// By number, from 1; null if nothing is cut out.
+        triangles: In<CutTriangle>,
+        /// Masks.
+        masks: In<Mask>,
     }
 
     /// A compressed node of eight children (Ylitie, Karras, Laine: *Efficient Incoherent Ray Traversal on GPUs Through Compressed
@@ -72,6 +111,8 @@ records! {
         nodes: In<BvhNode>,
         /// In leaf order.
         triangles: In<Triangle>,
+        /// Where they are cut out.
+        coverage: Coverage,
         /// The sphere around its triangles.
         approach: Approach,
         /// Number of nodes; 0 if there are no triangles.
@@ -86,6 +127,8 @@ records! {
         cells: In<i32>,
         /// The triangles of all cells, one cell after another.
         triangles: In<Triangle>,
+        /// Where they are cut out.
+        coverage: Coverage,
         /// For each cell of the outer grid, the distance to the nearest non-empty one, in cells; at most 255.
         distances: In<u8>,
         /// Lowest corner.
@@ -106,6 +149,8 @@ records! {
     BruteForce {
         /// The usable triangles.
         triangles: In<Triangle>,
+        /// Where they are cut out.
+        coverage: Coverage,
         /// The sphere around them.
         approach: Approach,
         /// Their number.

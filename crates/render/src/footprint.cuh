@@ -86,18 +86,15 @@ DEVICE Vec3 direction_to(Vec3 position, const Ray &ray, Cone cone) {
 DEVICE float curvature(const Scene &scene, const Hit &hit, const Corners &corners, Vec3 facing) {
     if (scene.normals == nullptr)
         return 0.0f;
-    const unsigned *vertices = scene.indices[hit.triangle].vertices;
-    const Vec3 a = load_normal(scene.normals, __ldg(vertices)), b = load_normal(scene.normals, __ldg(vertices + 1)),
-               c = load_normal(scene.normals, __ldg(vertices + 2));
-    const Vec3 smooth = (1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c;
-    const float square = length_squared(smooth);
-    const Vec3 none = splat(0.0f);
-    if (a == none || b == none || c == none || square < LEAST_SMOOTH_SQUARE)
+    const Normals normals = load_normals(scene, hit.triangle);
+    Vec3 smooth;
+    float square;
+    if (!smooth_at(hit, normals, smooth, square))
         return 0.0f;
     const Gradients gradients = gradients_of(corners);
     if (!gradients.valid)
         return 0.0f;
-    const float divergence = (dot(gradients.u, b - a) + dot(gradients.v, c - a)) / sqrtf(square);
+    const float divergence = (dot(gradients.u, normals.b - normals.a) + dot(gradients.v, normals.c - normals.a)) / sqrtf(square);
     const float half = dot(smooth, facing) < 0.0f ? -0.5f * divergence : 0.5f * divergence;
     return is_finite(half) ? half : 0.0f;
 }

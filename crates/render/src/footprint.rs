@@ -22,6 +22,7 @@ use lightmesh_layout::constants::{LEAST_FOOTPRINT_COSINE, LEAST_SMOOTH_SQUARE, L
 use lightmesh_scene::Mesh;
 
 use crate::accel::{Hit, Ray};
+use crate::surface::smooth_at;
 
 /// A cone around a ray. Without a width, textures are looked up at points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -129,18 +130,11 @@ pub(crate) fn direction_to(position: Vec3, ray: &Ray, cone: Cone) -> Vec3 {
 /// The mean curvature of the normals that shading uses, at a hit: how much they turn per unit of length, averaged over all directions.
 /// Positive on the outside of a ball; `facing` is the geometric normal on the viewer's side. It is half of the divergence of the normals.
 pub(crate) fn curvature(mesh: &Mesh, hit: &Hit, corners: [Vec3; 3], facing: Vec3) -> f32 {
-    if mesh.normals.is_empty() {
-        return 0.0;
-    }
-    let [a, b, c] = mesh.triangles[hit.triangle as usize].map(|vertex| mesh.normals[vertex as usize]);
-    let smooth = (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
-    let square = smooth.length_squared();
-    if a == Vec3::ZERO || b == Vec3::ZERO || c == Vec3::ZERO || square < LEAST_SMOOTH_SQUARE {
-        return 0.0;
-    }
+    let Some(smooth) = smooth_at(mesh, hit) else { return 0.0 };
+    let [a, b, c] = smooth.corners;
     let Some(gradients) = Gradients::of(corners) else { return 0.0 };
-    let divergence = (gradients.u.dot(b - a) + gradients.v.dot(c - a)) / square.sqrt();
-    let curvature = if smooth.dot(facing) < 0.0 { -0.5 * divergence } else { 0.5 * divergence };
+    let divergence = (gradients.u.dot(b - a) + gradients.v.dot(c - a)) / smooth.square.sqrt();
+    let curvature = if smooth.normal.dot(facing) < 0.0 { -0.5 * divergence } else { 0.5 * divergence };
     if curvature.is_finite() { curvature } else { 0.0 }
 }
 

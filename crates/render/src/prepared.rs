@@ -6,10 +6,10 @@
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use glam::Vec3;
-use lightmesh_memory::Budget;
+use lightmesh_memory::{Budget, Short};
 use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Scene, Texture};
 
-use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Grid, GridOptions, Triangle};
+use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Coverage, Grid, GridOptions, Triangle, coverage};
 use crate::error::RenderError;
 use crate::material_ids::MaterialIds;
 use crate::observer::Observer;
@@ -29,6 +29,8 @@ pub struct PreparedGeometry {
     pub accelerator: Box<dyn Accelerator>,
     /// The box around all triangles that can be hit.
     pub bounds: Bounds,
+    /// Where triangles are cut out.
+    pub(crate) coverage: Coverage,
     /// The numbers and names of materials.
     pub(crate) materials: MaterialIds,
     /// The smaller levels of textures, by number; empty if no texture is seen.
@@ -45,7 +47,7 @@ pub struct PreparedGeometry {
 impl PreparedGeometry {
     /// For rays that lie close together.
     pub(crate) fn beams(&self) -> Beams<'_> {
-        Beams::new(&*self.accelerator, &self.triangles, &self.bounds)
+        Beams::new(&*self.accelerator, &self.triangles, &self.coverage, &self.bounds)
     }
 
     /// Builds the acceleration structure over `geometry`, and the smaller levels of its textures.
@@ -63,19 +65,21 @@ impl PreparedGeometry {
         geometry.check()?;
         let mesh = &geometry.mesh;
         let triangles = mesh.triangles.len();
-        let needed = triangles as u64 * BYTES_TO_BUILD;
+        let cut_out = geometry.materials.iter().any(|material| material.cut_out.is_some());
+        let bytes = BYTES_TO_BUILD + if cut_out { coverage::BYTES_TO_BUILD } else { 0 };
+        let needed = triangles as u64 * bytes;
         budget.check(needed).map_err(|short| RenderError::BuildMemory { triangles, short })?;
         observer.begin(Stage::Build, mesh.triangles.len() as u64);
         let start = std::time::Instant::now();
-        let triangles: Vec<Triangle> =
-            (0..mesh.triangles.len()).map(|index| Triangle::new(mesh.corners(index), index as u32)).collect();
+        let (triangles, coverage) = triangles_of(geometry, budget)?;
         let accelerator: Box<dyn Accelerator> = match acceleration {
-            Acceleration::Auto | Acceleration::Bvh => Box::new(Bvh::new(&triangles)),
+            Acceleration::Auto | Acceleration::Bvh => Box::new(Bvh::new(&triangles).with_coverage(&coverage)),
             Acceleration::Grid(dims) => {
-                Box::new(Grid::new(&triangles, &GridOptions { dims: *dims, budget, ..GridOptions::default() })?)
+                let options = GridOptions { dims: *dims, budget, ..GridOptions::default() };
+                Box::new(Grid::new(&triangles, &options)?.with_coverage(&coverage))
             }
-            Acceleration::GridFile(path) => Box::new(Grid::load(path, &triangles)?),
-            Acceleration::BruteForce => Box::new(BruteForce::new(&triangles)),
+            Acceleration::GridFile(path) => Box::new(Grid::load(path, &triangles)?.with_coverage(&coverage)),
+            Acceleration::BruteForce => Box::new(BruteForce::new(&triangles).with_coverage(&coverage)),
         };
         let mip_levels = mip_levels(geometry, budget)?;
         let unreported = Mutex::new(start.elapsed().as_secs_f64());
@@ -90,6 +94,7 @@ impl PreparedGeometry {
             triangles,
             accelerator,
             bounds,
+            coverage,
             materials: MaterialIds::new(geometry),
             mip_levels,
             acceleration: acceleration.clone(),
@@ -97,6 +102,15 @@ impl PreparedGeometry {
             center,
             far,
         })
+    }
+
+    /// The triangles of a geometry by index, as structures take them: those that are cut out are marked as such.
+    ///
+    /// # Errors
+    /// [`RenderError::Geometry`] if the geometry is inconsistent, [`RenderError::TextureMemory`] if there is not enough memory.
+    pub fn triangles_of(geometry: &Geometry, budget: Budget) -> Result<Vec<Triangle>, RenderError> {
+        geometry.check()?;
+        Ok(triangles_of(geometry, budget)?.0)
     }
 
     /// The setting that chose the structure.
@@ -115,10 +129,11 @@ impl PreparedGeometry {
         (self.center, self.far)
     }
 
-    /// Bytes that the geometry occupies on the host, including the acceleration structure and the smaller levels of textures.
+    /// Bytes that the geometry occupies on the host, including the acceleration structure, the smaller levels of textures and
+    /// opacities.
     pub fn memory(&self) -> usize {
         let levels: usize = self.mip_levels.iter().map(MipLevels::memory).sum();
-        size_of_val(self.triangles.as_slice()) + self.accelerator.memory() + levels
+        size_of_val(self.triangles.as_slice()) + self.accelerator.memory() + self.coverage.memory() + levels
     }
 
     /// The build time in seconds at the first call; 0 at all later ones. So it counts for the first image alone.
@@ -127,11 +142,24 @@ impl PreparedGeometry {
     }
 }
 
+/// The triangles of a geometry by index, and where they are cut out.
+fn triangles_of(geometry: &Geometry, budget: Budget) -> Result<(Vec<Triangle>, Coverage), RenderError> {
+    let (coverage, numbers) = Coverage::of(geometry, budget).map_err(|found| too_large(geometry, found))?;
+    let triangle = |index: usize| {
+        let number = numbers.get(index).copied().unwrap_or(0);
+        Triangle::new(geometry.mesh.corners(index), index as u32).cut_out(number)
+    };
+    Ok(((0..geometry.mesh.triangles.len()).map(triangle).collect(), coverage))
+}
+
 fn mip_levels(geometry: &Geometry, budget: Budget) -> Result<Vec<MipLevels>, RenderError> {
-    MipLevels::of(geometry, budget).map_err(|(index, short)| {
-        let Texture { name, size, .. } = &geometry.textures[index];
-        RenderError::TextureMemory { name: name.clone(), size: *size, short }
-    })
+    MipLevels::of(geometry, budget).map_err(|found| too_large(geometry, found))
+}
+
+/// The error for a texture of which something does not fit into memory.
+fn too_large(geometry: &Geometry, (index, short): (usize, Short)) -> RenderError {
+    let Texture { name, size, .. } = &geometry.textures[index];
+    RenderError::TextureMemory { name: name.clone(), size: *size, short }
 }
 
 /// A scene whose geometry is prepared. Any number of images can be rendered of it, on any device; clones share the geometry.

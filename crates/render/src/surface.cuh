@@ -39,18 +39,31 @@ DEVICE Vec3 load_normal(const Vec3 *normals, unsigned vertex) {
     return Vec3{__ldg(normal), __ldg(normal + 1), __ldg(normal + 2)};
 }
 
+// The normals of a triangle's corners.
+struct Normals {
+    Vec3 a, b, c;
+};
+
+DEVICE Normals load_normals(const Scene &scene, unsigned triangle) {
+    const unsigned *vertices = scene.indices[triangle].vertices;
+    return Normals{load_normal(scene.normals, __ldg(vertices)), load_normal(scene.normals, __ldg(vertices + 1)),
+                   load_normal(scene.normals, __ldg(vertices + 2))};
+}
+
+// What the normals of a triangle's corners are between them: interpolated, not of unit length, and the square of its length. False on flat
+// triangles: those with a corner without a normal, and where normals cancel out. The scene must have normals.
+DEVICE bool smooth_at(const Hit &hit, const Normals &corners, Vec3 &normal, float &square) {
+    const Vec3 none = splat(0.0f);
+    normal = (1.0f - hit.u - hit.v) * corners.a + hit.u * corners.b + hit.v * corners.c;
+    square = length_squared(normal);
+    return !(corners.a == none || corners.b == none || corners.c == none || square < LEAST_SMOOTH_SQUARE);
+}
+
 // The unit normal that shading uses, on the side of the geometric normal `facing`.
 DEVICE Vec3 shading_normal(const Scene &scene, const Hit &hit, Vec3 facing) {
-    if (scene.normals == nullptr)
-        return facing;
-    const unsigned *vertices = scene.indices[hit.triangle].vertices;
-    const Vec3 a = load_normal(scene.normals, __ldg(vertices)), b = load_normal(scene.normals, __ldg(vertices + 1)),
-               c = load_normal(scene.normals, __ldg(vertices + 2));
-    const Vec3 smooth = (1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c;
-    const float square = length_squared(smooth);
-    // A corner without a normal makes the triangle flat; so do normals that cancel out.
-    const Vec3 none = splat(0.0f);
-    if (a == none || b == none || c == none || square < LEAST_SMOOTH_SQUARE)
+    Vec3 smooth;
+    float square;
+    if (scene.normals == nullptr || !smooth_at(hit, load_normals(scene, hit.triangle), smooth, square))
         return facing;
     const Vec3 normal = smooth / sqrtf(square);
     return dot(normal, facing) < 0.0f ? -normal : normal;

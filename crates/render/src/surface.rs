@@ -49,21 +49,35 @@ impl SurfacePoint {
     }
 }
 
+/// The normals of a triangle's corners, and what they are between them.
+pub(crate) struct Smooth {
+    pub(crate) corners: [Vec3; 3],
+    /// Interpolated; not of unit length.
+    pub(crate) normal: Vec3,
+    /// The square of its length.
+    pub(crate) square: f32,
+}
+
+/// The normals at a hit. `None` on flat triangles: those with a corner without a normal, and where normals cancel out.
+#[inline(always)]
+pub(crate) fn smooth_at(mesh: &Mesh, hit: &Hit) -> Option<Smooth> {
+    if mesh.normals.is_empty() {
+        return None;
+    }
+    let corners = mesh.triangles[hit.triangle as usize].map(|vertex| mesh.normals[vertex as usize]);
+    let [a, b, c] = corners;
+    let normal = (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
+    let square = normal.length_squared();
+    let is_flat = corners.contains(&Vec3::ZERO) || square < LEAST_SMOOTH_SQUARE;
+    (!is_flat).then_some(Smooth { corners, normal, square })
+}
+
 /// The unit normal that shading uses: interpolated if the mesh has normals, else geometric; always on the side of the geometric
 /// normal `facing`.
 #[inline(always)]
 pub(crate) fn shading_normal(mesh: &Mesh, hit: &Hit, facing: Vec3) -> Vec3 {
-    if mesh.normals.is_empty() {
-        return facing;
-    }
-    let [a, b, c] = mesh.triangles[hit.triangle as usize].map(|vertex| mesh.normals[vertex as usize]);
-    let smooth = (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
-    let square = smooth.length_squared();
-    // A corner without a normal makes the triangle flat; so do normals that cancel out.
-    if a == Vec3::ZERO || b == Vec3::ZERO || c == Vec3::ZERO || square < LEAST_SMOOTH_SQUARE {
-        return facing;
-    }
-    let normal = smooth / square.sqrt();
+    let Some(smooth) = smooth_at(mesh, hit) else { return facing };
+    let normal = smooth.normal / smooth.square.sqrt();
     if normal.dot(facing) < 0.0 { -normal } else { normal }
 }
 

@@ -29,6 +29,7 @@ pub struct SceneBuilder {
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
     colors: Vec<Vec3>,
+    opacities: Vec<f32>,
     triangles: Vec<[u32; 3]>,
     /// Material by triangle.
     materials: Vec<u32>,
@@ -94,6 +95,8 @@ impl SceneBuilder {
         self.uvs.extend(part.uvs);
         fill_to(&mut self.colors, first, Vec3::ONE, !part.colors.is_empty());
         self.colors.extend(part.colors);
+        fill_to(&mut self.opacities, first, 1.0, !part.opacities.is_empty());
+        self.opacities.extend(part.opacities);
 
         let mirrored = mirrors(transform);
         self.triangles.extend(part.triangles.iter().map(|&[a, b, c]| {
@@ -130,6 +133,7 @@ impl SceneBuilder {
             && reserve(&mut self.normals, of(room.normals))
             && reserve(&mut self.uvs, of(room.uvs))
             && reserve(&mut self.colors, of(room.colors))
+            && reserve(&mut self.opacities, of(room.opacities))
             && reserve(&mut self.triangles, room.triangles)
             && reserve(&mut self.materials, room.triangles)
     }
@@ -170,11 +174,13 @@ impl SceneBuilder {
         fill_to(&mut self.normals, vertices, Vec3::ZERO, false);
         fill_to(&mut self.uvs, vertices, Vec2::ZERO, false);
         fill_to(&mut self.colors, vertices, Vec3::ONE, false);
+        fill_to(&mut self.opacities, vertices, 1.0, false);
         let mesh = Mesh {
             positions: self.vertices.finish(origin),
             normals: self.normals,
             uvs: self.uvs,
             colors: self.colors,
+            opacities: self.opacities,
             triangles: self.triangles,
             materials: self.materials,
             objects: self.objects,

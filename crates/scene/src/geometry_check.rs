@@ -24,7 +24,7 @@ pub enum GeometryError {
     /// An attribute does not have one value per vertex.
     #[error("there are {found} {attribute} for {vertices} vertices: give one per vertex, or none at all")]
     Attribute {
-        /// `normals`, `uvs` or `colors`.
+        /// `normals`, `uvs`, `colors` or `opacities`.
         attribute: &'static str,
         /// Number of values.
         found: usize,
@@ -82,7 +82,8 @@ impl Geometry {
         let mesh = &self.mesh;
         let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
         check_room(vertices, triangles)?;
-        check_attributes(vertices, mesh.normals.len(), mesh.uvs.len(), mesh.colors.len())?;
+        let attributes = [mesh.normals.len(), mesh.uvs.len(), mesh.colors.len(), mesh.opacities.len()];
+        check_attributes(vertices, attributes)?;
         check_triangles(&mesh.triangles, vertices)?;
         if mesh.materials.len() != triangles {
             return Err(GeometryError::MaterialCount { found: mesh.materials.len(), triangles });
@@ -99,7 +100,8 @@ impl<P> MeshPart<'_, P> {
     /// Checks that every index is in range and all lengths match.
     pub(crate) fn check(&self) -> Result<(), GeometryError> {
         let vertices = self.positions.len();
-        check_attributes(vertices, self.normals.len(), self.uvs.len(), self.colors.len())?;
+        let attributes = [self.normals.len(), self.uvs.len(), self.colors.len(), self.opacities.len()];
+        check_attributes(vertices, attributes)?;
         check_triangles(self.triangles, vertices)
     }
 }
@@ -124,8 +126,9 @@ pub(crate) fn check_room(vertices: usize, triangles: usize) -> Result<(), Geomet
     Ok(())
 }
 
-fn check_attributes(vertices: usize, normals: usize, uvs: usize, colors: usize) -> Result<(), GeometryError> {
-    for (attribute, found) in [("normals", normals), ("uvs", uvs), ("colors", colors)] {
+/// Of normals, uvs, colors and opacities.
+fn check_attributes(vertices: usize, found: [usize; 4]) -> Result<(), GeometryError> {
+    for (attribute, found) in ["normals", "uvs", "colors", "opacities"].into_iter().zip(found) {
         if found != 0 && found != vertices {
             return Err(GeometryError::Attribute { attribute, found, vertices });
         }
@@ -197,6 +200,7 @@ mod tests {
         assert_eq!(normals, "there are 3 normals for 4 vertices: give one per vertex, or none at all");
         assert!(message(|geometry| geometry.mesh.uvs = vec![Vec2::X; 5]).contains("5 uvs for 4"));
         assert!(message(|geometry| geometry.mesh.colors = vec![Vec3::X]).contains("1 colors for 4"));
+        assert!(message(|geometry| geometry.mesh.opacities = vec![0.5; 3]).contains("3 opacities for 4"));
         assert!(message(|geometry| geometry.mesh.materials.truncate(1)).contains("1 material indices for 2"));
     }
 

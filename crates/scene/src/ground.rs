@@ -36,6 +36,7 @@ impl Scene {
         mesh.normals.extend(vec![Vec3::ZERO; attribute(!mesh.normals.is_empty())]);
         mesh.uvs.extend(vec![Vec2::ZERO; attribute(!mesh.uvs.is_empty())]);
         mesh.colors.extend(vec![Vec3::ONE; attribute(!mesh.colors.is_empty())]);
+        mesh.opacities.extend(vec![1.0; attribute(!mesh.opacities.is_empty())]);
         mesh.objects.begin(mesh.triangles.len(), "ground");
         mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
         mesh.materials.extend([material; 2]);
@@ -55,11 +56,13 @@ mod tests {
             mesh.positions = vec![Vec3::new(1.0, 2.0, 3.0), Vec3::new(2.0, 4.0, 4.0), Vec3::new(1.0, 2.0, 4.0)];
             (mesh.triangles, mesh.materials) = (vec![[0, 1, 2]], vec![0]);
             mesh.normals = vec![Vec3::X; 3];
+            (mesh.uvs, mesh.colors, mesh.opacities) = (vec![Vec2::X; 3], vec![Vec3::X; 3], vec![0.5; 3]);
             scene.geometry_mut().materials.push(Material::default());
             let lowest = scene.geometry.mesh.bounds().min.dot(up.axis());
             scene.add_ground(up);
             let mesh = &scene.geometry.mesh;
             assert_eq!((mesh.triangles.len(), mesh.materials.len(), mesh.normals.len()), (3, 3, 7));
+            assert_eq!(scene.geometry.check(), Ok(()));
             assert!(scene.geometry.materials[mesh.materials[2] as usize].catcher && scene.lights.ambient.is_some());
             for triangle in &mesh.triangles[1..] {
                 let [a, b, c] = triangle.map(|vertex| mesh.positions[vertex as usize]);

@@ -25,6 +25,8 @@ pub struct SceneInfo {
     pub cameras: Vec<CameraInfo>,
     /// Number of materials.
     pub materials: usize,
+    /// Number of materials whose opacity says where their surfaces are.
+    pub cut_outs: usize,
     /// Number of textures.
     pub textures: usize,
     /// The up axis; `None` if neither cameras nor shape indicate it.
@@ -115,6 +117,7 @@ impl Scene {
             lights: self.lights.iter().map(|light| light_info(self, light)).collect(),
             cameras: self.cameras.iter().map(|camera| camera_info(self, camera)).collect(),
             materials: self.geometry.materials.len(),
+            cut_outs: self.geometry.materials.iter().filter(|material| material.cut_out.is_some()).count(),
             textures: self.geometry.textures.len(),
             up: self.suggested_up(),
             warnings: self.warnings.clone(),
@@ -187,6 +190,9 @@ pub(crate) fn shortest(number: f32) -> f64 {
 impl fmt::Display for SceneInfo {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{} triangles, {} materials", self.triangles, self.materials)?;
+        if self.cut_outs > 0 {
+            write!(f, " ({} cut out by opacity)", self.cut_outs)?;
+        }
         match self.textures {
             0 => writeln!(f)?,
             textures => writeln!(f, ", {textures} textures")?,

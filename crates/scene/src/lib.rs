@@ -1,6 +1,6 @@
 //! The scene model, and how scenes are read. No rendering happens here.
 //!
-//! A [`Scene`] is what every loader and generator returns: [`Geometry`] (opaque triangles with materials and textures), [`Lights`] and
+//! A [`Scene`] is what every loader and generator returns: [`Geometry`] (triangles with materials and textures, opaque or cut out), [`Lights`] and
 //! cameras, all in one coordinate frame. Each file format is one module under `formats`, and each ends in `-> Scene`.
 //!
 //! # Coordinates
@@ -13,6 +13,7 @@ mod border;
 mod builder;
 pub mod builtin;
 mod camera;
+mod cut_out;
 mod draft;
 mod environment;
 mod error;
@@ -48,6 +49,7 @@ pub use glam;
 
 pub use builder::SceneBuilder;
 pub use camera::{Camera, CameraError, Fov, Projection};
+pub use cut_out::{CutOut, OpacityChannel};
 pub use environment::{
     Environment, EnvironmentError, EnvironmentLevel, Moment, Sky, SkyError, SkyKind, Sun, SunError, SunPosition,
     Surroundings,

@@ -29,7 +29,7 @@ impl<P: Position> LoadedMesh<P> {
     /// The mesh without its materials.
     pub(crate) fn part(&self) -> MeshPart<'_, P> {
         let LoadedMesh { positions, normals, uvs, colors, triangles, .. } = self;
-        MeshPart { positions, normals, uvs, colors, triangles }
+        MeshPart { positions, normals, uvs, colors, opacities: &[], triangles }
     }
 
     /// Replaces the vertices by those that `chosen` lists, in that order. Triangles stay unchanged.

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::TextureUse;
+use crate::{CutOut, TextureUse};
 
 /// How a surface reflects light: ambient, diffuse and Phong terms (Whitted 1980, Phong 1975).
 ///
@@ -33,6 +33,8 @@ pub struct Material {
     /// Whether only the shadows on it are seen: it shows the background, darker where it gets less light than it would alone, or is
     /// transparent there. Then nothing but `ka` and `kd` counts.
     pub catcher: bool,
+    /// Where the surface is; everywhere without it.
+    pub cut_out: Option<CutOut>,
 }
 
 impl Default for Material {
@@ -49,6 +51,7 @@ impl Default for Material {
             emission_tinted: Vec3::ZERO,
             texture: None,
             catcher: false,
+            cut_out: None,
         }
     }
 }
@@ -123,5 +126,10 @@ impl Material {
     /// An image that tints the surface.
     pub fn with_texture(self, texture: TextureUse) -> Material {
         Material { texture: Some(texture), ..self }
+    }
+
+    /// Where the surface is.
+    pub fn with_cut_out(self, cut_out: CutOut) -> Material {
+        Material { cut_out: Some(cut_out), ..self }
     }
 }

@@ -62,7 +62,7 @@ impl Bounds {
 
 /// All triangles of a scene in its local frame, instances resolved.
 ///
-/// `normals`, `uvs` and `colors` are empty or as long as `positions`. A zero normal means that the vertex has none: its triangles are
+/// `normals`, `uvs`, `colors` and `opacities` are empty or as long as `positions`. A zero normal means that the vertex has none: its triangles are
 /// shaded flat.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
@@ -74,6 +74,8 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// Colours by vertex, linear: they tint the material, see [`Material`](crate::Material).
     pub colors: Vec<Vec3>,
+    /// Opacities by vertex, from 0 to 1: they count where a material is [cut out](crate::CutOut).
+    pub opacities: Vec<f32>,
     /// Three vertex indices per triangle, counter-clockwise seen from outside (both sides are rendered).
     pub triangles: Vec<[u32; 3]>,
     /// Material index by triangle.

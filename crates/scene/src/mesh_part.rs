@@ -13,13 +13,15 @@ pub struct MeshPart<'a, P = DVec3> {
     pub uvs: &'a [Vec2],
     /// Linear colours by vertex.
     pub colors: &'a [Vec3],
+    /// Opacities by vertex, from 0 to 1.
+    pub opacities: &'a [f32],
     /// Three vertex indices per triangle, all in range.
     pub triangles: &'a [[u32; 3]],
 }
 
 impl<P> Default for MeshPart<'_, P> {
     fn default() -> Self {
-        MeshPart { positions: &[], normals: &[], uvs: &[], colors: &[], triangles: &[] }
+        MeshPart { positions: &[], normals: &[], uvs: &[], colors: &[], opacities: &[], triangles: &[] }
     }
 }
 
@@ -32,6 +34,7 @@ pub(crate) struct Room {
     pub(crate) normals: bool,
     pub(crate) uvs: bool,
     pub(crate) colors: bool,
+    pub(crate) opacities: bool,
 }
 
 impl Room {
@@ -43,6 +46,7 @@ impl Room {
             normals: !part.normals.is_empty(),
             uvs: !part.uvs.is_empty(),
             colors: !part.colors.is_empty(),
+            opacities: !part.opacities.is_empty(),
         }
     }
 
@@ -52,7 +56,8 @@ impl Room {
         let vertex = size_of::<DVec3>()
             + used(self.normals, size_of::<Vec3>())
             + used(self.uvs, size_of::<Vec2>())
-            + used(self.colors, size_of::<Vec3>());
+            + used(self.colors, size_of::<Vec3>())
+            + used(self.opacities, size_of::<f32>());
         let triangle = size_of::<[u32; 3]>() + size_of::<u32>();
         (self.vertices as u64 * vertex as u64).saturating_add(self.triangles as u64 * triangle as u64)
     }
@@ -66,6 +71,7 @@ impl Room {
             normals: self.normals || more.normals,
             uvs: self.uvs || more.uvs,
             colors: self.colors || more.colors,
+            opacities: self.opacities || more.opacities,
         }
     }
 }

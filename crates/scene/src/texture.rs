@@ -19,7 +19,7 @@ pub struct Texture {
     pub name: String,
     /// Width and height in texels, at least 1.
     pub size: [u32; 2],
-    /// Red, green, blue and alpha, row by row. Alpha is kept for export; surfaces are opaque.
+    /// Red, green, blue and alpha, row by row. Alpha counts where a material is [cut out](crate::CutOut) by it.
     pub texels: Vec<[u8; 4]>,
 }
 

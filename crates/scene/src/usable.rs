@@ -21,12 +21,17 @@ pub(crate) fn keep_placed<T>(items: &mut Vec<(T, DVec3)>, kind: &str) -> Option<
 /// Replaces infinite, NaN and negative coefficients by 0.
 pub(crate) fn keep_finite(materials: &mut [Material]) -> Option<String> {
     let mut count = 0;
-    for Material { ka, kd, ks, ks_tinted, emission, emission_tinted, .. } in materials {
+    for Material { ka, kd, ks, ks_tinted, emission, emission_tinted, cut_out, .. } in materials {
         let mut odd = false;
         for color in [ka, kd, ks, ks_tinted, emission, emission_tinted] {
             let usable = color.is_finite_mask() & color.cmpge(Vec3::ZERO);
             odd |= !usable.all();
             *color = Vec3::select(usable, *color, Vec3::ZERO);
+        }
+        for number in cut_out.iter_mut().flat_map(|cut_out| [&mut cut_out.factor, &mut cut_out.cutoff]) {
+            let usable = number.is_finite() && *number >= 0.0;
+            odd |= !usable;
+            *number = if usable { *number } else { 0.0 };
         }
         count += usize::from(odd);
     }

@@ -1,7 +1,7 @@
 //! Analytic scenes: what is lit and what is in shadow is known without rendering.
 
-use glam::{DVec3, Vec3};
-use lightmesh_scene::{LightKind, Scene};
+use glam::{DVec3, Vec2, Vec3};
+use lightmesh_scene::{CutOut, LightKind, OpacityChannel, Scene, Texture, TextureUse, Wrap};
 
 use crate::{Random, SceneDraft};
 
@@ -58,6 +58,29 @@ pub fn pile(offset: DVec3, lights: &[LightKind]) -> Scene {
         .fold(draft, |draft, light| draft.light(light.clone()))
         .camera([2.5, 3.1, 4.2], [0.0, 0.4, 0.0])
         .finish("pile")
+}
+
+/// The same scene with holes: two of three triangles are cut out by noise in an image, and by the opacities of their corners.
+pub fn perforated(mut scene: Scene) -> Scene {
+    const SIDE: u32 = 16;
+    let mut random = Random::new(11);
+    let geometry = scene.geometry_mut();
+    let texels = (0..SIDE * SIDE).map(|_| [90, 160, 40, (256.0 * random.unit()) as u8]).collect();
+    geometry.textures.push(Texture { name: "holes".into(), size: [SIDE; 2], texels });
+    let wrap = [Wrap::Repeat, Wrap::Mirror];
+    let uses = TextureUse { wrap, ..TextureUse::new(geometry.textures.len() as u32 - 1) };
+    let count = geometry.materials.len() as u32;
+    for index in 0..count as usize {
+        let material = geometry.materials[index].clone();
+        geometry.materials.push(material.with_cut_out(CutOut::by(uses, OpacityChannel::Alpha).with_cutoff(0.45)));
+    }
+    let mesh = &mut geometry.mesh;
+    mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(0.17 * p.x + 0.05 * p.y, 0.11 * p.z - 0.14 * p.y)).collect();
+    mesh.opacities = mesh.positions.iter().map(|_| 0.75 + 0.25 * random.unit() as f32).collect();
+    for (material, index) in mesh.materials.iter_mut().zip(0..) {
+        *material += if index % 3 == 0 { 0 } else { count };
+    }
+    scene
 }
 
 /// `count` random triangles in the cube [-3, 3]³ with a point light at its centre.

@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-use lightmesh::render::accel::{Grid, GridOptions, Levels, Triangle};
+use lightmesh::render::PreparedGeometry;
+use lightmesh::render::accel::{Grid, GridOptions, Levels};
 use lightmesh_memory::Budget;
 
 use super::{BUILDING, open::open};
@@ -23,11 +24,9 @@ pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
     let levels = if args.levels == 1 { Levels::One } else { Levels::Two };
     let budget = Budget::new(args.scene.reading.memory_limit.map(|limit| limit.0));
     let options = GridOptions { dims: args.grid.map(|dims| dims.0), levels, budget };
-    let build = || {
-        let triangles: Vec<Triangle> = (0..scene.geometry.mesh.triangles.len())
-            .map(|index| Triangle::new(scene.geometry.mesh.corners(index), index as u32))
-            .collect();
-        Grid::new(&triangles, &options)
+    let build = || -> Result<Grid, Failure> {
+        let triangles = PreparedGeometry::triangles_of(&scene.geometry, budget)?;
+        Ok(Grid::new(&triangles, &options)?)
     };
     let grid = memory::during(BUILDING, build)?;
     let seconds = start.elapsed().as_secs_f64();

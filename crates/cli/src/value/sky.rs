@@ -32,8 +32,7 @@ pub(crate) struct EnvironmentSpec {
 /// Where the sun stands if nothing says so: to the left behind a camera that looks north.
 const SUN: SunPosition = SunPosition { elevation: 40.0, azimuth: 225.0 };
 const SKY: ValueError = ValueError::Form {
-    form: "clear, uniform or gradient, and then any of these after semicolons: sun=ELEVATION,AZIMUTH, place=LATITUDE,LONGITUDE with \
-           time=2026-06-21T15:00+02:00, turbidity=T, ground=V, color=V, zenith=V, horizon=V, north=DEGREES, strength=S, alone",
+    form: "clear, uniform or gradient, and options of that sky after semicolons (--help lists them)",
     example: "\"clear;sun=35,200;turbidity=4\"",
 };
 const ENVIRONMENT: ValueError = ValueError::Form {

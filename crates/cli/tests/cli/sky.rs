@@ -39,7 +39,11 @@ fn a_sky_is_seen_and_lights() {
     assert!((0..3).all(|k| (shaded[k] / [0.5, 1.0, 2.0][k] - shaded[0] / 0.5).abs() < 1e-3), "{shaded:?}");
     assert_eq!(place.json("s.json")["scene"]["lights"], 0);
 
-    place.write("sky.toml", &format!("{OPEN}\n[sky]\nkind = \"gradient\"\nzenith = [0, 0, 1]\nhorizon = 1\n").replace("background = 0\n", ""));
+    place.write(
+        "sky.toml",
+        &format!("{OPEN}\n[sky]\nkind = \"gradient\"\nzenith = [0, 0, 1]\nhorizon = 1\n")
+            .replace("background = 0\n", ""),
+    );
     place.good(&["render", "sky.toml", "-o", "o.exr", "--size", "33x32", "--stats", "s.json"]);
     let frame = Frame::load(place.path("o.exr")).unwrap();
     let [high, low] = [0, 12].map(|row| frame.color()[row * 33 + 16]);
@@ -51,14 +55,18 @@ fn a_sky_is_seen_and_lights() {
 fn a_panorama_turns() {
     let place = place();
     // Red in the north, green elsewhere.
-    let texels = (0..16 * 8).map(|index| if (4..12).contains(&(index % 16)) { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] });
+    let texels =
+        (0..16 * 8).map(|index| if (4..12).contains(&(index % 16)) { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] });
     Frame::new(16, 8, texels.collect()).unwrap().save(place.path("p.exr")).unwrap();
     let [north, _] = render(&place, &["--environment", "p.exr"]);
     let [turned, _] = render(&place, &["--environment", "p.exr;rotation=180;strength=0.5"]);
     assert_eq!((north, turned), ([1.0, 0.0, 0.0], [0.0, 0.5, 0.0]));
     assert_eq!(place.json("s.json")["settings"]["environment"], "p.exr");
 
-    place.write("p.toml", &format!("{OPEN}\n[environment]\nfile = \"p.exr\"\nrotation = 180\n").replace("background = 0\n", ""));
+    place.write(
+        "p.toml",
+        &format!("{OPEN}\n[environment]\nfile = \"p.exr\"\nrotation = 180\n").replace("background = 0\n", ""),
+    );
     place.good(&["render", "p.toml", "-o", "o.exr", "--size", "33x32"]);
     assert_eq!(Frame::load(place.path("o.exr")).unwrap().color()[16], [0.0, 1.0, 0.0]);
     // Outputs spare it, named by a flag or by the scene.
@@ -71,7 +79,8 @@ fn a_panorama_turns() {
 #[test]
 fn what_cannot_surround_a_scene_is_refused() {
     let place = place();
-    let error = |flags: &[&str]| place.refused(&[&["render", "open.toml", "-o", "o.png", "--size", "8x8"], flags].concat());
+    let error =
+        |flags: &[&str]| place.refused(&[&["render", "open.toml", "-o", "o.png", "--size", "8x8"], flags].concat());
     for (flags, expected) in [
         (["--sky", "blue"], "clear, uniform or gradient"),
         (["--sky", "clear;sun=-1,0"], "below the horizon"),

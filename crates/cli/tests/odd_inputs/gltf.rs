@@ -32,9 +32,13 @@ const BEYOND: &str = "4294967295";
 const NO_REFERENCES: [&str; 5] = [BEYOND, "4294967296", "-1", "0.5", "\"0\""];
 
 /// Other values, as JSON, and the expected outcome.
-const VALUES: [(&str, &str, Expected); 52] = [
+const VALUES: [(&str, &str, Expected); 56] = [
     ("/asset/version", "\"1.0\"", Refused),
     ("/asset/version", "\"3.0\"", Refused),
+    ("/materials/0/alphaMode", "\"CLOUDS\"", Opens),
+    ("/materials/0/alphaMode", "1", Refused),
+    ("/materials/0/alphaCutoff", "-1e38", Opens),
+    ("/materials/0/alphaCutoff", "\"0.5\"", Refused),
     ("/asset/version", "2.0", Opens),
     ("/accessors/0/count", "4294967295", Refused),
     ("/accessors/0/count", "18446744073709551615", Refused),
@@ -168,7 +172,11 @@ pub(crate) fn square(alone: bool) -> Value {
         ],
         "cameras": [{ "type": "perspective", "perspective": { "yfov": 0.7, "znear": 0.1 } }],
         "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1, "material": 0 }] }],
-        "materials": [{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }],
+        "materials": [{
+            "alphaMode": "MASK",
+            "alphaCutoff": 0.25,
+            "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } },
+        }],
         "textures": [{ "source": 0 }],
         "images": [{ "uri": "none.png" }],
         "accessors": [

@@ -62,7 +62,7 @@ const LIBRARIES: [&str; 10] = [
     "\u{1b}[31mred.mtl",
 ];
 
-const LIBRARY_LINES: [(&str, Expected); 12] = [
+const LIBRARY_LINES: [(&str, Expected); 15] = [
     ("newmtl", Opens),
     ("newmtl a\nKd nan 0 0", Refused),
     ("newmtl a\nKd 1 2", Refused),
@@ -74,6 +74,9 @@ const LIBRARY_LINES: [(&str, Expected); 12] = [
     ("newmtl red\nmap_Kd http://example.org/a.png", Opens),
     ("newmtl red\nmap_Kd a\0.png", Opens),
     ("newmtl red\nmap_Kd a.mtl", Opens),
+    ("newmtl red\nmap_d", Opens),
+    ("newmtl red\nmap_d -imfchan", Opens),
+    ("newmtl red\nmap_d -imfchan q -clamp on none.png", Opens),
     ("newmtl red\nmap_Kd -s nan inf 1e308 -o -t -mm", Opens),
 ];
 

@@ -25,7 +25,7 @@ segments = 8
 "#;
 
 /// Lines of the room, their replacements, and the expected outcome.
-const LINES: [(&str, &str, Expected); 49] = [
+const LINES: [(&str, &str, Expected); 53] = [
     ("vfov = 45", "vfov = nan", Refused),
     ("vfov = 45", "vfov = 0", Refused),
     ("vfov = 45", "vfov = 180", Refused),
@@ -60,6 +60,10 @@ const LINES: [(&str, &str, Expected); 49] = [
     ("kd = 0.8", "kd = 0.8\nshininess = 1e17", Opens),
     ("kd = 0.8", "kd = 0.8\ntexture = \"http://example.org/a.png\"", Opens),
     ("kd = 0.8", "kd = 0.8\ntexture = \"../a.png\"", Opens),
+    ("kd = 0.8", "kd = 0.8\nopacity_texture = \"../a.png\"", Opens),
+    ("kd = 0.8", "kd = 0.8\nopacity_texture = 7", Refused),
+    ("kd = 0.8", "kd = 0.8\nopacity_cutoff = 0.5", Refused),
+    ("kd = 0.8", "kd = 0.8\nopacity_texture = \"a.png\"\nopacity_cutoff = nan", Refused),
     ("kd = 0.8", "kd = 0.8\ntexture = \"a\\u0000.png\"", Opens),
     ("kd = 0.8", "kd = 0.8\ntexture = \"input.toml\"", Opens),
     ("name = \"white\"", "name = \"wait\"", Refused),

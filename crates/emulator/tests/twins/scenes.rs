@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Acceleration, PreparedScene, Unobserved, View};
 use lightmesh_scene::{Falloff, LightKind, Scene, Sky, SunPosition, Up};
-use lightmesh_testkit::{SceneDraft, half_plane, pile, soup};
+use lightmesh_testkit::{SceneDraft, half_plane, perforated, pile, soup};
 
 /// The structures, in the order of [`Subject::prepared`].
 pub(crate) const ACCELERATIONS: [Acceleration; 3] =
@@ -29,12 +29,13 @@ const fn subject(name: &'static str, step: f32, small: bool, build: fn() -> Scen
 }
 
 /// All scenes.
-pub(crate) static SUBJECTS: [Subject; 8] = [
+pub(crate) static SUBJECTS: [Subject; 9] = [
     subject("gazebo", 2.0, false, || builtin("gazebo")),
     subject("childpark", 1.0, false, || builtin("childpark")),
     subject("garden", 0.1, false, || builtin("garden")),
     subject("still_life", 0.2, false, still_life),
     subject("all_lights", 0.25, true, all_lights),
+    subject("cut_outs", 0.25, true, || perforated(all_lights())),
     subject("half_plane", 0.2, true, half_plane),
     subject("soup", 0.3, true, || soup(7, 200)),
     subject("empty", 1.0, true, || SceneDraft::new().point_light([0.0; 3]).camera([1.0; 3], [0.0; 3]).finish("empty")),

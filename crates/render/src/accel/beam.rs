@@ -19,7 +19,7 @@ use lightmesh_scene::Bounds;
 use super::approach::Approach;
 use super::packet::{ClosestPacket, LANES, PacketShear, PacketVisitor};
 use super::triangle::largest_axis;
-use super::{Accelerator, Form, Hit, Ray, Region, Triangle};
+use super::{Accelerator, Coverage, Form, Hit, Ray, Region, Triangle};
 use crate::simd::dispatch;
 
 /// Triangles of a beam; with more, packets take less time.
@@ -34,6 +34,7 @@ pub(crate) struct Beams<'a> {
     accelerator: &'a dyn Accelerator,
     /// By index.
     triangles: &'a [Triangle],
+    coverage: &'a Coverage,
     approach: Approach,
     level: Level,
     found: Vec<u32>,
@@ -42,9 +43,14 @@ pub(crate) struct Beams<'a> {
 
 impl<'a> Beams<'a> {
     /// Beams in `accelerator`, which holds `triangles` in `bounds`.
-    pub(crate) fn new(accelerator: &'a dyn Accelerator, triangles: &'a [Triangle], bounds: &Bounds) -> Beams<'a> {
+    pub(crate) fn new(
+        accelerator: &'a dyn Accelerator,
+        triangles: &'a [Triangle],
+        coverage: &'a Coverage,
+        bounds: &Bounds,
+    ) -> Beams<'a> {
         let (level, approach) = (Level::new(), Approach::new(bounds));
-        Beams { accelerator, triangles, approach, level, found: Vec::new(), left: Vec::new() }
+        Beams { accelerator, triangles, coverage, approach, level, found: Vec::new(), left: Vec::new() }
     }
 
     /// The closest hits of `rays`, whose directions have unit length, cut into beams of `size` rays. `far` says how far those of a beam
@@ -62,8 +68,9 @@ impl<'a> Beams<'a> {
             let (first, far) = (beam * size, far(beam));
             if self.search(rays, far) {
                 let far = far.unwrap_or(f32::INFINITY);
-                let Beams { level, triangles, found, left, .. } = self;
-                dispatch!(*level, simd => test(simd, rays, (triangles, found), far, (first, hits), left));
+                let Beams { level, triangles, coverage, found, left, .. } = self;
+                let held = (*triangles, &found[..], *coverage);
+                dispatch!(*level, simd => test(simd, rays, held, far, (first, hits), left));
             } else {
                 self.left.extend((first..).zip(rays.iter().copied()));
             }
@@ -110,14 +117,14 @@ impl<'a> Beams<'a> {
 fn test<S: Simd>(
     simd: S,
     rays: &[Ray],
-    (triangles, found): (&[Triangle], &[u32]),
+    (triangles, found, coverage): (&[Triangle], &[u32], &Coverage),
     far: f32,
     (first, hits): (usize, &mut [Hit]),
     left: &mut Vec<(usize, Ray)>,
 ) {
     for (group, rays) in rays.chunks(LANES).enumerate() {
         let start = group * LANES;
-        let Some(mut closest) = packet(simd, rays) else {
+        let Some(mut closest) = packet(simd, coverage, rays) else {
             left.extend((first + start..).zip(rays.iter().copied()));
             continue;
         };
@@ -138,7 +145,7 @@ fn test<S: Simd>(
 
 /// Up to eight rays; `None` if their directions do not have their largest components on one axis.
 #[inline(always)]
-fn packet<S: Simd>(simd: S, rays: &[Ray]) -> Option<ClosestPacket<S>> {
+fn packet<'a, S: Simd>(simd: S, coverage: &'a Coverage, rays: &[Ray]) -> Option<ClosestPacket<'a, S>> {
     let axis = largest_axis(rays[0].direction);
     let (mut origin, mut direction) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
     for lane in 0..LANES {
@@ -155,5 +162,5 @@ fn packet<S: Simd>(simd: S, rays: &[Ray]) -> Option<ClosestPacket<S>> {
         [f32x8::from_slice(simd, &of[0]), f32x8::from_slice(simd, &of[1]), f32x8::from_slice(simd, &of[2])]
     };
     let shear = PacketShear::new(&axes(&origin), &axes(&direction), axis);
-    Some(ClosestPacket::new(simd, shear, f32x8::splat(simd, f32::INFINITY)))
+    Some(ClosestPacket::new(simd, coverage, shear, f32x8::splat(simd, f32::INFINITY)))
 }

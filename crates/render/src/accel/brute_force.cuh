@@ -6,11 +6,11 @@
 
 template <class Visitor>
 DEVICE void walk(const BruteForce &all, const Tally &, const Ray &, Visitor &visitor) {
-    ask(visitor, all.triangles, Run{0, all.count});
+    ask(visitor, all, Run{0, all.count});
 }
 
 DEVICE void walk_short(const BruteForce &all, Short &segment, float) {
-    ask(segment, all.triangles, Run{0, all.count});
+    ask(segment, all, Run{0, all.count});
 }
 
 // A search in progress: the first triangle that has not been looked at.

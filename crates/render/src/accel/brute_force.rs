@@ -8,7 +8,7 @@ use super::approach::{Approach, NearRay};
 use super::distinct::distinct;
 use super::sieve::{Sieve, Take};
 use super::triangle::RayShear;
-use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Triangle};
+use super::{Accelerator, Coverage, Form, Hit, Ray, Region, ShortSegments, Triangle};
 use crate::simd::dispatch;
 
 /// A list of triangles, all of which are tested.
@@ -16,13 +16,19 @@ use crate::simd::dispatch;
 pub struct BruteForce {
     triangles: Vec<Triangle>,
     approach: Approach,
+    coverage: Coverage,
 }
 
 impl BruteForce {
     /// Keeps the usable triangles, one of identical ones.
     pub fn new(triangles: &[Triangle]) -> BruteForce {
         let triangles: Vec<_> = distinct(triangles).into_iter().map(|at| triangles[at as usize]).collect();
-        BruteForce { approach: Approach::around(&triangles), triangles }
+        BruteForce { approach: Approach::around(&triangles), triangles, coverage: Coverage::default() }
+    }
+
+    /// The opacities of triangles that are cut out.
+    pub(crate) fn with_coverage(self, coverage: &Coverage) -> BruteForce {
+        BruteForce { coverage: coverage.clone(), ..self }
     }
 
     /// The triangles held.
@@ -37,13 +43,17 @@ impl BruteForce {
 
     fn closest(&self, ray: &NearRay) -> Hit {
         let shear = RayShear::new(ray.origin, ray.direction);
-        let hits = self.triangles.iter().filter_map(|triangle| shear.hit(triangle, ray.t_max));
-        hits.fold(Hit::MISS, |best, hit| if hit.beats(&best) { hit } else { best })
+        self.triangles.iter().fold(Hit::MISS, |best, triangle| match shear.hit(triangle, ray.t_max) {
+            Some(hit) if hit.beats(&best) && self.coverage.has(triangle, &hit) => hit,
+            _ => best,
+        })
     }
 
     fn any(&self, ray: &NearRay) -> bool {
         let shear = RayShear::new(ray.origin, ray.direction);
-        self.triangles.iter().any(|triangle| shear.hit(triangle, ray.t_max).is_some())
+        let covers =
+            |triangle: &Triangle| shear.hit(triangle, ray.t_max).is_some_and(|hit| self.coverage.has(triangle, &hit));
+        self.triangles.iter().any(covers)
     }
 }
 

@@ -11,7 +11,8 @@
 //!   their box tests err on the side of testing, so that all three give the same bits.
 //! * Zero, negative-zero and subnormal direction components and far-away origins are ordinary input. A zero direction, a ray
 //!   that is not finite and a triangle that is not [usable](Triangle::is_usable) hit nothing.
-//! * Of triangles with identical corners only the one with the smallest index is held: neither hits nor shadows need the others.
+//! * Where a triangle is [cut out](coverage) there is nothing to hit.
+//! * Of opaque triangles with identical corners only the one with the smallest index is held: neither hits nor shadows need the others.
 //!
 //! The structures are built here; devices hold copies ([`Form`]) and walk them with the code in the `.cuh` files next to the Rust
 //! ones, with the same promises. `walk.cuh` and `search.cuh` are the twins of the trait.
@@ -20,6 +21,7 @@ mod approach;
 mod beam;
 mod brute_force;
 mod bvh;
+pub(crate) mod coverage;
 mod distinct;
 mod grid;
 mod packet;
@@ -36,6 +38,7 @@ use lightmesh_scene::Bounds;
 pub(crate) use beam::Beams;
 pub use brute_force::BruteForce;
 pub use bvh::{Bvh, BvhCost};
+pub(crate) use coverage::Coverage;
 pub use grid::{Grid, GridError, GridFault, GridFileError, GridOptions, GridSaveError, Levels};
 pub use region::{Region, TangentPlanes};
 pub use sieve::{PIECE, Take};
@@ -95,6 +98,8 @@ pub struct ShortSegments<'a> {
     pub directions: &'a [Vec3],
     /// Triangles whose bounding box comes this close to a segment must be tested, scene units.
     pub slack: f32,
+    /// Where triangles are cut out.
+    pub(crate) coverage: &'a Coverage,
 }
 
 impl ShortSegments<'_> {
@@ -109,9 +114,10 @@ impl ShortSegments<'_> {
     /// Tests each triangle against every segment.
     fn ask<'a>(&self, triangles: impl Iterator<Item = &'a Triangle>, blocked: &mut [bool]) {
         blocked.fill(false);
-        for occluder in triangles.filter_map(|triangle| self.test.occluder(triangle.corners())) {
+        for triangle in triangles {
+            let Some(occluder) = self.test.occluder(triangle.corners()) else { continue };
             for (blocked, &direction) in blocked.iter_mut().zip(self.directions) {
-                *blocked |= occluder.blocks(direction);
+                *blocked |= occluder.blocks(direction) && self.coverage.stops(triangle, self.test.origin, direction);
             }
         }
     }

@@ -6,7 +6,7 @@ use fearless_simd::{f32x8, f64x4, mask32x8, u32x8};
 
 use super::approach::NearRay;
 use super::visit::{Any, Closest};
-use super::{Hit, Triangle};
+use super::{Coverage, Hit, Triangle};
 
 /// Rays in a packet.
 pub(super) const LANES: usize = 8;
@@ -137,7 +137,8 @@ pub(super) trait PacketVisitor<S: Simd> {
 
 /// Searches for the closest hits.
 #[derive(Clone, Copy)]
-pub(super) struct ClosestPacket<S: Simd> {
+pub(super) struct ClosestPacket<'a, S: Simd> {
+    coverage: &'a Coverage,
     shear: PacketShear<S>,
     t_max: f32x8<S>,
     limit: f32x8<S>,
@@ -147,13 +148,13 @@ pub(super) struct ClosestPacket<S: Simd> {
     triangle: u32x8<S>,
 }
 
-impl<S: Simd> ClosestPacket<S> {
+impl<'a, S: Simd> ClosestPacket<'a, S> {
     #[inline(always)]
-    pub(super) fn new(simd: S, shear: PacketShear<S>, t_max: f32x8<S>) -> ClosestPacket<S> {
+    pub(super) fn new(simd: S, coverage: &'a Coverage, shear: PacketShear<S>, t_max: f32x8<S>) -> ClosestPacket<'a, S> {
         let zero = f32x8::splat(simd, 0.0);
         let t = f32x8::splat(simd, Hit::MISS.t);
         let triangle = u32x8::splat(simd, Hit::NONE);
-        ClosestPacket { shear, t_max, limit: t_max, t, u: zero, v: zero, triangle }
+        ClosestPacket { coverage, shear, t_max, limit: t_max, t, u: zero, v: zero, triangle }
     }
 
     /// The closest hit of each ray.
@@ -169,8 +170,8 @@ impl<S: Simd> ClosestPacket<S> {
     }
 }
 
-impl<S: Simd> PacketVisitor<S> for ClosestPacket<S> {
-    type Single = Closest;
+impl<'a, S: Simd> PacketVisitor<S> for ClosestPacket<'a, S> {
+    type Single = Closest<'a>;
 
     #[inline(always)]
     fn triangle(&mut self, simd: S, triangle: &Triangle, lanes: u32) {
@@ -179,12 +180,15 @@ impl<S: Simd> PacketVisitor<S> for ClosestPacket<S> {
         let t = meeting.t;
         let inside = t.simd_gt(f32x8::splat(simd, 0.0)) & t.simd_lt(self.t_max);
         let beats = t.simd_lt(self.t) | (t.simd_eq(self.t) & index.simd_lt(self.triangle));
-        let better = meeting.met & (inside & beats).to_bitmask() as u32;
+        let mut better = meeting.met & (inside & beats).to_bitmask() as u32;
         if better == 0 {
             return;
         }
-        let better = mask32x8::from_bitmask(simd, u64::from(better));
         let (u, v) = meeting.weights();
+        if triangle.cut() != 0 {
+            better = self.coverage.covered_lanes(triangle.cut(), u.into(), v.into(), better);
+        }
+        let better = mask32x8::from_bitmask(simd, u64::from(better));
         self.t = better.select(t, self.t);
         self.limit = better.select(t, self.limit);
         self.u = better.select(u, self.u);
@@ -203,9 +207,9 @@ impl<S: Simd> PacketVisitor<S> for ClosestPacket<S> {
     }
 
     #[inline(always)]
-    fn alone(&mut self, simd: S, lane: usize, near: &NearRay, walk: impl FnOnce(&mut Closest)) {
+    fn alone(&mut self, simd: S, lane: usize, near: &NearRay, walk: impl FnOnce(&mut Closest<'a>)) {
         let before = self.hits()[lane];
-        let mut single = Closest::from(near, before);
+        let mut single = Closest::from(near, self.coverage, before);
         walk(&mut single);
         if single.best.triangle == before.triangle {
             return;
@@ -221,7 +225,8 @@ impl<S: Simd> PacketVisitor<S> for ClosestPacket<S> {
 
 /// Searches for any hits.
 #[derive(Clone, Copy)]
-pub(super) struct AnyPacket<S: Simd> {
+pub(super) struct AnyPacket<'a, S: Simd> {
+    coverage: &'a Coverage,
     shear: PacketShear<S>,
     t_max: f32x8<S>,
     /// `t_max`; negative for a ray that has hit.
@@ -229,10 +234,10 @@ pub(super) struct AnyPacket<S: Simd> {
     pub(super) hit: u32,
 }
 
-impl<S: Simd> AnyPacket<S> {
+impl<'a, S: Simd> AnyPacket<'a, S> {
     #[inline(always)]
-    pub(super) fn new(shear: PacketShear<S>, t_max: f32x8<S>) -> AnyPacket<S> {
-        AnyPacket { shear, t_max, limit: t_max, hit: 0 }
+    pub(super) fn new(coverage: &'a Coverage, shear: PacketShear<S>, t_max: f32x8<S>) -> AnyPacket<'a, S> {
+        AnyPacket { coverage, shear, t_max, limit: t_max, hit: 0 }
     }
 
     #[inline(always)]
@@ -243,14 +248,18 @@ impl<S: Simd> AnyPacket<S> {
     }
 }
 
-impl<S: Simd> PacketVisitor<S> for AnyPacket<S> {
-    type Single = Any;
+impl<'a, S: Simd> PacketVisitor<S> for AnyPacket<'a, S> {
+    type Single = Any<'a>;
 
     #[inline(always)]
     fn triangle(&mut self, simd: S, triangle: &Triangle, lanes: u32) {
         let Some(meeting) = self.shear.intersect(simd, triangle, lanes & !self.hit) else { return };
         let inside = meeting.t.simd_gt(f32x8::splat(simd, 0.0)) & meeting.t.simd_lt(self.t_max);
-        let hit = meeting.met & inside.to_bitmask() as u32;
+        let mut hit = meeting.met & inside.to_bitmask() as u32;
+        if hit != 0 && triangle.cut() != 0 {
+            let (u, v) = meeting.weights();
+            hit = self.coverage.covered_lanes(triangle.cut(), u.into(), v.into(), hit);
+        }
         if hit != 0 {
             self.mark(simd, hit);
         }
@@ -267,8 +276,8 @@ impl<S: Simd> PacketVisitor<S> for AnyPacket<S> {
     }
 
     #[inline(always)]
-    fn alone(&mut self, simd: S, lane: usize, near: &NearRay, walk: impl FnOnce(&mut Any)) {
-        let mut single = Any::new(near);
+    fn alone(&mut self, simd: S, lane: usize, near: &NearRay, walk: impl FnOnce(&mut Any<'a>)) {
+        let mut single = Any::new(near, self.coverage);
         walk(&mut single);
         if single.hit {
             self.mark(simd, 1 << lane);

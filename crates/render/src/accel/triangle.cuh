@@ -21,6 +21,9 @@ DEVICE unsigned triangle_index(const Triangle *triangle) {
     return __float_as_uint(__ldg(&triangle->corners[0][3]));
 }
 
+// The number of its opacities; 0 if it is opaque.
+DEVICE unsigned triangle_cut(const Triangle *triangle) { return __float_as_uint(__ldg(&triangle->corners[1][3])); }
+
 // A ray prepared for the watertight test: the axes permuted so that `axis` comes last, and the shear that turns the ray into the
 // last axis.
 struct RayShear {
@@ -73,9 +76,8 @@ DEVICE void shear_corner(const RayShear &ray, const float4 &corner, float &x, fl
 
 // Steps 1 and 2 of the test: false if the ray, whose axis is AXIS, certainly misses.
 template <unsigned AXIS>
-DEVICE bool may_meet(const RayShear &ray, const Triangle *triangle, Sheared &corners) {
+DEVICE bool may_meet_corners(const RayShear &ray, const float4 &a, const float4 &b, const float4 &c, Sheared &corners) {
     // 1. Corners relative to the origin, sheared so that the ray is the z axis.
-    const float4 a = load_corner(triangle, 0), b = load_corner(triangle, 1), c = load_corner(triangle, 2);
     shear_corner<AXIS>(ray, a, corners.ax, corners.ay, corners.az);
     shear_corner<AXIS>(ray, b, corners.bx, corners.by, corners.bz);
     shear_corner<AXIS>(ray, c, corners.cx, corners.cy, corners.cz);
@@ -87,6 +89,11 @@ DEVICE bool may_meet(const RayShear &ray, const Triangle *triangle, Sheared &cor
     const bool below = u < minus_u || v < minus_v || w < minus_w;
     const bool above = u > minus_u || v > minus_v || w > minus_w;
     return !(below && above);
+}
+
+template <unsigned AXIS>
+DEVICE bool may_meet(const RayShear &ray, const Triangle *triangle, Sheared &corners) {
+    return may_meet_corners<AXIS>(ray, load_corner(triangle, 0), load_corner(triangle, 1), load_corner(triangle, 2), corners);
 }
 
 // Scaled barycentric coordinates of the three corners and their sum.

@@ -11,7 +11,8 @@ use lightmesh_scene::Bounds;
 
 use super::Hit;
 
-/// The corners of a triangle as the structures store them: three `float4`, the index in the mesh as bits of the first `w`.
+/// The corners of a triangle as the structures store them: three `float4`, the index in the mesh as bits of the first `w`, those of the second
+/// the number of a triangle that is [cut out](super::coverage).
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(16))]
 pub struct Triangle {
@@ -24,6 +25,19 @@ impl Triangle {
         let mut packed = corners.map(|corner| Vec4::from((corner, 0.0)).to_array());
         packed[0][3] = f32::from_bits(index);
         Triangle { corners: packed }
+    }
+
+    /// The same triangle, cut out: `number` is that of its opacities, from 1; 0 if it is opaque.
+    #[must_use]
+    pub(crate) fn cut_out(mut self, number: u32) -> Triangle {
+        self.corners[1][3] = f32::from_bits(number);
+        self
+    }
+
+    /// The number of its opacities; 0 if it is opaque.
+    #[inline(always)]
+    pub(crate) fn cut(&self) -> u32 {
+        self.corners[1][3].to_bits()
     }
 
     /// Index in the scene's mesh.

@@ -2,11 +2,11 @@
 //
 // A walk passes on triangles in sets, and queries how far it is still worth walking:
 //
-//     template <class Set> bool ask(Visitor &, const Triangle *triangles, Set set);   // false ends the walk
-//     float limit(const Visitor &);                                                    // what lies beyond need not be tested
+//     template <class Structure, class Set> bool ask(Visitor &, const Structure &, Set set);   // false ends the walk
+//     float limit(const Visitor &);                                                             // what lies beyond need not be tested
 #pragma once
 
-#include "accel/triangle.cuh"
+#include "accel/coverage.cuh"
 
 // The triangles from `next` to before `end`.
 struct Run {
@@ -63,8 +63,9 @@ DEVICE Closest find_closest(const Ray &ray) { return Closest{ray_shear(ray.origi
 
 DEVICE float limit(const Closest &closest) { return closest.limit; }
 
-template <class Set>
-DEVICE bool ask(Closest &closest, const Triangle *triangles, Set set) {
+template <class Structure, class Set>
+DEVICE bool ask(Closest &closest, const Structure &structure, Set set) {
+    const Triangle *triangles = structure.triangles;
     unsigned triangle;
     Sheared corners;
     while (next_candidate(closest.ray, triangles, set, triangle, corners)) {
@@ -75,7 +76,7 @@ DEVICE bool ask(Closest &closest, const Triangle *triangles, Set set) {
         // Equally near: the smaller index wins.
         const bool wins = t < closest.limit || (t == closest.limit && closest.best != Hit::NONE &&
                                                 triangle_index(triangles + triangle) < triangle_index(triangles + closest.best));
-        if (t > 0.0f && wins) {
+        if (t > 0.0f && wins && has_surface(structure.coverage, triangles + triangle, weights)) {
             closest.limit = t;
             closest.best = triangle;
         }
@@ -108,8 +109,9 @@ DEVICE Any find_any(const Ray &ray) { return Any{ray_shear(ray.origin, ray.direc
 
 DEVICE float limit(const Any &any) { return any.t_max; }
 
-template <class Set>
-DEVICE bool ask(Any &any, const Triangle *triangles, Set set) {
+template <class Structure, class Set>
+DEVICE bool ask(Any &any, const Structure &structure, Set set) {
+    const Triangle *triangles = structure.triangles;
     unsigned triangle;
     Sheared corners;
     while (next_candidate(any.ray, triangles, set, triangle, corners)) {
@@ -117,7 +119,7 @@ DEVICE bool ask(Any &any, const Triangle *triangles, Set set) {
         if (!weigh(corners, weights))
             continue;
         const float t = hit_distance(any.ray, corners, weights);
-        if (t > 0.0f && t < any.t_max) {
+        if (t > 0.0f && t < any.t_max && has_surface(structure.coverage, triangles + triangle, weights)) {
             any.hit = triangle;
             return false;
         }
@@ -134,11 +136,14 @@ struct Short {
 
 DEVICE float limit(const Short &) { return 1.0f; }
 
-template <class Set>
-DEVICE bool ask(Short &segment, const Triangle *triangles, Set set) {
+template <class Structure, class Set>
+DEVICE bool ask(Short &segment, const Structure &structure, Set set) {
+    const Triangle *triangles = structure.triangles;
     unsigned triangle;
     while (take(set, triangle)) {
-        if (blocks_segment(segment.test, load_corners(triangles + triangle), segment.direction)) {
+        const Corners corners = load_corners(triangles + triangle);
+        if (blocks_segment(segment.test, corners, segment.direction) &&
+            stops(structure.coverage, triangles + triangle, corners, segment.test.origin, segment.direction)) {
             segment.blocked = true;
             return false;
         }

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::approach::NearRay;
 use super::triangle::RayShear;
-use super::{Hit, ShortTest, Triangle};
+use super::{Coverage, Hit, ShortSegments, ShortTest, Triangle};
 
 /// Tests triangles and says how far it is still worth walking.
 pub(crate) trait Visitor {
@@ -16,32 +16,34 @@ pub(crate) trait Visitor {
 }
 
 /// Searches for the closest hit.
-pub(super) struct Closest {
+pub(super) struct Closest<'a> {
+    coverage: &'a Coverage,
     shear: RayShear,
     t_max: f32,
     limit: f32,
     pub(super) best: Hit,
 }
 
-impl Closest {
+impl<'a> Closest<'a> {
     #[inline(always)]
-    pub(super) fn new(ray: &NearRay) -> Closest {
+    pub(super) fn new(ray: &NearRay, coverage: &'a Coverage) -> Closest<'a> {
         let shear = RayShear::new(ray.origin, ray.direction);
-        Closest { shear, t_max: ray.t_max, limit: ray.t_max, best: Hit::MISS }
+        Closest { coverage, shear, t_max: ray.t_max, limit: ray.t_max, best: Hit::MISS }
     }
 
     /// Continues with a known hit.
     #[inline(always)]
-    pub(super) fn from(ray: &NearRay, best: Hit) -> Closest {
-        Closest { best, limit: ray.t_max.min(best.t), ..Closest::new(ray) }
+    pub(super) fn from(ray: &NearRay, coverage: &'a Coverage, best: Hit) -> Closest<'a> {
+        Closest { best, limit: ray.t_max.min(best.t), ..Closest::new(ray, coverage) }
     }
 }
 
-impl Visitor for Closest {
+impl Visitor for Closest<'_> {
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle) -> bool {
         if let Some(hit) = self.shear.hit(triangle, self.t_max)
             && hit.beats(&self.best)
+            && self.coverage.has(triangle, &hit)
         {
             self.best = hit;
             self.limit = hit.t;
@@ -56,23 +58,24 @@ impl Visitor for Closest {
 }
 
 /// Searches for any hit.
-pub(super) struct Any {
+pub(super) struct Any<'a> {
+    coverage: &'a Coverage,
     shear: RayShear,
     t_max: f32,
     pub(super) hit: bool,
 }
 
-impl Any {
+impl<'a> Any<'a> {
     #[inline(always)]
-    pub(super) fn new(ray: &NearRay) -> Any {
-        Any { shear: RayShear::new(ray.origin, ray.direction), t_max: ray.t_max, hit: false }
+    pub(super) fn new(ray: &NearRay, coverage: &'a Coverage) -> Any<'a> {
+        Any { coverage, shear: RayShear::new(ray.origin, ray.direction), t_max: ray.t_max, hit: false }
     }
 }
 
-impl Visitor for Any {
+impl Visitor for Any<'_> {
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle) -> bool {
-        self.hit = self.shear.hit(triangle, self.t_max).is_some();
+        self.hit = self.shear.hit(triangle, self.t_max).is_some_and(|hit| self.coverage.has(triangle, &hit));
         !self.hit
     }
 
@@ -84,6 +87,7 @@ impl Visitor for Any {
 
 /// Searches for a triangle that blocks one short segment.
 pub(super) struct Short<'a> {
+    coverage: &'a Coverage,
     test: &'a ShortTest,
     direction: Vec3,
     pub(super) blocked: bool,
@@ -91,8 +95,8 @@ pub(super) struct Short<'a> {
 
 impl<'a> Short<'a> {
     #[inline(always)]
-    pub(super) fn new(test: &'a ShortTest, direction: Vec3) -> Short<'a> {
-        Short { test, direction, blocked: false }
+    pub(super) fn new(segments: &'a ShortSegments, direction: Vec3) -> Short<'a> {
+        Short { coverage: segments.coverage, test: &segments.test, direction, blocked: false }
     }
 }
 
@@ -100,7 +104,8 @@ impl Visitor for Short<'_> {
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle) -> bool {
         let occluder = self.test.occluder(triangle.corners());
-        self.blocked = occluder.is_some_and(|occluder| occluder.blocks(self.direction));
+        self.blocked = occluder.is_some_and(|occluder| occluder.blocks(self.direction))
+            && self.coverage.stops(triangle, self.test.origin, self.direction);
         !self.blocked
     }
 

@@ -29,7 +29,7 @@ DEVICE bool occluded(const Structure &structure, const Tally &tally, const Ray &
     if (near.scale == 0.0)
         return false;
     Any any = find_any(near.ray);
-    if (last == Hit::NONE || ask(any, structure.triangles, Run{last, last + 1}))
+    if (last == Hit::NONE || ask(any, structure, Run{last, last + 1}))
         walk(structure, tally, near.ray, any);
     if (any.hit == Hit::NONE)
         return false;

@@ -38,6 +38,11 @@
 #include "shim.h"
 #endif
 
+// Whether a module is for scenes in which triangles are cut out: see accel/coverage.cuh.
+#ifndef CUT_OUTS
+#define CUT_OUTS 0
+#endif
+
 #define KERNEL_OF_STRUCTURE(structure, name, Record, threads, blocks)                                                            \
     KERNEL(name##_##structure, Record, threads, blocks) { name(args, args.scene.structure); }
 #define KERNEL_PER_STRUCTURE(name, Record, threads, blocks) PER_STRUCTURE(KERNEL_OF_STRUCTURE, name, Record, threads, blocks)

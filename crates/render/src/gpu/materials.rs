@@ -1,15 +1,16 @@
-//! Materials and their textures in a device's memory.
+//! Materials, their textures and what cuts them out in a device's memory.
 
 use std::collections::HashMap;
 
 use glam::Vec2;
 use lightmesh_image::Transfer;
 use lightmesh_layout::In;
-use lightmesh_layout::geometry::Vec3;
+use lightmesh_layout::geometry::{Coverage, Mask, Vec3};
 use lightmesh_layout::scene::{Material, Scene as Record, Texture, TextureLevel, Uv};
 use lightmesh_scene::{Geometry, Wrap};
 
 use super::scene::{Upload, vec3};
+use crate::accel;
 use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::shading::tint::{Coefficients, is_tinted};
@@ -89,6 +90,30 @@ impl<R: Runtime> Upload<'_, R> {
         };
         let records: Vec<TextureLevel> = levels.iter().map(record).collect();
         self.array("table of mip levels", &records)
+    }
+}
+
+impl<R: Runtime> Upload<'_, R> {
+    /// Where triangles are cut out; nothing if all are opaque.
+    pub(super) fn coverage(&mut self, coverage: &accel::Coverage) -> Result<Coverage, RenderError> {
+        let Some(table) = coverage.table() else { return Ok(Coverage { triangles: In::NULL, masks: In::NULL }) };
+        let mut planes = Vec::new();
+        for plane in &table.planes {
+            planes.push(self.array("opacities of textures", plane)?);
+        }
+        let mask = |mask: &accel::coverage::Mask| Mask {
+            texels: planes[mask.plane],
+            size: mask.size,
+            wrap: mask.wrap.map(wrap),
+            u_axis: mask.transform.matrix2.x_axis.to_array(),
+            v_axis: mask.transform.matrix2.y_axis.to_array(),
+            translation: mask.transform.translation.to_array(),
+            limit: mask.limit,
+            spare: 0,
+        };
+        let masks: Vec<Mask> = table.masks.iter().map(mask).collect();
+        let triangles = self.array("cut-out triangles", &table.triangles)?;
+        Ok(Coverage { triangles, masks: self.array("masks", &masks)? })
     }
 }
 

@@ -30,10 +30,9 @@ impl<R: Runtime> Cuda<R> {
 
     fn bring_template(&self, mesh: &LightMesh) -> Result<DeviceTemplate<R>, RenderError> {
         let rows = template_rows(mesh);
-        let lines: Vec<TemplateRow> = rows.iter().copied().filter(|row| row.count > 0).collect();
+        let lines = lines(&rows);
         for module in USERS {
-            let result = self.pool.runtime().constant(module, "template_rows", bytemuck::cast_slice(&lines));
-            result.map_err(|fault| self.pool.fault(fault))?;
+            self.set_lines(module, &lines)?;
         }
         let packed: Vec<u32> = rows.iter().map(|row| u32::from(row.bit) | u32::from(row.count) << 16).collect();
         let offsets: Vec<u32> = mesh.template.offsets().iter().map(|&offset| packed_offset(offset)).collect();
@@ -44,6 +43,21 @@ impl<R: Runtime> Cuda<R> {
             rows: self.pool.upload("rows of the template", &packed)?,
         })
     }
+
+    /// Copies the template to the constant memory of a module that is no [user](USERS): so it is loaded only if it is needed.
+    pub(crate) fn bring_lines(&self, module: &'static str, mesh: &LightMesh) -> Result<(), RenderError> {
+        self.set_lines(module, &lines(&template_rows(mesh)))
+    }
+
+    fn set_lines(&self, module: &'static str, lines: &[TemplateRow]) -> Result<(), RenderError> {
+        let result = self.pool.runtime().constant(module, "template_rows", bytemuck::cast_slice(lines));
+        result.map_err(|fault| self.pool.fault(fault))
+    }
+}
+
+/// The rows that have any light points.
+fn lines(rows: &[TemplateRow]) -> Vec<TemplateRow> {
+    rows.iter().copied().filter(|row| row.count > 0).collect()
 }
 
 fn packed_offset(offset: IVec3) -> u32 {

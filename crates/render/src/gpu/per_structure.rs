@@ -1,28 +1,37 @@
 //! Kernels that exist once per acceleration structure.
 
+#[cfg(doc)]
 use lightmesh_layout::Structure;
 
-use crate::cuda::Kernel;
+use super::DeviceScene;
+use crate::cuda::{Kernel, Runtime};
 
 /// The kernels that `KERNEL_PER_STRUCTURE` generates from one function, one per structure. Created by [`per_structure!`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PerStructure {
     pub(crate) module: &'static str,
+    /// The same for scenes in which triangles are cut out.
+    pub(crate) cut_out_module: &'static str,
     /// In the order of [`Structure`].
     pub(crate) names: [&'static str; 3],
 }
 
 impl PerStructure {
-    /// The kernel that walks `structure`.
-    pub(crate) fn of(self, structure: Structure) -> Kernel {
-        Kernel { module: self.module, name: self.names[structure as usize] }
+    /// The kernel that walks the structure of `scene`.
+    pub(crate) fn of<R: Runtime>(self, scene: &DeviceScene<R>) -> Kernel {
+        let module = if scene.cut_out { self.cut_out_module } else { self.module };
+        Kernel { module, name: self.names[scene.structure as usize] }
     }
 }
 
 /// The kernels of a module that `KERNEL_PER_STRUCTURE` generates from the function `name`.
 macro_rules! per_structure {
     ($module:literal, $name:literal) => {
-        $crate::gpu::PerStructure { module: $module, names: lightmesh_layout::names_per_structure!($name) }
+        $crate::gpu::PerStructure {
+            module: $module,
+            cut_out_module: concat!($module, "_cut_out"),
+            names: lightmesh_layout::names_per_structure!($name),
+        }
     };
 }
 

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use bytemuck::Zeroable;
 use lightmesh_layout::constants::{BVH_STACK, GRID_FRAME_WORDS, RECENT_TRIANGLES, STACK_OF_ROUNDS, STACK_PER_LEVEL};
-use lightmesh_layout::geometry::{Approach, BruteForce, Bvh, BvhNode, DVec3, Grid, Triangle, Vec3};
+use lightmesh_layout::geometry::{Approach, BruteForce, Bvh, BvhNode, Coverage, DVec3, Grid, Triangle, Vec3};
 use lightmesh_layout::scene::{self as layout, EnvironmentLevel, Indices, Light, Scene};
 use lightmesh_layout::{DeviceType, In, Structure};
 use lightmesh_scene::{Environment, Falloff, LightKind};
@@ -26,6 +27,8 @@ use crate::sync::locked;
 pub struct DeviceScene<R: Runtime> {
     pub(crate) record: Scene,
     pub(crate) structure: Structure,
+    /// Whether any triangle is cut out.
+    pub(crate) cut_out: bool,
     /// The scene on the host.
     pub(crate) host: PreparedScene,
     /// What the record points to.
@@ -42,6 +45,7 @@ impl<R: Runtime> DeviceScene<R> {
             // Given points have no vertex normals.
             record: Scene { triangles: triangles.input(), normals: In::NULL, ..self.record },
             structure: self.structure,
+            cut_out: self.cut_out,
             host: self.host.clone(),
             _geometry: Arc::clone(&self._geometry),
             _lights: Arc::clone(&self._lights),
@@ -87,6 +91,7 @@ impl<R: Runtime> Cuda<R> {
         Ok(DeviceScene {
             record,
             structure: geometry.structure,
+            cut_out: scene.geometry.coverage.table().is_some(),
             host: scene.clone(),
             _geometry: geometry,
             _lights: Arc::new(upload.buffers),
@@ -199,24 +204,25 @@ impl<R: Runtime> Upload<'_, R> {
             normals: self.array::<Vec3>("normals", bytemuck::cast_slice(&mesh.normals))?,
             center: vec3(center),
             far,
-            ..bytemuck::Zeroable::zeroed()
+            ..Zeroable::zeroed()
         };
         self.materials(geometry, (&prepared.materials.numbers, &prepared.mip_levels), &mut record)?;
         let (starts, objects) = mesh.objects.runs();
         record.object_starts = self.array("runs of objects", starts)?;
         record.objects = self.array("objects", objects)?;
         record.object_runs = starts.len() as u32;
+        let coverage = self.coverage(&prepared.coverage)?;
         let structure = match prepared.accelerator.form() {
             Form::Bvh(bvh) => {
-                record.bvh = self.bvh(bvh)?;
+                record.bvh = Bvh { coverage, ..self.bvh(bvh)? };
                 Structure::Bvh
             }
             Form::Grid(grid) => {
-                record.grid = self.grid(grid)?;
+                record.grid = Grid { coverage, ..self.grid(grid)? };
                 Structure::Grid
             }
             Form::BruteForce(all) => {
-                record.brute_force = self.brute_force(all)?;
+                record.brute_force = BruteForce { coverage, ..self.brute_force(all)? };
                 Structure::BruteForce
             }
         };
@@ -248,6 +254,7 @@ impl<R: Runtime> Upload<'_, R> {
         Ok(Bvh {
             nodes: self.array::<BvhNode>("BVH", bytemuck::cast_slice(nodes))?,
             triangles: self.triangles(bvh.triangles())?,
+            coverage: Coverage::zeroed(),
             approach: approach(bvh.approach()),
             node_count: nodes.len() as u32,
             depth: bvh.depth() as u32,
@@ -259,6 +266,7 @@ impl<R: Runtime> Upload<'_, R> {
         Ok(Grid {
             cells: self.array("grid", grid.cells())?,
             triangles: self.triangles(grid.triangles())?,
+            coverage: Coverage::zeroed(),
             distances: self.array("distances of the grid", &grid.distances())?,
             origin: DVec3::from(origin.to_array()),
             size: vec3(size),
@@ -272,6 +280,7 @@ impl<R: Runtime> Upload<'_, R> {
     fn brute_force(&mut self, all: &accel::BruteForce) -> Result<BruteForce, RenderError> {
         Ok(BruteForce {
             triangles: self.triangles(all.triangles())?,
+            coverage: Coverage::zeroed(),
             approach: approach(all.approach()),
             count: all.triangles().len() as u32,
             spare: 0,
@@ -294,7 +303,7 @@ fn light(geometry: &PreparedGeometry, light: &lightmesh_scene::Light) -> Light {
         inverse_square: u32::from(light.falloff == Falloff::InverseSquare),
         size: crate::shadow::size(light, 1.0),
         scale: crate::shadow::sight::scale(geometry, light),
-        ..bytemuck::Zeroable::zeroed()
+        ..Zeroable::zeroed()
     };
     match light.kind {
         LightKind::Point { spread, .. } => (record.kind, record.radius) = (Light::POINT, spread),

@@ -102,7 +102,7 @@ pub(crate) fn test_samples<R: Runtime>(
         let most = |number: fn(&SampleRows) -> u32| record.sets.iter().map(number).max().unwrap_or(0);
         let (words, rows) = (most(|set| set.words), most(|set| set.rows));
         let (_, kernels) = kernels.iter().find(|(room, _)| *room >= words).unwrap_or(&kernels[2]);
-        let kernel = kernels.of(scene.structure);
+        let kernel = kernels.of(scene);
         let progress = progress(set + 1) - progress(set);
         let pieces =
             Work { units: work.units, cost: visibility.lights.len().max(1) as u64, first: work.first, progress };

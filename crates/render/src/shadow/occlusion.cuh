@@ -1,7 +1,7 @@
 // Which samples of a light a triangle hides from a surface point: twin of occlusion.rs, bit by bit.
 #pragma once
 
-#include "accel/triangle.cuh"
+#include "accel/coverage.cuh"
 #include "shadow/sight.cuh"
 
 // A triangle with what is the same for all surface points: three corners, and in their last words the normal.
@@ -163,11 +163,59 @@ DEVICE bool center_above_horizon(const SurfacePoint &point, const Sight &sight) 
 // Whether a function is certainly negative on the whole emitter; positive if not `outer`.
 DEVICE bool never(const Linear &f, bool outer) { return (outer ? f.start : -f.start) < -range_of(f); }
 
-// Clears the bits of the samples that a triangle, given by its parts, hides. The lanes of a warp come together; only those that are `alive`
-// matter.
+// A triangle by its parts, and where it is cut out. The number of its opacities, 0 if it is opaque, is only read with CUT_OUTS.
+struct Hiding {
+    const float4 *parts;
+    const Coverage &coverage;
+    const unsigned *cut;
+};
+
+DEVICE Corners corners_of(const float4 *triangle) {
+    return Corners{corner_of(triangle, 0), corner_of(triangle, 1), corner_of(triangle, 2)};
+}
+
+// Bits of samples, by word.
 template <unsigned WORDS>
-DEVICE void hide(const SurfacePoint &point, const Sight &sight, const float4 *triangle, const RowTable &table, bool alive,
+struct Samples {
+    unsigned bits[WORDS];
+};
+
+// Where the samples of a light are, seen from `origin` and scaled: at `center + x · along + y · across`.
+struct Lines {
+    Vec3 origin, center, along, across;
+};
+
+// Those of some samples whose ray a triangle stops where it is not cut out.
+template <unsigned WORDS>
+COLD Samples<WORDS> stopped_samples(Coverage coverage, unsigned cut, Corners corners, Lines from, RowTable table,
+                                    Samples<WORDS> samples) {
+    if (cut == 0)
+        return samples;
+    unsigned row = 0;
+    UNROLL
+    for (unsigned word = 0; word < WORDS; ++word) {
+        unsigned bits = samples.bits[word];
+        ROLLED
+        for (const unsigned end = table.ends[word]; row < end; ++row) {
+            const float4 own = table.rows[row];
+            const unsigned first = __float_as_uint(own.w);
+            for (unsigned rest = bits & __float_as_uint(own.z) << first; rest != 0; rest &= rest - 1) {
+                const unsigned bit = __ffs(rest) - 1;
+                const float x = ((float)(bit - first) - table.offsets[row * WARP]) / own.y;
+                if (!stops_cut(coverage, cut, corners, from.origin, from.center + x * from.along + own.x * from.across))
+                    bits &= ~(1u << bit);
+            }
+        }
+        samples.bits[word] = bits;
+    }
+    return samples;
+}
+
+// Clears the bits of the samples that a triangle hides. The lanes of a warp come together; only those that are `alive` matter.
+template <unsigned WORDS>
+DEVICE void hide(const SurfacePoint &point, const Sight &sight, const Hiding &hiding, const RowTable &table, bool alive,
                  unsigned *seen) {
+    const float4 *triangle = hiding.parts;
     const Seeing own = seeing(point, triangle);
     const bool outer = own.volume > 0.0f;
     // Most triangles are passed by on the outer side of an edge.
@@ -195,13 +243,25 @@ DEVICE void hide(const SurfacePoint &point, const Sight &sight, const float4 *tr
     } else {
         set_bits<WORDS, 3>(bounds, table, hidden);
     }
+    if (CUT_OUTS) {
+        Samples<WORDS> all;
+        UNROLL
+        for (unsigned word = 0; word < WORDS; ++word)
+            all.bits[word] = matters ? hidden[word] & seen[word] : 0;
+        const Lines from = {point.origin, sight.center, sight.along, sight.across};
+        all = stopped_samples<WORDS>(hiding.coverage, *hiding.cut, corners_of(triangle), from, table, all);
+        UNROLL
+        for (unsigned word = 0; word < WORDS; ++word)
+            hidden[word] = all.bits[word];
+    }
     UNROLL
     for (unsigned word = 0; word < WORDS; ++word)
         seen[word] &= matters ? ~hidden[word] : ~0u;
 }
 
 // Whether a triangle hides the centre.
-DEVICE bool hides_center(const SurfacePoint &point, const Sight &sight, const float4 *triangle) {
+DEVICE bool hides_center(const SurfacePoint &point, const Sight &sight, const Hiding &hiding) {
+    const float4 *triangle = hiding.parts;
     const Seeing own = seeing(point, triangle);
     const float beyond = fmaf(-own.volume, sight.end, fused_dot(plane_of(triangle), sight.center));
     float least = beyond, most = beyond;
@@ -211,5 +271,8 @@ DEVICE bool hides_center(const SurfacePoint &point, const Sight &sight, const fl
         least = fminf(least, f);
         most = fmaxf(most, f);
     }
-    return own.matters && (own.volume > 0.0f ? least >= 0.0f : most <= 0.0f);
+    const bool hides = own.matters && (own.volume > 0.0f ? least >= 0.0f : most <= 0.0f);
+    if (!CUT_OUTS || !hides || *hiding.cut == 0)
+        return hides;
+    return stops_cut(hiding.coverage, *hiding.cut, corners_of(triangle), point.origin, sight.center);
 }

@@ -16,6 +16,7 @@
 //!   changes its sign if b and c change places. So triangles that share an edge have exactly the same bound there: no sample
 //!   slips through between them.
 //! * A triangle with no corner above the tangent plane hides nothing, nor one whose plane contains P.
+//! * A triangle that is [cut out](crate::accel::coverage) hides those of these samples whose ray meets a part of it that is there.
 //! * Products are fused into sums ([`fused_dot`]): the results are the same wherever they are evaluated, with half the instructions.
 //!
 //! Lanes are surface points, triangles, or both: the functions do not care.
@@ -27,7 +28,7 @@ use lightmesh_layout::constants::{BEYOND, LEAST_SLOPE, MOST_ROWS, MOST_WORDS};
 use lightmesh_layout::scene::SampleRows;
 
 use super::sight::Sight;
-use crate::accel::Triangle;
+use crate::accel::{Coverage, Triangle};
 use crate::simd::{Axes, LANES, difference, fused_cross, fused_dot, splat, sum};
 use crate::surface::SurfacePoint;
 
@@ -138,7 +139,7 @@ impl<S: Simd> Sights<S> {
     pub(crate) fn hide(
         &self,
         simd: S,
-        triangle: [Axes<S>; 3],
+        (triangle, cuts): ([Axes<S>; 3], Option<Cuts>),
         (set, offsets): (&SampleRows, &Offsets<S>),
         lanes: u32,
         seen: &mut Bits<S>,
@@ -162,15 +163,56 @@ impl<S: Simd> Sights<S> {
             bounds.cut(simd, &beyond, facets.outer);
         }
         let matters = facets.matters.select(i32x8::splat(simd, -1), i32x8::splat(simd, 0)).bitcast::<u32x8<S>>();
-        let hidden = bounds.bits(simd, set, offsets);
+        let mut hidden = bounds.bits(simd, set, offsets);
+        if let Some(cuts) = cuts {
+            for word in 0..set.words as usize {
+                hidden[word] &= seen[word];
+            }
+            let lanes = facets.matters.to_bitmask() as u32 & lanes;
+            hidden = self.stopped(simd, (triangle, &cuts), (set, offsets), lanes, hidden);
+        }
         for word in 0..set.words as usize {
             seen[word] &= !(hidden[word] & matters);
         }
     }
 
+    /// Those of `samples` that triangles hide where they are not cut out, in `lanes`.
+    #[inline(always)]
+    fn stopped(
+        &self,
+        simd: S,
+        (triangle, cuts): ([Axes<S>; 3], &Cuts),
+        (set, offsets): (&SampleRows, &Offsets<S>),
+        lanes: u32,
+        samples: Bits<S>,
+    ) -> Bits<S> {
+        let from = self.lines(triangle);
+        let offsets: [[f32; LANES]; MOST_ROWS as usize] = offsets.map(Into::into);
+        let mut samples: [[u32; LANES]; MOST_WORDS as usize] = samples.map(Into::into);
+        keep_stopped(cuts, &from, (set, &offsets), lanes, &mut samples);
+        let mut bits = [u32x8::splat(simd, 0); MOST_WORDS as usize];
+        for (bits, samples) in bits.iter_mut().zip(&samples) {
+            *bits = u32x8::from_slice(simd, samples);
+        }
+        bits
+    }
+
+    /// The same, lane by lane, with triangles.
+    #[inline(always)]
+    fn lines(&self, triangle: [Axes<S>; 3]) -> Lines {
+        let [a, b, c] = triangle.map(by_lane);
+        Lines {
+            origin: by_lane(self.origin),
+            center: by_lane(self.center),
+            along: by_lane(self.along),
+            across: by_lane(self.across),
+            corners: [a, b, c],
+        }
+    }
+
     /// The lanes in which a triangle hides the centre.
     #[inline(always)]
-    pub(crate) fn hides_center(&self, simd: S, triangle: [Axes<S>; 3], lanes: u32) -> u32 {
+    pub(crate) fn hides_center(&self, simd: S, (triangle, cuts): ([Axes<S>; 3], Option<Cuts>), lanes: u32) -> u32 {
         let Some(facets) = self.facets(simd, triangle, lanes) else { return 0 };
         let zero = f32x8::splat(simd, 0.0);
         let beyond = (-facets.volume).mul_add_precise(self.end, fused_dot(facets.plane, self.center));
@@ -182,8 +224,102 @@ impl<S: Simd> Sights<S> {
         let least = u.min_precise(v).min_precise(w.min_precise(beyond));
         let most = u.max_precise(v).max_precise(w.max_precise(beyond));
         let inside = (facets.outer & least.simd_ge(zero)) | (!facets.outer & most.simd_le(zero));
-        (inside & facets.matters).to_bitmask() as u32 & lanes
+        let hidden = (inside & facets.matters).to_bitmask() as u32 & lanes;
+        match cuts {
+            Some(cuts) if hidden != 0 => stopped_centers(&cuts, &self.lines(triangle), hidden),
+            _ => hidden,
+        }
     }
+}
+
+/// What is cut out of the triangles of eight lanes.
+#[derive(Clone, Copy)]
+pub(crate) struct Cuts<'a> {
+    coverage: &'a Coverage,
+    /// The number of each lane's triangle; 0 if it is opaque.
+    numbers: [u32; LANES],
+}
+
+impl<'a> Cuts<'a> {
+    /// One triangle in all lanes; `None` if it is opaque.
+    #[inline(always)]
+    pub(crate) fn splat(coverage: &'a Coverage, number: u32) -> Option<Cuts<'a>> {
+        (number != 0).then_some(Cuts { coverage, numbers: [number; LANES] })
+    }
+
+    /// Those of [`gathered`] triangles; `None` if all are opaque.
+    #[inline(always)]
+    pub(crate) fn gathered(coverage: &'a Coverage, triangles: &[Triangle], indices: &[u32]) -> Option<Cuts<'a>> {
+        let number = |lane: usize| triangles[indices[lane.min(indices.len() - 1)] as usize].cut();
+        let numbers = std::array::from_fn(number);
+        (numbers != [0; LANES]).then_some(Cuts { coverage, numbers })
+    }
+
+    /// The triangle of a lane.
+    fn triangle(&self, from: &Lines, lane: usize) -> Triangle {
+        Triangle::new(from.corners.map(|corner| corner[lane]), 0).cut_out(self.numbers[lane])
+    }
+}
+
+/// Surface points, their sights and triangles, lane by lane.
+struct Lines {
+    origin: [Vec3; LANES],
+    center: [Vec3; LANES],
+    along: [Vec3; LANES],
+    across: [Vec3; LANES],
+    corners: [[Vec3; LANES]; 3],
+}
+
+#[inline(always)]
+fn by_lane<S: Simd>([x, y, z]: Axes<S>) -> [Vec3; LANES] {
+    let (x, y, z): ([f32; LANES], [f32; LANES], [f32; LANES]) = (x.into(), y.into(), z.into());
+    let mut vectors = [Vec3::ZERO; LANES];
+    for lane in 0..LANES {
+        vectors[lane] = Vec3::new(x[lane], y[lane], z[lane]);
+    }
+    vectors
+}
+
+/// Keeps those of the samples, by word and lane, whose ray a triangle stops where it is not cut out.
+#[inline(never)]
+fn keep_stopped(
+    cuts: &Cuts,
+    from: &Lines,
+    (set, offsets): (&SampleRows, &[[f32; LANES]; MOST_ROWS as usize]),
+    lanes: u32,
+    samples: &mut [[u32; LANES]; MOST_WORDS as usize],
+) {
+    for lane in (0..LANES).filter(|&lane| lanes >> lane & 1 != 0 && cuts.numbers[lane] != 0) {
+        let triangle = cuts.triangle(from, lane);
+        let sight =
+            Sight { center: from.center[lane], along: from.along[lane], across: from.across[lane], ..Sight::default() };
+        let mut row = 0;
+        for (word, samples) in samples.iter_mut().enumerate().take(set.words as usize) {
+            let mut rest = samples[lane];
+            while rest != 0 {
+                let bit = rest.trailing_zeros();
+                rest &= rest - 1;
+                while row + 1 < set.ends[word] as usize && set.place[row] + set.count[row] <= bit {
+                    row += 1;
+                }
+                let target = sight.scaled_sample(set, row, (bit - set.place[row]) as f32, offsets[row][lane]);
+                if !cuts.coverage.stops(&triangle, from.origin[lane], target) {
+                    samples[lane] &= !(1 << bit);
+                }
+            }
+            row = set.ends[word] as usize;
+        }
+    }
+}
+
+/// Those of `lanes` whose ray to the centre a triangle stops where it is not cut out.
+#[inline(never)]
+fn stopped_centers(cuts: &Cuts, from: &Lines, lanes: u32) -> u32 {
+    let stops = |&lane: &usize| {
+        let (origin, center) = (from.origin[lane], from.center[lane]);
+        lanes >> lane & 1 != 0 && cuts.coverage.stops(&cuts.triangle(from, lane), origin, center)
+    };
+    (0..LANES).filter(stops).fold(0, |all, lane| all | 1 << lane)
 }
 
 /// A triangle as seen from surface points.

@@ -9,7 +9,7 @@ use lightmesh_layout::constants::{BEYOND, LEAST_SLOPE, SHADOW_MARGIN};
 use lightmesh_layout::scene::SampleRows;
 
 use super::sight::Sight;
-use crate::accel::{Bvh, Triangle, Visitor};
+use crate::accel::{Bvh, Coverage, Triangle, Visitor};
 use crate::surface::SurfacePoint;
 
 /// By how much a sample must miss a triangle's edge to need no exact test, 2^-18 of the largest product: more than both are rounded.
@@ -48,7 +48,7 @@ impl SampleRays {
             let mut rest = bits & ((1 << set.count[row]) - 1) << set.place[row];
             while rest != 0 && self.most != 0 {
                 let bit = rest.trailing_zeros();
-                let mut ray = SampleRay::new(point, sight, size, (set, row), bit - set.place[row]);
+                let mut ray = SampleRay::new(bvh.coverage(), (point, sight, size), (set, row), bit - set.place[row]);
                 if self.last.is_none_or(|last| ray.triangle(&last)) {
                     bvh.visit_segment(simd, (point.origin, ray.target / scale), slack, &mut ray);
                 }
@@ -69,6 +69,7 @@ impl SampleRays {
 
 /// A ray to one sample.
 struct SampleRay<'a> {
+    coverage: &'a Coverage,
     point: &'a SurfacePoint,
     sight: &'a Sight,
     /// The sample as seen from the point, scaled, and no less than any sample's coordinates.
@@ -90,17 +91,30 @@ struct SampleRay<'a> {
 impl<'a> SampleRay<'a> {
     #[inline(always)]
     fn new(
-        point: &'a SurfacePoint,
-        sight: &'a Sight,
-        size: Vec3,
+        coverage: &'a Coverage,
+        (point, sight, size): (&'a SurfacePoint, &'a Sight, Vec3),
         (set, row): (&SampleRows, usize),
         place: u32,
     ) -> SampleRay<'a> {
         let (y, density, offset, place) = (set.y[row], set.density[row], sight.offset(set, row), place as f32);
-        let target = sight.center + (place - offset) / density * sight.along + y * sight.across;
+        let target = sight.scaled_sample(set, row, place, offset);
         let count = set.count[row] as f32;
         let nodes = Cell::new(0);
-        SampleRay { point, sight, target, size, y, density, count, offset, place, blocker: None, nodes, triangles: 0 }
+        SampleRay {
+            coverage,
+            point,
+            sight,
+            target,
+            size,
+            y,
+            density,
+            count,
+            offset,
+            place,
+            blocker: None,
+            nodes,
+            triangles: 0,
+        }
     }
 
     /// Whether a triangle hides the sample.
@@ -150,7 +164,9 @@ impl Visitor for SampleRay<'_> {
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle) -> bool {
         self.triangles += 1;
-        if !self.is_hidden_by(triangle.corners()) {
+        let hidden =
+            self.is_hidden_by(triangle.corners()) && self.coverage.stops(triangle, self.point.origin, self.target);
+        if !hidden {
             return true;
         }
         self.blocker = Some(*triangle);
@@ -206,7 +222,7 @@ mod tests {
     use crate::accel::Accelerator;
     use crate::job::Sampling;
     use crate::shadow::Aim;
-    use crate::shadow::occlusion::Sights;
+    use crate::shadow::occlusion::{Cuts, Sights};
     use crate::shadow::rows::Rows;
     use crate::simd::{LANES, dispatch, splat};
 
@@ -266,7 +282,7 @@ mod tests {
         let mut seen = set.full.map(|full| u32x8::splat(simd, full));
         for triangle in triangles {
             let corners = triangle.corners().map(|corner| splat(simd, corner));
-            sights.hide(simd, corners, (set, &offsets), 0xff, &mut seen);
+            sights.hide(simd, (corners, Cuts::splat(bvh.coverage(), triangle.cut())), (set, &offsets), 0xff, &mut seen);
         }
         let mut rays = SampleRays::default();
         let words = seen.iter().enumerate().take(set.words as usize);

@@ -33,6 +33,13 @@ struct Sight {
     unsigned choice;
 };
 
+// The way from a point to the centre of a light, from which no point of the light is farther than `radius`.
+DEVICE Vec3 way_to(const Scene &scene, const Light &light, Vec3 from, float &radius) {
+    const float reach = scene_reach(scene, from), largest = larger(light.size, light.radius);
+    radius = light.kind == Light::DIRECTIONAL ? reach * largest : largest;
+    return light_center(light, from, reach) - from;
+}
+
 // Two unit vectors perpendicular to `way` and to each other.
 DEVICE void facing(Vec3 way, Vec3 &tangent, Vec3 &bitangent) {
     const float far = length(way);

@@ -307,6 +307,12 @@ impl Sight {
         (self.center + x * self.along + rows.y[row] * self.across) / scale
     }
 
+    /// The sample at place `place` of row number `row`, in which x = 0 is at `offset`, seen from the point and scaled.
+    #[inline(always)]
+    pub(crate) fn scaled_sample(&self, rows: &SampleRows, row: usize, place: f32, offset: f32) -> Vec3 {
+        self.center + (place - offset) / rows.density[row] * self.along + rows.y[row] * self.across
+    }
+
     /// The place of x = 0 in a row of samples.
     #[inline(always)]
     pub(crate) fn offset(&self, rows: &SampleRows, row: usize) -> f32 {

@@ -26,16 +26,14 @@ DEVICE bool add_lift(const SurfacePoint &point, float side, Vec3 corner, Vec3 ve
 
 // The point at `hit` on the triangle with these corners. The scene must have normals.
 DEVICE ShadowPoint shadow_point(const Scene &scene, const Hit &hit, const Corners &corners, const SurfacePoint &point) {
-    const unsigned *vertices = scene.indices[hit.triangle].vertices;
-    const Vec3 a = load_normal(scene.normals, __ldg(vertices)), b = load_normal(scene.normals, __ldg(vertices + 1)),
-               c = load_normal(scene.normals, __ldg(vertices + 2));
+    const Normals normals = load_normals(scene, hit.triangle);
     // Vertex normals are on the side of the viewer, too, or all of them are not.
-    const float side = dot(a, point.normal) < 0.0f ? -1.0f : 1.0f;
+    const float side = dot(normals.a, point.normal) < 0.0f ? -1.0f : 1.0f;
     Vec3 lift = splat(0.0f);
     float deepest = 0.0f;
-    const bool is_curved = add_lift(point, side, corners.a, a, 1.0f - hit.u - hit.v, lift, deepest) &&
-                           add_lift(point, side, corners.b, b, hit.u, lift, deepest) &&
-                           add_lift(point, side, corners.c, c, hit.v, lift, deepest) && deepest > 0.0f;
+    const bool is_curved = add_lift(point, side, corners.a, normals.a, 1.0f - hit.u - hit.v, lift, deepest) &&
+                           add_lift(point, side, corners.b, normals.b, hit.u, lift, deepest) &&
+                           add_lift(point, side, corners.c, normals.c, hit.v, lift, deepest) && deepest > 0.0f;
     return ShadowPoint{point, lift, shading_normal(scene, hit, point.normal), is_curved};
 }
 
@@ -53,9 +51,8 @@ DEVICE SurfacePoint toward(const Scene &scene, const Light &light, const ShadowP
     const SurfacePoint &flat = point.flat;
     if (!point.is_curved)
         return flat;
-    const float reach = scene_reach(scene, flat.origin), largest = larger(light.size, light.radius);
-    const Vec3 way = light_center(light, flat.origin, reach) - flat.origin;
-    const float radius = light.kind == Light::DIRECTIONAL ? reach * largest : largest;
+    float radius;
+    const Vec3 way = way_to(scene, light, flat.origin, radius);
     const float lowest = (dot(flat.normal, way) - radius) / fmaxf(length(way), F32_MIN_POSITIVE);
     const float share = fminf(fmaxf(1.0f - lowest / LOW_LIGHT, 0.0f), 1.0f);
     if (share <= 0.0f)
@@ -85,9 +82,8 @@ COLD float bend_of(const Scene &scene, const Rays &rays, const Hit *hits, unsign
 // Whether a light may look different from the curved surface than from the point `flat` of its triangle: it is not high over it, and not so
 // far behind it that it is behind the curved surface, too. May say so for others.
 DEVICE bool is_low(const Scene &scene, const Light &light, const SurfacePoint &flat, float bend) {
-    const float reach = scene_reach(scene, flat.origin), largest = larger(light.size, light.radius);
-    const Vec3 way = light_center(light, flat.origin, reach) - flat.origin;
-    const float radius = light.kind == Light::DIRECTIONAL ? reach * largest : largest;
+    float radius;
+    const Vec3 way = way_to(scene, light, flat.origin, radius);
     const float height = dot(flat.normal, way), distance = length(way), room = (GROWN - 1.0f) * distance;
     return height - radius < LOW_LIGHT * distance + room && height + radius > -bend * distance - room;
 }

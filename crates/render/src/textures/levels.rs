@@ -4,12 +4,15 @@
 //! texels of the level before count by the share of their area, so that every texel of the image has the same weight in each level, and the
 //! mean of all levels is that of the image, whatever its size. Levels are averaged in linear light and single precision, and stored with 21
 //! bits per channel: a step is 2⁻²⁰, so that black and white are exact.
+//!
+//! Where a material is cut out by the alpha of its own texture, texels count by their alpha: what is cut out, black in most files, would darken
+//! leaves in the distance. Texels without any alpha take the colour of the next level.
 
 use glam::Vec3;
 use lightmesh_image::Transfer;
 use lightmesh_layout::constants::{TEXEL_BITS, TEXEL_ONE};
 use lightmesh_memory::{Budget, Short};
-use lightmesh_scene::{Geometry, Texture};
+use lightmesh_scene::{Geometry, OpacityChannel, Texture, TextureUse};
 use rayon::prelude::*;
 
 use super::texture_of;
@@ -48,8 +51,14 @@ impl MipLevels {
             let index = uses.texture as usize;
             all.resize_with(geometry.textures.len(), MipLevels::default);
             if all[index].levels.is_empty() {
-                budget.check(bytes_to_build(texture.size)).map_err(|short| (index, short))?;
-                all[index] = MipLevels::new(texture);
+                let needed = bytes_to_build(texture.size);
+                if is_cut_out(geometry, uses.texture) {
+                    budget.check(2 * needed).map_err(|short| (index, short))?;
+                    all[index] = MipLevels::of_cut_out(texture);
+                } else {
+                    budget.check(needed).map_err(|short| (index, short))?;
+                    all[index] = MipLevels::new(texture);
+                }
             }
         }
         Ok(all)
@@ -57,24 +66,65 @@ impl MipLevels {
 
     /// The levels of `texture`, whose texels must be complete.
     pub(crate) fn new(texture: &Texture) -> MipLevels {
-        let mut levels = Vec::new();
-        if texture.size == [1; 2] {
-            return MipLevels { levels };
+        let levels = lower(texture, linear);
+        MipLevels { levels: levels.map(|level| level.packed()).collect() }
+    }
+
+    /// Those of a texture by whose alpha surfaces are cut out.
+    fn of_cut_out(texture: &Texture) -> MipLevels {
+        let alpha = |texel: [u8; 4]| f32::from(texel[3]) / f32::from(u8::MAX);
+        let colors = lower(texture, |texel| alpha(texel) * linear(texel));
+        let shares = lower(texture, |texel| Vec3::splat(alpha(texel)));
+        let mut levels: Vec<Level> = Vec::new();
+        let mut empty: Vec<Vec<bool>> = Vec::new();
+        for (mut color, share) in colors.zip(shares) {
+            let texels = color.texels.iter_mut().zip(&share.texels);
+            texels.for_each(|(color, share)| *color = if share.x > 0.0 { *color / share.x } else { Vec3::ZERO });
+            empty.push(share.texels.iter().map(|share| share.x == 0.0).collect());
+            levels.push(color.packed());
         }
-        let width = texture.size[0] as usize;
-        let mut last = halved(texture.size, |row, column| linear(texture.texels[row * width + column]));
-        while last.size != [1; 2] {
-            let next = halved(last.size, |row, column| last.texels[row * last.size[0] as usize + column]);
-            levels.push(last.packed());
-            last = next;
+        // From the smallest one on: each is complete before it fills the next.
+        for index in (1..levels.len()).rev() {
+            let (larger, smaller) = levels.split_at_mut(index);
+            fill(&mut larger[index - 1], &empty[index - 1], &smaller[0]);
         }
-        levels.push(last.packed());
         MipLevels { levels }
     }
 
     /// Bytes on the heap.
     pub(crate) fn memory(&self) -> usize {
         self.levels.iter().map(|level| size_of_val(level.texels.as_slice())).sum()
+    }
+}
+
+/// Whether a material that shows a texture is cut out by its alpha.
+fn is_cut_out(geometry: &Geometry, texture: u32) -> bool {
+    let shown = |uses: TextureUse| uses.texture == texture;
+    geometry.materials.iter().any(|material| {
+        let by_alpha = material.cut_out.filter(|cut_out| cut_out.channel == OpacityChannel::Alpha);
+        material.texture.is_some_and(shown) && by_alpha.and_then(|cut_out| cut_out.texture).is_some_and(shown)
+    })
+}
+
+/// The levels below an image whose texels have these values.
+fn lower(texture: &Texture, value: impl Fn([u8; 4]) -> Vec3 + Sync) -> impl Iterator<Item = Linear> {
+    let width = texture.size[0] as usize;
+    let first = (texture.size != [1; 2])
+        .then(|| halved(texture.size, |row, column| value(texture.texels[row * width + column])));
+    std::iter::successors(first, |last| {
+        let width = last.size[0] as usize;
+        (last.size != [1; 2]).then(|| halved(last.size, |row, column| last.texels[row * width + column]))
+    })
+}
+
+/// Gives texels that are `empty` the colour of the texel of the next level that covers them.
+fn fill(level: &mut Level, empty: &[bool], next: &Level) {
+    let [width, height] = level.size.map(u64::from);
+    let of_next = |place: u64, side: u64, next: u32| (place * u64::from(next) / side) as usize;
+    for (index, (texel, _)) in (0..).zip(level.texels.iter_mut().zip(empty)).filter(|(_, (_, empty))| **empty) {
+        let column = of_next(index % width, width, next.size[0]);
+        let row = of_next(index / width, height, next.size[1]);
+        *texel = next.texels[row * next.size[0] as usize + column];
     }
 }
 
@@ -159,7 +209,7 @@ pub(super) fn unpacked(texel: u64) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use glam::{DVec3, Vec2};
-    use lightmesh_scene::{Material, Mesh, TextureUse};
+    use lightmesh_scene::{CutOut, Material, Mesh};
 
     use super::*;
 
@@ -225,6 +275,35 @@ mod tests {
         assert_eq!([0.0, 1.0, 0.5].map(|value| unpacked(packed(Vec3::splat(value))).y), [0.0, 1.0, 0.5]);
         let color = Vec3::new(0.1, 0.7, 0.0123);
         assert!((unpacked(packed(color)) - color).abs().max_element() <= 0.5 / TEXEL_ONE);
+    }
+
+    #[test]
+    fn what_is_cut_out_darkens_no_level() {
+        // A green leaf in one corner of what is else black and cut out; a texel between them is half there.
+        let (leaf, between, nothing) = ([0, 255, 0, 255], [0, 255, 0, 128], [0, 0, 0, 0]);
+        for size in [[16, 16], [13, 7], [1, 9]] {
+            let texel = |index: u32| match (index % size[0] + index / size[0]).cmp(&2) {
+                std::cmp::Ordering::Less => leaf,
+                std::cmp::Ordering::Equal => between,
+                std::cmp::Ordering::Greater => nothing,
+            };
+            let texels = (0..size[0] * size[1]).map(texel).collect();
+            let uses = TextureUse::new(0);
+            let by = |channel| Material::default().with_texture(uses).with_cut_out(CutOut::by(uses, channel));
+            let levels = |material: Material| {
+                let texture = Texture { name: String::new(), size, texels: Vec::clone(&texels) };
+                let mesh = Mesh { uvs: vec![Vec2::ZERO], ..Mesh::default() };
+                let scene =
+                    Geometry { textures: vec![texture], materials: vec![material], mesh, ..Geometry::default() };
+                let all = MipLevels::of(&scene, Budget::default()).unwrap().remove(0).levels;
+                all.iter().flat_map(|level| &level.texels).map(|&texel| unpacked(texel)).collect::<Vec<_>>()
+            };
+            let near = |color: Vec3| (color - Vec3::Y).length() < 1e-5;
+            assert!(levels(by(OpacityChannel::Alpha)).into_iter().all(near), "{size:?}");
+            // Another channel, or none, leaves the image as it is.
+            assert!(!levels(by(OpacityChannel::Green)).into_iter().all(near), "{size:?}");
+            assert_eq!(levels(by(OpacityChannel::Green)), levels(Material::default().with_texture(uses)));
+        }
     }
 
     #[test]

@@ -14,8 +14,8 @@ use glam::{Vec2, Vec3};
 use lightmesh_layout::constants::{F32_EXPONENT_BIAS, F32_EXPONENT_STEP, MOST_PROBES};
 use lightmesh_scene::{Texture, Wrap};
 
-use super::MipLevels;
 use super::levels::{linear, unpacked};
+use super::{MipLevels, neighbours};
 
 /// The mean colour that the ellipse with these axes around `place` sees, in coordinates of the image: (0, 0) is its upper left corner, (1, 1)
 /// its lower right one. Axes are whole ones, conjugate diameters.
@@ -125,34 +125,6 @@ pub(crate) fn bilinear(size: [u32; 2], wrap: [Wrap; 2], place: Vec2, texel: impl
 /// From `a` to `b`; exactly `a` where both are the same.
 pub(crate) fn between(a: Vec3, b: Vec3, share: f32) -> Vec3 {
     a + share * (b - a)
-}
-
-/// The two texels of a row or column of `size` whose centres are on either side of `place`, and the fraction of the way to the
-/// second.
-fn neighbours(place: f32, size: u32, wrap: Wrap) -> ([u32; 2], f32) {
-    // 1. Into the image.
-    let inside = match wrap {
-        Wrap::Repeat => place - place.floor(),
-        Wrap::Mirror => {
-            let twice = place - 2.0 * (0.5 * place).floor();
-            if twice > 1.0 { 2.0 - twice } else { twice }
-        }
-        Wrap::Clamp => place,
-    };
-    // Also if the position is infinite or NaN.
-    let inside = if inside > 0.0 { if inside < 1.0 { inside } else { 1.0 } } else { 0.0 };
-    // 2. In texels, counted from the centre of the first.
-    let middle = inside * size as f32 - 0.5;
-    let first = middle.floor();
-    // 3. Beyond the border the image continues with its opposite side, or with itself. From -1 to the size.
-    let last = size as i32 - 1;
-    let (first_texel, second_texel) = (first as i32, first as i32 + 1);
-    let texel = |index: i32| match wrap {
-        Wrap::Repeat if index < 0 => last,
-        Wrap::Repeat if index > last => 0,
-        _ => index.clamp(0, last),
-    };
-    ([texel(first_texel) as u32, texel(second_texel) as u32], middle - first)
 }
 
 #[cfg(test)]

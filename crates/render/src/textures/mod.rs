@@ -10,15 +10,24 @@
 
 mod levels;
 mod lookup;
+mod neighbours;
 
 pub(crate) use levels::{Level, MipLevels};
 pub(crate) use lookup::{between, bilinear, filtered, level_of};
+pub(crate) use neighbours::neighbours;
 
 use lightmesh_scene::{Geometry, Material, Texture, TextureUse};
 
 /// The texture of `material`, if it has one that can be looked up.
 pub(crate) fn texture_of<'s>(geometry: &'s Geometry, material: &Material) -> Option<(TextureUse, &'s Texture)> {
-    let uses = material.texture.filter(|_| !geometry.mesh.uvs.is_empty())?;
+    material.texture.and_then(|uses| usable(geometry, uses))
+}
+
+/// A texture that is used like this, if it can be looked up.
+pub(crate) fn usable(geometry: &Geometry, uses: TextureUse) -> Option<(TextureUse, &Texture)> {
+    if geometry.mesh.uvs.is_empty() {
+        return None;
+    }
     let texture = geometry.textures.get(uses.texture as usize)?;
     let count = u64::from(texture.size[0]) * u64::from(texture.size[1]);
     (count > 0 && texture.texels.len() as u64 == count).then_some((uses, texture))

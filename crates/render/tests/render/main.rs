@@ -3,6 +3,7 @@
 mod adaptive;
 mod antialiasing;
 mod convergence;
+mod coverage;
 mod crop;
 mod degenerate;
 mod determinism;

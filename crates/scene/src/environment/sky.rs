@@ -63,7 +63,7 @@ pub enum SkyError {
         elevation: f64,
     },
     /// A number out of range.
-    #[error("the {what} is {value}; it can be from {least} to {most}")]
+    #[error("the {what} is {value:?}; it can be from {least} to {most}")]
     Range {
         /// Which number.
         what: &'static str,

@@ -40,7 +40,7 @@ pub enum SunError {
     },
     /// Latitude, longitude or date out of range.
     #[error(
-        "there is no sun at latitude {latitude}, longitude {longitude} then ({problem}); latitudes are from -90 to 90, longitudes from -180 to 180, both in degrees"
+        "no sun at latitude {latitude:?}, longitude {longitude:?} then ({problem}); write degrees, -90 to 90 and -180 to 180"
     )]
     Place {
         /// Degrees north.
@@ -171,6 +171,6 @@ mod tests {
         assert!(SunPosition::of(0.0, 0.0, &moment).is_err(), "June has 30 days");
         let moment: Moment = "2026-06-30T12:00Z".parse().unwrap();
         let error = SunPosition::of(91.0, 0.0, &moment).unwrap_err().to_string();
-        assert!(error.contains("latitude 91") && error.contains("-90 to 90"), "{error}");
+        assert!(error.contains("latitude 91.0") && error.contains("-90 to 90"), "{error}");
     }
 }

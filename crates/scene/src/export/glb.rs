@@ -11,9 +11,9 @@ use serde_json::{Map, Value, json};
 
 use super::{ExportError, pictures::Pictures, refused};
 use crate::{
-    Camera, Falloff, Fov, Light, LightKind, Material, Mesh, Projection, Scene,
+    Camera, CutOut, Falloff, Fov, Light, LightKind, Material, Mesh, OpacityChannel, Projection, Scene,
     formats::{
-        gltf::extras::{CameraExtras, LightExtras, MaterialExtras, SceneExtras, ShapeExtras},
+        gltf::extras::{CameraExtras, CutOutExtras, LightExtras, MaterialExtras, SceneExtras, ShapeExtras},
         toml::upright,
     },
     shapes::tangents,
@@ -141,13 +141,16 @@ struct Arrays {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
     uvs: Vec<[f32; 2]>,
-    colors: Vec<[f32; 3]>,
+    /// Three channels, or four with opacities.
+    colors: Vec<f32>,
+    channels: usize,
     indices: Vec<u32>,
 }
 
 impl Arrays {
     fn new(mesh: &Mesh) -> Arrays {
-        let mut arrays = Arrays::default();
+        let channels = if mesh.opacities.is_empty() { 3 } else { 4 };
+        let mut arrays = Arrays { channels, ..Arrays::default() };
         let mut first = 0;
         for run in mesh.materials.chunk_by(|a, b| a == b) {
             arrays.add(mesh, &mesh.triangles[first..first + run.len()], run[0]);
@@ -173,7 +176,10 @@ impl Arrays {
                     self.positions.push(mesh.positions[vertex].to_array());
                     self.normals.extend(mesh.normals.get(vertex).map(|_| normal.to_array()));
                     self.uvs.extend(mesh.uvs.get(vertex).map(|uv| uv.to_array()));
-                    self.colors.extend(mesh.colors.get(vertex).map(|color| color.to_array()));
+                    let opacity = mesh.opacities.get(vertex);
+                    let color = mesh.colors.get(vertex).copied().or(opacity.map(|_| Vec3::ONE));
+                    self.colors.extend(color.iter().flat_map(|color| color.to_array()));
+                    self.colors.extend(opacity);
                     next
                 });
                 self.indices.push(index);
@@ -214,7 +220,8 @@ impl Arrays {
                 attributes["TEXCOORD_0"] = json!(accessor(views.uvs, "VEC2", FLOAT, 8 * first, count));
             }
             if !self.colors.is_empty() {
-                attributes["COLOR_0"] = json!(accessor(views.colors, "VEC3", FLOAT, 12 * first, count));
+                let kind = if self.channels == 4 { "VEC4" } else { "VEC3" };
+                attributes["COLOR_0"] = json!(accessor(views.colors, kind, FLOAT, 4 * self.channels * first, count));
             }
             let indices = accessor(1, "SCALAR", UNSIGNED_INT, 4 * primitive.first_index, primitive.indices);
             primitives.push(json!({"attributes": attributes, "indices": indices, "material": primitive.material}));
@@ -241,7 +248,7 @@ impl Arrays {
             (4 * self.indices.len(), 34963),
             (12 * self.normals.len(), 34962),
             (8 * self.uvs.len(), 34962),
-            (12 * self.colors.len(), 34962),
+            (4 * self.colors.len(), 34962),
         ];
         let views = arrays.into_iter().filter(|(length, _)| *length > 0).map(|(length, target)| {
             let view = json!({"buffer": 0, "byteOffset": offset, "byteLength": length, "target": target});
@@ -257,7 +264,7 @@ impl Arrays {
         bytes.extend(self.indices.iter().flat_map(|x| x.to_le_bytes()));
         bytes.extend(self.normals.iter().flatten().flat_map(|x| x.to_le_bytes()));
         bytes.extend(self.uvs.iter().flatten().flat_map(|x| x.to_le_bytes()));
-        bytes.extend(self.colors.iter().flatten().flat_map(|x| x.to_le_bytes()));
+        bytes.extend(self.colors.iter().flat_map(|x| x.to_le_bytes()));
         bytes
     }
 }
@@ -283,6 +290,10 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
         emission_tinted: material.emission_tinted.to_array(),
         catcher: material.catcher,
         texture_transform: pictures.exact_transform(index),
+        cut_out: material
+            .cut_out
+            .filter(|cut_out| !is_standard(cut_out, material))
+            .map(|it| cut_out_extras(&it, index, pictures)),
     };
     let mut entry = json!({
         "name": material.name,
@@ -295,7 +306,28 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
     if let Some(texture) = pictures.of_material(index) {
         entry["pbrMetallicRoughness"]["baseColorTexture"] = texture;
     }
+    if let Some(cut_out) = material.cut_out.filter(|cut_out| is_standard(cut_out, material)) {
+        entry["alphaMode"] = json!("MASK");
+        entry["alphaCutoff"] = json!(cut_out.cutoff);
+        entry["pbrMetallicRoughness"]["baseColorFactor"][3] = json!(cut_out.factor);
+    }
     entry
+}
+
+/// Whether `alphaMode` MASK says the same.
+fn is_standard(cut_out: &CutOut, material: &Material) -> bool {
+    cut_out.texture == material.texture && (cut_out.texture.is_none() || cut_out.channel == OpacityChannel::Alpha)
+}
+
+fn cut_out_extras(cut_out: &CutOut, index: usize, pictures: &Pictures) -> CutOutExtras {
+    let found = pictures.opacity_of_material(index);
+    CutOutExtras {
+        factor: cut_out.factor,
+        cutoff: cut_out.cutoff,
+        texture: found.map(|(texture, _)| texture as u32),
+        transform: found.map(|(_, uses)| uses.transform.to_cols_array()),
+        channel: found.map(|_| cut_out.channel.name().to_owned()),
+    }
 }
 
 fn camera_entry(scene: &Scene, camera: &Camera) -> Value {

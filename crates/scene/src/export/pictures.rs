@@ -23,6 +23,8 @@ pub(super) struct Pictures {
     textures: Distinct<(usize, usize)>,
     /// For each material, its glTF texture.
     by_material: Vec<Option<(usize, TextureUse)>>,
+    /// The same of what cuts it out.
+    opacity_by_material: Vec<Option<(usize, TextureUse)>>,
     transformed: bool,
 }
 
@@ -31,15 +33,22 @@ impl Pictures {
     pub(super) fn new(scene: &Scene) -> io::Result<Pictures> {
         let mut pictures = Pictures { files: vec![None; scene.geometry.textures.len()], ..Pictures::default() };
         for material in &scene.geometry.materials {
-            let found =
-                material.texture.and_then(|uses| Some((uses, scene.geometry.textures.get(uses.texture as usize)?)));
-            let entry = match found.filter(|(_, texture)| is_whole(texture)) {
-                Some((uses, texture)) => Some((pictures.add(uses, texture)?, uses)),
-                None => None,
-            };
+            let entry = pictures.find(scene, material.texture)?;
+            pictures.transformed |= entry.is_some_and(|(_, uses)| uses.transform != Affine2::IDENTITY);
             pictures.by_material.push(entry);
+            let entry = pictures.find(scene, material.cut_out.and_then(|cut_out| cut_out.texture))?;
+            pictures.opacity_by_material.push(entry);
         }
         Ok(pictures)
+    }
+
+    /// The index of the glTF texture that a material uses like this, if it can be used.
+    fn find(&mut self, scene: &Scene, uses: Option<TextureUse>) -> io::Result<Option<(usize, TextureUse)>> {
+        let found = uses.and_then(|uses| Some((uses, scene.geometry.textures.get(uses.texture as usize)?)));
+        Ok(match found.filter(|(_, texture)| is_whole(texture)) {
+            Some((uses, texture)) => Some((self.add(uses, texture)?, uses)),
+            None => None,
+        })
     }
 
     /// The index of the glTF texture that shows `texture` as described by `uses`.
@@ -48,7 +57,6 @@ impl Pictures {
         if file.is_none() {
             *file = Some(png(texture)?);
         }
-        self.transformed |= uses.transform != Affine2::IDENTITY;
         let sampler = self.samplers.index_of(uses.wrap);
         Ok(self.textures.index_of((uses.texture as usize, sampler)))
     }
@@ -63,6 +71,11 @@ impl Pictures {
                 {"offset": offset.to_array(), "rotation": rotation, "scale": scale.to_array()}});
         }
         Some(info)
+    }
+
+    /// The index of the glTF texture that cuts a material out, and how it is used.
+    pub(super) fn opacity_of_material(&self, index: usize) -> Option<(usize, TextureUse)> {
+        self.opacity_by_material[index]
     }
 
     /// The transform of a material's texture, if glTF's angle and factors do not reproduce it to the last bit.

@@ -5,8 +5,8 @@ use std::fs;
 use glam::{Affine2, DMat4, DVec3, Vec2, Vec3};
 
 use crate::{
-    Camera, Falloff, Fov, Light, LightKind, Material, MeshPart, Projection, Scene, SceneBuilder, Texture, TextureUse,
-    Weight, Wrap,
+    Camera, CutOut, Falloff, Fov, Light, LightKind, Material, MeshPart, OpacityChannel, Projection, Scene,
+    SceneBuilder, Texture, TextureUse, Weight, Wrap,
 };
 
 /// Everything that a scene can hold, around `offset`.
@@ -17,12 +17,20 @@ fn scene(offset: DVec3) -> Scene {
     let triangles = [[0, 1, 2], [1, 3, 2], [0, 3, 1]];
     let mut builder = SceneBuilder::new();
     let colors = [Vec3::new(0.1, 0.7, 0.3), Vec3::ONE, Vec3::ZERO, Vec3::splat(0.3)];
-    let smooth =
-        MeshPart { positions: &positions, normals: &normals, uvs: &uvs, colors: &colors, triangles: &triangles };
+    let opacities = [0.25, 1.0, 0.75, 0.5];
+    let smooth = MeshPart {
+        positions: &positions,
+        normals: &normals,
+        uvs: &uvs,
+        colors: &colors,
+        opacities: &opacities,
+        triangles: &triangles,
+    };
     builder.add(smooth, &DMat4::from_translation(offset), |index| [1, 0, 3][index]).unwrap();
-    let flat = MeshPart { normals: &[], uvs: &[], colors: &[], ..smooth };
+    let flat = MeshPart { normals: &[], uvs: &[], colors: &[], opacities: &[], ..smooth };
     builder.add(flat, &DMat4::from_translation(offset + DVec3::X), |_| 2).unwrap();
     let mut scene = builder.finish_scene("round trip");
+    let tiled = TextureUse { transform: Affine2::from_scale(Vec2::splat(10.0)), ..TextureUse::new(1) };
     scene.geometry_mut().materials = vec![
         Material { name: "plain".into(), ..Material::default() },
         Material {
@@ -40,13 +48,16 @@ fn scene(offset: DVec3) -> Scene {
                 wrap: [Wrap::Clamp, Wrap::Mirror],
                 transform: Affine2::from_scale_angle_translation(Vec2::new(1.3, -0.7), 0.77, Vec2::new(0.1, -3.3)),
             }),
+            cut_out: Some(CutOut::by(TextureUse::new(1), OpacityChannel::Green).with_cutoff(0.3).with_factor(0.9)),
         },
         Material::default(),
         Material {
             name: "tiles".into(),
-            texture: Some(TextureUse { transform: Affine2::from_scale(Vec2::splat(10.0)), ..TextureUse::new(1) }),
+            texture: Some(tiled),
+            cut_out: Some(CutOut::by(tiled, OpacityChannel::Alpha).with_cutoff(0.1).with_factor(0.7)),
             ..Material::default()
         },
+        Material::default().named("bare").with_cut_out(CutOut::default()),
     ];
     scene.geometry_mut().textures = vec![texture("oak.png", [3, 2]), texture("tiles", [1, 7])];
     let origin = scene.geometry.origin;
@@ -95,14 +106,20 @@ fn reread(scene: &Scene, name: &str) -> Scene {
     Scene::open(&path).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Triangle by triangle: corners, normals, texture coordinates and colours.
-fn corners(scene: &Scene) -> Vec<[(Vec3, Vec3, Vec2, Vec3); 3]> {
+/// Position, normal, texture coordinates, colour and opacity.
+type Corner = (Vec3, Vec3, Vec2, Vec3, f32);
+
+/// Triangle by triangle. Opacities count where something is cut out.
+fn corners(scene: &Scene) -> Vec<[Corner; 3]> {
     let mesh = &scene.geometry.mesh;
-    let corner = |vertex: u32| {
+    let corner = |vertex: u32, material: u32| {
         let vertex = vertex as usize;
-        (mesh.positions[vertex], mesh.normals[vertex], mesh.uvs[vertex], mesh.colors[vertex])
+        let cut_out = scene.geometry.materials[material as usize].cut_out.is_some();
+        let opacity = if cut_out { mesh.opacities[vertex] } else { 1.0 };
+        (mesh.positions[vertex], mesh.normals[vertex], mesh.uvs[vertex], mesh.colors[vertex], opacity)
     };
-    mesh.triangles.iter().map(|triangle| triangle.map(corner)).collect()
+    let triangles = mesh.triangles.iter().zip(&mesh.materials);
+    triangles.map(|(triangle, &material)| triangle.map(|vertex| corner(vertex, material))).collect()
 }
 
 #[test]

@@ -46,6 +46,7 @@ fn the_json_is_in_world_coordinates_and_degrees() {
              "vfov": null, "height": 4.0},
         ],
         "materials": 0,
+        "cut_outs": 0,
         "textures": 0,
         "up": {"axis": "y", "reason": "its cameras are oriented that way"},
         "warnings": [],

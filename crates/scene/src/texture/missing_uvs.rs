@@ -1,27 +1,28 @@
-//! Triangles that have a texture but no texture coordinates.
+//! Triangles that have a texture but no texture coordinates. They are not cut out by one, either.
 
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::{Material, Mesh};
+use crate::{CutOut, Material, Mesh};
 
 /// Gives the triangles in `ranges`, which have no texture coordinates, materials without texture. Returns a sentence if any of
 /// them had a texture.
 pub(crate) fn untextured(mesh: &mut Mesh, materials: &mut Vec<Material>, ranges: &[Range<usize>]) -> Option<String> {
-    if materials.iter().all(|material| material.texture.is_none()) {
+    if !materials.iter().any(needs_uvs) {
         return None;
     }
     let mut plain: HashMap<u32, u32> = HashMap::new();
     let mut count = 0;
     for triangle in ranges.iter().flat_map(|range| range.clone()) {
         let material = &mut mesh.materials[triangle];
-        let Some(textured) = materials.get(*material as usize).filter(|known| known.texture.is_some()) else {
+        let Some(textured) = materials.get(*material as usize).filter(|known| needs_uvs(known)) else {
             continue;
         };
         *material = match plain.get(material) {
             Some(&known) => known,
             None => {
-                materials.push(Material { texture: None, ..textured.clone() });
+                let cut_out = textured.cut_out.map(|cut_out| CutOut { texture: None, ..cut_out });
+                materials.push(Material { texture: None, cut_out, ..textured.clone() });
                 plain.insert(*material, materials.len() as u32 - 1);
                 materials.len() as u32 - 1
             }
@@ -35,20 +36,28 @@ pub(crate) fn untextured(mesh: &mut Mesh, materials: &mut Vec<Material>, ranges:
     })
 }
 
+/// Whether a texture of the material needs texture coordinates.
+fn needs_uvs(material: &Material) -> bool {
+    material.texture.is_some() || material.cut_out.is_some_and(|cut_out| cut_out.texture.is_some())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::TextureUse;
+    use crate::{OpacityChannel, TextureUse};
 
     #[test]
     fn triangles_without_a_place_in_the_picture_are_plain() {
-        let textured = Material { name: "oak".to_owned(), texture: Some(TextureUse::new(0)), ..Material::default() };
+        let uses = TextureUse::new(0);
+        let cut_out = CutOut::by(uses, OpacityChannel::Red).with_factor(0.7);
+        let textured = Material::default().with_texture(uses).with_cut_out(cut_out).named("oak");
         let mut materials = vec![Material::default(), textured];
         let mut mesh = Mesh { materials: vec![1, 0, 1, 1, 1], ..Mesh::default() };
         let warning = untextured(&mut mesh, &mut materials, &[0..1, 1..3]).unwrap();
         assert!(warning.starts_with("2 triangles have a texture"), "{warning}");
         assert_eq!(mesh.materials, [2, 0, 2, 1, 1]);
         assert_eq!((materials.len(), materials[2].name.as_str(), materials[2].texture), (3, "oak", None));
+        assert_eq!(materials[2].cut_out, Some(CutOut { texture: None, ..cut_out }));
         assert_eq!(untextured(&mut mesh, &mut materials, &[0..1, 1..2]), None);
     }
 }

@@ -21,9 +21,9 @@ use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 
 use super::{Bvh, Node};
-use crate::accel::Triangle;
 use crate::accel::approach::{self, Approach};
 use crate::accel::distinct::distinct;
+use crate::accel::{Coverage, Triangle};
 
 /// Most levels: of the binary tree without its leaves, and so of the wide one.
 const LEVELS: usize = BVH_STACK as usize;
@@ -44,7 +44,7 @@ pub(super) fn build(triangles: &[Triangle]) -> Bvh {
     let triangles: Vec<_> = tree.primitive_indices.iter().map(|&index| triangles[index as usize]).collect();
     let mut nodes = tree.nodes;
     enclose(&mut nodes, &triangles);
-    Bvh { depth: depth(&nodes), nodes, triangles, approach, level: Level::new() }
+    Bvh { depth: depth(&nodes), nodes, triangles, approach, coverage: Coverage::default(), level: Level::new() }
 }
 
 fn tree(triangles: &[Triangle], work: &mut Work) -> CwBvh {

@@ -19,7 +19,7 @@ use obvhs::cwbvh::node::CwBvhNode as Node;
 pub use cost::BvhCost;
 
 use super::approach::Approach;
-use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Take, Triangle, Visitor};
+use super::{Accelerator, Coverage, Form, Hit, Ray, Region, ShortSegments, Take, Triangle, Visitor};
 use crate::simd::dispatch;
 
 /// A compressed wide bounding volume hierarchy.
@@ -32,6 +32,7 @@ pub struct Bvh {
     /// Number of levels: the largest stack that a walk needs.
     depth: usize,
     approach: Approach,
+    coverage: Coverage,
     level: Level,
 }
 
@@ -39,6 +40,16 @@ impl Bvh {
     /// Builds the tree over the usable triangles, one of identical ones.
     pub fn new(triangles: &[Triangle]) -> Bvh {
         build::build(triangles)
+    }
+
+    /// The opacities of triangles that are cut out.
+    pub(crate) fn with_coverage(self, coverage: &Coverage) -> Bvh {
+        Bvh { coverage: coverage.clone(), ..self }
+    }
+
+    /// These opacities.
+    pub(crate) fn coverage(&self) -> &Coverage {
+        &self.coverage
     }
 
     /// The nodes, root first.

@@ -136,7 +136,7 @@ DEVICE void walk_nodes(const Bvh &bvh, const Slabs &slabs, Visitor &visitor) {
         // 3, 4. Which of its children does the ray meet? Test the triangles of those that are leaves.
         Chosen triangles;
         meet_node(bvh.nodes + node, slabs, limit(visitor), nodes, triangles);
-        if (triangles.bits != 0 && !ask(visitor, bvh.triangles, triangles))
+        if (triangles.bits != 0 && !ask(visitor, bvh, triangles))
             return;
 
         // 5. No child left to enter: continue with the group most recently set aside.

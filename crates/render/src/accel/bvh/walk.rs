@@ -75,7 +75,7 @@ pub(super) fn closest_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut
     let mut stack = Stack::new(bvh.depth);
     for (hit, ray) in hits.iter_mut().zip(rays) {
         *hit = bvh.approach.ray(ray).map_or(Hit::MISS, |near| {
-            let mut closest = Closest::new(&near);
+            let mut closest = Closest::new(&near, &bvh.coverage);
             walk(simd, bvh, 0, &Slabs::new(near.origin, near.direction, 0.0), stack.entries(), &mut closest);
             near.finish(closest.best)
         });
@@ -87,7 +87,7 @@ pub(super) fn occluded<S: Simd>(simd: S, bvh: &Bvh, segments: &[Ray], occluded: 
     let mut stack = Stack::new(bvh.depth);
     for (occluded, segment) in occluded.iter_mut().zip(segments) {
         *occluded = bvh.approach.ray(segment).is_some_and(|near| {
-            let mut any = Any::new(&near);
+            let mut any = Any::new(&near, &bvh.coverage);
             walk(simd, bvh, 0, &Slabs::new(near.origin, near.direction, 0.0), stack.entries(), &mut any);
             any.hit
         });
@@ -98,7 +98,7 @@ pub(super) fn occluded<S: Simd>(simd: S, bvh: &Bvh, segments: &[Ray], occluded: 
 pub(super) fn short_segments<S: Simd>(simd: S, bvh: &Bvh, segments: &ShortSegments, blocked: &mut [bool]) {
     let mut stack = Stack::new(bvh.depth);
     for (blocked, &direction) in blocked.iter_mut().zip(segments.directions) {
-        let mut short = Short::new(&segments.test, direction);
+        let mut short = Short::new(segments, direction);
         let slabs = Slabs::new(segments.test.origin, direction, segments.slack);
         walk(simd, bvh, 0, &slabs, stack.entries(), &mut short);
         *blocked = short.blocked;

@@ -8,9 +8,9 @@ use super::hash::geometry_hash;
 use super::lattice::{Lattice, cells_between, margin};
 use super::overlap::triangle_meets_box;
 use super::{Grid, GridError, GridOptions, Levels};
-use crate::accel::Triangle;
 use crate::accel::approach::Approach;
 use crate::accel::distinct::distinct;
+use crate::accel::{Coverage, Triangle};
 
 /// Cells per triangle, if there is one level.
 const DENSITY: f64 = 8.0;
@@ -73,6 +73,7 @@ pub(super) fn build(triangles: &[Triangle], options: &GridOptions) -> Result<Gri
         geometry: geometry_hash(triangles),
         built_from: triangles.len() as u32,
         overruns: 0.into(),
+        coverage: Coverage::default(),
         lattice,
         margin,
         cells,

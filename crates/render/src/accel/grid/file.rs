@@ -30,7 +30,7 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 use super::hash::geometry_hash;
 use super::{Grid, build};
-use crate::accel::Triangle;
+use crate::accel::{Coverage, Triangle};
 pub use fault::{GridFault, GridFileError, GridSaveError};
 
 const MAGIC: [u8; 8] = *b"LM GRID\0";
@@ -157,6 +157,7 @@ fn decode(header: &Header, bytes: &[u8], triangles: &[Triangle]) -> Result<Grid,
         geometry,
         built_from: header.built_from,
         overruns: 0.into(),
+        coverage: Coverage::default(),
     })
 }
 

@@ -32,7 +32,7 @@ use lightmesh_memory::{Budget, Short};
 
 use super::approach::{Approach, overlap};
 use super::visit::{Any, Closest};
-use super::{Accelerator, Form, Hit, Ray, Region, ShortSegments, Take, Triangle};
+use super::{Accelerator, Coverage, Form, Hit, Ray, Region, ShortSegments, Take, Triangle};
 use crate::simd::dispatch;
 pub use file::{GridFault, GridFileError, GridSaveError};
 use lattice::Lattice;
@@ -104,6 +104,7 @@ pub struct Grid {
     /// The position of each in the list that the grid was built from.
     sources: Vec<u32>,
     approach: Approach,
+    coverage: Coverage,
     /// Hash of the list that the grid was built from.
     geometry: u64,
     /// Length of that list.
@@ -119,6 +120,11 @@ impl Grid {
     /// If the requested grid has no cells, or too many for so few triangles or for 32-bit offsets.
     pub fn new(triangles: &[Triangle], options: &GridOptions) -> Result<Grid, GridError> {
         build::build(triangles, options)
+    }
+
+    /// The opacities of triangles that are cut out.
+    pub(crate) fn with_coverage(self, coverage: &Coverage) -> Grid {
+        Grid { coverage: coverage.clone(), ..self }
     }
 
     /// Cells on each axis of the outer grid.
@@ -196,7 +202,7 @@ impl Accelerator for Grid {
     fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
         for (hit, ray) in hits.iter_mut().zip(rays) {
             *hit = self.approach.ray(ray).map_or(Hit::MISS, |near| {
-                let mut closest = Closest::new(&near);
+                let mut closest = Closest::new(&near, &self.coverage);
                 self.walk(near.origin, near.direction, &mut closest);
                 near.finish(closest.best)
             });
@@ -206,7 +212,7 @@ impl Accelerator for Grid {
     fn occluded(&self, segments: &[Ray], occluded: &mut [bool]) {
         for (occluded, segment) in occluded.iter_mut().zip(segments) {
             *occluded = self.approach.ray(segment).is_some_and(|near| {
-                let mut any = Any::new(&near);
+                let mut any = Any::new(&near, &self.coverage);
                 self.walk(near.origin, near.direction, &mut any);
                 any.hit
             });

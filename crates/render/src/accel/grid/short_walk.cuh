@@ -79,7 +79,7 @@ DEVICE bool ask_cell(const Grid &grid, const CellSegment &cells, int place, Shor
         return true;
     const int head = __ldg(grid.cells + offset), second = __ldg(grid.cells + offset + 1);
     if (head < 0)
-        return ask(segment, grid.triangles, Run{(unsigned)second, (unsigned)(second - head)});
+        return ask(segment, grid, Run{(unsigned)second, (unsigned)(second - head)});
     // Grids are nested one level deep.
     if constexpr (LEVEL == 0) {
         const unsigned dims[3] = {(unsigned)head, (unsigned)second, (unsigned)__ldg(grid.cells + offset + 2)};

@@ -162,7 +162,7 @@ DEVICE void walk_cells(const Grid &grid, const Tally &tally, const Ray &ray, Vis
             run = Run{0, grid.triangle_count};
         }
         if (found != NOTHING) {
-            if (!ask(visitor, grid.triangles, run) || found == LOST)
+            if (!ask(visitor, grid, run) || found == LOST)
                 return;
             walk.stop = fminf(walk.stop, limit(visitor));
         }

@@ -5,9 +5,9 @@ use lightmesh_scene::Bounds;
 use proptest::prelude::*;
 
 use super::rays::Targets;
-use super::scenes::{self, Scene};
-use super::{Random, grids, structures};
-use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Hit, Ray, ShortSegments, ShortTest, Triangle};
+use super::scenes::{self, Scene, cut_out};
+use super::{Random, grids, structures, structures_over};
+use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Coverage, Hit, Ray, ShortSegments, ShortTest, Triangle};
 
 fn closest(accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<Hit> {
     // Previous content must not matter.
@@ -33,16 +33,19 @@ fn bits(hit: &Hit) -> [u32; 4] {
 }
 
 /// Compares all structures over a scene on batches of rays that suit it. Returns the number of rays that hit.
-fn rays_agree(triangles: &[Triangle], mut batch: impl FnMut(&Targets) -> Vec<Ray>) -> Result<usize, TestCaseError> {
+fn rays_agree(
+    (triangles, coverage): &(Vec<Triangle>, Coverage),
+    mut batch: impl FnMut(&Targets) -> Vec<Ray>,
+) -> Result<usize, TestCaseError> {
     let grids = grids(triangles);
     let rays = batch(&Targets { triangles, grids: &grids });
-    let oracle = BruteForce::new(triangles);
+    let oracle = BruteForce::new(triangles).with_coverage(coverage);
     let (hits, shadows) = (closest(&oracle, &rays), occluded(&oracle, &rays));
     for (ray, (hit, shadow)) in rays.iter().zip(hits.iter().zip(&shadows)) {
         prop_assert_eq!(hit.is_some(), *shadow, "closest and any hit, {:?}", ray);
         prop_assert!(!hit.t.is_nan() && (0.0..=1.0).contains(&hit.u) && (0.0..=1.0).contains(&hit.v), "{:?}", hit);
     }
-    let all = structures(triangles);
+    let all = structures_over(triangles, coverage);
     for (name, accelerator) in &all {
         for (index, (hit, expected)) in closest(&**accelerator, &rays).iter().zip(&hits).enumerate() {
             prop_assert_eq!(bits(hit), bits(expected), "{}, {:?}: {:?} / {:?}", name, rays[index], hit, expected);
@@ -60,10 +63,10 @@ fn rays_agree(triangles: &[Triangle], mut batch: impl FnMut(&Targets) -> Vec<Ray
 }
 
 /// Rays of all kinds through a scene.
-fn single_rays_agree(scene: Scene, seed: u64) -> Result<(), TestCaseError> {
+fn single_rays_agree(scene: Scene, cut: bool, seed: u64) -> Result<(), TestCaseError> {
     let random = &mut Random(seed);
-    let triangles = scene.triangles(random);
-    let hits = rays_agree(&triangles, |targets| (0..400).map(|_| targets.ray(random)).collect())?;
+    let held = cut_out(scene.triangles(random), cut, random);
+    let hits = rays_agree(&held, |targets| (0..400).map(|_| targets.ray(random)).collect())?;
     // A comparison of misses would prove little.
     prop_assert!(matches!(scene, Scene::Empty | Scene::One | Scene::Flat) || hits > 40, "{} rays hit", hits);
     Ok(())
@@ -73,33 +76,33 @@ fn single_rays_agree(scene: Scene, seed: u64) -> Result<(), TestCaseError> {
 /// walk through the nested grid ended there, before the hit.
 #[test]
 fn a_nested_grid_is_not_left_before_the_cell_that_holds_it() {
-    single_rays_agree(Scene::Sheet, 10_938_381_108_378_275_224).unwrap();
+    single_rays_agree(Scene::Sheet, false, 10_938_381_108_378_275_224).unwrap();
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(96) })]
 
     #[test]
-    fn closest_and_any_hits_agree(scene in prop::sample::select(&scenes::ALL), seed: u64) {
-        single_rays_agree(scene, seed)?;
+    fn closest_and_any_hits_agree(scene in prop::sample::select(&scenes::ALL), cut: bool, seed: u64) {
+        single_rays_agree(scene, cut, seed)?;
     }
 
     #[test]
-    fn coherent_rays_agree(scene in prop::sample::select(&scenes::ALL), seed: u64) {
+    fn coherent_rays_agree(scene in prop::sample::select(&scenes::ALL), cut: bool, seed: u64) {
         let random = &mut Random(seed);
-        let triangles = scene.triangles(random);
+        let held = cut_out(scene.triangles(random), cut, random);
         // Bundles one after another in one batch: packets begin and end anywhere.
-        let hits = rays_agree(&triangles, |targets| (0..40).flat_map(|_| targets.bundle(random)).collect())?;
+        let hits = rays_agree(&held, |targets| (0..40).flat_map(|_| targets.bundle(random)).collect())?;
         prop_assert!(matches!(scene, Scene::Empty | Scene::One | Scene::Flat) || hits > 40, "{} rays hit", hits);
     }
 
     #[test]
-    fn packets_agree_with_single_rays(scene in prop::sample::select(&scenes::ALL), seed: u64) {
+    fn packets_agree_with_single_rays(scene in prop::sample::select(&scenes::ALL), cut: bool, seed: u64) {
         let random = &mut Random(seed);
-        let triangles = scene.triangles(random);
+        let (triangles, coverage) = cut_out(scene.triangles(random), cut, random);
         let grids = grids(&triangles);
         let targets = Targets { triangles: &triangles, grids: &grids };
-        let bvh = Bvh::new(&triangles);
+        let bvh = Bvh::new(&triangles).with_coverage(&coverage);
         for _ in 0..20 {
             let rays = targets.bundle(random);
             let (hits, shadows) = (closest(&bvh, &rays), occluded(&bvh, &rays));
@@ -112,14 +115,14 @@ proptest! {
     }
 
     #[test]
-    fn beams_agree(scene in prop::sample::select(&scenes::ALL), seed: u64) {
+    fn beams_agree(scene in prop::sample::select(&scenes::ALL), cut: bool, seed: u64) {
         let random = &mut Random(seed);
-        let triangles = scene.triangles(random);
+        let (triangles, coverage) = cut_out(scene.triangles(random), cut, random);
         let grids = grids(&triangles);
         let targets = Targets { triangles: &triangles, grids: &grids };
-        let bvh = Bvh::new(&triangles);
+        let bvh = Bvh::new(&triangles).with_coverage(&coverage);
         let usable = triangles.iter().filter(|triangle| triangle.is_usable());
-        let mut beams = Beams::new(&bvh, &triangles, &Bounds::around(usable.flat_map(Triangle::corners)));
+        let mut beams = Beams::new(&bvh, &triangles, &coverage, &Bounds::around(usable.flat_map(Triangle::corners)));
         for _ in 0..20 {
             let unit = |ray: Ray| Ray { direction: ray.direction.try_normalize().unwrap_or(ray.direction), ..ray };
             let rays: Vec<Ray> = targets.bundle(random).into_iter().map(unit).collect();
@@ -139,11 +142,11 @@ proptest! {
     }
 
     #[test]
-    fn short_segments_agree(scene in prop::sample::select(&scenes::ALL), seed: u64) {
+    fn short_segments_agree(scene in prop::sample::select(&scenes::ALL), cut: bool, seed: u64) {
         let random = &mut Random(seed);
-        let triangles = scene.triangles(random);
-        let all = structures(&triangles);
-        let oracle = BruteForce::new(&triangles);
+        let (triangles, coverage) = cut_out(scene.triangles(random), cut, random);
+        let all = structures_over(&triangles, &coverage);
+        let oracle = BruteForce::new(&triangles).with_coverage(&coverage);
         for _ in 0..20 {
             let usable: Vec<_> = triangles.iter().filter(|triangle| triangle.is_usable()).collect();
             let near = if usable.is_empty() { Vec3::ZERO } else { random.pick(&usable).corners()[0] };
@@ -153,7 +156,7 @@ proptest! {
             let directions: Vec<_> = directions.into_iter().filter(|direction| direction.dot(normal) > 0.0).collect();
             let test = ShortTest { origin, normal, edge_on: 1e-3 * length };
             // The plane form rounds relative to the triangles' size, here up to 1e3.
-            let segments = ShortSegments { test, directions: &directions, slack: 1e-2 * length };
+            let segments = ShortSegments { test, directions: &directions, slack: 1e-2 * length, coverage: &coverage };
             let expected = blocked(&oracle, &segments);
             for (name, accelerator) in &all {
                 prop_assert_eq!(&blocked(&**accelerator, &segments), &expected, "{} from {:?}", name, origin);

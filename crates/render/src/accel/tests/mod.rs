@@ -8,7 +8,7 @@ mod scenes;
 
 use glam::Vec3;
 
-use super::{Accelerator, Bvh, Grid, GridOptions, Levels, Triangle};
+use super::{Accelerator, Bvh, Coverage, Grid, GridOptions, Levels, Triangle};
 
 /// Random numbers that are the same on every machine (SplitMix64).
 struct Random(u64);
@@ -58,9 +58,15 @@ type Named = (&'static str, Box<dyn Accelerator>);
 
 /// Every structure but the reference, in several shapes, with a name for messages.
 fn structures(triangles: &[Triangle]) -> Vec<Named> {
-    let bvh = Bvh::new(triangles);
+    structures_over(triangles, &Coverage::default())
+}
+
+/// The same over triangles some of which are cut out.
+fn structures_over(triangles: &[Triangle], coverage: &Coverage) -> Vec<Named> {
+    let bvh = Bvh::new(triangles).with_coverage(coverage);
     let slow = bvh.clone().at_level(fearless_simd::Level::baseline());
     let mut all: Vec<Named> = vec![("bvh", Box::new(bvh)), ("bvh at the lowest SIMD level", Box::new(slow))];
-    all.extend(grids(triangles).map(|grid| ("grid", Box::new(grid) as Box<dyn Accelerator>)));
+    let grids = grids(triangles).map(|grid| grid.with_coverage(coverage));
+    all.extend(grids.map(|grid| ("grid", Box::new(grid) as Box<dyn Accelerator>)));
     all
 }

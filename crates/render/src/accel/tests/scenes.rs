@@ -3,9 +3,11 @@
 use std::collections::HashMap;
 
 use glam::Vec3;
+use lightmesh_memory::Budget;
+use lightmesh_scene::{CutOut, Geometry, Material, Mesh, OpacityChannel, Texture, TextureUse, Wrap};
 
 use super::Random;
-use crate::accel::Triangle;
+use crate::accel::{Coverage, Triangle};
 
 /// Kinds of scenes.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +59,29 @@ impl Scene {
         };
         indexed(&corners)
     }
+}
+
+/// Triangles of which, if `cut`, two of three are cut out by noise.
+pub(super) fn cut_out(triangles: Vec<Triangle>, cut: bool, random: &mut Random) -> (Vec<Triangle>, Coverage) {
+    let count = triangles.len() as u32;
+    let texels = (0..64).map(|_| [0, 0, 0, random.below(256) as u8]).collect();
+    let mesh = Mesh {
+        positions: vec![Vec3::ZERO; 3 * triangles.len()],
+        uvs: (0..3 * count).map(|_| 2.0 * random.signed().truncate()).collect(),
+        opacities: (0..3 * count).map(|_| 0.5 + 0.5 * random.unit()).collect(),
+        triangles: (0..count).map(|index| [3 * index, 3 * index + 1, 3 * index + 2]).collect(),
+        materials: (0..count).map(|index| u32::from(cut && index % 3 != 0)).collect(),
+        ..Mesh::default()
+    };
+    let uses = TextureUse { wrap: [Wrap::Repeat, Wrap::Mirror], ..TextureUse::new(0) };
+    let leaves = Material::default().with_cut_out(CutOut::by(uses, OpacityChannel::Alpha).with_cutoff(0.4));
+    let textures = vec![Texture { name: String::new(), size: [16, 4], texels }];
+    let geometry = Geometry { mesh, materials: vec![Material::default(), leaves], textures, ..Geometry::default() };
+    let (coverage, numbers) = Coverage::of(&geometry, Budget::default()).unwrap();
+    assert_eq!(numbers.iter().any(|&number| number != 0), cut && count > 1);
+    let number = |index: usize| numbers.get(index).copied().unwrap_or(0);
+    let triangles = triangles.iter().enumerate().map(|(index, triangle)| triangle.cut_out(number(index)));
+    (triangles.collect(), coverage)
 }
 
 pub(super) fn indexed(corners: &[[Vec3; 3]]) -> Vec<Triangle> {

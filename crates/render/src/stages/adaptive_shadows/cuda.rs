@@ -126,7 +126,7 @@ impl<'a, R: Runtime> Band<'a, R> {
         cuda.launch(LIST_OPEN, all, &record)?;
 
         // 3. All samples there, set by set.
-        let kernel = OPEN_RAYS.of(wave.scene.structure);
+        let kernel = OPEN_RAYS.of(wave.scene);
         let progress = |done: u32| progress * u64::from(done) / u64::from(sets.count);
         for set in 0..sets.count {
             let shadows = of_lights(sets.record(cuda, wave, visibility, set)?);
@@ -142,7 +142,7 @@ impl<'a, R: Runtime> Band<'a, R> {
     /// Casts the first rays of some rows.
     fn first_rays(&self, record: AdaptiveShadows, progress: u64) -> Result<(), RenderError> {
         let (cuda, shadows) = (self.cuda, record.shadows);
-        let kernel = FIRST_RAYS.of(self.wave.scene.structure);
+        let kernel = FIRST_RAYS.of(self.wave.scene);
         let rays = DeviceRays::<R>::new(shadows.rays, None, self.wave.rays.spacing);
         let lights = u64::from(shadows.first_light)..u64::from(shadows.end_light);
         let work = Work::of_rays(rays.blocks(BLOCK_SIDE), &lights, progress);

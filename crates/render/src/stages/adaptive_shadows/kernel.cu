@@ -84,6 +84,7 @@ DEVICE void load_answers(const AdaptiveShadows &args, unsigned light, int left, 
     }
 }
 
+#if !CUT_OUTS
 KERNEL(find_open, AdaptiveShadows, BLOCK, 4) {
     SHARED(unsigned, near, [EDGE * EDGE]);
     SHARED(unsigned, warps, [BLOCK / WARP]);
@@ -118,7 +119,9 @@ KERNEL(find_open, AdaptiveShadows, BLOCK, 4) {
         sum += warps[warp];
     args.counts[blockIdx.x] = sum;
 }
+#endif
 
+#if !CUT_OUTS
 KERNEL(list_open, AdaptiveShadows, BLOCK, 4) {
     SHARED(unsigned, warps, [BLOCK / WARP]);
     const Shadows &shadows = args.shadows;
@@ -136,6 +139,7 @@ KERNEL(list_open, AdaptiveShadows, BLOCK, 4) {
     if (open)
         args.entries[place + __popc(lanes & lanes_below(lane))] = (unsigned long long)light << 32 | ray;
 }
+#endif
 
 template <class Structure>
 DEVICE void open_rays(const AdaptiveShadows &args, const Structure &structure) {

@@ -11,8 +11,9 @@ use crate::accel::TangentPlanes;
 use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
+use crate::prepared::PreparedGeometry;
 use crate::shadow::Aim;
-use crate::shadow::occlusion::{Bits, Offsets, Sights, gathered};
+use crate::shadow::occlusion::{Bits, Cuts, Offsets, Sights, gathered};
 use crate::shadow::rows::Rows;
 use crate::shadow::sight::{Emitter, Sight};
 use crate::simd::{LANES, dispatch};
@@ -68,14 +69,17 @@ fn seen<S: Simd>(
     asked: &mut u64,
 ) -> u32 {
     let sights = Sights::splat(simd, point, sight);
-    let triangles = &wave.scene.geometry.triangles;
+    let PreparedGeometry { triangles, coverage, .. } = &*wave.scene.geometry;
     if emitter.is_point() {
         if sights.center_above_horizon(simd).to_bitmask() & 1 == 0 {
             return 0;
         }
         *asked += 1;
         search(wave, emitter, point, found);
-        let hidden = |indices| sights.hides_center(simd, gathered(simd, triangles, indices), 0xff) != 0;
+        let hidden = |indices| {
+            let held = (gathered(simd, triangles, indices), Cuts::gathered(coverage, triangles, indices));
+            sights.hides_center(simd, held, 0xff) != 0
+        };
         return u32::from(!found.chunks(LANES).any(hidden));
     }
     let mut searched = false;
@@ -93,7 +97,8 @@ fn seen<S: Simd>(
             searched = true;
         }
         for indices in found.chunks(LANES) {
-            sights.hide(simd, gathered(simd, triangles, indices), (set, &offsets), 0xff, &mut bits);
+            let held = (gathered(simd, triangles, indices), Cuts::gathered(coverage, triangles, indices));
+            sights.hide(simd, held, (set, &offsets), 0xff, &mut bits);
         }
         count += words(&bits, set).map(u32::count_ones).sum::<u32>();
     }

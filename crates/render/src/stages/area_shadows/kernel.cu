@@ -20,13 +20,14 @@ DEVICE Sight broadcast(const Sight &sight, unsigned lane) {
 
 // What a lane's triangle, if it has one, leaves of the samples.
 template <unsigned WORDS>
-DEVICE void test_triangle(const SurfacePoint &point, const Sight &sight, Shape shape, const RowTable &table,
+DEVICE void test_triangle(const SurfacePoint &point, const Sight &sight, Shape shape, const RowTable &table, const Coverage &coverage,
                           const Triangle *triangle, bool has, Seen<WORDS> &seen) {
     const Occluding own = occluding(load_corners(triangle));
+    const Hiding hiding = {own.parts, coverage, reinterpret_cast<const unsigned *>(&triangle->corners[1][3])};
     if (shape == SHAPE_POINT)
-        seen.bits[0] &= has && hides_center(point, sight, own.parts) ? 0 : 1;
+        seen.bits[0] &= has && hides_center(point, sight, hiding) ? 0 : 1;
     else
-        hide<WORDS>(point, sight, own.parts, table, has, seen.bits);
+        hide<WORDS>(point, sight, hiding, table, has, seen.bits);
 }
 
 // The samples that the surface point of lane `owner` sees: `seen` without those that any triangle hides. `table` has that lane's offsets.
@@ -47,7 +48,8 @@ DEVICE void test_point(const Shadows &args, const Structure &structure, const Li
         count -= taken;
         if (taken != 0) {
             const unsigned place = found[count + (lane < taken ? lane : 0)];
-            test_triangle<WORDS>(point, sight, shape, table, structure.triangles + place, lane < taken, seen);
+            const Triangle *triangle = structure.triangles + place;
+            test_triangle<WORDS>(point, sight, shape, table, structure.coverage, triangle, lane < taken, seen);
         }
         __syncwarp();
     }

@@ -67,7 +67,7 @@ pub(crate) fn interpolate<R: Runtime>(
         )
     })?;
     // 2. Surface points without light points take their own long tests.
-    let kernel = FALLBACK.of(wave.scene.structure);
+    let kernel = FALLBACK.of(wave.scene);
     let blocks = (wave.rays.len() as u64).div_ceil(u64::from(BLOCK));
     cuda.in_pieces(wave.job, kernel, Work { units: blocks, cost, first: FIRST_BLOCKS, progress: 0 }, |piece| {
         let count = piece.end - piece.start;

@@ -239,6 +239,7 @@ DEVICE void list_fallbacks(const Interpolate &args, unsigned ray, bool falls_bac
         args.fallback_rays[place] = ray;
 }
 
+#if !CUT_OUTS
 KERNEL(interpolate, Interpolate, ITEM_WARPS * WARP, 8) {
     DYNAMIC_SHARED(unsigned, shared);
     const LightMesh &mesh = args.mesh;
@@ -279,6 +280,7 @@ KERNEL(interpolate, Interpolate, ITEM_WARPS * WARP, 8) {
     count(tally_shard(args.tally).fallbacks, fell_back);
     list_fallbacks(args, own.ray, fell_back);
 }
+#endif
 
 // The visible share of each light that is still unknown, from the surface point's own rays.
 template <typename Structure>

@@ -74,7 +74,7 @@ impl<R: Runtime> LongTestsOf<'_, R> {
     /// The tests towards one light.
     fn towards(&self, index: usize, light: &Light, lit: LitBy) -> Result<(), RenderError> {
         let LongTestsOf { cuda, wave, points, mesh } = *self;
-        let kernel = KERNELS.of(wave.scene.structure);
+        let kernel = KERNELS.of(wave.scene);
         let samples = if light.has_size() { wave.job.sampling.samples } else { 1 };
         let blocks = points.count.div_ceil(BLOCK as usize) as u64;
         for slice in slices_of_rays(u64::from(samples)) {

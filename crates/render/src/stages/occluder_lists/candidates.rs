@@ -28,7 +28,7 @@ use glam::Vec3;
 use lightmesh_layout::constants::{GROWN, REGION_ROUNDING, UNIT_ROUNDOFF};
 use lightmesh_scene::Bounds;
 
-use crate::accel::{PIECE, TangentPlanes};
+use crate::accel::{PIECE, TangentPlanes, Triangle};
 use crate::simd::{Axes, cross, difference, dot, fused_dot, load, scaled, splat, sum};
 
 /// The boxes of an item and an emitter.
@@ -165,17 +165,20 @@ pub(super) fn above_planes<S: Simd>(simd: S, planes: &TangentPlanes, extent: Vec
 /// Up to [`PIECE`] triangles that may hide something, side by side.
 pub(super) struct Candidates {
     corners: [[f32; PIECE]; 9],
+    /// The number of each that is cut out, or 0.
+    cuts: [u32; PIECE],
     pub(super) count: usize,
 }
 
 impl Candidates {
     pub(super) fn new() -> Candidates {
-        Candidates { corners: [[0.0; PIECE]; 9], count: 0 }
+        Candidates { corners: [[0.0; PIECE]; 9], cuts: [0; PIECE], count: 0 }
     }
 
     #[inline(always)]
-    pub(super) fn push(&mut self, corners: [Vec3; 3]) {
-        for (corner, axes) in corners.iter().zip(self.corners.chunks_exact_mut(3)) {
+    pub(super) fn push(&mut self, triangle: &Triangle) {
+        self.cuts[self.count] = triangle.cut();
+        for (corner, axes) in triangle.corners().iter().zip(self.corners.chunks_exact_mut(3)) {
             (axes[0][self.count], axes[1][self.count], axes[2][self.count]) = (corner.x, corner.y, corner.z);
         }
         self.count += 1;
@@ -190,6 +193,12 @@ impl Candidates {
             [load(simd, bx, first), load(simd, by, first), load(simd, bz, first)],
             [load(simd, cx, first), load(simd, cy, first), load(simd, cz, first)],
         ]
+    }
+
+    /// The number of one of them if it is cut out, else 0.
+    #[inline(always)]
+    pub(super) fn cut(&self, number: usize) -> u32 {
+        self.cuts[number & (PIECE - 1)]
     }
 
     /// One of them, in all lanes.

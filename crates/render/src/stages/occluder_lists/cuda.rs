@@ -44,7 +44,7 @@ pub(crate) fn occluder_lists<R: Runtime>(
     };
     // Where the searches of a tile's items start.
     let record = complete(arguments(cuda, wave)?);
-    let kernel = STARTS.of(wave.scene.structure);
+    let kernel = STARTS.of(wave.scene);
     cuda.in_pieces(wave.job, kernel, Work { units, cost: 1, first: FIRST_STARTS, progress: 0 }, |piece| {
         cuda.launch(kernel, blocks_for(&piece, WARP), &Shadows { first: piece.start, ..record })
     })?;

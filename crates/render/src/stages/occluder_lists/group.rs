@@ -9,7 +9,7 @@ use lightmesh_scene::Bounds;
 use super::candidates::{Candidates, Chosen, Shaft};
 use crate::accel::Bvh;
 use crate::data::wave::HostWave;
-use crate::shadow::occlusion::{Bits, Offsets, Sights};
+use crate::shadow::occlusion::{Bits, Cuts, Offsets, Sights};
 use crate::shadow::sample_ray::SampleRays;
 use crate::shadow::sight::{Emitter, Sight};
 use crate::simd::{Axes, LANES};
@@ -152,7 +152,8 @@ impl<S: Simd> Group<S> {
     ) -> u32 {
         let mut tested = 0;
         for first in (0..candidates.count).step_by(LANES) {
-            // 3. Those of the eight points. A triangle that hides everything comes first; then there is nothing left to ask.
+            // 3. Those of the eight points. A triangle that hides everything, but for what is cut out of it, comes first; then there is
+            // often nothing left to ask.
             let Chosen { kept, dark } = self.shaft.choose(simd, candidates.eight(simd, first));
             let mut kept = kept & (0xff >> (LANES - (candidates.count - first).min(LANES)));
             let mut dark = dark & kept;
@@ -163,13 +164,15 @@ impl<S: Simd> Group<S> {
             while kept != 0 {
                 let next = if dark != 0 { dark.trailing_zeros() } else { kept.trailing_zeros() };
                 (dark, kept) = (dark & !(1 << next), kept & !(1 << next));
-                let corners = candidates.splat(simd, first + next as usize);
+                let number = first + next as usize;
+                let cuts = Cuts::splat(&view.wave.scene.geometry.coverage, candidates.cut(number));
+                let held = (candidates.splat(simd, number), cuts);
                 match view.set {
                     Some(set) => {
-                        self.sights.hide(simd, corners, (set, &self.offsets), self.lanes, &mut self.bits);
+                        self.sights.hide(simd, held, (set, &self.offsets), self.lanes, &mut self.bits);
                         self.lanes = lanes_of(simd, &self.bits, set);
                     }
-                    None => self.lanes &= !self.sights.hides_center(simd, corners, self.lanes),
+                    None => self.lanes &= !self.sights.hides_center(simd, held, self.lanes),
                 }
                 tested += 1;
                 if self.lanes == 0 {

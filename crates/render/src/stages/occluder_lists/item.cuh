@@ -95,10 +95,10 @@ COLD Seen<WORDS> partly_unhidden(bool has, SurfacePoint point, Sight sight, Shap
 template <unsigned WORDS>
 DEVICE Seen<WORDS> unhidden(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set, const RowTable &table) {
     const Light &emitter = args.scene.lights[light];
-    const float reach = scene_reach(args.scene, item.point.origin), largest = larger(emitter.size, emitter.radius);
-    const Vec3 way = light_center(emitter, item.point.origin, reach) - item.point.origin;
-    const float height = dot(item.point.normal, way), size = emitter.kind == Light::DIRECTIONAL ? reach * largest : largest;
-    const float room = GROWN * size + (GROWN - 1.0f) * element_sum(abs(way));
+    float radius;
+    const Vec3 way = way_to(args.scene, emitter, item.point.origin, radius);
+    const float height = dot(item.point.normal, way);
+    const float room = GROWN * radius + (GROWN - 1.0f) * element_sum(abs(way));
     const bool above = height > room, below = height < -room;
     Seen<WORDS> seen = {};
     if (!__any_sync(ALL_LANES, item.has && !below))
@@ -113,13 +113,14 @@ DEVICE Seen<WORDS> unhidden(const Shadows &args, ItemSight &item, unsigned light
     return seen;
 }
 
-// 4. What candidates hide, until nothing is left. Returns whether anything is.
+// 4. What candidates hide, until nothing is left. Returns whether anything is. `cuts` are the numbers of their opacities, 0 for those that are
+// opaque, with CUT_OUTS.
 template <unsigned WORDS>
-DEVICE bool test_candidates(const ItemSight &item, const RowTable &table, const float4 *candidates, unsigned count,
-                            Seen<WORDS> &seen) {
+DEVICE bool test_candidates(const ItemSight &item, const RowTable &table, const float4 *candidates, const Coverage &coverage,
+                            const unsigned *cuts, unsigned count, Seen<WORDS> &seen) {
     ROLLED
     for (unsigned k = 0; k < count; ++k) {
-        const float4 *triangle = candidates + OCCLUDER_PARTS * k;
+        const Hiding triangle = {candidates + OCCLUDER_PARTS * k, coverage, cuts + k};
         if (item.shape == SHAPE_POINT)
             seen.bits[0] &= hides_center(item.point, item.sight, triangle) ? 0 : 1;
         else
@@ -131,9 +132,11 @@ DEVICE bool test_candidates(const ItemSight &item, const RowTable &table, const 
 }
 
 // 3. Chooses among up to 32 of the triangles found, one per lane, and tests them. Returns whether anything is still seen.
-template <unsigned WORDS>
+template <unsigned WORDS, class Structure>
 DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set, const RowTable &table,
-                       const Region<ShaftForm> &region, const Triangle *triangles, const ListMemory &memory, unsigned first, unsigned count, Seen<WORDS> &seen) {
+                       const Region<ShaftForm> &region, const Structure &structure, const ListMemory &memory, unsigned first,
+                       unsigned count, Seen<WORDS> &seen) {
+    const Triangle *triangles = structure.triangles;
     const unsigned lane = lane_of_thread();
     Occluding own;
     Choice choice = DROPPED;
@@ -144,7 +147,7 @@ DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, con
             choice = choose(*memory.shaft, own);
         }
     }
-    // A triangle that hides everything comes first; then there is nothing left to ask.
+    // A triangle that hides everything comes first; then there is nothing left to ask, unless it is cut out.
     const unsigned dark = __ballot_sync(ALL_LANES, choice == DARK), kept = __ballot_sync(ALL_LANES, choice == KEPT);
     if ((dark | kept) == 0)
         return true;
@@ -153,14 +156,23 @@ DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, con
         fill_row_offsets(item.sight, set, table);
     }
     __syncwarp();
+    // The numbers of opacities take the places of the triangles, which have been read.
+    unsigned cut = 0;
+    if (CUT_OUTS) {
+        if (choice != DROPPED)
+            cut = triangle_cut(triangles + memory.found[first + lane]);
+        __syncwarp();
+    }
     if (choice != DROPPED) {
         const unsigned place = __popc((choice == DARK ? dark : kept) & lanes_below(lane)) + (choice == DARK ? 0 : __popc(dark));
         UNROLL
         for (unsigned part = 0; part < OCCLUDER_PARTS; ++part)
             memory.candidates[OCCLUDER_PARTS * place + part] = own.parts[part];
+        if (CUT_OUTS)
+            memory.found[first + place] = cut;
     }
     __syncwarp();
-    return test_candidates(item, table, memory.candidates, __popc(dark | kept), seen);
+    return test_candidates(item, table, memory.candidates, structure.coverage, memory.found + first, __popc(dark | kept), seen);
 }
 
 // 2. The box around the surface points that are `alive`, and their tangent planes.
@@ -224,7 +236,7 @@ DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, I
         const unsigned count = min(found, WARP);
         found -= count;
         // 3, 4. Candidates, and what they hide.
-        if (!test_found(args, item, light, set, table, region, structure.triangles, memory, found, count, seen))
+        if (!test_found(args, item, light, set, table, region, structure, memory, found, count, seen))
             return 0;
         __syncwarp();
     }

@@ -68,7 +68,7 @@ pub(crate) fn pixel_samples<R: Runtime>(
     film.expose_to_samples(&mut record);
 
     // 1. What each sample sees.
-    let kernel = CAST.of(scene.structure);
+    let kernel = CAST.of(scene);
     let blocks = rays.blocks(BLOCK_SIDE);
     let work = Work { units: blocks * count as u64, cost: 1, first: FIRST, progress: (pixels * count) as u64 };
     cuda.in_pieces(job, kernel, work, |piece| {

@@ -33,7 +33,7 @@ pub(crate) fn closest_hits<R: Runtime>(
     rays: &DeviceRays<R>,
     (tally, progress): (layout::Tally, u64),
 ) -> Result<DeviceHits<R>, RenderError> {
-    let kernel = KERNELS.of(scene.structure);
+    let kernel = KERNELS.of(scene);
     let hits = cuda.pool().room("hits", rays.len())?;
     let work = Work { units: rays.blocks(BLOCK_SIDE), cost: 1, first: FIRST, progress };
     cuda.in_pieces(job, kernel, work, |piece| {

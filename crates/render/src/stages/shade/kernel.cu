@@ -137,18 +137,25 @@ KERNEL(shade, Shade, BLOCK, 4) {
     args.color[place] = before + weight_of(args.rays, ray) * radiance;
 }
 
+// The ray of a thread and its pixel; false unless it is the pixel's first one.
+DEVICE bool first_of_pixel(const Shade &args, unsigned &ray, unsigned &pixel) {
+    const unsigned long long number = (args.first_block + blockIdx.x) * BLOCK + threadIdx.x;
+    if (number >= args.rays.count)
+        return false;
+    ray = (unsigned)number;
+    pixel = pixel_of(args.rays, ray);
+    return ray == 0 || pixel_of(args.rays, ray - 1) != pixel;
+}
+
 // Adds the sums of the rays of a pixel, which follow each other in their list, in their order: the first one's thread adds all. What
 // fragments see is added to layers.
 KERNEL(add_rays, Shade, BLOCK, 4) {
-    const unsigned long long ray = (args.first_block + blockIdx.x) * BLOCK + threadIdx.x;
-    if (ray >= args.rays.count)
-        return;
-    const unsigned pixel = pixel_of(args.rays, (unsigned)ray);
-    if (ray > 0 && pixel_of(args.rays, (unsigned)ray - 1) == pixel)
+    unsigned ray, pixel;
+    if (!first_of_pixel(args, ray, pixel))
         return;
     const unsigned long long place = pixel - args.film_pixel;
     const bool last = args.end_light == args.scene.light_count;
-    for (unsigned next = (unsigned)ray; next < args.rays.count && pixel_of(args.rays, next) == pixel; ++next) {
+    for (unsigned next = ray; next < args.rays.count && pixel_of(args.rays, next) == pixel; ++next) {
         const Vec3 weight = weight_of(args.rays, next);
         if (last)
             args.color[place] = args.color[place] + weight * args.sums[next];
@@ -203,12 +210,9 @@ DEVICE void add_by_light(const Shade &args, unsigned ray, unsigned long long pla
 
 // The radiance of each light by itself: rays of a pixel in their order, as above.
 KERNEL(add_light_groups, Shade, BLOCK, 4) {
-    const unsigned long long ray = (args.first_block + blockIdx.x) * BLOCK + threadIdx.x;
-    if (ray >= args.rays.count)
+    unsigned ray, pixel;
+    if (!first_of_pixel(args, ray, pixel))
         return;
-    const unsigned pixel = pixel_of(args.rays, (unsigned)ray);
-    if (ray > 0 && pixel_of(args.rays, (unsigned)ray - 1) == pixel)
-        return;
-    for (unsigned next = (unsigned)ray; next < args.rays.count && pixel_of(args.rays, next) == pixel; ++next)
+    for (unsigned next = ray; next < args.rays.count && pixel_of(args.rays, next) == pixel; ++next)
         add_by_light(args, next, pixel - args.film_pixel);
 }

@@ -34,7 +34,7 @@ fn to_centers<R: Runtime>(
     let lights = &visibility.lights;
     let slices = slices_of_rays(lights.len() as u64);
     let progress = |slices_done: usize| (wave.rays.len() * slices_done / slices.len()) as u64;
-    let kernel = TO_CENTERS.of(wave.scene.structure);
+    let kernel = TO_CENTERS.of(wave.scene);
     for (index, slice) in slices.iter().enumerate() {
         let work = Work::of_rays(wave.rays.blocks(BLOCK_SIDE), slice, progress(index + 1) - progress(index));
         cuda.in_pieces(wave.job, kernel, work, |piece| {
@@ -62,7 +62,7 @@ fn to_samples<R: Runtime>(
     visibility: &DeviceVisibility<R>,
 ) -> Result<(), RenderError> {
     let lights = visibility.lights.len() as u64;
-    let kernel = TO_SAMPLES.of(wave.scene.structure);
+    let kernel = TO_SAMPLES.of(wave.scene);
     let sets = SampleSets::new(aim);
     let slices = u64::from(sets.count) * lights;
     let progress = |slices_done: u64| wave.rays.len() as u64 * slices_done / slices;

@@ -7,6 +7,7 @@ use glam::Vec3;
 
 use super::MaskCounts;
 use super::cells::CellOccluders;
+use crate::accel::{Coverage, Triangle};
 use crate::data::masks::population;
 use crate::light_mesh::{CellPoints, LightMesh};
 use crate::simd::{Axes, LANES, cross, difference, dot, dot_along_x, scaled, splat};
@@ -50,7 +51,7 @@ impl Batch {
         simd: S,
         mesh: &LightMesh,
         points: &CellPoints,
-        triangles: &CellOccluders,
+        (triangles, coverage): (&CellOccluders, &Coverage),
         masks: &mut [u32],
     ) -> MaskCounts {
         // 1, 2. The half-balls.
@@ -59,9 +60,10 @@ impl Batch {
         // 3. What blocks their segments.
         let mut tested = 0;
         for candidate in &triangles.candidates {
-            if let Some((occluders, lanes)) = self.occluders(simd, mesh, &candidate.corners) {
+            if let Some((occluders, lanes)) = self.occluders(simd, mesh, &candidate.triangle.corners()) {
                 tested |= lanes;
-                self.clear_blocked(simd, points, triangles.rows(candidate), &occluders, lanes);
+                let cut = Cut { triangle: &candidate.triangle, coverage };
+                self.clear_blocked(simd, points, triangles.rows(candidate), (&occluders, cut), lanes);
             }
         }
 
@@ -134,7 +136,7 @@ impl Batch {
         simd: S,
         points: &CellPoints,
         rows: &[Range<u16>],
-        occluders: &Occluders<S>,
+        (occluders, cut): (&Occluders<S>, Cut),
         lanes: u8,
     ) {
         let zero = f32x8::splat(simd, 0.0);
@@ -160,10 +162,24 @@ impl Batch {
                     let dx = f32x8::splat(simd, points.get(bit).x) - origin[0];
                     let (u, v, w) = (ua + a[0] * dx, va + b[0] * dx, wa + c[0] * dx);
                     let inside = u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero) & (u + v + w).simd_gt(volume);
-                    self.seen[bit] &= !(inside.to_bitmask() as u8 & lanes);
+                    let mut blocked = inside.to_bitmask() as u8 & lanes;
+                    if cut.triangle.cut() != 0 {
+                        blocked = self.stopped(cut, points.get(bit), blocked & self.seen[bit]);
+                    }
+                    self.seen[bit] &= !blocked;
                 }
             }
         }
+    }
+
+    /// Those of `lanes` whose segments to a light point a triangle that is cut out stops.
+    #[inline(never)]
+    fn stopped(&self, cut: Cut, light_point: Vec3, lanes: u8) -> u8 {
+        let stops = |lane: &usize| {
+            let origin = Vec3::from(self.origin.map(|axis| axis[*lane]));
+            lanes >> lane & 1 != 0 && cut.coverage.stops(cut.triangle, origin, light_point - origin)
+        };
+        (0..LANES).filter(stops).fold(0, |all, lane| all | 1 << lane)
     }
 
     /// Whether any of `lanes` still sees any of the `count` light points from `first` on, at most eight.
@@ -193,6 +209,13 @@ impl Batch {
     fn load<S: Simd>(&self, simd: S, lanes: &[[f32; LANES]; 3]) -> Axes<S> {
         [f32x8::from_slice(simd, &lanes[0]), f32x8::from_slice(simd, &lanes[1]), f32x8::from_slice(simd, &lanes[2])]
     }
+}
+
+/// A triangle, and where triangles are cut out.
+#[derive(Clone, Copy)]
+struct Cut<'a> {
+    triangle: &'a Triangle,
+    coverage: &'a Coverage,
 }
 
 /// A triangle as seen from eight origins.

@@ -30,8 +30,8 @@ DEVICE bool test_occluders(const ShortTests &args, const Structure &structure, c
             next_triangles<false>(structure, region, search, memory.found, found);
         unsigned count = min(found, WARP);
         found -= count;
-        const unsigned rows = choose_candidates(mesh, item, structure.triangles, memory, found, count);
-        asked |= test_candidates(args, item, lane, memory, rows);
+        const unsigned rows = choose_candidates(mesh, item, structure, memory, found, count);
+        asked |= test_candidates(args, structure.coverage, item, lane, memory, rows);
         __syncwarp();
     }
     return asked;

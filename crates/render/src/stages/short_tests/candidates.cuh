@@ -98,8 +98,10 @@ DEVICE int box_bound(unsigned box, int index) {
 
 // 3. b. Lanes take up to 32 of the triangles found; those that can matter are kept as candidates. Returns how many rows of light
 // points the lane's candidate reaches; candidates are in the order of the lanes, and `count` becomes their number.
-DEVICE unsigned choose_candidates(const LightMesh &mesh, const CellItem &item, const Triangle *triangles, const CellMemory &memory,
+template <class Structure>
+DEVICE unsigned choose_candidates(const LightMesh &mesh, const CellItem &item, const Structure &structure, const CellMemory &memory,
                                   unsigned first, unsigned &count) {
+    const Triangle *triangles = structure.triangles;
     const unsigned lane = lane_of_thread();
     bool kept = false;
     unsigned box = 0;
@@ -121,7 +123,9 @@ DEVICE unsigned choose_candidates(const LightMesh &mesh, const CellItem &item, c
         candidate.corners[2] = float4{c.x, c.y, c.z, x.high};
         candidate.span_yz = float4{y.low, y.high, z.low, z.high};
         candidate.inverse_yz = float4{1.0f / y.low, 1.0f / y.high, 1.0f / z.low, 1.0f / z.high};
-        candidate.most = float4{most, 1.0f / (float)(box_bound(box, 3) - box_bound(box, 2) + 1), 0.0f, 0.0f};
+        const unsigned cut = CUT_OUTS ? triangle_cut(triangles + memory.found[first + lane]) : 0;
+        candidate.most =
+            float4{most, 1.0f / (float)(box_bound(box, 3) - box_bound(box, 2) + 1), __uint_as_float(cut), 0.0f};
     }
     __syncwarp();
     count = __popc(lanes);

@@ -9,14 +9,14 @@ use std::ops::Range;
 use glam::{IVec3, Vec3};
 use lightmesh_scene::Bounds;
 
-use crate::accel::{Region, TangentPlanes};
+use crate::accel::{Region, TangentPlanes, Triangle};
 use crate::light_mesh::LightMesh;
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
 
 /// A triangle that may block segments that start in a cell.
 pub(super) struct Candidate {
-    pub(super) corners: [Vec3; 3],
+    pub(super) triangle: Triangle,
     /// The range of its rows in [`CellOccluders::rows`].
     rows: Range<usize>,
 }
@@ -42,14 +42,15 @@ impl CellOccluders {
         self.candidates.clear();
         self.rows.clear();
         for &index in &self.found {
-            let corners = scene.geometry.triangles[index as usize].corners();
+            let triangle = scene.geometry.triangles[index as usize];
+            let corners = triangle.corners();
             if plane_is_near(&corners, origins, reach)
                 && let Some((low, high)) = shadow_box(mesh, cell, origins, &corners)
             {
                 let first = self.rows.len();
                 add_rows(&mut self.rows, mesh, low, high);
                 if self.rows.len() > first {
-                    self.candidates.push(Candidate { corners, rows: first..self.rows.len() });
+                    self.candidates.push(Candidate { triangle, rows: first..self.rows.len() });
                 }
             }
         }

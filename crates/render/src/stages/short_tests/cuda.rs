@@ -68,7 +68,10 @@ pub(crate) fn short_tests<R: Runtime>(
     if !by_cell {
         each_item(HALF_BALLS, 0, 0)?;
     }
-    each_item(kernels.of(scene.structure), shared, cells.count as u64)?;
+    if scene.cut_out {
+        cuda.bring_lines(kernels.cut_out_module, mesh)?;
+    }
+    each_item(kernels.of(scene), shared, cells.count as u64)?;
     Ok(DeviceMasks { masks, words })
 }
 

@@ -13,8 +13,10 @@ KERNEL_PER_STRUCTURE(short_tests_by_cell, ShortTests, WARP, 32)
 
 KERNEL_PER_STRUCTURE(short_tests_by_cell_large, ShortTests, WARP, 32)
 
+#if !CUT_OUTS
 KERNEL(half_balls_of_items, ShortTests, WARP, 32) {
     half_balls_of_item(args);
 }
+#endif
 
 KERNEL_PER_STRUCTURE(short_tests_plain, ShortTests, WARP, 32)

@@ -13,7 +13,8 @@ struct Candidate {
     float4 corners[3];
     // Low and high y, low and high z, and their reciprocals.
     float4 span_yz, inverse_yz;
-    // The largest factor by which its shadow is stretched, and the reciprocal of the number of lines in a plane of its box.
+    // The largest factor by which its shadow is stretched, the reciprocal of the number of lines in a plane of its box, and the number of its
+    // opacities if it is cut out, else 0.
     float4 most;
 };
 

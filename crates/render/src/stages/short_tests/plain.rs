@@ -41,7 +41,9 @@ impl Scratch {
         blocked.clear();
         blocked.resize(bits.len(), false);
         let test = ShortTest { origin: point.origin, normal: point.normal, edge_on: mesh.edge_on() };
-        scene.geometry.accelerator.short_segments(&ShortSegments { test, directions, slack: mesh.slack() }, blocked);
+        let geometry = &scene.geometry;
+        let segments = ShortSegments { test, directions, slack: mesh.slack(), coverage: &geometry.coverage };
+        geometry.accelerator.short_segments(&segments, blocked);
         for (&bit, _) in bits.iter().zip(blocked.iter()).filter(|(_, blocked)| **blocked) {
             mask[bit / 32] &= !(1 << (bit % 32));
         }

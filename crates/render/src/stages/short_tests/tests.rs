@@ -2,7 +2,7 @@
 
 use glam::{DVec3, IVec3, Vec3};
 use lightmesh_scene::Scene;
-use lightmesh_testkit::soup;
+use lightmesh_testkit::{perforated, soup};
 
 use crate::accel::Hit;
 use crate::backend::{Backend, Cpu};
@@ -92,6 +92,23 @@ fn cells_and_plain_tests_agree_on_soups() {
     for seed in 0..6 {
         let cases = [(0.5, 2.1), (0.2, 3.1), (1.3, 1.5), (0.07, 4.1), (0.4, 0.7)];
         assert_all_alike(&soup(seed, 150), &ACCELERATIONS, 40, &cases);
+    }
+}
+
+#[test]
+fn cells_and_plain_tests_agree_on_triangles_with_holes() {
+    for seed in 0..3 {
+        let (whole, holed) = (soup(seed, 150), perforated(soup(seed, 150)));
+        assert_all_alike(&holed, &ACCELERATIONS, 40, &[(0.5, 2.1), (0.2, 3.1), (0.07, 4.1)]);
+        let used = |scene: &Scene| {
+            let prepared = PreparedScene::new(scene, &Acceleration::Bvh, &Unobserved).unwrap();
+            // The same surface points.
+            let seen = look(&PreparedScene::new(&whole, &Acceleration::Bvh, &Unobserved).unwrap(), 40);
+            let (_, masks) = masks(&prepared, &seen, &mesh(&prepared, 0.5, 2.1), ShortTests::Cells);
+            masks.bits.iter().map(|word| word.count_ones()).sum::<u32>()
+        };
+        let [through, whole] = [used(&holed), used(&whole)];
+        assert!(through > whole, "light points are seen through holes: {through}, {whole}");
     }
 }
 

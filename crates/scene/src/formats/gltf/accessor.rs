@@ -56,7 +56,7 @@ impl<'a> Accessors<'a> {
         self.read(index, &elements, used, [0.0; N], is_float, |elements| elements.numbers())
     }
 
-    /// Colours with or without alpha, which is ignored: surfaces are opaque. Clamped to [0, 1], as glTF requires; NaN counts as 0.
+    /// Colours with or without alpha, which is left out. Clamped to [0, 1], as glTF requires; NaN counts as 0.
     pub(super) fn colors(&self, index: u32, used: Used) -> Result<Cow<'a, [[f32; 3]]>, LoadError> {
         let mut colors = if self.elements(index)?.kind == "VEC4" {
             self.vectors(index, used)?.iter().map(|&[r, g, b, _]| [r, g, b]).collect()
@@ -71,6 +71,17 @@ impl<'a> Accessors<'a> {
             }
         }
         Ok(colors)
+    }
+
+    /// The alpha of vertex colours, from 0 to 1; none if they have no alpha, or one that is 1 everywhere.
+    pub(super) fn opacities(&self, index: u32, used: Used) -> Result<Vec<f32>, LoadError> {
+        if self.elements(index)?.kind != "VEC4" {
+            return Ok(Vec::new());
+        }
+        // NaN counts as 0.
+        let opacity = |&[.., alpha]: &[f32; 4]| if alpha > 0.0 { alpha.min(1.0) } else { 0.0 };
+        let opacities: Vec<f32> = self.vectors::<4>(index, used)?.iter().map(opacity).collect();
+        Ok(if opacities.iter().all(|&opacity| opacity == 1.0) { Vec::new() } else { opacities })
     }
 
     /// Vertex indices.

@@ -259,6 +259,7 @@ pub(super) struct Material<'a> {
     pub(super) emissive_factor: [f32; 3],
     #[serde(borrow)]
     pub(super) alpha_mode: Option<Cow<'a, str>>,
+    pub(super) alpha_cutoff: Option<f32>,
     pub(super) extensions: Option<Box<MaterialExtensions>>,
     #[serde(borrow)]
     pub(super) extras: Option<&'a RawValue>,

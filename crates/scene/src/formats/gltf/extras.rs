@@ -27,6 +27,26 @@ pub(crate) struct MaterialExtras {
     /// The transform from texture coordinates to the image's, by columns, if an angle and factors would round it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) texture_transform: Option<[f32; 6]>,
+    /// Where the surface is, unless `alphaMode` says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) cut_out: Option<CutOutExtras>,
+}
+
+/// A cut-out by something else than the alpha of the base colour.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CutOutExtras {
+    pub(crate) factor: f32,
+    pub(crate) cutoff: f32,
+    /// Index of the file's texture.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) texture: Option<u32>,
+    /// The transform from texture coordinates to the image's, by columns.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) transform: Option<[f32; 6]>,
+    /// The name of what counts of a texel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) channel: Option<String>,
 }
 
 impl MaterialExtras {
@@ -43,6 +63,7 @@ impl MaterialExtras {
             emission_tinted: self.emission_tinted.into(),
             texture: None,
             catcher: self.catcher,
+            cut_out: None,
         }
     }
 }

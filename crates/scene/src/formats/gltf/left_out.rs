@@ -19,8 +19,10 @@ pub(super) struct LeftOut {
     pub(super) morphed: usize,
     /// Primitives whose material does not exist.
     pub(super) missing_materials: usize,
-    /// Materials with cut-outs or transparency.
+    /// Materials that let light through.
     pub(super) see_through: usize,
+    /// Materials that are cut out everywhere.
+    pub(super) invisible: usize,
     pub(super) roughness_textures: usize,
     pub(super) normal_textures: usize,
     pub(super) occlusion_textures: usize,
@@ -49,7 +51,8 @@ impl LeftOut {
             (self.skinned, "skinned mesh", "shown in its rest pose, without its skeleton"),
             (self.morphed, "mesh", "shown without the morph targets that the file blends in"),
             (self.missing_materials, "primitive", "with a material that the file does not contain: shown white"),
-            (self.see_through, "material", "with cut-outs or transparency (alphaMode): shown opaque"),
+            (self.see_through, "material", "with transparency (alphaMode BLEND): shown opaque"),
+            (self.invisible, "material", "not seen: the alpha of the base colour is below alphaCutoff"),
             (self.roughness_textures, "metallic-roughness texture", "not shown: the material's factors are used"),
             (self.normal_textures, "normal texture", "not shown"),
             (self.occlusion_textures, "occlusion texture", "not shown"),

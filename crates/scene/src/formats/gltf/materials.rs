@@ -2,14 +2,17 @@
 
 use std::path::Path;
 
+use glam::Affine2;
+
 use super::{
-    document::{self, Document, Primitive},
+    document::{self, Document, Primitive, TextureInfo},
+    extras::CutOutExtras,
     left_out::LeftOut,
     material,
     picture::Pictures,
 };
 use crate::{
-    LoadError, Material,
+    CutOut, LoadError, Material, OpacityChannel, TextureUse,
     draft::{Draft, Placement},
 };
 
@@ -18,10 +21,34 @@ use crate::{
 pub(super) struct Materials {
     /// Replaces all materials of the file.
     replacement: Option<u32>,
-    /// Index in the draft, and the set of texture coordinates that its texture needs.
-    read: Vec<(u32, Option<u32>)>,
+    read: Vec<Read>,
     /// Index of glTF's own default material, once a primitive has used it.
     default: Option<u32>,
+}
+
+/// What our own extras say.
+fn cut_out(own: &CutOutExtras, pictures: &mut Pictures, draft: &mut Draft) -> CutOut {
+    let info = own.texture.map(|index| TextureInfo { index, tex_coord: 0, extensions: None });
+    let found = info.and_then(|info| pictures.find(&info, draft));
+    let transform = own.transform.map_or(Affine2::IDENTITY, |columns| Affine2::from_cols_array(&columns));
+    let channel = OpacityChannel::ALL.iter().find(|channel| own.channel.as_deref() == Some(channel.name()));
+    CutOut {
+        texture: found.map(|(uses, _)| TextureUse { transform, ..uses }),
+        channel: channel.copied().unwrap_or_default(),
+        factor: own.factor,
+        cutoff: own.cutoff,
+    }
+}
+
+/// A material of the file.
+#[derive(Clone, Copy, PartialEq)]
+struct Read {
+    /// Index in the draft.
+    material: u32,
+    /// The set of texture coordinates that its texture needs.
+    set: Option<u32>,
+    /// Whether the alpha of vertex colours counts.
+    cut_out: bool,
 }
 
 /// The material of a primitive, and the attributes it needs.
@@ -32,6 +59,8 @@ pub(super) struct Chosen {
     pub(super) uvs: Option<u32>,
     /// Accessor of the vertex colours.
     pub(super) colors: Option<u32>,
+    /// The same if their alpha counts.
+    pub(super) opacities: Option<u32>,
 }
 
 impl Materials {
@@ -62,8 +91,13 @@ impl Materials {
             if let (Some(texture), Some(exact)) = (&mut texture, material::texture_transform(path, index, entry)?) {
                 texture.transform = exact;
             }
-            materials.read.push((draft.materials.len() as u32, set));
-            draft.materials.push(Material { texture, ..material });
+            let cut_out = match material::cut_out_extras(path, index, entry)? {
+                Some(own) => Some(cut_out(&own, &mut pictures, draft)),
+                None => material::cut_out(entry, texture),
+            };
+            left_out.invisible += usize::from(cut_out.is_some_and(|it| it.texture.is_none() && it.factor < it.cutoff));
+            materials.read.push(Read { material: draft.materials.len() as u32, set, cut_out: cut_out.is_some() });
+            draft.materials.push(Material { texture, cut_out, ..material });
         }
         left_out.missing_textures += pictures.missing;
         Ok(materials)
@@ -75,20 +109,20 @@ impl Materials {
         let (first, colors) = (attributes.texcoord_0, attributes.color_0);
         if let Some(material) = self.replacement {
             // Vertex colours belong to the file, as its materials do.
-            return Chosen { material, uvs: first, colors: None };
+            return Chosen { material, uvs: first, colors: None, opacities: None };
         }
         let named = primitive.material.map(|material| self.read.get(material as usize));
         left_out.missing_materials += usize::from(named == Some(None));
-        let (material, set) = match named.flatten() {
+        let Read { material, set, cut_out } = match named.flatten() {
             Some(&found) => found,
-            None => (self.default_material(draft), None),
+            None => Read { material: self.default_material(draft), set: None, cut_out: false },
         };
         let uvs = match set {
             None | Some(0) => first,
             Some(1) => attributes.texcoord_1,
             Some(_) => None,
         };
-        Chosen { material, uvs, colors }
+        Chosen { material, uvs, colors, opacities: colors.filter(|_| cut_out) }
     }
 
     fn default_material(&mut self, draft: &mut Draft) -> u32 {

@@ -155,11 +155,16 @@ impl<'a> Meshes<'a> {
         let normals = primitive.attributes.normal.map_or_else(none, |index| accessors.vectors::<3>(index, used))?;
         let uvs = chosen.uvs.map_or_else(|| Ok(Cow::default()), |index| accessors.vectors::<2>(index, used))?;
         let colors = chosen.colors.map_or_else(none, |index| accessors.colors(index, used))?;
+        let opacities = match chosen.opacities {
+            Some(index) => accessors.opacities(index, used)?,
+            None => Vec::new(),
+        };
         let part = MeshPart {
             positions: bytemuck::cast_slice::<_, Vec3>(&positions),
             normals: bytemuck::cast_slice(&normals),
             uvs: bytemuck::cast_slice(&uvs),
             colors: bytemuck::cast_slice(&colors),
+            opacities: &opacities,
             triangles: &triangles(mode, &indices),
         };
         let Some(instances) = instances else {
@@ -219,6 +224,7 @@ impl<'a> Survey<'a> {
                     normals: attributes.normal.is_some(),
                     uvs: attributes.texcoord_0.or(attributes.texcoord_1).is_some(),
                     colors: attributes.color_0.is_some(),
+                    opacities: false,
                 };
                 survey.room = survey.room.and(&room, 1);
                 survey.primitives.push((primitive, mode));

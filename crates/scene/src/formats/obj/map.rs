@@ -1,10 +1,10 @@
-//! `map_Kd`: a texture with options before its file name, as in `map_Kd -s 2 2 -clamp on brick wall.png`.
+//! `map_Kd` and `map_d`: a texture with options before its file name, as in `map_Kd -s 2 2 -clamp on brick wall.png`.
 
 use std::path::Path;
 
 use glam::{Affine2, Mat2, Vec2};
 
-use crate::{TextureUse, Wrap, draft::Draft, formats::text::number};
+use crate::{OpacityChannel, TextureUse, Wrap, draft::Draft, formats::text::number};
 
 /// A texture of a material.
 #[derive(Debug, PartialEq)]
@@ -14,13 +14,16 @@ pub(super) struct Map {
     scale: Vec2,
     offset: Vec2,
     clamp: bool,
+    /// The channel that counts where one number is wanted, if the file says so.
+    pub(super) channel: Option<OpacityChannel>,
 }
 
 impl Map {
-    /// Parses the text after `map_Kd`; `None` if no file is named. Options that do not affect colour or coordinates are
+    /// Parses the text after `map_Kd` or the like; `None` if no file is named. Options that do not affect colour or coordinates are
     /// skipped.
     pub(super) fn parse(text: &str) -> Option<Map> {
-        let mut map = Map { file: String::new(), scale: Vec2::ONE, offset: Vec2::ZERO, clamp: false };
+        let (scale, offset) = (Vec2::ONE, Vec2::ZERO);
+        let mut map = Map { file: String::new(), scale, offset, clamp: false, channel: None };
         let mut rest = text.trim();
         while let Some(option) = rest.strip_prefix('-') {
             let Some((name, after)) = option.split_once(char::is_whitespace) else { break };
@@ -33,8 +36,13 @@ impl Map {
                     map.clamp = value == "on";
                     rest
                 }
+                "imfchan" => {
+                    let (value, rest) = after.trim_start().split_once(char::is_whitespace)?;
+                    map.channel = channel(value);
+                    rest
+                }
                 "mm" => skip_words(after, 2)?,
-                "blendu" | "blendv" | "boost" | "texres" | "bm" | "imfchan" | "type" | "cc" => skip_words(after, 1)?,
+                "blendu" | "blendv" | "boost" | "texres" | "bm" | "type" | "cc" => skip_words(after, 1)?,
                 // The file name begins with a hyphen.
                 _ => break,
             }
@@ -54,6 +62,18 @@ impl Map {
         let wrap = if self.clamp { Wrap::Clamp } else { Wrap::Repeat };
         Some(TextureUse { wrap: [wrap; 2], transform, ..TextureUse::new(texture) })
     }
+}
+
+/// The channel of `-imfchan`; `None` for those that images do not have, such as depth.
+fn channel(word: &str) -> Option<OpacityChannel> {
+    Some(match word {
+        "r" => OpacityChannel::Red,
+        "g" => OpacityChannel::Green,
+        "b" => OpacityChannel::Blue,
+        "m" => OpacityChannel::Alpha,
+        "l" => OpacityChannel::Luminance,
+        _ => return None,
+    })
 }
 
 /// Reads one to three numbers, of which the first two matter, and returns the rest.
@@ -90,7 +110,8 @@ mod tests {
     #[test]
     fn options_stand_before_a_name_that_may_hold_blanks() {
         let map = |file: &str, scale, offset, clamp| {
-            Some(Map { file: file.to_owned(), scale: Vec2::from(scale), offset: Vec2::from(offset), clamp })
+            let (scale, offset) = (Vec2::from(scale), Vec2::from(offset));
+            Some(Map { file: file.to_owned(), scale, offset, clamp, channel: None })
         };
         let plain = |file| map(file, [1.0; 2], [0.0; 2], false);
         assert_eq!(Map::parse("brick wall.png"), plain("brick wall.png"));
@@ -101,6 +122,10 @@ mod tests {
         assert_eq!(Map::parse("-odd.png"), plain("-odd.png"));
         assert_eq!(Map::parse("-s 1 1 1 \"brick wall.png\""), plain("brick wall.png"));
         assert_eq!(Map::parse("-odd one.png"), plain("-odd one.png"));
+        let channels =
+            ["r", "g", "b", "m", "l", "z"].map(|word| Map::parse(&format!("-imfchan {word} a.png")).unwrap().channel);
+        let found: Vec<_> = channels.into_iter().flatten().map(OpacityChannel::name).collect();
+        assert_eq!((found, channels[5]), (vec!["red", "green", "blue", "alpha", "luminance"], None));
         assert_eq!(
             [Map::parse(""), Map::parse("-s 1 1 1"), Map::parse("-clamp on")].map(|map| map.map(|m| m.file)),
             [None, Some("1".into()), None]

@@ -1,4 +1,4 @@
-//! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke and map_Kd to the coefficients of formula (1).
+//! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke and map_Kd to the coefficients of formula (1), map_d to where the surface is.
 
 use std::{
     collections::HashSet,
@@ -13,7 +13,7 @@ use super::{
     map::{Map, unquoted},
 };
 use crate::{
-    LoadError, Material,
+    CutOut, LoadError, Material, OpacityChannel, TextureUse,
     draft::Draft,
     error::Place,
     formats::{
@@ -34,6 +34,7 @@ pub(super) struct Entry {
     emissive: Option<Vec3>,
     shininess: Option<f32>,
     map: Option<Map>,
+    opacity: Option<Map>,
     dissolve: Option<f64>,
     transparency: Option<f64>,
 }
@@ -140,7 +141,7 @@ fn read_library(path: &Path, text: &[u8], entries: &mut Vec<Entry>, draft: &mut 
     entries.extend(entry);
     draft.warnings.extend(notes.warnings(path));
     let LeftOut { maps, spectral } = left_out;
-    for (count, what) in [(maps, "textures other than map_Kd"), (spectral, "spectral or CIE-XYZ colours")] {
+    for (count, what) in [(maps, "textures other than map_Kd and map_d"), (spectral, "spectral or CIE-XYZ colours")] {
         if count > 0 {
             draft.warnings.push(format!("{}: {count} {what} were ignored", path.display()));
         }
@@ -174,6 +175,7 @@ impl Entry {
             b"d" => self.dissolve = words(rest).last().and_then(value),
             b"Tr" => self.transparency = words(rest).last().and_then(value),
             b"map_Kd" => self.map = Map::parse(&decoded(rest)),
+            b"map_d" => self.opacity = Map::parse(&decoded(rest)),
             // Exporters repeat the texture as the ambient texture.
             b"map_Ka" | b"map_aat" => {}
             word if is_map(word) => left_out.maps += 1,
@@ -206,8 +208,21 @@ impl Entry {
             shininess: self.shininess.map_or(default.shininess, |exponent| exponent.max(1.0)),
             emission: self.emissive.unwrap_or(default.emission),
             texture,
+            cut_out: self.cut_out(used, texture, draft),
             ..default
         }
+    }
+
+    /// Where the surface is, by the channel that `-imfchan` names. Without that option, the alpha of the image that colours the surface
+    /// counts if both are the same; of another image alpha counts if there is any, else luminance, as the format says for numbers.
+    fn cut_out(&self, used: bool, color: Option<TextureUse>, draft: &mut Draft) -> Option<CutOut> {
+        let map = self.opacity.as_ref().filter(|_| used)?;
+        let texture = map.texture_use(&self.path, draft)?;
+        let channel = map.channel.unwrap_or_else(|| match color {
+            Some(color) if color.texture == texture.texture => OpacityChannel::Alpha,
+            _ => OpacityChannel::suggested_by(&draft.textures[texture.texture as usize]),
+        });
+        Some(CutOut::by(texture, channel))
     }
 }
 

@@ -198,9 +198,49 @@ fn textures_come_from_map_kd_with_its_options() {
     assert_eq!((scene.geometry.materials[1].kd, scene.geometry.materials[1].texture), (Vec3::splat(0.5), None));
     let warned = |part: &str| scene.warnings.iter().filter(|warning| warning.contains(part)).count();
     assert_eq!(
-        ["gone.png", "other.png", "1 textures other than map_Kd", "2 materials are transparent"].map(warned),
+        ["gone.png", "other.png", "1 textures other than map_Kd and map_d", "2 materials are transparent"].map(warned),
         [1, 0, 1, 1]
     );
+}
+
+#[test]
+fn map_d_cuts_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let leaf = |alpha: u8| image::RgbaImage::from_pixel(2, 2, image::Rgba([200, 100, 50, alpha]));
+    leaf(9).save(folder.path().join("leaf.png")).unwrap();
+    leaf(255).save(folder.path().join("solid.png")).unwrap();
+    let materials = [
+        "map_Kd leaf.png\nmap_d leaf.png",
+        "map_Kd solid.png\nmap_d solid.png",
+        "map_Kd leaf.png\nmap_d -s 2 2 1 solid.png",
+        "map_d leaf.png",
+        "map_d -imfchan b -clamp on leaf.png",
+        "map_d gone.png",
+        "map_Kd leaf.png",
+    ];
+    let mut mtl = String::new();
+    let mut faces = "vt 0.5 0.25\n".to_owned();
+    for (index, lines) in materials.iter().enumerate() {
+        mtl += &format!("newmtl m{index}\n{lines}\n");
+        faces += &format!("usemtl m{index}\nf 1/1 2/1 3/1\n");
+    }
+    fs::write(folder.path().join("a.mtl"), mtl).unwrap();
+    let path = folder.path().join("shape.obj");
+    fs::write(&path, format!("mtllib a.mtl\n{TETRAHEDRON}{faces}")).unwrap();
+    let scene = Scene::open(&path).unwrap();
+    let found = |index: usize| scene.geometry.materials[index].cut_out;
+    let channels: Vec<_> = (0..5).map(|index| found(index).expect("a texture").channel.name()).collect();
+    // The image that colours the surface: its alpha. Another: alpha if there is any.
+    assert_eq!(channels, ["alpha", "alpha", "luminance", "alpha", "blue"]);
+    assert!((0..5).all(|index| found(index).unwrap().cutoff == 0.5));
+    assert_eq!((found(5), found(6)), (None, None));
+    let uses = [found(2), found(4)].map(|cut_out| cut_out.unwrap().texture.unwrap());
+    assert_eq!(
+        uses.map(|uses| (uses.transform.matrix2.x_axis.x, uses.wrap[0])),
+        [(2.0, crate::Wrap::Repeat), (1.0, crate::Wrap::Clamp)]
+    );
+    let warnings = scene.warnings.join("\n");
+    assert!(warnings.contains("gone.png") && !warnings.contains("other than"), "{warnings}");
 }
 
 #[test]

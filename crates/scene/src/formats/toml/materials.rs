@@ -6,10 +6,10 @@ use glam::{Affine2, DVec2, Vec2};
 
 use super::{
     check::Source,
-    schema::{MaterialEntry, TextureScale, TextureWrap, WrapName},
+    schema::{MaterialEntry, Text, TextureScale, TextureWrap, WrapName},
     spanned::Spanned,
 };
-use crate::{LoadError, Material, TextureUse, Wrap, draft::Draft};
+use crate::{CutOut, LoadError, Material, OpacityChannel, TextureUse, Wrap, draft::Draft};
 
 /// Adds the file's materials and returns the index of each name.
 pub(super) fn read(
@@ -23,8 +23,14 @@ pub(super) fn read(
             let remedy = "give every material a name of its own";
             return Err(source.refuse("name", &entry.name, "is used by an earlier material", remedy));
         }
-        let material = Material { texture: texture(source, entry, draft)?, ..coefficients(source, entry)? };
-        draft.materials.push(material);
+        let placed = placed(source, entry)?;
+        let find = |draft: &mut Draft, file: &Option<Text>| {
+            let texture = draft.texture_file(source.path, file.as_ref()?.get_ref())?;
+            Some(TextureUse { texture, ..placed })
+        };
+        let texture = find(draft, &entry.texture);
+        let cut_out = cut_out(source, entry, find(draft, &entry.opacity_texture), draft)?;
+        draft.materials.push(Material { texture, cut_out, ..coefficients(source, entry)? });
     }
     Ok(names)
 }
@@ -47,23 +53,38 @@ fn coefficients(source: &Source, entry: &MaterialEntry) -> Result<Material, Load
     })
 }
 
-/// The texture, if there is one that is available; the other keys are checked all the same.
-fn texture(source: &Source, entry: &MaterialEntry, draft: &mut Draft) -> Result<Option<TextureUse>, LoadError> {
+/// How the material's textures are placed. Fails if there are none to be placed.
+fn placed(source: &Source, entry: &MaterialEntry) -> Result<TextureUse, LoadError> {
     let wrap = entry.texture_wrap.as_ref().map_or([Wrap::Repeat; 2], |wrap| match *wrap.get_ref() {
         TextureWrap::Both(word) => [word.into(); 2],
         TextureWrap::Each(words) => words.map(Wrap::from),
     });
     let transform = transform(source, entry)?;
-    let Some(file) = &entry.texture else {
-        return match without_texture(entry) {
-            Some((key, line)) => {
-                Err(source.refuse(key, &line, "has no effect without a texture", "add `texture = \"FILE\"`"))
-            }
-            None => Ok(None),
-        };
-    };
-    let texture = draft.texture_file(source.path, file.get_ref());
-    Ok(texture.map(|texture| TextureUse { texture, wrap, transform }))
+    if let (None, None, Some((key, line))) = (&entry.texture, &entry.opacity_texture, without_texture(entry)) {
+        return Err(source.refuse(key, &line, "has no effect without a texture", "add `texture = \"FILE\"`"));
+    }
+    Ok(TextureUse { wrap, transform, ..TextureUse::new(0) })
+}
+
+/// Where the surface is, if its opacity has a texture and that is available.
+fn cut_out(
+    source: &Source,
+    entry: &MaterialEntry,
+    texture: Option<TextureUse>,
+    draft: &Draft,
+) -> Result<Option<CutOut>, LoadError> {
+    let mut cutoff = CutOut::CUTOFF;
+    if let Some(value) = &entry.opacity_cutoff {
+        cutoff = source.between("opacity_cutoff", value, 0.0, 1.0)? as f32;
+        if entry.opacity_texture.is_none() {
+            let remedy = "add `opacity_texture = \"FILE\"`";
+            return Err(source.refuse("opacity_cutoff", value, "has no effect without an opacity texture", remedy));
+        }
+    }
+    Ok(texture.map(|uses| {
+        let channel = OpacityChannel::suggested_by(&draft.textures[uses.texture as usize]);
+        CutOut::by(uses, channel).with_cutoff(cutoff)
+    }))
 }
 
 /// A key that requires a texture, if it is present without one.

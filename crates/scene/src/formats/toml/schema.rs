@@ -280,6 +280,13 @@ pub(crate) struct MaterialEntry {
     /// An image that `ka` and `kd` are multiplied with: PNG, JPEG, BMP or TGA, relative to the scene file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture: Option<Text>,
+    /// An image that says where the surface is, leaves on a few triangles for example: by its alpha if it has any, else by its luminance.
+    /// Placed as `texture` is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) opacity_texture: Option<Text>,
+    /// The least opacity at which there is a surface, from 0 to 1. Default: 0.5.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) opacity_cutoff: Option<Number>,
     /// How the image continues beyond its edge; one word, or one for each direction. Default: repeat.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture_wrap: Option<Spanned<TextureWrap>>,

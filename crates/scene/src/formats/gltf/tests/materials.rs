@@ -6,7 +6,7 @@ use glam::{Affine2, Vec2, Vec3};
 use image::{ImageFormat, Rgba, RgbaImage};
 
 use super::*;
-use crate::Wrap;
+use crate::{CutOut, OpacityChannel, Wrap};
 
 /// An image of one texel.
 fn png() -> Vec<u8> {
@@ -219,13 +219,13 @@ fn what_of_materials_is_not_shown_is_one_sentence_a_kind() {
         material[key] = json!({"index": 0});
     }
     material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({"index": 0});
-    material["alphaMode"] = json!("MASK");
+    material["alphaMode"] = json!("BLEND");
     let other = material.clone();
     document["materials"].as_array_mut().unwrap().push(other);
-    document["materials"][1]["alphaMode"] = json!("BLEND");
+    document["materials"][1]["alphaMode"] = json!("CLOUDS");
     let warnings = warnings(&document);
     for sentence in [
-        "2 materials with cut-outs or transparency (alphaMode): shown opaque",
+        "2 materials with transparency (alphaMode BLEND): shown opaque",
         "2 metallic-roughness textures not shown",
         "2 normal textures not shown",
         "2 occlusion textures not shown",
@@ -234,6 +234,43 @@ fn what_of_materials_is_not_shown_is_one_sentence_a_kind() {
         assert!(warnings.contains(sentence), "{warnings}");
     }
     assert_eq!(warnings.lines().count(), 5, "{warnings}");
+}
+
+#[test]
+fn a_mask_cuts_out_by_the_alpha_of_the_base_colour() {
+    let mut document = textured();
+    let cut_out = |document: &Value| open(document).geometry.materials[0].cut_out;
+    assert_eq!(cut_out(&document), None);
+    document["materials"][0]["alphaMode"] = json!("MASK");
+    let scene = open(&document);
+    let wanted = CutOut { texture: scene.geometry.materials[0].texture, ..CutOut::default() };
+    assert!(wanted.texture.is_some() && wanted.cutoff == 0.5 && wanted.channel == OpacityChannel::Alpha);
+    assert_eq!((scene.geometry.materials[0].cut_out, &scene.warnings[..]), (Some(wanted), &[][..]));
+    document["materials"][0]["alphaCutoff"] = json!(0.25);
+    document["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = json!([1, 1, 1, 0.75]);
+    assert_eq!(cut_out(&document), Some(wanted.with_cutoff(0.25).with_factor(0.75)));
+    document["materials"][0]["alphaMode"] = json!("BLEND");
+    assert_eq!(cut_out(&document), None);
+}
+
+#[test]
+fn a_mask_without_a_texture_may_hide_everything() {
+    let mut document = textured();
+    document["materials"][0] =
+        json!({"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.4]}});
+    assert!(warnings(&document).contains("1 material not seen: the alpha of the base colour is below alphaCutoff"));
+    document["materials"][0]["alphaCutoff"] = json!(0.4);
+    assert_eq!(warnings(&document), "");
+}
+
+#[test]
+fn the_alpha_of_vertices_counts_where_a_mask_asks_for_it() {
+    let mut document = textured();
+    let colors = add_floats(&mut document, &[1.0, 0.5, 0.0, 0.25, 1.0, 1.0, 1.0, 7.0, 0.0, 0.0, 0.0, -1.0], "VEC4", 3);
+    document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colors);
+    assert!(open(&document).geometry.mesh.opacities.is_empty());
+    document["materials"][0]["alphaMode"] = json!("MASK");
+    assert_eq!(open(&document).geometry.mesh.opacities, [0.25, 1.0, 0.0]);
 }
 
 #[test]

@@ -1,0 +1,134 @@
+//! Where surfaces are that are cut out: leaves and fences on a few triangles. Twin of the decision: `coverage.cuh`.
+//!
+//! ```text
+//! opacity at (u, v) = mask(A · uv) × opacity of the corners,      a surface where that is at least the cutoff
+//! ```
+//!
+//! Opacities and texture coordinates of the corners are interpolated barycentrically, texels of the mask bilinearly, at its finest level
+//! whatever sees them: samples of a pixel, and of a light, average what they decide.
+//!
+//! A structure's triangle that is cut out holds the number of its entry here, others hold 0. So what is decided about a triangle costs
+//! nothing more until an opaque one would be hit. Tests that give no barycentric weights, those of short segments and of samples in rows, ask
+//! where the ray of the [watertight test](super::triangle::RayShear) meets the triangle: [`Coverage::stops`].
+
+mod build;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use glam::{Affine2, Vec2, Vec3};
+use lightmesh_layout::geometry::CutTriangle;
+use lightmesh_scene::Wrap;
+
+use super::triangle::RayShear;
+use super::{Hit, Triangle};
+use crate::textures::neighbours;
+
+pub(crate) use build::BYTES_TO_BUILD;
+
+/// The opacities of cut-out triangles; clones share them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Coverage {
+    /// `None`: all triangles are opaque.
+    table: Option<Arc<Table>>,
+}
+
+/// What is known of all triangles that are cut out.
+#[derive(Debug, Default)]
+pub(crate) struct Table {
+    /// By number, from 1.
+    pub(crate) triangles: Vec<CutTriangle>,
+    pub(crate) masks: Vec<Mask>,
+    /// Opacities of texels, from 0 to 255, row by row.
+    pub(crate) planes: Vec<Vec<u8>>,
+}
+
+/// How a material is cut out.
+#[derive(Clone, Debug)]
+pub(crate) struct Mask {
+    /// Index of its opacities.
+    pub(crate) plane: usize,
+    /// Width and height.
+    pub(crate) size: [u32; 2],
+    pub(crate) wrap: [Wrap; 2],
+    /// From texture coordinates to those of the image.
+    pub(crate) transform: Affine2,
+    /// The cutoff, as texels count.
+    pub(crate) limit: f32,
+}
+
+impl Coverage {
+    /// Everything that is cut out, if anything is.
+    pub(crate) fn table(&self) -> Option<&Table> {
+        self.table.as_deref()
+    }
+
+    /// Bytes on the heap.
+    pub(crate) fn memory(&self) -> usize {
+        self.table().map_or(0, |table| {
+            size_of_val(table.triangles.as_slice()) + table.planes.iter().map(Vec::len).sum::<usize>()
+        })
+    }
+
+    /// Whether there is a surface where `triangle` is hit.
+    #[inline(always)]
+    pub(super) fn has(&self, triangle: &Triangle, hit: &Hit) -> bool {
+        triangle.cut() == 0 || self.covers(triangle.cut(), hit.u, hit.v)
+    }
+
+    /// Whether there is a surface where the segment from `origin` along `direction` meets the plane of `triangle`. Only asked where another
+    /// test says that it meets the triangle itself; next to its edge the two may differ, and there is none where this one says no.
+    #[inline(always)]
+    pub(crate) fn stops(&self, triangle: &Triangle, origin: Vec3, direction: Vec3) -> bool {
+        triangle.cut() == 0 || self.stops_cut(triangle, origin, direction)
+    }
+
+    #[inline(never)]
+    fn stops_cut(&self, triangle: &Triangle, origin: Vec3, direction: Vec3) -> bool {
+        let met = RayShear::new(origin, direction).intersect(triangle);
+        met.is_some_and(|(_, u, v)| self.covers(triangle.cut(), u, v))
+    }
+
+    /// Those of `lanes` in which there is a surface, of eight rays that hit one cut-out triangle.
+    #[inline(never)]
+    pub(super) fn covered_lanes(&self, cut: u32, u: [f32; 8], v: [f32; 8], lanes: u32) -> u32 {
+        let covered = |lane: &usize| lanes >> lane & 1 != 0 && self.covers(cut, u[*lane], v[*lane]);
+        (0..8).filter(covered).fold(0, |all, lane| all | 1 << lane)
+    }
+
+    /// Whether the cut-out triangle number `cut` has a surface at these barycentric weights of its second and third corner.
+    #[inline(never)]
+    fn covers(&self, cut: u32, u: f32, v: f32) -> bool {
+        let Some(table) = self.table() else { return true };
+        let own = &table.triangles[cut as usize - 1];
+        let mask = &table.masks[own.mask as usize];
+
+        // 1. The opacity of the corners; exactly theirs if it is the same.
+        let [a, b, c] = own.opacities;
+        let opacity = a + u * (b - a) + v * (c - a);
+
+        // 2. The place in the mask.
+        let [a, b, c] = own.uvs.map(Vec2::from);
+        let place = mask.transform.transform_point2((1.0 - u - v) * a + u * b + v * c);
+
+        // 3. What is there. NaN is nothing.
+        opacity * mask.at(&table.planes[mask.plane], place) >= mask.limit
+    }
+}
+
+impl Mask {
+    /// The four nearest texels, interpolated.
+    fn at(&self, plane: &[u8], place: Vec2) -> f32 {
+        let (columns, x) = neighbours(place.x, self.size[0], self.wrap[0]);
+        let (rows, y) = neighbours(place.y, self.size[1], self.wrap[1]);
+        let texel = |column: u32, row: u32| f32::from(plane[row as usize * self.size[0] as usize + column as usize]);
+        let [upper, lower] = rows.map(|row| between(texel(columns[0], row), texel(columns[1], row), x));
+        between(upper, lower, y)
+    }
+}
+
+/// From `a` to `b`. Of whole numbers up to 255, and of such means of them, it is no less than the smallest: their differences are exact.
+fn between(a: f32, b: f32, share: f32) -> f32 {
+    a + share * (b - a)
+}
