@@ -52,6 +52,10 @@ lightmesh render chair.obj --ground --camera "$VIEW" --light "-0.5,1.6,0.8;40,30
     --falloff inverse-square --exposure auto --view agx --background 2 -o lamps.png
 # ANCHOR_END: lamps
 
+# ANCHOR: sky
+lightmesh render chair.obj --ground --camera "1.5,0.5,2;0.15,0.38,-0.05;40" --sky "clear;sun=12,240" -o sky.png
+# ANCHOR_END: sky
+
 # ANCHOR: cutout
 lightmesh render chair.obj --ground --camera "$VIEW" --light "$KEY" --light "$FILL" --background transparent \
     --layers chair.exr -o cutout.png

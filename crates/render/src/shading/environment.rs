@@ -52,7 +52,7 @@ pub(crate) fn radiance(environment: &Environment, direction: Vec3, spread: f32) 
     // 3. The sun.
     let Some(sun) = environment.sun() else { return seen };
     let inside = sun.radius - (direction - sun.direction).length();
-    let share = if spread > 0.0 { (inside / spread + 0.5).max(0.0).min(1.0) } else { f32::from(inside >= 0.0) };
+    let share = if spread > 0.0 { (inside / spread + 0.5).clamp(0.0, 1.0) } else { f32::from(inside >= 0.0) };
     if share > 0.0 { between(seen, sun.radiance, share) } else { seen }
 }
 
@@ -86,7 +86,7 @@ mod tests {
     fn turns_are_arc_tangents() {
         let mut worst = 0.0f64;
         for step in 0..10_000 {
-            let angle = f64::from(step) * 6.283e-4 - 3.14;
+            let angle = f64::from(step - 5000) * std::f64::consts::TAU / 10_001.0;
             let (sin, cos) = angle.sin_cos();
             let (y, x) = ((7.0 * sin) as f32, (7.0 * cos) as f32);
             let expected = f64::from(y).atan2(f64::from(x)) / std::f64::consts::TAU;
