@@ -97,6 +97,30 @@ impl Visitor<'_> for VersionVisitor {
 pub(super) struct DocumentExtensions<'a> {
     #[serde(borrow, default, rename = "KHR_lights_punctual")]
     pub(super) lights_punctual: LightsPunctual<'a>,
+    #[serde(default, rename = "EXT_lights_image_based")]
+    pub(super) image_based: ImageBasedLights,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct ImageBasedLights {
+    #[serde(default)]
+    pub(super) lights: Vec<ImageBasedLight>,
+}
+
+/// What surrounds a scene: the six faces of a cube, and smaller, blurred ones.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct ImageBasedLight {
+    pub(super) intensity: Option<f64>,
+    pub(super) rotation: Option<[f64; 4]>,
+    #[serde(default)]
+    pub(super) specular_images: Vec<Box<[u32]>>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct SceneExtensions {
+    #[serde(rename = "EXT_lights_image_based")]
+    pub(super) environment: Option<LightReference>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -111,6 +135,7 @@ pub(super) struct Scene<'a> {
     pub(super) nodes: Box<[u32]>,
     #[serde(borrow)]
     pub(super) extras: Option<&'a RawValue>,
+    pub(super) extensions: Option<SceneExtensions>,
 }
 
 #[derive(Debug, Deserialize)]

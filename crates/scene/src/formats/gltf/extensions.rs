@@ -6,7 +6,8 @@ use super::document::Document;
 use crate::{LoadError, draft::Draft, quote::list};
 
 /// Extensions that are read. A file may require them.
-const KNOWN: [&str; 8] = [
+const KNOWN: [&str; 9] = [
+    "EXT_lights_image_based",
     "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",

@@ -10,7 +10,7 @@
 //! 4. [`materials`] of [`material`] and [`picture`].
 //! 5. [`meshes`] through [`accessor`], [`strided`] and [`buffers`]: counted first, then added; data stored in the required
 //!    form is borrowed.
-//! 6. [`views`]: [`cameras`], [`lights`], and our own [`extras`].
+//! 6. [`views`]: [`cameras`], [`lights`], what surrounds all ([`environment`]), and our own [`extras`].
 //!
 //! Animations are ignored: the scene is shown as its nodes are placed. Other content that is not shown is counted in [`left_out`]
 //! and reported as a warning.
@@ -21,6 +21,7 @@ mod buffers;
 mod cameras;
 mod container;
 mod document;
+mod environment;
 mod extensions;
 pub(crate) mod extras;
 mod instances;
@@ -84,6 +85,7 @@ pub(crate) fn read(path: &Path, bytes: Vec<u8>, placement: &Placement, draft: &m
         left_out.count_views(&placed);
     } else {
         Views::new(path, &document).add(&placed, &mut left_out, draft)?;
+        environment::read(path, &document, &buffers, draft)?;
         read_scene_extras(path, &document, draft)?;
     }
     left_out.warn(path, draft);

@@ -2,6 +2,7 @@
 
 mod containers;
 mod damage;
+mod environment;
 mod extensions;
 mod geometry;
 mod materials;
