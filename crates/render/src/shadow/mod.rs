@@ -1,6 +1,7 @@
 //! What all stages that cast shadow rays share: where the rays end, whether anything hides a light, and χ of formula (3). Twin:
 //! `shadow.cuh`.
 
+pub(crate) mod cuts;
 pub(crate) mod launch;
 pub(crate) mod occlusion;
 pub(crate) mod rows;

@@ -222,7 +222,8 @@ mod tests {
     use crate::accel::Accelerator;
     use crate::job::Sampling;
     use crate::shadow::Aim;
-    use crate::shadow::occlusion::{Cuts, Sights};
+    use crate::shadow::cuts::Cuts;
+    use crate::shadow::occlusion::Sights;
     use crate::shadow::rows::Rows;
     use crate::simd::{LANES, dispatch, splat};
 

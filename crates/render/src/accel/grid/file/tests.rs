@@ -109,6 +109,17 @@ fn each_fault_has_its_name() {
     assert!(matches!(grid().save(path.join("below")).unwrap_err(), GridSaveError::Target(_)));
 }
 
+/// A grid holds one of identical triangles, unless they are cut out.
+#[test]
+fn a_grid_of_opaque_triangles_is_not_one_of_triangles_that_are_cut_out() {
+    let (_folder, path, _) = saved();
+    let mut leaves = triangles();
+    leaves[7] = leaves[7].cut_out(1);
+    assert!(matches!(Grid::load(&path, &leaves).unwrap_err().fault, GridFault::OtherGeometry { .. }));
+    leaves[7] = leaves[7].cut_out(0);
+    assert!(Grid::load(&path, &leaves).is_ok());
+}
+
 #[test]
 fn a_length_beyond_the_file_allocates_nothing() {
     let (_folder, path, mut bytes) = saved();

@@ -1,0 +1,105 @@
+//! Triangles that are cut out, and samples in rows: which samples a triangle hides where there is any of it. Twin: `stopped_samples` in
+//! `occlusion.cuh`.
+//!
+//! Rows say which samples the whole triangle would hide; here each of these asks alone, with [`Coverage::stops`]. Lanes are taken apart: what
+//! is decided differs from sample to sample, and most triangles are opaque.
+
+use fearless_simd::prelude::*;
+use glam::Vec3;
+use lightmesh_layout::constants::{MOST_ROWS, MOST_WORDS};
+use lightmesh_layout::scene::SampleRows;
+
+use super::sight::Sight;
+use crate::accel::{Coverage, Triangle};
+use crate::simd::{Axes, LANES};
+
+/// What is cut out of the triangles of eight lanes.
+#[derive(Clone, Copy)]
+pub(crate) struct Cuts<'a> {
+    coverage: &'a Coverage,
+    /// The number of each lane's triangle; 0 if it is opaque.
+    numbers: [u32; LANES],
+}
+
+impl<'a> Cuts<'a> {
+    /// One triangle in all lanes; `None` if it is opaque.
+    #[inline(always)]
+    pub(crate) fn splat(coverage: &'a Coverage, number: u32) -> Option<Cuts<'a>> {
+        (number != 0).then_some(Cuts { coverage, numbers: [number; LANES] })
+    }
+
+    /// Those of [gathered](super::occlusion::gathered) triangles; `None` if all are opaque.
+    #[inline(always)]
+    pub(crate) fn gathered(coverage: &'a Coverage, triangles: &[Triangle], indices: &[u32]) -> Option<Cuts<'a>> {
+        let number = |lane: usize| triangles[indices[lane.min(indices.len() - 1)] as usize].cut();
+        let numbers = std::array::from_fn(number);
+        (numbers != [0; LANES]).then_some(Cuts { coverage, numbers })
+    }
+
+    /// The triangle of a lane.
+    fn triangle(&self, from: &Lines, lane: usize) -> Triangle {
+        Triangle::new(from.corners.map(|corner| corner[lane]), 0).cut_out(self.numbers[lane])
+    }
+}
+
+/// Surface points, their sights and triangles, lane by lane.
+pub(super) struct Lines {
+    pub(super) origin: [Vec3; LANES],
+    pub(super) center: [Vec3; LANES],
+    pub(super) along: [Vec3; LANES],
+    pub(super) across: [Vec3; LANES],
+    pub(super) corners: [[Vec3; LANES]; 3],
+}
+
+/// Eight vectors as they are in lanes.
+#[inline(always)]
+pub(super) fn by_lane<S: Simd>([x, y, z]: Axes<S>) -> [Vec3; LANES] {
+    let (x, y, z): ([f32; LANES], [f32; LANES], [f32; LANES]) = (x.into(), y.into(), z.into());
+    let mut vectors = [Vec3::ZERO; LANES];
+    for lane in 0..LANES {
+        vectors[lane] = Vec3::new(x[lane], y[lane], z[lane]);
+    }
+    vectors
+}
+
+/// Keeps those of the samples, by word and lane, whose ray a triangle stops where it is not cut out.
+#[inline(never)]
+pub(super) fn keep_stopped(
+    cuts: &Cuts,
+    from: &Lines,
+    (set, offsets): (&SampleRows, &[[f32; LANES]; MOST_ROWS as usize]),
+    lanes: u32,
+    samples: &mut [[u32; LANES]; MOST_WORDS as usize],
+) {
+    for lane in (0..LANES).filter(|&lane| lanes >> lane & 1 != 0 && cuts.numbers[lane] != 0) {
+        let triangle = cuts.triangle(from, lane);
+        let sight =
+            Sight { center: from.center[lane], along: from.along[lane], across: from.across[lane], ..Sight::default() };
+        let mut row = 0;
+        for (word, samples) in samples.iter_mut().enumerate().take(set.words as usize) {
+            let mut rest = samples[lane];
+            while rest != 0 {
+                let bit = rest.trailing_zeros();
+                rest &= rest - 1;
+                while row + 1 < set.ends[word] as usize && set.place[row] + set.count[row] <= bit {
+                    row += 1;
+                }
+                let target = sight.scaled_sample(set, row, (bit - set.place[row]) as f32, offsets[row][lane]);
+                if !cuts.coverage.stops(&triangle, from.origin[lane], target) {
+                    samples[lane] &= !(1 << bit);
+                }
+            }
+            row = set.ends[word] as usize;
+        }
+    }
+}
+
+/// Those of `lanes` whose ray to the centre a triangle stops where it is not cut out.
+#[inline(never)]
+pub(super) fn stopped_centers(cuts: &Cuts, from: &Lines, lanes: u32) -> u32 {
+    let stops = |&lane: &usize| {
+        let (origin, center) = (from.origin[lane], from.center[lane]);
+        lanes >> lane & 1 != 0 && cuts.coverage.stops(&cuts.triangle(from, lane), origin, center)
+    };
+    (0..LANES).filter(stops).fold(0, |all, lane| all | 1 << lane)
+}
