@@ -11,7 +11,7 @@
 //!   their box tests err on the side of testing, so that all three give the same bits.
 //! * Zero, negative-zero and subnormal direction components and far-away origins are ordinary input. A zero direction, a ray
 //!   that is not finite and a triangle that is not [usable](Triangle::is_usable) hit nothing.
-//! * Where a triangle is [cut out](coverage) there is nothing to hit.
+//! * Where a triangle is cut out (`coverage`) there is nothing to hit.
 //! * Of opaque triangles with identical corners only the one with the smallest index is held: neither hits nor shadows need the others.
 //!
 //! The structures are built here; devices hold copies ([`Form`]) and walk them with the code in the `.cuh` files next to the Rust

@@ -12,7 +12,7 @@ use lightmesh_scene::Bounds;
 use super::Hit;
 
 /// The corners of a triangle as the structures store them: three `float4`, the index in the mesh as bits of the first `w`, those of the second
-/// the number of a triangle that is [cut out](super::coverage).
+/// the number of a triangle that is cut out (`coverage`).
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(16))]
 pub struct Triangle {
