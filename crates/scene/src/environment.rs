@@ -15,6 +15,7 @@ use std::sync::OnceLock;
 use glam::Vec3;
 
 pub use decode::EnvironmentError;
+use irradiance::Irradiance;
 pub use levels::EnvironmentLevel;
 pub use sky::{Sky, SkyError, SkyKind, Surroundings};
 pub use sun::Sun;
@@ -37,11 +38,20 @@ pub struct Environment {
     levels: Levels,
 }
 
-/// The image, and smaller and smaller means of it, which are made when they are asked for.
+/// The image, and what follows from it, which is made when it is asked for.
 #[derive(Clone, Debug)]
 struct Levels {
     image: Vec<[f32; 3]>,
+    /// Smaller and smaller means.
     lower: OnceLock<Vec<EnvironmentLevel>>,
+    /// What surfaces receive.
+    irradiance: OnceLock<Irradiance>,
+}
+
+impl From<Vec<[f32; 3]>> for Levels {
+    fn from(image: Vec<[f32; 3]>) -> Levels {
+        Levels { image, lower: OnceLock::new(), irradiance: OnceLock::new() }
+    }
 }
 
 impl PartialEq for Levels {
@@ -57,8 +67,7 @@ impl Environment {
     /// If there are not as many as the size says, or none.
     pub fn new(name: impl Into<String>, size: [u32; 2], texels: Vec<[f32; 3]>, up: Up) -> Environment {
         assert!(!texels.is_empty() && texels.len() as u64 == u64::from(size[0]) * u64::from(size[1]), "{size:?}");
-        let levels = Levels { image: texels, lower: OnceLock::new() };
-        Environment { name: name.into(), size, frame: frame(up), sun: None, levels }
+        Environment { name: name.into(), size, frame: frame(up), sun: None, levels: texels.into() }
     }
 
     /// Turned clockwise as seen from above, by an angle in degrees: by 90, what was in the north is in the east.
@@ -71,15 +80,16 @@ impl Environment {
             (up.dot(way) * up + (cos * right + sin * ahead) * east + (cos * ahead - sin * right) * north).as_vec3()
         };
         self.frame = [east, up, north].map(turned);
+        self.levels.irradiance = OnceLock::new();
         self.sun = self.sun.map(|sun| Sun { direction: turned(sun.direction.as_dvec3()), ..sun });
         self
     }
 
     /// With all radiances multiplied, also that of the sun.
     pub fn scaled(mut self, factor: f32) -> Environment {
-        let scale = |texel: &mut [f32; 3]| *texel = texel.map(|channel| channel * factor);
-        self.levels.image.iter_mut().for_each(scale);
-        self.levels.lower = OnceLock::new();
+        let mut image = std::mem::take(&mut self.levels.image);
+        image.iter_mut().for_each(|texel| *texel = texel.map(|channel| channel * factor));
+        self.levels = image.into();
         self.sun = self.sun.map(|sun| Sun { radiance: factor * sun.radiance, ..sun });
         self
     }

@@ -6,60 +6,83 @@ use glam::{DVec3, Vec3};
 
 use super::{Environment, levels};
 
-/// Irradiance changes so slowly that it is computed from a mean with fewer columns than this.
-const MOST_COLUMNS: u32 = 512;
+/// Irradiance changes so slowly that it is computed from a mean with no more columns than this.
+const MOST_COLUMNS: u32 = 256;
+
+/// What all surfaces receive.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Irradiance {
+    mean: Vec3,
+    terms: [Vec3; 9],
+}
 
 impl Environment {
     /// The mean radiance over all directions, without the sun.
     pub fn mean(&self) -> Vec3 {
-        (self.integral(|_| 1.0) / (4.0 * PI)).as_vec3()
-    }
-
-    /// What a surface that faces `normal` receives of the image, without the sun and with nothing in between.
-    pub fn irradiance(&self, normal: Vec3) -> Vec3 {
-        let normal = normal.as_dvec3();
-        self.integral(|direction| normal.dot(direction).max(0.0)).as_vec3()
+        self.all_irradiance().mean
     }
 
     /// The irradiance of surfaces with a unit normal n, divided by π, within a few percent (Ramamoorthi, Hanrahan: *An Efficient
     /// Representation for Irradiance Environment Maps*, SIGGRAPH 2001): coefficients of 1, x, y, z, xy, yz, zx, z² and x² − y².
     pub fn irradiance_terms(&self) -> [Vec3; 9] {
-        // Spherical harmonics, multiplied by what a cosine keeps of them: 1, 2/3 and 1/4 of each degree.
-        let harmonic = |scale: f64, basis: &dyn Fn(DVec3) -> f64| scale * scale * self.integral(basis);
-        let constant = harmonic(0.282_095, &|_| 1.0);
-        let axis = |basis: &dyn Fn(DVec3) -> f64| 2.0 / 3.0 * harmonic(0.488_603, basis);
-        let product = |basis: &dyn Fn(DVec3) -> f64| 0.25 * harmonic(1.092_548, basis);
-        let zonal = 0.25 * harmonic(0.315_392, &|d| 3.0 * d.z * d.z - 1.0);
-        let terms = [
-            constant - zonal,
-            axis(&|d| d.x),
-            axis(&|d| d.y),
-            axis(&|d| d.z),
-            product(&|d| d.x * d.y),
-            product(&|d| d.y * d.z),
-            product(&|d| d.z * d.x),
-            3.0 * zonal,
-            0.25 * harmonic(0.546_274, &|d| d.x * d.x - d.y * d.y),
-        ];
-        terms.map(|term| term.as_vec3())
+        self.all_irradiance().terms
     }
 
-    /// The integral of radiance times `weight` over all directions.
-    fn integral(&self, weight: impl Fn(DVec3) -> f64) -> DVec3 {
+    fn all_irradiance(&self) -> &Irradiance {
+        self.levels.irradiance.get_or_init(|| Irradiance::of(self))
+    }
+
+    /// What a surface that faces `normal` receives of the image, without the sun and with nothing in between.
+    pub fn irradiance(&self, normal: Vec3) -> Vec3 {
+        let normal = normal.as_dvec3();
+        let [sum] = self.integrals(|direction| [normal.dot(direction).max(0.0)]);
+        sum.as_vec3()
+    }
+
+    /// The integrals of radiance times weights over all directions.
+    fn integrals<const N: usize>(&self, weights: impl Fn(DVec3) -> [f64; N]) -> [DVec3; N] {
         let coarse = self.levels().iter().find(|level| level.size[0] <= MOST_COLUMNS);
         let (size, texels) = match coarse.filter(|_| self.size[0] > MOST_COLUMNS) {
             Some(level) => (level.size, &level.texels),
             None => (self.size, &self.levels.image),
         };
-        let mut sum = DVec3::ZERO;
+        let mut sums = [DVec3::ZERO; N];
         for (row, texels) in texels.chunks_exact(size[0] as usize).enumerate() {
-            let mut of_row = DVec3::ZERO;
+            let solid = f64::from(levels::band(row as u32, size[1])) * TAU / f64::from(size[0]);
             for (column, texel) in texels.iter().enumerate() {
                 let direction = self.direction_in(size, column as u32, row as u32).as_dvec3();
-                of_row += weight(direction) * Vec3::from_array(*texel).as_dvec3();
+                let light = solid * Vec3::from_array(*texel).as_dvec3();
+                for (sum, weight) in sums.iter_mut().zip(weights(direction)) {
+                    *sum += weight * light;
+                }
             }
-            sum += of_row * f64::from(levels::band(row as u32, size[1]));
         }
-        sum * TAU / f64::from(size[0])
+        sums
+    }
+}
+
+impl Irradiance {
+    fn of(environment: &Environment) -> Irradiance {
+        let basis = |d: DVec3| {
+            [1.0, d.x, d.y, d.z, d.x * d.y, d.y * d.z, d.z * d.x, 3.0 * d.z * d.z - 1.0, d.x * d.x - d.y * d.y]
+        };
+        let integrals = environment.integrals(basis);
+        // Squares of the constants of spherical harmonics, and what a cosine keeps of each degree: 1, 2/3 and 1/4.
+        let kept = |index: usize, constant: f64, share: f64| share * constant * constant * integrals[index];
+        let linear = |index: usize| kept(index, 0.488_603, 2.0 / 3.0);
+        let product = |index: usize| kept(index, 1.092_548, 0.25);
+        let zonal = kept(7, 0.315_392, 0.25);
+        let terms = [
+            kept(0, 0.282_095, 1.0) - zonal,
+            linear(1),
+            linear(2),
+            linear(3),
+            product(4),
+            product(5),
+            product(6),
+            3.0 * zonal,
+            kept(8, 0.546_274, 0.25),
+        ];
+        Irradiance { mean: (integrals[0] / (4.0 * PI)).as_vec3(), terms: terms.map(|term| term.as_vec3()) }
     }
 }

@@ -4,6 +4,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::Vec3;
 use hw_skymodel::rgb::{Channel, SkyParams, SkyState};
+use rayon::prelude::*;
 
 use super::sun::SUN_ANGLE;
 use super::{Environment, Sun, SunPosition};
@@ -163,7 +164,7 @@ fn clear(sun: SunPosition, turbidity: f32, ground: Vec3, up: Up) -> Result<Envir
         let radiance = |channel| (LUMENS_PER_WATT * state.radiance(theta, gamma, channel)).max(0.0);
         [radiance(Channel::R), radiance(Channel::G), radiance(Channel::B)]
     };
-    let mut texels: Vec<[f32; 3]> = (0..SIZE[0] * above).map(texel).collect();
+    let mut texels: Vec<[f32; 3]> = (0..SIZE[0] * above).into_par_iter().map(texel).collect();
     texels.resize(SIZE[0] as usize * SIZE[1] as usize, [0.0; 3]);
     let dome = Environment::new("clear sky", SIZE, texels, up);
 

@@ -103,10 +103,11 @@ impl Environment {
         // 3. A disc instead.
         let degrees = (2.0 * (covered / PI).sqrt()).to_degrees().clamp(SUN_ANGLE, 2.0 * HALO);
         let mut rest = self.with_sun(Some(Sun::new(direction, degrees, irradiance)));
+        let mut image = rest.levels.image;
         for index in taken {
-            rest.levels.image[index] = around.to_array();
+            image[index] = around.to_array();
         }
-        rest.levels.lower = std::sync::OnceLock::new();
+        rest.levels = image.into();
         rest
     }
 }
