@@ -29,8 +29,6 @@ pub(crate) struct EnvironmentSpec {
     pub(crate) alone: bool,
 }
 
-/// Where the sun stands if nothing says so: to the left behind a camera that looks north.
-const SUN: SunPosition = SunPosition { elevation: 40.0, azimuth: 225.0 };
 const SKY: ValueError = ValueError::Form {
     form: "clear, uniform or gradient, and options of that sky after semicolons (--help lists them)",
     example: "\"clear;sun=35,200;turbidity=4\"",
@@ -62,14 +60,14 @@ impl FromStr for SkySpec {
         let kind = match kind {
             "clear" => SkyKind::Clear {
                 sun: sun(get("sun"), get("place"), get("time"))?,
-                turbidity: get("turbidity").map_or(Ok(3.0), number)? as f32,
-                ground: color("ground", Vec3::splat(0.2))?,
+                turbidity: get("turbidity").map_or(Ok(f64::from(Sky::TURBIDITY)), number)? as f32,
+                ground: color("ground", Sky::GROUND)?,
             },
             "uniform" => SkyKind::Uniform { color: color("color", Vec3::ONE)? },
             _ => SkyKind::Gradient {
-                zenith: color("zenith", Vec3::new(0.25, 0.45, 0.9))?,
-                horizon: color("horizon", Vec3::new(0.8, 0.9, 1.0))?,
-                ground: color("ground", Vec3::splat(0.2))?,
+                zenith: color("zenith", Sky::ZENITH)?,
+                horizon: color("horizon", Sky::HORIZON)?,
+                ground: color("ground", Sky::GROUND)?,
             },
         };
         let strength = get("strength").map_or(Ok(1.0), |text| not_negative("the strength", text))? as f32;
@@ -123,7 +121,7 @@ fn has(parts: &[(&str, Option<&str>)], key: &str) -> bool {
 fn sun(position: Option<&str>, place: Option<&str>, time: Option<&str>) -> Result<SunPosition, ValueError> {
     let wrong = |problem: lightmesh::scene::SunError| ValueError::Sun { problem };
     match (position, place, time) {
-        (None, None, None) => Ok(SUN),
+        (None, None, None) => Ok(Sky::SUN),
         (Some(position), None, None) => {
             let [elevation, azimuth] = pair(position)?;
             Ok(SunPosition { elevation, azimuth })
@@ -149,14 +147,14 @@ mod tests {
     #[test]
     fn a_sky_has_defaults_for_everything() {
         let sky = |text: &str| text.parse::<SkySpec>().unwrap();
-        assert_eq!(sky("clear"), SkySpec { sky: Sky::clear(SUN), alone: false });
+        assert_eq!(sky("clear"), SkySpec { sky: Sky::clear(Sky::SUN), alone: false });
         let clear = sky("clear; sun=35,200;turbidity=4;ground=.1,.2,.3;north=-20;strength=2;alone");
         let sun = SunPosition { elevation: 35.0, azimuth: 200.0 };
         let kind = SkyKind::Clear { sun, turbidity: 4.0, ground: Vec3::new(0.1, 0.2, 0.3) };
         assert_eq!(clear, SkySpec { sky: Sky { kind, strength: 2.0, north: -20.0 }, alone: true });
         assert_eq!(sky("uniform;color=0.5").sky.kind, SkyKind::Uniform { color: Vec3::splat(0.5) });
         let SkyKind::Gradient { horizon, ground, .. } = sky("gradient;horizon=1").sky.kind else { panic!() };
-        assert_eq!((horizon, ground), (Vec3::ONE, Vec3::splat(0.2)));
+        assert_eq!((horizon, ground), (Vec3::ONE, Sky::GROUND));
         let SkyKind::Clear { sun, .. } = sky("clear;place=48.85,2.35;time=2026-06-21T12:00Z").sky.kind else {
             panic!()
         };

@@ -47,12 +47,12 @@ pub enum EnvironmentError {
         problem: String,
     },
     /// It does not fit into memory.
-    #[error("an environment of {}x{} texels does not fit into memory ({short}), {}; give a smaller image, or raise --memory-limit", size[0], size[1], path.display())]
+    #[error("there is not enough memory for {what}: {short}, {}; give a smaller image, or raise the memory limit", path.display())]
     Memory {
         /// The file.
         path: PathBuf,
-        /// Its width and height.
-        size: [u32; 2],
+        /// What would be held: the file itself, or its texels.
+        what: String,
         /// How much memory is missing.
         short: Short,
     },
@@ -66,7 +66,9 @@ impl Environment {
     pub fn open(path: &Path, up: Up, budget: Budget) -> Result<Environment, EnvironmentError> {
         let bytes = read(path, Portion { budget, ..Portion::ALL }).map_err(|error| match error {
             ReadError::System(cause) => EnvironmentError::Read { path: path.to_owned(), cause },
-            ReadError::Memory(short) => EnvironmentError::Memory { path: path.to_owned(), size: [0; 2], short },
+            ReadError::Memory(short) => {
+                EnvironmentError::Memory { path: path.to_owned(), what: "the file".to_owned(), short }
+            }
             _ => EnvironmentError::NoFile { path: path.to_owned() },
         })?;
         Environment::decode(path, &bytes, up, budget)
@@ -97,7 +99,8 @@ impl Environment {
                 bytes.len()
             )));
         }
-        let memory = |short| EnvironmentError::Memory { path: path.to_owned(), size: [width, height], short };
+        let what = || format!("an environment of {width}x{height} texels");
+        let memory = |short| EnvironmentError::Memory { path: path.to_owned(), what: what(), short };
         budget.check(BYTES_PER_TEXEL * texels).map_err(memory)?;
         let mut limits = Limits::no_limits();
         limits.max_alloc = Some(BYTES_PER_TEXEL * texels + (16 << 20));

@@ -94,6 +94,17 @@ impl From<Environment> for Surroundings {
 }
 
 impl Sky {
+    /// Where the sun stands if nothing says so: to the left behind a camera that looks north.
+    pub const SUN: SunPosition = SunPosition { elevation: 40.0, azimuth: 225.0 };
+    /// Usual haze.
+    pub const TURBIDITY: f32 = 3.0;
+    /// What grass and streets reflect, and the radiance below a gradient.
+    pub const GROUND: Vec3 = Vec3::splat(0.2);
+    /// The zenith of a gradient.
+    pub const ZENITH: Vec3 = Vec3::new(0.25, 0.45, 0.9);
+    /// The horizon of a gradient.
+    pub const HORIZON: Vec3 = Vec3::new(0.8, 0.9, 1.0);
+
     /// A sky of this kind with strength 1.
     pub fn new(kind: SkyKind) -> Sky {
         Sky { kind, strength: 1.0, north: 0.0 }
@@ -101,7 +112,7 @@ impl Sky {
 
     /// A clear sky with usual haze over grass, and the sun at this place.
     pub fn clear(sun: SunPosition) -> Sky {
-        Sky::new(SkyKind::Clear { sun, turbidity: 3.0, ground: Vec3::splat(0.2) })
+        Sky::new(SkyKind::Clear { sun, turbidity: Sky::TURBIDITY, ground: Sky::GROUND })
     }
 
     /// The sky as surroundings of a scene in which `up` is up.

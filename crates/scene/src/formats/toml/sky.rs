@@ -8,9 +8,6 @@ use crate::{Environment, EnvironmentError, LoadError, Moment, Sky, SkyKind, SunP
 
 use glam::Vec3;
 
-/// Where the sun stands if nothing says so.
-const SUN: [f64; 2] = [40.0, 225.0];
-
 /// The sky that a table describes.
 pub(super) fn read(source: &Source, table: &Spanned<SkyEntry>) -> Result<Surroundings, LoadError> {
     let entry = table.get_ref();
@@ -23,15 +20,15 @@ pub(super) fn read(source: &Source, table: &Spanned<SkyEntry>) -> Result<Surroun
             sun: sun(source, table)?,
             turbidity: match &entry.turbidity {
                 Some(turbidity) => source.between("turbidity", turbidity, 1.0, 10.0)? as f32,
-                None => 3.0,
+                None => Sky::TURBIDITY,
             },
-            ground: color("ground", &entry.ground, Vec3::splat(0.2))?,
+            ground: color("ground", &entry.ground, Sky::GROUND)?,
         },
         SkyName::Uniform => SkyKind::Uniform { color: color("color", &entry.color, Vec3::ONE)? },
         SkyName::Gradient => SkyKind::Gradient {
-            zenith: color("zenith", &entry.zenith, Vec3::new(0.25, 0.45, 0.9))?,
-            horizon: color("horizon", &entry.horizon, Vec3::new(0.8, 0.9, 1.0))?,
-            ground: color("ground", &entry.ground, Vec3::splat(0.2))?,
+            zenith: color("zenith", &entry.zenith, Sky::ZENITH)?,
+            horizon: color("horizon", &entry.horizon, Sky::HORIZON)?,
+            ground: color("ground", &entry.ground, Sky::GROUND)?,
         },
     };
     let strength = entry.strength.as_ref().map_or(Ok(1.0), |value| source.between("strength", value, 0.0, 1e9))?;
@@ -81,7 +78,7 @@ fn sun(source: &Source, table: &Spanned<SkyEntry>) -> Result<SunPosition, LoadEr
             }
             return Ok(SunPosition { elevation, azimuth });
         }
-        (None, None, None) => return Ok(SunPosition { elevation: SUN[0], azimuth: SUN[1] }),
+        (None, None, None) => return Ok(Sky::SUN),
         (Some(sun), ..) => {
             return Err(source.refuse("sun", sun, "is given twice", "remove `sun`, or `place` and `time`"));
         }
@@ -117,9 +114,7 @@ pub(super) fn panorama(
         draft.read_nearby(source.path, file.get_ref()).map_err(|error| error.named_by(source.place(file.span())))?;
     let decoded = Environment::decode(&path, &bytes, up(entry.up), draft.border.budget);
     let environment = decoded.map_err(|error| match error {
-        EnvironmentError::Memory { path, size: [width, height], short } => {
-            LoadError::Memory { path, what: format!("an environment of {width}x{height} texels"), short }
-        }
+        EnvironmentError::Memory { path, what, short } => LoadError::Memory { path, what, short },
         error => source.refuse("file", file, "cannot be used", &error.to_string()),
     })?;
     let rotation = entry.rotation.as_ref().map_or(Ok(0.0), |value| source.between("rotation", value, -360.0, 360.0))?;
