@@ -106,6 +106,15 @@ impl RayList {
         all.ray(self.view.as_ref().expect("the rays are a camera's"), pixel, sample)
     }
 
+    /// Makes room for `count` rays that go through samples of pixels.
+    pub(crate) fn reserve(&mut self, count: usize) {
+        self.rays.reserve_exact(count);
+        self.pixels.reserve_exact(count);
+        self.samples.reserve_exact(count);
+        self.shared.reserve_exact(count);
+        self.weights.reserve_exact(count);
+    }
+
     /// Adds the rays of another list, which goes through samples of pixels as this does.
     pub(crate) fn append(&mut self, mut other: RayList) {
         self.rays.append(&mut other.rays);

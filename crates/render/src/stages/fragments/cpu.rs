@@ -46,7 +46,12 @@ pub(crate) fn fragments(
         lists
     };
     let parts: Vec<[(RayList, Vec<Hit>); 2]> = wave.rays.pixels.par_chunks(BATCH).map(of_batch).collect();
-    let mut lists = [(); 2].map(|()| (wave.rays.empty(), Vec::new()));
+    let mut lists = [0, 1].map(|list| {
+        let count = parts.iter().map(|part| part[list].1.len()).sum();
+        let mut rays = wave.rays.empty();
+        rays.reserve(count);
+        (rays, Vec::with_capacity(count))
+    });
     for part in parts {
         for ((rays, hits), (part_rays, mut part_hits)) in lists.iter_mut().zip(part) {
             rays.append(part_rays);
