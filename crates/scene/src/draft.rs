@@ -356,9 +356,8 @@ impl Draft {
         let list = lights.map(|(light, world)| moved(light, geometry.to_local(world))).collect();
         let mut lights = Lights { list, ambient: self.ambient, background: self.background, environment: None };
         // What else the file says of lights, it means.
-        if let Some(Surroundings { environment, sun }) = self.surroundings {
-            lights.list.splice(0..0, sun);
-            lights.environment = Some(environment.into());
+        if let Some(surroundings) = self.surroundings {
+            lights.add(surroundings);
         }
         Ok(Scene {
             name,

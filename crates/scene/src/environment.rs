@@ -13,6 +13,7 @@ use std::f32::consts::{FRAC_1_PI, PI, TAU};
 use std::sync::OnceLock;
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 pub use decode::EnvironmentError;
 use irradiance::Irradiance;
@@ -70,6 +71,12 @@ impl Environment {
         Environment { name: name.into(), size, frame: frame(up), sun: None, levels: texels.into() }
     }
 
+    /// From what is seen along each direction.
+    pub(crate) fn seen(name: &str, size: [u32; 2], up: Up, radiance: impl Fn(Vec3) -> Vec3 + Sync) -> Environment {
+        let texel = |index: u32| radiance(direction(frame(up), size, [index % size[0], index / size[0]])).to_array();
+        Environment::new(name, size, (0..size[0] * size[1]).into_par_iter().map(texel).collect(), up)
+    }
+
     /// Turned clockwise as seen from above, by an angle in degrees: by 90, what was in the north is in the east.
     pub fn turned(mut self, degrees: f32) -> Environment {
         let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
@@ -124,27 +131,9 @@ impl Environment {
         self.levels.lower.get_or_init(|| levels::of(self.size, &self.levels.image))
     }
 
-    /// Bytes of the image and of its levels.
-    pub fn memory(&self) -> usize {
-        let lower: usize = self.levels().iter().map(|level| size_of_val(level.texels.as_slice())).sum();
-        size_of_val(self.levels.image.as_slice()) + lower
-    }
-
     /// The direction of the middle of a texel, in the scene.
     pub fn direction(&self, column: u32, row: u32) -> Vec3 {
-        self.direction_in(self.size, column, row)
-    }
-
-    /// The same for an image of another size.
-    fn direction_in(&self, size: [u32; 2], column: u32, row: u32) -> Vec3 {
-        let [width, height] = size.map(|side| side as f32);
-        self.from_angles(TAU * ((column as f32 + 0.5) / width - 0.5), PI * (0.5 - (row as f32 + 0.5) / height))
-    }
-
-    /// The direction with this azimuth, clockwise from north, and elevation, both in radians.
-    pub fn from_angles(&self, azimuth: f32, elevation: f32) -> Vec3 {
-        let [east, up, north] = self.frame;
-        elevation.cos() * (azimuth.sin() * east + azimuth.cos() * north) + elevation.sin() * up
+        direction(self.frame, self.size, [column, row])
     }
 
     /// The texel in which a direction of the scene lies: column and row.
@@ -153,6 +142,23 @@ impl Environment {
         let place = [0.5 + 0.5 * FRAC_1_PI * east.atan2(north), 0.5 - FRAC_1_PI * up.atan2(east.hypot(north))];
         [0, 1].map(|axis| ((place[axis] * self.size[axis] as f32) as u32).min(self.size[axis] - 1))
     }
+}
+
+/// The direction of the middle of a texel, column and row, of a panorama of this size.
+fn direction(frame: [Vec3; 3], size: [u32; 2], [column, row]: [u32; 2]) -> Vec3 {
+    let [width, height] = size.map(|side| side as f32);
+    let azimuth = TAU * ((column as f32 + 0.5) / width - 0.5);
+    from_angles(frame, azimuth, PI * (0.5 - (row as f32 + 0.5) / height))
+}
+
+/// The direction with this azimuth, clockwise from north, and elevation, both in radians.
+fn from_angles([east, up, north]: [Vec3; 3], azimuth: f32, elevation: f32) -> Vec3 {
+    elevation.cos() * (azimuth.sin() * east + azimuth.cos() * north) + elevation.sin() * up
+}
+
+/// The luminance of a colour in linear sRGB.
+fn luminance(color: Vec3) -> f32 {
+    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
 /// East, up and north of a scene.

@@ -39,10 +39,14 @@ impl Lights {
     /// The light of a sky or a panorama, in which the scene stands from now on: it takes the place of the ambient light, the background
     /// and all directional lights; other lights stay.
     pub fn surround(&mut self, surroundings: Surroundings) {
-        let Surroundings { environment, sun } = surroundings;
         self.list.retain(|light| !matches!(light.kind, LightKind::Directional { .. }));
-        self.list.splice(0..0, sun);
         (self.ambient, self.background) = (None, None);
+        self.add(surroundings);
+    }
+
+    /// The light of a sky or a panorama in addition to all others.
+    pub(crate) fn add(&mut self, Surroundings { environment, sun }: Surroundings) {
+        self.list.splice(0..0, sun);
         self.environment = Some(environment.into());
     }
 

@@ -6,7 +6,7 @@ mod missing_uvs;
 
 use glam::Affine2;
 
-pub(crate) use decode::{Undecodable, decode};
+pub(crate) use decode::{Undecodable, checked_texels, decode};
 pub(crate) use files::TextureFiles;
 pub(crate) use missing_uvs::untextured;
 

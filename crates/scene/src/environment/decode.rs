@@ -10,6 +10,7 @@ use lightmesh_memory::{Budget, Short};
 
 use super::Environment;
 use crate::Up;
+use crate::texture::checked_texels;
 
 /// The longest side, in texels.
 const MAX_SIDE: u32 = 32768;
@@ -87,18 +88,7 @@ impl Environment {
         let damaged = |error: image::ImageError| malformed(format!("its data are damaged or not supported: {error}"));
         let mut decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder().map_err(damaged)?;
         let (width, height) = decoder.dimensions();
-        let texels = u64::from(width) * u64::from(height);
-        if texels == 0 || width.max(height) > MAX_SIDE {
-            return Err(malformed(format!(
-                "it has {width} x {height} texels, but only 1 to {MAX_SIDE} per side are supported"
-            )));
-        }
-        if texels > MAX_TEXELS_PER_BYTE * bytes.len() as u64 {
-            return Err(malformed(format!(
-                "its header says {width} x {height} texels, too many for {} bytes",
-                bytes.len()
-            )));
-        }
+        let texels = checked_texels([width, height], MAX_SIDE, MAX_TEXELS_PER_BYTE, bytes).map_err(malformed)?;
         let what = || format!("an environment of {width}x{height} texels");
         let memory = |short| EnvironmentError::Memory { path: path.to_owned(), what: what(), short };
         budget.check(BYTES_PER_TEXEL * texels).map_err(memory)?;

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec3, Vec3};
 
-use super::{Environment, levels};
+use super::{Environment, direction, levels};
 
 /// Irradiance changes so slowly that it is computed from a mean with no more columns than this.
 const MOST_COLUMNS: u32 = 256;
@@ -50,9 +50,9 @@ impl Environment {
         for (row, texels) in texels.chunks_exact(size[0] as usize).enumerate() {
             let solid = f64::from(levels::band(row as u32, size[1])) * TAU / f64::from(size[0]);
             for (column, texel) in texels.iter().enumerate() {
-                let direction = self.direction_in(size, column as u32, row as u32).as_dvec3();
+                let toward = direction(self.frame(), size, [column as u32, row as u32]).as_dvec3();
                 let light = solid * Vec3::from_array(*texel).as_dvec3();
-                for (sum, weight) in sums.iter_mut().zip(weights(direction)) {
+                for (sum, weight) in sums.iter_mut().zip(weights(toward)) {
                     *sum += weight * light;
                 }
             }

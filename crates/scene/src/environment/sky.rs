@@ -4,10 +4,9 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::Vec3;
 use hw_skymodel::rgb::{Channel, SkyParams, SkyState};
-use rayon::prelude::*;
 
 use super::sun::SUN_ANGLE;
-use super::{Environment, Sun, SunPosition};
+use super::{Environment, Sun, SunPosition, frame, from_angles, luminance};
 use crate::{Light, Up};
 
 /// Width and height of the panorama of a clear sky. Half of the rows are above the horizon.
@@ -137,10 +136,6 @@ impl Sky {
     }
 }
 
-fn toward(environment: &Environment, sun: SunPosition) -> Vec3 {
-    environment.from_angles(sun.azimuth.to_radians() as f32, sun.elevation.to_radians() as f32)
-}
-
 fn in_range(what: &'static str, value: f64, least: f64, most: f64) -> Result<(), SkyError> {
     if (least..=most).contains(&value) { Ok(()) } else { Err(SkyError::Range { what, value, least, most }) }
 }
@@ -164,30 +159,27 @@ fn clear(sun: SunPosition, turbidity: f32, ground: Vec3, up: Up) -> Result<Envir
     let state = SkyState::new(&params).expect("its parameters are in range");
 
     // 1. The sky, in candela per square metre: the model gives radiance, of which 683 lumens are a watt.
-    let empty = Environment::new("clear sky", SIZE, vec![[0.0; 3]; SIZE[0] as usize * SIZE[1] as usize], up);
-    let direction = toward(&empty, sun);
-    let above = SIZE[1] / 2;
-    let [_, zenith, _] = empty.frame();
-    let texel = |index: u32| {
-        let way = empty.direction(index % SIZE[0], index / SIZE[0]);
-        let theta = zenith.dot(way).clamp(0.0, 1.0).acos();
+    let frame = frame(up);
+    let direction = from_angles(frame, sun.azimuth.to_radians() as f32, elevation);
+    let [_, zenith, _] = frame;
+    let dome = Environment::seen("clear sky", SIZE, up, |way| {
+        if zenith.dot(way) < 0.0 {
+            return Vec3::ZERO;
+        }
+        let theta = zenith.dot(way).min(1.0).acos();
         let gamma = direction.dot(way).clamp(-1.0, 1.0).acos();
         let radiance = |channel| (LUMENS_PER_WATT * state.radiance(theta, gamma, channel)).max(0.0);
-        [radiance(Channel::R), radiance(Channel::G), radiance(Channel::B)]
-    };
-    let mut texels: Vec<[f32; 3]> = (0..SIZE[0] * above).into_par_iter().map(texel).collect();
-    texels.resize(SIZE[0] as usize * SIZE[1] as usize, [0.0; 3]);
-    let dome = Environment::new("clear sky", SIZE, texels, up);
+        Vec3::new(radiance(Channel::R), radiance(Channel::G), radiance(Channel::B))
+    });
 
     // 2. The sun, and the ground that both light.
     let illuminance = sun_illuminance(elevation, turbidity);
     let from_sky = dome.irradiance(zenith);
     let lit = ground * (from_sky + elevation.sin() * illuminance) / PI;
     let mut texels = dome.levels.image;
-    texels[(SIZE[0] * above) as usize..].fill(lit.to_array());
+    texels[(SIZE[0] * SIZE[1] / 2) as usize..].fill(lit.to_array());
 
     // 3. White that faces the sun shows 1.
-    let luminance = |color: Vec3| color.dot(Vec3::new(0.2126, 0.7152, 0.0722));
     let facing = luminance(illuminance + from_sky) / PI;
     let environment = Environment::new("clear sky", SIZE, texels, up);
     Ok(environment.with_sun(Some(Sun::new(direction, SUN_ANGLE, illuminance))).scaled(1.0 / facing))
@@ -226,13 +218,11 @@ fn sun_illuminance(elevation: f32, turbidity: f32) -> Vec3 {
 mod tests {
     use super::*;
 
-    const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
-
     #[test]
     fn the_sun_gives_what_is_measured_on_clear_days() {
         // IES: 133.8 klx · exp(-0.21 m) on a clear day, which has about this turbidity.
         for elevation in [15.0f32, 30.0, 45.0, 60.0, 90.0] {
-            let found = sun_illuminance(elevation.to_radians(), 2.0).dot(LUMINANCE);
+            let found = luminance(sun_illuminance(elevation.to_radians(), 2.0));
             let expected = 133_800.0 * (-0.21 / elevation.to_radians().sin()).exp();
             assert!((0.85..1.15).contains(&(found / expected)), "{elevation}: {found}, not {expected}");
         }
@@ -246,9 +236,9 @@ mod tests {
         for elevation in [15.0f64, 30.0, 45.0, 60.0] {
             let sun = SunPosition { elevation, azimuth: 120.0 };
             let environment = clear(sun, 2.5, Vec3::splat(0.2), Up::Z).unwrap();
-            let sun_of_sky = environment.sun().unwrap().irradiance().dot(LUMINANCE);
-            let scale = sun_illuminance(elevation.to_radians() as f32, 2.5).dot(LUMINANCE) / sun_of_sky;
-            let found = scale * environment.irradiance(Vec3::Z).dot(LUMINANCE);
+            let sun_of_sky = luminance(environment.sun().unwrap().irradiance());
+            let scale = luminance(sun_illuminance(elevation.to_radians() as f32, 2.5)) / sun_of_sky;
+            let found = scale * luminance(environment.irradiance(Vec3::Z));
             let expected = 800.0 + 15_500.0 * (elevation.to_radians().sin() as f32).sqrt();
             assert!((0.6..1.6).contains(&(found / expected)), "{elevation}: {found}, not {expected}");
         }

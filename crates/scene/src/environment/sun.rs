@@ -1,10 +1,10 @@
 //! The sun of an environment: its disc, and the light that it is.
 
-use std::f32::consts::PI;
+use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 
-use super::{Environment, levels};
+use super::{Environment, levels, luminance};
 use crate::{Light, LightError};
 
 /// The angular diameter of the sun, degrees.
@@ -50,53 +50,68 @@ impl Sun {
     }
 }
 
+/// A texel near the brightest one.
+struct Near {
+    texel: usize,
+    /// Degrees from there.
+    angle: f32,
+    direction: Vec3,
+    /// Its solid angle, but for the width.
+    band: f32,
+}
+
 impl Environment {
     /// Takes the sun out of the image, if there is one: what is far brighter than the image around it, within a few degrees, and gives a
     /// tenth of the light, at least. It becomes a disc of the same irradiance, at least as large as the sun.
     pub fn find_sun(self) -> Environment {
         let [width, height] = self.size;
-        let luminance = |texel: &[f32; 3]| Vec3::from_array(*texel).dot(Vec3::new(0.2126, 0.7152, 0.0722));
-        let brightest = self.levels.image.iter().enumerate().max_by(|a, b| luminance(a.1).total_cmp(&luminance(b.1)));
-        let Some((index, peak)) = brightest.map(|(index, texel)| (index as u32, luminance(texel))) else { return self };
+        let all = self.levels.image.iter().map(|&texel| luminance(texel.into())).enumerate();
+        let Some((index, peak)) = all.max_by(|a, b| a.1.total_cmp(&b.1)) else { return self };
+        let index = index as u32;
         let toward = self.direction(index % width, index / width);
 
         // 1. What it is seen on: the mean of a ring around it, as texels that are not much brighter.
-        let texel = |column: u32, row: u32| (row * width + column) as usize;
-        let angle =
-            |column: u32, row: u32| self.direction(column, row).dot(toward).clamp(-1.0, 1.0).acos().to_degrees();
-        let places = || (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+        // No other rows come as near.
+        let rows = (3.0 * HALO / 180.0 * height as f32) as u32 + 2;
+        let rows = (index / width).saturating_sub(rows)..height.min(index / width + rows);
+        let near: Vec<Near> = rows
+            .flat_map(|row| (0..width).map(move |column| (column, row)))
+            .filter_map(|(column, row)| {
+                let direction = self.direction(column, row);
+                let angle = direction.dot(toward).clamp(-1.0, 1.0).acos().to_degrees();
+                let texel = (row * width + column) as usize;
+                (angle < 3.0 * HALO).then(|| Near { texel, angle, direction, band: levels::band(row, height) })
+            })
+            .collect();
         let (mut ring, mut weight) = (Vec3::ZERO, 0.0);
-        for (column, row) in places().filter(|&(column, row)| (HALO..3.0 * HALO).contains(&angle(column, row))) {
-            let band = levels::band(row, height);
-            ring += band * Vec3::from_array(self.levels.image[texel(column, row)]);
-            weight += band;
+        for near in near.iter().filter(|near| near.angle >= HALO) {
+            ring += near.band * Vec3::from_array(self.levels.image[near.texel]);
+            weight += near.band;
         }
         if weight == 0.0 {
             return self;
         }
         let around = ring / weight;
-        let threshold = CONTRAST * luminance(&around.to_array());
+        let threshold = CONTRAST * luminance(around);
         if peak <= threshold {
             return self;
         }
 
         // 2. What is brighter, within its halo.
-        let solid = |row: u32| levels::band(row, height) * std::f32::consts::TAU / width as f32;
         let (mut irradiance, mut middle, mut covered, mut taken) = (Vec3::ZERO, Vec3::ZERO, 0.0, Vec::new());
-        for (column, row) in places().filter(|&(column, row)| angle(column, row) < HALO) {
-            let index = texel(column, row);
-            let radiance = Vec3::from_array(self.levels.image[index]);
-            if luminance(&radiance.to_array()) > threshold {
-                let excess = solid(row) * (radiance - around).max(Vec3::ZERO);
+        for near in near.iter().filter(|near| near.angle < HALO) {
+            let radiance = Vec3::from_array(self.levels.image[near.texel]);
+            if luminance(radiance) > threshold {
+                let solid = near.band * TAU / width as f32;
+                let excess = solid * (radiance - around).max(Vec3::ZERO);
                 irradiance += excess;
-                middle += luminance(&excess.to_array()) * self.direction(column, row);
-                covered += solid(row);
-                taken.push(index);
+                middle += luminance(excess) * near.direction;
+                covered += solid;
+                taken.push(near.texel);
             }
         }
         let Some(direction) = middle.try_normalize() else { return self };
-        let sky = luminance(&self.irradiance(direction).to_array());
-        if luminance(&irradiance.to_array()) < LEAST_SHARE * sky {
+        if luminance(irradiance) < LEAST_SHARE * luminance(self.irradiance(direction)) {
             return self;
         }
 

@@ -17,10 +17,10 @@ fn black(size: [u32; 2]) -> Vec<[f32; 3]> {
 #[test]
 fn the_middle_is_north_and_east_is_to_its_right() {
     let map = |up| Environment::new("", [4, 2], black([4, 2]), up);
-    assert!(near(map(Up::Y).from_angles(0.0, 0.0), Vec3::NEG_Z));
-    assert!(near(map(Up::Y).from_angles(0.5 * PI, 0.0), Vec3::X));
-    assert!(near(map(Up::Z).from_angles(0.0, 0.0), Vec3::Y));
-    assert!(near(map(Up::Z).from_angles(PI, 0.0), Vec3::NEG_Y));
+    assert!(near(from_angles(map(Up::Y).frame(), 0.0, 0.0), Vec3::NEG_Z));
+    assert!(near(from_angles(map(Up::Y).frame(), 0.5 * PI, 0.0), Vec3::X));
+    assert!(near(from_angles(map(Up::Z).frame(), 0.0, 0.0), Vec3::Y));
+    assert!(near(from_angles(map(Up::Z).frame(), PI, 0.0), Vec3::NEG_Y));
     let half = 0.5f32.sqrt();
     // The third of four columns begins in the north.
     assert!(near(map(Up::Y).direction(2, 0), Vec3::new(0.5, half, -0.5)), "{}", map(Up::Y).direction(2, 0));
@@ -38,7 +38,7 @@ fn the_middle_is_north_and_east_is_to_its_right() {
 #[test]
 fn it_turns_clockwise() {
     let map = Environment::new("", [4, 2], black([4, 2]), Up::Y).turned(90.0);
-    assert!(near(map.from_angles(0.0, 0.0), Vec3::X), "what was in the north is in the east");
+    assert!(near(from_angles(map.frame(), 0.0, 0.0), Vec3::X), "what was in the north is in the east");
 }
 
 #[test]

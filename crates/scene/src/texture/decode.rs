@@ -57,14 +57,7 @@ pub(crate) fn decode(name: &str, bytes: &[u8], budget: Budget) -> Result<Texture
     };
     let mut decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder().map_err(malformed)?;
     let (width, height) = decoder.dimensions();
-    let texels = u64::from(width) * u64::from(height);
-    if texels == 0 || width.max(height) > MAX_SIDE {
-        let reason = format!("it has {width} x {height} texels, but only 1 to {MAX_SIDE} per side are supported");
-        return Err(reason.into());
-    }
-    if texels > MAX_TEXELS_PER_BYTE * bytes.len() as u64 {
-        return Err(format!("its header says {width} x {height} texels, too many for {} bytes", bytes.len()).into());
-    }
+    let texels = checked_texels([width, height], MAX_SIDE, MAX_TEXELS_PER_BYTE, bytes)?;
     // As stored in the file, and as they will be kept.
     let kept = if decoder.color_type() == ColorType::Rgba8 { 0 } else { size_of::<[u8; 4]>() as u64 * texels };
     let needed = decoder.total_bytes() + kept;
@@ -74,6 +67,23 @@ pub(crate) fn decode(name: &str, bytes: &[u8], budget: Budget) -> Result<Texture
     decoder.set_limits(limits).map_err(malformed)?;
     let picture = DynamicImage::from_decoder(decoder).map_err(malformed)?.into_rgba8();
     Ok(Texture { name: name.to_owned(), size: [width, height], texels: texels_of(picture.into_raw()) })
+}
+
+/// The number of texels that the header of an image says; an error if a side has none or too many, or if the file is too short for them.
+pub(crate) fn checked_texels(
+    [width, height]: [u32; 2],
+    most_per_side: u32,
+    most_per_byte: u64,
+    bytes: &[u8],
+) -> Result<u64, String> {
+    let texels = u64::from(width) * u64::from(height);
+    if texels == 0 || width.max(height) > most_per_side {
+        return Err(format!("it has {width} x {height} texels, but only 1 to {most_per_side} per side are supported"));
+    }
+    if texels > most_per_byte * bytes.len() as u64 {
+        return Err(format!("its header says {width} x {height} texels, too many for {} bytes", bytes.len()));
+    }
+    Ok(texels)
 }
 
 /// The same bytes as texels; nothing is copied unless their capacity is no multiple of a texel.

@@ -11,6 +11,7 @@ use super::{
     nodes,
     uri::{self, Uri},
 };
+use crate::formats::colors::linear;
 use crate::{Environment, LoadError, Surroundings, Texture, Up, draft::Draft, texture::Undecodable, texture::decode};
 
 /// The columns of a panorama for each texel of a face's side.
@@ -78,14 +79,9 @@ fn surroundings(
         Unusable::Load(LoadError::Memory { path: path.to_owned(), what, short })
     })?;
     let cube = Cube { faces: &faces, side };
-    let empty = Environment::new("environment", size, vec![[0.0; 3]; texels as usize], Up::Y);
     let back = rotation.normalize().conjugate();
-    let seen = |index: u32| {
-        let direction = empty.direction(index % size[0], index / size[0]);
-        (intensity * cube.at(back * direction)).to_array()
-    };
-    let texels = (0..texels as u32).map(seen).collect();
-    Ok(Environment::new("environment", size, texels, Up::Y).find_sun().into())
+    let seen = |direction| intensity * cube.at(back * direction);
+    Ok(Environment::seen("environment", size, Up::Y, seen).find_sun().into())
 }
 
 /// The picture of a face.
@@ -160,9 +156,5 @@ impl Cube<'_> {
 
 /// Colours are divided by alpha (RGBD), so that they can be brighter than 1; pictures without alpha are what they show.
 fn radiance([red, green, blue, divisor]: [u8; 4]) -> Vec3 {
-    let linear = |code: u8| {
-        let value = f32::from(code) / 255.0;
-        if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
-    };
-    Vec3::new(linear(red), linear(green), linear(blue)) * (255.0 / f32::from(divisor.max(1)))
+    linear([red, green, blue].map(|code| f32::from(code) / 255.0).into()) * (255.0 / f32::from(divisor.max(1)))
 }
