@@ -152,6 +152,7 @@ def arguments(scene, outputs, folder, dice):
         "--aa": (["1", "3", "40"], ["0", "100000"]),
         "--crop": (["0,0,64,48", "7,9,20,1"], ["0,0,0,1", "1,2,3", "4294967295,0,2,2", "60,40,100000,1"]),
         "--background": (["transparent", "0.5", "1,0,0"], ["nan"]),
+        "--ambient-light": (["constant", "mesh"], ["sky"]),
         "--sky": (["clear", "clear;sun=3,90;alone", "uniform;color=0.5", "gradient;north=30"], ["blue", "clear;sun=-5,0"]),
         "--threads": (["1", "3"], ["0", "100000"]),
     }

@@ -35,6 +35,8 @@ macro_rules! counter_table {
             long_tests_saved: sum long_tests_saved,
             /// Shadow rays from surface points.
             shadow_rays: sum shadow_rays,
+            /// Rays that gather light for surfaces.
+            gather_rays: sum gather_rays,
             /// Walks through a grid that reached the bound on their steps: never, unless that bound is wrong.
             overruns: sum overruns,
         }

@@ -5,6 +5,7 @@ use lightmesh_memory::Short;
 use crate::accel::{Hit, Ray};
 use crate::error::RenderError;
 use crate::footprint::Cone;
+use crate::gathered::Gathering;
 use crate::plan::Plan;
 
 /// Memory reserved for everything that is not counted below: stacks, the segments in flight, allocator overhead.
@@ -34,6 +35,8 @@ pub(crate) fn rows_on_host(plan: &Plan) -> Result<u32, RenderError> {
     // The rows around a band are rendered with it.
     let fixed = plan.image_bytes() + RESERVE + plan.margin_rows() * row;
     fits(plan, "the image, and masks and visibility of one row", fixed + row)?;
+    let fixed = fixed + plan.gathering.as_ref().map_or(0, Gathering::memory);
+    fits(plan, "the image, one row of it, and what gathers light", fixed + row)?;
     let rows = plan.left.map_or(u64::MAX, |left| (left - fixed) / row);
     Ok(rows.min(u64::from(plan.size[1])) as u32)
 }

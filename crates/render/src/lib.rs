@@ -20,6 +20,7 @@ mod data;
 mod device;
 mod error;
 mod footprint;
+mod gathered;
 mod gpu;
 mod job;
 pub mod light_mesh;
@@ -57,6 +58,7 @@ pub use data::visibility::Visibility;
 pub use device::{Choice, Device, DeviceReport, UnknownDevice, devices};
 pub use error::RenderError;
 pub use footprint::Cone;
+pub use gathered::{Gathering, SurfaceLight};
 pub use job::{Job, Sampling};
 pub use observer::{Observer, Progress, Unobserved};
 pub use plan::{Footprint, Plan};
@@ -64,8 +66,8 @@ pub use prepared::{PreparedGeometry, PreparedScene};
 pub use probes::{GivenPoints, PointVisibility, Probes};
 pub use renderer::{Frame, Renderer, render_on, render_on_with, visibility_on};
 pub use settings::{
-    Acceleration, Crop, Filter, Lookup, Mode, Quality, Setting, Settings, ShadowTests, Sharing, ShortTests, Step,
-    UnknownCrop, UnknownStep,
+    Acceleration, AmbientSource, Crop, Filter, Lookup, Mode, Quality, Setting, Settings, ShadowTests, Sharing,
+    ShortTests, Step, UnknownCrop, UnknownStep,
 };
 pub use stage::{Seconds, Stage};
 pub use stats::{CameraStats, DeviceStats, LatticeStats, MemoryStats, SceneStats, SettingsStats, Stats};

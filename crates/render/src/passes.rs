@@ -13,6 +13,7 @@ use crate::data::lights::LightGroup;
 use crate::data::picture::Picture;
 use crate::data::visibility::Visibility;
 use crate::error::RenderError;
+use crate::gathered::Gathering;
 use crate::plan::Plan;
 use crate::probes::GivenPoints;
 use crate::stage::Stage;
@@ -154,8 +155,12 @@ impl<B: Backend> Passes<'_, B> {
     fn light(&self, wave: &WaveOf<B>, film: &mut B::Film) -> Result<(), RenderError> {
         let Passes { run, technique, plan, .. } = self;
         let n = run.backend.ray_count(wave.rays);
+        let gather = |how: &Gathering| {
+            run.stage(Stage::Gather, [n; 2], |backend| run.with_gathered(|kept| backend.gather(wave, how, kept)))
+        };
+        let gathered = plan.gathering.as_ref().map(gather).transpose()?;
         technique.visibility(run, wave, plan.lights, &mut |visibility| {
-            run.stage(Stage::Shade, [n; 2], |backend| backend.shade(wave, &visibility, film))
+            run.stage(Stage::Shade, [n; 2], |backend| backend.shade(wave, &visibility, gathered.as_ref(), film))
         })
     }
 
@@ -202,9 +207,10 @@ impl<B: Backend> Passes<'_, B> {
 
     /// Those of the stages that find what its surface points reflect.
     fn pieces_of_light(&self, rays: u64) -> u64 {
-        // The technique's stages, shading; long tests and shading again for each further group.
+        // The technique's stages, gathering, shading; long tests and shading again for each further group.
         let further = self.plan.lights.iter().len() as u64 - 1;
-        rays * (self.technique.stages().len() as u64 + 1 + 2 * further)
+        let gathering = u64::from(self.plan.gathering.is_some());
+        rays * (self.technique.stages().len() as u64 + gathering + 1 + 2 * further)
     }
 }
 

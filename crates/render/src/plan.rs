@@ -4,6 +4,7 @@ use crate::accel::Hit;
 use crate::antialiasing::Antialiasing;
 use crate::data::lights::LightGroups;
 use crate::data::mattes::{ranks_of, slots_of};
+use crate::gathered::Gathering;
 
 /// Bytes that a technique needs per ray at its peak, on the host and on a device, with the shares of lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,6 +32,8 @@ pub struct Plan {
     pub layers: Option<usize>,
     /// Whether these have what compositors need, too: the radiance of each light by itself, numbers and mattes of objects and materials.
     pub compositing: bool,
+    /// How light is gathered; `None`: ambient light is constant.
+    pub gathering: Option<Gathering>,
     /// Groups of lights whose visibility is held at the same time.
     pub lights: LightGroups,
     /// Most rows to render at once; `None`: as many as fit into memory.
@@ -57,6 +60,7 @@ impl Plan {
             caught: false,
             layers: None,
             compositing: false,
+            gathering: None,
             lights,
             most_rows: None,
             memory_limit: left,

@@ -99,6 +99,7 @@ pub struct SettingsStats {
     pub accel: &'static str,
     pub camera: CameraStats,
     pub ambient: [f32; 3],
+    pub ambient_light: &'static str,
     pub background: [f32; 3],
     /// The name of the sky or the panorama.
     pub environment: Option<String>,

@@ -110,6 +110,11 @@ impl View {
         if self.perspective { [0.0, pixel] } else { [pixel, 0.0] }
     }
 
+    /// Where the camera is.
+    pub(crate) fn origin(&self) -> Vec3 {
+        self.origin
+    }
+
     /// The view as a record for kernels.
     pub(crate) fn record(&self) -> layout::View {
         layout::View {

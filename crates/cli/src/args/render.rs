@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lightmesh::image::{BitDepth, ExrCompression, ExrParts, ExrSamples, Format, View};
-use lightmesh::render::{Crop, Filter, Quality, ShortTests};
+use lightmesh::render::{AmbientSource, Crop, Filter, Quality, ShortTests};
 use lightmesh::scene::{Falloff, Weight};
 use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
 
@@ -168,6 +168,10 @@ pub(crate) struct RenderArgs {
     /// default lights in the space that the camera sees]
     #[arg(long, value_name = "V", allow_hyphen_values = true, help_heading = "Scene")]
     pub(crate) ambient: Option<Color>,
+
+    /// What stands for light that comes from no light directly: from the sky, and from other surfaces
+    #[arg(long, value_name = "SOURCE", value_parser = words::ambient_light(), default_value_t = AmbientSource::Constant, help_heading = "Scene")]
+    pub(crate) ambient_light: AmbientSource,
 
     /// A sky around the scene: clear (Hosek and Wilkie's, with its sun), uniform or gradient, and after semicolons
     /// sun=ELEVATION,AZIMUTH in degrees, clockwise from north, or place=LATITUDE,LONGITUDE and time=2026-06-21T15:00+02:00; turbidity=T

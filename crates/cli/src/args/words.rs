@@ -8,7 +8,7 @@ use lightmesh::scene::{Falloff, SceneFormat, Weight};
 use lightmesh::{
     Acceleration, Lookup, Mode, Transfer,
     image::{BitDepth, ExrCompression, ExrParts, ExrSamples, Format, View},
-    render::{Filter, Quality, ShortTests},
+    render::{AmbientSource, Filter, Quality, ShortTests},
     scene,
 };
 
@@ -31,6 +31,10 @@ pub(super) fn weight() -> impl TypedValueParser<Value = Weight> {
 
 pub(super) fn lookup() -> impl TypedValueParser<Value = Lookup> {
     one_of(Lookup::ALL.iter().map(|lookup| (lookup.name(), lookup.help())))
+}
+
+pub(super) fn ambient_light() -> impl TypedValueParser<Value = AmbientSource> {
+    one_of(AmbientSource::ALL.iter().map(|source| (source.name(), source.help())))
 }
 
 pub(super) fn quality() -> impl TypedValueParser<Value = Quality> {

@@ -18,6 +18,7 @@ pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
         .with_up(args.up.of(args.scene.format()))
         .with_lookup(args.lookup)
         .with_quality(args.quality)
+        .with_ambient_light(args.ambient_light)
         .with_filter(args.filter)
         .with_short_tests(args.short_tests)
         .with_acceleration(acceleration(args)?)

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use glam::Vec3;
+
 use super::table::{stage_table, stages_on_cpu};
 use super::{Backend, Probed, SeenOf, WaveOf};
 use crate::accel::Hit;
@@ -18,6 +20,7 @@ use crate::data::samples::PixelSamples;
 use crate::data::visibility::Visibility;
 use crate::device::cpu_name;
 use crate::error::RenderError;
+use crate::gathered::{self, Gathering, SurfaceLight};
 use crate::job::Job;
 use crate::light_mesh::{LightMesh, UsedPoints};
 use crate::plan::Plan;
@@ -44,6 +47,8 @@ impl Backend for Cpu {
     type Points = UsedPoints;
     type Lit = Lit;
     type Visibility = Visibility;
+    type Gathered = Vec<Vec3>;
+    type SurfaceLight = SurfaceLight;
     type Film = Picture;
     type Table = HostTable;
 
@@ -109,6 +114,10 @@ impl Backend for Cpu {
     }
 
     stage_table!(stages_on_cpu);
+
+    fn gather(&self, wave: &WaveOf<Cpu>, how: &Gathering, kept: &mut SurfaceLight) -> Result<Vec<Vec3>, RenderError> {
+        Ok(gathered::gather(wave, how, kept))
+    }
 
     fn finish(&self, _: &Job) -> Result<(), RenderError> {
         Ok(())

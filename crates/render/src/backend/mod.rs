@@ -30,6 +30,7 @@ use crate::cache::{Kept, Table};
 use crate::data::picture::Picture;
 use crate::data::visibility::Visibility;
 use crate::error::RenderError;
+use crate::gathered::Gathering;
 use crate::job::Job;
 use crate::light_mesh::LightMesh;
 use crate::plan::Plan;
@@ -73,6 +74,10 @@ pub trait Backend: Sized {
     type Lit;
     /// What each surface point sees of each light.
     type Visibility;
+    /// What each surface point receives from its surroundings and from other surfaces.
+    type Gathered;
+    /// What was gathered for a scene.
+    type SurfaceLight: Default;
     /// Some rows of an unfinished image.
     type Film;
     /// What light points of a geometry see, kept from image to image.
@@ -128,6 +133,14 @@ pub trait Backend: Sized {
     fn long_test_count(&self, wave: &WaveOf<Self>, points: &Self::Points) -> usize;
 
     stage_table!(stage_methods);
+
+    /// Finds what each surface point receives from its surroundings and from other surfaces, by what is `kept` and what is missing there.
+    fn gather(
+        &self,
+        wave: &WaveOf<Self>,
+        how: &Gathering,
+        kept: &mut Self::SurfaceLight,
+    ) -> Result<Self::Gathered, RenderError>;
 
     /// Waits for all stages of a band, and adds their counts and times to the job.
     fn finish(&self, job: &Job) -> Result<(), RenderError>;

@@ -16,12 +16,14 @@ pub(crate) struct Run<'a, B: Backend> {
     kept: Option<RefCell<&'a mut Kept<B::Table>>>,
     /// Memory ran short: the rest of the image is rendered without it.
     is_short: Cell<bool>,
+    /// What the image gathers.
+    gathered: RefCell<B::SurfaceLight>,
 }
 
 impl<'a, B: Backend> Run<'a, B> {
     /// A run that has not started.
     pub(crate) fn new(backend: &'a B, job: &'a Job<'a>, kept: Option<&'a mut Kept<B::Table>>) -> Run<'a, B> {
-        Run { backend, job, kept: kept.map(RefCell::new), is_short: Cell::new(false) }
+        Run { backend, job, kept: kept.map(RefCell::new), is_short: Cell::new(false), gathered: RefCell::default() }
     }
 
     /// Runs one stage over a wave of `rays` rays, which counts as `pieces` pieces of work: informs the observer, lets the backend
@@ -48,6 +50,11 @@ impl<'a, B: Backend> Run<'a, B> {
             Some(kept) if !self.is_short.get() => work(Some(&mut kept.borrow_mut())),
             _ => work(None),
         }
+    }
+
+    /// Runs `work` on what the image gathers.
+    pub(crate) fn with_gathered<T>(&self, work: impl FnOnce(&mut B::SurfaceLight) -> T) -> T {
+        work(&mut self.gathered.borrow_mut())
     }
 
     /// Whether the caller keeps anything.

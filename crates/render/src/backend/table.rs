@@ -50,7 +50,12 @@ macro_rules! stage_table {
             /// Finds the same as `area_shadows`, by what stands between an item and the light.
             occluder_lists(wave: &WaveOf<Self>, items: &Self::Items, aim: &Aim) -> Self::Visibility;
             /// Adds the radiance of each ray to its pixel. Formula (1).
-            shade(wave: &WaveOf<Self>, visibility: &Self::Visibility, film: &mut Self::Film) -> ();
+            shade(
+                wave: &WaveOf<Self>,
+                visibility: &Self::Visibility,
+                gathered: Option<&Self::Gathered>,
+                film: &mut Self::Film
+            ) -> ();
             /// Generates the rays of the last term of formula (1): from every mirroring surface point along the mirrored view.
             mirror_rays(wave: &WaveOf<Self>) -> Self::Rays;
         }

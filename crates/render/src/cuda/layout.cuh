@@ -261,9 +261,10 @@ struct alignas(8) Counters {
     unsigned long long long_tests;
     unsigned long long long_tests_saved;
     unsigned long long shadow_rays;
+    unsigned long long gather_rays;
     unsigned long long overruns;
 };
-static_assert(sizeof(Counters) == 104, "size of Counters");
+static_assert(sizeof(Counters) == 112, "size of Counters");
 static_assert(PLACE_OF(Counters, rays) == 0, "place of Counters::rays");
 static_assert(PLACE_OF(Counters, hits) == 8, "place of Counters::hits");
 static_assert(PLACE_OF(Counters, surface_points) == 16, "place of Counters::surface_points");
@@ -276,7 +277,8 @@ static_assert(PLACE_OF(Counters, short_tests_culled) == 64, "place of Counters::
 static_assert(PLACE_OF(Counters, long_tests) == 72, "place of Counters::long_tests");
 static_assert(PLACE_OF(Counters, long_tests_saved) == 80, "place of Counters::long_tests_saved");
 static_assert(PLACE_OF(Counters, shadow_rays) == 88, "place of Counters::shadow_rays");
-static_assert(PLACE_OF(Counters, overruns) == 96, "place of Counters::overruns");
+static_assert(PLACE_OF(Counters, gather_rays) == 96, "place of Counters::gather_rays");
+static_assert(PLACE_OF(Counters, overruns) == 104, "place of Counters::overruns");
 
 struct alignas(4) Vec3 {
     float x;

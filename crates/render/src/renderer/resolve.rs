@@ -8,12 +8,13 @@ use crate::antialiasing::Antialiasing;
 use crate::bands;
 use crate::data::lights::LightGroups;
 use crate::error::RenderError;
+use crate::gathered::Gathering;
 use crate::job::{Job, Sampling};
 use crate::observer::Observer;
 use crate::plan::{Footprint, Plan};
 use crate::prepared::PreparedScene;
 use crate::probes::{GivenPoints, Probes, ROW};
-use crate::settings::{Crop, Setting, Settings, Sharing};
+use crate::settings::{AmbientSource, Crop, Setting, Settings, Sharing};
 use crate::techniques::{Request, Technique};
 use crate::view::{View, Window};
 
@@ -63,6 +64,7 @@ impl<'a> Resolved<'a> {
             bounces: 0,
             layers: None,
             compositing: false,
+            gathering: None,
             lights,
             most_rows: None,
             footprint,
@@ -96,19 +98,22 @@ impl<'a> Resolved<'a> {
             }
         };
         let window = window(settings, &technique, antialiasing.as_ref());
+        let left = Budget::new(settings.memory_limit).left();
         let plan = Plan {
             size: window.size,
             // With one sample of a pixel, coverage is found from its depth.
             coverage: settings.transparent && antialiasing.is_some(),
             caught: settings.transparent && scene.catches(),
             compositing: settings.layers,
+            gathering: (settings.ambient_light == AmbientSource::Mesh)
+                .then(|| Gathering::new(&whole, &bounds, settings.quality, left)),
             layers: (settings.layers || settings.transparent && antialiasing.is_none()).then_some(lights.lights),
             antialiasing,
             bounces: settings.bounces,
             lights,
             most_rows: settings.partial.then(|| bands::rows_in_parts(window.size[1])),
             memory_limit: settings.memory_limit,
-            left: Budget::new(settings.memory_limit).left(),
+            left,
             kept: 0,
             footprint: technique.footprint(lights.held() as u64),
         };

@@ -293,6 +293,42 @@ impl Filter {
 
 parse_by_name!(Filter, "filter");
 
+/// What stands for light that does not come from lights directly: from the surroundings, and from other surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum AmbientSource {
+    /// A constant, or what a sky gives to surfaces with nothing in between.
+    #[default]
+    Constant,
+    /// What points of the surfaces gather from the surroundings and from other surfaces.
+    Mesh,
+}
+
+impl AmbientSource {
+    /// All of them.
+    pub const ALL: &'static [AmbientSource] = &[AmbientSource::Constant, AmbientSource::Mesh];
+
+    /// Its name, also in statistics.
+    pub fn name(self) -> &'static str {
+        match self {
+            AmbientSource::Constant => "constant",
+            AmbientSource::Mesh => "mesh",
+        }
+    }
+
+    /// A short description.
+    pub fn help(self) -> &'static str {
+        match self {
+            AmbientSource::Constant => "A constant, or what a sky gives to surfaces with nothing in between",
+            AmbientSource::Mesh => {
+                "Gathered from the sky and other surfaces, in place of --ambient; on the CPU only so far"
+            }
+        }
+    }
+}
+
+parse_by_name!(AmbientSource, "ambient light");
+
 /// Whether samples of a pixel that lie on one surface are shaded together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]

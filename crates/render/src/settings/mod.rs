@@ -8,7 +8,7 @@ mod setting;
 use lightmesh_scene::{Camera, Up, Weight};
 
 pub use acceleration::Acceleration;
-pub use choices::{Filter, Lookup, Mode, Quality, ShadowTests, Sharing, ShortTests, Step, UnknownStep};
+pub use choices::{AmbientSource, Filter, Lookup, Mode, Quality, ShadowTests, Sharing, ShortTests, Step, UnknownStep};
 pub use crop::{Crop, UnknownCrop};
 pub use setting::Setting;
 
@@ -45,6 +45,8 @@ pub struct Settings {
     pub lookup: Lookup,
     /// How good soft shadows and edges are: the numbers of samples, unless `samples` or `aa` is set.
     pub quality: Quality,
+    /// What stands for indirect light.
+    pub ambient_light: AmbientSource,
     /// Samples of a pixel; `None`: by `quality` with lists and adaptive rays, else 1. A single one goes through its centre.
     pub aa: Option<u32>,
     /// How samples of a pixel are distributed.
@@ -87,6 +89,7 @@ impl Default for Settings {
             weight: None,
             lookup: Lookup::Auto,
             quality: Quality::Good,
+            ambient_light: AmbientSource::Constant,
             aa: None,
             filter: Filter::BlackmanHarris,
             sharing: Sharing::Unseen,
@@ -169,6 +172,11 @@ impl Settings {
             Lookup::Auto => Lookup::Lists,
             chosen => chosen,
         }
+    }
+
+    /// What stands for indirect light.
+    pub fn with_ambient_light(self, ambient_light: AmbientSource) -> Settings {
+        Settings { ambient_light, ..self }
     }
 
     /// How good soft shadows and edges are: the numbers of samples, unless they are set.

@@ -21,6 +21,8 @@ pub enum Setting {
     Lookup,
     /// [`Settings::quality`](crate::Settings::quality).
     Quality,
+    /// [`Settings::ambient_light`](crate::Settings::ambient_light).
+    AmbientLight,
     /// [`Settings::aa`](crate::Settings::aa).
     Aa,
     /// [`Settings::samples`](crate::Settings::samples).
@@ -45,6 +47,7 @@ impl Setting {
         Setting::Mode,
         Setting::Lookup,
         Setting::Quality,
+        Setting::AmbientLight,
         Setting::Aa,
         Setting::Samples,
         Setting::Acceleration,
@@ -63,6 +66,7 @@ impl Setting {
             Setting::Mode => "mode",
             Setting::Lookup => "lookup",
             Setting::Quality => "quality",
+            Setting::AmbientLight => "ambient_light",
             Setting::Aa => "aa",
             Setting::Samples => "samples",
             Setting::Acceleration => "acceleration",

@@ -5,20 +5,27 @@ use glam::Vec3;
 use crate::prepared::PreparedScene;
 
 /// The radiance I_a of formula (1) by the direction that a surface faces.
-pub(crate) struct AmbientLight {
+pub(crate) struct AmbientLight<'a> {
     /// From all sides.
     pub(crate) mean: Vec3,
     /// Its [terms](lightmesh_scene::Environment::irradiance_terms), if it depends on the direction.
     pub(crate) terms: Option<[Vec3; 9]>,
+    /// What was gathered, by ray.
+    pub(crate) gathered: Option<&'a [Vec3]>,
 }
 
-impl AmbientLight {
+impl<'a> AmbientLight<'a> {
     /// What the scene sets, or the [default](lightmesh_scene::Lights::default_ambient).
-    pub(crate) fn of(scene: &PreparedScene) -> AmbientLight {
+    pub(crate) fn of(scene: &PreparedScene) -> AmbientLight<'a> {
         let lights = &scene.scene.lights;
         let mean = lights.ambient.unwrap_or_else(|| lights.default_ambient(&scene.geometry.bounds));
         let environment = lights.environment.as_ref().filter(|_| lights.ambient.is_none());
-        AmbientLight { mean, terms: environment.map(|environment| environment.irradiance_terms()) }
+        AmbientLight { mean, terms: environment.map(|environment| environment.irradiance_terms()), gathered: None }
+    }
+
+    /// Gathered light in its place.
+    pub(crate) fn or(self, gathered: Option<&'a [Vec3]>) -> AmbientLight<'a> {
+        AmbientLight { gathered, ..self }
     }
 
     /// What a surface receives that faces the unit vector `n`.

@@ -9,7 +9,7 @@ use glam::{Vec2, Vec3};
 use lightmesh_layout::constants::{
     ARC_TANGENT_3, ARC_TANGENT_5, ARC_TANGENT_7, ARC_TANGENT_9, EIGHTH_OF_TURN, TANGENT_OF_EIGHTH, TURN_OF_RADIAN,
 };
-use lightmesh_scene::{Environment, Wrap};
+use lightmesh_scene::{Environment, Lights, Wrap};
 
 use crate::data::wave::HostWave;
 use crate::textures::{between, bilinear, level_of};
@@ -26,8 +26,23 @@ pub(crate) fn missed(wave: &HostWave, ray: usize) -> Vec3 {
     }
 }
 
+/// What surfaces receive from outside of the scene along a direction, but for lights.
+pub(crate) fn surroundings(lights: &Lights, direction: Vec3, spread: f32) -> Vec3 {
+    lights.environment.as_ref().map_or(Vec3::ZERO, |environment| without_sun(environment, direction, spread))
+}
+
 /// The mean radiance that a cone of this angle around `direction` sees.
 pub(crate) fn radiance(environment: &Environment, direction: Vec3, spread: f32) -> Vec3 {
+    let seen = without_sun(environment, direction, spread);
+    // 3. The sun.
+    let Some(sun) = environment.sun() else { return seen };
+    let inside = sun.radius - (direction - sun.direction).length();
+    let share = if spread > 0.0 { (inside / spread + 0.5).clamp(0.0, 1.0) } else { f32::from(inside >= 0.0) };
+    if share > 0.0 { between(seen, sun.radiance, share) } else { seen }
+}
+
+/// The same without the sun, which is a light.
+fn without_sun(environment: &Environment, direction: Vec3, spread: f32) -> Vec3 {
     // 1. Where?
     let [east, up, north] = environment.frame().map(|axis| axis.dot(direction));
     let across = (east * east + north * north).sqrt();
@@ -41,19 +56,13 @@ pub(crate) fn radiance(environment: &Environment, direction: Vec3, spread: f32) 
     };
     let width = spread * (2.0 * TURN_OF_RADIAN) * image[1] as f32;
     // Also if it is NaN.
-    let seen = if width > 1.0 {
+    if width > 1.0 {
         let (level, share) = level_of(width, lower.len() as u32);
         let fine = at(level);
         if share > 0.0 { between(fine, at(level + 1), share) } else { fine }
     } else {
         at(0)
-    };
-
-    // 3. The sun.
-    let Some(sun) = environment.sun() else { return seen };
-    let inside = sun.radius - (direction - sun.direction).length();
-    let share = if spread > 0.0 { (inside / spread + 0.5).clamp(0.0, 1.0) } else { f32::from(inside >= 0.0) };
-    if share > 0.0 { between(seen, sun.radiance, share) } else { seen }
+    }
 }
 
 fn sampled(size: [u32; 2], texels: &[[f32; 3]], place: Vec2) -> Vec3 {

@@ -18,7 +18,7 @@ pub(crate) mod tint;
 use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
-use lightmesh_layout::constants::LIGHT_TARGETS;
+use lightmesh_layout::constants::{LIGHT_TARGETS, LUMINANCE_BLUE, LUMINANCE_GREEN, LUMINANCE_RED};
 use lightmesh_scene::{Falloff, Light, LightKind};
 
 use crate::data::wave::HostWave;
@@ -55,10 +55,20 @@ impl Surface {
         }
     }
 
-    /// What it shows without lights: ambient and emitted light.
+    /// What ray number `ray` sees of it without lights: ambient, or gathered, and emitted light.
     #[inline(always)]
-    pub(crate) fn unlit(&self, ambient: &AmbientLight) -> Vec3 {
-        ambient.at(self.normal) * self.coefficients.ka + self.coefficients.emission
+    pub(crate) fn unlit(&self, ambient: &AmbientLight, ray: usize) -> Vec3 {
+        match ambient.gathered {
+            Some(gathered) => gathered[ray] * self.coefficients.kd + self.coefficients.emission,
+            None => self.alone(ambient),
+        }
+    }
+
+    /// The same if nothing else was there.
+    #[inline(always)]
+    pub(crate) fn alone(&self, ambient: &AmbientLight) -> Vec3 {
+        let reflected = if ambient.gathered.is_some() { self.coefficients.kd } else { self.coefficients.ka };
+        ambient.at(self.normal) * reflected + self.coefficients.emission
     }
 
     /// The same with the mean colour of the samples of its pixel that are shaded with it.
@@ -100,6 +110,14 @@ impl Surface {
         strength(light, direction, distance) * answer
     }
 
+    /// The light of `light` that arrives from `target`, times the cosine.
+    pub(crate) fn arriving(&self, light: &Light, target: Vec3) -> Vec3 {
+        let to_light = target - self.point.position;
+        let distance = to_light.length();
+        let cosine = self.normal.dot(to_light) / distance;
+        if cosine > 0.0 { cosine * strength(light, to_light / distance, distance) } else { Vec3::ZERO }
+    }
+
     /// The same for the whole light, averaged over `targets`; those of a directional light are seen from the surface, at distance 1.
     #[inline(always)]
     pub(crate) fn reflected_from_all(&self, light: &Light, targets: &[Vec3], reach: f32) -> Vec3 {
@@ -115,6 +133,12 @@ impl Surface {
         let direction = about(self.normal);
         if direction.dot(self.point.normal) > 0.0 { direction } else { about(self.point.normal) }
     }
+}
+
+/// The luminance of a colour.
+#[inline(always)]
+pub(crate) fn luminance(color: Vec3) -> f32 {
+    LUMINANCE_RED * color.x + LUMINANCE_GREEN * color.y + LUMINANCE_BLUE * color.z
 }
 
 /// Intensity of `light` at `distance` along `direction` (from the surface to the light), falloff and cone included.

@@ -10,6 +10,7 @@ mod determinism;
 mod environment;
 mod fallback;
 mod figures;
+mod gathered;
 mod ground;
 mod kept;
 mod light_groups;

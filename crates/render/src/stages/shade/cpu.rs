@@ -1,7 +1,6 @@
 //! Formula (1) on the CPU.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{LUMINANCE_BLUE, LUMINANCE_GREEN, LUMINANCE_RED};
 use rayon::prelude::*;
 
 use crate::data::picture::{Picture, light_groups_of};
@@ -10,15 +9,16 @@ use crate::data::wave::HostWave;
 use crate::shading::ambient::AmbientLight;
 use crate::shading::environment::missed;
 use crate::shading::ids::ids_of;
-use crate::shading::{LightTargets, Surface};
+use crate::shading::{LightTargets, Surface, luminance};
 
 /// Number of rays per task.
 const BATCH: usize = 2048;
 /// Number of terms of single lights that are held at once.
 const TERMS: usize = 1 << 20;
 
-pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, picture: &mut Picture) {
-    let (targets, ambient) = (LightTargets::new(wave.lights()), AmbientLight::of(wave.scene));
+pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, gathered: Option<&Vec<Vec3>>, picture: &mut Picture) {
+    let targets = LightTargets::new(wave.lights());
+    let ambient = AmbientLight::of(wave.scene).or(gathered.map(Vec::as_slice));
     let mut sums = match visibility.lights.start {
         0 => vec![Vec3::ZERO; wave.hits.len()],
         _ => std::mem::take(&mut picture.sums),
@@ -71,7 +71,7 @@ fn add_group(
     }
     let surface = Surface::shared(wave, ray);
     if is_first {
-        *radiance = surface.unlit(ambient);
+        *radiance = surface.unlit(ambient, ray);
     }
     let reach = wave.scene.geometry.reach(surface.point.origin);
     for index in visibility.lights.clone() {
@@ -152,7 +152,7 @@ fn by_light(
     }
     let surface = Surface::shared(wave, ray);
     if is_first {
-        terms[rest] = surface.unlit(ambient);
+        terms[rest] = surface.unlit(ambient, ray);
     }
     let reach = wave.scene.geometry.reach(surface.point.origin);
     for (index, term) in lights.zip(terms) {
@@ -186,16 +186,12 @@ fn catch_shadows(wave: &HostWave, targets: &LightTargets, ambient: &AmbientLight
 /// The light that a surface gets as a share of what it would get alone.
 fn lit_share(wave: &HostWave, surface: &Surface, targets: &LightTargets, ambient: &AmbientLight, lit: Vec3) -> f32 {
     let reach = wave.scene.geometry.reach(surface.point.origin);
-    let mut alone = surface.unlit(ambient);
+    let mut alone = surface.alone(ambient);
     for (index, light) in wave.lights().iter().enumerate() {
         alone += targets.unshadowed(surface, light, index, reach);
     }
     let alone = luminance(alone);
     if alone > 0.0 { (luminance(lit) / alone).min(1.0) } else { 1.0 }
-}
-
-fn luminance(color: Vec3) -> f32 {
-    LUMINANCE_RED * color.x + LUMINANCE_GREEN * color.y + LUMINANCE_BLUE * color.z
 }
 
 /// Stores what each pixel sees.

@@ -1,5 +1,7 @@
 //! Formula (1) on a CUDA device.
 
+use std::convert::Infallible;
+
 use bytemuck::Zeroable;
 use lightmesh_layout::In;
 use lightmesh_layout::stages::Shade;
@@ -20,6 +22,7 @@ pub(crate) fn shade<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
     visibility: &DeviceVisibility<R>,
+    _: Option<&Infallible>,
     film: &mut DeviceFilm<R>,
 ) -> Result<(), RenderError> {
     let rays = wave.rays;

@@ -1,0 +1,122 @@
+//! What coarse sites gather: light from everywhere, by direction.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::bounce::Bounce;
+use super::cells::{Cells, Site, size_of_level};
+use super::light::{Bins, Light};
+use super::rays::{Cast, Fan, RAYS_AT_ONCE, Scene};
+
+/// Near is what is not farther than this many coarse cells.
+const NEAR: f32 = 2.0;
+/// Sites cast more rays if the luminance that the first ones see deviates by more than this from its mean, relative to it.
+const EVEN: f32 = 0.6;
+
+/// What a coarse site gathers.
+pub(super) struct Far {
+    pub(super) light: Light,
+    /// The radiance that all rays see.
+    pub(super) all: Bins,
+    /// That of rays that go far.
+    pub(super) beyond: Bins,
+    pub(super) has_near: bool,
+}
+
+impl Far {
+    /// Adds what other rays see; the numbers of rays of both are given.
+    fn join(&mut self, other: &Far, [count, others]: [f32; 2]) {
+        let share = others / (count + others);
+        let mut light = Light::default();
+        light.add(1.0 - share, &self.light, Vec3::ZERO);
+        light.add(share, &other.light, Vec3::ZERO);
+        self.light = light;
+        self.all.join(&other.all);
+        self.beyond.join(&other.beyond);
+        self.has_near |= other.has_near;
+    }
+}
+
+/// How far near light reaches from a site.
+pub(super) fn near(site: &Site) -> f32 {
+    NEAR * size_of_level(site.level)
+}
+
+/// Computes what coarse sites gather, unless it is known.
+pub(super) fn ensure(
+    scene: &Scene,
+    cells: &Cells,
+    bounce: &mut Bounce,
+    known: &mut Vec<Option<Box<Far>>>,
+    wanted: &[u32],
+    fans: [Fan; 2],
+) {
+    known.resize_with(cells.sites.len(), || None);
+    let new: Vec<u32> = wanted.iter().copied().filter(|&site| known[site as usize].is_none()).collect();
+    for new in new.chunks(RAYS_AT_ONCE / fans[0].len()) {
+        // 1. A few rays from each; more where what they see differs.
+        let sites: Vec<Site> = new.iter().map(|&site| cells.sites[site as usize]).collect();
+        let first = gathered(scene, bounce, &sites, fans[0]);
+        let uneven: Vec<usize> = (0..sites.len()).filter(|&site| first[site].is_uneven()).collect();
+        let others: Vec<Site> = uneven.iter().map(|&site| sites[site]).collect();
+        let mut found: Vec<Box<Far>> = first.into_iter().map(|gathered| gathered.far).collect();
+        // 2. Both together.
+        for (sites, numbers) in
+            others.chunks(RAYS_AT_ONCE / fans[1].len()).zip(uneven.chunks(RAYS_AT_ONCE / fans[1].len()))
+        {
+            for (&number, gathered) in numbers.iter().zip(gathered(scene, bounce, sites, fans[1])) {
+                found[number].join(&gathered.far, [fans[0], fans[1]].map(|fan| fan.len() as f32));
+            }
+        }
+        for (&number, far) in new.iter().zip(found) {
+            known[number as usize] = Some(far);
+        }
+    }
+}
+
+/// What the rays of a fan see.
+struct Gathered {
+    far: Box<Far>,
+    /// The mean luminance, and the mean of its square.
+    luminance: [f32; 2],
+}
+
+impl Gathered {
+    fn is_uneven(&self) -> bool {
+        let [mean, square] = self.luminance;
+        square > (1.0 + EVEN * EVEN) * mean * mean
+    }
+}
+
+fn gathered(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fan: Fan) -> Vec<Gathered> {
+    let cast = scene.cast(sites.iter().map(|site| (site, f32::INFINITY)), fan);
+    let radiance = bounce.complete(scene, &scene.seen(&cast), |ray| ray / fan.len());
+    let Cast { list, hits, weights, .. } = &cast;
+    let gather = |(index, site): (usize, &Site)| {
+        let mut far = Box::new(Far { light: Light::default(), all: Bins::EMPTY, beyond: Bins::EMPTY, has_near: false });
+        let mut luminance = [0.0; 2];
+        for ray in index * fan.len()..(index + 1) * fan.len() {
+            let (direction, radiance, weight) = (list.rays[ray].direction, radiance[ray], weights[ray]);
+            far.light.take(site.point.normal, direction, weight * radiance);
+            far.all.take(direction, radiance);
+            if hits[ray].t < near(site) {
+                far.has_near = true;
+            } else {
+                far.beyond.take(direction, radiance);
+            }
+            let bright = crate::shading::luminance(radiance);
+            luminance[0] += weight * bright;
+            luminance[1] += weight * bright * bright;
+        }
+        Gathered { far, luminance }
+    };
+    sites.par_iter().enumerate().map(gather).collect()
+}
+
+/// What sites receive by their own rays alone.
+pub(super) fn plain(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fan: Fan) -> Vec<Light> {
+    let each = |sites: &[Site]| -> Vec<Light> {
+        gathered(scene, bounce, sites, fan).into_iter().map(|gathered| gathered.far.light).collect()
+    };
+    sites.chunks(RAYS_AT_ONCE / fan.len()).flat_map(each).collect()
+}

@@ -1,0 +1,157 @@
+//! What fine sites receive: from afar what coarse sites gather, and from nearby what their own rays hit.
+//!
+//! ```text
+//! A = far + Σ_j ω_j (L_j − all_j)        L_j: what ray j hits nearby, or else what coarse sites see beyond
+//! ```
+//!
+//! The mean of what coarse sites see along the ray, all_j, is a control variate: its integral is the light `far` that they receive. So where
+//! nothing is near, there is no noise but theirs.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::bounce::Bounce;
+use super::cells::{Cells, Site};
+use super::directions::bin;
+use super::far::{self, Far};
+use super::light::Light;
+use super::lookup::{Link, Links, Place};
+use super::rays::{Cast, RAYS_AT_ONCE, Scene};
+use super::{COARSER, Fans};
+
+/// How far near rays reach, relative to what coarse sites leave out as near. What is near to these may be farther away here, but only from
+/// some: with 1, light is too bright before walls, with 2 too dark.
+const REACH: f32 = 1.25;
+
+/// What a fine site receives.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Fine {
+    pub(super) light: Light,
+    /// The distance of what is nearest in front of it.
+    pub(super) nearest: f32,
+}
+
+/// What coarse sites know.
+pub(super) struct Coarse<'a> {
+    pub(super) cells: &'a mut Cells,
+    pub(super) known: &'a mut Vec<Option<Box<Far>>>,
+    pub(super) bounce: &'a mut Bounce,
+}
+
+/// Computes what fine sites receive, unless it is known.
+pub(super) fn ensure(
+    scene: &Scene,
+    cells: &Cells,
+    known: &mut Vec<Option<Fine>>,
+    coarse: &mut Coarse,
+    wanted: &[u32],
+    fans: &Fans,
+) {
+    known.resize_with(cells.sites.len(), || None);
+    let new: Vec<u32> = wanted.iter().copied().filter(|&site| known[site as usize].is_none()).collect();
+    for new in new.chunks(RAYS_AT_ONCE / fans.near.len()) {
+        // As coarse as what they ask.
+        let coarser = |site: &Site| Site { level: site.level + COARSER, ..*site };
+        let sites: Vec<Site> = new.iter().map(|&site| coarser(&cells.sites[site as usize])).collect();
+        for (&number, fine) in new.iter().zip(received(scene, coarse, &sites, fans)) {
+            known[number as usize] = Some(fine);
+        }
+    }
+}
+
+fn received(scene: &Scene, coarse: &mut Coarse, sites: &[Site], fans: &Fans) -> Vec<Fine> {
+    let fan = fans.near;
+    // 1. What is near.
+    let cast = scene.cast(sites.iter().map(|site| (site, REACH * far::near(site))), fan);
+    let nearest = cast.nearest();
+
+    // 2. The coarse sites around that are seen, and what they gather.
+    let places: Vec<Place> = sites.iter().map(|site| Place::new(&site.point, site.level)).collect();
+    let mut links = Links::new(scene, coarse.cells, &places);
+    links.settle(scene, coarse.cells, &places, |place, _| nearest[place]);
+    far::ensure(scene, coarse.cells, coarse.bounce, coarse.known, &links.sites(), fans.far);
+
+    // 3. What near rays see.
+    let hits: Vec<usize> = (0..cast.hits.len()).filter(|&ray| cast.hits[ray].is_some()).collect();
+    let seen = scene.seen(&cast.only(&hits));
+    let seen = coarse.bounce.complete(scene, &seen, |ray| hits[ray] / fan.len());
+    let mut near: Vec<Option<Vec3>> = vec![None; cast.hits.len()];
+    hits.iter().zip(seen).for_each(|(&ray, seen)| near[ray] = Some(seen));
+
+    // 4. Both together; more rays of their own for sites that see no coarse one.
+    let sees = |site: usize| links.of(site).iter().any(|link| link.1 > 0.0);
+    let alone: Vec<usize> = (0..sites.len()).filter(|&site| !sees(site)).collect();
+    let own: Vec<Site> = alone.iter().map(|&site| sites[site]).collect();
+    let own = far::plain(scene, coarse.bounce, &own, fans.plain);
+    let coarse = &*coarse;
+    let both = |site: usize| {
+        let rays = site * fan.len()..(site + 1) * fan.len();
+        let light = if sees(site) {
+            near_and_far(coarse, sites[site].point.normal, links.of(site), &cast, &near, rays)
+        } else {
+            Light::default()
+        };
+        Fine { light, nearest: nearest[site] }
+    };
+    let mut fine: Vec<Fine> = (0..sites.len()).into_par_iter().map(both).collect();
+    alone.iter().zip(own).for_each(|(&site, light)| fine[site].light = light);
+    fine
+}
+
+/// What a fine site receives from coarse sites, and from what its rays hit nearby.
+fn near_and_far(
+    coarse: &Coarse,
+    normal: Vec3,
+    links: &[Link],
+    cast: &Cast,
+    near: &[Option<Vec3>],
+    rays: std::ops::Range<usize>,
+) -> Light {
+    let far = |site: u32| coarse.known[site as usize].as_ref().expect("it was ensured");
+    let total: f32 = links.iter().map(|(_, weight)| weight).sum();
+    let mut light = Light::default();
+    let mut has_near = near[rays.clone()].iter().any(Option::is_some);
+    for &(site, weight) in links.iter().filter(|link| link.1 > 0.0) {
+        light.add(weight / total, &far(site).light, normal - coarse.cells.sites[site as usize].point.normal);
+        has_near |= far(site).has_near;
+    }
+    if !has_near {
+        return light;
+    }
+    let mean = light.mean;
+    for ray in rays {
+        let direction = cast.list.rays[ray].direction;
+        let bin = bin(direction);
+        let (mut all, mut beyond) = (Mean::default(), Mean::default());
+        for &(site, weight) in links.iter().filter(|link| link.1 > 0.0) {
+            let far = far(site);
+            all.add(weight, far.all.of(bin));
+            beyond.add(weight, far.beyond.of(bin));
+        }
+        let all = all.or(mean);
+        let seen = near[ray].unwrap_or_else(|| beyond.or(all));
+        light.take(normal, direction, cast.weights[ray] * (seen - all));
+    }
+    light
+}
+
+/// A weighted mean.
+#[derive(Default)]
+struct Mean {
+    sum: Vec3,
+    weight: f32,
+}
+
+impl Mean {
+    #[inline(always)]
+    fn add(&mut self, weight: f32, (sum, count): (Vec3, f32)) {
+        self.sum += weight * sum;
+        self.weight += weight * count;
+    }
+
+    /// The mean, or something else without any.
+    #[inline(always)]
+    fn or(&self, other: Vec3) -> Vec3 {
+        if self.weight > 0.0 { self.sum / self.weight } else { other }
+    }
+}

@@ -1,0 +1,79 @@
+//! Light that arrives at a surface point.
+
+use glam::Vec3;
+
+use super::directions::{BINS, bin};
+
+/// What tilts a surface changes light by the slope of the cosine, which has no bound at the horizon.
+const LEAST_COSINE: f32 = 0.2;
+
+/// Light by the direction that a surface faces, near the one that it faces.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Light {
+    /// Mean radiance, by the cosine: irradiance by π.
+    pub(super) mean: Vec3,
+    /// How it changes as the normal turns: along x, y and z.
+    tilt: [Vec3; 3],
+}
+
+impl Light {
+    /// The mean radiance on a surface whose normal differs by this.
+    #[inline(always)]
+    pub(super) fn at(&self, turned: Vec3) -> Vec3 {
+        self.mean + turned.x * self.tilt[0] + turned.y * self.tilt[1] + turned.z * self.tilt[2]
+    }
+
+    /// Adds a share of other light, on a surface whose normal differs by this.
+    #[inline(always)]
+    pub(super) fn add(&mut self, share: f32, other: &Light, turned: Vec3) {
+        self.mean += share * other.at(turned);
+        for (sum, tilt) in self.tilt.iter_mut().zip(other.tilt) {
+            *sum += share * tilt;
+        }
+    }
+
+    /// Adds radiance that arrives along a direction, times its weight.
+    #[inline(always)]
+    pub(super) fn take(&mut self, normal: Vec3, direction: Vec3, weighted: Vec3) {
+        let cosine = direction.dot(normal);
+        let across = (direction - cosine * normal) / cosine.max(LEAST_COSINE);
+        self.mean += weighted;
+        self.tilt[0] += across.x * weighted;
+        self.tilt[1] += across.y * weighted;
+        self.tilt[2] += across.z * weighted;
+    }
+}
+
+/// Radiance by direction: sums and numbers of rays.
+#[derive(Clone, Copy)]
+pub(super) struct Bins {
+    sums: [Vec3; BINS],
+    counts: [f32; BINS],
+}
+
+impl Bins {
+    pub(super) const EMPTY: Bins = Bins { sums: [Vec3::ZERO; BINS], counts: [0.0; BINS] };
+
+    #[inline(always)]
+    pub(super) fn take(&mut self, direction: Vec3, radiance: Vec3) {
+        let bin = bin(direction);
+        self.sums[bin] += radiance;
+        self.counts[bin] += 1.0;
+    }
+
+    /// Adds other rays.
+    pub(super) fn join(&mut self, other: &Bins) {
+        for (sum, other) in self.sums.iter_mut().zip(&other.sums) {
+            *sum += *other;
+        }
+        for (count, other) in self.counts.iter_mut().zip(&other.counts) {
+            *count += *other;
+        }
+    }
+
+    /// The sum in a bin, and the number of its rays.
+    #[inline(always)]
+    pub(super) fn of(&self, bin: usize) -> (Vec3, f32) {
+        (self.sums[bin], self.counts[bin])
+    }
+}

@@ -1,0 +1,270 @@
+//! Which sites a place takes light from, and how much from each.
+
+use std::ops::Range;
+
+use glam::{IVec3, Vec2, Vec3};
+use lightmesh_scene::Bounds;
+use rayon::prelude::*;
+
+use super::cells::{Asked, CellKey, Cells, cell_at, corner_of, key_of, size_of_level};
+use super::directions::basis;
+use super::rays::Scene;
+use crate::accel::Ray;
+use crate::surface::{SurfacePoint, long_segment};
+
+/// The distance within which sites count, in cells.
+const RADIUS: f32 = 1.5;
+
+/// The distance from each other's tangent planes within which they count, in cells.
+const THICKNESS: f32 = 0.75;
+/// The cosine of the angle between normals beyond which they do not.
+const LEAST_COSINE: f32 = 0.5;
+/// Sites that are nearly in line do not tell how light changes beside it: the product of the variances, relative to the square of their sum.
+const LEAST_SPREAD: f32 = 0.02;
+/// Segments to sites begin and end above the surface by this share of their length, so that gentle curves do not hide them.
+const RAISED: f32 = 0.15;
+/// Places per task.
+const BATCH: usize = 1024;
+
+/// A place that light is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) position: Vec3,
+    pub(super) normal: Vec3,
+    pub(super) level: i32,
+}
+
+impl Place {
+    pub(super) fn new(point: &SurfacePoint, level: i32) -> Place {
+        Place { position: point.position, normal: point.normal, level }
+    }
+
+    /// The cell in which it lies.
+    pub(super) fn cell(&self) -> IVec3 {
+        cell_at(self.level, self.position)
+    }
+
+    /// The weight of a site: it falls with the distance, with the angle between normals, and with the distance from tangent planes.
+    #[inline(always)]
+    fn weight(&self, size: f32, site: &SurfacePoint) -> f32 {
+        let way = site.position - self.position;
+        let near = 1.0 - way.length_squared() / (RADIUS * RADIUS * size * size);
+        let cosine = (self.normal.dot(site.normal) - LEAST_COSINE) / (1.0 - LEAST_COSINE);
+        if near <= 0.0 || cosine <= 0.0 {
+            return 0.0;
+        }
+        let height = self.normal.dot(way).abs().max(site.normal.dot(way).abs()) / (THICKNESS * size);
+        let flat = (1.0 - height * height).max(0.0);
+        near * near * cosine * cosine * flat * flat
+    }
+
+    /// Whether something may be in the way to a site, if nothing is nearer than this to one of both ends.
+    pub(super) fn may_be_hidden(&self, site: &SurfacePoint, nearest: f32) -> bool {
+        4.0 * (site.position - self.position).length_squared() > nearest * nearest
+    }
+
+    /// The segment to a site.
+    pub(super) fn segment(&self, site: &SurfacePoint) -> Ray {
+        let raised = RAISED * (site.position - self.position).length();
+        long_segment(self.position + raised * self.normal, site.origin + raised * site.normal)
+    }
+}
+
+/// A site with its weight.
+pub(super) type Link = (u32, f32);
+
+/// The sites of some places, in batches.
+pub(super) struct Links {
+    batches: Vec<Batch>,
+}
+
+#[derive(Default)]
+struct Batch {
+    /// By place.
+    ranges: Vec<Range<u32>>,
+    links: Vec<Link>,
+}
+
+impl Links {
+    /// Finds the sites of places; their cells are added where they are new.
+    pub(super) fn new(scene: &Scene, cells: &mut Cells, places: &[Place]) -> Links {
+        let groups: Vec<Groups> = places.par_chunks(BATCH).map(Groups::new).collect();
+        let missing = |groups: &Groups| -> Vec<Asked> {
+            let asked = groups.cells.iter().filter(|asked| !cells.has(asked.key));
+            asked.copied().collect()
+        };
+        let asked = groups.par_iter().flat_map_iter(missing).collect();
+        cells.admit(scene.scene, asked);
+        let cells = &*cells;
+        let batches = places.par_chunks(BATCH).zip(&groups).map(|(places, groups)| groups.links(cells, places));
+        Links { batches: batches.collect() }
+    }
+
+    /// Those of a place. Hidden ones have no weight.
+    pub(super) fn of(&self, place: usize) -> &[Link] {
+        let batch = &self.batches[place / BATCH];
+        let Range { start, end } = batch.ranges[place % BATCH];
+        &batch.links[start as usize..end as usize]
+    }
+
+    /// All sites with a weight, once.
+    pub(super) fn sites(&self) -> Vec<u32> {
+        let used =
+            |batch: &Batch| batch.links.iter().filter(|link| link.1 > 0.0).map(|link| link.0).collect::<Vec<_>>();
+        let mut sites: Vec<u32> = self.batches.par_iter().flat_map_iter(used).collect();
+        sites.par_sort_unstable();
+        sites.dedup();
+        sites
+    }
+
+    /// Takes their weight from sites that a place does not see, and balances the others. `near` has the distance of what is nearest to the
+    /// place, or to the site: only what is farther away can be hidden.
+    pub(super) fn settle(
+        &mut self,
+        scene: &Scene,
+        cells: &Cells,
+        places: &[Place],
+        near: impl Fn(usize, u32) -> f32 + Sync,
+    ) {
+        self.batches.par_iter_mut().zip(places.par_chunks(BATCH)).enumerate().for_each(|(number, (batch, places))| {
+            let (mut segments, mut owners) = (Vec::new(), Vec::new());
+            for (index, (place, range)) in places.iter().zip(&batch.ranges).enumerate() {
+                for link in range.start as usize..range.end as usize {
+                    let site = batch.links[link].0;
+                    let point = &cells.sites[site as usize].point;
+                    if place.may_be_hidden(point, near(number * BATCH + index, site)) {
+                        segments.push(place.segment(point));
+                        owners.push(link);
+                    }
+                }
+            }
+            let mut hidden = vec![false; segments.len()];
+            scene.scene.geometry.accelerator.occluded(&segments, &mut hidden);
+            for (&link, _) in owners.iter().zip(&hidden).filter(|(_, hidden)| **hidden) {
+                batch.links[link].1 = 0.0;
+            }
+            for (place, range) in places.iter().zip(&batch.ranges) {
+                balance(cells, place, &mut batch.links[range.start as usize..range.end as usize]);
+            }
+        });
+    }
+}
+
+/// Places in one cell.
+struct Around {
+    level: i32,
+    cell: IVec3,
+    bounds: Bounds,
+    /// Their normal, and the least and the greatest height along it, if they share one.
+    plane: Option<(Vec3, [f32; 2])>,
+}
+
+impl Around {
+    fn new<'p>(mut places: impl Iterator<Item = &'p Place> + Clone) -> Around {
+        let bounds = Bounds::around(places.clone().map(|place| place.position));
+        let mut all = places.clone();
+        let first = places.next().expect("a group has a place");
+        let normal = first.normal;
+        let heights = all.try_fold([f32::INFINITY, f32::NEG_INFINITY], |[least, most], place| {
+            let height = normal.dot(place.position);
+            (place.normal == normal).then(|| [least.min(height), most.max(height)])
+        });
+        Around { level: first.level, cell: first.cell(), bounds, plane: heights.map(|heights| (normal, heights)) }
+    }
+
+    /// Whether sites of a cell may count: only if it is near some place and its tangent plane.
+    fn may_use(&self, cell: IVec3) -> bool {
+        let size = size_of_level(self.level);
+        let middle = corner_of(self.level, cell) + 0.5 * size;
+        let outside = (self.bounds.min - middle).max(middle - self.bounds.max) - 0.5 * size;
+        let is_flat = |&(normal, [least, most]): &(Vec3, [f32; 2])| {
+            let (height, slab) = (normal.dot(middle), (THICKNESS + 0.5 * normal.abs().element_sum()) * size);
+            least - slab < height && height < most + slab
+        };
+        outside.max(Vec3::ZERO).length_squared() < RADIUS * RADIUS * size * size && self.plane.iter().all(is_flat)
+    }
+}
+
+/// Changes weights so that the weighted mean of the positions of sites is the place itself, as far as that is possible without negative ones:
+/// next to a wall all sites are on one side, and what changes linearly from place to place would be shifted. (This is local linear regression:
+/// Fan: *Design-adaptive Nonparametric Regression*, JASA 87, 1992.)
+fn balance(cells: &Cells, place: &Place, links: &mut [Link]) {
+    let [tangent, other] = basis(place.normal);
+    let aside = |site: u32| {
+        let way = cells.sites[site as usize].point.position - place.position;
+        Vec2::new(tangent.dot(way), other.dot(way))
+    };
+    let (mut first, mut xx, mut xy, mut yy) = (Vec2::ZERO, 0.0, 0.0, 0.0);
+    for &(site, weight) in &*links {
+        let Vec2 { x, y } = aside(site);
+        first += weight * Vec2::new(x, y);
+        xx += weight * x * x;
+        xy += weight * x * y;
+        yy += weight * y * y;
+    }
+    let (determinant, trace) = (xx * yy - xy * xy, xx + yy);
+    if determinant <= LEAST_SPREAD * trace * trace {
+        return;
+    }
+    let slope = Vec2::new(yy * first.x - xy * first.y, xx * first.y - xy * first.x) / determinant;
+    for (site, weight) in links {
+        *weight *= (1.0 - slope.dot(aside(*site))).max(0.0);
+    }
+}
+
+/// The places of a batch by the cell that they lie in, with the cells around.
+struct Groups {
+    /// The places of all groups.
+    members: Vec<u32>,
+    /// By group: the ends of its places and of its cells.
+    ends: Vec<[u32; 2]>,
+    cells: Vec<Asked>,
+}
+
+impl Groups {
+    fn new(places: &[Place]) -> Groups {
+        let mut keys: Vec<(CellKey, u32)> =
+            (0..).zip(places).map(|(index, place)| (key_of(place.level, place.cell()), index)).collect();
+        keys.sort_unstable();
+        let mut groups =
+            Groups { members: keys.iter().map(|key| key.1).collect(), ends: Vec::new(), cells: Vec::new() };
+        for group in keys.chunk_by(|a, b| a.0 == b.0) {
+            let around = Around::new(group.iter().map(|&(_, index)| &places[index as usize]));
+            // The ball around a place ends two cells away, at most.
+            for offset in (0..125).map(|index| IVec3::new(index % 5, index / 5 % 5, index / 25) - 2) {
+                let (level, cell) = (around.level, around.cell + offset);
+                if around.may_use(cell) {
+                    groups.cells.push(Asked { key: key_of(level, cell), level, cell: cell.to_array() });
+                }
+            }
+            let end = groups.ends.last().map_or(0, |ends| ends[0]) + group.len() as u32;
+            groups.ends.push([end, groups.cells.len() as u32]);
+        }
+        groups
+    }
+
+    fn links(&self, cells: &Cells, places: &[Place]) -> Batch {
+        let mut batch = Batch { ranges: vec![0..0; places.len()], links: Vec::new() };
+        let mut start = [0, 0];
+        let mut sites = Vec::new();
+        for &end in &self.ends {
+            let around = &self.cells[start[1] as usize..end[1] as usize];
+            sites.clear();
+            sites.extend(around.iter().flat_map(|asked| cells.of(asked.key)));
+            for &member in &self.members[start[0] as usize..end[0] as usize] {
+                let place = &places[member as usize];
+                let size = size_of_level(place.level);
+                let first = batch.links.len() as u32;
+                for &site in &sites {
+                    let weight = place.weight(size, &cells.sites[site as usize].point);
+                    if weight > 0.0 {
+                        batch.links.push((site, weight));
+                    }
+                }
+                batch.ranges[member as usize] = first..batch.links.len() as u32;
+            }
+            start = end;
+        }
+        batch
+    }
+}

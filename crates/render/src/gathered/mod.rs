@@ -1,0 +1,207 @@
+//! Gathered light: what surfaces receive from their surroundings and from each other, carried by points of the surfaces.
+//!
+//! 1. **Far** light ([`far`]) is gathered once in a coarse cell, by hundreds of rays. It changes slowly from place to place, if what is near
+//!    is left out.
+//! 2. **Near** light, which does not, is found at [`fine`] sites, a few pixels apart, by few and short rays: what they hit takes the place of
+//!    the far light that they would have seen. So only the difference is noisy.
+//! 3. A surface point takes the weighted mean of the fine sites around it ([`lookup`]).
+//!
+//! What rays hit is lit by the lights, by a shadow ray each, and by what was reflected before ([`bounce`]). All of this belongs to cells of
+//! space ([`cells`]) and depends on nothing but the cell, the scene and the seed: not on what else was asked for, nor on the camera. So it can
+//! be kept from image to image, and dropped at any time, and changes no bit.
+
+mod bounce;
+mod cells;
+mod directions;
+mod far;
+mod fine;
+mod light;
+mod lookup;
+mod rays;
+
+use glam::Vec3;
+use lightmesh_scene::Bounds;
+use rayon::prelude::*;
+
+use crate::data::wave::HostWave;
+use crate::settings::Quality;
+use crate::surface::{SurfacePoint, shading_normal};
+use crate::view::View;
+use bounce::Bounce;
+use cells::{Cells, Site, level_of};
+use far::Far;
+use fine::{Coarse, Fine};
+use light::Light;
+use lookup::{Links, Place};
+use rays::{Fan, Scene};
+
+/// By how many levels coarse cells are coarser than fine ones: they are four times as large.
+const COARSER: i32 = 2;
+/// Surface points that are processed at once.
+const POINTS_AT_ONCE: usize = 1 << 15;
+/// What these, and the rays that are cast at once, take at most: rays with all that is known of them, three times, for what they hit asks
+/// again.
+const BYTES_AT_ONCE: u64 = 3 * 256 * rays::RAYS_AT_ONCE as u64 + 512 * POINTS_AT_ONCE as u64;
+/// What is kept may take one part in this many of the memory that is left.
+const PART_KEPT: u64 = 4;
+/// The last part of a level, from here to 2, becomes the next one.
+const BLEND_FROM: f32 = 1.75;
+/// Cells are no smaller than this share of the largest coordinate, whose digits would not suffice.
+const LEAST_SIZE: f32 = 1.0 / (1 << 20) as f32;
+
+/// How an image gathers light.
+#[derive(Clone, Copy, Debug)]
+pub struct Gathering {
+    eye: Vec3,
+    /// The size of a pixel: a constant, and a multiple of its distance.
+    spacing: [f32; 2],
+    /// The largest size of fine cells, in pixels.
+    pixels: f32,
+    least_level: i32,
+    fans: Fans,
+    /// What is kept is dropped when it takes more bytes than this.
+    most_kept: Option<u64>,
+}
+
+/// The rays of sites.
+#[derive(Clone, Copy, Debug)]
+struct Fans {
+    /// Those of coarse sites: at first, and where these see different things.
+    far: [Fan; 2],
+    /// Those of fine sites.
+    near: Fan,
+    /// Those of places without sites.
+    plain: Fan,
+}
+
+impl Gathering {
+    /// For an image of what lies within `bounds`, if `left` bytes are left for all of it.
+    pub(crate) fn new(view: &View, bounds: &Bounds, quality: Quality, left: Option<u64>) -> Gathering {
+        let (pixels, far, near, plain) = match quality {
+            Quality::Draft => (8.0, [8, 12], 4, 6),
+            Quality::Good => (6.0, [8, 14], 6, 8),
+            Quality::Final => (4.0, [16, 28], 8, 16),
+        };
+        let fans = Fans { far: far.map(Fan::new), near: Fan::new(near), plain: Fan::new(plain) };
+        let least_level = level_of(LEAST_SIZE * bounds.farthest()).0;
+        Gathering {
+            eye: view.origin(),
+            spacing: view.spacing(),
+            pixels,
+            least_level,
+            fans,
+            most_kept: left.map(|left| left / PART_KEPT),
+        }
+    }
+
+    /// Bytes that it needs on the host, besides the image.
+    pub(crate) fn memory(&self) -> u64 {
+        BYTES_AT_ONCE + self.most_kept.unwrap_or(0)
+    }
+
+    /// The levels of the fine cells at a position, with their shares.
+    fn levels(&self, position: Vec3) -> [(i32, f32); 2] {
+        let [constant, factor] = self.spacing;
+        let (level, rest) = level_of(self.pixels * (constant + factor * (position - self.eye).length()));
+        let next = ((rest - BLEND_FROM) / (2.0 - BLEND_FROM)).max(0.0);
+        [(level, 1.0 - next), (level + 1, next)].map(|(level, share)| (level.max(self.least_level), share))
+    }
+}
+
+/// What was gathered for a scene.
+#[derive(Default)]
+pub struct SurfaceLight {
+    fine_cells: Cells,
+    fine: Vec<Option<Fine>>,
+    far_cells: Cells,
+    far: Vec<Option<Box<Far>>>,
+    bounce: Bounce,
+}
+
+impl SurfaceLight {
+    /// Bytes in memory.
+    fn memory(&self) -> u64 {
+        let sites = self.fine.capacity() * size_of::<Option<Fine>>();
+        let far = self.far.iter().flatten().count() * size_of::<Far>() + self.far.capacity() * size_of::<usize>();
+        (self.fine_cells.memory() + sites + self.far_cells.memory() + far + self.bounce.memory()) as u64
+    }
+}
+
+/// A question for the light at a surface point.
+struct Ask {
+    /// Its place in the result.
+    index: usize,
+    point: SurfacePoint,
+    level: i32,
+    /// The share of the answer that counts.
+    share: f32,
+}
+
+/// The mean radiance that each surface point of a wave receives, weighted by the cosine; zero for rays that see nothing.
+pub(crate) fn gather(wave: &HostWave, how: &Gathering, kept: &mut SurfaceLight) -> Vec<Vec3> {
+    let mut light = vec![Vec3::ZERO; wave.hits.len()];
+    let scene = Scene { job: wave.job, scene: wave.scene };
+    for (part, light) in light.chunks_mut(POINTS_AT_ONCE).enumerate() {
+        if how.most_kept.is_some_and(|most| kept.memory() > most) {
+            *kept = SurfaceLight::default();
+        }
+        gather_part(wave, &scene, how, kept, part * POINTS_AT_ONCE, light);
+        wave.job.advance(light.len() as u64);
+    }
+    light
+}
+
+fn gather_part(
+    wave: &HostWave,
+    scene: &Scene,
+    how: &Gathering,
+    kept: &mut SurfaceLight,
+    first: usize,
+    light: &mut [Vec3],
+) {
+    // 1. Where light is asked for: at one level, or between two.
+    let asks = |index: usize| {
+        let point = wave.surface_point(first + index);
+        let levels = how.levels(point.position).into_iter().filter(|(_, share)| *share > 0.0);
+        levels.map(move |(level, share)| Ask { index, point, level, share })
+    };
+    let seen = (0..light.len()).into_par_iter().filter(|index| wave.sees(first + index));
+    let asks: Vec<Ask> = seen.flat_map_iter(asks).collect();
+    let places: Vec<Place> = asks.iter().map(|ask| Place::new(&ask.point, ask.level)).collect();
+
+    // 2. The fine sites around that are seen, and what they receive.
+    let SurfaceLight { fine_cells, fine, far_cells, far, bounce } = kept;
+    let mut links = Links::new(scene, fine_cells, &places);
+    let mut coarse = Coarse { cells: far_cells, known: far, bounce };
+    fine::ensure(scene, fine_cells, fine, &mut coarse, &links.sites(), &how.fans);
+    let known = |site: u32| fine[site as usize].as_ref().expect("it was ensured");
+    links.settle(scene, fine_cells, &places, |_, site| known(site).nearest);
+
+    // 3. The mean. Where there is none, rays from the point itself.
+    let normal =
+        |ask: &Ask| shading_normal(&wave.scene.scene.geometry.mesh, &wave.hits[first + ask.index], ask.point.normal);
+    let mean = |(number, ask): (usize, &Ask)| {
+        let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
+        for &(site, weight) in links.of(number).iter().filter(|link| link.1 > 0.0) {
+            let turned = normal(ask) - fine_cells.sites[site as usize].point.normal;
+            sum += weight * known(site).light.at(turned);
+            weights += weight;
+        }
+        (weights > 0.0).then(|| sum / weights)
+    };
+    let means: Vec<Option<Vec3>> = asks.par_iter().enumerate().map(mean).collect();
+    let alone: Vec<&Ask> = asks.iter().zip(&means).filter(|(_, mean)| mean.is_none()).map(|(ask, _)| ask).collect();
+    let sites: Vec<Site> = alone.iter().map(|ask| site_of(ask)).collect();
+    let own = far::plain(scene, coarse.bounce, &sites, how.fans.plain);
+    let own = alone.iter().zip(own).map(|(ask, own): (&&Ask, Light)| (*ask, own.at(normal(ask) - ask.point.normal)));
+    let means = asks.iter().zip(means).filter_map(|(ask, mean)| Some((ask, mean?)));
+    for (ask, mean) in means.chain(own) {
+        light[ask.index] += ask.share * mean.max(Vec3::ZERO);
+    }
+}
+
+/// A surface point as a site.
+fn site_of(ask: &Ask) -> Site {
+    let [x, y, z] = ask.point.position.to_array().map(|axis| u64::from(axis.to_bits()));
+    Site { point: ask.point, level: ask.level + COARSER, seed: x ^ y << 21 ^ z << 42 }
+}

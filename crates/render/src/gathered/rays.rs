@@ -1,0 +1,242 @@
+//! Gather rays: their directions, and what they see.
+
+use std::f32::consts::PI;
+
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+use super::bounce::Spot;
+use super::cells::{Site, kind_of, level_of};
+use super::directions::{above, basis};
+use super::lookup::Place;
+use crate::accel::{Hit, Ray};
+use crate::counters::Tally;
+use crate::data::lights::LightGroup;
+use crate::data::rays::RayList;
+use crate::data::wave::HostWave;
+use crate::footprint::Cone;
+use crate::job::Job;
+use crate::prepared::PreparedScene;
+use crate::sampling::{Pattern, light_point, random_bits};
+use crate::shading::Surface;
+use crate::shading::environment::surroundings;
+use crate::shadow::hidden;
+use crate::stages::primary_rays::cpu::closest_hits;
+use crate::surface::long_segment;
+
+/// Rays that are cast at once.
+pub(super) const RAYS_AT_ONCE: usize = 1 << 16;
+/// The cone of the surroundings that a ray sees is this share of its own: wider ones would look below the horizon.
+const SKY_CONE: f32 = 0.25;
+/// Rays per task.
+const BATCH: usize = 2048;
+/// What a ray hits is asked for light in a cell of this share of the distance,
+const BOUNCE_SIZE: f32 = 0.4;
+/// and at least twice as large as the cell that asks.
+const BOUNCE_COARSER: i32 = 1;
+
+/// What all gathering needs.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub(super) job: &'a Job<'a>,
+    pub(super) scene: &'a PreparedScene,
+}
+
+/// The rays of one site: `side`² directions, one in each part of the hemisphere.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fan {
+    side: u32,
+}
+
+impl Fan {
+    pub(super) const fn new(side: u32) -> Fan {
+        Fan { side }
+    }
+
+    /// Number of rays.
+    pub(super) fn len(self) -> usize {
+        (self.side * self.side) as usize
+    }
+
+    /// The cone around each ray: together they fill the hemisphere.
+    fn cone(self) -> Cone {
+        Cone { width: 0.0, spread: (2.0 * PI).sqrt() / self.side as f32 }
+    }
+
+    /// The direction of ray number `index` from a site, and its weight by the cosine.
+    fn direction(self, [tangent, other, normal]: [Vec3; 3], seed: u64, index: u32) -> (Vec3, f32) {
+        let random = random_bits(seed, u64::from(index), self.side as usize);
+        let place = |part: u32, bits: u32| {
+            let within = (bits >> 8) as f32 * (1.0 / (1 << 24) as f32);
+            2.0 * (part as f32 + within) / self.side as f32 - 1.0
+        };
+        let (column, row) = (index % self.side, index / self.side);
+        let (local, weight) = above(Vec2::new(place(column, random as u32), place(row, (random >> 32) as u32)));
+        (local.x * tangent + local.y * other + local.z * normal, weight)
+    }
+}
+
+/// Rays from some sites, fan by fan, with what they hit.
+pub(super) struct Cast {
+    pub(super) list: RayList,
+    /// Shares of the mean radiance by the cosine.
+    pub(super) weights: Vec<f32>,
+    pub(super) hits: Vec<Hit>,
+    fan: Fan,
+    /// Level and seed of each site.
+    origins: Vec<(i32, u64)>,
+    /// The numbers of the rays among those of all fans, if they are not all there.
+    numbers: Option<Vec<u32>>,
+}
+
+impl Cast {
+    /// Some of the rays alone.
+    pub(super) fn only(&self, rays: &[usize]) -> Cast {
+        fn some<T: Copy>(all: &[T], rays: &[usize]) -> Vec<T> {
+            rays.iter().map(|&ray| all[ray]).collect()
+        }
+        let list = RayList {
+            cone: self.list.cone,
+            rays: some(&self.list.rays, rays),
+            pixels: vec![0; rays.len()],
+            ..RayList::default()
+        };
+        let numbers = Some(rays.iter().map(|&ray| ray as u32).collect());
+        let (weights, hits, origins) = (some(&self.weights, rays), some(&self.hits, rays), self.origins.clone());
+        Cast { list, weights, hits, fan: self.fan, origins, numbers }
+    }
+
+    /// The distances of what is nearest to each site, if all rays are there.
+    pub(super) fn nearest(&self) -> Vec<f32> {
+        let least = |hits: &[Hit]| hits.iter().fold(f32::INFINITY, |least, hit| least.min(hit.t));
+        self.hits.chunks_exact(self.fan.len()).map(least).collect()
+    }
+
+    /// The level of the site that a ray comes from, and what distinguishes its random numbers.
+    fn origin(&self, ray: usize) -> (i32, u64) {
+        let number = self.numbers.as_ref().map_or(ray, |numbers| numbers[ray] as usize);
+        let (level, seed) = self.origins[number / self.fan.len()];
+        (level, seed.wrapping_add((self.fan.len() + number % self.fan.len()) as u64))
+    }
+}
+
+impl Scene<'_> {
+    /// Casts a fan of rays from each site, as far as it says.
+    pub(super) fn cast<'s>(&self, sites: impl Iterator<Item = (&'s Site, f32)>, fan: Fan) -> Cast {
+        let sites: Vec<(&Site, f32)> = sites.collect();
+        let count = sites.len() * fan.len();
+        let nothing = Ray { origin: Vec3::ZERO, direction: Vec3::ZERO, t_max: 0.0 };
+        let mut list =
+            RayList { cone: fan.cone(), rays: vec![nothing; count], pixels: vec![0; count], ..RayList::default() };
+        let mut weights = vec![0.0; count];
+        let seed = self.job.sampling.seed;
+        let fans = list.rays.par_chunks_exact_mut(fan.len()).zip(weights.par_chunks_exact_mut(fan.len()));
+        fans.zip(&sites).for_each(|((rays, weights), &(site, reach))| {
+            let normal = site.point.normal;
+            let [tangent, other] = basis(normal);
+            let mut sum = 0.0;
+            for (index, (ray, weight)) in (0..).zip(rays.iter_mut().zip(weights.iter_mut())) {
+                let (direction, share) = fan.direction([tangent, other, normal], site.seed ^ seed, index);
+                *ray = Ray { origin: site.point.origin, direction, t_max: reach };
+                *weight = share;
+                sum += share;
+            }
+            weights.iter_mut().for_each(|weight| *weight /= sum);
+        });
+        let hits = closest_hits(self.scene, &list, |_, trace| self.job.piece(0, trace));
+        Tally::add(&self.job.tally.gather_rays, count as u64);
+        let origins = sites.iter().map(|(site, _)| (site.level, site.seed)).collect();
+        Cast { list, weights, hits, fan, origins, numbers: None }
+    }
+
+    /// What rays see, but for the light that reaches what they hit from no light directly.
+    pub(super) fn seen(&self, cast: &Cast) -> Vec<Seen> {
+        let Scene { job, scene } = *self;
+        let wave = HostWave { job, scene, rays: &cast.list, hits: &cast.hits, lights: LightGroup::ALL, parts: 1 };
+        let mut seen = vec![Seen::default(); cast.hits.len()];
+        seen.par_chunks_mut(BATCH).enumerate().for_each(|(batch, seen)| {
+            job.piece(0, || {
+                let mut segments = Segments::default();
+                for (place, seen) in seen.iter_mut().enumerate() {
+                    *seen = seen_by(&wave, cast, [batch * BATCH + place, place], &mut segments);
+                }
+                segments.add(&wave, seen);
+            });
+        });
+        seen
+    }
+}
+
+/// What a ray sees.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Seen {
+    /// Emitted light, light that lights give, or the surroundings.
+    pub(super) radiance: Vec3,
+    /// How much of the other light is reflected,
+    pub(super) kd: Vec3,
+    /// and where to ask for that.
+    pub(super) spot: Option<Spot>,
+}
+
+/// What ray number `ray` sees, but for lights: the segments to these are noted for the ray's place in its batch.
+fn seen_by(wave: &HostWave, cast: &Cast, [ray, place]: [usize; 2], segments: &mut Segments) -> Seen {
+    let Ray { direction, .. } = wave.rays.rays[ray];
+    let hit = &wave.hits[ray];
+    let geometry = &wave.scene.scene.geometry;
+    let material = |triangle: u32| &geometry.materials[geometry.mesh.materials[triangle as usize] as usize];
+    // A shadow catcher shows what is behind it.
+    if !wave.sees(ray) || material(hit.triangle).catcher {
+        let spread = SKY_CONE * wave.rays.cone.spread;
+        return Seen { radiance: surroundings(wave.lights(), direction, spread), ..Seen::default() };
+    }
+    let surface = Surface::new(wave, ray);
+    let (kd, radiance) = (surface.coefficients.kd, surface.coefficients.emission);
+    if kd == Vec3::ZERO {
+        return Seen { radiance, ..Seen::default() };
+    }
+    let (least_level, seed) = cast.origin(ray);
+    segments.note(wave, seed, place, &surface);
+    let point = &surface.point;
+    let [a, b, c] = wave.scene.geometry.triangles[hit.triangle as usize].corners();
+    let is_front = (b - a).cross(c - a).dot(direction) < 0.0;
+    let level = level_of(BOUNCE_SIZE * hit.t).0.max(least_level + BOUNCE_COARSER);
+    let spot = Spot { place: Place::new(point, level), kind: kind_of(point.normal, is_front) };
+    Seen { radiance, kd, spot: Some(spot) }
+}
+
+/// Segments to the lights.
+#[derive(Default)]
+struct Segments {
+    rays: Vec<Ray>,
+    /// Whose radiance grows by how much if nothing is in the way.
+    gains: Vec<(usize, Vec3)>,
+}
+
+impl Segments {
+    /// One segment to each light, to a random point if it has a size.
+    fn note(&mut self, wave: &HostWave, seed: u64, place: usize, surface: &Surface) {
+        let point = &surface.point;
+        let reach = wave.scene.geometry.reach(point.origin);
+        for (index, light) in wave.lights().iter().enumerate() {
+            let pattern = Pattern::new(wave.job.sampling.seed, seed, index);
+            let target = light_point(light, point.origin, reach, pattern.point(0));
+            if point.normal.dot(target - point.origin) <= 0.0 {
+                continue;
+            }
+            let gain = surface.coefficients.kd * surface.arriving(light, target);
+            if gain != Vec3::ZERO {
+                self.rays.push(long_segment(point.origin, target));
+                self.gains.push((place, gain));
+            }
+        }
+    }
+
+    fn add(&self, wave: &HostWave, seen: &mut [Seen]) {
+        Tally::add(&wave.job.tally.shadow_rays, self.rays.len() as u64);
+        for (&(place, gain), hidden) in self.gains.iter().zip(hidden(wave, &self.rays)) {
+            if !hidden {
+                seen[place].radiance += gain;
+            }
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Gathered light where it is known: in closed rooms, on open floors, beside walls, under emitters.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DVec3, Vec3};
+use lightmesh_render::{AmbientSource, Crop, Device, Frame, Quality, Renderer, Settings};
+use lightmesh_scene::{LightKind, Lights, Material, Scene, Sky, SkyKind, SunPosition, Up};
+use lightmesh_testkit::{BALL_LIGHT, SceneDraft, pile, thin_wall};
+
+fn settings(size: [u32; 2]) -> Settings {
+    Settings::default().with_ambient_light(AmbientSource::Mesh).with_size(size).with_aa(1)
+}
+
+fn render(scene: &Scene, settings: &Settings) -> Frame {
+    Renderer::new(Device::Cpu).unwrap().render(scene, settings).unwrap()
+}
+
+/// In a sky alone.
+fn under(sky: &Sky, draft: SceneDraft) -> Scene {
+    let mut scene = draft.finish("under a sky");
+    scene.lights = Lights::default();
+    scene.lights.surround(sky.surroundings(Up::Y).unwrap());
+    scene.lights.list.clear();
+    scene
+}
+
+fn uniform(color: Vec3) -> Sky {
+    Sky::new(SkyKind::Uniform { color })
+}
+
+/// A material that reflects this share of the light, and shines.
+fn shining(kd: f32, emission: f32) -> Material {
+    Material::matt(Vec3::splat(kd)).with_emission(Vec3::splat(emission))
+}
+
+#[test]
+fn a_white_furnace_has_the_light_of_its_reflections() {
+    let room = SceneDraft::new().painted(shining(0.5, 1.0)).cuboid([-2.0, -1.0, -1.5], [2.0, 1.0, 1.5]);
+    let scene = room.camera([0.3, 0.2, 0.1], [2.0, -0.3, 0.6]).finish("furnace");
+    for quality in Quality::ALL {
+        let frame = render(&scene, &settings([48, 32]).with_quality(*quality));
+        // 1 + 1/2 + 1/4 + 1/8: what is seen shines, and reflects what was reflected up to three times.
+        for color in frame.color() {
+            assert!(color.iter().all(|channel| (channel - 1.875).abs() < 1e-4), "{quality:?}: {color:?}");
+        }
+    }
+}
+
+#[test]
+fn an_open_floor_receives_the_whole_sky() {
+    let floor = || SceneDraft::new().painted(Material::matt(Vec3::splat(0.4))).floor(0.0, 50.0);
+    let floor = || floor().camera([0.0, 3.0, 4.0], [0.0, 0.0, 0.0]);
+    let even = under(&uniform(Vec3::new(0.5, 1.0, 2.0)), floor());
+    for color in render(&even, &settings([24, 16])).color() {
+        assert!((Vec3::from_array(*color) - Vec3::new(0.2, 0.4, 0.8)).abs().max_element() < 1e-4, "{color:?}");
+    }
+
+    let clear = under(&Sky::clear(SunPosition { elevation: 35.0, azimuth: 200.0 }), floor());
+    let environment = clear.lights.environment.as_ref().unwrap();
+    let [width, height] = environment.size();
+    let mut sum = DVec3::ZERO;
+    for (row, texels) in environment.texels().chunks_exact(width as usize).enumerate() {
+        let angle = |row: usize| PI * row as f64 / f64::from(height);
+        let solid = TAU / f64::from(width) * (angle(row).cos() - angle(row + 1).cos());
+        let cosine = (0.5 * (angle(row) + angle(row + 1))).cos().max(0.0);
+        sum += texels.iter().map(|texel| solid * cosine * Vec3::from_array(*texel).as_dvec3()).sum::<DVec3>();
+    }
+    let expected = 0.4 * sum / PI;
+    let frame = render(&clear, &settings([24, 16]).with_quality(Quality::Final));
+    let mean = frame.color().iter().map(|color| Vec3::from_array(*color).as_dvec3()).sum::<DVec3>();
+    let mean = mean / frame.color().len() as f64;
+    assert!(((mean - expected) / expected).abs().max_element() < 0.005, "{mean}, not {expected}");
+    for color in frame.color() {
+        let error = (Vec3::from_array(*color).as_dvec3() - expected) / expected;
+        assert!(error.abs().max_element() < 0.02, "{color:?}, not {expected}");
+    }
+}
+
+#[test]
+fn a_black_wall_hides_half_of_the_sky_at_its_foot() {
+    // The wall is as good as infinite along z. Seen from above, pixels are a fiftieth wide.
+    let draft = SceneDraft::new()
+        .painted(Material::matt(Vec3::ONE))
+        .floor(0.0, 200.0)
+        .painted(Material::matt(Vec3::ZERO))
+        .quad([[0.0, -1.0, -200.0], [0.0, 1.0, -200.0], [0.0, 1.0, 200.0], [0.0, -1.0, 200.0]])
+        .orthographic([1.0, 30.0, 0.0], [1.0, 0.0, 0.0], 0.4);
+    let scene = under(&uniform(Vec3::ONE), draft);
+    let frame = render(&scene, &settings([100, 20]).with_layers(true));
+    let layers = frame.layers().unwrap();
+    let (mut worst, mut sum): (f32, f32) = (0.0, 0.0);
+    for (color, position) in frame.color().iter().zip(&layers.position) {
+        let distance = position[0];
+        if distance < 0.02 {
+            continue;
+        }
+        // The form factor of a long strip: (1 − cos of the elevation of its edge) / 2.
+        let expected = 1.0 - 0.5 * (1.0 - distance / (distance * distance + 1.0).sqrt());
+        worst = worst.max((color[0] - expected).abs());
+        sum += color[0] - expected;
+    }
+    let mean = sum / frame.color().len() as f32;
+    assert!(worst < 0.05 && mean.abs() < 0.01, "{worst}, {mean}");
+}
+
+#[test]
+fn no_light_leaks_into_a_dark_room() {
+    for thickness in [0.02, 0.2] {
+        let mut scene = thin_wall(thickness, BALL_LIGHT).finish("dark room");
+        scene.lights.surround(uniform(Vec3::ONE).surroundings(Up::Y).unwrap());
+        let frame = render(&scene, &settings([96, 64]));
+        let lit = frame.color().iter().filter(|color| **color != [0.0; 3]).count();
+        assert_eq!(lit, 0, "{thickness}");
+    }
+}
+
+#[test]
+fn a_floor_receives_what_an_emitter_above_it_gives() {
+    // A square with a side of 2 at height 1, above the middle of a black floor with a white patch.
+    let draft = SceneDraft::new()
+        .painted(Material::matt(Vec3::ONE))
+        .floor(0.0, 0.4)
+        .painted(shining(0.0, 3.0))
+        .quad([[-1.0, 1.0, -1.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
+        .orthographic([0.0, 0.5, 0.0], [0.0, 0.0, 0.0], 0.1);
+    let mut scene = draft.finish("emitter");
+    scene.lights = Lights::default();
+    scene.lights.ambient = Some(Vec3::ZERO);
+    let frame = render(&scene, &settings([16, 16]));
+    let mean = frame.color().iter().map(|color| f64::from(color[0])).sum::<f64>() / 256.0;
+    // Four times the form factor of a square above its corner.
+    let quarter = 0.5f64.sqrt() * 0.5f64.sqrt().atan() * 2.0 / TAU;
+    assert!((mean / (12.0 * quarter) - 1.0).abs() < 0.01, "{mean}, not {}", 12.0 * quarter);
+}
+
+/// A pile of boxes in a clear sky, with mirrors and a lamp.
+fn yard() -> Scene {
+    let lamp = LightKind::Sphere { position: Vec3::new(-2.0, 2.0, 2.0), radius: 0.3 };
+    let mut scene = pile(DVec3::ZERO, &[lamp]);
+    scene.lights.surround(Sky::clear(SunPosition { elevation: 30.0, azimuth: 100.0 }).surroundings(Up::Y).unwrap());
+    for material in &mut scene.geometry_mut().materials {
+        material.ks = Vec3::splat(0.2);
+    }
+    scene
+}
+
+#[test]
+fn neither_threads_nor_bands_nor_crops_change_a_bit() {
+    let scene = yard();
+    for aa in [1, 4] {
+        let settings = settings([80, 64]).with_bounces(1).with_aa(aa).with_quality(Quality::Draft);
+        let whole = render(&scene, &settings);
+        let bits = |frame: &Frame| frame.color().iter().flatten().map(|channel| channel.to_bits()).collect::<Vec<_>>();
+        let single = Renderer::with_threads(Device::Cpu, Some(1)).unwrap().render(&scene, &settings).unwrap();
+        assert!(bits(&single) == bits(&whole), "threads");
+        let bands = render(&scene, &settings.clone().with_partial(true));
+        assert!(bits(&bands) == bits(&whole), "bands");
+        let crop = Crop::new([30, 20], [24, 20]);
+        let part = render(&scene, &settings.clone().with_crop(crop));
+        assert!(bits(&part) == bits(&whole.cropped(crop).unwrap()), "crop");
+    }
+}
+
+#[test]
+fn light_that_is_gathered_is_less_than_the_whole_sky_gives() {
+    let scene = yard();
+    let constant = settings([80, 64]).with_ambient_light(AmbientSource::Constant);
+    let (gathered, constant) = (render(&scene, &settings([80, 64])), render(&scene, &constant));
+    let sum = |frame: &Frame| frame.color().iter().flatten().sum::<f32>();
+    let ratio = sum(&gathered) / sum(&constant);
+    // Less sky, but light that others reflect.
+    assert!((0.7..1.2).contains(&ratio), "{ratio}");
+    assert_eq!(gathered.stats.settings.ambient_light, "mesh");
+    assert!(gathered.stats.counts.gather_rays > 10_000 && constant.stats.counts.gather_rays == 0);
+}
