@@ -81,7 +81,7 @@ pub trait Backend: Sized {
     /// Some rows of an unfinished image.
     type Film;
     /// What light points of a geometry see, kept from image to image.
-    type Table: Table;
+    type Table: Table<Light = Self::SurfaceLight>;
 
     /// Its name in settings and statistics: `cpu` or `cuda`.
     fn kind(&self) -> &'static str;

@@ -5,7 +5,9 @@ use std::cell::{Cell, RefCell};
 use super::Backend;
 use crate::cache::Kept;
 use crate::error::RenderError;
+use crate::gathered::Sources;
 use crate::job::Job;
+use crate::prepared::PreparedScene;
 use crate::stage::Stage;
 
 /// An image being rendered on a backend.
@@ -55,6 +57,18 @@ impl<'a, B: Backend> Run<'a, B> {
     /// Runs `work` on what the image gathers.
     pub(crate) fn with_gathered<T>(&self, work: impl FnOnce(&mut B::SurfaceLight) -> T) -> T {
         work(&mut self.gathered.borrow_mut())
+    }
+
+    /// Begins with what surfaces gathered for earlier images.
+    pub(crate) fn recall_gathered(&self, scene: &PreparedScene, sources: &Sources) {
+        let known = self.with_kept(|kept| kept.map(|kept| kept.take_gathered(scene, sources)));
+        self.gathered.replace(known.unwrap_or_default());
+    }
+
+    /// Keeps what surfaces gathered, if the caller keeps anything.
+    pub(crate) fn keep_gathered(&self, scene: &PreparedScene, sources: Sources) {
+        let light = self.gathered.take();
+        self.with_kept(|kept| kept.map(|kept| kept.keep_gathered(scene, sources, light)));
     }
 
     /// Whether the caller keeps anything.

@@ -56,6 +56,12 @@ impl<R: Runtime> Default for DeviceTable<R> {
 }
 
 impl<R: Runtime> Table for DeviceTable<R> {
+    type Light = ();
+
+    fn memory_of((): &()) -> u64 {
+        0
+    }
+
     fn len(&self) -> u64 {
         self.columns.iter().map(|column| column.count).sum()
     }

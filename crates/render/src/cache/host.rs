@@ -6,6 +6,7 @@ use lightmesh_layout::constants::POINT_BITS;
 
 use super::{Seen, Table};
 use crate::data::lit::LitBy;
+use crate::gathered::SurfaceLight;
 use crate::light_mesh::{BrickKey, bits};
 
 /// Number of light points in a brick.
@@ -34,6 +35,12 @@ enum Answers {
 }
 
 impl Table for HostTable {
+    type Light = SurfaceLight;
+
+    fn memory_of(light: &SurfaceLight) -> u64 {
+        light.memory()
+    }
+
     fn len(&self) -> u64 {
         self.columns.iter().flat_map(|column| &column.known).map(|known| u64::from(known.count_ones())).sum()
     }

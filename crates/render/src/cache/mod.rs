@@ -18,11 +18,13 @@ pub use device::DeviceTable;
 pub use host::HostTable;
 
 use crate::cuda::Driver;
+use crate::gathered::Sources;
 use crate::job::Sampling;
 use crate::light_mesh::Lattice;
 use crate::prepared::{PreparedGeometry, PreparedScene};
 
-/// The visibility of light points, cached for later images: for a moving camera, or for lights of which only some move. Pass it to
+/// The visibility of light points, cached for later images, and light that surfaces gather: for a moving camera, or, of light points, for
+/// lights of which only some move. Pass it to
 /// [`Renderer::render_with`](crate::Renderer::render_with).
 ///
 /// It holds the light points of every geometry that is alive, as long as the step of the light mesh stays the same: with `--step auto` it
@@ -80,6 +82,12 @@ impl MeshCache {
 /// What a backend knows about the light points of one geometry.
 #[allow(clippy::len_without_is_empty, reason = "not needed")]
 pub trait Table: Default {
+    /// What surfaces gather.
+    type Light: Default;
+
+    /// Bytes that this uses.
+    fn memory_of(light: &Self::Light) -> u64;
+
     /// Number of cached values: light points times lights.
     fn len(&self) -> u64;
 
@@ -88,8 +96,9 @@ pub trait Table: Default {
 }
 
 /// The tables of a backend: one for each geometry that is alive, for the lattice that it was last used with.
-pub struct Kept<T> {
+pub struct Kept<T: Table> {
     tables: Vec<Known<T>>,
+    gathered: Vec<Gathered<T::Light>>,
 }
 
 struct Known<T> {
@@ -107,9 +116,16 @@ struct Places {
     number: UVec3,
 }
 
-impl<T> Default for Kept<T> {
+/// What surfaces of a geometry gather.
+struct Gathered<L> {
+    geometry: Weak<PreparedGeometry>,
+    sources: Sources,
+    light: L,
+}
+
+impl<T: Table> Default for Kept<T> {
     fn default() -> Kept<T> {
-        Kept { tables: Vec::new() }
+        Kept { tables: Vec::new(), gathered: Vec::new() }
     }
 }
 
@@ -122,12 +138,28 @@ impl<T: Table> Kept<T> {
 
     /// Bytes used by the tables.
     pub fn memory(&self) -> u64 {
-        self.tables.iter().map(|known| known.table.memory()).sum()
+        let gathered: u64 = self.gathered.iter().map(|gathered| T::memory_of(&gathered.light)).sum();
+        self.tables.iter().map(|known| known.table.memory()).sum::<u64>() + gathered
     }
 
     /// Removes everything.
     pub(crate) fn clear(&mut self) {
         self.tables.clear();
+        self.gathered.clear();
+    }
+
+    /// Takes out what surfaces gathered from the same sources; nothing if there are others. Removes that of geometry that no longer exists.
+    pub(crate) fn take_gathered(&mut self, scene: &PreparedScene, sources: &Sources) -> T::Light {
+        self.gathered.retain(|gathered| gathered.geometry.strong_count() > 0);
+        let same = |gathered: &Gathered<T::Light>| gathered.geometry.as_ptr() == Arc::as_ptr(&scene.geometry);
+        let Some(index) = self.gathered.iter().position(same) else { return T::Light::default() };
+        let Gathered { sources: known, light, .. } = self.gathered.swap_remove(index);
+        if known == *sources { light } else { T::Light::default() }
+    }
+
+    /// Keeps what surfaces gather.
+    pub(crate) fn keep_gathered(&mut self, scene: &PreparedScene, sources: Sources, light: T::Light) {
+        self.gathered.push(Gathered { geometry: Arc::downgrade(&scene.geometry), sources, light });
     }
 
     /// The table of a scene's geometry, empty if it is new or its light points have moved. Removes tables of geometry that no longer

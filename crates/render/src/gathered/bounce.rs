@@ -28,7 +28,7 @@ const FAN: Fan = Fan::new(6);
 /// A point that a gather ray hits.
 #[derive(Clone, Copy)]
 pub(super) struct Spot {
-    /// Its level is that of the cell that it asks first.
+    /// Its level is that of the cell that it asks.
     pub(super) place: Place,
     pub(super) kind: Kind,
 }
@@ -48,6 +48,7 @@ impl Spot {
 }
 
 /// What a site's rays hit.
+#[derive(Default)]
 struct Links {
     /// The sites there, with the weights of what they receive.
     seen: Vec<(u32, Vec3)>,
@@ -64,8 +65,8 @@ struct Node {
     nearest: f32,
     /// What its rays hit, with their weights.
     hits: Vec<(Spot, Vec3)>,
-    /// The sites there; `None` until they are needed.
-    links: Option<Links>,
+    /// The sites there, once they are needed.
+    links: Links,
     /// How many of the values are known: what arrives after up to one, two, … reflections.
     known: usize,
     values: [Vec3; ORDERS],
@@ -82,7 +83,7 @@ pub(super) struct Bounce {
 impl Bounce {
     /// Bytes in memory.
     pub(super) fn memory(&self) -> usize {
-        let of_hits = self.hits * size_of::<(Spot, Vec3)>();
+        let of_hits = self.hits * (size_of::<(Spot, Vec3)>() + size_of::<(u32, Vec3)>());
         self.numbers.capacity() * size_of::<(Name, u32)>() + self.nodes.capacity() * size_of::<Node>() + of_hits
     }
 
@@ -167,8 +168,7 @@ impl Bounce {
 
     /// Finds the sites that the rays of sites hit, of which as many reflections are known afterwards.
     fn link(&mut self, scene: &Scene, sites: &[u32], order: usize) {
-        let new: Vec<u32> = sites.iter().copied().filter(|&site| self.nodes[site as usize].links.is_none()).collect();
-        for sites in new.chunks(RAYS_AT_ONCE / FAN.len()) {
+        for sites in sites.chunks(RAYS_AT_ONCE / FAN.len()) {
             let hits = sites.iter().flat_map(|&site| &self.nodes[site as usize].hits);
             let spots: Vec<Spot> = hits.map(|&(spot, _)| spot).collect();
             let mut numbers = self.resolve(scene, &spots, order).into_iter();
@@ -181,7 +181,7 @@ impl Bounce {
                         None => links.hidden += weight,
                     }
                 }
-                node.links = Some(links);
+                node.links = links;
             }
         }
     }
@@ -190,10 +190,13 @@ impl Bounce {
     fn sum(&self, site: u32, before: usize) -> Vec3 {
         let node = &self.nodes[site as usize];
         let first = node.first.unwrap_or_default();
-        let Some(links) = node.links.as_ref().filter(|_| before > 0) else { return first };
+        if before == 0 {
+            return first;
+        }
+        let Links { seen, hidden } = &node.links;
         let value = |number: u32| self.nodes[number as usize].values[before - 1];
-        let seen: Vec3 = links.seen.iter().map(|&(number, weight)| weight * value(number)).sum();
-        first + seen + links.hidden * mean(links.seen.iter().map(|&(number, _)| value(number)))
+        let lit: Vec3 = seen.iter().map(|&(number, weight)| weight * value(number)).sum();
+        first + lit + *hidden * mean(seen.iter().map(|&(number, _)| value(number)))
     }
 
     /// Adds sites where they are new. Their names ascend.
@@ -216,7 +219,7 @@ impl Bounce {
                 first,
                 nearest: f32::INFINITY,
                 hits: Vec::new(),
-                links: None,
+                links: Links::default(),
                 known: 0,
                 values: [Vec3::ZERO; ORDERS],
             });

@@ -54,46 +54,57 @@ pub(super) fn ensure(
     known.resize_with(cells.sites.len(), || None);
     let new: Vec<u32> = wanted.iter().copied().filter(|&site| known[site as usize].is_none()).collect();
     for new in new.chunks(RAYS_AT_ONCE / fans[0].len()) {
-        // 1. A few rays from each; more where what they see differs.
         let sites: Vec<Site> = new.iter().map(|&site| cells.sites[site as usize]).collect();
-        let first = gathered(scene, bounce, &sites, fans[0]);
-        let uneven: Vec<usize> = (0..sites.len()).filter(|&site| first[site].is_uneven()).collect();
-        let others: Vec<Site> = uneven.iter().map(|&site| sites[site]).collect();
-        let mut found: Vec<Box<Far>> = first.into_iter().map(|gathered| gathered.far).collect();
-        // 2. Both together.
-        for (sites, numbers) in
-            others.chunks(RAYS_AT_ONCE / fans[1].len()).zip(uneven.chunks(RAYS_AT_ONCE / fans[1].len()))
-        {
-            for (&number, gathered) in numbers.iter().zip(gathered(scene, bounce, sites, fans[1])) {
-                found[number].join(&gathered.far, [fans[0], fans[1]].map(|fan| fan.len() as f32));
-            }
-        }
-        for (&number, far) in new.iter().zip(found) {
-            known[number as usize] = Some(far);
+        for (&number, far) in new.iter().zip(gathered(scene, bounce, &sites, fans)) {
+            known[number as usize] = Some(Box::new(far));
         }
     }
 }
 
+/// What sites receive by their own rays alone.
+pub(super) fn plain(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fans: [Fan; 2]) -> Vec<Light> {
+    let each = |sites: &[Site]| -> Vec<Light> {
+        gathered(scene, bounce, sites, fans).into_iter().map(|far| far.light).collect()
+    };
+    sites.chunks(RAYS_AT_ONCE / fans[0].len()).flat_map(each).collect()
+}
+
+/// What some sites gather.
+fn gathered(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fans: [Fan; 2]) -> Vec<Far> {
+    // 1. A few rays from each.
+    let first = seen_by_fans(scene, bounce, sites, fans[0]);
+    let uneven: Vec<usize> = (0..sites.len()).filter(|&site| first[site].is_uneven()).collect();
+    let mut found: Vec<Far> = first.into_iter().map(|seen| seen.far).collect();
+    // 2. More where these see different things.
+    for numbers in uneven.chunks(RAYS_AT_ONCE / fans[1].len()) {
+        let sites: Vec<Site> = numbers.iter().map(|&number| sites[number]).collect();
+        for (&number, seen) in numbers.iter().zip(seen_by_fans(scene, bounce, &sites, fans[1])) {
+            found[number].join(&seen.far, fans.map(|fan| fan.len() as f32));
+        }
+    }
+    found
+}
+
 /// What the rays of a fan see.
-struct Gathered {
-    far: Box<Far>,
+struct SeenByFan {
+    far: Far,
     /// The mean luminance, and the mean of its square.
     luminance: [f32; 2],
 }
 
-impl Gathered {
+impl SeenByFan {
     fn is_uneven(&self) -> bool {
         let [mean, square] = self.luminance;
         square > (1.0 + EVEN * EVEN) * mean * mean
     }
 }
 
-fn gathered(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fan: Fan) -> Vec<Gathered> {
+fn seen_by_fans(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fan: Fan) -> Vec<SeenByFan> {
     let cast = scene.cast(sites.iter().map(|site| (site, f32::INFINITY)), fan);
     let radiance = bounce.complete(scene, &scene.seen(&cast), |ray| ray / fan.len());
     let Cast { list, hits, weights, .. } = &cast;
     let gather = |(index, site): (usize, &Site)| {
-        let mut far = Box::new(Far { light: Light::default(), all: Bins::EMPTY, beyond: Bins::EMPTY, has_near: false });
+        let mut far = Far { light: Light::default(), all: Bins::EMPTY, beyond: Bins::EMPTY, has_near: false };
         let mut luminance = [0.0; 2];
         for ray in index * fan.len()..(index + 1) * fan.len() {
             let (direction, radiance, weight) = (list.rays[ray].direction, radiance[ray], weights[ray]);
@@ -108,15 +119,7 @@ fn gathered(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fan: Fan) -> Vec
             luminance[0] += weight * bright;
             luminance[1] += weight * bright * bright;
         }
-        Gathered { far, luminance }
+        SeenByFan { far, luminance }
     };
     sites.par_iter().enumerate().map(gather).collect()
-}
-
-/// What sites receive by their own rays alone.
-pub(super) fn plain(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fan: Fan) -> Vec<Light> {
-    let each = |sites: &[Site]| -> Vec<Light> {
-        gathered(scene, bounce, sites, fan).into_iter().map(|gathered| gathered.far.light).collect()
-    };
-    sites.chunks(RAYS_AT_ONCE / fan.len()).flat_map(each).collect()
 }

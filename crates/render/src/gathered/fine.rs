@@ -82,7 +82,7 @@ fn received(scene: &Scene, coarse: &mut Coarse, sites: &[Site], fans: &Fans) -> 
     let sees = |site: usize| links.of(site).iter().any(|link| link.1 > 0.0);
     let alone: Vec<usize> = (0..sites.len()).filter(|&site| !sees(site)).collect();
     let own: Vec<Site> = alone.iter().map(|&site| sites[site]).collect();
-    let own = far::plain(scene, coarse.bounce, &own, fans.plain);
+    let own = far::plain(scene, coarse.bounce, &own, fans.far);
     let coarse = &*coarse;
     let both = |site: usize| {
         let rays = site * fan.len()..(site + 1) * fan.len();

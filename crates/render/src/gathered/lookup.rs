@@ -14,11 +14,10 @@ use crate::surface::{SurfacePoint, long_segment};
 
 /// The distance within which sites count, in cells.
 const RADIUS: f32 = 1.5;
-
 /// The distance from each other's tangent planes within which they count, in cells.
 const THICKNESS: f32 = 0.75;
 /// The cosine of the angle between normals beyond which they do not.
-const LEAST_COSINE: f32 = 0.5;
+const LEAST_COSINE: f32 = 0.75;
 /// Sites that are nearly in line do not tell how light changes beside it: the product of the variances, relative to the square of their sum.
 const LEAST_SPREAD: f32 = 0.02;
 /// Segments to sites begin and end above the surface by this share of their length, so that gentle curves do not hide them.

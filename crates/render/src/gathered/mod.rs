@@ -19,11 +19,14 @@ mod light;
 mod lookup;
 mod rays;
 
+use std::sync::Arc;
+
 use glam::Vec3;
-use lightmesh_scene::Bounds;
+use lightmesh_scene::{Bounds, Environment};
 use rayon::prelude::*;
 
 use crate::data::wave::HostWave;
+use crate::prepared::PreparedScene;
 use crate::settings::Quality;
 use crate::surface::{SurfacePoint, shading_normal};
 use crate::view::View;
@@ -64,25 +67,23 @@ pub struct Gathering {
 }
 
 /// The rays of sites.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Fans {
-    /// Those of coarse sites: at first, and where these see different things.
+    /// Those of coarse sites, and of points that see none: at first, and where these see different things.
     far: [Fan; 2],
     /// Those of fine sites.
     near: Fan,
-    /// Those of places without sites.
-    plain: Fan,
 }
 
 impl Gathering {
     /// For an image of what lies within `bounds`, if `left` bytes are left for all of it.
     pub(crate) fn new(view: &View, bounds: &Bounds, quality: Quality, left: Option<u64>) -> Gathering {
-        let (pixels, far, near, plain) = match quality {
-            Quality::Draft => (8.0, [8, 12], 4, 6),
-            Quality::Good => (6.0, [8, 14], 6, 8),
-            Quality::Final => (4.0, [16, 28], 8, 16),
+        let (pixels, far, near) = match quality {
+            Quality::Draft => (8.0, [8, 12], 4),
+            Quality::Good => (6.0, [8, 14], 6),
+            Quality::Final => (4.0, [16, 28], 8),
         };
-        let fans = Fans { far: far.map(Fan::new), near: Fan::new(near), plain: Fan::new(plain) };
+        let fans = Fans { far: far.map(Fan::new), near: Fan::new(near) };
         let least_level = level_of(LEAST_SIZE * bounds.farthest()).0;
         Gathering {
             eye: view.origin(),
@@ -118,9 +119,33 @@ pub struct SurfaceLight {
     bounce: Bounce,
 }
 
+/// All that gathered light depends on, besides the geometry.
+pub(crate) struct Sources {
+    lights: Vec<lightmesh_scene::Light>,
+    environment: Option<Arc<Environment>>,
+    seed: u64,
+    fans: Fans,
+}
+
+impl Sources {
+    pub(crate) fn new(scene: &PreparedScene, seed: u64, how: &Gathering) -> Sources {
+        let lights = &scene.scene.lights;
+        Sources { lights: lights.list.clone(), environment: lights.environment.clone(), seed, fans: how.fans }
+    }
+}
+
+impl PartialEq for Sources {
+    /// Panoramas are the same if they are one.
+    fn eq(&self, other: &Sources) -> bool {
+        let name = |sources: &Sources| sources.environment.as_ref().map(Arc::as_ptr);
+        let same = name(self) == name(other) && self.seed == other.seed && self.fans == other.fans;
+        same && self.lights == other.lights
+    }
+}
+
 impl SurfaceLight {
     /// Bytes in memory.
-    fn memory(&self) -> u64 {
+    pub(crate) fn memory(&self) -> u64 {
         let sites = self.fine.capacity() * size_of::<Option<Fine>>();
         let far = self.far.iter().flatten().count() * size_of::<Far>() + self.far.capacity() * size_of::<usize>();
         (self.fine_cells.memory() + sites + self.far_cells.memory() + far + self.bounce.memory()) as u64
@@ -192,7 +217,7 @@ fn gather_part(
     let means: Vec<Option<Vec3>> = asks.par_iter().enumerate().map(mean).collect();
     let alone: Vec<&Ask> = asks.iter().zip(&means).filter(|(_, mean)| mean.is_none()).map(|(ask, _)| ask).collect();
     let sites: Vec<Site> = alone.iter().map(|ask| site_of(ask)).collect();
-    let own = far::plain(scene, coarse.bounce, &sites, how.fans.plain);
+    let own = far::plain(scene, coarse.bounce, &sites, how.fans.far);
     let own = alone.iter().zip(own).map(|(ask, own): (&&Ask, Light)| (*ask, own.at(normal(ask) - ask.point.normal)));
     let means = asks.iter().zip(means).filter_map(|(ask, mean)| Some((ask, mean?)));
     for (ask, mean) in means.chain(own) {

@@ -43,7 +43,7 @@ pub(super) struct Scene<'a> {
 }
 
 /// The rays of one site: `side`² directions, one in each part of the hemisphere.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fan {
     side: u32,
 }

@@ -23,6 +23,7 @@ use crate::cuda::{Driver, Runtime};
 use crate::data::picture::Picture;
 use crate::device::{Choice, Chosen, Device};
 use crate::error::RenderError;
+use crate::gathered::Sources;
 use crate::observer::{Observer, Unobserved};
 use crate::passes::{Baking, Passes};
 use crate::prepared::{Preparations, PreparedScene};
@@ -220,8 +221,8 @@ impl Renderer {
         self.pool.install(work)
     }
 
-    /// Renders one image of a prepared scene with the cached visibility of its light points, and adds what it computes to the cache. The
-    /// image is bit-identical to one without a cache; only long tests are saved (light-mesh mode).
+    /// Renders one image of a prepared scene with the cached visibility of its light points and the light that its surfaces gathered, and adds
+    /// what it computes to the cache. The image is bit-identical to one without a cache; long tests and gather rays are saved.
     ///
     /// # Errors
     /// As [`Renderer::render_prepared`].
@@ -313,7 +314,17 @@ fn picture_on<B: Backend>(
     let mut picture = Picture::planned(plan, [rows.clone(), rows]);
     let run = Run::new(backend, &job, kept);
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
-    let rows = match (Passes { run, scene: &on_device, technique, view, plan }).render(&mut picture) {
+    let sources = || plan.gathering.as_ref().map(|how| Sources::new(scene, settings.seed, how));
+    if let Some(sources) = sources() {
+        run.recall_gathered(scene, &sources);
+    }
+    let passes = Passes { run, scene: &on_device, technique, view, plan };
+    let rendered = passes.render(&mut picture);
+    // What a cancelled image gathered is not complete.
+    if let (Ok(_), Some(sources)) = (&rendered, sources()) {
+        passes.run.keep_gathered(scene, sources);
+    }
+    let rows = match rendered {
         Err(RenderError::Cancelled) if settings.partial && picture.finished > 0 => plan.most_rows.unwrap_or_default(),
         rows => rows?,
     };

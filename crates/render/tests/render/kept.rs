@@ -3,8 +3,10 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DVec3, Vec3};
-use lightmesh_render::{Frame, MeshCache, Observer, PreparedScene, RenderError, Settings, Step, Unobserved};
-use lightmesh_scene::{Camera, LightKind, Lights, Scene};
+use lightmesh_render::{
+    AmbientSource, Device, Frame, MeshCache, Observer, PreparedScene, RenderError, Renderer, Settings, Step, Unobserved,
+};
+use lightmesh_scene::{Camera, LightKind, Lights, Scene, Sky, SunPosition, Up};
 use lightmesh_testkit::{Picture, pile};
 
 use crate::{LAMP, POINT, light_mesh, prepared, renderer};
@@ -51,6 +53,38 @@ fn a_camera_that_moves_finds_light_points_that_are_known() {
     assert!(cache.memory() > known / 8);
     cache.clear();
     assert!(cache.is_empty() && cache.memory() == 0);
+}
+
+/// A yard under a sky, whose light is gathered.
+#[test]
+fn a_camera_that_moves_finds_light_that_was_gathered() {
+    let mut scene = pile(DVec3::ZERO, &[LAMP]);
+    scene.lights.surround(Sky::clear(SunPosition { elevation: 30.0, azimuth: 100.0 }).surroundings(Up::Y).unwrap());
+    let scene = prepared(&scene);
+    let renderer = Renderer::new(Device::Cpu).unwrap();
+    let settings = Settings::default().with_ambient_light(AmbientSource::Mesh).with_size(SIZE).with_aa(1);
+    let mut cache = MeshCache::new();
+    // Rays with the cache and without; the images are the same.
+    let mut rays = |scene: &PreparedScene, settings: &Settings| {
+        let with = renderer.render_with(&mut cache, scene, settings, &Unobserved).unwrap();
+        let without = renderer.render_prepared(scene, settings, &Unobserved).unwrap();
+        assert!(with.color() == without.color(), "the image differs");
+        [with, without].map(|frame| frame.stats.counts.gather_rays)
+    };
+    let [first, alone] = rays(&scene, &settings);
+    assert_eq!(first, alone);
+    for step in 1..6 {
+        let [with, without] = rays(&scene, &settings.clone().with_camera(aside(&scene, 0.01 * step as f32)));
+        assert!(4 * with < without, "step {step}: {with} of {without} rays");
+    }
+    // Other lights and other seeds are another matter.
+    let mut lights = scene.scene.lights.clone();
+    lights.iter_mut().for_each(|light| light.intensity *= 2.0);
+    for (scene, settings) in [(scene.with_lights(lights), settings.clone()), (scene.clone(), settings.with_seed(5))] {
+        let [with, without] = rays(&scene, &settings);
+        assert_eq!(with, without);
+    }
+    assert!(cache.memory() > 100_000);
 }
 
 #[test]
