@@ -16,22 +16,14 @@ use std::hash::BuildHasherDefault;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::cells::{Asked, CellHasher, Kind, Site, key_of, nearest_of_kind};
-use super::lookup::Place;
-use super::rays::{Fan, RAYS_AT_ONCE, Scene, Seen};
+use super::cells::{Asked, CellHasher, Site, key_of, nearest_of_kind};
+use super::rays::{Fan, RAYS_AT_ONCE, Seen, Spot};
+use super::scene::Scene;
 
 /// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's.
 const ORDERS: usize = 2;
 /// The rays of a site.
 const FAN: Fan = Fan::new(6);
-
-/// A point that a gather ray hits.
-#[derive(Clone, Copy)]
-pub(super) struct Spot {
-    /// Its level is that of the cell that it asks.
-    pub(super) place: Place,
-    pub(super) kind: Kind,
-}
 
 /// The name of a site: its cell and its kind of surface.
 type Name = u64;

@@ -27,6 +27,8 @@ const INWARDS: f32 = 0.0625;
 const OPEN: f32 = 0.5;
 /// How many points of a kind are looked at for an open one.
 const CANDIDATES: usize = 4;
+/// By how many levels coarse cells are coarser than fine ones: they are four times as large.
+pub(super) const COARSER: i32 = 2;
 /// Kinds of surfaces in a cell, by their normal: the largest component of three, its sign, and whether it is the triangle's front.
 const KINDS: usize = 12;
 

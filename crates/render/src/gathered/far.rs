@@ -6,7 +6,8 @@ use rayon::prelude::*;
 use super::bounce::Bounce;
 use super::cells::{Cells, Site, size_of_level};
 use super::light::{Bins, Light};
-use super::rays::{Cast, Fan, RAYS_AT_ONCE, Scene};
+use super::rays::{Cast, Fan, RAYS_AT_ONCE};
+use super::scene::Scene;
 
 /// Near is what is not farther than this many coarse cells.
 const NEAR: f32 = 2.0;

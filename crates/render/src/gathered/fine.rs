@@ -11,13 +11,13 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::bounce::Bounce;
-use super::cells::{Cells, Site};
+use super::cells::{COARSER, Cells, Site};
 use super::directions::bin;
 use super::far::{self, Far};
 use super::light::Light;
 use super::lookup::{Link, Links, Place};
-use super::rays::{Cast, RAYS_AT_ONCE, Scene};
-use super::{COARSER, Fans};
+use super::rays::{Cast, Fans, RAYS_AT_ONCE};
+use super::scene::Scene;
 
 /// How far near rays reach, relative to what coarse sites leave out as near. What is near to these may be farther away here, but only from
 /// some: with 1, light is too bright before walls, with 2 too dark.

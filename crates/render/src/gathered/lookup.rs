@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::cells::{Asked, CellKey, Cells, cell_at, corner_of, key_of, size_of_level};
 use super::directions::basis;
-use super::rays::Scene;
+use super::scene::Scene;
 use crate::accel::Ray;
 use crate::surface::{SurfacePoint, long_segment};
 

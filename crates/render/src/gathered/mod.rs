@@ -18,6 +18,7 @@ mod fine;
 mod light;
 mod lookup;
 mod rays;
+mod scene;
 
 use std::sync::Arc;
 
@@ -31,15 +32,14 @@ use crate::settings::Quality;
 use crate::surface::{SurfacePoint, shading_normal};
 use crate::view::View;
 use bounce::Bounce;
-use cells::{Cells, Site, level_of};
+use cells::{COARSER, Cells, Site, level_of};
 use far::Far;
 use fine::{Coarse, Fine};
 use light::Light;
 use lookup::{Links, Place};
-use rays::{Fan, Scene};
+use rays::{Fan, Fans};
+use scene::Scene;
 
-/// By how many levels coarse cells are coarser than fine ones: they are four times as large.
-const COARSER: i32 = 2;
 /// Surface points that are processed at once.
 const POINTS_AT_ONCE: usize = 1 << 15;
 /// What these, and the rays that are cast at once, take at most: rays with all that is known of them, three times, for what they hit asks
@@ -64,15 +64,6 @@ pub struct Gathering {
     fans: Fans,
     /// What is kept is dropped when it takes more bytes than this.
     most_kept: Option<u64>,
-}
-
-/// The rays of sites.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Fans {
-    /// Those of coarse sites, and of points that see none: at first, and where these see different things.
-    far: [Fan; 2],
-    /// Those of fine sites.
-    near: Fan,
 }
 
 impl Gathering {

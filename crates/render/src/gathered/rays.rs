@@ -5,18 +5,16 @@ use std::f32::consts::PI;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use super::bounce::Spot;
-use super::cells::{Site, kind_of, level_of};
+use super::cells::{Kind, Site, kind_of, level_of};
 use super::directions::{above, basis};
 use super::lookup::Place;
+use super::scene::Scene;
 use crate::accel::{Hit, Ray};
 use crate::counters::Tally;
 use crate::data::lights::LightGroup;
 use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
 use crate::footprint::Cone;
-use crate::job::Job;
-use crate::prepared::PreparedScene;
 use crate::sampling::{Pattern, light_point, random_bits};
 use crate::shading::Surface;
 use crate::shading::environment::surroundings;
@@ -34,13 +32,6 @@ const BATCH: usize = 2048;
 const BOUNCE_SIZE: f32 = 0.4;
 /// and at least twice as large as the cell that asks.
 const BOUNCE_COARSER: i32 = 1;
-
-/// What all gathering needs.
-#[derive(Clone, Copy)]
-pub(super) struct Scene<'a> {
-    pub(super) job: &'a Job<'a>,
-    pub(super) scene: &'a PreparedScene,
-}
 
 /// The rays of one site: `side`² directions, one in each part of the hemisphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +65,15 @@ impl Fan {
         let (local, weight) = above(Vec2::new(place(column, random as u32), place(row, (random >> 32) as u32)));
         (local.x * tangent + local.y * other + local.z * normal, weight)
     }
+}
+
+/// The rays of sites.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fans {
+    /// Those of coarse sites, and of points that see none: at first, and where these see different things.
+    pub(super) far: [Fan; 2],
+    /// Those of fine sites.
+    pub(super) near: Fan,
 }
 
 /// Rays from some sites, fan by fan, with what they hit.
@@ -165,6 +165,14 @@ impl Scene<'_> {
         });
         seen
     }
+}
+
+/// A point that a ray hits, where the light that was reflected before is asked for.
+#[derive(Clone, Copy)]
+pub(super) struct Spot {
+    /// Its level is that of the cell that it asks.
+    pub(super) place: Place,
+    pub(super) kind: Kind,
 }
 
 /// What a ray sees.

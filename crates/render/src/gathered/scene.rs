@@ -1,0 +1,11 @@
+//! What all gathering needs.
+
+use crate::job::Job;
+use crate::prepared::PreparedScene;
+
+/// A scene, and the image that is rendered.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub(super) job: &'a Job<'a>,
+    pub(super) scene: &'a PreparedScene,
+}
