@@ -237,7 +237,7 @@ fn render_twice(scene: &PreparedScene, settings: &Settings, accident: impl Fn(&E
     let mut first = settings.clone().with_camera(scene.scene.default_camera(Up::Y));
     first.memory_limit = None;
     render_on_with(&cuda, &mut kept, scene, &first, &Unobserved).unwrap();
-    assert!(kept.len() > 0 && kept.memory() > 0);
+    assert!(!kept.is_empty() && kept.memory() > 0);
     emulator.take_traffic();
     accident(&emulator);
     let notes = Notes::default();

@@ -349,4 +349,73 @@ constants! {
     ITEM_WARPS: u32 = 4;
     /// Maximum number of lights without an area that are interpolated at once.
     MOST_LIGHTS: u32 = 3;
+
+    // Gathered light.
+
+    /// Surface cells are offset from round coordinates, on which floors and walls tend to lie, by this fraction of their size, along x.
+    CELL_OFFSET_X: f32 = 0.137;
+    /// The same along y.
+    CELL_OFFSET_Y: f32 = 0.241;
+    /// The same along z.
+    CELL_OFFSET_Z: f32 = 0.319;
+    /// Bits of a surface cell's index along an axis; it repeats beyond.
+    CELL_INDEX_BITS: u32 = 17;
+    /// Added to a level so that it is positive.
+    LEVEL_BIAS: i32 = 127;
+    /// Kinds of surfaces in a cell, by their normal: the largest component of three, its sign, and whether it is the triangle's front.
+    SURFACE_KINDS: u32 = 12;
+    /// How far sites move away from edges, in cells.
+    SITE_INWARDS: f32 = 0.0625;
+    /// Sites lie in the cube around their cell's middle with this half edge, in cells: half a cell, and more since they move inwards from edges.
+    SITE_MARGIN: f32 = 0.625;
+    /// A site is open if nothing is above it within this distance, in cells.
+    SITE_OPEN: f32 = 0.5;
+    /// How many points of a kind are looked at for an open one.
+    SITE_CANDIDATES: u32 = 4;
+    /// The distance within which sites count, in cells.
+    SITE_RADIUS: f32 = 1.5;
+    /// The cells around one, and itself, in which they are: the ball around a place ends two cells away, at most.
+    CELLS_AROUND: u32 = 5 * 5 * 5;
+    /// The distance from each other's tangent planes within which they count, in cells.
+    SITE_THICKNESS: f32 = 0.75;
+    /// The cosine of the angle between normals beyond which they do not.
+    SITE_COSINE: f32 = 0.75;
+    /// Sites that are nearly in line do not tell how light changes beside it: the product of the variances, relative to the square of their
+    /// sum.
+    LEAST_SPREAD: f32 = 0.02;
+    /// Segments to sites begin and end above the surface by this share of their length, so that gentle curves do not hide them.
+    SITE_RAISED: f32 = 0.15;
+    /// Bins of directions along each side of the octahedron's square.
+    BINS_PER_SIDE: u32 = 8;
+    /// What tilts a surface changes light by the slope of the cosine, which has no bound at the horizon: smaller cosines count as this.
+    LEAST_TILT_COSINE: f32 = 0.2;
+    /// Bins of all directions.
+    BINS: u32 = BINS_PER_SIDE * BINS_PER_SIDE;
+    /// By how many levels coarse cells are coarser than fine ones: they are four times as large.
+    COARSER: i32 = 2;
+    /// The last part of a level, from here to 2, becomes the next one.
+    BLEND_FROM: f32 = 1.75;
+    /// Near is what is not farther than this many coarse cells.
+    NEAR_CELLS: f32 = 2.0;
+    /// How far near rays reach, relative to what coarse sites leave out as near. What is near to these may be farther away here, but only
+    /// from some: with 1, light is too bright before walls, with 2 too dark.
+    NEAR_REACH: f32 = 1.25;
+    /// Sites cast more rays if the luminance that the first ones see deviates by more than this from its mean, relative to it.
+    EVEN: f32 = 0.6;
+    /// The cone of the surroundings that a ray sees is this share of its own: wider ones would look below the horizon.
+    SKY_CONE: f32 = 0.25;
+    /// What a ray hits is asked for light in a cell of this share of the distance,
+    BOUNCE_SIZE: f32 = 0.4;
+    /// and at least twice as large as the cell that asks.
+    BOUNCE_COARSER: i32 = 1;
+    /// The rays of a site that other rays hit form a square with this side.
+    BOUNCE_SIDE: u32 = 6;
+    /// Where sites that rays hit are looked for first, in cells around the middle of theirs; then twice as far, up to a whole cell.
+    NODE_REACH: f32 = 0.125;
+    /// A table in which a name is not found after this many places is too full.
+    NAME_PROBES: u32 = 1024;
+    /// Added to the number of names of such a table.
+    FULL_TABLE: u32 = 1 << 31;
+    /// No name, site or node.
+    NO_NUMBER: u32 = u32::MAX;
 }

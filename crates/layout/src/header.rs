@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::literal::Constant;
-use crate::{Record, constants, counters, geometry, mesh, scene, stages, structure};
+use crate::{Record, constants, counters, gathered, geometry, mesh, scene, stages, structure};
 
 /// How the two compilers of kernels express `offsetof`: NVRTC has no `<stddef.h>`, and no builtin of that name.
 const PLACE_OF: &str = "
@@ -30,6 +30,7 @@ pub fn header() -> String {
     scene::print(&mut text);
     structure::print(&mut text);
     mesh::print(&mut text);
+    gathered::print(&mut text);
     stages::print(&mut text);
     text
 }

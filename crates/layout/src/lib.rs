@@ -6,7 +6,8 @@
 //! * [`geometry`]: rays, hits, triangles, acceleration structures.
 //! * [`scene`]: lights, materials, and the whole scene as a device holds it.
 //! * [`mesh`]: the light mesh and the results computed on it.
-//! * [`stages`]: the arguments of every kernel.
+//! * [`gathered`]: gathered light, and the arguments of its kernels.
+//! * [`stages`]: the arguments of all other kernels.
 //! * [`Structure`]: the acceleration structures; every kernel that traces rays exists once for each.
 //! * [`constants`]: numbers that both sides must agree on; those of a record are its own.
 //! * [`counters`]: all counters.
@@ -15,6 +16,7 @@
 
 pub mod constants;
 pub mod counters;
+pub mod gathered;
 pub mod geometry;
 mod header;
 mod literal;

@@ -12,7 +12,7 @@ records! {
         position: Vec3,
         /// Kind of light: one of [`Light`]'s constants.
         kind: u32,
-        /// Direction of a directional light or a spot, or the normal of a disk.
+        /// Direction of a directional light or a spot, or the normal of a disk or of an emissive surface.
         direction: Vec3,
         /// Radius of a sphere or disk, spread of a point light. Of the disk that a directional light comes from: at distance 1.
         radius: f32,
@@ -33,8 +33,10 @@ records! {
         cone_scale: f32,
         /// A power of two: vectors to the light are multiplied by it, so that their products with triangles do not overflow.
         scale: f32,
+        /// 1: it stands for an emissive surface.
+        surface: u32,
         /// Padding to a multiple of sixteen bytes.
-        spare: [u32; 2],
+        spare: u32,
     }
 
     /// The vertices of a triangle.
@@ -100,8 +102,8 @@ records! {
         number: u32,
         /// The emitted light that is tinted.
         emission_tinted: Vec3,
-        /// Padding to a multiple of sixteen bytes.
-        spare_c: u32,
+        /// 1: lights stand for what it emits.
+        lamp: u32,
     }
 
     /// A level of an environment.

@@ -1,4 +1,4 @@
-//! The arguments of every kernel: one record for the kernels of a stage.
+//! The arguments of kernels: one record for those of a stage.
 
 use crate::constants::FIRST_TARGETS;
 use crate::geometry::{Cone, Hit, ListedRay, Rays, Tally, Vec3};
@@ -154,6 +154,8 @@ records! {
         share: In<f32>,
         /// Number of light points used, by ray; null if the technique uses none.
         used: In<u32>,
+        /// What was gathered, by ray; null if ambient light stands for it.
+        gathered: In<Vec3>,
         /// The first pixel of the film.
         film_pixel: u64,
         /// Radiance by pixel of the film, which is added to.
@@ -472,6 +474,16 @@ records! {
         /// The sum of each block of 1024 values; after their own scan, of all preceding blocks.
         sums: Out<u32>,
         /// Number of values.
+        count: u64,
+    }
+
+    /// `copy_words`: one thread per word.
+    Copy {
+        /// From here
+        from: In<u32>,
+        /// to here.
+        to: Out<u32>,
+        /// Number of words.
         count: u64,
     }
 }

@@ -203,6 +203,11 @@ impl PreparedScene {
         self.scene.geometry.materials.iter().any(|material| material.catcher)
     }
 
+    /// Whether lights stand for what lamps emit.
+    pub(crate) fn has_lamps(&self) -> bool {
+        self.scene.lights.iter().any(|light| light.surface.is_some())
+    }
+
     /// The same geometry under other lights. Their positions are in the geometry's local frame.
     pub fn with_lights(&self, lights: impl Into<Lights>) -> PreparedScene {
         PreparedScene { scene: self.scene.clone().with_lights(lights), ..self.clone() }

@@ -12,6 +12,7 @@ use crate::{
     Camera, CreaseAngle, Geometry, Light, LightKind, LightMeshDefaults, Lights, LoadError, LoadOptions, Material,
     MeshPart, Objects, Position, Scene, SceneBuilder, Surroundings, Texture,
     border::{Border, beside},
+    lamps,
     loaded_mesh::LoadedMesh,
     mesh_part::Room,
     quote::reference,
@@ -349,7 +350,8 @@ impl Draft {
         if self.strict && !warnings.is_empty() {
             return Err(LoadError::Warnings { path: self.path, warnings });
         }
-        let geometry = Geometry { origin, mesh, materials: self.materials, textures: self.textures };
+        let mut geometry = Geometry { origin, mesh, materials: self.materials, textures: self.textures };
+        let lamps = lamps::lamps(&mut geometry);
         let cameras = self.cameras.into_iter();
         let cameras = cameras.map(|(camera, world)| Camera { position: geometry.to_local(world), ..camera }).collect();
         let lights = self.lights.into_iter();
@@ -359,6 +361,7 @@ impl Draft {
         if let Some(surroundings) = self.surroundings {
             lights.add(surroundings);
         }
+        lights.list.extend(lamps);
         Ok(Scene {
             name,
             geometry: geometry.into(),

@@ -82,12 +82,12 @@ pub enum Viewpoint {
 
 impl Scene {
     /// Completes the scene so that it can be rendered: adds [`Scene::default_camera`] if it has no camera, and
-    /// [`Scene::default_lights`], placed relative to its first camera, if it has no light; with lights inside, also an ambient term of 0.2
+    /// [`Scene::default_lights`], placed relative to its first camera, if it has no light, or only lamps too faint to light it; with lights inside, also an ambient term of 0.2
     /// if none is set. Returns what was added.
     pub fn complete(&mut self, up: Up) -> Added {
         let mut added = Added {
             camera: self.cameras.is_empty(),
-            lights: self.lights.is_empty() && self.lights.environment.is_none(),
+            lights: self.lights.are_missing(&self.geometry.mesh.bounds()),
             ..Added::default()
         };
         // Needed for what is missing alone, and once for both.

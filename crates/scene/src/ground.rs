@@ -18,7 +18,7 @@ impl Scene {
         if bounds.is_empty() || !(diagonal > 0.0 && (HALF * diagonal).is_finite()) {
             return;
         }
-        if self.lights.ambient.is_none() {
+        if self.lights.ambient.is_none() && self.lights.environment.is_none() {
             self.lights.ambient = Some(self.lights.default_ambient(&bounds));
         }
         let axis = up.axis();

@@ -24,6 +24,7 @@ mod geometry;
 mod geometry_check;
 mod ground;
 mod info;
+mod lamps;
 mod light;
 mod lights;
 mod loaded_mesh;

@@ -112,6 +112,9 @@ pub struct Light {
     pub intensity: Vec3,
     /// How distance attenuates it.
     pub falloff: Falloff,
+    /// If it stands for an emissive surface: the unit normal on the side that shines. Its strength falls with the cosine (Lambert), and `intensity` is
+    /// that along the normal. `None`: it shines evenly.
+    pub surface: Option<Vec3>,
 }
 
 /// A light with an invalid shape.
@@ -215,7 +218,7 @@ impl Light {
 
     /// A light with a shape that is used unchecked.
     pub fn new(kind: LightKind) -> Light {
-        Light { name: String::new(), kind, intensity: Vec3::ONE, falloff: Falloff::None }
+        Light { name: String::new(), kind, intensity: Vec3::ONE, falloff: Falloff::None, surface: None }
     }
 
     /// The same light with this strength, see [`Light::intensity`].
@@ -226,6 +229,11 @@ impl Light {
     /// The same light with another falloff.
     pub fn with_falloff(self, falloff: Falloff) -> Light {
         Light { falloff, ..self }
+    }
+
+    /// The same light as that of an emissive surface with this unit normal.
+    pub fn with_surface(self, normal: Vec3) -> Light {
+        Light { surface: Some(normal), ..self }
     }
 
     /// The same light with a name.

@@ -11,6 +11,9 @@ use crate::{Bounds, Environment, Falloff, Light, LightKind, Surroundings};
 /// The default ambient term as a share of what the lights give.
 const DEFAULT_AMBIENT: f32 = 0.1;
 
+/// Lamps that show a white surface in the middle of the scene darker than this do not light it: glowing eyes, say.
+const FAINT: f32 = 0.05;
+
 /// The lights of a scene, and the ambient light. Dereferences to the list of lights.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
@@ -60,14 +63,29 @@ impl Lights {
         if self.list.is_empty() || self.list.iter().any(|light| light.falloff == Falloff::None) {
             return Vec3::splat(DEFAULT_AMBIENT);
         }
+        Vec3::splat(DEFAULT_AMBIENT * self.shown(bounds))
+    }
+
+    /// What a white surface at the middle of `bounds` shows that all lights with falloff face.
+    fn shown(&self, bounds: &Bounds) -> f32 {
         // A lamp at the centre itself would be infinitely near.
         let nearest = (0.25 * bounds.diagonal()).max(f32::MIN_POSITIVE);
         let shown = |light: &Light| {
             let distance = light.position().map_or(1.0, |position| position.distance(bounds.center()).max(nearest));
             light.intensity.element_sum() / (3.0 * PI * distance * distance)
         };
-        let sum: f32 = self.list.iter().map(shown).sum();
-        Vec3::splat(DEFAULT_AMBIENT * sum.min(f32::MAX))
+        self.list.iter().map(shown).sum::<f32>().min(f32::MAX)
+    }
+
+    /// Whether there are lights, all of them those of lamps.
+    pub fn are_lamps(&self) -> bool {
+        !self.list.is_empty() && self.list.iter().all(|light| light.surface.is_some())
+    }
+
+    /// Whether a scene within `bounds` needs other lights: it has none, or only lamps that would not light it.
+    pub(crate) fn are_missing(&self, bounds: &Bounds) -> bool {
+        let are_faint = || self.are_lamps() && self.shown(bounds) < FAINT;
+        self.environment.is_none() && (self.list.is_empty() || are_faint())
     }
 
     /// Radiance of rays that hit nothing.

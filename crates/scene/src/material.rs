@@ -24,7 +24,7 @@ pub struct Material {
     pub ks_tinted: Vec3,
     /// Phong exponent `pow`.
     pub shininess: f32,
-    /// Emitted radiance; it is visible but lights nothing.
+    /// Emitted radiance. It lights other surfaces where light is gathered, or by the lights of a [lamp](Material::lamp).
     pub emission: Vec3,
     /// The part of the emitted radiance that is tinted: a surface that shows its image unlit. It also counts without a tint.
     pub emission_tinted: Vec3,
@@ -33,6 +33,8 @@ pub struct Material {
     /// Whether only the shadows on it are seen: it shows the background, darker where it gets less light than it would alone, or is
     /// transparent there. Then nothing but `ka` and `kd` counts.
     pub catcher: bool,
+    /// Whether lights stand for what it emits ([`Light::surface`](crate::Light::surface)): where light is gathered, it is left out.
+    pub lamp: bool,
     /// Where the surface is; everywhere without it.
     pub cut_out: Option<CutOut>,
 }
@@ -51,6 +53,7 @@ impl Default for Material {
             emission_tinted: Vec3::ZERO,
             texture: None,
             catcher: false,
+            lamp: false,
             cut_out: None,
         }
     }
@@ -121,6 +124,11 @@ impl Material {
     /// Whether only the shadows on it are seen.
     pub fn with_catcher(self, catcher: bool) -> Material {
         Material { catcher, ..self }
+    }
+
+    /// Whether lights stand for what it emits.
+    pub fn with_lamp(self, lamp: bool) -> Material {
+        Material { lamp, ..self }
     }
 
     /// An image that tints the surface.

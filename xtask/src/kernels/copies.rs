@@ -14,7 +14,7 @@ use std::path::Path;
 use super::{LAYOUT, sources_under};
 
 /// Macros and numbers that only kernels use, and why.
-const ALLOWED: [(&str, &str); 24] = [
+const ALLOWED: [(&str, &str); 25] = [
     ("0x7ff0000000000000ll", "the bits of a double's exponent; Rust has functions for them"),
     ("CUT_OUTS", "the host chooses the module that was compiled with it"),
     ("PLANE_BIAS", "a byte is converted to a float by adding to its bits; the host casts"),
@@ -31,6 +31,7 @@ const ALLOWED: [(&str, &str); 24] = [
     ("0xffff", "two 16-bit numbers in a word; Rust casts"),
     ("NO_POINT", "sorts threads without a surface point last"),
     ("FLAT", "an item without curved surfaces skips what the host does for each point"),
+    ("NO_CANDIDATE", "an empty place of a list that lanes share"),
     ("NO_TARGET", "ends a list in shared memory"),
     ("0x80000000u", "more bricks than fit into any table: it is full"),
     ("UNKNOWN", "passed from one kernel to the next"),

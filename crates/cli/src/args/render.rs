@@ -170,7 +170,7 @@ pub(crate) struct RenderArgs {
     pub(crate) ambient: Option<Color>,
 
     /// What stands for light that comes from no light directly: from the sky, and from other surfaces
-    #[arg(long, value_name = "SOURCE", value_parser = words::ambient_light(), default_value_t = AmbientSource::Constant, help_heading = "Scene")]
+    #[arg(long, value_name = "SOURCE", value_parser = words::ambient_light(), default_value_t = AmbientSource::Auto, help_heading = "Scene")]
     pub(crate) ambient_light: AmbientSource,
 
     /// A sky around the scene: clear (Hosek and Wilkie's, with its sun), uniform or gradient, and after semicolons

@@ -31,7 +31,7 @@ fn same_pictures<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
         saved += tests(&with)[1];
     }
     assert_eq!(kept.len(), on_host.len());
-    assert_eq!(kept.len() > 0, saved > 0, "what is known is used");
+    assert_eq!(!kept.is_empty(), saved > 0, "what is known is used");
 }
 
 /// The scene; and with its last light moved.

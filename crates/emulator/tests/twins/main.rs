@@ -4,6 +4,8 @@
 //! with `LIGHTMESH_REQUIRE_GPU=1` they fail. `cargo test -p lightmesh-emulator --test twins -- garden` runs the cases of one scene.
 
 #[cfg(unix)]
+mod gathered;
+#[cfg(unix)]
 mod kept;
 #[cfg(unix)]
 mod pictures;

@@ -4,8 +4,8 @@ use glam::Vec3;
 use lightmesh_image::{Layers, Transfer};
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{
-    Acceleration, Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, PreparedScene, Settings, Step,
-    Unobserved, render_on, visibility_on,
+    Acceleration, AmbientSource, Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, PreparedScene,
+    Settings, Step, Unobserved, render_on, visibility_on,
 };
 use lightmesh_scene::{Bounds, Up};
 use lightmesh_testkit::{Picture, Random};
@@ -56,8 +56,9 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
 }
 
 fn settings(subject: &Subject, (_, mode, lookup): Way) -> Settings {
-    let settings =
-        Settings::default().with_mode(mode).with_lookup(lookup).with_size(SIZE).with_bounces(2).with_layers(true);
+    // Gathered light has cases of its own.
+    let settings = Settings::default().with_ambient_light(AmbientSource::Constant).with_bounces(2).with_layers(true);
+    let settings = settings.with_mode(mode).with_lookup(lookup).with_size(SIZE);
     settings.with_samples(4).with_step(Step::Fixed(subject.step)).with_radius(2.1).with_aa(1)
 }
 
@@ -74,7 +75,7 @@ fn same_shadows<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, settings: 
     same_frame(cuda, &scene, settings.with_transparent(true));
 }
 
-fn same_frame<R: Target>(cuda: &Cuda<R>, scene: &PreparedScene, settings: Settings) {
+pub(crate) fn same_frame<R: Target>(cuda: &Cuda<R>, scene: &PreparedScene, settings: Settings) -> [Frame; 2] {
     let host = render_on(&Cpu, scene, &settings, &Unobserved).unwrap();
     let device = render_on(cuda, scene, &settings, &Unobserved).unwrap();
     same_colors::<R>(&host, &device);
@@ -86,6 +87,7 @@ fn same_frame<R: Target>(cuda: &Cuda<R>, scene: &PreparedScene, settings: Settin
     for frame in [&host, &device] {
         assert_eq!(Picture::new(frame).ungrouped(), None, "the radiance of single lights adds up");
     }
+    [host, device]
 }
 
 /// Given points, all over the scene and a little outside of it, see the same.

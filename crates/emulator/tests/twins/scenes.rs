@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Acceleration, PreparedScene, Unobserved, View};
-use lightmesh_scene::{Falloff, LightKind, Scene, Sky, SunPosition, Up};
+use lightmesh_scene::{Falloff, LightKind, Material, Scene, Sky, SunPosition, Up};
 use lightmesh_testkit::{SceneDraft, half_plane, perforated, pile, soup};
 
 /// The structures, in the order of [`Subject::prepared`].
@@ -47,6 +47,9 @@ pub(crate) static TEXTURED: Subject = subject("textured", 0.25, true, crate::tex
 /// For images only, too.
 pub(crate) static SURROUNDED: Subject = subject("surrounded", 0.25, true, surrounded);
 
+/// For gathered light.
+pub(crate) static LAMPS: Subject = subject("lamps", 0.5, true, lamps);
+
 impl Subject {
     /// The scene.
     pub(crate) fn scene(&'static self) -> &'static Scene {
@@ -85,6 +88,23 @@ fn surrounded() -> Scene {
     let mut scene = crate::textured::textured();
     let sky = Sky { north: 20.0, ..Sky::clear(SunPosition { elevation: 30.0, azimuth: 170.0 }) };
     scene.lights.surround(sky.surroundings(Up::Y).expect("there is such a sky"));
+    scene
+}
+
+/// A room with a lamp that is a box, one that is a panel, and a glowing wall.
+fn lamps() -> Scene {
+    let [wall, lamp, glow] = [[0.0; 3], [6.0, 5.0, 4.0], [0.2, 0.1, 0.3]]
+        .map(|emission| Material::matt([0.6, 0.5, 0.4]).with_emission(emission));
+    let draft = SceneDraft::new().painted(wall.clone()).cuboid([-4.0, 0.0, -4.0], [4.0, 4.0, 4.0]);
+    let draft = draft.cuboid([-2.0, 0.0, -1.0], [-1.0, 1.5, 0.0]).painted(wall.named("other").with_ks([0.2; 3]));
+    let draft = draft.cuboid([1.0, 0.0, -2.0], [2.0, 0.7, -1.0]);
+    let draft = draft.painted(lamp.clone().named("box")).cuboid([0.2, 3.0, 0.1], [0.7, 3.25, 0.5]);
+    let draft = draft.painted(lamp.named("panel"));
+    let draft = draft.quad([[-3.0, 3.0, 1.0], [-2.0, 3.0, 1.0], [-2.0, 3.2, 2.0], [-3.0, 3.2, 2.0]]);
+    let draft = draft.painted(glow).quad([[-3.9, 0.5, -3.0], [-3.9, 0.5, 3.0], [-3.9, 3.5, 3.0], [-3.9, 3.5, -3.0]]);
+    let mut scene = draft.camera([0.5, 2.0, 3.5], [0.0, 1.5, -2.0]).finish("lamps");
+    scene.add_lamps();
+    assert!(scene.lights.len() > 4 && scene.lights.iter().all(|light| light.surface.is_some()));
     scene
 }
 

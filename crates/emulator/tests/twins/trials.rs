@@ -8,7 +8,7 @@ use lightmesh_render::backend::Cuda;
 use lightmesh_render::cuda::{Driver, Runtime, open_cuda};
 use lightmesh_render::{Device, devices};
 
-use crate::{kept, pictures, stages, textured};
+use crate::{gathered, kept, pictures, stages, textured};
 
 /// Where cases run.
 pub(crate) trait Target: Runtime {
@@ -47,7 +47,8 @@ impl<R: Target> Case<R> {
 
 /// All cases.
 fn cases<R: Target>() -> impl Iterator<Item = Case<R>> {
-    stages::cases().into_iter().chain(pictures::cases()).chain(kept::cases()).chain(textured::cases())
+    let pictures = pictures::cases().into_iter().chain(textured::cases());
+    stages::cases().into_iter().chain(pictures).chain(kept::cases()).chain(gathered::cases())
 }
 
 /// The emulator's trials, and those of all CUDA devices.

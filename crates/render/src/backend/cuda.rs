@@ -1,6 +1,5 @@
 //! A CUDA device: every stage runs as kernels, none on the host.
 
-use std::convert::Infallible;
 use std::ops::Range;
 
 use bytemuck::Zeroable;
@@ -20,13 +19,13 @@ use crate::cuda::Runtime;
 use crate::data::picture::Picture;
 use crate::data::visibility::Visibility;
 use crate::error::RenderError;
-use crate::gathered::Gathering;
+use crate::gathered::cuda::{DeviceGathered, DeviceSurfaceLight};
+use crate::gathered::{self, Gathering};
 use crate::job::Job;
 use crate::light_mesh::LightMesh;
 use crate::plan::Plan;
 use crate::prepared::PreparedScene;
 use crate::probes::Probes;
-use crate::settings::{AmbientSource, Setting};
 use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stages::pixel_samples::SampleRange;
@@ -43,8 +42,8 @@ impl<R: Runtime> Backend for Cuda<R> {
     type Points = DevicePoints<R>;
     type Lit = DeviceLit<R>;
     type Visibility = DeviceVisibility<R>;
-    type Gathered = Infallible;
-    type SurfaceLight = ();
+    type Gathered = DeviceGathered<R>;
+    type SurfaceLight = DeviceSurfaceLight<R>;
     type Film = DeviceFilm<R>;
     type Table = DeviceTable<R>;
 
@@ -121,12 +120,13 @@ impl<R: Runtime> Backend for Cuda<R> {
 
     stage_table!(stages_on_cuda);
 
-    fn gather(&self, _: &WaveOf<Self>, _: &Gathering, (): &mut ()) -> Result<Infallible, RenderError> {
-        Err(RenderError::Setting {
-            setting: Setting::AmbientLight,
-            value: AmbientSource::Mesh.name().to_owned(),
-            remedy: "CUDA devices do not gather light yet: use the CPU, or constant ambient light",
-        })
+    fn gather(
+        &self,
+        wave: &WaveOf<Self>,
+        how: &Gathering,
+        kept: &mut DeviceSurfaceLight<R>,
+    ) -> Result<DeviceGathered<R>, RenderError> {
+        gathered::cuda::gather(self, wave, how, kept)
     }
 
     fn finish(&self, job: &Job) -> Result<(), RenderError> {

@@ -1,7 +1,7 @@
 //! Visibility of light points, cached on a CUDA device: a table of bricks that only grows and, for each light, the known values by
 //! slot.
 
-use bytemuck::{Pod, Zeroable};
+use bytemuck::Zeroable;
 use lightmesh_layout::Out;
 use lightmesh_layout::constants::POINT_BITS;
 use lightmesh_layout::mesh::{BrickTable, KeptBy, LitBy};
@@ -10,6 +10,7 @@ use lightmesh_layout::stages::Cache;
 use super::{Seen, Table};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
+use crate::gathered::cuda::DeviceSurfaceLight;
 use crate::gpu::points::DevicePoints;
 use crate::gpu::{BLOCK, Cuda, blocks_for};
 
@@ -56,10 +57,10 @@ impl<R: Runtime> Default for DeviceTable<R> {
 }
 
 impl<R: Runtime> Table for DeviceTable<R> {
-    type Light = ();
+    type Light = DeviceSurfaceLight<R>;
 
-    fn memory_of((): &()) -> u64 {
-        0
+    fn memory_of(light: &DeviceSurfaceLight<R>) -> u64 {
+        light.memory()
     }
 
     fn len(&self) -> u64 {
@@ -67,13 +68,9 @@ impl<R: Runtime> Table for DeviceTable<R> {
     }
 
     fn memory(&self) -> u64 {
-        let keys = self.bricks.as_ref().map_or(0, |bricks| bytes(&bricks.keys) + bytes(&bricks.count));
+        let keys = self.bricks.as_ref().map_or(0, |bricks| bricks.keys.bytes() + bricks.count.bytes());
         keys + self.columns.iter().map(Column::memory).sum::<u64>()
     }
-}
-
-fn bytes<R: Runtime, T: Pod>(buffer: &Buffer<R, T>) -> u64 {
-    (buffer.len() * size_of::<T>()) as u64
 }
 
 impl<R: Runtime> DeviceTable<R> {
@@ -236,9 +233,9 @@ impl<R: Runtime> Column<R> {
 
     fn memory(&self) -> u64 {
         let answers = match &self.answers {
-            Answers::Bits(bits) => bytes(bits),
-            Answers::Shares(seen) => bytes(seen),
+            Answers::Bits(bits) => bits.bytes(),
+            Answers::Shares(seen) => seen.bytes(),
         };
-        bytes(&self.known) + answers
+        self.known.bytes() + answers
     }
 }

@@ -49,7 +49,7 @@ impl MeshCache {
 
     /// Whether the cache is empty.
     pub fn is_empty(&self) -> bool {
-        self.len() == 0
+        self.host.is_empty() && self.devices.iter().all(|(_, kept)| kept.is_empty())
     }
 
     /// Bytes used, on the host and on devices.
@@ -131,12 +131,16 @@ impl<T: Table> Default for Kept<T> {
 
 impl<T: Table> Kept<T> {
     /// Number of cached values: light points times lights.
-    #[allow(clippy::len_without_is_empty, reason = "not needed")]
     pub fn len(&self) -> u64 {
         self.tables.iter().map(|known| known.table.len()).sum()
     }
 
-    /// Bytes used by the tables.
+    /// Whether nothing is kept: no values, and no gathered light.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0 && self.gathered.is_empty()
+    }
+
+    /// Bytes used.
     pub fn memory(&self) -> u64 {
         let gathered: u64 = self.gathered.iter().map(|gathered| T::memory_of(&gathered.light)).sum();
         self.tables.iter().map(|known| known.table.memory()).sum::<u64>() + gathered

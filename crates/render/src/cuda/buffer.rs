@@ -46,6 +46,12 @@ impl<R: Runtime> Pool<R> {
         self.limit.store(limit.unwrap_or(u64::MAX), Ordering::Relaxed);
     }
 
+    /// How many bytes may still be allocated; `None` if there is no limit.
+    pub fn left(&self) -> Option<u64> {
+        let limit = self.limit.load(Ordering::Relaxed);
+        (limit < u64::MAX).then(|| limit.saturating_sub(self.taken()))
+    }
+
     /// Bytes in use.
     pub fn taken(&self) -> u64 {
         self.taken.load(Ordering::Relaxed)
@@ -110,6 +116,11 @@ impl<R: Runtime, T: Pod> Buffer<R, T> {
     #[allow(clippy::len_without_is_empty, reason = "not needed")]
     pub fn len(&self) -> usize {
         self.len
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
     }
 
     /// Its address, for reading.

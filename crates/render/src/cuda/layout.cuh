@@ -241,6 +241,72 @@
 #define ITEM_WARPS 4u
 // Maximum number of lights without an area that are interpolated at once.
 #define MOST_LIGHTS 3u
+// Surface cells are offset from round coordinates, on which floors and walls tend to lie, by this fraction of their size, along x.
+#define CELL_OFFSET_X 0x1.189374p-3f
+// The same along y.
+#define CELL_OFFSET_Y 0x1.ed9168p-3f
+// The same along z.
+#define CELL_OFFSET_Z 0x1.46a7fp-2f
+// Bits of a surface cell's index along an axis; it repeats beyond.
+#define CELL_INDEX_BITS 17u
+// Added to a level so that it is positive.
+#define LEVEL_BIAS 127
+// Kinds of surfaces in a cell, by their normal: the largest component of three, its sign, and whether it is the triangle's front.
+#define SURFACE_KINDS 12u
+// How far sites move away from edges, in cells.
+#define SITE_INWARDS 0x1p-4f
+// Sites lie in the cube around their cell's middle with this half edge, in cells: half a cell, and more since they move inwards from edges.
+#define SITE_MARGIN 0x1.4p-1f
+// A site is open if nothing is above it within this distance, in cells.
+#define SITE_OPEN 0x1p-1f
+// How many points of a kind are looked at for an open one.
+#define SITE_CANDIDATES 4u
+// The distance within which sites count, in cells.
+#define SITE_RADIUS 0x1.8p0f
+// The cells around one, and itself, in which they are: the ball around a place ends two cells away, at most.
+#define CELLS_AROUND 125u
+// The distance from each other's tangent planes within which they count, in cells.
+#define SITE_THICKNESS 0x1.8p-1f
+// The cosine of the angle between normals beyond which they do not.
+#define SITE_COSINE 0x1.8p-1f
+// Sites that are nearly in line do not tell how light changes beside it: the product of the variances, relative to the square of their
+// sum.
+#define LEAST_SPREAD 0x1.47ae14p-6f
+// Segments to sites begin and end above the surface by this share of their length, so that gentle curves do not hide them.
+#define SITE_RAISED 0x1.333334p-3f
+// Bins of directions along each side of the octahedron's square.
+#define BINS_PER_SIDE 8u
+// What tilts a surface changes light by the slope of the cosine, which has no bound at the horizon: smaller cosines count as this.
+#define LEAST_TILT_COSINE 0x1.99999ap-3f
+// Bins of all directions.
+#define BINS 64u
+// By how many levels coarse cells are coarser than fine ones: they are four times as large.
+#define COARSER 2
+// The last part of a level, from here to 2, becomes the next one.
+#define BLEND_FROM 0x1.cp0f
+// Near is what is not farther than this many coarse cells.
+#define NEAR_CELLS 0x1p1f
+// How far near rays reach, relative to what coarse sites leave out as near. What is near to these may be farther away here, but only
+// from some: with 1, light is too bright before walls, with 2 too dark.
+#define NEAR_REACH 0x1.4p0f
+// Sites cast more rays if the luminance that the first ones see deviates by more than this from its mean, relative to it.
+#define EVEN 0x1.333334p-1f
+// The cone of the surroundings that a ray sees is this share of its own: wider ones would look below the horizon.
+#define SKY_CONE 0x1p-2f
+// What a ray hits is asked for light in a cell of this share of the distance,
+#define BOUNCE_SIZE 0x1.99999ap-2f
+// and at least twice as large as the cell that asks.
+#define BOUNCE_COARSER 1
+// The rays of a site that other rays hit form a square with this side.
+#define BOUNCE_SIDE 6u
+// Where sites that rays hit are looked for first, in cells around the middle of theirs; then twice as far, up to a whole cell.
+#define NODE_REACH 0x1p-3f
+// A table in which a name is not found after this many places is too full.
+#define NAME_PROBES 1024u
+// Added to the number of names of such a table.
+#define FULL_TABLE 0x80000000u
+// No name, site or node.
+#define NO_NUMBER 0xffffffffu
 
 #if defined(__CUDACC_RTC__)
 #define PLACE_OF(record, field) __INTADDR__(&(((record *)0)->field))
@@ -549,7 +615,8 @@ struct alignas(4) Light {
     float cos_outer;
     float cone_scale;
     float scale;
-    unsigned spare[2];
+    unsigned surface;
+    unsigned spare;
 };
 static_assert(sizeof(Light) == 96, "size of Light");
 static_assert(PLACE_OF(Light, position) == 0, "place of Light::position");
@@ -564,7 +631,8 @@ static_assert(PLACE_OF(Light, intensity) == 64, "place of Light::intensity");
 static_assert(PLACE_OF(Light, cos_outer) == 76, "place of Light::cos_outer");
 static_assert(PLACE_OF(Light, cone_scale) == 80, "place of Light::cone_scale");
 static_assert(PLACE_OF(Light, scale) == 84, "place of Light::scale");
-static_assert(PLACE_OF(Light, spare) == 88, "place of Light::spare");
+static_assert(PLACE_OF(Light, surface) == 88, "place of Light::surface");
+static_assert(PLACE_OF(Light, spare) == 92, "place of Light::spare");
 
 struct alignas(4) Indices {
     unsigned vertices[3];
@@ -634,7 +702,7 @@ struct alignas(4) Material {
     Vec3 ks_tinted;
     unsigned number;
     Vec3 emission_tinted;
-    unsigned spare_c;
+    unsigned lamp;
 };
 static_assert(sizeof(Material) == 96, "size of Material");
 static_assert(PLACE_OF(Material, ka) == 0, "place of Material::ka");
@@ -648,7 +716,7 @@ static_assert(PLACE_OF(Material, catcher) == 60, "place of Material::catcher");
 static_assert(PLACE_OF(Material, ks_tinted) == 64, "place of Material::ks_tinted");
 static_assert(PLACE_OF(Material, number) == 76, "place of Material::number");
 static_assert(PLACE_OF(Material, emission_tinted) == 80, "place of Material::emission_tinted");
-static_assert(PLACE_OF(Material, spare_c) == 92, "place of Material::spare_c");
+static_assert(PLACE_OF(Material, lamp) == 92, "place of Material::lamp");
 
 struct alignas(8) EnvironmentLevel {
     const Vec3 *texels;
@@ -889,6 +957,358 @@ static_assert(PLACE_OF(UsedPoints, used) == 16, "place of UsedPoints::used");
 static_assert(PLACE_OF(UsedPoints, rank) == 24, "place of UsedPoints::rank");
 static_assert(PLACE_OF(UsedPoints, points) == 32, "place of UsedPoints::points");
 
+struct alignas(8) Name {
+    unsigned long long key;
+    int cell[3];
+    int level;
+    unsigned kind;
+    unsigned spare;
+};
+static_assert(sizeof(Name) == 32, "size of Name");
+static_assert(PLACE_OF(Name, key) == 0, "place of Name::key");
+static_assert(PLACE_OF(Name, cell) == 8, "place of Name::cell");
+static_assert(PLACE_OF(Name, level) == 20, "place of Name::level");
+static_assert(PLACE_OF(Name, kind) == 24, "place of Name::kind");
+static_assert(PLACE_OF(Name, spare) == 28, "place of Name::spare");
+
+struct alignas(8) Names {
+    unsigned long long *keys;
+    unsigned *numbers;
+    Name *names;
+    unsigned *count;
+    unsigned capacity;
+    unsigned room;
+};
+static_assert(sizeof(Names) == 40, "size of Names");
+static_assert(PLACE_OF(Names, keys) == 0, "place of Names::keys");
+static_assert(PLACE_OF(Names, numbers) == 8, "place of Names::numbers");
+static_assert(PLACE_OF(Names, names) == 16, "place of Names::names");
+static_assert(PLACE_OF(Names, count) == 24, "place of Names::count");
+static_assert(PLACE_OF(Names, capacity) == 32, "place of Names::capacity");
+static_assert(PLACE_OF(Names, room) == 36, "place of Names::room");
+
+struct alignas(8) Site {
+    Vec3 position;
+    int level;
+    Vec3 origin;
+    Vec3 normal;
+    unsigned long long seed;
+};
+static_assert(sizeof(Site) == 48, "size of Site");
+static_assert(PLACE_OF(Site, position) == 0, "place of Site::position");
+static_assert(PLACE_OF(Site, level) == 12, "place of Site::level");
+static_assert(PLACE_OF(Site, origin) == 16, "place of Site::origin");
+static_assert(PLACE_OF(Site, normal) == 28, "place of Site::normal");
+static_assert(PLACE_OF(Site, seed) == 40, "place of Site::seed");
+
+struct alignas(8) SurfaceCells {
+    Names cells;
+    unsigned long long *ranges;
+    Site *sites;
+    unsigned *site_count;
+    unsigned *values;
+    unsigned *owners;
+    unsigned *value_count;
+};
+static_assert(sizeof(SurfaceCells) == 88, "size of SurfaceCells");
+static_assert(PLACE_OF(SurfaceCells, cells) == 0, "place of SurfaceCells::cells");
+static_assert(PLACE_OF(SurfaceCells, ranges) == 40, "place of SurfaceCells::ranges");
+static_assert(PLACE_OF(SurfaceCells, sites) == 48, "place of SurfaceCells::sites");
+static_assert(PLACE_OF(SurfaceCells, site_count) == 56, "place of SurfaceCells::site_count");
+static_assert(PLACE_OF(SurfaceCells, values) == 64, "place of SurfaceCells::values");
+static_assert(PLACE_OF(SurfaceCells, owners) == 72, "place of SurfaceCells::owners");
+static_assert(PLACE_OF(SurfaceCells, value_count) == 80, "place of SurfaceCells::value_count");
+
+struct alignas(4) LightPlace {
+    Vec3 position;
+    int level;
+    Vec3 normal;
+    float share;
+};
+static_assert(sizeof(LightPlace) == 32, "size of LightPlace");
+static_assert(PLACE_OF(LightPlace, position) == 0, "place of LightPlace::position");
+static_assert(PLACE_OF(LightPlace, level) == 12, "place of LightPlace::level");
+static_assert(PLACE_OF(LightPlace, normal) == 16, "place of LightPlace::normal");
+static_assert(PLACE_OF(LightPlace, share) == 28, "place of LightPlace::share");
+
+struct alignas(4) Link {
+    unsigned site;
+    float weight;
+};
+static_assert(sizeof(Link) == 8, "size of Link");
+static_assert(PLACE_OF(Link, site) == 0, "place of Link::site");
+static_assert(PLACE_OF(Link, weight) == 4, "place of Link::weight");
+
+struct alignas(4) SurfaceLight {
+    Vec3 mean;
+    Vec3 tilt[3];
+};
+static_assert(sizeof(SurfaceLight) == 48, "size of SurfaceLight");
+static_assert(PLACE_OF(SurfaceLight, mean) == 0, "place of SurfaceLight::mean");
+static_assert(PLACE_OF(SurfaceLight, tilt) == 12, "place of SurfaceLight::tilt");
+
+struct alignas(4) Bins {
+    Vec3 sums[64];
+    float counts[64];
+};
+static_assert(sizeof(Bins) == 1024, "size of Bins");
+static_assert(PLACE_OF(Bins, sums) == 0, "place of Bins::sums");
+static_assert(PLACE_OF(Bins, counts) == 768, "place of Bins::counts");
+
+struct alignas(4) FarLight {
+    SurfaceLight light;
+    Bins all;
+    Bins beyond;
+    unsigned has_near;
+    unsigned spare;
+};
+static_assert(sizeof(FarLight) == 2104, "size of FarLight");
+static_assert(PLACE_OF(FarLight, light) == 0, "place of FarLight::light");
+static_assert(PLACE_OF(FarLight, all) == 48, "place of FarLight::all");
+static_assert(PLACE_OF(FarLight, beyond) == 1072, "place of FarLight::beyond");
+static_assert(PLACE_OF(FarLight, has_near) == 2096, "place of FarLight::has_near");
+static_assert(PLACE_OF(FarLight, spare) == 2100, "place of FarLight::spare");
+
+struct alignas(4) FineLight {
+    SurfaceLight light;
+    float nearest;
+    unsigned spare;
+};
+static_assert(sizeof(FineLight) == 56, "size of FineLight");
+static_assert(PLACE_OF(FineLight, light) == 0, "place of FineLight::light");
+static_assert(PLACE_OF(FineLight, nearest) == 48, "place of FineLight::nearest");
+static_assert(PLACE_OF(FineLight, spare) == 52, "place of FineLight::spare");
+
+struct alignas(4) SeenRay {
+    Vec3 position;
+    int level;
+    Vec3 normal;
+    unsigned kind;
+    Vec3 radiance;
+    unsigned node;
+    Vec3 kd;
+    unsigned spare;
+};
+static_assert(sizeof(SeenRay) == 64, "size of SeenRay");
+static_assert(PLACE_OF(SeenRay, position) == 0, "place of SeenRay::position");
+static_assert(PLACE_OF(SeenRay, level) == 12, "place of SeenRay::level");
+static_assert(PLACE_OF(SeenRay, normal) == 16, "place of SeenRay::normal");
+static_assert(PLACE_OF(SeenRay, kind) == 28, "place of SeenRay::kind");
+static_assert(PLACE_OF(SeenRay, radiance) == 32, "place of SeenRay::radiance");
+static_assert(PLACE_OF(SeenRay, node) == 44, "place of SeenRay::node");
+static_assert(PLACE_OF(SeenRay, kd) == 48, "place of SeenRay::kd");
+static_assert(PLACE_OF(SeenRay, spare) == 60, "place of SeenRay::spare");
+
+struct alignas(4) Node {
+    Vec3 first;
+    float nearest;
+    Vec3 second;
+    unsigned known;
+};
+static_assert(sizeof(Node) == 32, "size of Node");
+static_assert(PLACE_OF(Node, first) == 0, "place of Node::first");
+static_assert(PLACE_OF(Node, nearest) == 12, "place of Node::nearest");
+static_assert(PLACE_OF(Node, second) == 16, "place of Node::second");
+static_assert(PLACE_OF(Node, known) == 28, "place of Node::known");
+
+struct alignas(8) TakeSites {
+    const Site *sites;
+    const unsigned *numbers;
+    Site *taken;
+    LightPlace *places;
+    unsigned *owners;
+    unsigned first;
+    unsigned count;
+    int coarser;
+    unsigned spare;
+};
+static_assert(sizeof(TakeSites) == 56, "size of TakeSites");
+static_assert(PLACE_OF(TakeSites, sites) == 0, "place of TakeSites::sites");
+static_assert(PLACE_OF(TakeSites, numbers) == 8, "place of TakeSites::numbers");
+static_assert(PLACE_OF(TakeSites, taken) == 16, "place of TakeSites::taken");
+static_assert(PLACE_OF(TakeSites, places) == 24, "place of TakeSites::places");
+static_assert(PLACE_OF(TakeSites, owners) == 32, "place of TakeSites::owners");
+static_assert(PLACE_OF(TakeSites, first) == 40, "place of TakeSites::first");
+static_assert(PLACE_OF(TakeSites, count) == 44, "place of TakeSites::count");
+static_assert(PLACE_OF(TakeSites, coarser) == 48, "place of TakeSites::coarser");
+static_assert(PLACE_OF(TakeSites, spare) == 52, "place of TakeSites::spare");
+
+struct alignas(8) Lookup {
+    Scene scene;
+    Tally tally;
+    SurfaceCells table;
+    const LightPlace *places;
+    unsigned *offsets;
+    Link *links;
+    const float *nearest;
+    const FineLight *fine;
+    unsigned count;
+    unsigned first;
+};
+static_assert(sizeof(Lookup) == 712, "size of Lookup");
+static_assert(PLACE_OF(Lookup, scene) == 0, "place of Lookup::scene");
+static_assert(PLACE_OF(Lookup, tally) == 568, "place of Lookup::tally");
+static_assert(PLACE_OF(Lookup, table) == 576, "place of Lookup::table");
+static_assert(PLACE_OF(Lookup, places) == 664, "place of Lookup::places");
+static_assert(PLACE_OF(Lookup, offsets) == 672, "place of Lookup::offsets");
+static_assert(PLACE_OF(Lookup, links) == 680, "place of Lookup::links");
+static_assert(PLACE_OF(Lookup, nearest) == 688, "place of Lookup::nearest");
+static_assert(PLACE_OF(Lookup, fine) == 696, "place of Lookup::fine");
+static_assert(PLACE_OF(Lookup, count) == 704, "place of Lookup::count");
+static_assert(PLACE_OF(Lookup, first) == 708, "place of Lookup::first");
+
+struct alignas(8) Fans {
+    Scene scene;
+    Rays rays;
+    Sampling sampling;
+    Tally tally;
+    const Site *sites;
+    const unsigned *owners;
+    const Node *nodes;
+    ListedRay *list;
+    float *weights;
+    Hit *hits;
+    SeenRay *seen;
+    float *nearest;
+    unsigned count;
+    unsigned side;
+    float reach;
+    unsigned is_near;
+    unsigned lamps;
+    unsigned spare;
+};
+static_assert(sizeof(Fans) == 792, "size of Fans");
+static_assert(PLACE_OF(Fans, scene) == 0, "place of Fans::scene");
+static_assert(PLACE_OF(Fans, rays) == 568, "place of Fans::rays");
+static_assert(PLACE_OF(Fans, sampling) == 680, "place of Fans::sampling");
+static_assert(PLACE_OF(Fans, tally) == 696, "place of Fans::tally");
+static_assert(PLACE_OF(Fans, sites) == 704, "place of Fans::sites");
+static_assert(PLACE_OF(Fans, owners) == 712, "place of Fans::owners");
+static_assert(PLACE_OF(Fans, nodes) == 720, "place of Fans::nodes");
+static_assert(PLACE_OF(Fans, list) == 728, "place of Fans::list");
+static_assert(PLACE_OF(Fans, weights) == 736, "place of Fans::weights");
+static_assert(PLACE_OF(Fans, hits) == 744, "place of Fans::hits");
+static_assert(PLACE_OF(Fans, seen) == 752, "place of Fans::seen");
+static_assert(PLACE_OF(Fans, nearest) == 760, "place of Fans::nearest");
+static_assert(PLACE_OF(Fans, count) == 768, "place of Fans::count");
+static_assert(PLACE_OF(Fans, side) == 772, "place of Fans::side");
+static_assert(PLACE_OF(Fans, reach) == 776, "place of Fans::reach");
+static_assert(PLACE_OF(Fans, is_near) == 780, "place of Fans::is_near");
+static_assert(PLACE_OF(Fans, lamps) == 784, "place of Fans::lamps");
+static_assert(PLACE_OF(Fans, spare) == 788, "place of Fans::spare");
+
+struct alignas(8) Bounce {
+    Scene scene;
+    Fans fans;
+    Names names;
+    Node *nodes;
+    Site *sites;
+    unsigned *stamps;
+    unsigned *listed;
+    unsigned *listed_count;
+    unsigned order;
+    unsigned stamp;
+    unsigned first;
+    unsigned count;
+};
+static_assert(sizeof(Bounce) == 1456, "size of Bounce");
+static_assert(PLACE_OF(Bounce, scene) == 0, "place of Bounce::scene");
+static_assert(PLACE_OF(Bounce, fans) == 568, "place of Bounce::fans");
+static_assert(PLACE_OF(Bounce, names) == 1360, "place of Bounce::names");
+static_assert(PLACE_OF(Bounce, nodes) == 1400, "place of Bounce::nodes");
+static_assert(PLACE_OF(Bounce, sites) == 1408, "place of Bounce::sites");
+static_assert(PLACE_OF(Bounce, stamps) == 1416, "place of Bounce::stamps");
+static_assert(PLACE_OF(Bounce, listed) == 1424, "place of Bounce::listed");
+static_assert(PLACE_OF(Bounce, listed_count) == 1432, "place of Bounce::listed_count");
+static_assert(PLACE_OF(Bounce, order) == 1440, "place of Bounce::order");
+static_assert(PLACE_OF(Bounce, stamp) == 1444, "place of Bounce::stamp");
+static_assert(PLACE_OF(Bounce, first) == 1448, "place of Bounce::first");
+static_assert(PLACE_OF(Bounce, count) == 1452, "place of Bounce::count");
+
+struct alignas(8) GatherFar {
+    Fans fans;
+    FarLight *far;
+    const unsigned *owners;
+    unsigned *uneven;
+    unsigned *uneven_count;
+    unsigned first;
+    unsigned before;
+};
+static_assert(sizeof(GatherFar) == 832, "size of GatherFar");
+static_assert(PLACE_OF(GatherFar, fans) == 0, "place of GatherFar::fans");
+static_assert(PLACE_OF(GatherFar, far) == 792, "place of GatherFar::far");
+static_assert(PLACE_OF(GatherFar, owners) == 800, "place of GatherFar::owners");
+static_assert(PLACE_OF(GatherFar, uneven) == 808, "place of GatherFar::uneven");
+static_assert(PLACE_OF(GatherFar, uneven_count) == 816, "place of GatherFar::uneven_count");
+static_assert(PLACE_OF(GatherFar, first) == 824, "place of GatherFar::first");
+static_assert(PLACE_OF(GatherFar, before) == 828, "place of GatherFar::before");
+
+struct alignas(8) GatherFine {
+    Fans fans;
+    Lookup lookup;
+    const FarLight *far;
+    FineLight *fine;
+    unsigned *alone;
+    unsigned *alone_count;
+    unsigned first;
+    unsigned first_alone;
+    unsigned count;
+    unsigned spare;
+};
+static_assert(sizeof(GatherFine) == 1552, "size of GatherFine");
+static_assert(PLACE_OF(GatherFine, fans) == 0, "place of GatherFine::fans");
+static_assert(PLACE_OF(GatherFine, lookup) == 792, "place of GatherFine::lookup");
+static_assert(PLACE_OF(GatherFine, far) == 1504, "place of GatherFine::far");
+static_assert(PLACE_OF(GatherFine, fine) == 1512, "place of GatherFine::fine");
+static_assert(PLACE_OF(GatherFine, alone) == 1520, "place of GatherFine::alone");
+static_assert(PLACE_OF(GatherFine, alone_count) == 1528, "place of GatherFine::alone_count");
+static_assert(PLACE_OF(GatherFine, first) == 1536, "place of GatherFine::first");
+static_assert(PLACE_OF(GatherFine, first_alone) == 1540, "place of GatherFine::first_alone");
+static_assert(PLACE_OF(GatherFine, count) == 1544, "place of GatherFine::count");
+static_assert(PLACE_OF(GatherFine, spare) == 1548, "place of GatherFine::spare");
+
+struct alignas(8) GatherPoints {
+    Scene scene;
+    Rays rays;
+    const Hit *hits;
+    Lookup lookup;
+    const FineLight *fine;
+    LightPlace *places;
+    Vec3 *means;
+    unsigned *alone;
+    unsigned *alone_count;
+    Site *sites;
+    const FarLight *far;
+    Vec3 *light;
+    Vec3 eye;
+    float spacing[2];
+    float pixels;
+    int least_level;
+    unsigned first;
+    unsigned count;
+    unsigned first_alone;
+};
+static_assert(sizeof(GatherPoints) == 1504, "size of GatherPoints");
+static_assert(PLACE_OF(GatherPoints, scene) == 0, "place of GatherPoints::scene");
+static_assert(PLACE_OF(GatherPoints, rays) == 568, "place of GatherPoints::rays");
+static_assert(PLACE_OF(GatherPoints, hits) == 680, "place of GatherPoints::hits");
+static_assert(PLACE_OF(GatherPoints, lookup) == 688, "place of GatherPoints::lookup");
+static_assert(PLACE_OF(GatherPoints, fine) == 1400, "place of GatherPoints::fine");
+static_assert(PLACE_OF(GatherPoints, places) == 1408, "place of GatherPoints::places");
+static_assert(PLACE_OF(GatherPoints, means) == 1416, "place of GatherPoints::means");
+static_assert(PLACE_OF(GatherPoints, alone) == 1424, "place of GatherPoints::alone");
+static_assert(PLACE_OF(GatherPoints, alone_count) == 1432, "place of GatherPoints::alone_count");
+static_assert(PLACE_OF(GatherPoints, sites) == 1440, "place of GatherPoints::sites");
+static_assert(PLACE_OF(GatherPoints, far) == 1448, "place of GatherPoints::far");
+static_assert(PLACE_OF(GatherPoints, light) == 1456, "place of GatherPoints::light");
+static_assert(PLACE_OF(GatherPoints, eye) == 1464, "place of GatherPoints::eye");
+static_assert(PLACE_OF(GatherPoints, spacing) == 1476, "place of GatherPoints::spacing");
+static_assert(PLACE_OF(GatherPoints, pixels) == 1484, "place of GatherPoints::pixels");
+static_assert(PLACE_OF(GatherPoints, least_level) == 1488, "place of GatherPoints::least_level");
+static_assert(PLACE_OF(GatherPoints, first) == 1492, "place of GatherPoints::first");
+static_assert(PLACE_OF(GatherPoints, count) == 1496, "place of GatherPoints::count");
+static_assert(PLACE_OF(GatherPoints, first_alone) == 1500, "place of GatherPoints::first_alone");
+
 struct alignas(4) TileBox {
     Vec3 low;
     Vec3 high;
@@ -1027,6 +1447,7 @@ struct alignas(8) Shade {
     const Hit *hits;
     const float *share;
     const unsigned *used;
+    const Vec3 *gathered;
     unsigned long long film_pixel;
     Vec3 *color;
     Vec3 *sums;
@@ -1052,36 +1473,37 @@ struct alignas(8) Shade {
     unsigned catches;
     unsigned mirrored;
 };
-static_assert(sizeof(Shade) == 864, "size of Shade");
+static_assert(sizeof(Shade) == 872, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
 static_assert(PLACE_OF(Shade, rays) == 568, "place of Shade::rays");
 static_assert(PLACE_OF(Shade, hits) == 680, "place of Shade::hits");
 static_assert(PLACE_OF(Shade, share) == 688, "place of Shade::share");
 static_assert(PLACE_OF(Shade, used) == 696, "place of Shade::used");
-static_assert(PLACE_OF(Shade, film_pixel) == 704, "place of Shade::film_pixel");
-static_assert(PLACE_OF(Shade, color) == 712, "place of Shade::color");
-static_assert(PLACE_OF(Shade, sums) == 720, "place of Shade::sums");
-static_assert(PLACE_OF(Shade, caught) == 728, "place of Shade::caught");
-static_assert(PLACE_OF(Shade, ray_caught) == 736, "place of Shade::ray_caught");
-static_assert(PLACE_OF(Shade, samples) == 744, "place of Shade::samples");
-static_assert(PLACE_OF(Shade, depth) == 752, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 760, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 768, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 776, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 784, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, light_groups) == 792, "place of Shade::light_groups");
-static_assert(PLACE_OF(Shade, ids) == 800, "place of Shade::ids");
-static_assert(PLACE_OF(Shade, film_pixels) == 808, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 816, "place of Shade::first_block");
-static_assert(PLACE_OF(Shade, first_light) == 824, "place of Shade::first_light");
-static_assert(PLACE_OF(Shade, end_light) == 828, "place of Shade::end_light");
-static_assert(PLACE_OF(Shade, several) == 832, "place of Shade::several");
-static_assert(PLACE_OF(Shade, sampled) == 836, "place of Shade::sampled");
-static_assert(PLACE_OF(Shade, sample_count) == 840, "place of Shade::sample_count");
-static_assert(PLACE_OF(Shade, first_sampled) == 844, "place of Shade::first_sampled");
-static_assert(PLACE_OF(Shade, sampled_pixels) == 848, "place of Shade::sampled_pixels");
-static_assert(PLACE_OF(Shade, catches) == 856, "place of Shade::catches");
-static_assert(PLACE_OF(Shade, mirrored) == 860, "place of Shade::mirrored");
+static_assert(PLACE_OF(Shade, gathered) == 704, "place of Shade::gathered");
+static_assert(PLACE_OF(Shade, film_pixel) == 712, "place of Shade::film_pixel");
+static_assert(PLACE_OF(Shade, color) == 720, "place of Shade::color");
+static_assert(PLACE_OF(Shade, sums) == 728, "place of Shade::sums");
+static_assert(PLACE_OF(Shade, caught) == 736, "place of Shade::caught");
+static_assert(PLACE_OF(Shade, ray_caught) == 744, "place of Shade::ray_caught");
+static_assert(PLACE_OF(Shade, samples) == 752, "place of Shade::samples");
+static_assert(PLACE_OF(Shade, depth) == 760, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 768, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 776, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 784, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 792, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, light_groups) == 800, "place of Shade::light_groups");
+static_assert(PLACE_OF(Shade, ids) == 808, "place of Shade::ids");
+static_assert(PLACE_OF(Shade, film_pixels) == 816, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 824, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, first_light) == 832, "place of Shade::first_light");
+static_assert(PLACE_OF(Shade, end_light) == 836, "place of Shade::end_light");
+static_assert(PLACE_OF(Shade, several) == 840, "place of Shade::several");
+static_assert(PLACE_OF(Shade, sampled) == 844, "place of Shade::sampled");
+static_assert(PLACE_OF(Shade, sample_count) == 848, "place of Shade::sample_count");
+static_assert(PLACE_OF(Shade, first_sampled) == 852, "place of Shade::first_sampled");
+static_assert(PLACE_OF(Shade, sampled_pixels) == 856, "place of Shade::sampled_pixels");
+static_assert(PLACE_OF(Shade, catches) == 864, "place of Shade::catches");
+static_assert(PLACE_OF(Shade, mirrored) == 868, "place of Shade::mirrored");
 
 struct alignas(8) PixelSamples {
     Scene scene;
@@ -1350,3 +1772,13 @@ static_assert(sizeof(Scan) == 24, "size of Scan");
 static_assert(PLACE_OF(Scan, values) == 0, "place of Scan::values");
 static_assert(PLACE_OF(Scan, sums) == 8, "place of Scan::sums");
 static_assert(PLACE_OF(Scan, count) == 16, "place of Scan::count");
+
+struct alignas(8) Copy {
+    const unsigned *from;
+    unsigned *to;
+    unsigned long long count;
+};
+static_assert(sizeof(Copy) == 24, "size of Copy");
+static_assert(PLACE_OF(Copy, from) == 0, "place of Copy::from");
+static_assert(PLACE_OF(Copy, to) == 8, "place of Copy::to");
+static_assert(PLACE_OF(Copy, count) == 16, "place of Copy::count");

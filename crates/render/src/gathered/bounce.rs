@@ -14,24 +14,24 @@ use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 
 use glam::Vec3;
+use lightmesh_layout::constants::BOUNCE_SIDE;
 use rayon::prelude::*;
 
-use super::cells::{Asked, CellHasher, Site, key_of, nearest_of_kind};
+use super::cells::{Asked, CellHasher, Site, nearest_of_kind};
 use super::rays::{Fan, RAYS_AT_ONCE, Seen, Spot};
 use super::scene::Scene;
 
 /// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's.
 const ORDERS: usize = 2;
 /// The rays of a site.
-const FAN: Fan = Fan::new(6);
+const FAN: Fan = Fan::new(BOUNCE_SIDE);
 
 /// The name of a site: its cell and its kind of surface.
 type Name = u64;
 
 impl Spot {
     fn asked(&self) -> Asked {
-        let cell = self.place.cell();
-        Asked { key: key_of(self.place.level, cell), level: self.place.level, cell: cell.to_array() }
+        Asked::new(self.place.level, self.place.cell())
     }
 
     fn name(&self) -> Name {

@@ -1,13 +1,16 @@
 //! Surface cells: cubes of space, and one point of each kind of surface in them, a *site*.
 //!
 //! A cell is a cube of a power of two, the *level*. Its sites depend on the cell and on the geometry alone, not on the rays that ask for it:
-//! so does all that is computed for them, in whatever order, for this image and for others.
+//! so does all that is computed for them, in whatever order, for this image and for others. Twin: `cells.cuh`.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
 use glam::{IVec3, Vec3};
-use lightmesh_layout::constants::{GOLDEN_RATIO, LEAST_SQUARE};
+use lightmesh_layout::constants::{
+    CELL_INDEX_BITS, CELL_OFFSET_X, CELL_OFFSET_Y, CELL_OFFSET_Z, GOLDEN_RATIO, LEAST_SQUARE, LEVEL_BIAS, NODE_REACH,
+    SITE_CANDIDATES, SITE_INWARDS, SITE_OPEN, SURFACE_KINDS,
+};
 use lightmesh_scene::Bounds;
 use rayon::prelude::*;
 
@@ -16,21 +19,7 @@ use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
 
 /// Cells are offset from round coordinates, on which floors and walls tend to lie, by this fraction of their size.
-const OFFSET: Vec3 = Vec3::new(0.137, 0.241, 0.319);
-/// Bits of a cell's index along an axis; it repeats beyond.
-const INDEX_BITS: u32 = 17;
-/// Added to a level so that it is positive.
-const LEVEL_BIAS: i32 = 127;
-/// How far sites move away from edges, in cells.
-const INWARDS: f32 = 0.0625;
-/// A site is open if nothing is above it within this distance, in cells.
-const OPEN: f32 = 0.5;
-/// How many points of a kind are looked at for an open one.
-const CANDIDATES: usize = 4;
-/// By how many levels coarse cells are coarser than fine ones: they are four times as large.
-pub(super) const COARSER: i32 = 2;
-/// Kinds of surfaces in a cell, by their normal: the largest component of three, its sign, and whether it is the triangle's front.
-const KINDS: usize = 12;
+const OFFSET: Vec3 = Vec3::new(CELL_OFFSET_X, CELL_OFFSET_Y, CELL_OFFSET_Z);
 
 /// A kind of surface.
 pub(super) type Kind = u8;
@@ -65,9 +54,12 @@ pub(super) fn corner_of(level: i32, cell: IVec3) -> Vec3 {
 
 #[inline(always)]
 pub(super) fn key_of(level: i32, cell: IVec3) -> CellKey {
-    let axis = |index: i32| u64::from(index as u32 & ((1 << INDEX_BITS) - 1));
+    let axis = |index: i32| u64::from(index as u32 & ((1 << CELL_INDEX_BITS) - 1));
     let level = (level + LEVEL_BIAS) as u64;
-    level << (3 * INDEX_BITS) | axis(cell.z) << (2 * INDEX_BITS) | axis(cell.y) << INDEX_BITS | axis(cell.x)
+    level << (3 * CELL_INDEX_BITS)
+        | axis(cell.z) << (2 * CELL_INDEX_BITS)
+        | axis(cell.y) << CELL_INDEX_BITS
+        | axis(cell.x)
 }
 
 /// A point of the surfaces in a cell.
@@ -115,6 +107,10 @@ pub(super) struct Asked {
 }
 
 impl Asked {
+    pub(super) fn new(level: i32, cell: IVec3) -> Asked {
+        Asked { key: key_of(level, cell), level, cell: cell.to_array() }
+    }
+
     fn bounds(&self) -> Bounds {
         let min = corner_of(self.level, self.cell.into());
         Bounds { min, max: min + size_of_level(self.level) }
@@ -161,7 +157,7 @@ impl Cells {
 fn sites_of(scene: &PreparedScene, asked: &Asked, triangles: &mut Vec<u32>) -> Vec<Site> {
     let bounds = asked.bounds();
     scene.geometry.accelerator.triangles_in(&Region::within(bounds), triangles);
-    let mut candidates: [Candidates; KINDS] = Default::default();
+    let mut candidates: [Candidates; SURFACE_KINDS as usize] = Default::default();
     for &index in &*triangles {
         let triangle = &scene.geometry.triangles[index as usize];
         let Some(kinds) = kinds_of(triangle) else { continue };
@@ -184,7 +180,9 @@ pub(super) fn nearest_of_kind(
     let bounds = asked.bounds();
     let (middle, size) = (bounds.center(), size_of_level(asked.level));
     // Cells may have many triangles: those in the middle come first.
-    for reach in [0.125, 0.25, 0.5, 0.875, 1.0].map(|share| share * size) {
+    let mut share = NODE_REACH;
+    while share <= 1.0 {
+        let reach = share * size;
         let mut candidates = Candidates::default();
         let around = Region::near(Bounds { min: middle, max: middle }, reach);
         scene.geometry.accelerator.triangles_in(&around, triangles);
@@ -200,6 +198,7 @@ pub(super) fn nearest_of_kind(
         if let Some(site) = candidates.site(scene, asked, kind) {
             return Some(site);
         }
+        share *= 2.0;
     }
     None
 }
@@ -226,10 +225,10 @@ impl Near {
         let triangle = &scene.geometry.triangles[self.triangle as usize];
         let [a, b, c] = triangle.corners();
         let inwards = (a + b + c) / 3.0 - self.point;
-        let share = (INWARDS * size / inwards.length()).min(0.5);
+        let share = (SITE_INWARDS * size / inwards.length()).min(0.5);
         let inside = |weight: f32| weight + share * (1.0 / 3.0 - weight);
         let (u, v) = (inside(self.u), inside(self.v));
-        let outward = (b - a).cross(c - a);
+        let outward = outward(triangle);
         // As seen by a ray that comes from that side.
         let direction = if kind.is_multiple_of(2) { -outward } else { outward };
         let ray = Ray { origin: Vec3::ZERO, direction, t_max: f32::INFINITY };
@@ -238,10 +237,10 @@ impl Near {
     }
 }
 
-/// Points of one kind of surface, the nearest first.
+/// Points of one kind of surface, the nearest first; of equal ones that of the first triangle.
 #[derive(Default)]
 struct Candidates {
-    nearest: [Option<Near>; CANDIDATES],
+    nearest: [Option<Near>; SITE_CANDIDATES as usize],
 }
 
 impl Candidates {
@@ -249,7 +248,7 @@ impl Candidates {
         let mut next = near;
         for place in &mut self.nearest {
             match place {
-                Some(other) if other.square <= next.square => {}
+                Some(other) if (other.square, other.triangle) <= (next.square, next.triangle) => {}
                 Some(other) => std::mem::swap(other, &mut next),
                 None => {
                     *place = Some(next);
@@ -272,7 +271,7 @@ impl Candidates {
             return Some(first);
         }
         let is_open = |site: &Site| {
-            let ray = Ray { origin: site.point.origin, direction: site.point.normal, t_max: OPEN * size };
+            let ray = Ray { origin: site.point.origin, direction: site.point.normal, t_max: SITE_OPEN * size };
             let mut hidden = [false];
             scene.geometry.accelerator.occluded(&[ray], &mut hidden);
             !hidden[0]
@@ -281,11 +280,17 @@ impl Candidates {
     }
 }
 
+/// Along the normal of a triangle's front.
+#[inline(always)]
+pub(super) fn outward(triangle: &Triangle) -> Vec3 {
+    let [a, b, c] = triangle.corners();
+    (b - a).cross(c - a)
+}
+
 /// The kinds of surface that the front and the back of a triangle are; `None` for needles.
 #[inline(always)]
 fn kinds_of(triangle: &Triangle) -> Option<[Kind; 2]> {
-    let [a, b, c] = triangle.corners();
-    let outward = (b - a).cross(c - a);
+    let outward = outward(triangle);
     if !triangle.is_usable() || outward.length_squared() <= LEAST_SQUARE {
         return None;
     }

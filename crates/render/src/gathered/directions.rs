@@ -1,11 +1,12 @@
-//! Directions of gather rays, and the bins into which they are sorted. Only + − × ÷ √, so that all devices agree.
+//! Directions of gather rays, and the bins into which they are sorted. Only + − × ÷ √, so that all devices agree. Twin: `directions.cuh`.
 
 use glam::{Vec2, Vec3};
+use lightmesh_layout::constants::BINS_PER_SIDE;
 
 /// Bins along each side of the octahedron's square.
-pub(super) const BINS_PER_SIDE: usize = 8;
+const PER_SIDE: usize = BINS_PER_SIDE as usize;
 /// Bins of all directions.
-pub(super) const BINS: usize = BINS_PER_SIDE * BINS_PER_SIDE;
+pub(super) const BINS: usize = PER_SIDE * PER_SIDE;
 
 /// Two unit vectors that form a right-handed basis with the unit vector `n` (Duff et al.: *Building an Orthonormal Basis, Revisited*, JCGT
 /// 6(1), 2017).
@@ -40,9 +41,8 @@ pub(super) fn bin(direction: Vec3) -> usize {
         let sign = |value: f32| if value >= 0.0 { 1.0 } else { -1.0 };
         (x, y) = ((1.0 - y.abs()) * sign(x), (1.0 - x.abs()) * sign(y));
     }
-    let place =
-        |along: f32| ((0.5 * along + 0.5) * BINS_PER_SIDE as f32).clamp(0.0, BINS_PER_SIDE as f32 - 1.0) as usize;
-    place(y) * BINS_PER_SIDE + place(x)
+    let place = |along: f32| ((0.5 * along + 0.5) * PER_SIDE as f32).clamp(0.0, PER_SIDE as f32 - 1.0) as usize;
+    place(y) * PER_SIDE + place(x)
 }
 
 #[cfg(test)]

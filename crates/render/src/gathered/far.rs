@@ -1,6 +1,7 @@
 //! What coarse sites gather: light from everywhere, by direction.
 
 use glam::Vec3;
+use lightmesh_layout::constants::{EVEN, NEAR_CELLS};
 use rayon::prelude::*;
 
 use super::bounce::Bounce;
@@ -8,11 +9,6 @@ use super::cells::{Cells, Site, size_of_level};
 use super::light::{Bins, Light};
 use super::rays::{Cast, Fan, RAYS_AT_ONCE};
 use super::scene::Scene;
-
-/// Near is what is not farther than this many coarse cells.
-const NEAR: f32 = 2.0;
-/// Sites cast more rays if the luminance that the first ones see deviates by more than this from its mean, relative to it.
-const EVEN: f32 = 0.6;
 
 /// What a coarse site gathers.
 pub(super) struct Far {
@@ -40,7 +36,7 @@ impl Far {
 
 /// How far near light reaches from a site.
 pub(super) fn near(site: &Site) -> f32 {
-    NEAR * size_of_level(site.level)
+    NEAR_CELLS * size_of_level(site.level)
 }
 
 /// Computes what coarse sites gather, unless it is known.
@@ -105,13 +101,14 @@ fn seen_by_fans(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fan: Fan) ->
     let radiance = bounce.complete(scene, &scene.seen(&cast), |ray| ray / fan.len());
     let Cast { list, hits, weights, .. } = &cast;
     let gather = |(index, site): (usize, &Site)| {
+        let near = near(site);
         let mut far = Far { light: Light::default(), all: Bins::EMPTY, beyond: Bins::EMPTY, has_near: false };
         let mut luminance = [0.0; 2];
         for ray in index * fan.len()..(index + 1) * fan.len() {
             let (direction, radiance, weight) = (list.rays[ray].direction, radiance[ray], weights[ray]);
             far.light.take(site.point.normal, direction, weight * radiance);
             far.all.take(direction, radiance);
-            if hits[ray].t < near(site) {
+            if hits[ray].t < near {
                 far.has_near = true;
             } else {
                 far.beyond.take(direction, radiance);

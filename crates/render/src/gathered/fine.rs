@@ -8,20 +8,17 @@
 //! nothing is near, there is no noise but theirs.
 
 use glam::Vec3;
+use lightmesh_layout::constants::{COARSER, NEAR_REACH};
 use rayon::prelude::*;
 
 use super::bounce::Bounce;
-use super::cells::{COARSER, Cells, Site};
+use super::cells::{Cells, Site};
 use super::directions::bin;
 use super::far::{self, Far};
 use super::light::Light;
 use super::lookup::{Link, Links, Place};
 use super::rays::{Cast, Fans, RAYS_AT_ONCE};
 use super::scene::Scene;
-
-/// How far near rays reach, relative to what coarse sites leave out as near. What is near to these may be farther away here, but only from
-/// some: with 1, light is too bright before walls, with 2 too dark.
-const REACH: f32 = 1.25;
 
 /// What a fine site receives.
 #[derive(Clone, Copy, Default)]
@@ -62,7 +59,7 @@ pub(super) fn ensure(
 fn received(scene: &Scene, coarse: &mut Coarse, sites: &[Site], fans: &Fans) -> Vec<Fine> {
     let fan = fans.near;
     // 1. What is near.
-    let cast = scene.cast(sites.iter().map(|site| (site, REACH * far::near(site))), fan);
+    let cast = scene.cast(sites.iter().map(|site| (site, NEAR_REACH * far::near(site))), fan);
     let nearest = cast.nearest();
 
     // 2. The coarse sites around that are seen, and what they gather.
@@ -79,7 +76,7 @@ fn received(scene: &Scene, coarse: &mut Coarse, sites: &[Site], fans: &Fans) -> 
     hits.iter().zip(seen).for_each(|(&ray, seen)| near[ray] = Some(seen));
 
     // 4. Both together; more rays of their own for sites that see no coarse one.
-    let sees = |site: usize| links.of(site).iter().any(|link| link.1 > 0.0);
+    let sees = |site: usize| links.of(site).next().is_some();
     let alone: Vec<usize> = (0..sites.len()).filter(|&site| !sees(site)).collect();
     let own: Vec<Site> = alone.iter().map(|&site| sites[site]).collect();
     let own = far::plain(scene, coarse.bounce, &own, fans.far);
@@ -102,16 +99,16 @@ fn received(scene: &Scene, coarse: &mut Coarse, sites: &[Site], fans: &Fans) -> 
 fn near_and_far(
     coarse: &Coarse,
     normal: Vec3,
-    links: &[Link],
+    links: impl Iterator<Item = Link> + Clone,
     cast: &Cast,
     near: &[Option<Vec3>],
     rays: std::ops::Range<usize>,
 ) -> Light {
     let far = |site: u32| coarse.known[site as usize].as_ref().expect("it was ensured");
-    let total: f32 = links.iter().map(|(_, weight)| weight).sum();
+    let total: f32 = links.clone().map(|(_, weight)| weight).sum();
     let mut light = Light::default();
     let mut has_near = near[rays.clone()].iter().any(Option::is_some);
-    for &(site, weight) in links.iter().filter(|link| link.1 > 0.0) {
+    for (site, weight) in links.clone() {
         light.add(weight / total, &far(site).light, normal - coarse.cells.sites[site as usize].point.normal);
         has_near |= far(site).has_near;
     }
@@ -123,7 +120,7 @@ fn near_and_far(
         let direction = cast.list.rays[ray].direction;
         let bin = bin(direction);
         let (mut all, mut beyond) = (Mean::default(), Mean::default());
-        for &(site, weight) in links.iter().filter(|link| link.1 > 0.0) {
+        for (site, weight) in links.clone() {
             let far = far(site);
             all.add(weight, far.all.of(bin));
             beyond.add(weight, far.beyond.of(bin));

@@ -1,11 +1,9 @@
-//! Light that arrives at a surface point.
+//! Light that arrives at a surface point. Twin: `light.cuh`.
 
 use glam::Vec3;
+use lightmesh_layout::constants::LEAST_TILT_COSINE;
 
 use super::directions::{BINS, bin};
-
-/// What tilts a surface changes light by the slope of the cosine, which has no bound at the horizon.
-const LEAST_COSINE: f32 = 0.2;
 
 /// Light by the direction that a surface faces, near the one that it faces.
 #[derive(Clone, Copy, Default)]
@@ -36,7 +34,7 @@ impl Light {
     #[inline(always)]
     pub(super) fn take(&mut self, normal: Vec3, direction: Vec3, weighted: Vec3) {
         let cosine = direction.dot(normal);
-        let across = (direction - cosine * normal) / cosine.max(LEAST_COSINE);
+        let across = (direction - cosine * normal) / cosine.max(LEAST_TILT_COSINE);
         self.mean += weighted;
         self.tilt[0] += across.x * weighted;
         self.tilt[1] += across.y * weighted;

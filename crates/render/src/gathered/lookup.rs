@@ -1,8 +1,11 @@
-//! Which sites a place takes light from, and how much from each.
+//! Which sites a place takes light from, and how much from each. Twin: `lookup.cuh`.
 
 use std::ops::Range;
 
 use glam::{IVec3, Vec2, Vec3};
+use lightmesh_layout::constants::{
+    CELLS_AROUND, LEAST_SPREAD, SITE_COSINE, SITE_MARGIN, SITE_RADIUS, SITE_RAISED, SITE_THICKNESS,
+};
 use lightmesh_scene::Bounds;
 use rayon::prelude::*;
 
@@ -12,16 +15,6 @@ use super::scene::Scene;
 use crate::accel::Ray;
 use crate::surface::{SurfacePoint, long_segment};
 
-/// The distance within which sites count, in cells.
-const RADIUS: f32 = 1.5;
-/// The distance from each other's tangent planes within which they count, in cells.
-const THICKNESS: f32 = 0.75;
-/// The cosine of the angle between normals beyond which they do not.
-const LEAST_COSINE: f32 = 0.75;
-/// Sites that are nearly in line do not tell how light changes beside it: the product of the variances, relative to the square of their sum.
-const LEAST_SPREAD: f32 = 0.02;
-/// Segments to sites begin and end above the surface by this share of their length, so that gentle curves do not hide them.
-const RAISED: f32 = 0.15;
 /// Places per task.
 const BATCH: usize = 1024;
 
@@ -47,12 +40,12 @@ impl Place {
     #[inline(always)]
     fn weight(&self, size: f32, site: &SurfacePoint) -> f32 {
         let way = site.position - self.position;
-        let near = 1.0 - way.length_squared() / (RADIUS * RADIUS * size * size);
-        let cosine = (self.normal.dot(site.normal) - LEAST_COSINE) / (1.0 - LEAST_COSINE);
+        let near = 1.0 - way.length_squared() / (SITE_RADIUS * SITE_RADIUS * size * size);
+        let cosine = (self.normal.dot(site.normal) - SITE_COSINE) / (1.0 - SITE_COSINE);
         if near <= 0.0 || cosine <= 0.0 {
             return 0.0;
         }
-        let height = self.normal.dot(way).abs().max(site.normal.dot(way).abs()) / (THICKNESS * size);
+        let height = self.normal.dot(way).abs().max(site.normal.dot(way).abs()) / (SITE_THICKNESS * size);
         let flat = (1.0 - height * height).max(0.0);
         near * near * cosine * cosine * flat * flat
     }
@@ -64,7 +57,7 @@ impl Place {
 
     /// The segment to a site.
     pub(super) fn segment(&self, site: &SurfacePoint) -> Ray {
-        let raised = RAISED * (site.position - self.position).length();
+        let raised = SITE_RAISED * (site.position - self.position).length();
         long_segment(self.position + raised * self.normal, site.origin + raised * site.normal)
     }
 }
@@ -99,18 +92,17 @@ impl Links {
         Links { batches: batches.collect() }
     }
 
-    /// Those of a place. Hidden ones have no weight.
-    pub(super) fn of(&self, place: usize) -> &[Link] {
+    /// Those of a place, but for hidden ones.
+    pub(super) fn of(&self, place: usize) -> impl Iterator<Item = Link> + Clone {
         let batch = &self.batches[place / BATCH];
         let Range { start, end } = batch.ranges[place % BATCH];
-        &batch.links[start as usize..end as usize]
+        seen(&batch.links[start as usize..end as usize])
     }
 
     /// All sites with a weight, once.
     pub(super) fn sites(&self) -> Vec<u32> {
-        let used =
-            |batch: &Batch| batch.links.iter().filter(|link| link.1 > 0.0).map(|link| link.0).collect::<Vec<_>>();
-        let mut sites: Vec<u32> = self.batches.par_iter().flat_map_iter(used).collect();
+        let used = self.batches.par_iter().flat_map_iter(|batch| seen(&batch.links));
+        let mut sites: Vec<u32> = used.map(|(site, _)| site).collect();
         sites.par_sort_unstable();
         sites.dedup();
         sites
@@ -149,6 +141,11 @@ impl Links {
     }
 }
 
+/// Those that have a weight.
+fn seen(links: &[Link]) -> impl Iterator<Item = Link> + Clone {
+    links.iter().copied().filter(|&(_, weight)| weight > 0.0)
+}
+
 /// Places in one cell.
 struct Around {
     level: i32,
@@ -175,12 +172,14 @@ impl Around {
     fn may_use(&self, cell: IVec3) -> bool {
         let size = size_of_level(self.level);
         let middle = corner_of(self.level, cell) + 0.5 * size;
-        let outside = (self.bounds.min - middle).max(middle - self.bounds.max) - 0.5 * size;
+        let half = SITE_MARGIN * size;
+        let outside = (self.bounds.min - middle).max(middle - self.bounds.max) - half;
         let is_flat = |&(normal, [least, most]): &(Vec3, [f32; 2])| {
-            let (height, slab) = (normal.dot(middle), (THICKNESS + 0.5 * normal.abs().element_sum()) * size);
+            let (height, slab) = (normal.dot(middle), SITE_THICKNESS * size + half * normal.abs().element_sum());
             least - slab < height && height < most + slab
         };
-        outside.max(Vec3::ZERO).length_squared() < RADIUS * RADIUS * size * size && self.plane.iter().all(is_flat)
+        outside.max(Vec3::ZERO).length_squared() < SITE_RADIUS * SITE_RADIUS * size * size
+            && self.plane.iter().all(is_flat)
     }
 }
 
@@ -229,11 +228,10 @@ impl Groups {
             Groups { members: keys.iter().map(|key| key.1).collect(), ends: Vec::new(), cells: Vec::new() };
         for group in keys.chunk_by(|a, b| a.0 == b.0) {
             let around = Around::new(group.iter().map(|&(_, index)| &places[index as usize]));
-            // The ball around a place ends two cells away, at most.
-            for offset in (0..125).map(|index| IVec3::new(index % 5, index / 5 % 5, index / 25) - 2) {
-                let (level, cell) = (around.level, around.cell + offset);
+            for offset in (0..CELLS_AROUND as i32).map(|index| IVec3::new(index % 5, index / 5 % 5, index / 25) - 2) {
+                let cell = around.cell + offset;
                 if around.may_use(cell) {
-                    groups.cells.push(Asked { key: key_of(level, cell), level, cell: cell.to_array() });
+                    groups.cells.push(Asked::new(around.level, cell));
                 }
             }
             let end = groups.ends.last().map_or(0, |ends| ends[0]) + group.len() as u32;

@@ -12,6 +12,7 @@
 
 mod bounce;
 mod cells;
+pub(crate) mod cuda;
 mod directions;
 mod far;
 mod fine;
@@ -23,6 +24,7 @@ mod scene;
 use std::sync::Arc;
 
 use glam::Vec3;
+use lightmesh_layout::constants::{BLEND_FROM, COARSER};
 use lightmesh_scene::{Bounds, Environment};
 use rayon::prelude::*;
 
@@ -32,7 +34,7 @@ use crate::settings::Quality;
 use crate::surface::{SurfacePoint, shading_normal};
 use crate::view::View;
 use bounce::Bounce;
-use cells::{COARSER, Cells, Site, level_of};
+use cells::{Cells, Site, level_of};
 use far::Far;
 use fine::{Coarse, Fine};
 use light::Light;
@@ -47,8 +49,6 @@ const POINTS_AT_ONCE: usize = 1 << 15;
 const BYTES_AT_ONCE: u64 = 3 * 256 * rays::RAYS_AT_ONCE as u64 + 512 * POINTS_AT_ONCE as u64;
 /// What is kept may take one part in this many of the memory that is left.
 const PART_KEPT: u64 = 4;
-/// The last part of a level, from here to 2, becomes the next one.
-const BLEND_FROM: f32 = 1.75;
 /// Cells are no smaller than this share of the largest coordinate, whose digits would not suffice.
 const LEAST_SIZE: f32 = 1.0 / (1 << 20) as f32;
 
@@ -197,9 +197,9 @@ fn gather_part(
     let normal =
         |ask: &Ask| shading_normal(&wave.scene.scene.geometry.mesh, &wave.hits[first + ask.index], ask.point.normal);
     let mean = |(number, ask): (usize, &Ask)| {
-        let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
-        for &(site, weight) in links.of(number).iter().filter(|link| link.1 > 0.0) {
-            let turned = normal(ask) - fine_cells.sites[site as usize].point.normal;
+        let (normal, mut sum, mut weights) = (normal(ask), Vec3::ZERO, 0.0);
+        for (site, weight) in links.of(number) {
+            let turned = normal - fine_cells.sites[site as usize].point.normal;
             sum += weight * known(site).light.at(turned);
             weights += weight;
         }

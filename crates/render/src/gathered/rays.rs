@@ -3,9 +3,10 @@
 use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
+use lightmesh_layout::constants::{BOUNCE_COARSER, BOUNCE_SIZE, SKY_CONE};
 use rayon::prelude::*;
 
-use super::cells::{Kind, Site, kind_of, level_of};
+use super::cells::{Kind, Site, kind_of, level_of, outward};
 use super::directions::{above, basis};
 use super::lookup::Place;
 use super::scene::Scene;
@@ -15,23 +16,18 @@ use crate::data::lights::LightGroup;
 use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
 use crate::footprint::Cone;
-use crate::sampling::{Pattern, light_point, random_bits};
-use crate::shading::Surface;
+use crate::job::Sampling;
+use crate::sampling::{light_center, random_bits};
 use crate::shading::environment::surroundings;
-use crate::shadow::hidden;
+use crate::shading::{LightTargets, Surface, material_of};
+use crate::shadow::{Aim, Targets, hidden, size};
 use crate::stages::primary_rays::cpu::closest_hits;
 use crate::surface::long_segment;
 
 /// Rays that are cast at once.
 pub(super) const RAYS_AT_ONCE: usize = 1 << 16;
-/// The cone of the surroundings that a ray sees is this share of its own: wider ones would look below the horizon.
-const SKY_CONE: f32 = 0.25;
 /// Rays per task.
 const BATCH: usize = 2048;
-/// What a ray hits is asked for light in a cell of this share of the distance,
-const BOUNCE_SIZE: f32 = 0.4;
-/// and at least twice as large as the cell that asks.
-const BOUNCE_COARSER: i32 = 1;
 
 /// The rays of one site: `side`² directions, one in each part of the hemisphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,13 +40,18 @@ impl Fan {
         Fan { side }
     }
 
+    /// The side of the square that they form.
+    pub(super) fn side(self) -> u32 {
+        self.side
+    }
+
     /// Number of rays.
     pub(super) fn len(self) -> usize {
         (self.side * self.side) as usize
     }
 
     /// The cone around each ray: together they fill the hemisphere.
-    fn cone(self) -> Cone {
+    pub(super) fn cone(self) -> Cone {
         Cone { width: 0.0, spread: (2.0 * PI).sqrt() / self.side as f32 }
     }
 
@@ -90,19 +91,14 @@ pub(super) struct Cast {
 }
 
 impl Cast {
-    /// Some of the rays alone.
+    /// Some of the rays alone, without their weights.
     pub(super) fn only(&self, rays: &[usize]) -> Cast {
         fn some<T: Copy>(all: &[T], rays: &[usize]) -> Vec<T> {
             rays.iter().map(|&ray| all[ray]).collect()
         }
-        let list = RayList {
-            cone: self.list.cone,
-            rays: some(&self.list.rays, rays),
-            pixels: vec![0; rays.len()],
-            ..RayList::default()
-        };
+        let list = RayList { cone: self.list.cone, rays: some(&self.list.rays, rays), ..RayList::default() };
         let numbers = Some(rays.iter().map(|&ray| ray as u32).collect());
-        let (weights, hits, origins) = (some(&self.weights, rays), some(&self.hits, rays), self.origins.clone());
+        let (weights, hits, origins) = (Vec::new(), some(&self.hits, rays), self.origins.clone());
         Cast { list, weights, hits, fan: self.fan, origins, numbers }
     }
 
@@ -126,8 +122,7 @@ impl Scene<'_> {
         let sites: Vec<(&Site, f32)> = sites.collect();
         let count = sites.len() * fan.len();
         let nothing = Ray { origin: Vec3::ZERO, direction: Vec3::ZERO, t_max: 0.0 };
-        let mut list =
-            RayList { cone: fan.cone(), rays: vec![nothing; count], pixels: vec![0; count], ..RayList::default() };
+        let mut list = RayList { cone: fan.cone(), rays: vec![nothing; count], ..RayList::default() };
         let mut weights = vec![0.0; count];
         let seed = self.job.sampling.seed;
         let fans = list.rays.par_chunks_exact_mut(fan.len()).zip(weights.par_chunks_exact_mut(fan.len()));
@@ -153,12 +148,13 @@ impl Scene<'_> {
     pub(super) fn seen(&self, cast: &Cast) -> Vec<Seen> {
         let Scene { job, scene } = *self;
         let wave = HostWave { job, scene, rays: &cast.list, hits: &cast.hits, lights: LightGroup::ALL, parts: 1 };
+        let lights = Lights::new(&wave);
         let mut seen = vec![Seen::default(); cast.hits.len()];
         seen.par_chunks_mut(BATCH).enumerate().for_each(|(batch, seen)| {
             job.piece(0, || {
                 let mut segments = Segments::default();
                 for (place, seen) in seen.iter_mut().enumerate() {
-                    *seen = seen_by(&wave, cast, [batch * BATCH + place, place], &mut segments);
+                    *seen = seen_by(&wave, cast, &lights, [batch * BATCH + place, place], &mut segments);
                 }
                 segments.add(&wave, seen);
             });
@@ -187,29 +183,43 @@ pub(super) struct Seen {
 }
 
 /// What ray number `ray` sees, but for lights: the segments to these are noted for the ray's place in its batch.
-fn seen_by(wave: &HostWave, cast: &Cast, [ray, place]: [usize; 2], segments: &mut Segments) -> Seen {
+fn seen_by(wave: &HostWave, cast: &Cast, lights: &Lights, [ray, place]: [usize; 2], segments: &mut Segments) -> Seen {
     let Ray { direction, .. } = wave.rays.rays[ray];
     let hit = &wave.hits[ray];
-    let geometry = &wave.scene.scene.geometry;
-    let material = |triangle: u32| &geometry.materials[geometry.mesh.materials[triangle as usize] as usize];
     // A shadow catcher shows what is behind it.
-    if !wave.sees(ray) || material(hit.triangle).catcher {
+    let Some(material) = material_of(wave, ray).filter(|material| !material.catcher) else {
         let spread = SKY_CONE * wave.rays.cone.spread;
         return Seen { radiance: surroundings(wave.lights(), direction, spread), ..Seen::default() };
-    }
+    };
     let surface = Surface::new(wave, ray);
-    let (kd, radiance) = (surface.coefficients.kd, surface.coefficients.emission);
+    let kd = surface.coefficients.kd;
+    let radiance = if lights.lamps && material.lamp { Vec3::ZERO } else { surface.coefficients.emission };
     if kd == Vec3::ZERO {
         return Seen { radiance, ..Seen::default() };
     }
     let (least_level, seed) = cast.origin(ray);
-    segments.note(wave, seed, place, &surface);
+    segments.note(wave, lights, seed, place, &surface);
     let point = &surface.point;
-    let [a, b, c] = wave.scene.geometry.triangles[hit.triangle as usize].corners();
-    let is_front = (b - a).cross(c - a).dot(direction) < 0.0;
+    let is_front = outward(&wave.scene.geometry.triangles[hit.triangle as usize]).dot(direction) < 0.0;
     let level = level_of(BOUNCE_SIZE * hit.t).0.max(least_level + BOUNCE_COARSER);
     let spot = Spot { place: Place::new(point, level), kind: kind_of(point.normal, is_front) };
     Seen { radiance, kd, spot: Some(spot) }
+}
+
+/// What rays need to know of lights.
+struct Lights {
+    targets: LightTargets,
+    aim: Aim,
+    /// Whether there are lights for what lamps emit.
+    lamps: bool,
+}
+
+impl Lights {
+    fn new(wave: &HostWave) -> Lights {
+        // The first of several samples: a single one would be the centre.
+        let aim = Aim::Extent(Sampling { samples: 2, spread: true, ..wave.job.sampling });
+        Lights { targets: LightTargets::new(wave.lights()), aim, lamps: wave.scene.has_lamps() }
+    }
 }
 
 /// Segments to the lights.
@@ -221,17 +231,23 @@ struct Segments {
 }
 
 impl Segments {
-    /// One segment to each light, to a random point if it has a size.
-    fn note(&mut self, wave: &HostWave, seed: u64, place: usize, surface: &Surface) {
+    /// One segment to each light, to a random point if it has a size. That tells whether the light is seen; how much it would give is known, unless a
+    /// part of it is below the horizon.
+    fn note(&mut self, wave: &HostWave, lights: &Lights, seed: u64, place: usize, surface: &Surface) {
         let point = &surface.point;
         let reach = wave.scene.geometry.reach(point.origin);
         for (index, light) in wave.lights().iter().enumerate() {
-            let pattern = Pattern::new(wave.job.sampling.seed, seed, index);
-            let target = light_point(light, point.origin, reach, pattern.point(0));
+            let target = Targets::new(&lights.aim, (index, light), point.origin, reach, seed).get(0);
             if point.normal.dot(target - point.origin) <= 0.0 {
                 continue;
             }
-            let gain = surface.coefficients.kd * surface.arriving(light, target);
+            let height = point.normal.dot(light_center(light, point.origin, reach) - point.origin);
+            let arriving = if height >= size(light, reach) {
+                surface.arriving(&lights.targets, light, index, reach)
+            } else {
+                surface.arriving_from(light, target)
+            };
+            let gain = surface.coefficients.kd * arriving;
             if gain != Vec3::ZERO {
                 self.rays.push(long_segment(point.origin, target));
                 self.gains.push((place, gain));

@@ -127,8 +127,9 @@ fn wrap(wrap: Wrap) -> u32 {
 
 /// A material without tint is uploaded as the sum that applies everywhere, so that kernels need no further lookups.
 fn material_record(geometry: &Geometry, material: &lightmesh_scene::Material, texture: u32) -> Material {
-    let catcher = u32::from(material.catcher);
-    let mut record = Material { shininess: material.shininess, texture, catcher, ..bytemuck::Zeroable::zeroed() };
+    let (catcher, lamp) = (u32::from(material.catcher), u32::from(material.lamp));
+    let shininess = material.shininess;
+    let mut record = Material { shininess, texture, catcher, lamp, ..bytemuck::Zeroable::zeroed() };
     let mut own = Coefficients::untinted(material);
     if is_tinted(geometry, material) {
         record.tinted = 1;

@@ -6,6 +6,7 @@ use lightmesh_layout::mesh::Item;
 use super::device::Cuda;
 use crate::cuda::Runtime;
 use crate::error::RenderError;
+use crate::gathered::cuda;
 use crate::plan::Plan;
 
 /// Expected number of surface points per item: a cell's points fill warps of 32, and cells are cut at the borders of tiles.
@@ -19,14 +20,8 @@ impl<R: Runtime> Cuda<R> {
     /// The estimate of light points and items is an expectation. If an image has more, allocation fails and the band is
     /// restarted with half of its rows.
     pub(crate) fn rows_that_fit(&self, plan: &Plan) -> Result<u32, RenderError> {
-        let free = self.pool.runtime().free_memory().map(|free| free - free / RESERVE);
-        let free = match plan.memory_limit {
-            Some(limit) => {
-                let rest = limit.saturating_sub(self.pool.taken());
-                Some(free.map_or(rest, |free| free.min(rest)))
-            }
-            None => free,
-        };
+        let fixed = if plan.gathering.is_some() { cuda::memory_at_once() } else { 0 };
+        let free = self.memory_left().map(|free| free.saturating_sub(fixed));
         let Some(free) = free else { return Ok(plan.size[1]) };
         let row = u64::from(plan.size[0]) * bytes_per_pixel(plan);
         match free / row {
@@ -38,6 +33,15 @@ impl<R: Runtime> Cuda<R> {
             }),
             rows => Ok((rows - plan.margin_rows()).min(u64::from(plan.size[1])) as u32),
         }
+    }
+}
+
+impl<R: Runtime> Cuda<R> {
+    /// Bytes that may still be allocated, but for a reserve; `None` if that is not known.
+    pub(crate) fn memory_left(&self) -> Option<u64> {
+        let free = self.pool.runtime().free_memory().map(|free| free - free / RESERVE);
+        let allowed = self.pool.left();
+        free.map_or(allowed, |free| Some(allowed.map_or(free, |allowed| free.min(allowed))))
     }
 }
 

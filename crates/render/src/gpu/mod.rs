@@ -6,6 +6,7 @@
 //! and the memory plan ([`memory`]).
 
 pub(crate) mod cells;
+mod copy;
 mod device;
 pub(crate) mod film;
 mod held;

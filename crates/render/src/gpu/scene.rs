@@ -303,6 +303,7 @@ fn light(geometry: &PreparedGeometry, light: &lightmesh_scene::Light) -> Light {
         inverse_square: u32::from(light.falloff == Falloff::InverseSquare),
         size: crate::shadow::size(light, 1.0),
         scale: crate::shadow::sight::scale(geometry, light),
+        surface: u32::from(light.surface.is_some()),
         ..Zeroable::zeroed()
     };
     match light.kind {
@@ -328,6 +329,9 @@ fn light(geometry: &PreparedGeometry, light: &lightmesh_scene::Light) -> Light {
             record.kind = Light::RECTANGLE;
             (record.half_u, record.half_v) = (vec3(half_u), vec3(half_v));
         }
+    }
+    if let Some(normal) = light.surface {
+        record.direction = vec3(normal);
     }
     record
 }

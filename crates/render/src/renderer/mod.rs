@@ -314,14 +314,14 @@ fn picture_on<B: Backend>(
     let mut picture = Picture::planned(plan, [rows.clone(), rows]);
     let run = Run::new(backend, &job, kept);
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
-    let sources = || plan.gathering.as_ref().map(|how| Sources::new(scene, settings.seed, how));
-    if let Some(sources) = sources() {
-        run.recall_gathered(scene, &sources);
+    let sources = plan.gathering.as_ref().map(|how| Sources::new(scene, settings.seed, how));
+    if let Some(sources) = &sources {
+        run.recall_gathered(scene, sources);
     }
     let passes = Passes { run, scene: &on_device, technique, view, plan };
     let rendered = passes.render(&mut picture);
     // What a cancelled image gathered is not complete.
-    if let (Ok(_), Some(sources)) = (&rendered, sources()) {
+    if let (Ok(_), Some(sources)) = (&rendered, sources) {
         passes.run.keep_gathered(scene, sources);
     }
     let rows = match rendered {

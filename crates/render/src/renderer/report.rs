@@ -73,7 +73,7 @@ fn settings(resolved: &Resolved, device: &'static str, rows_per_band: u32) -> Se
         accel: scene.geometry.accelerator.name(),
         camera: camera(resolved),
         ambient: AmbientLight::of(scene).mean.to_array(),
-        ambient_light: settings.ambient_light.name(),
+        ambient_light: settings.ambient_light.for_scene(&scene.scene).name(),
         background: lights.background.unwrap_or_default().to_array(),
         environment: lights.environment.as_ref().map(|environment| environment.name.clone()),
         transparent: settings.transparent,

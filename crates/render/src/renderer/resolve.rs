@@ -105,7 +105,7 @@ impl<'a> Resolved<'a> {
             coverage: settings.transparent && antialiasing.is_some(),
             caught: settings.transparent && scene.catches(),
             compositing: settings.layers,
-            gathering: (settings.ambient_light == AmbientSource::Mesh)
+            gathering: (settings.ambient_light.for_scene(&scene.scene) == AmbientSource::Mesh)
                 .then(|| Gathering::new(&whole, &bounds, settings.quality, left)),
             layers: (settings.layers || settings.transparent && antialiasing.is_none()).then_some(lights.lights),
             antialiasing,

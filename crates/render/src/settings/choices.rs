@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use lightmesh_scene::parse_by_name;
+use lightmesh_scene::{Scene, parse_by_name};
 
 use crate::techniques::table::technique_table;
 
@@ -297,8 +297,10 @@ parse_by_name!(Filter, "filter");
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AmbientSource {
-    /// A constant, or what a sky gives to surfaces with nothing in between.
+    /// The mesh where an environment gives the ambient light, or all lights are lamps, unless ambient light is set; else a constant.
     #[default]
+    Auto,
+    /// A constant, or what a sky gives to surfaces with nothing in between.
     Constant,
     /// What points of the surfaces gather from the surroundings and from other surfaces.
     Mesh,
@@ -306,11 +308,12 @@ pub enum AmbientSource {
 
 impl AmbientSource {
     /// All of them.
-    pub const ALL: &'static [AmbientSource] = &[AmbientSource::Constant, AmbientSource::Mesh];
+    pub const ALL: &'static [AmbientSource] = &[AmbientSource::Auto, AmbientSource::Constant, AmbientSource::Mesh];
 
     /// Its name, also in statistics.
     pub fn name(self) -> &'static str {
         match self {
+            AmbientSource::Auto => "auto",
             AmbientSource::Constant => "constant",
             AmbientSource::Mesh => "mesh",
         }
@@ -319,10 +322,23 @@ impl AmbientSource {
     /// A short description.
     pub fn help(self) -> &'static str {
         match self {
-            AmbientSource::Constant => "A constant, or what a sky gives to surfaces with nothing in between",
-            AmbientSource::Mesh => {
-                "Gathered from the sky and other surfaces, in place of --ambient; on the CPU only so far"
+            AmbientSource::Auto => {
+                "The mesh with a sky, an environment or lamps alone, unless --ambient is set; else a constant"
             }
+            AmbientSource::Constant => "A constant, or what a sky gives to surfaces with nothing in between",
+            AmbientSource::Mesh => "Gathered from the sky and other surfaces, in place of --ambient",
+        }
+    }
+
+    /// What is chosen for a scene.
+    pub fn for_scene(self, scene: &Scene) -> AmbientSource {
+        if self != AmbientSource::Auto {
+            return self;
+        }
+        let lights = &scene.lights;
+        match lights.ambient {
+            None if lights.environment.is_some() || lights.are_lamps() => AmbientSource::Mesh,
+            _ => AmbientSource::Constant,
         }
     }
 }

@@ -89,7 +89,7 @@ impl Default for Settings {
             weight: None,
             lookup: Lookup::Auto,
             quality: Quality::Good,
-            ambient_light: AmbientSource::Constant,
+            ambient_light: AmbientSource::Auto,
             aa: None,
             filter: Filter::BlackmanHarris,
             sharing: Sharing::Unseen,

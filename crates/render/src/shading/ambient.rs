@@ -24,7 +24,7 @@ impl<'a> AmbientLight<'a> {
     }
 
     /// Gathered light in its place.
-    pub(crate) fn or(self, gathered: Option<&'a [Vec3]>) -> AmbientLight<'a> {
+    pub(crate) fn with_gathered(self, gathered: Option<&'a [Vec3]>) -> AmbientLight<'a> {
         AmbientLight { gathered, ..self }
     }
 

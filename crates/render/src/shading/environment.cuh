@@ -34,8 +34,8 @@ DEVICE float turns(float y, float x) {
     return y < 0.0f ? -half : half;
 }
 
-// The mean radiance that a cone of this angle around `direction` sees. A function of its own, so that its callers keep their registers.
-COLD Vec3 environment_radiance(const Environment *environment, Vec3 direction, float spread) {
+// The mean radiance that a cone of this angle around `direction` sees, without the sun, which is a light.
+DEVICE Vec3 radiance_without_sun(const Environment *environment, Vec3 direction, float spread) {
     // 1. Where?
     const float east = dot(environment->east, direction), up = dot(environment->up, direction), north = dot(environment->north, direction);
     const float across = sqrtf(east * east + north * north);
@@ -52,11 +52,21 @@ COLD Vec3 environment_radiance(const Environment *environment, Vec3 direction, f
     } else {
         seen = radiance_at(*environment, place, 0);
     }
+    return seen;
+}
 
+// The same with the sun. A function of its own, so that its callers keep their registers.
+COLD Vec3 environment_radiance(const Environment *environment, Vec3 direction, float spread) {
+    const Vec3 seen = radiance_without_sun(environment, direction, spread);
     // 3. The sun.
     if (environment->sun_radius < 0.0f)
         return seen;
     const float inside = environment->sun_radius - length(direction - environment->sun);
     const float share = spread > 0.0f ? fminf(fmaxf(inside / spread + 0.5f, 0.0f), 1.0f) : inside >= 0.0f ? 1.0f : 0.0f;
     return share > 0.0f ? between(seen, environment->sun_radiance, share) : seen;
+}
+
+// What surfaces receive from outside of the scene along a direction, but for lights.
+DEVICE Vec3 surroundings(const Environment &environment, Vec3 direction, float spread) {
+    return environment.levels != nullptr ? radiance_without_sun(&environment, direction, spread) : splat(0.0f);
 }

@@ -19,7 +19,7 @@ use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 use lightmesh_layout::constants::{LIGHT_TARGETS, LUMINANCE_BLUE, LUMINANCE_GREEN, LUMINANCE_RED};
-use lightmesh_scene::{Falloff, Light, LightKind};
+use lightmesh_scene::{Falloff, Light, LightKind, Material};
 
 use crate::data::wave::HostWave;
 use crate::sampling::{Pattern, light_center, light_point};
@@ -110,8 +110,20 @@ impl Surface {
         strength(light, direction, distance) * answer
     }
 
-    /// The light of `light` that arrives from `target`, times the cosine.
-    pub(crate) fn arriving(&self, light: &Light, target: Vec3) -> Vec3 {
+    /// The light of `light` that arrives, times the cosine, if nothing is in the way.
+    pub(crate) fn arriving(&self, targets: &LightTargets, light: &Light, index: usize, reach: f32) -> Vec3 {
+        match targets.points[index].as_slice() {
+            [] => self.arriving_from(light, light_center(light, self.point.origin, reach)),
+            points => {
+                let place = |&target: &Vec3| self.place_of(light, target, reach);
+                let sum: Vec3 = points.iter().map(|target| self.arriving_from(light, place(target))).sum();
+                sum / points.len() as f32
+            }
+        }
+    }
+
+    /// The same if all of it comes from `target`.
+    pub(crate) fn arriving_from(&self, light: &Light, target: Vec3) -> Vec3 {
         let to_light = target - self.point.position;
         let distance = to_light.length();
         let cosine = self.normal.dot(to_light) / distance;
@@ -121,10 +133,16 @@ impl Surface {
     /// The same for the whole light, averaged over `targets`; those of a directional light are seen from the surface, at distance 1.
     #[inline(always)]
     pub(crate) fn reflected_from_all(&self, light: &Light, targets: &[Vec3], reach: f32) -> Vec3 {
-        let directional = matches!(light.kind, LightKind::Directional { .. });
-        let place = |target: Vec3| if directional { self.point.origin + reach * target } else { target };
+        let place = |target: Vec3| self.place_of(light, target, reach);
         let sum: Vec3 = targets.iter().map(|&target| self.reflected(light, place(target))).sum();
         sum / targets.len() as f32
+    }
+
+    /// Where a target of a light is seen from here.
+    #[inline(always)]
+    fn place_of(&self, light: &Light, target: Vec3, reach: f32) -> Vec3 {
+        let directional = matches!(light.kind, LightKind::Directional { .. });
+        if directional { self.point.origin + reach * target } else { target }
     }
 
     /// The reflection direction of the view. A smooth normal may reflect into the surface; then the geometric normal is used.
@@ -133,6 +151,18 @@ impl Surface {
         let direction = about(self.normal);
         if direction.dot(self.point.normal) > 0.0 { direction } else { about(self.point.normal) }
     }
+}
+
+/// The material of what a ray sees, if it sees anything.
+pub(crate) fn material_of<'a>(wave: &HostWave<'a>, ray: usize) -> Option<&'a Material> {
+    let geometry = &wave.scene.scene.geometry;
+    let material = || &geometry.materials[geometry.mesh.materials[wave.hits[ray].triangle as usize] as usize];
+    wave.sees(ray).then(material)
+}
+
+/// Whether a ray sees a shadow catcher.
+pub(crate) fn catches(wave: &HostWave, ray: usize) -> bool {
+    material_of(wave, ray).is_some_and(|material| material.catcher)
 }
 
 /// The luminance of a colour.
@@ -152,10 +182,13 @@ fn strength(light: &Light, direction: Vec3, distance: f32) -> Vec3 {
     falloff * cone(light, direction) * light.intensity
 }
 
-/// The share of a spot's strength along `direction`, from the surface to the light; the falloff curve recommended by glTF
-/// (KHR_lights_punctual, inner and outer cone angles).
+/// The share of a light's strength along `direction`, from the surface to the light. A spot's falls as glTF recommends (KHR_lights_punctual, inner
+/// and outer cone angles), that of an emissive surface with the cosine.
 #[inline(always)]
 fn cone(light: &Light, direction: Vec3) -> f32 {
+    if let Some(normal) = light.surface {
+        return (-direction.dot(normal)).max(0.0);
+    }
     let LightKind::Spot { direction: axis, inner, outer, .. } = light.kind else { return 1.0 };
     let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
     let linear = ((-direction.dot(axis) - outer.cos()) * scale).clamp(0.0, 1.0);

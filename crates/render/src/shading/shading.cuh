@@ -23,8 +23,10 @@ DEVICE Surface surface_at(const Scene &scene, const Rays &rays, const Hit *hits,
     return Surface{point, shading_normal(scene, hit, point.normal), -seen_along.direction, material};
 }
 
-// The share of a spot's strength along `direction`, from the surface to the light.
+// The share of a light's strength along `direction`, from the surface to the light: a spot's, or that of an emissive surface.
 DEVICE float cone(const Light &light, Vec3 direction) {
+    if (light.surface)
+        return larger(-dot(direction, light.direction), 0.0f);
     if (light.kind != Light::SPOT)
         return 1.0f;
     const float linear = (-dot(direction, light.direction) - light.cos_outer) * light.cone_scale;
@@ -59,9 +61,26 @@ DEVICE Vec3 reflected(const Surface &surface, const Light &light, Vec3 target) {
     return strength(light, direction, distance) * answer;
 }
 
-// What a surface shows without lights: ambient and emitted light.
-DEVICE Vec3 unlit(const Scene &scene, const Surface &surface) {
-    return ambient_at(scene, surface.normal) * surface.material->ka + surface.material->emission;
+// The light of a light that arrives from `target`, times the cosine.
+DEVICE Vec3 arriving_from(const Surface &surface, const Light &light, Vec3 target) {
+    const Vec3 to_light = target - surface.point.position;
+    const float distance = length(to_light);
+    const float cosine = dot(surface.normal, to_light) / distance;
+    return cosine > 0.0f ? cosine * strength(light, to_light / distance, distance) : splat(0.0f);
+}
+
+// What a surface shows without lights if nothing else was there; `reflected` is the share of ambient light that it reflects.
+DEVICE Vec3 alone(const Scene &scene, const Surface &surface, Vec3 reflected) {
+    return ambient_at(scene, surface.normal) * reflected + surface.material->emission;
+}
+
+// The luminance of a colour.
+DEVICE float luminance(Vec3 color) { return LUMINANCE_RED * color.x + LUMINANCE_GREEN * color.y + LUMINANCE_BLUE * color.z; }
+
+// Where target number `number` of a light is seen from a surface: those of a directional light are seen from there, at distance 1.
+DEVICE Vec3 place_of_target(const Surface &surface, const Scene &scene, unsigned index, unsigned number, float reach) {
+    const Vec3 target = scene.light_targets[index * LIGHT_TARGETS + number];
+    return scene.lights[index].kind == Light::DIRECTIONAL ? surface.point.origin + reach * target : target;
 }
 
 // Unshadowed light of light number `index`.
@@ -69,12 +88,20 @@ DEVICE Vec3 unshadowed(const Surface &surface, const Scene &scene, unsigned inde
     const Light &light = scene.lights[index];
     if (!has_size(light))
         return reflected(surface, light, light_center(light, surface.point.origin, reach));
-    const Vec3 *targets = scene.light_targets + index * LIGHT_TARGETS;
     Vec3 sum = splat(0.0f);
-    // Those of a directional light are seen from the surface, at distance 1.
-    const bool directional = light.kind == Light::DIRECTIONAL;
     for (unsigned i = 0; i < LIGHT_TARGETS; ++i)
-        sum = sum + reflected(surface, light, directional ? surface.point.origin + reach * targets[i] : targets[i]);
+        sum = sum + reflected(surface, light, place_of_target(surface, scene, index, i, reach));
+    return sum / (float)LIGHT_TARGETS;
+}
+
+// The light of light number `index` that arrives, times the cosine, if nothing is in the way.
+DEVICE Vec3 arriving(const Surface &surface, const Scene &scene, unsigned index, float reach) {
+    const Light &light = scene.lights[index];
+    if (!has_size(light))
+        return arriving_from(surface, light, light_center(light, surface.point.origin, reach));
+    Vec3 sum = splat(0.0f);
+    for (unsigned i = 0; i < LIGHT_TARGETS; ++i)
+        sum = sum + arriving_from(surface, light, place_of_target(surface, scene, index, i, reach));
     return sum / (float)LIGHT_TARGETS;
 }
 

@@ -63,6 +63,7 @@ DEVICE void set_tint(const Material *material, const Vec3 &tint, Material *own) 
     own->emission = material->emission + material->emission_tinted * tint;
     own->shininess = material->shininess;
     own->catcher = material->catcher;
+    own->lamp = material->lamp;
     own->number = material->number;
 }
 

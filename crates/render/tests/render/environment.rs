@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
-use lightmesh_render::{Mode, Settings};
+use lightmesh_render::{AmbientSource, Mode, Settings};
 use lightmesh_scene::{Environment, Material, Scene, Sky, SunPosition, Up};
 use lightmesh_testkit::{SceneDraft, render};
 
@@ -20,7 +20,7 @@ fn surrounded(mut scene: Scene) -> Scene {
 }
 
 fn settings() -> Settings {
-    Settings::default().with_size([16, 12])
+    Settings::default().with_ambient_light(AmbientSource::Constant).with_size([16, 12])
 }
 
 #[test]

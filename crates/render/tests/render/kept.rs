@@ -84,7 +84,9 @@ fn a_camera_that_moves_finds_light_that_was_gathered() {
         let [with, without] = rays(&scene, &settings);
         assert_eq!(with, without);
     }
-    assert!(cache.memory() > 100_000);
+    assert!(cache.memory() > 100_000 && !cache.is_empty());
+    cache.clear();
+    assert!(cache.memory() == 0 && cache.is_empty());
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod figures;
 mod gathered;
 mod ground;
 mod kept;
+mod lamps;
 mod light_groups;
 mod lists;
 mod lives;

@@ -9,7 +9,7 @@ use std::{collections::HashMap, path::Path};
 use glam::{DVec3, Vec3};
 use serde_json::{Map, Value, json};
 
-use super::{ExportError, pictures::Pictures, refused};
+use super::{ExportError, own_lights, pictures::Pictures, refused};
 use crate::{
     Camera, CutOut, Falloff, Fov, Light, LightKind, Material, Mesh, OpacityChannel, Projection, Scene,
     formats::{
@@ -54,12 +54,12 @@ pub(super) fn encode(scene: &Scene, content: Content, path: &Path) -> Result<Vec
             root["cameras"] = scene.cameras.iter().map(|camera| camera_entry(scene, camera)).collect();
         }
         nodes.extend(scene.cameras.iter().enumerate().map(|(index, camera)| camera_node(scene, index, camera)));
-        if !scene.lights.is_empty() {
-            let lights: Value = scene.lights.iter().map(light_entry).collect();
+        if own_lights(scene).next().is_some() {
+            let lights: Value = own_lights(scene).map(light_entry).collect();
             extensions.push("KHR_lights_punctual");
             root["extensions"] = json!({"KHR_lights_punctual": {"lights": lights}});
         }
-        nodes.extend(scene.lights.iter().enumerate().map(|(index, light)| light_node(scene, index, light)));
+        nodes.extend(own_lights(scene).enumerate().map(|(index, light)| light_node(scene, index, light)));
         extras.insert("lightmesh".to_owned(), json!(scene_extras(scene)));
     }
     if !extensions.is_empty() {
@@ -289,6 +289,7 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
         ks_tinted: material.ks_tinted.to_array(),
         emission_tinted: material.emission_tinted.to_array(),
         catcher: material.catcher,
+        lamp: material.lamp,
         texture_transform: pictures.exact_transform(index),
         cut_out: material
             .cut_out

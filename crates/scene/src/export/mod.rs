@@ -21,7 +21,7 @@ use std::{
 
 use lightmesh_files::{PublishError, Ready, WriteError, publish};
 
-use crate::Scene;
+use crate::{Light, Scene};
 
 /// Why a scene could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -97,6 +97,11 @@ impl Scene {
 }
 
 /// The content of a file cannot be made.
+/// The lights that are written: all but those of lamps, which are made again from their surfaces.
+fn own_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
+    scene.lights.iter().filter(|light| light.surface.is_none())
+}
+
 fn refused(path: &Path, reason: io::Error) -> ExportError {
     WriteError::Data { path: path.to_owned(), reason }.into()
 }

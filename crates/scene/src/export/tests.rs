@@ -42,6 +42,7 @@ fn scene(offset: DVec3) -> Scene {
             emission: Vec3::new(0.0, 2.5, 0.1),
             ks_tinted: Vec3::new(0.3, 0.2, 0.1),
             emission_tinted: Vec3::new(0.0, 0.0, 0.7),
+            lamp: false,
             catcher: true,
             texture: Some(TextureUse {
                 texture: 0,
@@ -63,7 +64,7 @@ fn scene(offset: DVec3) -> Scene {
     let origin = scene.geometry.origin;
     let at = |x, y, z| (offset + DVec3::new(x, y, z) - origin).as_vec3();
     let direction = Vec3::new(0.3, -0.8, 0.2).normalize();
-    let light = |kind, falloff| Light { name: "l".into(), kind, intensity: Vec3::new(0.1, 700.3, 33.3), falloff };
+    let light = |kind, falloff| Light::new(kind).with_intensity([0.1, 700.3, 33.3]).with_falloff(falloff).named("l");
     let position = at(1.1, 2.2, 3.3);
     let (half_u, half_v) = (Vec3::new(0.3, 0.0, 0.1), Vec3::new(0.0, 0.7, 0.0));
     scene.lights.list = vec![

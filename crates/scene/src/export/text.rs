@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
+use super::own_lights;
 use crate::{
     Camera, Falloff, Fov, Light, LightKind, Projection, Scene, Weight,
     formats::toml::{
@@ -33,7 +34,7 @@ pub(super) fn encode(scene: &Scene, mesh_file: &str) -> Result<String, toml::ser
             intensity: scene.lights.ambient.map(color),
             background: scene.lights.background.map(color),
         }),
-        light: scene.lights.iter().map(|light| anywhere(light_entry(scene, light))).collect(),
+        light: own_lights(scene).map(|light| anywhere(light_entry(scene, light))).collect(),
         mesh: if scene.geometry.mesh.triangles.is_empty() { Vec::new() } else { vec![anywhere(mesh)] },
         lightmesh: light_mesh_entry(scene),
         ..SceneFile::default()

@@ -9,7 +9,7 @@ use crate::data::wave::HostWave;
 use crate::shading::ambient::AmbientLight;
 use crate::shading::environment::missed;
 use crate::shading::ids::ids_of;
-use crate::shading::{LightTargets, Surface, luminance};
+use crate::shading::{LightTargets, Surface, catches, luminance};
 
 /// Number of rays per task.
 const BATCH: usize = 2048;
@@ -18,7 +18,7 @@ const TERMS: usize = 1 << 20;
 
 pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, gathered: Option<&Vec<Vec3>>, picture: &mut Picture) {
     let targets = LightTargets::new(wave.lights());
-    let ambient = AmbientLight::of(wave.scene).or(gathered.map(Vec::as_slice));
+    let ambient = AmbientLight::of(wave.scene).with_gathered(gathered.map(Vec::as_slice));
     let mut sums = match visibility.lights.start {
         0 => vec![Vec3::ZERO; wave.hits.len()],
         _ => std::mem::take(&mut picture.sums),
@@ -161,12 +161,6 @@ fn by_light(
             *term = share * targets.unshadowed(&surface, &wave.lights()[index], index, reach);
         }
     }
-}
-
-/// Whether a ray sees a shadow catcher.
-fn catches(wave: &HostWave, ray: usize) -> bool {
-    let geometry = &wave.scene.scene.geometry;
-    wave.sees(ray) && geometry.materials[geometry.mesh.materials[wave.hits[ray].triangle as usize] as usize].catcher
 }
 
 /// Shows what is behind shadow catchers, as far as they get light. Returns how much they get, as a share of what they would get

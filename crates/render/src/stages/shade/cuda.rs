@@ -1,13 +1,12 @@
 //! Formula (1) on a CUDA device.
 
-use std::convert::Infallible;
-
 use bytemuck::Zeroable;
 use lightmesh_layout::In;
 use lightmesh_layout::stages::Shade;
 
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
+use crate::gathered::cuda::DeviceGathered;
 use crate::gpu::film::DeviceFilm;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, Work, blocks_for};
@@ -22,7 +21,7 @@ pub(crate) fn shade<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
     visibility: &DeviceVisibility<R>,
-    _: Option<&Infallible>,
+    gathered: Option<&DeviceGathered<R>>,
     film: &mut DeviceFilm<R>,
 ) -> Result<(), RenderError> {
     let rays = wave.rays;
@@ -39,6 +38,7 @@ pub(crate) fn shade<R: Runtime>(
         hits: wave.hits.hits.input(),
         share: In::to(visibility.planes().address()),
         used: visibility.used.as_ref().map_or(In::NULL, Buffer::input),
+        gathered: gathered.map_or(In::NULL, |gathered| gathered.light.input()),
         first_light: lights.start as u32,
         end_light: lights.end as u32,
         several: u32::from(rays.several),

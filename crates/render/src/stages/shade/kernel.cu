@@ -37,10 +37,18 @@ DEVICE bool sees_any(const Shade &args, unsigned ray) {
     return false;
 }
 
+// What a surface shows without lights: ambient, or gathered, and emitted light.
+DEVICE Vec3 unlit(const Shade &args, unsigned ray, const Surface &surface) {
+    if (args.gathered == nullptr)
+        return alone(args.scene, surface, surface.material->ka);
+    const float *gathered = &args.gathered[ray].x;
+    return Vec3{__ldg(gathered), __ldg(gathered + 1), __ldg(gathered + 2)} * surface.material->kd + surface.material->emission;
+}
+
 // Formula (1) without its last term: the terms of a group of lights are added to those before.
 DEVICE Vec3 add_group(const Shade &args, unsigned ray, const Surface &surface, Vec3 radiance) {
     if (args.first_light == 0)
-        radiance = unlit(args.scene, surface);
+        radiance = unlit(args, ray, surface);
     const float reach = scene_reach(args.scene, surface.point.origin);
     for (unsigned light = args.first_light; light < args.end_light; ++light) {
         const float share = share_of(args, light, ray);
@@ -80,12 +88,10 @@ DEVICE void share_tint(const Shade &args, unsigned ray, Material &own) {
     tint_by_all(tint_sources(args.scene), material, sighting_of(args.rays, ray), hits, &own);
 }
 
-DEVICE float luminance(Vec3 color) { return LUMINANCE_RED * color.x + LUMINANCE_GREEN * color.y + LUMINANCE_BLUE * color.z; }
-
 // The light that a surface gets as a share of what it would get alone.
 DEVICE float lit_share(const Shade &args, const Surface &surface, Vec3 lit) {
     const float reach = scene_reach(args.scene, surface.point.origin);
-    Vec3 sum = unlit(args.scene, surface);
+    Vec3 sum = alone(args.scene, surface, args.gathered != nullptr ? surface.material->kd : surface.material->ka);
     for (unsigned light = 0; light < args.scene.light_count; ++light)
         sum = sum + unshadowed(surface, args.scene, light, reach);
     const float alone = luminance(sum);
@@ -199,7 +205,7 @@ DEVICE void add_by_light(const Shade &args, unsigned ray, unsigned long long pla
         return;
     }
     if (first)
-        add_to_group(args, rest, place, weight * unlit(args.scene, surface));
+        add_to_group(args, rest, place, weight * unlit(args, ray, surface));
     const float reach = scene_reach(args.scene, surface.point.origin);
     for (unsigned light = args.first_light; light < args.end_light; ++light) {
         const float share = share_of(args, light, ray);

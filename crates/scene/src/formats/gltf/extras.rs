@@ -24,6 +24,8 @@ pub(crate) struct MaterialExtras {
     pub(crate) emission_tinted: [f32; 3],
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub(crate) catcher: bool,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) lamp: bool,
     /// The transform from texture coordinates to the image's, by columns, if an angle and factors would round it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) texture_transform: Option<[f32; 6]>,
@@ -63,6 +65,7 @@ impl MaterialExtras {
             emission_tinted: self.emission_tinted.into(),
             texture: None,
             catcher: self.catcher,
+            lamp: self.lamp,
             cut_out: None,
         }
     }

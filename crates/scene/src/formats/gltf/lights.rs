@@ -51,6 +51,7 @@ pub(super) fn placed(
         kind,
         intensity,
         falloff: if own.no_falloff { Falloff::None } else { Falloff::InverseSquare },
+        surface: None,
     }))
 }
 

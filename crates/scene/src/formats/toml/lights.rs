@@ -29,6 +29,7 @@ pub(super) fn read(source: &Source, table: &Spanned<LightEntry>) -> Result<(Ligh
             None | Some(FalloffName::None) => Falloff::None,
             Some(FalloffName::InverseSquare) => Falloff::InverseSquare,
         },
+        surface: None,
     };
     Ok((light, position))
 }

@@ -1,0 +1,70 @@
+//! Gathered light: the same bits on the CPU and on a device, with what was gathered before or without.
+
+use lightmesh_render::backend::{Cpu, Cuda};
+use lightmesh_render::{AmbientSource, Frame, Kept, Quality, Settings, Step, Unobserved, render_on, render_on_with};
+
+use crate::pictures::same_frame;
+use crate::scenes::{ACCELERATIONS, LAMPS, SUBJECTS, SURROUNDED, Subject};
+use crate::trials::{Case, Target};
+
+const SIZE: [u32; 2] = [33, 27];
+
+pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
+    let mut cases = Vec::new();
+    for subject in SUBJECTS.iter().chain([&SURROUNDED, &LAMPS]) {
+        let structures = if subject.small { ACCELERATIONS.len() } else { 2 };
+        for structure in 0..structures {
+            let name = format!("{}::gathered::{structure}", subject.name);
+            cases.push(Case::new(name, move |cuda| same_light(cuda, subject, structure)));
+        }
+        let name = format!("{}::gathered::kept", subject.name);
+        cases.push(Case::new(name, move |cuda| same_as_without(cuda, subject)));
+    }
+    cases
+}
+
+fn settings(subject: &'static Subject, to_the_right: f32) -> Settings {
+    let scene = subject.scene();
+    let camera = scene.cameras.first().cloned().unwrap_or_else(|| scene.default_camera(Default::default()));
+    let (right, ..) = camera.basis();
+    let position = camera.position + to_the_right * subject.step * right;
+    let settings = Settings::default().with_ambient_light(AmbientSource::Mesh).with_quality(Quality::Draft);
+    let settings = settings.with_size(SIZE).with_samples(4).with_step(Step::Fixed(subject.step)).with_aa(1);
+    settings.with_camera(camera.with_position(position)).with_bounces(1).with_layers(true)
+}
+
+/// What belongs to no light: emitted and gathered light.
+fn gathered(frame: &Frame) -> Vec<[u32; 3]> {
+    frame.layers().expect("asked for").rest.iter().map(|color| color.map(f32::to_bits)).collect()
+}
+
+fn same_light<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure: usize) {
+    let scene = subject.prepared(structure);
+    let settings = settings(subject, 0.0).with_acceleration(ACCELERATIONS[structure].clone());
+    let [host, device] = same_frame(cuda, scene, settings);
+    let is_lit = !scene.geometry.triangles.is_empty() && !scene.scene.lights.list.is_empty();
+    assert_eq!(host.stats.counts.gather_rays > 0, is_lit, "{}", host.stats.counts.gather_rays);
+    let differ = gathered(&host).iter().zip(gathered(&device)).filter(|(a, b)| **a != *b).count();
+    // Where one ray to a light passes an edge, all that take light from its site differ.
+    assert!(differ <= if R::EXACT { 0 } else { gathered(&host).len() / 20 }, "{differ} differ");
+}
+
+/// From several places, with a cache.
+fn same_as_without<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
+    let scene = subject.prepared(0);
+    let (mut kept, mut on_host) = (Kept::default(), Kept::default());
+    let mut rays = Vec::new();
+    for to_the_right in [0.0, 1.5, 0.0] {
+        let settings = settings(subject, to_the_right);
+        let with = render_on_with(cuda, &mut kept, scene, &settings, &Unobserved).unwrap();
+        let without = render_on(cuda, scene, &settings, &Unobserved).unwrap();
+        assert!(gathered(&with) == gathered(&without), "{to_the_right}");
+        let host = render_on_with(&Cpu, &mut on_host, scene, &settings, &Unobserved).unwrap();
+        assert_eq!(with.stats.counts.gather_rays, host.stats.counts.gather_rays, "{to_the_right}");
+        rays.push([with, without].map(|frame| frame.stats.counts.gather_rays));
+    }
+    let [first, moved, back] = [rays[0], rays[1], rays[2]];
+    assert_eq!(first[0], first[1], "nothing is known");
+    assert!(moved[0] <= moved[1], "some is");
+    assert!(back[0] <= first[0], "all is, but for points that see no site");
+}

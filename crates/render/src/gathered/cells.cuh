@@ -1,0 +1,99 @@
+// Surface cells and their sites: twin of cells.rs.
+#pragma once
+
+#include "accel/region.cuh"
+#include "surface.cuh"
+
+// The largest power of two up to `width`, as its exponent; `rest` is what remains, from 1 to 2.
+DEVICE int level_of_width(float width, float &rest) {
+    const unsigned bits = __float_as_uint(larger(width, F32_MIN_POSITIVE));
+    rest = __uint_as_float((bits & ~F32_INFINITY_BITS) | __float_as_uint(1.0f));
+    return (int)(bits >> 23) - 127;
+}
+
+// The size of the cells of a level.
+DEVICE float size_of_level(int level) { return __uint_as_float((unsigned)(level + 127) << 23); }
+
+DEVICE Vec3 cell_offset() { return Vec3{CELL_OFFSET_X, CELL_OFFSET_Y, CELL_OFFSET_Z}; }
+
+// The cell of a level in which a position lies.
+DEVICE IVec3 cell_at(int level, Vec3 position) {
+    const Vec3 place = position / size_of_level(level) + cell_offset();
+    return IVec3{(int)floorf(place.x), (int)floorf(place.y), (int)floorf(place.z)};
+}
+
+// The lowest corner of a cell.
+DEVICE Vec3 corner_of_cell(int level, IVec3 cell) {
+    return size_of_level(level) * (Vec3{(float)cell.x, (float)cell.y, (float)cell.z} - cell_offset());
+}
+
+// The edges of a cell.
+DEVICE Bounds bounds_of_cell(int level, IVec3 cell) {
+    const Vec3 low = corner_of_cell(level, cell);
+    return Bounds{low, low + splat(size_of_level(level))};
+}
+
+DEVICE unsigned long long cell_axis(int index) { return (unsigned)index & ((1u << CELL_INDEX_BITS) - 1); }
+
+// A cell in 59 bits.
+DEVICE unsigned long long cell_key(int level, IVec3 cell) {
+    return (unsigned long long)(level + LEVEL_BIAS) << 3 * CELL_INDEX_BITS | cell_axis(cell.z) << 2 * CELL_INDEX_BITS |
+           cell_axis(cell.y) << CELL_INDEX_BITS | cell_axis(cell.x);
+}
+
+// A cell among names.
+DEVICE Name name_of_cell(int level, IVec3 cell) { return Name{cell_key(level, cell), {cell.x, cell.y, cell.z}, level, 0, 0}; }
+
+// One kind of surface in a cell among names.
+DEVICE Name name_of_kind(int level, IVec3 cell, unsigned kind) {
+    return Name{cell_key(level, cell) << 4 | kind, {cell.x, cell.y, cell.z}, level, kind, 0};
+}
+
+DEVICE IVec3 cell_of_name(const Name &name) { return IVec3{name.cell[0], name.cell[1], name.cell[2]}; }
+
+DEVICE Bounds bounds_of_name(const Name &name) { return bounds_of_cell(name.level, cell_of_name(name)); }
+
+DEVICE Vec3 middle_of(const Bounds &bounds) { return 0.5f * (bounds.low + bounds.high); }
+
+// Along the normal of a triangle's front.
+DEVICE Vec3 outward_of(const Corners &corners) { return cross(corners.b - corners.a, corners.c - corners.a); }
+
+// The kind of the side of a surface that `normal` leaves: even on fronts.
+DEVICE unsigned surface_kind(Vec3 normal, bool front) {
+    const Vec3 size = abs(normal);
+    const unsigned axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    return 4 * axis + 2 * (component(axis, normal) < 0.0f) + !front;
+}
+
+// The point of a triangle that is closest to `p`, with the weights of its second and third corner.
+DEVICE Vec3 closest_point(Vec3 p, const Corners &corners, float &u, float &v) {
+    const Vec3 a = corners.a, b = corners.b, c = corners.c;
+    const Vec3 ab = b - a, ac = c - a, ap = p - a;
+    const float d1 = dot(ab, ap), d2 = dot(ac, ap);
+    u = v = 0.0f;
+    if (!(d1 <= 0.0f && d2 <= 0.0f)) {
+        const Vec3 bp = p - b, cp = p - c;
+        const float d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
+        const float vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+        if (d3 >= 0.0f && d4 <= d3) {
+            u = 1.0f;
+        } else if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f) {
+            u = d1 / (d1 - d3);
+        } else if (d6 >= 0.0f && d5 <= d6) {
+            v = 1.0f;
+        } else if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f) {
+            v = d2 / (d2 - d6);
+        } else if (va <= 0.0f && d4 - d3 >= 0.0f && d5 - d6 >= 0.0f) {
+            v = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+            u = 1.0f - v;
+        } else {
+            const float sum = va + vb + vc;
+            if (sum > 0.0f) {
+                u = vb / sum;
+                v = vc / sum;
+            }
+        }
+    }
+    return a + u * ab + v * ac;
+}
+

@@ -1,0 +1,219 @@
+//! Gathered light on a CUDA device: the steps of [`super`], launch by launch.
+//!
+//! What is kept stays in the device's memory, in tables that grow. Which of two cells, sites or nodes gets its number first may differ from
+//! run to run; what belongs to it does not.
+
+mod bounce;
+mod cells;
+mod fans;
+mod far;
+mod fine;
+mod names;
+
+use bytemuck::{Pod, Zeroable};
+use lightmesh_layout::constants::{BLOCK, FOUND_TRIANGLES, WARP};
+use lightmesh_layout::gathered::{GatherPoints, LightPlace};
+use lightmesh_layout::geometry::Vec3;
+
+use super::Gathering;
+use super::rays::Fan;
+use crate::cuda::{Buffer, Kernel, Runtime};
+use crate::error::RenderError;
+use crate::gpu::rays::DeviceWave;
+use crate::gpu::{Cuda, PerStructure, blocks_for, warps_for};
+use bounce::DeviceBounce;
+use cells::{DeviceCells, DevicePlaces};
+use far::DeviceFar;
+use fine::DeviceFine;
+
+/// Surface points that are processed at once.
+const POINTS_AT_ONCE: usize = 1 << 18;
+/// Rays that are cast at once.
+const RAYS_AT_ONCE: usize = 1 << 18;
+/// What these take at most: places and links of points; three times rays with all that is known of them, for what they hit asks again; tables
+/// while they grow.
+const BYTES_AT_ONCE: u64 = 512 * POINTS_AT_ONCE as u64 + 3 * 160 * RAYS_AT_ONCE as u64 + (64 << 20);
+/// What is kept may take one part in this many of the memory that is left.
+const PART_KEPT: u64 = 4;
+
+/// What was gathered for a scene, on a device.
+pub struct DeviceSurfaceLight<R: Runtime> {
+    kept: Option<Kept<R>>,
+}
+
+impl<R: Runtime> Default for DeviceSurfaceLight<R> {
+    fn default() -> DeviceSurfaceLight<R> {
+        DeviceSurfaceLight { kept: None }
+    }
+}
+
+struct Kept<R: Runtime> {
+    fine_cells: DeviceCells<R>,
+    fine: DeviceFine<R>,
+    far_cells: DeviceCells<R>,
+    far: DeviceFar<R>,
+    bounce: DeviceBounce<R>,
+}
+
+impl<R: Runtime> Kept<R> {
+    fn new(cuda: &Cuda<R>) -> Result<Kept<R>, RenderError> {
+        Ok(Kept {
+            fine_cells: DeviceCells::new(cuda)?,
+            fine: DeviceFine::new(cuda)?,
+            far_cells: DeviceCells::new(cuda)?,
+            far: DeviceFar::new(cuda)?,
+            bounce: DeviceBounce::new(cuda)?,
+        })
+    }
+
+    fn memory(&self) -> u64 {
+        let cells = self.fine_cells.memory() + self.far_cells.memory();
+        cells + self.fine.memory() + self.far.memory() + self.bounce.memory()
+    }
+}
+
+impl<R: Runtime> DeviceSurfaceLight<R> {
+    /// Bytes in the device's memory.
+    pub(crate) fn memory(&self) -> u64 {
+        self.kept.as_ref().map_or(0, Kept::memory)
+    }
+}
+
+/// The mean radiance that each surface point of a wave receives, on a device.
+pub struct DeviceGathered<R: Runtime> {
+    pub(crate) light: Buffer<R, Vec3>,
+}
+
+/// Bytes that gathering needs on a device, besides what it keeps.
+pub(crate) fn memory_at_once() -> u64 {
+    BYTES_AT_ONCE
+}
+
+/// What all launches need.
+struct Device<'a, R: Runtime> {
+    cuda: &'a Cuda<R>,
+    wave: &'a DeviceWave<'a, R>,
+}
+
+impl<R: Runtime> Device<'_, R> {
+    /// Launches a kernel with a thread for each of `count` units.
+    fn threads<A: Pod>(&self, name: &'static str, count: usize, arguments: &A) -> Result<(), RenderError> {
+        self.launch(Kernel { module: "gathered", name }, count.div_ceil(BLOCK as usize), arguments)
+    }
+
+    /// Launches a kernel with a warp for each.
+    fn warps<A: Pod>(&self, name: &'static str, count: usize, arguments: &A) -> Result<(), RenderError> {
+        self.launch(Kernel { module: "gathered", name }, count.div_ceil((BLOCK / WARP) as usize), arguments)
+    }
+
+    /// Launches a kernel that asks the acceleration structure, with a thread for each.
+    fn tracing<A: Pod>(&self, kernel: PerStructure, count: usize, arguments: &A) -> Result<(), RenderError> {
+        self.launch(kernel.of(self.wave.scene), count.div_ceil(BLOCK as usize), arguments)
+    }
+
+    fn launch<A: Pod>(&self, kernel: Kernel, blocks: usize, arguments: &A) -> Result<(), RenderError> {
+        if blocks == 0 {
+            return Ok(());
+        }
+        self.cuda.launch(kernel, blocks_for(&(0..blocks as u64), BLOCK), arguments)
+    }
+
+    /// Launches a kernel that searches the acceleration structure, with a warp for each.
+    fn searching<A: Pod>(&self, kernel: PerStructure, count: usize, arguments: &A) -> Result<(), RenderError> {
+        if count == 0 {
+            return Ok(());
+        }
+        let words = FOUND_TRIANGLES + self.wave.scene.search_words();
+        self.cuda.launch(kernel.of(self.wave.scene), warps_for(&(0..count as u64), 1, words), arguments)
+    }
+}
+
+/// Reads a count on the device. Waits for all work queued before.
+fn read_count<R: Runtime>(count: &Buffer<R, u32>) -> Result<usize, RenderError> {
+    let mut value = [0];
+    count.read_into(0, &mut value)?;
+    Ok(value[0] as usize)
+}
+
+/// The mean radiance that each surface point of a wave receives, weighted by the cosine; zero for rays that see nothing.
+pub(crate) fn gather<R: Runtime>(
+    cuda: &Cuda<R>,
+    wave: &DeviceWave<R>,
+    how: &Gathering,
+    light: &mut DeviceSurfaceLight<R>,
+) -> Result<DeviceGathered<R>, RenderError> {
+    let device = Device { cuda, wave };
+    let rays = wave.rays.len();
+    let result = cuda.pool().zeros("gathered light", rays)?;
+    for first in (0..rays).step_by(POINTS_AT_ONCE) {
+        wave.job.check()?;
+        if cuda.memory_left().is_some_and(|left| light.memory() > (left + light.memory()) / PART_KEPT) {
+            light.kept = None;
+        }
+        // In case of an error it is lost: tables may be incomplete.
+        let mut kept = light.kept.take().map_or_else(|| Kept::new(cuda), Ok)?;
+        let count = POINTS_AT_ONCE.min(rays - first);
+        gather_part(&device, how, &mut kept, first..first + count, &result)?;
+        light.kept = Some(kept);
+        wave.job.advance(count as u64);
+    }
+    Ok(DeviceGathered { light: result })
+}
+
+fn gather_part<R: Runtime>(
+    device: &Device<R>,
+    how: &Gathering,
+    kept: &mut Kept<R>,
+    rays: std::ops::Range<usize>,
+    light: &Buffer<R, Vec3>,
+) -> Result<(), RenderError> {
+    let Device { cuda, wave } = device;
+    let Kept { fine_cells, fine, far_cells, far, bounce } = kept;
+    // 1. Where light is asked for: at one level, or between two.
+    let places = cuda.pool().room::<LightPlace>("places that ask for light", 2 * rays.len())?;
+    let means = cuda.pool().room::<Vec3>("answers to these", 2 * rays.len())?;
+    let alone = cuda.pool().room::<u32>("places without any", 2 * rays.len())?;
+    let alone_count = cuda.pool().zeros::<u32>("number of places without any", 1)?;
+    let record = GatherPoints {
+        scene: wave.scene.record,
+        rays: wave.rays.record,
+        hits: wave.hits.hits.input(),
+        places: places.output(),
+        means: means.output(),
+        alone: alone.output(),
+        alone_count: alone_count.output(),
+        light: light.output(),
+        eye: how.eye.to_array().into(),
+        spacing: how.spacing,
+        pixels: how.pixels,
+        least_level: how.least_level,
+        first: rays.start as u32,
+        count: rays.len() as u32,
+        ..GatherPoints::zeroed()
+    };
+    device.threads("ask_light", rays.len(), &record)?;
+
+    // 2. The fine sites around that are seen, and what they receive.
+    let places = DevicePlaces { places, count: 2 * rays.len() };
+    let links = fine_cells.links(device, &places)?;
+    let new = fine_cells.value(device, &links)?;
+    fine.extend(device, fine_cells, new, &mut fine::Coarse { cells: far_cells, far, bounce, fans: &how.fans })?;
+    fine_cells.settle(device, &places, &links, cells::Nearest::OfSites(fine))?;
+
+    // 3. The mean. Where there is none, rays from the point itself.
+    let lookup = fine_cells.lookup(device, &places, &links);
+    let record = GatherPoints { lookup, fine: fine.input(), ..record };
+    let both = GatherPoints { count: places.count as u32, ..record };
+    device.threads("mean_light", places.count, &both)?;
+    let count = read_count(&alone_count)?;
+    let at_once = RAYS_AT_ONCE / how.fans.far[0].len();
+    for first in (0..count).step_by(at_once) {
+        let count = at_once.min(count - first);
+        let sites = cuda.pool().room("surface points that see no site", count)?;
+        let some = GatherPoints { sites: sites.output(), first_alone: first as u32, count: count as u32, ..record };
+        device.threads("take_alone", count, &some)?;
+        let own = far::plain(device, bounce, sites, count, how.fans.far)?;
+        device.threads("give_alone", count, &GatherPoints { far: own.input(), ..some })?;
+    }
+    device.threads("add_means", rays.len(), &record)
+}

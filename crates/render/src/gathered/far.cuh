@@ -1,0 +1,77 @@
+// What coarse sites gather: light from everywhere, by direction. Twin of far.rs.
+#pragma once
+
+#include "gathered/light.cuh"
+#include "gathered/rays.cuh"
+
+// Bins of a lane: those of its number, and of that number and 32.
+struct LaneBins {
+    Vec3 sums[BINS / WARP];
+    float counts[BINS / WARP];
+};
+
+static_assert(BINS == 2 * WARP, "two bins of each lane");
+
+DEVICE void take_bin(LaneBins &bins, unsigned bin, Vec3 radiance) {
+    UNROLL
+    for (unsigned k = 0; k < BINS / WARP; ++k)
+        if (bin == k * WARP + lane_of_thread()) {
+            bins.sums[k] = bins.sums[k] + radiance;
+            bins.counts[k] += 1.0f;
+        }
+}
+
+// Writes a lane's bins, or adds them to what is there.
+DEVICE void store_bins(const LaneBins &bins, Bins &all, bool joins) {
+    UNROLL
+    for (unsigned k = 0; k < BINS / WARP; ++k) {
+        const unsigned bin = k * WARP + lane_of_thread();
+        all.sums[bin] = joins ? all.sums[bin] + bins.sums[k] : bins.sums[k];
+        all.counts[bin] = joins ? all.counts[bin] + bins.counts[k] : bins.counts[k];
+    }
+}
+
+// Adds light that was found by `others` rays to what `count` rays found before.
+DEVICE SurfaceLight joined(const SurfaceLight &before, const SurfaceLight &light, float count, float others) {
+    const float share = others / (count + others);
+    SurfaceLight both = {};
+    add_light(both, 1.0f - share, before, splat(0.0f));
+    add_light(both, share, light, splat(0.0f));
+    return both;
+}
+
+// What a site gathers. One warp, all of whose lanes find the same, but for bins.
+DEVICE void far_of_site(const GatherFar &args, unsigned number) {
+    const Fans &fans = args.fans;
+    const unsigned rays = rays_of_fan(fans);
+    const Site site = fans.sites[number];
+    const float near = NEAR_CELLS * size_of_level(site.level);
+    SurfaceLight light = {};
+    LaneBins all = {}, beyond = {};
+    bool has_near = false;
+    float mean = 0.0f, square = 0.0f;
+    for (unsigned ray = number * rays; ray < (number + 1) * rays; ++ray) {
+        const Vec3 direction = load_listed(fans.list + ray, 1), radiance = fans.seen[ray].radiance;
+        const float weight = fans.weights[ray];
+        take_light(light, site.normal, direction, weight * radiance);
+        const unsigned bin = direction_bin(direction);
+        take_bin(all, bin, radiance);
+        if (load_hit(fans.hits, ray).t < near)
+            has_near = true;
+        else
+            take_bin(beyond, bin, radiance);
+        const float bright = luminance(radiance);
+        mean += weight * bright;
+        square += weight * bright * bright;
+    }
+    FarLight &far = args.far[args.first + (args.owners != nullptr ? args.owners[number] : number)];
+    const bool joins = args.before != 0;
+    store_bins(all, far.all, joins);
+    store_bins(beyond, far.beyond, joins);
+    if (lane_of_thread() != 0)
+        return;
+    far.light = joins ? joined(far.light, light, (float)args.before, (float)rays) : light;
+    far.has_near = has_near || (joins && far.has_near);
+    if (!joins && square > (1.0f + EVEN * EVEN) * mean * mean)
+        args.uneven[atomicAdd(args.uneven_count, 1u)] = number;
+}

@@ -1,0 +1,12 @@
+// Gathered light on a CUDA device, the steps that ask an acceleration structure: see mod.rs. Launched by cuda/.
+#include "cuda/prelude.cuh"
+
+#include "gathered/bounce.cuh"
+#include "gathered/sites.cuh"
+
+KERNEL_PER_STRUCTURE(place_sites, Lookup, WARP, 16)
+KERNEL_PER_STRUCTURE(place_nodes, Bounce, WARP, 16)
+KERNEL_PER_STRUCTURE(settle_links, Lookup, BLOCK, 4)
+KERNEL_PER_STRUCTURE(trace_fans, Fans, BLOCK, 4)
+KERNEL_PER_STRUCTURE(see, Fans, BLOCK, 3)
+KERNEL_PER_STRUCTURE(hide_nodes, Bounce, BLOCK, 4)

@@ -1,0 +1,165 @@
+// Gathered light on a CUDA device, the steps that trace nothing: see mod.rs. Launched by cuda/.
+#include "cuda/prelude.cuh"
+
+#include "gathered/bounce.cuh"
+#include "gathered/far.cuh"
+#include "gathered/fine.cuh"
+#include "gathered/points.cuh"
+
+// The number of a thread, or of a warp; false if there is nothing for it to do.
+DEVICE bool thread_has_work(unsigned count, unsigned &number) {
+    number = blockIdx.x * BLOCK + threadIdx.x;
+    return number < count;
+}
+
+DEVICE bool warp_has_work(unsigned count, unsigned &number) {
+    number = (blockIdx.x * BLOCK + threadIdx.x) / WARP;
+    return number < count;
+}
+
+// ---- Tables ----
+
+KERNEL(add_names_again, Names, BLOCK, 4) {
+    unsigned number;
+    if (thread_has_work(*args.count, number))
+        add_again(args, number);
+}
+
+KERNEL(take_sites, TakeSites, BLOCK, 4) {
+    unsigned number;
+    if (!thread_has_work(args.count, number))
+        return;
+    const unsigned owner = args.numbers[args.first + number];
+    Site site = args.sites[owner];
+    site.level += args.coarser;
+    args.taken[number] = site;
+    if (args.owners != nullptr)
+        args.owners[number] = owner;
+    if (args.places != nullptr)
+        args.places[number] = LightPlace{site.position, site.level, site.normal, 1.0f};
+}
+
+// ---- lookup.cuh ----
+
+KERNEL(find_cells, Lookup, BLOCK, 4) {
+    unsigned place;
+    if (thread_has_work(args.count, place) && args.places[place].share > 0.0f)
+        ask_cells(args, args.places[place]);
+}
+
+KERNEL(count_links, Lookup, BLOCK, 4) {
+    unsigned place;
+    if (thread_has_work(args.count, place))
+        args.offsets[place] = args.places[place].share > 0.0f ? find_links(args, args.places[place], nullptr) : 0;
+}
+
+KERNEL(fill_links, Lookup, BLOCK, 4) {
+    unsigned place;
+    if (thread_has_work(args.count, place) && args.places[place].share > 0.0f)
+        find_links(args, args.places[place], args.links + args.offsets[place]);
+}
+
+KERNEL(value_links, Lookup, BLOCK, 4) {
+    unsigned place;
+    if (thread_has_work(args.count, place))
+        ask_values(args, place);
+}
+
+// ---- rays.cuh ----
+
+KERNEL(cast_fans, Fans, BLOCK, 4) {
+    unsigned site;
+    if (warp_has_work(args.count, site))
+        cast_fan(args, site);
+}
+
+KERNEL(nearest_of_fans, Fans, BLOCK, 4) {
+    unsigned site;
+    if (thread_has_work(args.count, site))
+        args.nearest[site] = nearest_of_fan(args, site);
+}
+
+// ---- bounce.cuh ----
+
+KERNEL(name_nodes, Bounce, BLOCK, 4) {
+    unsigned ray;
+    if (fan_ray_of_thread(args.fans, ray) && asks_node(args.fans.seen[ray]))
+        name_node(args, args.fans.seen[ray]);
+}
+
+KERNEL(list_nodes, Bounce, BLOCK, 4) {
+    unsigned ray;
+    if (fan_ray_of_thread(args.fans, ray) && asks_node(args.fans.seen[ray]))
+        list_node(args, node_of(args, args.fans.seen[ray]));
+}
+
+KERNEL(sum_first, Bounce, BLOCK, 4) {
+    unsigned site;
+    if (thread_has_work(args.fans.count, site))
+        find_first(args, site);
+}
+
+KERNEL(sum_second, Bounce, BLOCK, 4) {
+    unsigned site;
+    if (thread_has_work(args.fans.count, site))
+        find_second(args, site);
+}
+
+KERNEL(reflect, Bounce, BLOCK, 4) {
+    unsigned site;
+    if (thread_has_work(args.fans.count, site))
+        add_reflected(args, site);
+}
+
+// ---- far.cuh, fine.cuh ----
+
+KERNEL(gather_far, GatherFar, BLOCK, 2) {
+    unsigned site;
+    if (warp_has_work(args.fans.count, site))
+        far_of_site(args, site);
+}
+
+KERNEL(gather_fine, GatherFine, BLOCK, 2) {
+    unsigned site;
+    if (warp_has_work(args.fans.count, site))
+        fine_of_site(args, site);
+}
+
+// What sites gather that see no coarse one.
+KERNEL(take_light, GatherFine, BLOCK, 4) {
+    unsigned number;
+    if (thread_has_work(args.count, number))
+        args.fine[args.first + args.alone[args.first_alone + number]].light = args.far[number].light;
+}
+
+// ---- points.cuh ----
+
+KERNEL(ask_light, GatherPoints, BLOCK, 4) {
+    unsigned index;
+    if (thread_has_work(args.count, index))
+        ask_at(args, index);
+}
+
+KERNEL(mean_light, GatherPoints, BLOCK, 4) {
+    unsigned index;
+    if (thread_has_work(args.count, index))
+        find_mean(args, index);
+}
+
+KERNEL(take_alone, GatherPoints, BLOCK, 4) {
+    unsigned index;
+    if (thread_has_work(args.count, index))
+        site_of_alone(args, index);
+}
+
+KERNEL(give_alone, GatherPoints, BLOCK, 4) {
+    unsigned index;
+    if (thread_has_work(args.count, index))
+        find_mean_alone(args, index);
+}
+
+KERNEL(add_means, GatherPoints, BLOCK, 4) {
+    unsigned index;
+    if (thread_has_work(args.count, index))
+        sum_means(args, index);
+}

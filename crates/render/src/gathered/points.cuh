@@ -1,0 +1,76 @@
+// What surface points receive: the mean of what fine sites around them do. Twin of mod.rs.
+#pragma once
+
+#include "gathered/light.cuh"
+#include "gathered/lookup.cuh"
+#include "surface.cuh"
+
+// Asks for light at a ray's surface point: at one level, or between two.
+DEVICE void ask_at(const GatherPoints &args, unsigned index) {
+    LightPlace places[2] = {};
+    const unsigned ray = args.first + index;
+    if (load_hit(args.hits, ray).triangle != Hit::NONE) {
+        const SurfacePoint point = surface_point_of(args.scene, args.rays, args.hits, ray);
+        float rest;
+        const int level = level_of_width(args.pixels * (args.spacing[0] + args.spacing[1] * length(point.position - args.eye)), rest);
+        const float next = larger((rest - BLEND_FROM) / (2.0f - BLEND_FROM), 0.0f);
+        places[0] = LightPlace{point.position, max(level, args.least_level), point.normal, 1.0f - next};
+        places[1] = LightPlace{point.position, max(level + 1, args.least_level), point.normal, next};
+    }
+    args.places[2 * index] = places[0];
+    args.places[2 * index + 1] = places[1];
+}
+
+// How much the normal that shading uses differs from that of a site.
+DEVICE Vec3 turned(const GatherPoints &args, unsigned place, Vec3 facing, Vec3 normal) {
+    return shading_normal(args.scene, load_hit(args.hits, args.first + place / 2), facing) - normal;
+}
+
+// The mean at a place; those without sites are listed.
+DEVICE void find_mean(const GatherPoints &args, unsigned index) {
+    const LightPlace place = args.places[index];
+    args.means[index] = splat(0.0f);
+    if (place.share <= 0.0f)
+        return;
+    const Vec3 normal = turned(args, index, place.normal, splat(0.0f));
+    Vec3 sum = splat(0.0f);
+    float weights = 0.0f;
+    for (unsigned link = args.lookup.offsets[index]; link < args.lookup.offsets[index + 1]; ++link) {
+        const unsigned site = args.lookup.links[link].site;
+        const float weight = args.lookup.links[link].weight;
+        if (weight <= 0.0f)
+            continue;
+        const SurfaceLight &light = args.fine[args.lookup.table.values[site] - 1].light;
+        sum = sum + weight * light_at(light, normal - args.lookup.table.sites[site].normal);
+        weights += weight;
+    }
+    if (weights > 0.0f)
+        args.means[index] = sum / weights;
+    else
+        args.alone[atomicAdd(args.alone_count, 1u)] = index;
+}
+
+// A surface point that sees no site as a site of its own.
+DEVICE void site_of_alone(const GatherPoints &args, unsigned index) {
+    const unsigned place = args.alone[args.first_alone + index];
+    const SurfacePoint point = surface_point_of(args.scene, args.rays, args.hits, args.first + place / 2);
+    const unsigned long long x = __float_as_uint(point.position.x), y = __float_as_uint(point.position.y), z = __float_as_uint(point.position.z);
+    const unsigned long long seed = x ^ y << 21 ^ z << 42;
+    args.sites[index] = Site{point.position, args.places[place].level + COARSER, point.origin, point.normal, seed};
+}
+
+// What it gathers.
+DEVICE void find_mean_alone(const GatherPoints &args, unsigned index) {
+    const unsigned place = args.alone[args.first_alone + index];
+    const Vec3 normal = args.places[place].normal;
+    args.means[place] = light_at(args.far[index].light, turned(args, place, normal, normal));
+}
+
+// Both answers for a ray.
+DEVICE void sum_means(const GatherPoints &args, unsigned index) {
+    Vec3 sum = splat(0.0f);
+    for (unsigned place = 2 * index; place < 2 * index + 2; ++place)
+        if (args.places[place].share > 0.0f)
+            sum = sum + args.places[place].share * max(args.means[place], splat(0.0f));
+    args.light[args.first + index] = sum;
+}

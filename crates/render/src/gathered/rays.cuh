@@ -1,0 +1,141 @@
+// Gather rays: their directions, and what they see. Twin of rays.rs.
+#pragma once
+
+#include "cuda/tally.cuh"
+#include "gathered/cells.cuh"
+#include "gathered/directions.cuh"
+#include "shading/environment.cuh"
+#include "shading/shading.cuh"
+#include "shadow/shadow.cuh"
+
+DEVICE unsigned rays_of_fan(const Fans &fans) { return fans.side * fans.side; }
+
+// The direction of ray number `index` from a site, and its weight by the cosine.
+DEVICE Vec3 fan_direction(const Fans &fans, const Site &site, unsigned index, float &weight) {
+    const unsigned long long random = random_bits(site.seed ^ fans.sampling.seed, index, fans.side);
+    const float column = (float)(index % fans.side) + (float)((unsigned)random >> 8) * LAST_DIGIT;
+    const float row = (float)(index / fans.side) + (float)((unsigned)(random >> 32) >> 8) * LAST_DIGIT;
+    const float side = (float)fans.side;
+    const Vec3 local = direction_above(2.0f * column / side - 1.0f, 2.0f * row / side - 1.0f, weight);
+    Vec3 tangent, other;
+    basis(site.normal, tangent, other);
+    return local.x * tangent + local.y * other + local.z * site.normal;
+}
+
+// Whether the site's rays are cast for the first time.
+DEVICE bool is_new(const Fans &fans, unsigned site) { return fans.owners == nullptr || fans.nodes[fans.owners[site]].known == 0; }
+
+// Casts a fan of rays from a site. One warp.
+DEVICE void cast_fan(const Fans &fans, unsigned number) {
+    const unsigned lane = lane_of_thread(), rays = rays_of_fan(fans);
+    const unsigned long long start = (unsigned long long)number * rays;
+    const Site site = fans.sites[number];
+    float sum = 0.0f;
+    for (unsigned first = 0; first < rays; first += WARP) {
+        float weight = 0.0f;
+        if (first + lane < rays) {
+            const Vec3 direction = fan_direction(fans, site, first + lane, weight);
+            fans.list[start + first + lane] = ListedRay{site.origin, number, direction, 0, splat(1.0f), 0};
+            fans.weights[start + first + lane] = weight;
+        }
+        // In the order of the rays.
+        for (unsigned ray = 0; ray < WARP && first + ray < rays; ++ray)
+            sum += __shfl_sync(ALL_LANES, weight, ray);
+    }
+    __syncwarp();
+    for (unsigned ray = lane; ray < rays; ray += WARP)
+        fans.weights[start + ray] /= sum;
+    if (lane == 0 && is_new(fans, number))
+        atomicAdd(&tally_shard(fans.tally).gather_rays, (unsigned long long)rays);
+}
+
+// The ray of a thread; false if there is none.
+DEVICE bool fan_ray_of_thread(const Fans &fans, unsigned &ray) {
+    ray = blockIdx.x * BLOCK + threadIdx.x;
+    return ray < fans.count * rays_of_fan(fans);
+}
+
+template <class Structure>
+DEVICE void trace_fans(const Fans &fans, const Structure &structure) {
+    unsigned number;
+    if (!fan_ray_of_thread(fans, number))
+        return;
+    Ray ray = ray_at(fans.rays, number);
+    ray.t_max = fans.reach * size_of_level(fans.sites[number / rays_of_fan(fans)].level);
+    store_hit(fans.hits, number, closest_hit(structure, fans.tally, ray));
+}
+
+// The distance of what is nearest to a site.
+DEVICE float nearest_of_fan(const Fans &fans, unsigned site) {
+    float nearest = INFINITE;
+    for (unsigned ray = 0; ray < rays_of_fan(fans); ++ray)
+        nearest = fminf(nearest, load_hit(fans.hits, site * rays_of_fan(fans) + ray).t);
+    return nearest;
+}
+
+// The light of a light that arrives where `to` is seen of it: known, unless a part of it is below the horizon.
+DEVICE Vec3 arriving_by(const Fans &fans, const Surface &surface, unsigned index, Vec3 to, float reach) {
+    const Light &light = fans.scene.lights[index];
+    const float height = dot(surface.point.normal, light_center(light, surface.point.origin, reach) - surface.point.origin);
+    const float size = light.kind == Light::DIRECTIONAL ? reach * light.size : light.size;
+    return height >= size ? arriving(surface, fans.scene, index, reach) : arriving_from(surface, light, to);
+}
+
+// Adds what reaches a point from lights, as a random point of each is seen or not. Returns the number of rays that were cast.
+template <class Structure>
+DEVICE unsigned add_lights(const Fans &fans, const Structure &structure, const Surface &surface, unsigned long long key, Vec3 &radiance) {
+    const float reach = scene_reach(fans.scene, surface.point.origin);
+    unsigned cast = 0;
+    for (unsigned light = 0; light < fans.scene.light_count; ++light) {
+        const Vec3 to = target(targets_of(fans.scene, fans.sampling, light, surface.point.origin, key), 0);
+        if (dot(surface.point.normal, to - surface.point.origin) <= 0.0f)
+            continue;
+        const Vec3 gain = surface.material->kd * arriving_by(fans, surface, light, to, reach);
+        if (gain == splat(0.0f))
+            continue;
+        ++cast;
+        if (!hidden(structure, fans.tally, surface.point.origin, to))
+            radiance = radiance + gain;
+    }
+    return cast;
+}
+
+// What a ray sees, but for the light that reaches what it hits from no light directly.
+template <class Structure>
+DEVICE SeenRay seen_by(const Fans &fans, const Structure &structure, unsigned ray, unsigned &cast) {
+    SeenRay seen = {};
+    seen.kind = SURFACE_KINDS;
+    const Hit hit = load_hit(fans.hits, ray);
+    const Vec3 direction = ray_at(fans.rays, ray).direction;
+    // A shadow catcher shows what is behind it.
+    if (hit.triangle == Hit::NONE || fans.scene.materials[__ldg(fans.scene.triangle_materials + hit.triangle)].catcher) {
+        if (!fans.is_near || hit.triangle != Hit::NONE)
+            seen.radiance = surroundings(fans.scene.environment, direction, SKY_CONE * fans.rays.cone.spread);
+        return seen;
+    }
+    Material own;
+    const Surface surface = surface_at(fans.scene, fans.rays, fans.hits, ray, own);
+    seen.radiance = fans.lamps && surface.material->lamp ? splat(0.0f) : surface.material->emission;
+    if (surface.material->kd == splat(0.0f))
+        return seen;
+    const unsigned number = ray / rays_of_fan(fans), index = ray % rays_of_fan(fans);
+    const Site &site = fans.sites[number];
+    if (is_new(fans, number))
+        cast = add_lights(fans, structure, surface, site.seed + (rays_of_fan(fans) + index), seen.radiance);
+    const bool front = dot(outward_of(load_corners(fans.scene.triangles + hit.triangle)), direction) < 0.0f;
+    float rest;
+    seen.position = surface.point.position;
+    seen.normal = surface.point.normal;
+    seen.kd = surface.material->kd;
+    seen.level = max(level_of_width(BOUNCE_SIZE * hit.t, rest), site.level + BOUNCE_COARSER);
+    seen.kind = surface_kind(surface.point.normal, front);
+    return seen;
+}
+
+template <class Structure>
+DEVICE void see(const Fans &fans, const Structure &structure) {
+    unsigned ray, cast = 0;
+    if (fan_ray_of_thread(fans, ray))
+        fans.seen[ray] = seen_by(fans, structure, ray, cast);
+    count(tally_shard(fans.tally).shadow_rays, cast);
+}
