@@ -2,7 +2,9 @@
 
 use glam::{Affine2, DVec3, Vec2, Vec3};
 use lightmesh_render::backend::{Cpu, Cuda};
-use lightmesh_render::{Acceleration, Frame, Mode, PreparedScene, Settings, Sharing, Unobserved, render_on};
+use lightmesh_render::{
+    Acceleration, AmbientSource, Frame, Mode, PreparedScene, Settings, Sharing, Unobserved, render_on,
+};
 use lightmesh_scene::{Environment, LightKind, Material, Scene, Sun, Texture, TextureUse, Up, Wrap};
 use lightmesh_testkit::{SceneDraft, pile};
 
@@ -81,7 +83,8 @@ fn same_surrounded_bits<R: Target>(cuda: &Cuda<R>, aa: u32) {
     scene.lights.environment = Some(map.with_sun(Some(sun)).into());
     (scene.lights.ambient, scene.lights.background) = (None, None);
     let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
-    let settings = Settings::default().with_size([64, 48]).with_aa(aa).with_bounces(2);
+    let settings = Settings::default().with_ambient_light(AmbientSource::Constant).with_bounces(2);
+    let settings = settings.with_size([64, 48]).with_aa(aa);
     assert_same_bits(cuda, &scene, &settings, 2);
 }
 

@@ -42,9 +42,10 @@ KERNEL(take_sites, TakeSites, BLOCK, 4) {
 // ---- lookup.cuh ----
 
 KERNEL(find_cells, Lookup, BLOCK, 4) {
-    unsigned place;
-    if (thread_has_work(args.count, place) && args.places[place].share > 0.0f)
-        ask_cells(args, args.places[place]);
+    unsigned number;
+    const bool is_place = thread_has_work(args.count, number);
+    const LightPlace place = is_place ? args.places[number] : LightPlace{};
+    ask_cells(args, place.share > 0.0f, place);
 }
 
 KERNEL(count_links, Lookup, BLOCK, 4) {

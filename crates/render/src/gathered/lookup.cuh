@@ -74,14 +74,33 @@ DEVICE bool balance_slope(const Balance &balance, float &x, float &y) {
     return true;
 }
 
-// Asks for the cells in which sites may count for a place.
-DEVICE void ask_cells(const Lookup &args, const LightPlace &place) {
+// Whether sites of each of the cells around `middle` may count for any of the lanes that `ask`, of the same level: a bit for each.
+DEVICE void cells_for_any(bool ask, const LightPlace &place, IVec3 middle, unsigned *wanted) {
     const float size = size_of_level(place.level);
-    const IVec3 middle = cell_at(place.level, place.position);
     for (unsigned index = 0; index < CELLS_AROUND; ++index) {
-        const IVec3 cell = cell_around(middle, index);
-        if (may_use(place, size, cell))
-            add_name(args.table.cells, name_of_cell(place.level, cell));
+        const bool any = __ballot_sync(ALL_LANES, ask && may_use(place, size, cell_around(middle, index))) != 0;
+        wanted[index / WARP] = (index % WARP == 0 ? 0 : wanted[index / WARP]) | (unsigned)any << index % WARP;
+    }
+}
+
+// Asks for the cells in which sites may count for the places of a warp. Places in one cell mostly want the same ones, so that these are asked for
+// once: a thousand threads that insert one name would wait for each other.
+DEVICE void ask_cells(const Lookup &args, bool has, const LightPlace &place) {
+    const unsigned lane = lane_of_thread();
+    const IVec3 own = has ? cell_at(place.level, place.position) : IVec3{0, 0, 0};
+    unsigned rest = __ballot_sync(ALL_LANES, has);
+    while (rest != 0) {
+        const unsigned first = __ffs(rest) - 1;
+        const int level = __shfl_sync(ALL_LANES, place.level, first);
+        const IVec3 middle = {__shfl_sync(ALL_LANES, own.x, first), __shfl_sync(ALL_LANES, own.y, first), __shfl_sync(ALL_LANES, own.z, first)};
+        const bool same = has && place.level == level && own.x == middle.x && own.y == middle.y && own.z == middle.z;
+        unsigned wanted[(CELLS_AROUND + WARP - 1) / WARP];
+        cells_for_any(same, place, middle, wanted);
+        for (unsigned index = lane; index < CELLS_AROUND; index += WARP)
+            if (wanted[index / WARP] >> lane & 1)
+                add_name(args.table.cells, name_of_cell(level, cell_around(middle, index)));
+        __syncwarp();
+        rest &= ~__ballot_sync(ALL_LANES, same);
     }
 }
 

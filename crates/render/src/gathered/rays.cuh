@@ -73,14 +73,6 @@ DEVICE float nearest_of_fan(const Fans &fans, unsigned site) {
     return nearest;
 }
 
-// The light of a light that arrives where `to` is seen of it: known, unless a part of it is below the horizon.
-DEVICE Vec3 arriving_by(const Fans &fans, const Surface &surface, unsigned index, Vec3 to, float reach) {
-    const Light &light = fans.scene.lights[index];
-    const float height = dot(surface.point.normal, light_center(light, surface.point.origin, reach) - surface.point.origin);
-    const float size = light.kind == Light::DIRECTIONAL ? reach * light.size : light.size;
-    return height >= size ? arriving(surface, fans.scene, index, reach) : arriving_from(surface, light, to);
-}
-
 // Adds what reaches a point from lights, as a random point of each is seen or not. Returns the number of rays that were cast.
 template <class Structure>
 DEVICE unsigned add_lights(const Fans &fans, const Structure &structure, const Surface &surface, unsigned long long key, Vec3 &radiance) {
@@ -90,7 +82,7 @@ DEVICE unsigned add_lights(const Fans &fans, const Structure &structure, const S
         const Vec3 to = target(targets_of(fans.scene, fans.sampling, light, surface.point.origin, key), 0);
         if (dot(surface.point.normal, to - surface.point.origin) <= 0.0f)
             continue;
-        const Vec3 gain = surface.material->kd * arriving_by(fans, surface, light, to, reach);
+        const Vec3 gain = surface.material->kd * arriving(surface, fans.scene, light, reach, to);
         if (gain == splat(0.0f))
             continue;
         ++cast;

@@ -17,10 +17,10 @@ use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
 use crate::footprint::Cone;
 use crate::job::Sampling;
-use crate::sampling::{light_center, random_bits};
+use crate::sampling::random_bits;
 use crate::shading::environment::surroundings;
 use crate::shading::{LightTargets, Surface, material_of};
-use crate::shadow::{Aim, Targets, hidden, size};
+use crate::shadow::{Aim, Targets, hidden};
 use crate::stages::primary_rays::cpu::closest_hits;
 use crate::surface::long_segment;
 
@@ -241,13 +241,8 @@ impl Segments {
             if point.normal.dot(target - point.origin) <= 0.0 {
                 continue;
             }
-            let height = point.normal.dot(light_center(light, point.origin, reach) - point.origin);
-            let arriving = if height >= size(light, reach) {
-                surface.arriving(&lights.targets, light, index, reach)
-            } else {
-                surface.arriving_from(light, target)
-            };
-            let gain = surface.coefficients.kd * arriving;
+            let arriving = surface.arriving(&lights.targets, light, index, reach);
+            let gain = surface.coefficients.kd * arriving.unwrap_or_else(|| surface.arriving_from(light, target));
             if gain != Vec3::ZERO {
                 self.rays.push(long_segment(point.origin, target));
                 self.gains.push((place, gain));

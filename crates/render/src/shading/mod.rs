@@ -110,16 +110,21 @@ impl Surface {
         strength(light, direction, distance) * answer
     }
 
-    /// The light of `light` that arrives, times the cosine, if nothing is in the way.
-    pub(crate) fn arriving(&self, targets: &LightTargets, light: &Light, index: usize, reach: f32) -> Vec3 {
-        match targets.points[index].as_slice() {
-            [] => self.arriving_from(light, light_center(light, self.point.origin, reach)),
-            points => {
-                let place = |&target: &Vec3| self.place_of(light, target, reach);
-                let sum: Vec3 = points.iter().map(|target| self.arriving_from(light, place(target))).sum();
-                sum / points.len() as f32
-            }
+    /// The light of `light` that arrives, times the cosine, if nothing is in the way; `None` if a part of the light is below the horizon.
+    pub(crate) fn arriving(&self, targets: &LightTargets, light: &Light, index: usize, reach: f32) -> Option<Vec3> {
+        let points = targets.points[index].as_slice();
+        if points.is_empty() {
+            return Some(self.arriving_from(light, light_center(light, self.point.origin, reach)));
         }
+        let mut sum = Vec3::ZERO;
+        for &target in points {
+            let place = self.place_of(light, target, reach);
+            if self.point.normal.dot(place - self.point.origin) <= 0.0 {
+                return None;
+            }
+            sum += self.arriving_from(light, place);
+        }
+        Some(sum / points.len() as f32)
     }
 
     /// The same if all of it comes from `target`.

@@ -94,14 +94,19 @@ DEVICE Vec3 unshadowed(const Surface &surface, const Scene &scene, unsigned inde
     return sum / (float)LIGHT_TARGETS;
 }
 
-// The light of light number `index` that arrives, times the cosine, if nothing is in the way.
-DEVICE Vec3 arriving(const Surface &surface, const Scene &scene, unsigned index, float reach) {
+// The light of light number `index` that arrives, times the cosine, if nothing is in the way; what arrives from `to` if a part of the light is
+// below the horizon.
+DEVICE Vec3 arriving(const Surface &surface, const Scene &scene, unsigned index, float reach, Vec3 to) {
     const Light &light = scene.lights[index];
     if (!has_size(light))
         return arriving_from(surface, light, light_center(light, surface.point.origin, reach));
     Vec3 sum = splat(0.0f);
-    for (unsigned i = 0; i < LIGHT_TARGETS; ++i)
-        sum = sum + arriving_from(surface, light, place_of_target(surface, scene, index, i, reach));
+    for (unsigned i = 0; i < LIGHT_TARGETS; ++i) {
+        const Vec3 place = place_of_target(surface, scene, index, i, reach);
+        if (dot(surface.point.normal, place - surface.point.origin) <= 0.0f)
+            return arriving_from(surface, light, to);
+        sum = sum + arriving_from(surface, light, place);
+    }
     return sum / (float)LIGHT_TARGETS;
 }
 

@@ -4,11 +4,12 @@ use bytemuck::Zeroable;
 use lightmesh_layout::constants::BOUNCE_SIDE;
 use lightmesh_layout::gathered::{Bounce, Names, Node, Site, TakeSites};
 
+use super::device::{Device, read_count};
 use super::fans::{DeviceFans, Sites};
 use super::names::DeviceNames;
-use super::{Device, Fan, RAYS_AT_ONCE, read_count};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
+use crate::gathered::rays::Fan;
 use crate::gpu::{Cuda, PerStructure, per_structure};
 
 const PLACE_NODES: PerStructure = per_structure!("gathered_rays", "place_nodes");
@@ -90,9 +91,10 @@ impl<R: Runtime> DeviceBounce<R> {
         // What follows makes other lists.
         let lacking = pool.room("nodes of which more is asked", count)?;
         device.cuda.copy(&self.listed, &lacking, count)?;
-        for first in (0..count).step_by(RAYS_AT_ONCE / FAN.len()) {
+        let at_once = device.at_once(FAN);
+        for first in (0..count).step_by(at_once) {
             device.wave.job.check()?;
-            let count = (RAYS_AT_ONCE / FAN.len()).min(count - first);
+            let count = at_once.min(count - first);
             let own = self.cast(device, &lacking, first, count)?;
             device.threads("sum_first", count, &self.record(&own, order))?;
             // 2. What arrives at those that their rays hit, after one reflection less; and the sums.

@@ -7,9 +7,8 @@ use lightmesh_layout::In;
 use lightmesh_layout::constants::SURFACE_KINDS;
 use lightmesh_layout::gathered::{FineLight, LightPlace, Link, Lookup, Site, SurfaceCells};
 
-use super::fine::DeviceFine;
+use super::device::{Device, read_count};
 use super::names::DeviceNames;
-use super::{Device, read_count};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gpu::{Cuda, PerStructure, per_structure};
@@ -46,9 +45,9 @@ pub(super) struct DeviceLinks<R: Runtime> {
 }
 
 /// The distance of what is nearest, of which a place or a site knows.
-pub(super) enum Nearest<'a, R: Runtime> {
-    OfPlaces(&'a Buffer<R, f32>),
-    OfSites(&'a DeviceFine<R>),
+pub(super) enum Nearest {
+    OfPlaces(In<f32>),
+    OfSites(In<FineLight>),
 }
 
 impl<R: Runtime> DeviceCells<R> {
@@ -177,11 +176,11 @@ impl<R: Runtime> DeviceCells<R> {
         device: &Device<R>,
         places: &DevicePlaces<R>,
         links: &DeviceLinks<R>,
-        nearest: Nearest<R>,
+        nearest: Nearest,
     ) -> Result<(), RenderError> {
         let (nearest, fine): (In<f32>, In<FineLight>) = match nearest {
-            Nearest::OfPlaces(nearest) => (nearest.input(), In::NULL),
-            Nearest::OfSites(fine) => (In::NULL, fine.input()),
+            Nearest::OfPlaces(nearest) => (nearest, In::NULL),
+            Nearest::OfSites(fine) => (In::NULL, fine),
         };
         let record = Lookup { tally: device.cuda.tally()?, nearest, fine, ..self.lookup(device, places, links) };
         device.tracing(SETTLE, places.count, &record)

@@ -5,9 +5,10 @@ use lightmesh_layout::In;
 use lightmesh_layout::gathered::{Fans as Record, Node, SeenRay, Site};
 use lightmesh_layout::geometry::{Cone, Hit, ListedRay, Rays};
 
-use super::{Device, Fan};
+use super::device::Device;
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
+use crate::gathered::rays::Fan;
 use crate::gpu::{PerStructure, per_structure, sampling};
 use crate::job::Sampling;
 
@@ -43,7 +44,7 @@ pub(super) struct Sites<R: Runtime> {
 impl<R: Runtime> DeviceFans<R> {
     /// Casts a fan of rays from each site.
     pub(super) fn cast(device: &Device<R>, from: Sites<R>, fan: Fan) -> Result<DeviceFans<R>, RenderError> {
-        let Device { cuda, wave } = device;
+        let Device { cuda, wave, .. } = device;
         let Sites { sites, count, reach, nodes } = from;
         let (pool, rays) = (cuda.pool(), count * fan.len());
         let list = pool.room::<ListedRay>("gather rays", rays)?;

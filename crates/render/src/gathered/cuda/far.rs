@@ -8,10 +8,11 @@ use lightmesh_layout::{In, Out};
 
 use super::bounce::DeviceBounce;
 use super::cells::DeviceCells;
+use super::device::{Device, read_count};
 use super::fans::{DeviceFans, Sites};
-use super::{Device, Fan, RAYS_AT_ONCE, read_count};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
+use crate::gathered::rays::Fan;
 use crate::gpu::Cuda;
 
 /// What coarse sites gather, by the number of its value.
@@ -45,7 +46,7 @@ impl<R: Runtime> DeviceFar<R> {
         fans: [Fan; 2],
     ) -> Result<(), RenderError> {
         device.cuda.extend(&mut self.far, "far light", new.start, new.end)?;
-        let at_once = RAYS_AT_ONCE / fans[0].len();
+        let at_once = device.at_once(fans[0]);
         for first in new.clone().step_by(at_once) {
             let count = at_once.min(new.end - first);
             let from = TakeSites { sites: cells.sites(), numbers: cells.owners(), ..TakeSites::zeroed() };
@@ -109,7 +110,7 @@ fn gather<R: Runtime>(
     device.warps("gather_far", count, &GatherFar { fans: first_fans.record, ..record })?;
     // 2. More where these see different things.
     let count = read_count(&uneven_count)?;
-    let at_once = RAYS_AT_ONCE / fans[1].len();
+    let at_once = device.at_once(fans[1]);
     let chosen = pool.room::<u32>("some of them", at_once.min(count))?;
     for first in (0..count).step_by(at_once) {
         let count = at_once.min(count - first);

@@ -9,9 +9,9 @@ use lightmesh_layout::gathered::{FineLight, GatherFine, TakeSites};
 
 use super::bounce::DeviceBounce;
 use super::cells::{DeviceCells, DevicePlaces, Nearest};
+use super::device::{Device, read_count};
 use super::fans::{DeviceFans, Sites};
 use super::far::{self, DeviceFar};
-use super::{Device, RAYS_AT_ONCE, read_count};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gathered::rays::Fans;
@@ -48,7 +48,7 @@ impl<R: Runtime> DeviceFine<R> {
         coarse: &mut Coarse<R>,
     ) -> Result<(), RenderError> {
         device.cuda.extend(&mut self.fine, "fine light", new.start, new.end)?;
-        let at_once = RAYS_AT_ONCE / coarse.fans.near.len();
+        let at_once = device.at_once(coarse.fans.near);
         for first in new.clone().step_by(at_once) {
             device.wave.job.check()?;
             self.receive(device, cells, first..new.end.min(first + at_once), coarse)?;
@@ -82,7 +82,7 @@ impl<R: Runtime> DeviceFine<R> {
         // 2. The coarse sites around that are seen, and what they gather.
         let places = DevicePlaces { places, count };
         let links = coarse.cells.links(device, &places)?;
-        coarse.cells.settle(device, &places, &links, Nearest::OfPlaces(&nearest))?;
+        coarse.cells.settle(device, &places, &links, Nearest::OfPlaces(nearest.input()))?;
         let new = coarse.cells.value(device, &links)?;
         coarse.far.extend(device, coarse.cells, new, coarse.bounce, coarse.fans.far)?;
 
@@ -105,7 +105,7 @@ impl<R: Runtime> DeviceFine<R> {
         };
         device.warps("gather_fine", count, &record)?;
         let count = read_count(&alone_count)?;
-        let at_once = RAYS_AT_ONCE / coarse.fans.far[0].len();
+        let at_once = device.at_once(coarse.fans.far[0]);
         for first in (0..count).step_by(at_once) {
             let count = at_once.min(count - first);
             let from = TakeSites { sites: fans.record.sites, numbers: alone.input(), ..TakeSites::zeroed() };

@@ -5,34 +5,37 @@
 
 mod bounce;
 mod cells;
+mod device;
 mod fans;
 mod far;
 mod fine;
 mod names;
 
-use bytemuck::{Pod, Zeroable};
-use lightmesh_layout::constants::{BLOCK, FOUND_TRIANGLES, WARP};
+use bytemuck::Zeroable;
 use lightmesh_layout::gathered::{GatherPoints, LightPlace};
 use lightmesh_layout::geometry::Vec3;
 
 use super::Gathering;
-use super::rays::Fan;
-use crate::cuda::{Buffer, Kernel, Runtime};
+use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
+use crate::gpu::Cuda;
 use crate::gpu::rays::DeviceWave;
-use crate::gpu::{Cuda, PerStructure, blocks_for, warps_for};
 use bounce::DeviceBounce;
-use cells::{DeviceCells, DevicePlaces};
+use cells::{DeviceCells, DevicePlaces, Nearest};
+use device::{Device, read_count};
 use far::DeviceFar;
 use fine::DeviceFine;
 
-/// Surface points that are processed at once.
-const POINTS_AT_ONCE: usize = 1 << 18;
-/// Rays that are cast at once.
-const RAYS_AT_ONCE: usize = 1 << 18;
-/// What these take at most: places and links of points; three times rays with all that is known of them, for what they hit asks again; tables
-/// while they grow.
-const BYTES_AT_ONCE: u64 = 512 * POINTS_AT_ONCE as u64 + 3 * 160 * RAYS_AT_ONCE as u64 + (64 << 20);
+/// Surface points that are processed at once, and rays that are cast at once, at least.
+const LEAST_AT_ONCE: usize = 1 << 18;
+/// How many times more there may be, at most.
+const MOST_TIMES: u64 = 8;
+/// Bytes of a point: its places and links.
+const BYTES_OF_POINT: u64 = 512;
+/// Bytes of a ray with all that is known of it, three times, for what it hits asks again.
+const BYTES_OF_RAY: u64 = 3 * 160;
+/// What takes memory at once, at least: also tables while they grow.
+const LEAST_BYTES: u64 = (BYTES_OF_POINT + BYTES_OF_RAY) * LEAST_AT_ONCE as u64 + (64 << 20);
 /// What is kept may take one part in this many of the memory that is left.
 const PART_KEPT: u64 = 4;
 
@@ -86,53 +89,7 @@ pub struct DeviceGathered<R: Runtime> {
 
 /// Bytes that gathering needs on a device, besides what it keeps.
 pub(crate) fn memory_at_once() -> u64 {
-    BYTES_AT_ONCE
-}
-
-/// What all launches need.
-struct Device<'a, R: Runtime> {
-    cuda: &'a Cuda<R>,
-    wave: &'a DeviceWave<'a, R>,
-}
-
-impl<R: Runtime> Device<'_, R> {
-    /// Launches a kernel with a thread for each of `count` units.
-    fn threads<A: Pod>(&self, name: &'static str, count: usize, arguments: &A) -> Result<(), RenderError> {
-        self.launch(Kernel { module: "gathered", name }, count.div_ceil(BLOCK as usize), arguments)
-    }
-
-    /// Launches a kernel with a warp for each.
-    fn warps<A: Pod>(&self, name: &'static str, count: usize, arguments: &A) -> Result<(), RenderError> {
-        self.launch(Kernel { module: "gathered", name }, count.div_ceil((BLOCK / WARP) as usize), arguments)
-    }
-
-    /// Launches a kernel that asks the acceleration structure, with a thread for each.
-    fn tracing<A: Pod>(&self, kernel: PerStructure, count: usize, arguments: &A) -> Result<(), RenderError> {
-        self.launch(kernel.of(self.wave.scene), count.div_ceil(BLOCK as usize), arguments)
-    }
-
-    fn launch<A: Pod>(&self, kernel: Kernel, blocks: usize, arguments: &A) -> Result<(), RenderError> {
-        if blocks == 0 {
-            return Ok(());
-        }
-        self.cuda.launch(kernel, blocks_for(&(0..blocks as u64), BLOCK), arguments)
-    }
-
-    /// Launches a kernel that searches the acceleration structure, with a warp for each.
-    fn searching<A: Pod>(&self, kernel: PerStructure, count: usize, arguments: &A) -> Result<(), RenderError> {
-        if count == 0 {
-            return Ok(());
-        }
-        let words = FOUND_TRIANGLES + self.wave.scene.search_words();
-        self.cuda.launch(kernel.of(self.wave.scene), warps_for(&(0..count as u64), 1, words), arguments)
-    }
-}
-
-/// Reads a count on the device. Waits for all work queued before.
-fn read_count<R: Runtime>(count: &Buffer<R, u32>) -> Result<usize, RenderError> {
-    let mut value = [0];
-    count.read_into(0, &mut value)?;
-    Ok(value[0] as usize)
+    LEAST_BYTES
 }
 
 /// The mean radiance that each surface point of a wave receives, weighted by the cosine; zero for rays that see nothing.
@@ -142,17 +99,20 @@ pub(crate) fn gather<R: Runtime>(
     how: &Gathering,
     light: &mut DeviceSurfaceLight<R>,
 ) -> Result<DeviceGathered<R>, RenderError> {
-    let device = Device { cuda, wave };
+    // More at once keep a large device busy; they change no result.
+    let times = cuda.memory_left().map_or(1, |left| (left / PART_KEPT / LEAST_BYTES).clamp(1, MOST_TIMES));
+    let at_once = LEAST_AT_ONCE * times as usize;
+    let device = Device { cuda, wave, rays: at_once };
     let rays = wave.rays.len();
     let result = cuda.pool().zeros("gathered light", rays)?;
-    for first in (0..rays).step_by(POINTS_AT_ONCE) {
+    for first in (0..rays).step_by(at_once) {
         wave.job.check()?;
         if cuda.memory_left().is_some_and(|left| light.memory() > (left + light.memory()) / PART_KEPT) {
             light.kept = None;
         }
         // In case of an error it is lost: tables may be incomplete.
         let mut kept = light.kept.take().map_or_else(|| Kept::new(cuda), Ok)?;
-        let count = POINTS_AT_ONCE.min(rays - first);
+        let count = at_once.min(rays - first);
         gather_part(&device, how, &mut kept, first..first + count, &result)?;
         light.kept = Some(kept);
         wave.job.advance(count as u64);
@@ -167,7 +127,7 @@ fn gather_part<R: Runtime>(
     rays: std::ops::Range<usize>,
     light: &Buffer<R, Vec3>,
 ) -> Result<(), RenderError> {
-    let Device { cuda, wave } = device;
+    let Device { cuda, wave, .. } = device;
     let Kept { fine_cells, fine, far_cells, far, bounce } = kept;
     // 1. Where light is asked for: at one level, or between two.
     let places = cuda.pool().room::<LightPlace>("places that ask for light", 2 * rays.len())?;
@@ -198,7 +158,7 @@ fn gather_part<R: Runtime>(
     let links = fine_cells.links(device, &places)?;
     let new = fine_cells.value(device, &links)?;
     fine.extend(device, fine_cells, new, &mut fine::Coarse { cells: far_cells, far, bounce, fans: &how.fans })?;
-    fine_cells.settle(device, &places, &links, cells::Nearest::OfSites(fine))?;
+    fine_cells.settle(device, &places, &links, Nearest::OfSites(fine.input()))?;
 
     // 3. The mean. Where there is none, rays from the point itself.
     let lookup = fine_cells.lookup(device, &places, &links);
@@ -206,7 +166,7 @@ fn gather_part<R: Runtime>(
     let both = GatherPoints { count: places.count as u32, ..record };
     device.threads("mean_light", places.count, &both)?;
     let count = read_count(&alone_count)?;
-    let at_once = RAYS_AT_ONCE / how.fans.far[0].len();
+    let at_once = device.at_once(how.fans.far[0]);
     for first in (0..count).step_by(at_once) {
         let count = at_once.min(count - first);
         let sites = cuda.pool().room("surface points that see no site", count)?;

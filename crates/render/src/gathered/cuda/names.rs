@@ -5,7 +5,7 @@ use std::ops::Range;
 use lightmesh_layout::constants::FULL_TABLE;
 use lightmesh_layout::gathered::{Name, Names};
 
-use super::{Device, read_count};
+use super::device::{Device, read_count};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gpu::Cuda;
