@@ -88,7 +88,7 @@ DEVICE void cells_for_any(bool ask, const LightPlace &place, IVec3 middle, unsig
 DEVICE void ask_cells(const Lookup &args, bool has, const LightPlace &place) {
     const unsigned lane = lane_of_thread();
     const IVec3 own = has ? cell_at(place.level, place.position) : IVec3{0, 0, 0};
-    unsigned rest = __ballot_sync(ALL_LANES, has);
+    unsigned rest = __ballot_sync(ALL_LANES, has && !is_abandoned(args.table.cells));
     while (rest != 0) {
         const unsigned first = __ffs(rest) - 1;
         const int level = __shfl_sync(ALL_LANES, place.level, first);

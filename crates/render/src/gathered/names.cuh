@@ -20,6 +20,15 @@ DEVICE unsigned number_of(const Names &names, unsigned long long key) {
     return NO_NUMBER;
 }
 
+// Whether a table is known to be too small. A full table is abandoned: the host allocates a larger one.
+DEVICE bool is_abandoned(const Names &names) { return *(volatile unsigned *)names.count >= FULL_TABLE; }
+
+DEVICE void abandon(const Names &names) {
+    // Once is enough: threads would wait for each other.
+    if (!is_abandoned(names))
+        atomicOr(names.count, FULL_TABLE);
+}
+
 // Adds a name, unless it is there. Without room for it, the table's count exceeds its room.
 DEVICE void add_name(const Names &names, const Name &name) {
     unsigned slot = slot_of_name(names, name.key);
@@ -28,11 +37,8 @@ DEVICE void add_name(const Names &names, const Name &name) {
         if (found == name.key)
             return;
         if (found == 0) {
-            // A full table is abandoned: the host allocates a larger one.
-            if (*(volatile unsigned *)names.count >= names.room) {
-                atomicOr(names.count, FULL_TABLE);
-                return;
-            }
+            if (*(volatile unsigned *)names.count >= names.room)
+                return abandon(names);
             found = atomicCAS(names.keys + slot, 0ull, name.key);
             if (found == name.key)
                 return;
@@ -46,7 +52,7 @@ DEVICE void add_name(const Names &names, const Name &name) {
         }
         slot = (slot + 1) & (names.capacity - 1);
     }
-    atomicOr(names.count, FULL_TABLE);
+    abandon(names);
 }
 
 // Adds a name with the number that it had in a smaller table.
