@@ -59,7 +59,7 @@ pub(crate) fn run(root: &Path, check: bool) -> Outcome {
     }
     let tools = tools::install(Path::new("target/cuda-tools"))?;
     let sources = kernel_files(Path::new(SOURCES))?;
-    let modules = compile::all(&tools, &sources)?;
+    let modules = compile::all(&tools, &sources, check)?;
     let report = Product { path: REPORT.into(), content: Some(report::of(&tools, &modules)?) };
 
     let mut products = ptx_files(&modules)?;
@@ -93,11 +93,16 @@ impl Product {
     }
 }
 
+fn ptx_path(module: &str) -> PathBuf {
+    Path::new(PTX).join(format!("{module}.ptx"))
+}
+
 /// One file per module, and the removal of those whose module no longer exists.
 fn ptx_files(modules: &[Module]) -> Result<Vec<Product>, Box<dyn Error>> {
-    let path = |name: &str| Path::new(PTX).join(format!("{name}.ptx"));
-    let mut products: Vec<Product> =
-        modules.iter().map(|module| Product { path: path(&module.name), content: Some(module.ptx.clone()) }).collect();
+    let mut products: Vec<Product> = modules
+        .iter()
+        .map(|module| Product { path: ptx_path(&module.name), content: Some(module.ptx.clone()) })
+        .collect();
     products.push(Product { path: Path::new(PTX).join("modules.rs"), content: Some(list_of(modules)) });
     for entry in fs::read_dir(PTX).into_iter().flatten() {
         let path = entry?.path();

@@ -65,35 +65,39 @@ DEVICE unsigned surface_kind(Vec3 normal, bool front) {
     return 4 * axis + 2 * (component(axis, normal) < 0.0f) + !front;
 }
 
-// The point of a triangle that is closest to `p`, with the weights of its second and third corner.
-DEVICE Vec3 closest_point(Vec3 p, const Corners &corners, float &u, float &v) {
-    const Vec3 a = corners.a, b = corners.b, c = corners.c;
-    const Vec3 ab = b - a, ac = c - a, ap = p - a;
-    const float d1 = dot(ab, ap), d2 = dot(ac, ap);
-    u = v = 0.0f;
-    if (!(d1 <= 0.0f && d2 <= 0.0f)) {
-        const Vec3 bp = p - b, cp = p - c;
-        const float d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
-        const float vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-        if (d3 >= 0.0f && d4 <= d3) {
-            u = 1.0f;
-        } else if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f) {
-            u = d1 / (d1 - d3);
-        } else if (d6 >= 0.0f && d5 <= d6) {
-            v = 1.0f;
-        } else if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f) {
-            v = d2 / (d2 - d6);
-        } else if (va <= 0.0f && d4 - d3 >= 0.0f && d5 - d6 >= 0.0f) {
-            v = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-            u = 1.0f - v;
-        } else {
-            const float sum = va + vb + vc;
-            if (sum > 0.0f) {
-                u = vb / sum;
-                v = vc / sum;
-            }
-        }
+// A point of a triangle with the weights of its second and third corner.
+struct WeighedPoint {
+    Vec3 point;
+    float u, v;
+};
+
+DEVICE WeighedPoint weighed_point(const Corners &corners, float u, float v) {
+    return WeighedPoint{corners.a + u * (corners.b - corners.a) + v * (corners.c - corners.a), u, v};
+}
+
+// The point of a triangle that is closest to `p`.
+DEVICE WeighedPoint closest_point(Vec3 p, const Corners &corners) {
+    const Vec3 ab = corners.b - corners.a, ac = corners.c - corners.a;
+    const Vec3 ap = p - corners.a, bp = p - corners.b, cp = p - corners.c;
+    const float d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
+    if (d1 <= 0.0f && d2 <= 0.0f)
+        return weighed_point(corners, 0.0f, 0.0f);
+    if (d3 >= 0.0f && d4 <= d3)
+        return weighed_point(corners, 1.0f, 0.0f);
+    const float vc = d1 * d4 - d3 * d2;
+    if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f)
+        return weighed_point(corners, d1 / (d1 - d3), 0.0f);
+    if (d6 >= 0.0f && d5 <= d6)
+        return weighed_point(corners, 0.0f, 1.0f);
+    const float vb = d5 * d2 - d1 * d6;
+    if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f)
+        return weighed_point(corners, 0.0f, d2 / (d2 - d6));
+    const float va = d3 * d6 - d5 * d4;
+    if (va <= 0.0f && d4 - d3 >= 0.0f && d5 - d6 >= 0.0f) {
+        const float w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return weighed_point(corners, 1.0f - w, w);
     }
-    return a + u * ab + v * ac;
+    const float sum = va + vb + vc;
+    return sum > 0.0f ? weighed_point(corners, vb / sum, vc / sum) : weighed_point(corners, 0.0f, 0.0f);
 }
 

@@ -21,9 +21,9 @@ DEVICE void ask_at(const GatherPoints &args, unsigned index) {
     args.places[2 * index + 1] = places[1];
 }
 
-// How much the normal that shading uses differs from that of a site.
-DEVICE Vec3 turned(const GatherPoints &args, unsigned place, Vec3 facing, Vec3 normal) {
-    return shading_normal(args.scene, load_hit(args.hits, args.first + place / 2), facing) - normal;
+// The normal that shading uses.
+DEVICE Vec3 normal_at(const GatherPoints &args, unsigned place, Vec3 facing) {
+    return shading_normal(args.scene, load_hit(args.hits, args.first + place / 2), facing);
 }
 
 // The mean at a place; those without sites are listed.
@@ -32,7 +32,7 @@ DEVICE void find_mean(const GatherPoints &args, unsigned index) {
     args.means[index] = splat(0.0f);
     if (place.share <= 0.0f)
         return;
-    const Vec3 normal = turned(args, index, place.normal, splat(0.0f));
+    const Vec3 normal = normal_at(args, index, place.normal);
     Vec3 sum = splat(0.0f);
     float weights = 0.0f;
     for (unsigned link = args.lookup.offsets[index]; link < args.lookup.offsets[index + 1]; ++link) {
@@ -63,7 +63,7 @@ DEVICE void site_of_alone(const GatherPoints &args, unsigned index) {
 DEVICE void find_mean_alone(const GatherPoints &args, unsigned index) {
     const unsigned place = args.alone[args.first_alone + index];
     const Vec3 normal = args.places[place].normal;
-    args.means[place] = light_at(args.far[index].light, turned(args, place, normal, normal));
+    args.means[place] = light_at(args.far[index].light, normal_at(args, place, normal) - normal);
 }
 
 // Both answers for a ray.

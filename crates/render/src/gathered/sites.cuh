@@ -6,18 +6,14 @@
 #include "gathered/cells.cuh"
 
 // The point of a triangle that is nearest to a cell's middle.
-struct Near {
-    Vec3 point;
+struct Near : WeighedPoint {
     // The square of its distance.
     float square;
-    float u, v;
 };
 
 DEVICE Near near_of(Vec3 middle, const Corners &corners) {
-    Near near;
-    near.point = closest_point(middle, corners, near.u, near.v);
-    near.square = length_squared(near.point - middle);
-    return near;
+    const WeighedPoint closest = closest_point(middle, corners);
+    return Near{closest, length_squared(closest.point - middle)};
 }
 
 // The surface point on a triangle's side. From edges it moves inwards.
