@@ -36,7 +36,8 @@ const WELDED: f64 = 1e-6;
 /// How far lights lie in front of their surface, relative to its size and to the scene's.
 const RAISED: [f64; 2] = [1e-3, 1e-5];
 
-/// Makes lights for the lamps of a geometry. The [mark](crate::Material::lamp) of materials that are none is taken away.
+/// Makes lights for the lamps of a geometry, among the materials that are [marked](crate::Material::lamp). The mark of those that are none, such as
+/// all that emit nothing, is taken away.
 pub(crate) fn lamps(geometry: &mut Geometry) -> Vec<Light> {
     let bounds = geometry.mesh.bounds();
     let scene = Extent { middle: bounds.center().as_dvec3(), diagonal: f64::from(bounds.diagonal()) };
@@ -59,7 +60,9 @@ pub(crate) fn lamps(geometry: &mut Geometry) -> Vec<Light> {
         let patches = lamps.iter().flat_map(|lamp| lamp.patches(&scene));
         let own: Vec<Light> = patches.map(|patch| patch.light(material.emission, name, &scene)).collect();
         material.lamp = own.iter().all(is_usable);
-        lights.extend(own.into_iter().filter(|_| material.lamp));
+        if material.lamp {
+            lights.extend(own);
+        }
     }
     merged(lights)
 }
@@ -75,8 +78,8 @@ fn is_usable(light: &Light) -> bool {
 }
 
 impl Scene {
-    /// Makes lights for lamps: emissive surfaces that are small in the scene, as opened files have them. Their [materials](crate::Material::lamp) are marked;
-    /// lights that were made before are replaced.
+    /// Makes lights for lamps: emissive surfaces that are small in the scene, as opened files have them. Their
+    /// [materials](crate::Material::lamp) are marked; lights that were made before are replaced.
     pub fn add_lamps(&mut self) {
         self.lights.list.retain(|light| light.surface.is_none());
         let geometry = self.geometry_mut();
@@ -194,18 +197,11 @@ impl Lamp {
                 let cosine = patch.normal().dot(normal.normalize());
                 if volume.is_some() { cosine } else { cosine.abs() }
             };
+            let is_full = patches.len() == PATCHES;
             let nearest = patches.iter_mut().map(|patch| (cosine(patch), patch)).max_by(|a, b| a.0.total_cmp(&b.0));
-            let count = match nearest {
-                Some((cosine, patch)) if cosine >= SAME_PATCH => {
-                    patch.add(triangle, normal);
-                    continue;
-                }
-                _ => patches.len(),
-            };
-            if count < PATCHES {
-                patches.push(Patch { triangles: vec![*triangle], outward: normal, brighter: 1.0 });
-            } else if let Some(patch) = patches.iter_mut().max_by(|a, b| cosine(a).total_cmp(&cosine(b))) {
-                patch.add(triangle, normal);
+            match nearest {
+                Some((cosine, patch)) if cosine >= SAME_PATCH || is_full => patch.add(triangle, normal),
+                _ => patches.push(Patch { triangles: vec![*triangle], outward: normal, brighter: 1.0 }),
             }
         }
         join_small(&mut patches);

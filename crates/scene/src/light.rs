@@ -112,8 +112,8 @@ pub struct Light {
     pub intensity: Vec3,
     /// How distance attenuates it.
     pub falloff: Falloff,
-    /// If it stands for an emissive surface: the unit normal on the side that shines. Its strength falls with the cosine (Lambert), and `intensity` is
-    /// that along the normal. `None`: it shines evenly.
+    /// If it stands for an emissive surface: the unit normal on the side that shines. Its strength falls with the cosine (Lambert), and
+    /// `intensity` is that along the normal. `None`: it shines evenly.
     pub surface: Option<Vec3>,
 }
 

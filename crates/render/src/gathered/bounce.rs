@@ -22,9 +22,9 @@ use super::rays::{Fan, RAYS_AT_ONCE, Seen, Spot};
 use super::scene::Scene;
 
 /// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's.
-const ORDERS: usize = 2;
+pub(super) const ORDERS: usize = 2;
 /// The rays of a site.
-const FAN: Fan = Fan::new(BOUNCE_SIDE);
+pub(super) const FAN: Fan = Fan::new(BOUNCE_SIDE);
 
 /// The name of a site: its cell and its kind of surface.
 type Name = u64;

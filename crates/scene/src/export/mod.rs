@@ -96,12 +96,12 @@ impl Scene {
     }
 }
 
-/// The content of a file cannot be made.
 /// The lights that are written: all but those of lamps, which are made again from their surfaces.
 fn own_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
     scene.lights.iter().filter(|light| light.surface.is_none())
 }
 
+/// The content of a file cannot be made.
 fn refused(path: &Path, reason: io::Error) -> ExportError {
     WriteError::Data { path: path.to_owned(), reason }.into()
 }

@@ -1,25 +1,20 @@
 //! Light that was reflected several times, on a device.
 
 use bytemuck::Zeroable;
-use lightmesh_layout::constants::BOUNCE_SIDE;
 use lightmesh_layout::gathered::{Bounce, Names, Node, Site, TakeSites};
 
 use super::device::{Device, read_count};
-use super::fans::{DeviceFans, Sites};
+use super::fans::{DeviceFans, Sites, taken};
 use super::names::DeviceNames;
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
-use crate::gathered::rays::Fan;
+use crate::gathered::bounce::{FAN, ORDERS};
 use crate::gpu::{Cuda, PerStructure, per_structure};
 
 const PLACE_NODES: PerStructure = per_structure!("gathered_rays", "place_nodes");
 const HIDE_NODES: PerStructure = per_structure!("gathered_rays", "hide_nodes");
 /// New nodes that are placed at once.
 const NODES_AT_ONCE: usize = 1 << 16;
-/// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's.
-const ORDERS: u32 = 2;
-/// The rays of a node.
-const FAN: Fan = Fan::new(BOUNCE_SIDE);
 
 /// All sites that rays of others hit.
 pub(super) struct DeviceBounce<R: Runtime> {
@@ -69,8 +64,8 @@ impl<R: Runtime> DeviceBounce<R> {
 
     /// Adds to what rays see what is reflected of light that lights do not give.
     pub(super) fn complete(&mut self, device: &Device<R>, fans: &DeviceFans<R>) -> Result<(), RenderError> {
-        self.resolve(device, fans, ORDERS)?;
-        device.threads("reflect", fans.sites, &self.record(fans, ORDERS))
+        self.resolve(device, fans, ORDERS as u32)?;
+        device.threads("reflect", fans.sites, &self.record(fans, ORDERS as u32))
     }
 
     /// Finds the sites that rays see; what arrives there after up to `order` reflections is known.
@@ -134,21 +129,17 @@ impl<R: Runtime> DeviceBounce<R> {
         first: usize,
         count: usize,
     ) -> Result<DeviceFans<R>, RenderError> {
-        let pool = device.cuda.pool();
-        let sites = pool.room("sites of listed nodes", count)?;
-        let owners = pool.room("listed nodes at once", count)?;
-        let record = TakeSites {
+        let owners = device.cuda.pool().room("listed nodes at once", count)?;
+        let from = TakeSites {
             sites: self.sites.input(),
             numbers: listed.input(),
-            taken: sites.output(),
             owners: owners.output(),
             first: first as u32,
-            count: count as u32,
             ..TakeSites::zeroed()
         };
-        device.threads("take_sites", count, &record)?;
+        let sites = taken(device, from, count)?;
         let nodes = Some((owners, self.nodes.input()));
-        let fans = DeviceFans::cast(device, Sites { sites, count, reach: f32::INFINITY, nodes }, FAN)?;
+        let fans = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY, nodes }, FAN)?;
         fans.see(device)?;
         Ok(fans)
     }

@@ -32,12 +32,6 @@ pub(super) struct DeviceCells<R: Runtime> {
     value_number: usize,
 }
 
-/// Places that ask for light.
-pub(super) struct DevicePlaces<R: Runtime> {
-    pub(super) places: Buffer<R, LightPlace>,
-    pub(super) count: usize,
-}
-
 /// The sites that places take light from.
 pub(super) struct DeviceLinks<R: Runtime> {
     offsets: Buffer<R, u32>,
@@ -90,16 +84,16 @@ impl<R: Runtime> DeviceCells<R> {
     }
 
     /// The arguments of kernels about the sites of places.
-    pub(super) fn lookup(&self, device: &Device<R>, places: &DevicePlaces<R>, links: &DeviceLinks<R>) -> Lookup {
+    pub(super) fn lookup(&self, device: &Device<R>, places: &Buffer<R, LightPlace>, links: &DeviceLinks<R>) -> Lookup {
         Lookup { offsets: links.offsets.output(), links: links.links.output(), ..self.asked(device, places) }
     }
 
-    fn asked(&self, device: &Device<R>, places: &DevicePlaces<R>) -> Lookup {
+    fn asked(&self, device: &Device<R>, places: &Buffer<R, LightPlace>) -> Lookup {
         Lookup {
             scene: device.wave.scene.record,
             table: self.record(),
-            places: places.places.input(),
-            count: places.count as u32,
+            places: places.input(),
+            count: places.len() as u32,
             ..Lookup::zeroed()
         }
     }
@@ -108,25 +102,25 @@ impl<R: Runtime> DeviceCells<R> {
     pub(super) fn links(
         &mut self,
         device: &Device<R>,
-        places: &DevicePlaces<R>,
+        places: &Buffer<R, LightPlace>,
     ) -> Result<DeviceLinks<R>, RenderError> {
         let cuda = device.cuda;
         let asked = self.asked(device, places);
         let new = self.names.admit(device, |cells| {
             device.threads(
                 "find_cells",
-                places.count,
+                places.len(),
                 &Lookup { table: SurfaceCells { cells, ..asked.table }, ..asked },
             )
         })?;
         self.place(device, new)?;
 
-        let offsets = cuda.pool().room("number of sites of places", places.count + 1)?;
+        let offsets = cuda.pool().room("number of sites of places", places.len() + 1)?;
         let record = Lookup { offsets: offsets.output(), ..self.asked(device, places) };
-        device.threads("count_links", places.count, &record)?;
+        device.threads("count_links", places.len(), &record)?;
         let count = cuda.scan_total(&offsets)?;
         let links = cuda.pool().room("sites of places", count)?;
-        device.threads("fill_links", places.count, &Lookup { links: links.output(), ..record })?;
+        device.threads("fill_links", places.len(), &Lookup { links: links.output(), ..record })?;
         Ok(DeviceLinks { offsets, links })
     }
 
@@ -156,16 +150,13 @@ impl<R: Runtime> DeviceCells<R> {
     }
 
     /// Numbers the values of the sites that have a weight, if they have none. Returns the new ones.
-    pub(super) fn value(&mut self, device: &Device<R>, links: &DeviceLinks<R>) -> Result<Range<usize>, RenderError> {
-        let places = links.offsets.len() - 1;
-        let record = Lookup {
-            table: self.record(),
-            offsets: links.offsets.output(),
-            links: links.links.output(),
-            count: places as u32,
-            ..Lookup::zeroed()
-        };
-        device.threads("value_links", places, &record)?;
+    pub(super) fn value(
+        &mut self,
+        device: &Device<R>,
+        places: &Buffer<R, LightPlace>,
+        links: &DeviceLinks<R>,
+    ) -> Result<Range<usize>, RenderError> {
+        device.threads("value_links", places.len(), &self.lookup(device, places, links))?;
         let known = std::mem::replace(&mut self.value_number, read_count(&self.value_count)?);
         Ok(known..self.value_number)
     }
@@ -174,7 +165,7 @@ impl<R: Runtime> DeviceCells<R> {
     pub(super) fn settle(
         &self,
         device: &Device<R>,
-        places: &DevicePlaces<R>,
+        places: &Buffer<R, LightPlace>,
         links: &DeviceLinks<R>,
         nearest: Nearest,
     ) -> Result<(), RenderError> {
@@ -183,7 +174,7 @@ impl<R: Runtime> DeviceCells<R> {
             Nearest::OfSites(fine) => (In::NULL, fine),
         };
         let record = Lookup { tally: device.cuda.tally()?, nearest, fine, ..self.lookup(device, places, links) };
-        device.tracing(SETTLE, places.count, &record)
+        device.tracing(SETTLE, places.len(), &record)
     }
 
     /// Bytes in the device's memory.

@@ -2,7 +2,7 @@
 
 use bytemuck::Zeroable;
 use lightmesh_layout::In;
-use lightmesh_layout::gathered::{Fans as Record, Node, SeenRay, Site};
+use lightmesh_layout::gathered::{Fans as Record, Node, SeenRay, Site, TakeSites};
 use lightmesh_layout::geometry::{Cone, Hit, ListedRay, Rays};
 
 use super::device::Device;
@@ -34,19 +34,30 @@ pub(super) struct DeviceFans<R: Runtime> {
 /// Where fans begin, and how far they go.
 pub(super) struct Sites<R: Runtime> {
     pub(super) sites: Buffer<R, Site>,
-    pub(super) count: usize,
     /// In cells of the site.
     pub(super) reach: f32,
     /// The numbers of the sites among nodes, and these.
     pub(super) nodes: Option<(Buffer<R, u32>, In<Node>)>,
 }
 
+/// Copies of `count` sites.
+pub(super) fn taken<R: Runtime>(
+    device: &Device<R>,
+    from: TakeSites,
+    count: usize,
+) -> Result<Buffer<R, Site>, RenderError> {
+    let sites = device.cuda.pool().room("sites that gather", count)?;
+    device.threads("take_sites", count, &TakeSites { taken: sites.output(), count: count as u32, ..from })?;
+    Ok(sites)
+}
+
 impl<R: Runtime> DeviceFans<R> {
     /// Casts a fan of rays from each site.
     pub(super) fn cast(device: &Device<R>, from: Sites<R>, fan: Fan) -> Result<DeviceFans<R>, RenderError> {
         let Device { cuda, wave, .. } = device;
-        let Sites { sites, count, reach, nodes } = from;
-        let (pool, rays) = (cuda.pool(), count * fan.len());
+        let Sites { sites, reach, nodes } = from;
+        let (pool, count) = (cuda.pool(), sites.len());
+        let rays = count * fan.len();
         let list = pool.room::<ListedRay>("gather rays", rays)?;
         let weights = pool.room("weights of gather rays", rays)?;
         let hits = pool.room("hits of gather rays", rays)?;

@@ -9,7 +9,7 @@ use lightmesh_layout::{In, Out};
 use super::bounce::DeviceBounce;
 use super::cells::DeviceCells;
 use super::device::{Device, read_count};
-use super::fans::{DeviceFans, Sites};
+use super::fans::{DeviceFans, Sites, taken};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gathered::rays::Fan;
@@ -51,7 +51,7 @@ impl<R: Runtime> DeviceFar<R> {
             let count = at_once.min(new.end - first);
             let from = TakeSites { sites: cells.sites(), numbers: cells.owners(), ..TakeSites::zeroed() };
             let sites = taken(device, TakeSites { first: first as u32, ..from }, count)?;
-            gather(device, bounce, sites, count, fans, Target { far: self.far.output(), first })?;
+            gather(device, bounce, sites, fans, Target { far: self.far.output(), first })?;
         }
         Ok(())
     }
@@ -67,23 +67,11 @@ pub(super) fn plain<R: Runtime>(
     device: &Device<R>,
     bounce: &mut DeviceBounce<R>,
     sites: Buffer<R, Site>,
-    count: usize,
     fans: [Fan; 2],
 ) -> Result<Buffer<R, FarLight>, RenderError> {
-    let far = device.cuda.pool().room("light of sites that see no other", count)?;
-    gather(device, bounce, sites, count, fans, Target { far: far.output(), first: 0 })?;
+    let far = device.cuda.pool().room("light of sites that see no other", sites.len())?;
+    gather(device, bounce, sites, fans, Target { far: far.output(), first: 0 })?;
     Ok(far)
-}
-
-/// Copies of some sites.
-pub(super) fn taken<R: Runtime>(
-    device: &Device<R>,
-    from: TakeSites,
-    count: usize,
-) -> Result<Buffer<R, Site>, RenderError> {
-    let sites = device.cuda.pool().room("sites that gather", count)?;
-    device.threads("take_sites", count, &TakeSites { taken: sites.output(), count: count as u32, ..from })?;
-    Ok(sites)
 }
 
 /// What some sites gather.
@@ -91,11 +79,10 @@ fn gather<R: Runtime>(
     device: &Device<R>,
     bounce: &mut DeviceBounce<R>,
     sites: Buffer<R, Site>,
-    count: usize,
     fans: [Fan; 2],
     target: Target,
 ) -> Result<(), RenderError> {
-    let pool = device.cuda.pool();
+    let (pool, count) = (device.cuda.pool(), sites.len());
     let uneven = pool.room::<u32>("sites that see different things", count)?;
     let uneven_count = pool.zeros::<u32>("number of sites that see different things", 1)?;
     let record = GatherFar {
@@ -106,7 +93,7 @@ fn gather<R: Runtime>(
         ..GatherFar::zeroed()
     };
     // 1. A few rays from each.
-    let first_fans = seen(device, bounce, sites, count, fans[0])?;
+    let first_fans = seen(device, bounce, sites, fans[0])?;
     device.warps("gather_far", count, &GatherFar { fans: first_fans.record, ..record })?;
     // 2. More where these see different things.
     let count = read_count(&uneven_count)?;
@@ -122,7 +109,7 @@ fn gather<R: Runtime>(
             ..TakeSites::zeroed()
         };
         let sites = taken(device, from, count)?;
-        let more = seen(device, bounce, sites, count, fans[1])?;
+        let more = seen(device, bounce, sites, fans[1])?;
         let before = fans[0].len() as u32;
         let joining = GatherFar { fans: more.record, owners: chosen.input(), before, ..record };
         device.warps("gather_far", count, &joining)?;
@@ -135,11 +122,10 @@ fn seen<R: Runtime>(
     device: &Device<R>,
     bounce: &mut DeviceBounce<R>,
     sites: Buffer<R, Site>,
-    count: usize,
     fan: Fan,
 ) -> Result<DeviceFans<R>, RenderError> {
     device.wave.job.check()?;
-    let fans = DeviceFans::cast(device, Sites { sites, count, reach: f32::INFINITY, nodes: None }, fan)?;
+    let fans = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY, nodes: None }, fan)?;
     fans.see(device)?;
     bounce.complete(device, &fans)?;
     Ok(fans)

@@ -8,9 +8,9 @@ use lightmesh_layout::constants::{COARSER, NEAR_CELLS, NEAR_REACH};
 use lightmesh_layout::gathered::{FineLight, GatherFine, TakeSites};
 
 use super::bounce::DeviceBounce;
-use super::cells::{DeviceCells, DevicePlaces, Nearest};
+use super::cells::{DeviceCells, Nearest};
 use super::device::{Device, read_count};
-use super::fans::{DeviceFans, Sites};
+use super::fans::{DeviceFans, Sites, taken};
 use super::far::{self, DeviceFar};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
@@ -74,16 +74,15 @@ impl<R: Runtime> DeviceFine<R> {
             coarser: COARSER,
             ..TakeSites::zeroed()
         };
-        let sites = far::taken(device, from, count)?;
-        let from = Sites { sites, count, reach: NEAR_REACH * NEAR_CELLS, nodes: None };
+        let sites = taken(device, from, count)?;
+        let from = Sites { sites, reach: NEAR_REACH * NEAR_CELLS, nodes: None };
         let mut fans = DeviceFans::cast(device, from, coarse.fans.near)?;
         let nearest = fans.nearest(device)?;
 
         // 2. The coarse sites around that are seen, and what they gather.
-        let places = DevicePlaces { places, count };
         let links = coarse.cells.links(device, &places)?;
         coarse.cells.settle(device, &places, &links, Nearest::OfPlaces(nearest.input()))?;
-        let new = coarse.cells.value(device, &links)?;
+        let new = coarse.cells.value(device, &places, &links)?;
         coarse.far.extend(device, coarse.cells, new, coarse.bounce, coarse.fans.far)?;
 
         // 3. What near rays see.
@@ -109,8 +108,8 @@ impl<R: Runtime> DeviceFine<R> {
         for first in (0..count).step_by(at_once) {
             let count = at_once.min(count - first);
             let from = TakeSites { sites: fans.record.sites, numbers: alone.input(), ..TakeSites::zeroed() };
-            let sites = far::taken(device, TakeSites { first: first as u32, ..from }, count)?;
-            let own = far::plain(device, coarse.bounce, sites, count, coarse.fans.far)?;
+            let sites = taken(device, TakeSites { first: first as u32, ..from }, count)?;
+            let own = far::plain(device, coarse.bounce, sites, coarse.fans.far)?;
             let record = GatherFine { far: own.input(), first_alone: first as u32, count: count as u32, ..record };
             device.threads("take_light", count, &record)?;
         }

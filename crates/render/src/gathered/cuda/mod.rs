@@ -15,13 +15,13 @@ use bytemuck::Zeroable;
 use lightmesh_layout::gathered::{GatherPoints, LightPlace};
 use lightmesh_layout::geometry::Vec3;
 
-use super::Gathering;
+use super::{Gathering, PART_KEPT};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gpu::Cuda;
 use crate::gpu::rays::DeviceWave;
 use bounce::DeviceBounce;
-use cells::{DeviceCells, DevicePlaces, Nearest};
+use cells::{DeviceCells, Nearest};
 use device::{Device, read_count};
 use far::DeviceFar;
 use fine::DeviceFine;
@@ -36,8 +36,6 @@ const BYTES_OF_POINT: u64 = 512;
 const BYTES_OF_RAY: u64 = 3 * 160;
 /// What takes memory at once, at least: also tables while they grow.
 const LEAST_BYTES: u64 = (BYTES_OF_POINT + BYTES_OF_RAY) * LEAST_AT_ONCE as u64 + (64 << 20);
-/// What is kept may take one part in this many of the memory that is left.
-const PART_KEPT: u64 = 4;
 
 /// What was gathered for a scene, on a device.
 pub struct DeviceSurfaceLight<R: Runtime> {
@@ -154,17 +152,16 @@ fn gather_part<R: Runtime>(
     device.threads("ask_light", rays.len(), &record)?;
 
     // 2. The fine sites around that are seen, and what they receive.
-    let places = DevicePlaces { places, count: 2 * rays.len() };
     let links = fine_cells.links(device, &places)?;
-    let new = fine_cells.value(device, &links)?;
+    let new = fine_cells.value(device, &places, &links)?;
     fine.extend(device, fine_cells, new, &mut fine::Coarse { cells: far_cells, far, bounce, fans: &how.fans })?;
     fine_cells.settle(device, &places, &links, Nearest::OfSites(fine.input()))?;
 
     // 3. The mean. Where there is none, rays from the point itself.
     let lookup = fine_cells.lookup(device, &places, &links);
     let record = GatherPoints { lookup, fine: fine.input(), ..record };
-    let both = GatherPoints { count: places.count as u32, ..record };
-    device.threads("mean_light", places.count, &both)?;
+    let both = GatherPoints { count: places.len() as u32, ..record };
+    device.threads("mean_light", places.len(), &both)?;
     let count = read_count(&alone_count)?;
     let at_once = device.at_once(how.fans.far[0]);
     for first in (0..count).step_by(at_once) {
@@ -172,7 +169,7 @@ fn gather_part<R: Runtime>(
         let sites = cuda.pool().room("surface points that see no site", count)?;
         let some = GatherPoints { sites: sites.output(), first_alone: first as u32, count: count as u32, ..record };
         device.threads("take_alone", count, &some)?;
-        let own = far::plain(device, bounce, sites, count, how.fans.far)?;
+        let own = far::plain(device, bounce, sites, how.fans.far)?;
         device.threads("give_alone", count, &GatherPoints { far: own.input(), ..some })?;
     }
     device.threads("add_means", rays.len(), &record)

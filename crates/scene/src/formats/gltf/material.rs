@@ -110,7 +110,7 @@ pub(super) fn translated(of: &document::Material, tinted: bool) -> Material {
     if of.emissive_texture.is_none() {
         let strength = strength.map_or(1.0, |strength| strength.emissive_strength);
         material.emission = (strength * Vec3::from(of.emissive_factor)).max(Vec3::ZERO);
-        material.lamp = material.emission != Vec3::ZERO;
+        material.lamp = true;
     }
     material
 }

@@ -207,7 +207,7 @@ impl Entry {
             ks: self.specular.unwrap_or(default.ks),
             shininess: self.shininess.map_or(default.shininess, |exponent| exponent.max(1.0)),
             emission: self.emissive.unwrap_or(default.emission),
-            lamp: self.emissive.is_some_and(|emissive| emissive != Vec3::ZERO),
+            lamp: true,
             texture,
             cut_out: self.cut_out(used, texture, draft),
             ..default

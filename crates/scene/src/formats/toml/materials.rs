@@ -42,15 +42,14 @@ fn coefficients(source: &Source, entry: &MaterialEntry) -> Result<Material, Load
         Some(shininess) => source.positive("shininess", shininess)? as f32,
         None => default.shininess,
     };
-    let emission = entry.emission.as_ref().map_or(Ok(default.emission), |color| source.color("emission", color))?;
     Ok(Material {
         name: entry.name.get_ref().clone(),
         ka: entry.ka.as_ref().map_or(Ok(kd), |ka| source.color("ka", ka))?,
         kd,
         ks: entry.ks.as_ref().map_or(Ok(default.ks), |ks| source.color("ks", ks))?,
         shininess,
-        emission,
-        lamp: emission.max_element() > 0.0,
+        emission: entry.emission.as_ref().map_or(Ok(default.emission), |color| source.color("emission", color))?,
+        lamp: true,
         ..default
     })
 }
