@@ -18,7 +18,7 @@ use lightmesh_layout::constants::BOUNCE_SIDE;
 use rayon::prelude::*;
 
 use super::cells::{Asked, CellHasher, Site, nearest_of_kind};
-use super::rays::{Fan, RAYS_AT_ONCE, Seen, Spot};
+use super::rays::{Fan, Seen, Spot, batch};
 use super::scene::Scene;
 
 /// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's.
@@ -79,52 +79,53 @@ impl Bounce {
         self.numbers.capacity() * size_of::<(Name, u32)>() + self.nodes.capacity() * size_of::<Node>() + of_hits
     }
 
-    /// Adds to what rays see what is reflected of light that lights do not give. `site` tells from which site a ray comes; those of a site follow
-    /// each other.
-    pub(super) fn complete(&mut self, scene: &Scene, seen: &[Seen], site: impl Fn(usize) -> usize) -> Vec<Vec3> {
-        let rays: Vec<usize> = (0..seen.len()).filter(|&ray| seen[ray].spot.is_some()).collect();
-        let spots: Vec<Spot> = seen.par_iter().filter_map(|seen| seen.spot).collect();
-        let numbers = self.resolve(scene, &spots, ORDERS);
-        let mut radiance: Vec<Vec3> = seen.par_iter().map(|seen| seen.radiance).collect();
-        let mut first = 0;
-        for rays in rays.chunk_by(|&a, &b| site(a) == site(b)) {
-            let numbers = &numbers[first..first + rays.len()];
-            first += rays.len();
+    /// Adds to what the rays of fans see what is reflected of light that lights do not give.
+    pub(super) fn complete(&mut self, scene: &Scene, seen: &[Seen], fan: Fan) -> Vec<Vec3> {
+        let numbers = self.resolve(scene, seen, |seen| seen.spot.as_ref(), ORDERS);
+        let mut radiance = vec![Vec3::ZERO; seen.len()];
+        let fans = seen.par_chunks_exact(fan.len()).zip(numbers.par_chunks_exact(fan.len()));
+        radiance.par_chunks_exact_mut(fan.len()).zip(fans).for_each(|(radiance, (seen, numbers))| {
             let value = |number: u32| self.nodes[number as usize].values[ORDERS - 1];
             let other = mean(numbers.iter().copied().flatten().map(value));
-            for (&ray, number) in rays.iter().zip(numbers) {
-                radiance[ray] += seen[ray].kd * number.map_or(other, value);
+            for ((radiance, seen), number) in radiance.iter_mut().zip(seen).zip(numbers) {
+                *radiance = seen.radiance;
+                if seen.spot.is_some() {
+                    *radiance += seen.kd * number.map_or(other, value);
+                }
             }
-        }
+        });
         radiance
     }
 
-    /// The numbers of the sites that spots see; what arrives there after up to `order` reflections is known. `None` where something is in the
-    /// way.
-    fn resolve(&mut self, scene: &Scene, spots: &[Spot], order: usize) -> Vec<Option<u32>> {
-        self.ensure(scene, spots.par_iter(), order);
-        let batch = |spots: &[Spot]| {
-            let mut numbers: Vec<Option<u32>> = spots.iter().map(|spot| Some(self.numbers[&spot.name()])).collect();
-            self.hide(scene, spots, &mut numbers);
-            numbers
-        };
-        spots.par_chunks(4096).flat_map_iter(batch).collect()
-    }
-
-    /// Takes away the sites that spots do not see.
-    fn hide(&self, scene: &Scene, spots: &[Spot], numbers: &mut [Option<u32>]) {
-        let (mut segments, mut owners) = (Vec::new(), Vec::new());
-        for (index, (Spot { place, .. }, number)) in spots.iter().zip(&*numbers).enumerate() {
-            let Some(number) = number else { continue };
-            let node = &self.nodes[*number as usize];
-            if place.may_be_hidden(&node.site.point, node.nearest) {
-                segments.push(place.segment(&node.site.point));
-                owners.push(index);
+    /// The numbers of the sites that the spots of rays see; what arrives there after up to `order` reflections is known. `None` without a spot,
+    /// and where something is in the way.
+    fn resolve<T: Sync>(
+        &mut self,
+        scene: &Scene,
+        rays: &[T],
+        spot: impl Fn(&T) -> Option<&Spot> + Sync,
+        order: usize,
+    ) -> Vec<Option<u32>> {
+        self.ensure(scene, rays.par_iter().filter_map(&spot), order);
+        let mut numbers = vec![None; rays.len()];
+        let batch = batch(rays.len());
+        rays.par_chunks(batch).zip(numbers.par_chunks_mut(batch)).for_each(|(rays, numbers)| {
+            let (mut segments, mut owners) = (Vec::new(), Vec::new());
+            for (index, (ray, number)) in rays.iter().zip(&mut *numbers).enumerate() {
+                let Some(spot) = spot(ray) else { continue };
+                let found = self.numbers[&spot.name()];
+                let node = &self.nodes[found as usize];
+                *number = Some(found);
+                if spot.place.may_be_hidden(&node.site.point, node.nearest) {
+                    segments.push(spot.place.segment(&node.site.point));
+                    owners.push(index);
+                }
             }
-        }
-        let mut hidden = vec![false; segments.len()];
-        scene.scene.geometry.accelerator.occluded(&segments, &mut hidden);
-        owners.into_iter().zip(hidden).filter(|(_, hidden)| *hidden).for_each(|(index, _)| numbers[index] = None);
+            let mut hidden = vec![false; segments.len()];
+            scene.scene.geometry.accelerator.occluded(&segments, &mut hidden);
+            owners.into_iter().zip(hidden).filter(|(_, hidden)| *hidden).for_each(|(index, _)| numbers[index] = None);
+        });
+        numbers
     }
 
     /// What arrives at sites after up to `order` reflections is known afterwards.
@@ -160,21 +161,24 @@ impl Bounce {
 
     /// Finds the sites that the rays of sites hit, of which as many reflections are known afterwards.
     fn link(&mut self, scene: &Scene, sites: &[u32], order: usize) {
-        for sites in sites.chunks(RAYS_AT_ONCE / FAN.len()) {
-            let hits = sites.iter().flat_map(|&site| &self.nodes[site as usize].hits);
-            let spots: Vec<Spot> = hits.map(|&(spot, _)| spot).collect();
-            let mut numbers = self.resolve(scene, &spots, order).into_iter();
-            for &site in sites {
-                let node = &mut self.nodes[site as usize];
-                let mut links = Links { seen: Vec::with_capacity(node.hits.len()), hidden: Vec3::ZERO };
-                for (&(_, weight), number) in node.hits.iter().zip(&mut numbers) {
-                    match number {
+        for sites in sites.chunks(scene.fans_at_once(FAN)) {
+            let of = |site: u32| &self.nodes[site as usize].hits;
+            let lengths: Vec<usize> = sites.iter().map(|&site| of(site).len()).collect();
+            let hits: Vec<(Spot, Vec3)> = sites.par_iter().flat_map_iter(|&site| of(site).iter().copied()).collect();
+            let numbers = self.resolve(scene, &hits, |(spot, _)| Some(spot), order);
+            let link = |(hits, numbers): (&[(Spot, Vec3)], &[Option<u32>])| {
+                let mut links = Links { seen: Vec::with_capacity(hits.len()), hidden: Vec3::ZERO };
+                for (&(_, weight), number) in hits.iter().zip(numbers) {
+                    match *number {
                         Some(number) => links.seen.push((number, weight)),
                         None => links.hidden += weight,
                     }
                 }
-                node.links = links;
-            }
+                links
+            };
+            let links: Vec<Links> =
+                parts(&hits, &lengths).into_par_iter().zip(parts(&numbers, &lengths)).map(link).collect();
+            sites.iter().zip(links).for_each(|(&site, links)| self.nodes[site as usize].links = links);
         }
     }
 
@@ -221,7 +225,7 @@ impl Bounce {
     /// Casts the rays of sites, if they have not been cast.
     fn cast(&mut self, scene: &Scene, sites: &[u32]) {
         let sites: Vec<u32> = sites.iter().copied().filter(|&site| self.nodes[site as usize].first.is_none()).collect();
-        for sites in sites.chunks(RAYS_AT_ONCE / FAN.len()) {
+        for sites in sites.chunks(scene.fans_at_once(FAN)) {
             let of = |&site: &u32| (&self.nodes[site as usize].site, f32::INFINITY);
             let cast = scene.cast(sites.iter().map(of), FAN);
             let seen = scene.seen(&cast);
@@ -242,6 +246,12 @@ impl Bounce {
             }
         }
     }
+}
+
+/// Consecutive parts of some lengths.
+fn parts<'a, T>(mut all: &'a [T], lengths: &[usize]) -> Vec<&'a [T]> {
+    let part = |&length: &usize| all.split_off(..length).expect("there are as many as all parts have");
+    lengths.iter().map(part).collect()
 }
 
 /// The mean; zero of nothing.

@@ -133,11 +133,10 @@ impl Cells {
         self.ranges.contains_key(&key)
     }
 
-    /// Adds cells with their sites; those that are there stay.
+    /// Adds cells with their sites. None of them is there.
     pub(super) fn admit(&mut self, scene: &PreparedScene, mut asked: Vec<Asked>) {
         asked.par_sort_unstable();
         asked.dedup();
-        asked.retain(|asked| !self.has(asked.key));
         let found: Vec<Vec<Site>> = asked
             .par_chunks(64)
             .flat_map_iter(|asked| {

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::bounce::Bounce;
 use super::cells::{Cells, Site, size_of_level};
 use super::light::{Bins, Light};
-use super::rays::{Cast, Fan, RAYS_AT_ONCE};
+use super::rays::{Cast, Fan};
 use super::scene::Scene;
 
 /// What a coarse site gathers.
@@ -50,10 +50,10 @@ pub(super) fn ensure(
 ) {
     known.resize_with(cells.sites.len(), || None);
     let new: Vec<u32> = wanted.iter().copied().filter(|&site| known[site as usize].is_none()).collect();
-    for new in new.chunks(RAYS_AT_ONCE / fans[0].len()) {
+    for new in new.chunks(scene.fans_at_once(fans[0])) {
         let sites: Vec<Site> = new.iter().map(|&site| cells.sites[site as usize]).collect();
-        for (&number, far) in new.iter().zip(gathered(scene, bounce, &sites, fans)) {
-            known[number as usize] = Some(Box::new(far));
+        for (&number, seen) in new.iter().zip(gathered(scene, bounce, &sites, fans)) {
+            known[number as usize] = Some(seen.far);
         }
     }
 }
@@ -61,30 +61,34 @@ pub(super) fn ensure(
 /// What sites receive by their own rays alone.
 pub(super) fn plain(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fans: [Fan; 2]) -> Vec<Light> {
     let each = |sites: &[Site]| -> Vec<Light> {
-        gathered(scene, bounce, sites, fans).into_iter().map(|far| far.light).collect()
+        gathered(scene, bounce, sites, fans).into_iter().map(|seen| seen.far.light).collect()
     };
-    sites.chunks(RAYS_AT_ONCE / fans[0].len()).flat_map(each).collect()
+    sites.chunks(scene.fans_at_once(fans[0])).flat_map(each).collect()
 }
 
 /// What some sites gather.
-fn gathered(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fans: [Fan; 2]) -> Vec<Far> {
+fn gathered(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fans: [Fan; 2]) -> Vec<SeenByFan> {
     // 1. A few rays from each.
-    let first = seen_by_fans(scene, bounce, sites, fans[0]);
-    let uneven: Vec<usize> = (0..sites.len()).filter(|&site| first[site].is_uneven()).collect();
-    let mut found: Vec<Far> = first.into_iter().map(|seen| seen.far).collect();
+    let mut first = seen_by_fans(scene, bounce, sites, fans[0]);
     // 2. More where these see different things.
-    for numbers in uneven.chunks(RAYS_AT_ONCE / fans[1].len()) {
-        let sites: Vec<Site> = numbers.iter().map(|&number| sites[number]).collect();
-        for (&number, seen) in numbers.iter().zip(seen_by_fans(scene, bounce, &sites, fans[1])) {
-            found[number].join(&seen.far, fans.map(|fan| fan.len() as f32));
-        }
+    let mut uneven: Vec<(&Site, &mut Far)> = sites
+        .iter()
+        .zip(&mut first)
+        .filter(|(_, seen)| seen.is_uneven())
+        .map(|(site, seen)| (site, &mut *seen.far))
+        .collect();
+    for uneven in uneven.chunks_mut(scene.fans_at_once(fans[1])) {
+        let sites: Vec<Site> = uneven.iter().map(|(site, _)| **site).collect();
+        let more = seen_by_fans(scene, bounce, &sites, fans[1]);
+        let both = uneven.par_iter_mut().zip(more);
+        both.for_each(|((_, far), more)| far.join(&more.far, fans.map(|fan| fan.len() as f32)));
     }
-    found
+    first
 }
 
 /// What the rays of a fan see.
 struct SeenByFan {
-    far: Far,
+    far: Box<Far>,
     /// The mean luminance, and the mean of its square.
     luminance: [f32; 2],
 }
@@ -98,11 +102,11 @@ impl SeenByFan {
 
 fn seen_by_fans(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fan: Fan) -> Vec<SeenByFan> {
     let cast = scene.cast(sites.iter().map(|site| (site, f32::INFINITY)), fan);
-    let radiance = bounce.complete(scene, &scene.seen(&cast), |ray| ray / fan.len());
+    let radiance = bounce.complete(scene, &scene.seen(&cast), fan);
     let Cast { list, hits, weights, .. } = &cast;
     let gather = |(index, site): (usize, &Site)| {
         let near = near(site);
-        let mut far = Far { light: Light::default(), all: Bins::EMPTY, beyond: Bins::EMPTY, has_near: false };
+        let mut far = Box::new(Far { light: Light::default(), all: Bins::EMPTY, beyond: Bins::EMPTY, has_near: false });
         let mut luminance = [0.0; 2];
         for ray in index * fan.len()..(index + 1) * fan.len() {
             let (direction, radiance, weight) = (list.rays[ray].direction, radiance[ray], weights[ray]);

@@ -17,8 +17,9 @@ use super::directions::bin;
 use super::far::{self, Far};
 use super::light::Light;
 use super::lookup::{Link, Links, Place};
-use super::rays::{Cast, Fans, RAYS_AT_ONCE};
+use super::rays::{Cast, Fans};
 use super::scene::Scene;
+use crate::accel::Hit;
 
 /// What a fine site receives.
 #[derive(Clone, Copy, Default)]
@@ -46,7 +47,7 @@ pub(super) fn ensure(
 ) {
     known.resize_with(cells.sites.len(), || None);
     let new: Vec<u32> = wanted.iter().copied().filter(|&site| known[site as usize].is_none()).collect();
-    for new in new.chunks(RAYS_AT_ONCE / fans.near.len()) {
+    for new in new.chunks(scene.fans_at_once(fans.near)) {
         // As coarse as what they ask.
         let coarser = |site: &Site| Site { level: site.level + COARSER, ..*site };
         let sites: Vec<Site> = new.iter().map(|&site| coarser(&cells.sites[site as usize])).collect();
@@ -69,15 +70,11 @@ fn received(scene: &Scene, coarse: &mut Coarse, sites: &[Site], fans: &Fans) -> 
     far::ensure(scene, coarse.cells, coarse.bounce, coarse.known, &links.sites(), fans.far);
 
     // 3. What near rays see.
-    let hits: Vec<usize> = (0..cast.hits.len()).filter(|&ray| cast.hits[ray].is_some()).collect();
-    let seen = scene.seen(&cast.only(&hits));
-    let seen = coarse.bounce.complete(scene, &seen, |ray| hits[ray] / fan.len());
-    let mut near: Vec<Option<Vec3>> = vec![None; cast.hits.len()];
-    hits.iter().zip(seen).for_each(|(&ray, seen)| near[ray] = Some(seen));
+    let near = coarse.bounce.complete(scene, &scene.seen(&cast), fan);
 
     // 4. Both together; more rays of their own for sites that see no coarse one.
     let sees = |site: usize| links.of(site).next().is_some();
-    let alone: Vec<usize> = (0..sites.len()).filter(|&site| !sees(site)).collect();
+    let alone: Vec<usize> = (0..sites.len()).into_par_iter().filter(|&site| !sees(site)).collect();
     let own: Vec<Site> = alone.iter().map(|&site| sites[site]).collect();
     let own = far::plain(scene, coarse.bounce, &own, fans.far);
     let coarse = &*coarse;
@@ -95,19 +92,19 @@ fn received(scene: &Scene, coarse: &mut Coarse, sites: &[Site], fans: &Fans) -> 
     fine
 }
 
-/// What a fine site receives from coarse sites, and from what its rays hit nearby.
+/// What a fine site receives from coarse sites, and from what its rays hit nearby: `near` is the radiance along each ray.
 fn near_and_far(
     coarse: &Coarse,
     normal: Vec3,
     links: impl Iterator<Item = Link> + Clone,
     cast: &Cast,
-    near: &[Option<Vec3>],
+    near: &[Vec3],
     rays: std::ops::Range<usize>,
 ) -> Light {
     let far = |site: u32| coarse.known[site as usize].as_ref().expect("it was ensured");
     let total: f32 = links.clone().map(|(_, weight)| weight).sum();
     let mut light = Light::default();
-    let mut has_near = near[rays.clone()].iter().any(Option::is_some);
+    let mut has_near = cast.hits[rays.clone()].iter().any(Hit::is_some);
     for (site, weight) in links.clone() {
         light.add(weight / total, &far(site).light, normal - coarse.cells.sites[site as usize].point.normal);
         has_near |= far(site).has_near;
@@ -126,7 +123,7 @@ fn near_and_far(
             beyond.add(weight, far.beyond.of(bin));
         }
         let all = all.or(mean);
-        let seen = near[ray].unwrap_or_else(|| beyond.or(all));
+        let seen = if cast.hits[ray].is_some() { near[ray] } else { beyond.or(all) };
         light.take(normal, direction, cast.weights[ray] * (seen - all));
     }
     light

@@ -16,7 +16,7 @@ use crate::accel::Ray;
 use crate::surface::{SurfacePoint, long_segment};
 
 /// Places per task.
-const BATCH: usize = 1024;
+const BATCH: usize = 256;
 
 /// A place that light is asked for.
 #[derive(Clone, Copy, Debug)]

@@ -43,12 +43,17 @@ use rays::{Fan, Fans};
 use scene::Scene;
 
 /// Surface points that are processed at once.
-const POINTS_AT_ONCE: usize = 1 << 15;
-/// What these, and the rays that are cast at once, take at most: rays with all that is known of them, three times, for what they hit asks
-/// again.
-const BYTES_AT_ONCE: u64 = 3 * 256 * rays::RAYS_AT_ONCE as u64 + 512 * POINTS_AT_ONCE as u64;
+const POINTS_AT_ONCE: usize = 1 << 16;
+/// Rays that are cast at once: the more the better for many processors, unless memory is scarce.
+const RAYS_AT_ONCE: [usize; 2] = [1 << 18, 1 << 16];
+/// What these take, at most, with all that is known of them: three times, for what they hit asks again.
+const BYTES_OF_RAY: u64 = 3 * 256;
+/// What a point takes.
+const BYTES_OF_POINT: u64 = 512;
 /// What is kept may take one part in this many of the memory that is left.
 const PART_KEPT: u64 = 4;
+/// Rays may take one part in this many.
+const PART_FOR_RAYS: u64 = 8;
 /// Cells are no smaller than this share of the largest coordinate, whose digits would not suffice.
 const LEAST_SIZE: f32 = 1.0 / (1 << 20) as f32;
 
@@ -62,6 +67,7 @@ pub struct Gathering {
     pixels: f32,
     least_level: i32,
     fans: Fans,
+    rays_at_once: usize,
     /// What is kept is dropped when it takes more bytes than this.
     most_kept: Option<u64>,
 }
@@ -76,19 +82,23 @@ impl Gathering {
         };
         let fans = Fans { far: far.map(Fan::new), near: Fan::new(near) };
         let least_level = level_of(LEAST_SIZE * bounds.farthest()).0;
+        let [many, few] = RAYS_AT_ONCE;
+        let is_scarce = left.is_some_and(|left| BYTES_OF_RAY * many as u64 > left / PART_FOR_RAYS);
         Gathering {
             eye: view.origin(),
             spacing: view.spacing(),
             pixels,
             least_level,
             fans,
+            rays_at_once: if is_scarce { few } else { many },
             most_kept: left.map(|left| left / PART_KEPT),
         }
     }
 
     /// Bytes that it needs on the host, besides the image.
     pub(crate) fn memory(&self) -> u64 {
-        BYTES_AT_ONCE + self.most_kept.unwrap_or(0)
+        let at_once = BYTES_OF_RAY * self.rays_at_once as u64 + BYTES_OF_POINT * POINTS_AT_ONCE as u64;
+        at_once + self.most_kept.unwrap_or(0)
     }
 
     /// The levels of the fine cells at a position, with their shares.
@@ -156,7 +166,7 @@ struct Ask {
 /// The mean radiance that each surface point of a wave receives, weighted by the cosine; zero for rays that see nothing.
 pub(crate) fn gather(wave: &HostWave, how: &Gathering, kept: &mut SurfaceLight) -> Vec<Vec3> {
     let mut light = vec![Vec3::ZERO; wave.hits.len()];
-    let scene = Scene { job: wave.job, scene: wave.scene };
+    let scene = Scene { job: wave.job, scene: wave.scene, rays_at_once: how.rays_at_once };
     for (part, light) in light.chunks_mut(POINTS_AT_ONCE).enumerate() {
         if how.most_kept.is_some_and(|most| kept.memory() > most) {
             *kept = SurfaceLight::default();

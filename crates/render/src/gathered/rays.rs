@@ -24,10 +24,10 @@ use crate::shadow::{Aim, Targets, hidden};
 use crate::stages::primary_rays::cpu::closest_hits;
 use crate::surface::long_segment;
 
-/// Rays that are cast at once.
-pub(super) const RAYS_AT_ONCE: usize = 1 << 16;
-/// Rays per task.
-const BATCH: usize = 2048;
+/// Rays per task, of so many: enough tasks for all processors, large enough to cast several together.
+pub(super) fn batch(rays: usize) -> usize {
+    rays.div_ceil(4 * rayon::current_num_threads()).clamp(128, 1024)
+}
 
 /// The rays of one site: `side`² directions, one in each part of the hemisphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,37 +86,28 @@ pub(super) struct Cast {
     fan: Fan,
     /// Level and seed of each site.
     origins: Vec<(i32, u64)>,
-    /// The numbers of the rays among those of all fans, if they are not all there.
-    numbers: Option<Vec<u32>>,
 }
 
 impl Cast {
-    /// Some of the rays alone, without their weights.
-    pub(super) fn only(&self, rays: &[usize]) -> Cast {
-        fn some<T: Copy>(all: &[T], rays: &[usize]) -> Vec<T> {
-            rays.iter().map(|&ray| all[ray]).collect()
-        }
-        let list = RayList { cone: self.list.cone, rays: some(&self.list.rays, rays), ..RayList::default() };
-        let numbers = Some(rays.iter().map(|&ray| ray as u32).collect());
-        let (weights, hits, origins) = (Vec::new(), some(&self.hits, rays), self.origins.clone());
-        Cast { list, weights, hits, fan: self.fan, origins, numbers }
-    }
-
-    /// The distances of what is nearest to each site, if all rays are there.
+    /// The distances of what is nearest to each site.
     pub(super) fn nearest(&self) -> Vec<f32> {
         let least = |hits: &[Hit]| hits.iter().fold(f32::INFINITY, |least, hit| least.min(hit.t));
-        self.hits.chunks_exact(self.fan.len()).map(least).collect()
+        self.hits.par_chunks_exact(self.fan.len()).map(least).collect()
     }
 
     /// The level of the site that a ray comes from, and what distinguishes its random numbers.
     fn origin(&self, ray: usize) -> (i32, u64) {
-        let number = self.numbers.as_ref().map_or(ray, |numbers| numbers[ray] as usize);
-        let (level, seed) = self.origins[number / self.fan.len()];
-        (level, seed.wrapping_add((self.fan.len() + number % self.fan.len()) as u64))
+        let (level, seed) = self.origins[ray / self.fan.len()];
+        (level, seed.wrapping_add((self.fan.len() + ray % self.fan.len()) as u64))
     }
 }
 
 impl Scene<'_> {
+    /// The sites that rays are cast from at once.
+    pub(super) fn fans_at_once(&self, fan: Fan) -> usize {
+        self.rays_at_once / fan.len()
+    }
+
     /// Casts a fan of rays from each site, as far as it says.
     pub(super) fn cast<'s>(&self, sites: impl Iterator<Item = (&'s Site, f32)>, fan: Fan) -> Cast {
         let sites: Vec<(&Site, f32)> = sites.collect();
@@ -141,20 +132,21 @@ impl Scene<'_> {
         let hits = closest_hits(self.scene, &list, |_, trace| self.job.piece(0, trace));
         Tally::add(&self.job.tally.gather_rays, count as u64);
         let origins = sites.iter().map(|(site, _)| (site.level, site.seed)).collect();
-        Cast { list, weights, hits, fan, origins, numbers: None }
+        Cast { list, weights, hits, fan, origins }
     }
 
-    /// What rays see, but for the light that reaches what they hit from no light directly.
+    /// What rays see, but for the light that reaches what they hit from no light directly. Rays that end before they hit anything see nothing.
     pub(super) fn seen(&self, cast: &Cast) -> Vec<Seen> {
-        let Scene { job, scene } = *self;
+        let Scene { job, scene, .. } = *self;
         let wave = HostWave { job, scene, rays: &cast.list, hits: &cast.hits, lights: LightGroup::ALL, parts: 1 };
         let lights = Lights::new(&wave);
         let mut seen = vec![Seen::default(); cast.hits.len()];
-        seen.par_chunks_mut(BATCH).enumerate().for_each(|(batch, seen)| {
+        let size = batch(seen.len());
+        seen.par_chunks_mut(size).enumerate().for_each(|(batch, seen)| {
             job.piece(0, || {
                 let mut segments = Segments::default();
                 for (place, seen) in seen.iter_mut().enumerate() {
-                    *seen = seen_by(&wave, cast, &lights, [batch * BATCH + place, place], &mut segments);
+                    *seen = seen_by(&wave, cast, &lights, [batch * size + place, place], &mut segments);
                 }
                 segments.add(&wave, seen);
             });
@@ -184,8 +176,11 @@ pub(super) struct Seen {
 
 /// What ray number `ray` sees, but for lights: the segments to these are noted for the ray's place in its batch.
 fn seen_by(wave: &HostWave, cast: &Cast, lights: &Lights, [ray, place]: [usize; 2], segments: &mut Segments) -> Seen {
-    let Ray { direction, .. } = wave.rays.rays[ray];
+    let Ray { direction, t_max, .. } = wave.rays.rays[ray];
     let hit = &wave.hits[ray];
+    if !hit.is_some() && t_max < f32::INFINITY {
+        return Seen::default();
+    }
     // A shadow catcher shows what is behind it.
     let Some(material) = material_of(wave, ray).filter(|material| !material.catcher) else {
         let spread = SKY_CONE * wave.rays.cone.spread;

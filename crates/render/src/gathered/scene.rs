@@ -8,4 +8,6 @@ use crate::prepared::PreparedScene;
 pub(super) struct Scene<'a> {
     pub(super) job: &'a Job<'a>,
     pub(super) scene: &'a PreparedScene,
+    /// How many rays are cast at once, about.
+    pub(super) rays_at_once: usize,
 }

@@ -62,7 +62,9 @@ pub(crate) fn closest_hits(
     piece: impl Fn(usize, &mut dyn FnMut()) + Sync,
 ) -> Vec<Hit> {
     let mut hits = vec![Hit::MISS; list.rays.len()];
-    list.rays.par_chunks(BATCH).zip(hits.par_chunks_mut(BATCH)).for_each(|(rays, hits)| {
+    // Short lists have work for all processors, too.
+    let batch = list.rays.len().div_ceil(4 * rayon::current_num_threads()).next_multiple_of(64).clamp(128, BATCH);
+    list.rays.par_chunks(batch).zip(hits.par_chunks_mut(batch)).for_each(|(rays, hits)| {
         piece(rays.len(), &mut || scene.geometry.accelerator.closest_hits(rays, hits));
     });
     hits
