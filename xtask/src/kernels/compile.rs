@@ -34,7 +34,8 @@ pub(super) fn all(tools: &Tools, sources: &[Source], check: bool) -> Result<Vec<
     let mut modules = Vec::new();
     let mut errors = String::new();
     for source in sources {
-        match if check { committed(source) } else { compile(source) } {
+        let outcome = if check { committed(source) } else { compile(source) };
+        match outcome {
             Ok(ptx) => modules.push(Module { name: source.module.clone(), ptx }),
             Err(error) => errors += &format!("{}: {error}\n", source.path.display()),
         }

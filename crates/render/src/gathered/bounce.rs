@@ -18,8 +18,9 @@ use lightmesh_layout::constants::BOUNCE_SIDE;
 use rayon::prelude::*;
 
 use super::cells::{Asked, CellHasher, Site, nearest_of_kind};
-use super::rays::{Fan, Seen, Spot, batch};
+use super::rays::{Fan, Seen, Spot};
 use super::scene::Scene;
+use crate::stages::primary_rays::cpu::batch;
 
 /// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's.
 pub(super) const ORDERS: usize = 2;

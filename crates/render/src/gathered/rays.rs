@@ -21,13 +21,8 @@ use crate::sampling::random_bits;
 use crate::shading::environment::surroundings;
 use crate::shading::{LightTargets, Surface, material_of};
 use crate::shadow::{Aim, Targets, hidden};
-use crate::stages::primary_rays::cpu::closest_hits;
+use crate::stages::primary_rays::cpu::{batch, closest_hits};
 use crate::surface::long_segment;
-
-/// Rays per task, of so many: enough tasks for all processors, large enough to cast several together.
-pub(super) fn batch(rays: usize) -> usize {
-    rays.div_ceil(4 * rayon::current_num_threads()).clamp(128, 1024)
-}
 
 /// The rays of one site: `side`² directions, one in each part of the hemisphere.
 #[derive(Clone, Copy, Debug, PartialEq)]

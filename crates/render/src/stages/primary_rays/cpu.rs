@@ -12,7 +12,7 @@ use crate::job::Job;
 use crate::prepared::PreparedScene;
 use crate::view::View;
 
-/// Number of rays per task: enough to keep the dispatch cheap, few enough to balance the threads.
+/// Number of rays per task, at most: enough to keep the dispatch cheap, few enough to balance the threads.
 const BATCH: usize = 2048;
 
 pub(crate) fn camera_rays(view: &View, rows: Range<u32>) -> RayList {
@@ -55,6 +55,11 @@ pub(crate) fn primary_rays(job: &Job, scene: &PreparedScene, list: &RayList) -> 
     hits
 }
 
+/// Rays per task, of so many: short lists have work for all processors, too, and each task casts several together.
+pub(crate) fn batch(rays: usize) -> usize {
+    rays.div_ceil(4 * rayon::current_num_threads()).next_multiple_of(64).clamp(128, BATCH)
+}
+
 /// The hits of rays, which `piece` computes run by run.
 pub(crate) fn closest_hits(
     scene: &PreparedScene,
@@ -62,8 +67,7 @@ pub(crate) fn closest_hits(
     piece: impl Fn(usize, &mut dyn FnMut()) + Sync,
 ) -> Vec<Hit> {
     let mut hits = vec![Hit::MISS; list.rays.len()];
-    // Short lists have work for all processors, too.
-    let batch = list.rays.len().div_ceil(4 * rayon::current_num_threads()).next_multiple_of(64).clamp(128, BATCH);
+    let batch = batch(list.rays.len());
     list.rays.par_chunks(batch).zip(hits.par_chunks_mut(batch)).for_each(|(rays, hits)| {
         piece(rays.len(), &mut || scene.geometry.accelerator.closest_hits(rays, hits));
     });
