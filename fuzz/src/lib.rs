@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use lightmesh::Scene;
-use lightmesh::scene::{CreaseAngle, LoadOptions, Mesh, Up};
+use lightmesh::scene::{CreaseAngle, LoadOptions, Mesh, OpacityMode, Up};
 use tempfile::TempDir;
 
 /// Folder of the scene in the temporary one.
@@ -108,10 +108,13 @@ fn check(scene: &Scene) {
         let all = || lobes.iter().chain([&material.ka, &material.kd]);
         assert!(all().all(|color| color.is_finite() && color.min_element() >= 0.0), "{material:?}");
         assert!((material.ks + material.ks_tinted).max_element() < 1.00001, "{material:?}");
-        if let Some(cut_out) = material.cut_out {
-            let numbers = [cut_out.factor, cut_out.cutoff];
+        if let Some(opacity) = material.opacity {
+            let numbers = match opacity.mode {
+                OpacityMode::Mask { cutoff } => vec![opacity.factor, cutoff],
+                OpacityMode::Blend { filter } => [vec![opacity.factor], filter.to_array().to_vec()].concat(),
+            };
             assert!(numbers.iter().all(|number| number.is_finite() && *number >= 0.0), "{material:?}");
-            let texture = cut_out.texture.map(|uses| uses.texture as usize);
+            let texture = opacity.texture.map(|uses| uses.texture as usize);
             assert!(texture.is_none_or(|texture| texture < scene.geometry.textures.len()), "{material:?}");
         }
     }

@@ -226,6 +226,17 @@ constants! {
     /// Lines along x of that template.
     TEMPLATE_LINES: i32 = (2 * MOST_REACH) * (2 * MOST_REACH);
 
+    // Rays.
+
+    /// The opacity of a texel that hides everything, as texels count.
+    OPAQUE: f32 = 255.0;
+    /// The bit from which on the number of surfaces that a ray went through is in a list, above its sample.
+    THROUGHS_SHIFT: u32 = 16;
+    /// A ray goes through so many surfaces.
+    MOST_THROUGHS: u32 = 64;
+    /// A ray goes on through a surface if at least this share of the radiance behind it reaches the pixel: less changes no code of an image.
+    LEAST_THROUGH: f32 = 1.0 / 4096.0;
+
     // Lights.
 
     /// Sample points of a light that determine its share above the horizon.

@@ -56,8 +56,8 @@ records! {
         translation: [f32; 2],
         /// The least opacity at which there is a surface, as texels count.
         limit: f32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
+        /// 1: light goes through as far as the opacity is below 1.
+        blends: u32,
     }
 
     /// Where triangles are cut out.
@@ -219,6 +219,10 @@ records! {
         first_pixel: u32,
         /// Number of rays.
         count: u32,
+        /// How often they went on at surfaces: 0 for a camera's.
+        depth: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
         /// The cone of all rays; without a width, textures are looked up at points.
         cone: Cone,
     }

@@ -2,7 +2,7 @@
 
 use crate::In;
 use crate::constants::{MOST_ROWS, MOST_WORDS};
-use crate::geometry::{BruteForce, Bvh, Grid, Triangle, Vec3};
+use crate::geometry::{BruteForce, Bvh, Coverage, Grid, Triangle, Vec3};
 use crate::record::records;
 
 records! {
@@ -104,6 +104,11 @@ records! {
         emission_tinted: Vec3,
         /// 1: lights stand for what it emits.
         lamp: u32,
+        /// What is left of light that goes straight on: at a surface point all of it; of a material, if it went through nothing else than
+        /// its filter.
+        transmittance: Vec3,
+        /// 1: light goes through as far as the opacity is below 1.
+        blends: u32,
     }
 
     /// A level of an environment.
@@ -174,6 +179,8 @@ records! {
         /// [`LIGHT_TARGETS`](crate::constants::LIGHT_TARGETS) points on each light, from which its unshadowed light is computed; of a
         /// directional light at distance 1 from the origin.
         light_targets: In<Vec3>,
+        /// Where triangles are cut out, and how opaque they are.
+        coverage: Coverage,
         /// What surrounds it.
         environment: Environment,
         /// The regular grid.

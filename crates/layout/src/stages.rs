@@ -162,7 +162,8 @@ records! {
         color: Out<Vec3>,
         /// While groups of lights follow, the radiance of each ray so far; null if that has its place in `color`.
         sums: Out<Vec3>,
-        /// How much light shadow catchers get, as a share of what they would get alone, by pixel; null if that is not kept.
+        /// The share that shows what is behind everything, by pixel: what rays see that go through surfaces, and shadow catchers, as far as
+        /// these get the light that they would get alone; null if that is not kept.
         caught: Out<f32>,
         /// The same for each ray; null if a pixel has one.
         ray_caught: Out<f32>,
@@ -202,8 +203,8 @@ records! {
         sampled_pixels: u64,
         /// 1 if the scene has shadow catchers.
         catches: u32,
-        /// 1 if the rays come from mirrors.
-        mirrored: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
     }
 
     /// `pixel_samples`, `count_ids`, `merge_samples`, `find_contrast`, `count_fragments` and `emit_fragments`: one thread per pixel of a camera's rows,
@@ -295,12 +296,16 @@ records! {
         rays: Rays,
         /// Their hits.
         hits: In<Hit>,
-        /// Number of mirror rays of each block of 256 rays; after the scan, of all blocks before it.
+        /// Number of rays that go on from each block of 256 rays; after the scan, of all blocks before it.
         counts: Out<u32>,
-        /// The mirror rays, in the order of the rays.
-        mirrored: Out<ListedRay>,
+        /// The rays that go on, in the order of the rays: of each first the one that goes through, then the one that is mirrored.
+        onward: Out<ListedRay>,
         /// Their cones; null if textures are not filtered.
         cones: Out<Cone>,
+        /// How often rays may be mirrored.
+        bounces: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
     }
 
     /// `group_points` and `gather_items`: one block per tile of 1024 rays.

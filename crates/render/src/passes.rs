@@ -120,7 +120,7 @@ impl<B: Backend> Passes<'_, B> {
         run.on_host(Stage::Download, |backend| backend.develop(scene, film, picture))
     }
 
-    /// Renders a wave of rays, and those that mirrors reflect. `known` is what they see, if that is known. Each ray takes one of
+    /// Renders a wave of rays, and those that surfaces let through or mirror. `known` is what they see, if that is known. Each ray takes one of
     /// `parts` parts of the samples of lights.
     fn waves(
         &self,
@@ -130,7 +130,7 @@ impl<B: Backend> Passes<'_, B> {
         film: &mut B::Film,
     ) -> Result<(), RenderError> {
         let Passes { run, scene, plan, .. } = self;
-        for depth in 0..=plan.bounces {
+        for depth in 0.. {
             let n = run.backend.ray_count(&rays);
             if n == 0 {
                 break;
@@ -144,9 +144,10 @@ impl<B: Backend> Passes<'_, B> {
             };
             let wave = WaveOf::<B> { job: run.job, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts };
             self.light(&wave, film)?;
-            if depth < plan.bounces {
-                rays = run.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
+            if depth >= plan.bounces && !plan.lets_through {
+                break;
             }
+            rays = run.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave, plan.bounces))?;
         }
         Ok(())
     }
@@ -202,7 +203,7 @@ impl<B: Backend> Passes<'_, B> {
     /// Pieces of work of a wave of `rays` rays in all of its stages.
     fn pieces_of_wave(&self, depth: u32, rays: u64) -> u64 {
         // Primary rays, mirror rays.
-        rays * (1 + u64::from(depth < self.plan.bounces)) + self.pieces_of_light(rays)
+        rays * (1 + u64::from(depth < self.plan.bounces || self.plan.lets_through)) + self.pieces_of_light(rays)
     }
 
     /// Those of the stages that find what its surface points reflect.

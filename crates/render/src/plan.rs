@@ -24,6 +24,8 @@ pub struct Plan {
     pub antialiasing: Option<Antialiasing>,
     /// Depth of mirror recursion.
     pub bounces: u32,
+    /// Whether rays may go through surfaces.
+    pub lets_through: bool,
     /// Whether the share of a pixel's samples that see anything is kept.
     pub coverage: bool,
     /// Whether the light that shadow catchers get is kept.
@@ -56,6 +58,7 @@ impl Plan {
             size,
             antialiasing: None,
             bounces: 0,
+            lets_through: false,
             coverage: false,
             caught: false,
             layers: None,
@@ -77,9 +80,10 @@ impl Plan {
         self.size.map(u64::from).iter().product()
     }
 
-    /// The most rays of a pixel in a wave.
+    /// The rays of a pixel in a wave, at most unless surfaces both mirror and let rays through several times.
     pub(crate) fn rays_per_pixel(&self) -> u64 {
-        self.antialiasing.as_ref().map_or(1, |all| u64::from(all.at_once()))
+        let samples = self.antialiasing.as_ref().map_or(1, |all| u64::from(all.at_once()));
+        samples * (1 + u64::from(self.lets_through))
     }
 
     /// Bytes of the samples of a pixel: a hit and an owner each, and the pixel's state.

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use glam::Vec3;
 use lightmesh_memory::{Budget, Short};
-use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Scene, Texture};
+use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Material, Scene, Texture};
 
 use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Coverage, Grid, GridOptions, Triangle, coverage};
 use crate::error::RenderError;
@@ -65,7 +65,7 @@ impl PreparedGeometry {
         geometry.check()?;
         let mesh = &geometry.mesh;
         let triangles = mesh.triangles.len();
-        let cut_out = geometry.materials.iter().any(|material| material.cut_out.is_some());
+        let cut_out = geometry.materials.iter().any(|material| material.opacity.is_some());
         let bytes = BYTES_TO_BUILD + if cut_out { coverage::BYTES_TO_BUILD } else { 0 };
         let needed = triangles as u64 * bytes;
         budget.check(needed).map_err(|short| RenderError::BuildMemory { triangles, short })?;
@@ -201,6 +201,11 @@ impl PreparedScene {
     /// Whether anything only shows the shadows on it.
     pub(crate) fn catches(&self) -> bool {
         self.scene.geometry.materials.iter().any(|material| material.catcher)
+    }
+
+    /// Whether rays may go through surfaces.
+    pub(crate) fn lets_through(&self) -> bool {
+        self.scene.geometry.materials.iter().any(Material::lets_through)
     }
 
     /// Whether lights stand for what lamps emit.

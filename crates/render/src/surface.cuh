@@ -28,6 +28,9 @@ DEVICE SurfacePoint surface_point(const Ray &ray, const Hit &hit, const Corners 
     return SurfacePoint{position, position + error * normal, normal};
 }
 
+// Where a ray goes on that the surface lets through.
+DEVICE Vec3 behind(const SurfacePoint &point) { return 2.0f * point.position - point.origin; }
+
 // The surface point that ray number `ray` sees; the ray must have hit something.
 DEVICE SurfacePoint surface_point_of(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray) {
     const Hit hit = load_hit(hits, ray);

@@ -47,6 +47,11 @@ impl SurfacePoint {
         let origin = position + error * normal;
         SurfacePoint { position, origin, normal }
     }
+
+    /// Where a ray goes on that the surface lets through.
+    pub(crate) fn behind(&self) -> Vec3 {
+        2.0 * self.position - self.origin
+    }
 }
 
 /// The normals of a triangle's corners, and what they are between them.

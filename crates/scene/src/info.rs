@@ -27,6 +27,8 @@ pub struct SceneInfo {
     pub materials: usize,
     /// Number of materials whose opacity says where their surfaces are.
     pub cut_outs: usize,
+    /// Number of materials that let a share of the light through.
+    pub see_through: usize,
     /// Number of textures.
     pub textures: usize,
     /// The up axis; `None` if neither cameras nor shape indicate it.
@@ -109,6 +111,7 @@ impl Scene {
     pub fn info(&self) -> SceneInfo {
         let bounds = self.geometry.mesh.bounds();
         let world = |local| self.to_world(local).to_array();
+        let opacities = || self.geometry.materials.iter().filter_map(|material| material.opacity);
         SceneInfo {
             triangles: self.geometry.mesh.triangles.len(),
             normals: self.geometry.mesh.normal_count(),
@@ -117,7 +120,8 @@ impl Scene {
             lights: self.lights.iter().map(|light| light_info(self, light)).collect(),
             cameras: self.cameras.iter().map(|camera| camera_info(self, camera)).collect(),
             materials: self.geometry.materials.len(),
-            cut_outs: self.geometry.materials.iter().filter(|material| material.cut_out.is_some()).count(),
+            cut_outs: opacities().filter(|opacity| opacity.filter().is_none()).count(),
+            see_through: opacities().filter(|opacity| opacity.filter().is_some()).count(),
             textures: self.geometry.textures.len(),
             up: self.suggested_up(),
             warnings: self.warnings.clone(),
@@ -190,8 +194,11 @@ pub(crate) fn shortest(number: f32) -> f64 {
 impl fmt::Display for SceneInfo {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{} triangles, {} materials", self.triangles, self.materials)?;
-        if self.cut_outs > 0 {
-            write!(f, " ({} cut out by opacity)", self.cut_outs)?;
+        let kinds = [(self.cut_outs, "cut out by opacity"), (self.see_through, "see-through")];
+        let kinds: Vec<String> =
+            kinds.iter().filter(|(count, _)| *count > 0).map(|(count, kind)| format!("{count} {kind}")).collect();
+        if !kinds.is_empty() {
+            write!(f, " ({})", kinds.join(", "))?;
         }
         match self.textures {
             0 => writeln!(f)?,

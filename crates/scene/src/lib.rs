@@ -13,7 +13,6 @@ mod border;
 mod builder;
 pub mod builtin;
 mod camera;
-mod cut_out;
 mod draft;
 mod environment;
 mod error;
@@ -33,6 +32,7 @@ mod mesh;
 mod mesh_part;
 mod names;
 mod objects;
+mod opacity;
 mod open;
 mod quote;
 mod scene;
@@ -50,7 +50,6 @@ pub use glam;
 
 pub use builder::SceneBuilder;
 pub use camera::{Camera, CameraError, Fov, Projection};
-pub use cut_out::{CutOut, OpacityChannel};
 pub use environment::{
     Environment, EnvironmentError, EnvironmentLevel, Moment, Sky, SkyError, SkyKind, Sun, SunError, SunPosition,
     Surroundings,
@@ -68,6 +67,7 @@ pub use mesh::{Bounds, Mesh};
 pub use mesh_part::MeshPart;
 pub use names::UnknownName;
 pub use objects::{Objects, UNNAMED};
+pub use opacity::{Opacity, OpacityChannel, OpacityMode};
 pub use open::LoadOptions;
 pub use scene::{LightMeshDefaults, Scene, Weight};
 pub use scene_format::SceneFormat;

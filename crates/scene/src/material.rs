@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::{CutOut, TextureUse};
+use crate::{Opacity, TextureUse};
 
 /// How a surface reflects light: ambient, diffuse and Phong terms (Whitted 1980, Phong 1975).
 ///
@@ -35,8 +35,8 @@ pub struct Material {
     pub catcher: bool,
     /// Whether lights stand for what it emits ([`Light::surface`](crate::Light::surface)): where light is gathered, it is left out.
     pub lamp: bool,
-    /// Where the surface is; everywhere without it.
-    pub cut_out: Option<CutOut>,
+    /// Where the surface is, and what it lets through; opaque everywhere without it.
+    pub opacity: Option<Opacity>,
 }
 
 impl Default for Material {
@@ -54,7 +54,7 @@ impl Default for Material {
             texture: None,
             catcher: false,
             lamp: false,
-            cut_out: None,
+            opacity: None,
         }
     }
 }
@@ -73,6 +73,11 @@ impl Material {
         const ROUNDING: f32 = 4.0 * f32::EPSILON;
         let whole = self.ks + self.ks_tinted;
         (whole.max_element() > 1.0 + ROUNDING).then_some(whole)
+    }
+
+    /// Whether light may go through a surface of this material.
+    pub fn lets_through(&self) -> bool {
+        !self.catcher && self.opacity.is_some_and(|opacity| opacity.filter().is_some())
     }
 
     /// A matt surface of this colour, also in ambient light.
@@ -136,8 +141,8 @@ impl Material {
         Material { texture: Some(texture), ..self }
     }
 
-    /// Where the surface is.
-    pub fn with_cut_out(self, cut_out: CutOut) -> Material {
-        Material { cut_out: Some(cut_out), ..self }
+    /// Where the surface is, and what it lets through.
+    pub fn with_opacity(self, opacity: Opacity) -> Material {
+        Material { opacity: Some(opacity), ..self }
     }
 }

@@ -74,7 +74,7 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// Colours by vertex, linear: they tint the material, see [`Material`](crate::Material).
     pub colors: Vec<Vec3>,
-    /// Opacities by vertex, from 0 to 1: they count where a material is [cut out](crate::CutOut).
+    /// Opacities by vertex, from 0 to 1: they count where a material is [cut out](crate::Opacity).
     pub opacities: Vec<f32>,
     /// Three vertex indices per triangle, counter-clockwise seen from outside (both sides are rendered).
     pub triangles: Vec<[u32; 3]>,

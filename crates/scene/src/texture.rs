@@ -19,7 +19,7 @@ pub struct Texture {
     pub name: String,
     /// Width and height in texels, at least 1.
     pub size: [u32; 2],
-    /// Red, green, blue and alpha, row by row. Alpha counts where a material is [cut out](crate::CutOut) by it.
+    /// Red, green, blue and alpha, row by row. Alpha counts where a material is [cut out](crate::Opacity) by it.
     pub texels: Vec<[u8; 4]>,
 }
 

@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::{Material, draft::LARGEST_COORDINATE, quote::list};
+use crate::{Material, Opacity, OpacityMode, draft::LARGEST_COORDINATE, quote::list};
 
 /// Whether a world position is usable.
 pub(crate) fn is_place(world: DVec3) -> bool {
@@ -21,17 +21,30 @@ pub(crate) fn keep_placed<T>(items: &mut Vec<(T, DVec3)>, kind: &str) -> Option<
 /// Replaces infinite, NaN and negative coefficients by 0.
 pub(crate) fn keep_finite(materials: &mut [Material]) -> Option<String> {
     let mut count = 0;
-    for Material { ka, kd, ks, ks_tinted, emission, emission_tinted, cut_out, .. } in materials {
+    for Material { ka, kd, ks, ks_tinted, emission, emission_tinted, opacity, .. } in materials {
         let mut odd = false;
         for color in [ka, kd, ks, ks_tinted, emission, emission_tinted] {
             let usable = color.is_finite_mask() & color.cmpge(Vec3::ZERO);
             odd |= !usable.all();
             *color = Vec3::select(usable, *color, Vec3::ZERO);
         }
-        for number in cut_out.iter_mut().flat_map(|cut_out| [&mut cut_out.factor, &mut cut_out.cutoff]) {
-            let usable = number.is_finite() && *number >= 0.0;
-            odd |= !usable;
-            *number = if usable { *number } else { 0.0 };
+        if let Some(Opacity { factor, mode, .. }) = opacity {
+            let mut keep = |number: &mut f32, most: f32| {
+                let usable = number.is_finite() && (0.0..=most).contains(number);
+                odd |= !usable;
+                *number = if usable || *number > most { number.min(most) } else { 0.0 };
+            };
+            match mode {
+                OpacityMode::Mask { cutoff } => {
+                    keep(factor, f32::MAX);
+                    keep(cutoff, f32::MAX);
+                }
+                // More than all would be light from nowhere.
+                OpacityMode::Blend { filter } => {
+                    keep(factor, 1.0);
+                    filter.as_mut().iter_mut().for_each(|channel| keep(channel, 1.0));
+                }
+            }
         }
         count += usize::from(odd);
     }

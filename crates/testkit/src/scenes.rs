@@ -1,7 +1,7 @@
 //! Analytic scenes: what is lit and what is in shadow is known without rendering.
 
 use glam::{DVec3, Vec2, Vec3};
-use lightmesh_scene::{CutOut, LightKind, OpacityChannel, Scene, Texture, TextureUse, Wrap};
+use lightmesh_scene::{LightKind, Opacity, OpacityChannel, Scene, Texture, TextureUse, Wrap};
 
 use crate::{Random, SceneDraft};
 
@@ -61,7 +61,17 @@ pub fn pile(offset: DVec3, lights: &[LightKind]) -> Scene {
 }
 
 /// The same scene with holes: two of three triangles are cut out by noise in an image, and by the opacities of their corners.
-pub fn perforated(mut scene: Scene) -> Scene {
+pub fn perforated(scene: Scene) -> Scene {
+    with_opacity(scene, |opacity| opacity.with_cutoff(0.45))
+}
+
+/// The same scene with panes: two of three triangles let light through in part.
+pub fn glazed(scene: Scene) -> Scene {
+    with_opacity(scene, |opacity| opacity.with_filter([0.9, 0.6, 1.0]).with_factor(0.8))
+}
+
+/// Gives two of three triangles opacities that are noise in an image, and vary between their corners.
+fn with_opacity(mut scene: Scene, complete: impl Fn(Opacity) -> Opacity) -> Scene {
     const SIDE: u32 = 16;
     let mut random = Random::new(11);
     let geometry = scene.geometry_mut();
@@ -72,7 +82,7 @@ pub fn perforated(mut scene: Scene) -> Scene {
     let count = geometry.materials.len() as u32;
     for index in 0..count as usize {
         let material = geometry.materials[index].clone();
-        geometry.materials.push(material.with_cut_out(CutOut::by(uses, OpacityChannel::Alpha).with_cutoff(0.45)));
+        geometry.materials.push(material.with_opacity(complete(Opacity::by(uses, OpacityChannel::Alpha))));
     }
     let mesh = &mut geometry.mesh;
     mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(0.17 * p.x + 0.05 * p.y, 0.11 * p.z - 0.14 * p.y)).collect();

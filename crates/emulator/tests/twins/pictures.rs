@@ -10,7 +10,7 @@ use lightmesh_render::{
 use lightmesh_scene::{Bounds, Up};
 use lightmesh_testkit::{Picture, Random};
 
-use crate::scenes::{SUBJECTS, SURROUNDED, Subject, TEXTURED};
+use crate::scenes::{GLAZED, SUBJECTS, SURROUNDED, Subject, TEXTURED};
 use crate::stages::{SHARE_TOLERANCE, alike};
 use crate::trials::{Case, Target};
 
@@ -29,7 +29,7 @@ const WAYS: [Way; 5] = [
 
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     let mut cases = Vec::new();
-    for subject in SUBJECTS.iter().chain([&TEXTURED, &SURROUNDED]) {
+    for subject in SUBJECTS.iter().chain([&TEXTURED, &SURROUNDED, &GLAZED]) {
         for way in WAYS {
             let (name, ..) = way;
             let picture = format!("{}::picture::{name}", subject.name);
@@ -45,7 +45,7 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         let crop = move || settings(&TEXTURED, way).with_aa(3).with_crop(Crop::new([17, 9], [15, 11]));
         cases.push(Case::new(part, move |cuda| same_picture(cuda, &TEXTURED, crop())));
         for aa in [1, 3] {
-            for subject in [&TEXTURED, &SURROUNDED] {
+            for subject in [&TEXTURED, &SURROUNDED, &GLAZED] {
                 let ground = format!("{}::ground::{}::{aa}", subject.name, way.0);
                 let settings = move || settings(subject, way).with_aa(aa).with_size([21, 17]);
                 cases.push(Case::new(ground, move |cuda| same_shadows(cuda, subject, settings())));

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Acceleration, PreparedScene, Unobserved, View};
 use lightmesh_scene::{Falloff, LightKind, Material, Scene, Sky, SunPosition, Up};
-use lightmesh_testkit::{SceneDraft, half_plane, perforated, pile, soup};
+use lightmesh_testkit::{SceneDraft, glazed, half_plane, perforated, pile, soup};
 
 /// The structures, in the order of [`Subject::prepared`].
 pub(crate) const ACCELERATIONS: [Acceleration; 3] =
@@ -46,6 +46,9 @@ pub(crate) static TEXTURED: Subject = subject("textured", 0.25, true, crate::tex
 
 /// For images only, too.
 pub(crate) static SURROUNDED: Subject = subject("surrounded", 0.25, true, surrounded);
+
+/// For images with rays that surfaces let through.
+pub(crate) static GLAZED: Subject = subject("glazed", 0.25, true, || glazed(all_lights()));
 
 /// For gathered light.
 pub(crate) static LAMPS: Subject = subject("lamps", 0.5, true, lamps);

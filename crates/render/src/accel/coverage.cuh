@@ -1,4 +1,4 @@
-// Where surfaces are that are cut out: twin of coverage/mod.rs, bit by bit.
+// Where surfaces are that are cut out, and how opaque are those that light goes through: twin of coverage/mod.rs, bit by bit.
 //
 // Most scenes are opaque, and what cut-outs need takes registers from loops over triangles even where it is never used. So kernels that test
 // triangles are in two modules, without and with CUT_OUTS: `<module>_cut_out.cu` includes `kernel.cu`.
@@ -22,11 +22,8 @@ DEVICE float mask_at(const Mask *mask, float u, float v) {
     return between(upper, lower, y.share);
 }
 
-// Whether the cut-out triangle number `cut` has a surface at these barycentric weights of its second and third corner.
-DEVICE bool covers(const Coverage &coverage, unsigned cut, float u, float v) {
-    const CutTriangle &own = coverage.triangles[cut - 1];
-    const Mask &mask = coverage.masks[own.mask];
-
+// The opacity of a cut-out triangle at these barycentric weights of its second and third corner, as texels count.
+DEVICE float opacity_of(const CutTriangle &own, const Mask &mask, float u, float v) {
     // 1. The opacity of the corners; exactly theirs if it is the same.
     const float a = own.opacities[0], b = own.opacities[1], c = own.opacities[2];
     const float opacity = a + u * (b - a) + v * (c - a);
@@ -38,8 +35,26 @@ DEVICE bool covers(const Coverage &coverage, unsigned cut, float u, float v) {
     const float place_u = mask.u_axis[0] * x + mask.v_axis[0] * y + mask.translation[0];
     const float place_v = mask.u_axis[1] * x + mask.v_axis[1] * y + mask.translation[1];
 
-    // 3. What is there. NaN is nothing.
-    return opacity * mask_at(&mask, place_u, place_v) >= mask.limit;
+    // 3. What is there.
+    return opacity * mask_at(&mask, place_u, place_v);
+}
+
+// Whether the cut-out triangle number `cut` has a surface there.
+DEVICE bool covers(const Coverage &coverage, unsigned cut, float u, float v) {
+    const CutTriangle &own = coverage.triangles[cut - 1];
+    const Mask &mask = coverage.masks[own.mask];
+    // NaN is nothing.
+    return opacity_of(own, mask, u, v) >= mask.limit;
+}
+
+// How opaque a triangle is where it is hit, from 0 to 1.
+DEVICE float opacity_at(const Coverage &coverage, const Triangle *triangle, float u, float v) {
+    const unsigned cut = coverage.triangles != nullptr ? triangle_cut(triangle) : 0;
+    if (cut == 0)
+        return 1.0f;
+    const CutTriangle &own = coverage.triangles[cut - 1];
+    const Mask &mask = coverage.masks[own.mask];
+    return mask.blends ? fminf(opacity_of(own, mask, u, v) / OPAQUE, 1.0f) : 1.0f;
 }
 
 // The same for a hit, by its scaled weights.

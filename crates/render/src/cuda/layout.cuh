@@ -135,6 +135,14 @@
 #define MOST_REACH 16
 // Lines along x of that template.
 #define TEMPLATE_LINES 1024
+// The opacity of a texel that hides everything, as texels count.
+#define OPAQUE 0x1.fep7f
+// The bit from which on the number of surfaces that a ray went through is in a list, above its sample.
+#define THROUGHS_SHIFT 16u
+// A ray goes through so many surfaces.
+#define MOST_THROUGHS 64u
+// A ray goes on through a surface if at least this share of the radiance behind it reaches the pixel: less changes no code of an image.
+#define LEAST_THROUGH 0x1p-12f
 // Sample points of a light that determine its share above the horizon.
 #define HORIZON_SAMPLES 64u
 // Points of an area light from which its unshadowed light is computed.
@@ -406,7 +414,7 @@ struct alignas(8) Mask {
     float v_axis[2];
     float translation[2];
     float limit;
-    unsigned spare;
+    unsigned blends;
 };
 static_assert(sizeof(Mask) == 56, "size of Mask");
 static_assert(PLACE_OF(Mask, texels) == 0, "place of Mask::texels");
@@ -416,7 +424,7 @@ static_assert(PLACE_OF(Mask, u_axis) == 24, "place of Mask::u_axis");
 static_assert(PLACE_OF(Mask, v_axis) == 32, "place of Mask::v_axis");
 static_assert(PLACE_OF(Mask, translation) == 40, "place of Mask::translation");
 static_assert(PLACE_OF(Mask, limit) == 48, "place of Mask::limit");
-static_assert(PLACE_OF(Mask, spare) == 52, "place of Mask::spare");
+static_assert(PLACE_OF(Mask, blends) == 52, "place of Mask::blends");
 
 struct alignas(8) Coverage {
     const CutTriangle *triangles;
@@ -568,15 +576,19 @@ struct alignas(8) Rays {
     const Cone *cones;
     unsigned first_pixel;
     unsigned count;
+    unsigned depth;
+    unsigned spare;
     Cone cone;
 };
-static_assert(sizeof(Rays) == 112, "size of Rays");
+static_assert(sizeof(Rays) == 120, "size of Rays");
 static_assert(PLACE_OF(Rays, view) == 0, "place of Rays::view");
 static_assert(PLACE_OF(Rays, list) == 80, "place of Rays::list");
 static_assert(PLACE_OF(Rays, cones) == 88, "place of Rays::cones");
 static_assert(PLACE_OF(Rays, first_pixel) == 96, "place of Rays::first_pixel");
 static_assert(PLACE_OF(Rays, count) == 100, "place of Rays::count");
-static_assert(PLACE_OF(Rays, cone) == 104, "place of Rays::cone");
+static_assert(PLACE_OF(Rays, depth) == 104, "place of Rays::depth");
+static_assert(PLACE_OF(Rays, spare) == 108, "place of Rays::spare");
+static_assert(PLACE_OF(Rays, cone) == 112, "place of Rays::cone");
 
 struct alignas(8) Tally {
     enum : unsigned {
@@ -703,8 +715,10 @@ struct alignas(4) Material {
     unsigned number;
     Vec3 emission_tinted;
     unsigned lamp;
+    Vec3 transmittance;
+    unsigned blends;
 };
-static_assert(sizeof(Material) == 96, "size of Material");
+static_assert(sizeof(Material) == 112, "size of Material");
 static_assert(PLACE_OF(Material, ka) == 0, "place of Material::ka");
 static_assert(PLACE_OF(Material, shininess) == 12, "place of Material::shininess");
 static_assert(PLACE_OF(Material, kd) == 16, "place of Material::kd");
@@ -717,6 +731,8 @@ static_assert(PLACE_OF(Material, ks_tinted) == 64, "place of Material::ks_tinted
 static_assert(PLACE_OF(Material, number) == 76, "place of Material::number");
 static_assert(PLACE_OF(Material, emission_tinted) == 80, "place of Material::emission_tinted");
 static_assert(PLACE_OF(Material, lamp) == 92, "place of Material::lamp");
+static_assert(PLACE_OF(Material, transmittance) == 96, "place of Material::transmittance");
+static_assert(PLACE_OF(Material, blends) == 108, "place of Material::blends");
 
 struct alignas(8) EnvironmentLevel {
     const Vec3 *texels;
@@ -770,6 +786,7 @@ struct alignas(8) Scene {
     const unsigned *objects;
     const Light *lights;
     const Vec3 *light_targets;
+    Coverage coverage;
     Environment environment;
     Grid grid;
     Bvh bvh;
@@ -781,7 +798,7 @@ struct alignas(8) Scene {
     float far;
     unsigned object_runs;
 };
-static_assert(sizeof(Scene) == 568, "size of Scene");
+static_assert(sizeof(Scene) == 584, "size of Scene");
 static_assert(PLACE_OF(Scene, triangles) == 0, "place of Scene::triangles");
 static_assert(PLACE_OF(Scene, indices) == 8, "place of Scene::indices");
 static_assert(PLACE_OF(Scene, normals) == 16, "place of Scene::normals");
@@ -795,16 +812,17 @@ static_assert(PLACE_OF(Scene, object_starts) == 72, "place of Scene::object_star
 static_assert(PLACE_OF(Scene, objects) == 80, "place of Scene::objects");
 static_assert(PLACE_OF(Scene, lights) == 88, "place of Scene::lights");
 static_assert(PLACE_OF(Scene, light_targets) == 96, "place of Scene::light_targets");
-static_assert(PLACE_OF(Scene, environment) == 104, "place of Scene::environment");
-static_assert(PLACE_OF(Scene, grid) == 304, "place of Scene::grid");
-static_assert(PLACE_OF(Scene, bvh) == 416, "place of Scene::bvh");
-static_assert(PLACE_OF(Scene, brute_force) == 472, "place of Scene::brute_force");
-static_assert(PLACE_OF(Scene, light_count) == 520, "place of Scene::light_count");
-static_assert(PLACE_OF(Scene, ambient) == 524, "place of Scene::ambient");
-static_assert(PLACE_OF(Scene, background) == 536, "place of Scene::background");
-static_assert(PLACE_OF(Scene, center) == 548, "place of Scene::center");
-static_assert(PLACE_OF(Scene, far) == 560, "place of Scene::far");
-static_assert(PLACE_OF(Scene, object_runs) == 564, "place of Scene::object_runs");
+static_assert(PLACE_OF(Scene, coverage) == 104, "place of Scene::coverage");
+static_assert(PLACE_OF(Scene, environment) == 120, "place of Scene::environment");
+static_assert(PLACE_OF(Scene, grid) == 320, "place of Scene::grid");
+static_assert(PLACE_OF(Scene, bvh) == 432, "place of Scene::bvh");
+static_assert(PLACE_OF(Scene, brute_force) == 488, "place of Scene::brute_force");
+static_assert(PLACE_OF(Scene, light_count) == 536, "place of Scene::light_count");
+static_assert(PLACE_OF(Scene, ambient) == 540, "place of Scene::ambient");
+static_assert(PLACE_OF(Scene, background) == 552, "place of Scene::background");
+static_assert(PLACE_OF(Scene, center) == 564, "place of Scene::center");
+static_assert(PLACE_OF(Scene, far) == 576, "place of Scene::far");
+static_assert(PLACE_OF(Scene, object_runs) == 580, "place of Scene::object_runs");
 
 struct alignas(8) Sampling {
     unsigned long long seed;
@@ -1145,17 +1163,17 @@ struct alignas(8) Lookup {
     unsigned count;
     unsigned first;
 };
-static_assert(sizeof(Lookup) == 712, "size of Lookup");
+static_assert(sizeof(Lookup) == 728, "size of Lookup");
 static_assert(PLACE_OF(Lookup, scene) == 0, "place of Lookup::scene");
-static_assert(PLACE_OF(Lookup, tally) == 568, "place of Lookup::tally");
-static_assert(PLACE_OF(Lookup, table) == 576, "place of Lookup::table");
-static_assert(PLACE_OF(Lookup, places) == 664, "place of Lookup::places");
-static_assert(PLACE_OF(Lookup, offsets) == 672, "place of Lookup::offsets");
-static_assert(PLACE_OF(Lookup, links) == 680, "place of Lookup::links");
-static_assert(PLACE_OF(Lookup, nearest) == 688, "place of Lookup::nearest");
-static_assert(PLACE_OF(Lookup, fine) == 696, "place of Lookup::fine");
-static_assert(PLACE_OF(Lookup, count) == 704, "place of Lookup::count");
-static_assert(PLACE_OF(Lookup, first) == 708, "place of Lookup::first");
+static_assert(PLACE_OF(Lookup, tally) == 584, "place of Lookup::tally");
+static_assert(PLACE_OF(Lookup, table) == 592, "place of Lookup::table");
+static_assert(PLACE_OF(Lookup, places) == 680, "place of Lookup::places");
+static_assert(PLACE_OF(Lookup, offsets) == 688, "place of Lookup::offsets");
+static_assert(PLACE_OF(Lookup, links) == 696, "place of Lookup::links");
+static_assert(PLACE_OF(Lookup, nearest) == 704, "place of Lookup::nearest");
+static_assert(PLACE_OF(Lookup, fine) == 712, "place of Lookup::fine");
+static_assert(PLACE_OF(Lookup, count) == 720, "place of Lookup::count");
+static_assert(PLACE_OF(Lookup, first) == 724, "place of Lookup::first");
 
 struct alignas(8) Fans {
     Scene scene;
@@ -1177,25 +1195,25 @@ struct alignas(8) Fans {
     unsigned lamps;
     unsigned spare;
 };
-static_assert(sizeof(Fans) == 792, "size of Fans");
+static_assert(sizeof(Fans) == 816, "size of Fans");
 static_assert(PLACE_OF(Fans, scene) == 0, "place of Fans::scene");
-static_assert(PLACE_OF(Fans, rays) == 568, "place of Fans::rays");
-static_assert(PLACE_OF(Fans, sampling) == 680, "place of Fans::sampling");
-static_assert(PLACE_OF(Fans, tally) == 696, "place of Fans::tally");
-static_assert(PLACE_OF(Fans, sites) == 704, "place of Fans::sites");
-static_assert(PLACE_OF(Fans, owners) == 712, "place of Fans::owners");
-static_assert(PLACE_OF(Fans, nodes) == 720, "place of Fans::nodes");
-static_assert(PLACE_OF(Fans, list) == 728, "place of Fans::list");
-static_assert(PLACE_OF(Fans, weights) == 736, "place of Fans::weights");
-static_assert(PLACE_OF(Fans, hits) == 744, "place of Fans::hits");
-static_assert(PLACE_OF(Fans, seen) == 752, "place of Fans::seen");
-static_assert(PLACE_OF(Fans, nearest) == 760, "place of Fans::nearest");
-static_assert(PLACE_OF(Fans, count) == 768, "place of Fans::count");
-static_assert(PLACE_OF(Fans, side) == 772, "place of Fans::side");
-static_assert(PLACE_OF(Fans, reach) == 776, "place of Fans::reach");
-static_assert(PLACE_OF(Fans, is_near) == 780, "place of Fans::is_near");
-static_assert(PLACE_OF(Fans, lamps) == 784, "place of Fans::lamps");
-static_assert(PLACE_OF(Fans, spare) == 788, "place of Fans::spare");
+static_assert(PLACE_OF(Fans, rays) == 584, "place of Fans::rays");
+static_assert(PLACE_OF(Fans, sampling) == 704, "place of Fans::sampling");
+static_assert(PLACE_OF(Fans, tally) == 720, "place of Fans::tally");
+static_assert(PLACE_OF(Fans, sites) == 728, "place of Fans::sites");
+static_assert(PLACE_OF(Fans, owners) == 736, "place of Fans::owners");
+static_assert(PLACE_OF(Fans, nodes) == 744, "place of Fans::nodes");
+static_assert(PLACE_OF(Fans, list) == 752, "place of Fans::list");
+static_assert(PLACE_OF(Fans, weights) == 760, "place of Fans::weights");
+static_assert(PLACE_OF(Fans, hits) == 768, "place of Fans::hits");
+static_assert(PLACE_OF(Fans, seen) == 776, "place of Fans::seen");
+static_assert(PLACE_OF(Fans, nearest) == 784, "place of Fans::nearest");
+static_assert(PLACE_OF(Fans, count) == 792, "place of Fans::count");
+static_assert(PLACE_OF(Fans, side) == 796, "place of Fans::side");
+static_assert(PLACE_OF(Fans, reach) == 800, "place of Fans::reach");
+static_assert(PLACE_OF(Fans, is_near) == 804, "place of Fans::is_near");
+static_assert(PLACE_OF(Fans, lamps) == 808, "place of Fans::lamps");
+static_assert(PLACE_OF(Fans, spare) == 812, "place of Fans::spare");
 
 struct alignas(8) Bounce {
     Scene scene;
@@ -1211,19 +1229,19 @@ struct alignas(8) Bounce {
     unsigned first;
     unsigned count;
 };
-static_assert(sizeof(Bounce) == 1456, "size of Bounce");
+static_assert(sizeof(Bounce) == 1496, "size of Bounce");
 static_assert(PLACE_OF(Bounce, scene) == 0, "place of Bounce::scene");
-static_assert(PLACE_OF(Bounce, fans) == 568, "place of Bounce::fans");
-static_assert(PLACE_OF(Bounce, names) == 1360, "place of Bounce::names");
-static_assert(PLACE_OF(Bounce, nodes) == 1400, "place of Bounce::nodes");
-static_assert(PLACE_OF(Bounce, sites) == 1408, "place of Bounce::sites");
-static_assert(PLACE_OF(Bounce, stamps) == 1416, "place of Bounce::stamps");
-static_assert(PLACE_OF(Bounce, listed) == 1424, "place of Bounce::listed");
-static_assert(PLACE_OF(Bounce, listed_count) == 1432, "place of Bounce::listed_count");
-static_assert(PLACE_OF(Bounce, order) == 1440, "place of Bounce::order");
-static_assert(PLACE_OF(Bounce, stamp) == 1444, "place of Bounce::stamp");
-static_assert(PLACE_OF(Bounce, first) == 1448, "place of Bounce::first");
-static_assert(PLACE_OF(Bounce, count) == 1452, "place of Bounce::count");
+static_assert(PLACE_OF(Bounce, fans) == 584, "place of Bounce::fans");
+static_assert(PLACE_OF(Bounce, names) == 1400, "place of Bounce::names");
+static_assert(PLACE_OF(Bounce, nodes) == 1440, "place of Bounce::nodes");
+static_assert(PLACE_OF(Bounce, sites) == 1448, "place of Bounce::sites");
+static_assert(PLACE_OF(Bounce, stamps) == 1456, "place of Bounce::stamps");
+static_assert(PLACE_OF(Bounce, listed) == 1464, "place of Bounce::listed");
+static_assert(PLACE_OF(Bounce, listed_count) == 1472, "place of Bounce::listed_count");
+static_assert(PLACE_OF(Bounce, order) == 1480, "place of Bounce::order");
+static_assert(PLACE_OF(Bounce, stamp) == 1484, "place of Bounce::stamp");
+static_assert(PLACE_OF(Bounce, first) == 1488, "place of Bounce::first");
+static_assert(PLACE_OF(Bounce, count) == 1492, "place of Bounce::count");
 
 struct alignas(8) GatherFar {
     Fans fans;
@@ -1234,14 +1252,14 @@ struct alignas(8) GatherFar {
     unsigned first;
     unsigned before;
 };
-static_assert(sizeof(GatherFar) == 832, "size of GatherFar");
+static_assert(sizeof(GatherFar) == 856, "size of GatherFar");
 static_assert(PLACE_OF(GatherFar, fans) == 0, "place of GatherFar::fans");
-static_assert(PLACE_OF(GatherFar, far) == 792, "place of GatherFar::far");
-static_assert(PLACE_OF(GatherFar, owners) == 800, "place of GatherFar::owners");
-static_assert(PLACE_OF(GatherFar, uneven) == 808, "place of GatherFar::uneven");
-static_assert(PLACE_OF(GatherFar, uneven_count) == 816, "place of GatherFar::uneven_count");
-static_assert(PLACE_OF(GatherFar, first) == 824, "place of GatherFar::first");
-static_assert(PLACE_OF(GatherFar, before) == 828, "place of GatherFar::before");
+static_assert(PLACE_OF(GatherFar, far) == 816, "place of GatherFar::far");
+static_assert(PLACE_OF(GatherFar, owners) == 824, "place of GatherFar::owners");
+static_assert(PLACE_OF(GatherFar, uneven) == 832, "place of GatherFar::uneven");
+static_assert(PLACE_OF(GatherFar, uneven_count) == 840, "place of GatherFar::uneven_count");
+static_assert(PLACE_OF(GatherFar, first) == 848, "place of GatherFar::first");
+static_assert(PLACE_OF(GatherFar, before) == 852, "place of GatherFar::before");
 
 struct alignas(8) GatherFine {
     Fans fans;
@@ -1255,17 +1273,17 @@ struct alignas(8) GatherFine {
     unsigned count;
     unsigned spare;
 };
-static_assert(sizeof(GatherFine) == 1552, "size of GatherFine");
+static_assert(sizeof(GatherFine) == 1592, "size of GatherFine");
 static_assert(PLACE_OF(GatherFine, fans) == 0, "place of GatherFine::fans");
-static_assert(PLACE_OF(GatherFine, lookup) == 792, "place of GatherFine::lookup");
-static_assert(PLACE_OF(GatherFine, far) == 1504, "place of GatherFine::far");
-static_assert(PLACE_OF(GatherFine, fine) == 1512, "place of GatherFine::fine");
-static_assert(PLACE_OF(GatherFine, alone) == 1520, "place of GatherFine::alone");
-static_assert(PLACE_OF(GatherFine, alone_count) == 1528, "place of GatherFine::alone_count");
-static_assert(PLACE_OF(GatherFine, first) == 1536, "place of GatherFine::first");
-static_assert(PLACE_OF(GatherFine, first_alone) == 1540, "place of GatherFine::first_alone");
-static_assert(PLACE_OF(GatherFine, count) == 1544, "place of GatherFine::count");
-static_assert(PLACE_OF(GatherFine, spare) == 1548, "place of GatherFine::spare");
+static_assert(PLACE_OF(GatherFine, lookup) == 816, "place of GatherFine::lookup");
+static_assert(PLACE_OF(GatherFine, far) == 1544, "place of GatherFine::far");
+static_assert(PLACE_OF(GatherFine, fine) == 1552, "place of GatherFine::fine");
+static_assert(PLACE_OF(GatherFine, alone) == 1560, "place of GatherFine::alone");
+static_assert(PLACE_OF(GatherFine, alone_count) == 1568, "place of GatherFine::alone_count");
+static_assert(PLACE_OF(GatherFine, first) == 1576, "place of GatherFine::first");
+static_assert(PLACE_OF(GatherFine, first_alone) == 1580, "place of GatherFine::first_alone");
+static_assert(PLACE_OF(GatherFine, count) == 1584, "place of GatherFine::count");
+static_assert(PLACE_OF(GatherFine, spare) == 1588, "place of GatherFine::spare");
 
 struct alignas(8) GatherPoints {
     Scene scene;
@@ -1288,26 +1306,26 @@ struct alignas(8) GatherPoints {
     unsigned count;
     unsigned first_alone;
 };
-static_assert(sizeof(GatherPoints) == 1504, "size of GatherPoints");
+static_assert(sizeof(GatherPoints) == 1544, "size of GatherPoints");
 static_assert(PLACE_OF(GatherPoints, scene) == 0, "place of GatherPoints::scene");
-static_assert(PLACE_OF(GatherPoints, rays) == 568, "place of GatherPoints::rays");
-static_assert(PLACE_OF(GatherPoints, hits) == 680, "place of GatherPoints::hits");
-static_assert(PLACE_OF(GatherPoints, lookup) == 688, "place of GatherPoints::lookup");
-static_assert(PLACE_OF(GatherPoints, fine) == 1400, "place of GatherPoints::fine");
-static_assert(PLACE_OF(GatherPoints, places) == 1408, "place of GatherPoints::places");
-static_assert(PLACE_OF(GatherPoints, means) == 1416, "place of GatherPoints::means");
-static_assert(PLACE_OF(GatherPoints, alone) == 1424, "place of GatherPoints::alone");
-static_assert(PLACE_OF(GatherPoints, alone_count) == 1432, "place of GatherPoints::alone_count");
-static_assert(PLACE_OF(GatherPoints, sites) == 1440, "place of GatherPoints::sites");
-static_assert(PLACE_OF(GatherPoints, far) == 1448, "place of GatherPoints::far");
-static_assert(PLACE_OF(GatherPoints, light) == 1456, "place of GatherPoints::light");
-static_assert(PLACE_OF(GatherPoints, eye) == 1464, "place of GatherPoints::eye");
-static_assert(PLACE_OF(GatherPoints, spacing) == 1476, "place of GatherPoints::spacing");
-static_assert(PLACE_OF(GatherPoints, pixels) == 1484, "place of GatherPoints::pixels");
-static_assert(PLACE_OF(GatherPoints, least_level) == 1488, "place of GatherPoints::least_level");
-static_assert(PLACE_OF(GatherPoints, first) == 1492, "place of GatherPoints::first");
-static_assert(PLACE_OF(GatherPoints, count) == 1496, "place of GatherPoints::count");
-static_assert(PLACE_OF(GatherPoints, first_alone) == 1500, "place of GatherPoints::first_alone");
+static_assert(PLACE_OF(GatherPoints, rays) == 584, "place of GatherPoints::rays");
+static_assert(PLACE_OF(GatherPoints, hits) == 704, "place of GatherPoints::hits");
+static_assert(PLACE_OF(GatherPoints, lookup) == 712, "place of GatherPoints::lookup");
+static_assert(PLACE_OF(GatherPoints, fine) == 1440, "place of GatherPoints::fine");
+static_assert(PLACE_OF(GatherPoints, places) == 1448, "place of GatherPoints::places");
+static_assert(PLACE_OF(GatherPoints, means) == 1456, "place of GatherPoints::means");
+static_assert(PLACE_OF(GatherPoints, alone) == 1464, "place of GatherPoints::alone");
+static_assert(PLACE_OF(GatherPoints, alone_count) == 1472, "place of GatherPoints::alone_count");
+static_assert(PLACE_OF(GatherPoints, sites) == 1480, "place of GatherPoints::sites");
+static_assert(PLACE_OF(GatherPoints, far) == 1488, "place of GatherPoints::far");
+static_assert(PLACE_OF(GatherPoints, light) == 1496, "place of GatherPoints::light");
+static_assert(PLACE_OF(GatherPoints, eye) == 1504, "place of GatherPoints::eye");
+static_assert(PLACE_OF(GatherPoints, spacing) == 1516, "place of GatherPoints::spacing");
+static_assert(PLACE_OF(GatherPoints, pixels) == 1524, "place of GatherPoints::pixels");
+static_assert(PLACE_OF(GatherPoints, least_level) == 1528, "place of GatherPoints::least_level");
+static_assert(PLACE_OF(GatherPoints, first) == 1532, "place of GatherPoints::first");
+static_assert(PLACE_OF(GatherPoints, count) == 1536, "place of GatherPoints::count");
+static_assert(PLACE_OF(GatherPoints, first_alone) == 1540, "place of GatherPoints::first_alone");
 
 struct alignas(4) TileBox {
     Vec3 low;
@@ -1329,17 +1347,17 @@ struct alignas(8) GroupItems {
     unsigned long long first_block;
     float spacing[2];
 };
-static_assert(sizeof(GroupItems) == 744, "size of GroupItems");
+static_assert(sizeof(GroupItems) == 768, "size of GroupItems");
 static_assert(PLACE_OF(GroupItems, scene) == 0, "place of GroupItems::scene");
-static_assert(PLACE_OF(GroupItems, rays) == 568, "place of GroupItems::rays");
-static_assert(PLACE_OF(GroupItems, hits) == 680, "place of GroupItems::hits");
-static_assert(PLACE_OF(GroupItems, members) == 688, "place of GroupItems::members");
-static_assert(PLACE_OF(GroupItems, ends) == 696, "place of GroupItems::ends");
-static_assert(PLACE_OF(GroupItems, counts) == 704, "place of GroupItems::counts");
-static_assert(PLACE_OF(GroupItems, items) == 712, "place of GroupItems::items");
-static_assert(PLACE_OF(GroupItems, tiles) == 720, "place of GroupItems::tiles");
-static_assert(PLACE_OF(GroupItems, first_block) == 728, "place of GroupItems::first_block");
-static_assert(PLACE_OF(GroupItems, spacing) == 736, "place of GroupItems::spacing");
+static_assert(PLACE_OF(GroupItems, rays) == 584, "place of GroupItems::rays");
+static_assert(PLACE_OF(GroupItems, hits) == 704, "place of GroupItems::hits");
+static_assert(PLACE_OF(GroupItems, members) == 712, "place of GroupItems::members");
+static_assert(PLACE_OF(GroupItems, ends) == 720, "place of GroupItems::ends");
+static_assert(PLACE_OF(GroupItems, counts) == 728, "place of GroupItems::counts");
+static_assert(PLACE_OF(GroupItems, items) == 736, "place of GroupItems::items");
+static_assert(PLACE_OF(GroupItems, tiles) == 744, "place of GroupItems::tiles");
+static_assert(PLACE_OF(GroupItems, first_block) == 752, "place of GroupItems::first_block");
+static_assert(PLACE_OF(GroupItems, spacing) == 760, "place of GroupItems::spacing");
 
 struct alignas(8) Shadows {
     Scene scene;
@@ -1361,25 +1379,25 @@ struct alignas(8) Shadows {
     unsigned first_light;
     unsigned end_light;
 };
-static_assert(sizeof(Shadows) == 2120, "size of Shadows");
+static_assert(sizeof(Shadows) == 2144, "size of Shadows");
 static_assert(PLACE_OF(Shadows, scene) == 0, "place of Shadows::scene");
-static_assert(PLACE_OF(Shadows, rays) == 568, "place of Shadows::rays");
-static_assert(PLACE_OF(Shadows, hits) == 680, "place of Shadows::hits");
-static_assert(PLACE_OF(Shadows, members) == 688, "place of Shadows::members");
-static_assert(PLACE_OF(Shadows, items) == 696, "place of Shadows::items");
-static_assert(PLACE_OF(Shadows, tiles) == 704, "place of Shadows::tiles");
-static_assert(PLACE_OF(Shadows, starts) == 712, "place of Shadows::starts");
-static_assert(PLACE_OF(Shadows, taken) == 720, "place of Shadows::taken");
-static_assert(PLACE_OF(Shadows, share) == 728, "place of Shadows::share");
-static_assert(PLACE_OF(Shadows, sampling) == 736, "place of Shadows::sampling");
-static_assert(PLACE_OF(Shadows, tally) == 752, "place of Shadows::tally");
-static_assert(PLACE_OF(Shadows, first) == 760, "place of Shadows::first");
-static_assert(PLACE_OF(Shadows, count) == 768, "place of Shadows::count");
-static_assert(PLACE_OF(Shadows, sets) == 776, "place of Shadows::sets");
-static_assert(PLACE_OF(Shadows, set) == 2104, "place of Shadows::set");
-static_assert(PLACE_OF(Shadows, set_count) == 2108, "place of Shadows::set_count");
-static_assert(PLACE_OF(Shadows, first_light) == 2112, "place of Shadows::first_light");
-static_assert(PLACE_OF(Shadows, end_light) == 2116, "place of Shadows::end_light");
+static_assert(PLACE_OF(Shadows, rays) == 584, "place of Shadows::rays");
+static_assert(PLACE_OF(Shadows, hits) == 704, "place of Shadows::hits");
+static_assert(PLACE_OF(Shadows, members) == 712, "place of Shadows::members");
+static_assert(PLACE_OF(Shadows, items) == 720, "place of Shadows::items");
+static_assert(PLACE_OF(Shadows, tiles) == 728, "place of Shadows::tiles");
+static_assert(PLACE_OF(Shadows, starts) == 736, "place of Shadows::starts");
+static_assert(PLACE_OF(Shadows, taken) == 744, "place of Shadows::taken");
+static_assert(PLACE_OF(Shadows, share) == 752, "place of Shadows::share");
+static_assert(PLACE_OF(Shadows, sampling) == 760, "place of Shadows::sampling");
+static_assert(PLACE_OF(Shadows, tally) == 776, "place of Shadows::tally");
+static_assert(PLACE_OF(Shadows, first) == 784, "place of Shadows::first");
+static_assert(PLACE_OF(Shadows, count) == 792, "place of Shadows::count");
+static_assert(PLACE_OF(Shadows, sets) == 800, "place of Shadows::sets");
+static_assert(PLACE_OF(Shadows, set) == 2128, "place of Shadows::set");
+static_assert(PLACE_OF(Shadows, set_count) == 2132, "place of Shadows::set_count");
+static_assert(PLACE_OF(Shadows, first_light) == 2136, "place of Shadows::first_light");
+static_assert(PLACE_OF(Shadows, end_light) == 2140, "place of Shadows::end_light");
 
 struct alignas(8) AdaptiveShadows {
     Scene scene;
@@ -1394,18 +1412,18 @@ struct alignas(8) AdaptiveShadows {
     unsigned tiles;
     unsigned spare;
 };
-static_assert(sizeof(AdaptiveShadows) == 3144, "size of AdaptiveShadows");
+static_assert(sizeof(AdaptiveShadows) == 3184, "size of AdaptiveShadows");
 static_assert(PLACE_OF(AdaptiveShadows, scene) == 0, "place of AdaptiveShadows::scene");
-static_assert(PLACE_OF(AdaptiveShadows, shadows) == 568, "place of AdaptiveShadows::shadows");
-static_assert(PLACE_OF(AdaptiveShadows, answers) == 2688, "place of AdaptiveShadows::answers");
-static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2696, "place of AdaptiveShadows::answer_count");
-static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2704, "place of AdaptiveShadows::first_answer");
-static_assert(PLACE_OF(AdaptiveShadows, counts) == 2712, "place of AdaptiveShadows::counts");
-static_assert(PLACE_OF(AdaptiveShadows, entries) == 2720, "place of AdaptiveShadows::entries");
-static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2728, "place of AdaptiveShadows::entry_count");
-static_assert(PLACE_OF(AdaptiveShadows, places) == 2736, "place of AdaptiveShadows::places");
-static_assert(PLACE_OF(AdaptiveShadows, tiles) == 3136, "place of AdaptiveShadows::tiles");
-static_assert(PLACE_OF(AdaptiveShadows, spare) == 3140, "place of AdaptiveShadows::spare");
+static_assert(PLACE_OF(AdaptiveShadows, shadows) == 584, "place of AdaptiveShadows::shadows");
+static_assert(PLACE_OF(AdaptiveShadows, answers) == 2728, "place of AdaptiveShadows::answers");
+static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2736, "place of AdaptiveShadows::answer_count");
+static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2744, "place of AdaptiveShadows::first_answer");
+static_assert(PLACE_OF(AdaptiveShadows, counts) == 2752, "place of AdaptiveShadows::counts");
+static_assert(PLACE_OF(AdaptiveShadows, entries) == 2760, "place of AdaptiveShadows::entries");
+static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2768, "place of AdaptiveShadows::entry_count");
+static_assert(PLACE_OF(AdaptiveShadows, places) == 2776, "place of AdaptiveShadows::places");
+static_assert(PLACE_OF(AdaptiveShadows, tiles) == 3176, "place of AdaptiveShadows::tiles");
+static_assert(PLACE_OF(AdaptiveShadows, spare) == 3180, "place of AdaptiveShadows::spare");
 
 struct alignas(8) PrimaryRays {
     Scene scene;
@@ -1414,12 +1432,12 @@ struct alignas(8) PrimaryRays {
     Tally tally;
     unsigned long long first_block;
 };
-static_assert(sizeof(PrimaryRays) == 704, "size of PrimaryRays");
+static_assert(sizeof(PrimaryRays) == 728, "size of PrimaryRays");
 static_assert(PLACE_OF(PrimaryRays, scene) == 0, "place of PrimaryRays::scene");
-static_assert(PLACE_OF(PrimaryRays, rays) == 568, "place of PrimaryRays::rays");
-static_assert(PLACE_OF(PrimaryRays, hits) == 680, "place of PrimaryRays::hits");
-static_assert(PLACE_OF(PrimaryRays, tally) == 688, "place of PrimaryRays::tally");
-static_assert(PLACE_OF(PrimaryRays, first_block) == 696, "place of PrimaryRays::first_block");
+static_assert(PLACE_OF(PrimaryRays, rays) == 584, "place of PrimaryRays::rays");
+static_assert(PLACE_OF(PrimaryRays, hits) == 704, "place of PrimaryRays::hits");
+static_assert(PLACE_OF(PrimaryRays, tally) == 712, "place of PrimaryRays::tally");
+static_assert(PLACE_OF(PrimaryRays, first_block) == 720, "place of PrimaryRays::first_block");
 
 struct alignas(8) ShadowRays {
     Scene scene;
@@ -1431,15 +1449,15 @@ struct alignas(8) ShadowRays {
     unsigned first_light;
     unsigned light_count;
 };
-static_assert(sizeof(ShadowRays) == 720, "size of ShadowRays");
+static_assert(sizeof(ShadowRays) == 744, "size of ShadowRays");
 static_assert(PLACE_OF(ShadowRays, scene) == 0, "place of ShadowRays::scene");
-static_assert(PLACE_OF(ShadowRays, rays) == 568, "place of ShadowRays::rays");
-static_assert(PLACE_OF(ShadowRays, hits) == 680, "place of ShadowRays::hits");
-static_assert(PLACE_OF(ShadowRays, share) == 688, "place of ShadowRays::share");
-static_assert(PLACE_OF(ShadowRays, tally) == 696, "place of ShadowRays::tally");
-static_assert(PLACE_OF(ShadowRays, first_block) == 704, "place of ShadowRays::first_block");
-static_assert(PLACE_OF(ShadowRays, first_light) == 712, "place of ShadowRays::first_light");
-static_assert(PLACE_OF(ShadowRays, light_count) == 716, "place of ShadowRays::light_count");
+static_assert(PLACE_OF(ShadowRays, rays) == 584, "place of ShadowRays::rays");
+static_assert(PLACE_OF(ShadowRays, hits) == 704, "place of ShadowRays::hits");
+static_assert(PLACE_OF(ShadowRays, share) == 712, "place of ShadowRays::share");
+static_assert(PLACE_OF(ShadowRays, tally) == 720, "place of ShadowRays::tally");
+static_assert(PLACE_OF(ShadowRays, first_block) == 728, "place of ShadowRays::first_block");
+static_assert(PLACE_OF(ShadowRays, first_light) == 736, "place of ShadowRays::first_light");
+static_assert(PLACE_OF(ShadowRays, light_count) == 740, "place of ShadowRays::light_count");
 
 struct alignas(8) Shade {
     Scene scene;
@@ -1471,39 +1489,39 @@ struct alignas(8) Shade {
     unsigned first_sampled;
     unsigned long long sampled_pixels;
     unsigned catches;
-    unsigned mirrored;
+    unsigned spare;
 };
-static_assert(sizeof(Shade) == 872, "size of Shade");
+static_assert(sizeof(Shade) == 896, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
-static_assert(PLACE_OF(Shade, rays) == 568, "place of Shade::rays");
-static_assert(PLACE_OF(Shade, hits) == 680, "place of Shade::hits");
-static_assert(PLACE_OF(Shade, share) == 688, "place of Shade::share");
-static_assert(PLACE_OF(Shade, used) == 696, "place of Shade::used");
-static_assert(PLACE_OF(Shade, gathered) == 704, "place of Shade::gathered");
-static_assert(PLACE_OF(Shade, film_pixel) == 712, "place of Shade::film_pixel");
-static_assert(PLACE_OF(Shade, color) == 720, "place of Shade::color");
-static_assert(PLACE_OF(Shade, sums) == 728, "place of Shade::sums");
-static_assert(PLACE_OF(Shade, caught) == 736, "place of Shade::caught");
-static_assert(PLACE_OF(Shade, ray_caught) == 744, "place of Shade::ray_caught");
-static_assert(PLACE_OF(Shade, samples) == 752, "place of Shade::samples");
-static_assert(PLACE_OF(Shade, depth) == 760, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 768, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 776, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 784, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 792, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, light_groups) == 800, "place of Shade::light_groups");
-static_assert(PLACE_OF(Shade, ids) == 808, "place of Shade::ids");
-static_assert(PLACE_OF(Shade, film_pixels) == 816, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 824, "place of Shade::first_block");
-static_assert(PLACE_OF(Shade, first_light) == 832, "place of Shade::first_light");
-static_assert(PLACE_OF(Shade, end_light) == 836, "place of Shade::end_light");
-static_assert(PLACE_OF(Shade, several) == 840, "place of Shade::several");
-static_assert(PLACE_OF(Shade, sampled) == 844, "place of Shade::sampled");
-static_assert(PLACE_OF(Shade, sample_count) == 848, "place of Shade::sample_count");
-static_assert(PLACE_OF(Shade, first_sampled) == 852, "place of Shade::first_sampled");
-static_assert(PLACE_OF(Shade, sampled_pixels) == 856, "place of Shade::sampled_pixels");
-static_assert(PLACE_OF(Shade, catches) == 864, "place of Shade::catches");
-static_assert(PLACE_OF(Shade, mirrored) == 868, "place of Shade::mirrored");
+static_assert(PLACE_OF(Shade, rays) == 584, "place of Shade::rays");
+static_assert(PLACE_OF(Shade, hits) == 704, "place of Shade::hits");
+static_assert(PLACE_OF(Shade, share) == 712, "place of Shade::share");
+static_assert(PLACE_OF(Shade, used) == 720, "place of Shade::used");
+static_assert(PLACE_OF(Shade, gathered) == 728, "place of Shade::gathered");
+static_assert(PLACE_OF(Shade, film_pixel) == 736, "place of Shade::film_pixel");
+static_assert(PLACE_OF(Shade, color) == 744, "place of Shade::color");
+static_assert(PLACE_OF(Shade, sums) == 752, "place of Shade::sums");
+static_assert(PLACE_OF(Shade, caught) == 760, "place of Shade::caught");
+static_assert(PLACE_OF(Shade, ray_caught) == 768, "place of Shade::ray_caught");
+static_assert(PLACE_OF(Shade, samples) == 776, "place of Shade::samples");
+static_assert(PLACE_OF(Shade, depth) == 784, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 792, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 800, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 808, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 816, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, light_groups) == 824, "place of Shade::light_groups");
+static_assert(PLACE_OF(Shade, ids) == 832, "place of Shade::ids");
+static_assert(PLACE_OF(Shade, film_pixels) == 840, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 848, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, first_light) == 856, "place of Shade::first_light");
+static_assert(PLACE_OF(Shade, end_light) == 860, "place of Shade::end_light");
+static_assert(PLACE_OF(Shade, several) == 864, "place of Shade::several");
+static_assert(PLACE_OF(Shade, sampled) == 868, "place of Shade::sampled");
+static_assert(PLACE_OF(Shade, sample_count) == 872, "place of Shade::sample_count");
+static_assert(PLACE_OF(Shade, first_sampled) == 876, "place of Shade::first_sampled");
+static_assert(PLACE_OF(Shade, sampled_pixels) == 880, "place of Shade::sampled_pixels");
+static_assert(PLACE_OF(Shade, catches) == 888, "place of Shade::catches");
+static_assert(PLACE_OF(Shade, spare) == 892, "place of Shade::spare");
 
 struct alignas(8) PixelSamples {
     Scene scene;
@@ -1545,61 +1563,65 @@ struct alignas(8) PixelSamples {
     unsigned matte_slots;
     float quantiles[64];
 };
-static_assert(sizeof(PixelSamples) == 1200, "size of PixelSamples");
+static_assert(sizeof(PixelSamples) == 1224, "size of PixelSamples");
 static_assert(PLACE_OF(PixelSamples, scene) == 0, "place of PixelSamples::scene");
-static_assert(PLACE_OF(PixelSamples, rays) == 568, "place of PixelSamples::rays");
-static_assert(PLACE_OF(PixelSamples, hits) == 680, "place of PixelSamples::hits");
-static_assert(PLACE_OF(PixelSamples, centers) == 688, "place of PixelSamples::centers");
-static_assert(PLACE_OF(PixelSamples, state) == 696, "place of PixelSamples::state");
-static_assert(PLACE_OF(PixelSamples, owners) == 704, "place of PixelSamples::owners");
-static_assert(PLACE_OF(PixelSamples, color) == 712, "place of PixelSamples::color");
-static_assert(PLACE_OF(PixelSamples, counts) == 720, "place of PixelSamples::counts");
-static_assert(PLACE_OF(PixelSamples, fragments) == 736, "place of PixelSamples::fragments");
-static_assert(PLACE_OF(PixelSamples, fragment_hits) == 752, "place of PixelSamples::fragment_hits");
-static_assert(PLACE_OF(PixelSamples, coverage) == 768, "place of PixelSamples::coverage");
-static_assert(PLACE_OF(PixelSamples, caught) == 776, "place of PixelSamples::caught");
-static_assert(PLACE_OF(PixelSamples, depth) == 784, "place of PixelSamples::depth");
-static_assert(PLACE_OF(PixelSamples, normal) == 792, "place of PixelSamples::normal");
-static_assert(PLACE_OF(PixelSamples, position) == 800, "place of PixelSamples::position");
-static_assert(PLACE_OF(PixelSamples, visibility) == 808, "place of PixelSamples::visibility");
-static_assert(PLACE_OF(PixelSamples, light_points) == 816, "place of PixelSamples::light_points");
-static_assert(PLACE_OF(PixelSamples, light_groups) == 824, "place of PixelSamples::light_groups");
-static_assert(PLACE_OF(PixelSamples, ids) == 832, "place of PixelSamples::ids");
-static_assert(PLACE_OF(PixelSamples, mattes) == 840, "place of PixelSamples::mattes");
-static_assert(PLACE_OF(PixelSamples, tally) == 848, "place of PixelSamples::tally");
-static_assert(PLACE_OF(PixelSamples, first_block) == 856, "place of PixelSamples::first_block");
-static_assert(PLACE_OF(PixelSamples, seed) == 864, "place of PixelSamples::seed");
-static_assert(PLACE_OF(PixelSamples, film_pixels) == 872, "place of PixelSamples::film_pixels");
-static_assert(PLACE_OF(PixelSamples, spacing) == 880, "place of PixelSamples::spacing");
-static_assert(PLACE_OF(PixelSamples, samples) == 888, "place of PixelSamples::samples");
-static_assert(PLACE_OF(PixelSamples, inner) == 896, "place of PixelSamples::inner");
-static_assert(PLACE_OF(PixelSamples, all_samples) == 904, "place of PixelSamples::all_samples");
-static_assert(PLACE_OF(PixelSamples, together) == 908, "place of PixelSamples::together");
-static_assert(PLACE_OF(PixelSamples, lanes) == 912, "place of PixelSamples::lanes");
-static_assert(PLACE_OF(PixelSamples, light_count) == 916, "place of PixelSamples::light_count");
-static_assert(PLACE_OF(PixelSamples, weight) == 920, "place of PixelSamples::weight");
-static_assert(PLACE_OF(PixelSamples, contrast) == 924, "place of PixelSamples::contrast");
-static_assert(PLACE_OF(PixelSamples, apart) == 928, "place of PixelSamples::apart");
-static_assert(PLACE_OF(PixelSamples, mirrors) == 932, "place of PixelSamples::mirrors");
-static_assert(PLACE_OF(PixelSamples, keeps) == 936, "place of PixelSamples::keeps");
-static_assert(PLACE_OF(PixelSamples, matte_slots) == 940, "place of PixelSamples::matte_slots");
-static_assert(PLACE_OF(PixelSamples, quantiles) == 944, "place of PixelSamples::quantiles");
+static_assert(PLACE_OF(PixelSamples, rays) == 584, "place of PixelSamples::rays");
+static_assert(PLACE_OF(PixelSamples, hits) == 704, "place of PixelSamples::hits");
+static_assert(PLACE_OF(PixelSamples, centers) == 712, "place of PixelSamples::centers");
+static_assert(PLACE_OF(PixelSamples, state) == 720, "place of PixelSamples::state");
+static_assert(PLACE_OF(PixelSamples, owners) == 728, "place of PixelSamples::owners");
+static_assert(PLACE_OF(PixelSamples, color) == 736, "place of PixelSamples::color");
+static_assert(PLACE_OF(PixelSamples, counts) == 744, "place of PixelSamples::counts");
+static_assert(PLACE_OF(PixelSamples, fragments) == 760, "place of PixelSamples::fragments");
+static_assert(PLACE_OF(PixelSamples, fragment_hits) == 776, "place of PixelSamples::fragment_hits");
+static_assert(PLACE_OF(PixelSamples, coverage) == 792, "place of PixelSamples::coverage");
+static_assert(PLACE_OF(PixelSamples, caught) == 800, "place of PixelSamples::caught");
+static_assert(PLACE_OF(PixelSamples, depth) == 808, "place of PixelSamples::depth");
+static_assert(PLACE_OF(PixelSamples, normal) == 816, "place of PixelSamples::normal");
+static_assert(PLACE_OF(PixelSamples, position) == 824, "place of PixelSamples::position");
+static_assert(PLACE_OF(PixelSamples, visibility) == 832, "place of PixelSamples::visibility");
+static_assert(PLACE_OF(PixelSamples, light_points) == 840, "place of PixelSamples::light_points");
+static_assert(PLACE_OF(PixelSamples, light_groups) == 848, "place of PixelSamples::light_groups");
+static_assert(PLACE_OF(PixelSamples, ids) == 856, "place of PixelSamples::ids");
+static_assert(PLACE_OF(PixelSamples, mattes) == 864, "place of PixelSamples::mattes");
+static_assert(PLACE_OF(PixelSamples, tally) == 872, "place of PixelSamples::tally");
+static_assert(PLACE_OF(PixelSamples, first_block) == 880, "place of PixelSamples::first_block");
+static_assert(PLACE_OF(PixelSamples, seed) == 888, "place of PixelSamples::seed");
+static_assert(PLACE_OF(PixelSamples, film_pixels) == 896, "place of PixelSamples::film_pixels");
+static_assert(PLACE_OF(PixelSamples, spacing) == 904, "place of PixelSamples::spacing");
+static_assert(PLACE_OF(PixelSamples, samples) == 912, "place of PixelSamples::samples");
+static_assert(PLACE_OF(PixelSamples, inner) == 920, "place of PixelSamples::inner");
+static_assert(PLACE_OF(PixelSamples, all_samples) == 928, "place of PixelSamples::all_samples");
+static_assert(PLACE_OF(PixelSamples, together) == 932, "place of PixelSamples::together");
+static_assert(PLACE_OF(PixelSamples, lanes) == 936, "place of PixelSamples::lanes");
+static_assert(PLACE_OF(PixelSamples, light_count) == 940, "place of PixelSamples::light_count");
+static_assert(PLACE_OF(PixelSamples, weight) == 944, "place of PixelSamples::weight");
+static_assert(PLACE_OF(PixelSamples, contrast) == 948, "place of PixelSamples::contrast");
+static_assert(PLACE_OF(PixelSamples, apart) == 952, "place of PixelSamples::apart");
+static_assert(PLACE_OF(PixelSamples, mirrors) == 956, "place of PixelSamples::mirrors");
+static_assert(PLACE_OF(PixelSamples, keeps) == 960, "place of PixelSamples::keeps");
+static_assert(PLACE_OF(PixelSamples, matte_slots) == 964, "place of PixelSamples::matte_slots");
+static_assert(PLACE_OF(PixelSamples, quantiles) == 968, "place of PixelSamples::quantiles");
 
 struct alignas(8) MirrorRays {
     Scene scene;
     Rays rays;
     const Hit *hits;
     unsigned *counts;
-    ListedRay *mirrored;
+    ListedRay *onward;
     Cone *cones;
+    unsigned bounces;
+    unsigned spare;
 };
-static_assert(sizeof(MirrorRays) == 712, "size of MirrorRays");
+static_assert(sizeof(MirrorRays) == 744, "size of MirrorRays");
 static_assert(PLACE_OF(MirrorRays, scene) == 0, "place of MirrorRays::scene");
-static_assert(PLACE_OF(MirrorRays, rays) == 568, "place of MirrorRays::rays");
-static_assert(PLACE_OF(MirrorRays, hits) == 680, "place of MirrorRays::hits");
-static_assert(PLACE_OF(MirrorRays, counts) == 688, "place of MirrorRays::counts");
-static_assert(PLACE_OF(MirrorRays, mirrored) == 696, "place of MirrorRays::mirrored");
-static_assert(PLACE_OF(MirrorRays, cones) == 704, "place of MirrorRays::cones");
+static_assert(PLACE_OF(MirrorRays, rays) == 584, "place of MirrorRays::rays");
+static_assert(PLACE_OF(MirrorRays, hits) == 704, "place of MirrorRays::hits");
+static_assert(PLACE_OF(MirrorRays, counts) == 712, "place of MirrorRays::counts");
+static_assert(PLACE_OF(MirrorRays, onward) == 720, "place of MirrorRays::onward");
+static_assert(PLACE_OF(MirrorRays, cones) == 728, "place of MirrorRays::cones");
+static_assert(PLACE_OF(MirrorRays, bounces) == 736, "place of MirrorRays::bounces");
+static_assert(PLACE_OF(MirrorRays, spare) == 740, "place of MirrorRays::spare");
 
 struct alignas(8) GroupCells {
     Scene scene;
@@ -1612,16 +1634,16 @@ struct alignas(8) GroupCells {
     Item *items;
     unsigned long long first_block;
 };
-static_assert(sizeof(GroupCells) == 808, "size of GroupCells");
+static_assert(sizeof(GroupCells) == 832, "size of GroupCells");
 static_assert(PLACE_OF(GroupCells, scene) == 0, "place of GroupCells::scene");
-static_assert(PLACE_OF(GroupCells, rays) == 568, "place of GroupCells::rays");
-static_assert(PLACE_OF(GroupCells, hits) == 680, "place of GroupCells::hits");
-static_assert(PLACE_OF(GroupCells, mesh) == 688, "place of GroupCells::mesh");
-static_assert(PLACE_OF(GroupCells, members) == 768, "place of GroupCells::members");
-static_assert(PLACE_OF(GroupCells, tile_items) == 776, "place of GroupCells::tile_items");
-static_assert(PLACE_OF(GroupCells, counts) == 784, "place of GroupCells::counts");
-static_assert(PLACE_OF(GroupCells, items) == 792, "place of GroupCells::items");
-static_assert(PLACE_OF(GroupCells, first_block) == 800, "place of GroupCells::first_block");
+static_assert(PLACE_OF(GroupCells, rays) == 584, "place of GroupCells::rays");
+static_assert(PLACE_OF(GroupCells, hits) == 704, "place of GroupCells::hits");
+static_assert(PLACE_OF(GroupCells, mesh) == 712, "place of GroupCells::mesh");
+static_assert(PLACE_OF(GroupCells, members) == 792, "place of GroupCells::members");
+static_assert(PLACE_OF(GroupCells, tile_items) == 800, "place of GroupCells::tile_items");
+static_assert(PLACE_OF(GroupCells, counts) == 808, "place of GroupCells::counts");
+static_assert(PLACE_OF(GroupCells, items) == 816, "place of GroupCells::items");
+static_assert(PLACE_OF(GroupCells, first_block) == 824, "place of GroupCells::first_block");
 
 struct alignas(8) ShortTests {
     Scene scene;
@@ -1635,17 +1657,17 @@ struct alignas(8) ShortTests {
     unsigned long long first_item;
     unsigned long long item_count;
 };
-static_assert(sizeof(ShortTests) == 816, "size of ShortTests");
+static_assert(sizeof(ShortTests) == 840, "size of ShortTests");
 static_assert(PLACE_OF(ShortTests, scene) == 0, "place of ShortTests::scene");
-static_assert(PLACE_OF(ShortTests, rays) == 568, "place of ShortTests::rays");
-static_assert(PLACE_OF(ShortTests, hits) == 680, "place of ShortTests::hits");
-static_assert(PLACE_OF(ShortTests, mesh) == 688, "place of ShortTests::mesh");
-static_assert(PLACE_OF(ShortTests, members) == 768, "place of ShortTests::members");
-static_assert(PLACE_OF(ShortTests, items) == 776, "place of ShortTests::items");
-static_assert(PLACE_OF(ShortTests, masks) == 784, "place of ShortTests::masks");
-static_assert(PLACE_OF(ShortTests, tally) == 792, "place of ShortTests::tally");
-static_assert(PLACE_OF(ShortTests, first_item) == 800, "place of ShortTests::first_item");
-static_assert(PLACE_OF(ShortTests, item_count) == 808, "place of ShortTests::item_count");
+static_assert(PLACE_OF(ShortTests, rays) == 584, "place of ShortTests::rays");
+static_assert(PLACE_OF(ShortTests, hits) == 704, "place of ShortTests::hits");
+static_assert(PLACE_OF(ShortTests, mesh) == 712, "place of ShortTests::mesh");
+static_assert(PLACE_OF(ShortTests, members) == 792, "place of ShortTests::members");
+static_assert(PLACE_OF(ShortTests, items) == 800, "place of ShortTests::items");
+static_assert(PLACE_OF(ShortTests, masks) == 808, "place of ShortTests::masks");
+static_assert(PLACE_OF(ShortTests, tally) == 816, "place of ShortTests::tally");
+static_assert(PLACE_OF(ShortTests, first_item) == 824, "place of ShortTests::first_item");
+static_assert(PLACE_OF(ShortTests, item_count) == 832, "place of ShortTests::item_count");
 
 struct alignas(8) LightPoints {
     LightMesh mesh;
@@ -1688,18 +1710,18 @@ struct alignas(8) LongTests {
     unsigned first_sample;
     unsigned sample_count;
 };
-static_assert(sizeof(LongTests) == 752, "size of LongTests");
+static_assert(sizeof(LongTests) == 768, "size of LongTests");
 static_assert(PLACE_OF(LongTests, scene) == 0, "place of LongTests::scene");
-static_assert(PLACE_OF(LongTests, mesh) == 568, "place of LongTests::mesh");
-static_assert(PLACE_OF(LongTests, points) == 648, "place of LongTests::points");
-static_assert(PLACE_OF(LongTests, lit) == 688, "place of LongTests::lit");
-static_assert(PLACE_OF(LongTests, sampling) == 704, "place of LongTests::sampling");
-static_assert(PLACE_OF(LongTests, tally) == 720, "place of LongTests::tally");
-static_assert(PLACE_OF(LongTests, light) == 728, "place of LongTests::light");
-static_assert(PLACE_OF(LongTests, point_count) == 732, "place of LongTests::point_count");
-static_assert(PLACE_OF(LongTests, first_point) == 736, "place of LongTests::first_point");
-static_assert(PLACE_OF(LongTests, first_sample) == 744, "place of LongTests::first_sample");
-static_assert(PLACE_OF(LongTests, sample_count) == 748, "place of LongTests::sample_count");
+static_assert(PLACE_OF(LongTests, mesh) == 584, "place of LongTests::mesh");
+static_assert(PLACE_OF(LongTests, points) == 664, "place of LongTests::points");
+static_assert(PLACE_OF(LongTests, lit) == 704, "place of LongTests::lit");
+static_assert(PLACE_OF(LongTests, sampling) == 720, "place of LongTests::sampling");
+static_assert(PLACE_OF(LongTests, tally) == 736, "place of LongTests::tally");
+static_assert(PLACE_OF(LongTests, light) == 744, "place of LongTests::light");
+static_assert(PLACE_OF(LongTests, point_count) == 748, "place of LongTests::point_count");
+static_assert(PLACE_OF(LongTests, first_point) == 752, "place of LongTests::first_point");
+static_assert(PLACE_OF(LongTests, first_sample) == 760, "place of LongTests::first_sample");
+static_assert(PLACE_OF(LongTests, sample_count) == 764, "place of LongTests::sample_count");
 
 struct alignas(8) Cache {
     UsedPoints points;
@@ -1743,25 +1765,25 @@ struct alignas(8) Interpolate {
     unsigned long long first;
     unsigned long long count;
 };
-static_assert(sizeof(Interpolate) == 920, "size of Interpolate");
+static_assert(sizeof(Interpolate) == 944, "size of Interpolate");
 static_assert(PLACE_OF(Interpolate, scene) == 0, "place of Interpolate::scene");
-static_assert(PLACE_OF(Interpolate, rays) == 568, "place of Interpolate::rays");
-static_assert(PLACE_OF(Interpolate, hits) == 680, "place of Interpolate::hits");
-static_assert(PLACE_OF(Interpolate, mesh) == 688, "place of Interpolate::mesh");
-static_assert(PLACE_OF(Interpolate, members) == 768, "place of Interpolate::members");
-static_assert(PLACE_OF(Interpolate, items) == 776, "place of Interpolate::items");
-static_assert(PLACE_OF(Interpolate, masks) == 784, "place of Interpolate::masks");
-static_assert(PLACE_OF(Interpolate, points) == 792, "place of Interpolate::points");
-static_assert(PLACE_OF(Interpolate, slots) == 832, "place of Interpolate::slots");
-static_assert(PLACE_OF(Interpolate, lit) == 840, "place of Interpolate::lit");
-static_assert(PLACE_OF(Interpolate, share) == 848, "place of Interpolate::share");
-static_assert(PLACE_OF(Interpolate, used) == 856, "place of Interpolate::used");
-static_assert(PLACE_OF(Interpolate, fallback_rays) == 864, "place of Interpolate::fallback_rays");
-static_assert(PLACE_OF(Interpolate, fallback_count) == 872, "place of Interpolate::fallback_count");
-static_assert(PLACE_OF(Interpolate, sampling) == 880, "place of Interpolate::sampling");
-static_assert(PLACE_OF(Interpolate, tally) == 896, "place of Interpolate::tally");
-static_assert(PLACE_OF(Interpolate, first) == 904, "place of Interpolate::first");
-static_assert(PLACE_OF(Interpolate, count) == 912, "place of Interpolate::count");
+static_assert(PLACE_OF(Interpolate, rays) == 584, "place of Interpolate::rays");
+static_assert(PLACE_OF(Interpolate, hits) == 704, "place of Interpolate::hits");
+static_assert(PLACE_OF(Interpolate, mesh) == 712, "place of Interpolate::mesh");
+static_assert(PLACE_OF(Interpolate, members) == 792, "place of Interpolate::members");
+static_assert(PLACE_OF(Interpolate, items) == 800, "place of Interpolate::items");
+static_assert(PLACE_OF(Interpolate, masks) == 808, "place of Interpolate::masks");
+static_assert(PLACE_OF(Interpolate, points) == 816, "place of Interpolate::points");
+static_assert(PLACE_OF(Interpolate, slots) == 856, "place of Interpolate::slots");
+static_assert(PLACE_OF(Interpolate, lit) == 864, "place of Interpolate::lit");
+static_assert(PLACE_OF(Interpolate, share) == 872, "place of Interpolate::share");
+static_assert(PLACE_OF(Interpolate, used) == 880, "place of Interpolate::used");
+static_assert(PLACE_OF(Interpolate, fallback_rays) == 888, "place of Interpolate::fallback_rays");
+static_assert(PLACE_OF(Interpolate, fallback_count) == 896, "place of Interpolate::fallback_count");
+static_assert(PLACE_OF(Interpolate, sampling) == 904, "place of Interpolate::sampling");
+static_assert(PLACE_OF(Interpolate, tally) == 920, "place of Interpolate::tally");
+static_assert(PLACE_OF(Interpolate, first) == 928, "place of Interpolate::first");
+static_assert(PLACE_OF(Interpolate, count) == 936, "place of Interpolate::count");
 
 struct alignas(8) Scan {
     unsigned *values;

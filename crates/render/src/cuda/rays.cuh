@@ -92,11 +92,18 @@ DEVICE Vec3 weight_of(const Rays &rays, unsigned ray) {
     return rays.list == nullptr ? Vec3{1.0f, 1.0f, 1.0f} : load_listed(rays.list + ray, 2);
 }
 
-// The number of the pixel's sample that a ray goes through, and one; 0 for a camera's.
+// The number of the pixel's sample that a ray goes through, and one, 0 for a camera's; from bit THROUGHS_SHIFT on, through how many surfaces
+// it went.
 DEVICE unsigned sample_of(const Rays &rays, unsigned ray) { return rays.list != nullptr ? __ldg(&rays.list[ray].sample) : 0; }
 
-// The key that distinguishes the random patterns of two surface points: the pixel, its sample, and whether it is in a list, such as that of
-// mirror rays.
+// Through how many surfaces a ray went.
+DEVICE unsigned throughs_of(const Rays &rays, unsigned ray) { return sample_of(rays, ray) >> THROUGHS_SHIFT; }
+
+// Whether a mirror reflected a ray.
+DEVICE bool is_mirrored(const Rays &rays, unsigned ray) { return rays.depth > throughs_of(rays, ray); }
+
+// The key that distinguishes the random patterns of two surface points: the pixel, its sample, the surfaces on the way that let it through, and
+// whether it is in a list, such as that of mirror rays.
 DEVICE unsigned long long ray_key(const Rays &rays, unsigned ray) {
     const unsigned long long key = (unsigned long long)number_in_image(rays.view, pixel_of(rays, ray)) << 1 | (rays.list != nullptr ? 1 : 0);
     return (unsigned long long)sample_of(rays, ray) << 33 | key;

@@ -23,7 +23,8 @@ pub struct Picture {
     pub color: Vec<[f32; 3]>,
     /// The share of each pixel's samples that see anything, if it was asked for.
     pub coverage: Option<Vec<f32>>,
-    /// How much light the shadow catchers in each pixel get, as a share of what they would get alone and of the pixel; if it is needed.
+    /// The share of each pixel that shows what is behind everything, through surfaces or on shadow catchers, as far as these get the light
+    /// that they would get alone; if it is needed.
     pub caught: Option<Vec<f32>>,
     /// What each of these pixels sees.
     pub layers: Option<Layers>,
@@ -98,7 +99,7 @@ impl Picture {
         *color = (glam::Vec3::from_array(*color) + radiance).to_array();
     }
 
-    /// Adds to what shadow catchers get in a pixel of the whole image, if that is kept.
+    /// Adds to the share of a pixel of the whole image that shows what is behind everything, if that is kept.
     pub(crate) fn catch(&mut self, pixel: u32, caught: f32) {
         let index = self.index(pixel);
         if let Some(plane) = &mut self.caught {
@@ -111,7 +112,7 @@ impl Picture {
         Picture { coverage: Some(vec![0.0; self.color.len()]), ..self }
     }
 
-    /// Keeps what shadow catchers get.
+    /// Keeps what shadow catchers, and surfaces that rays go through, show of what is behind everything.
     pub fn with_caught(self) -> Picture {
         Picture { caught: Some(vec![0.0; self.color.len()]), ..self }
     }

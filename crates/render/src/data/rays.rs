@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
+use lightmesh_layout::constants::THROUGHS_SHIFT;
 
 use crate::accel::{Hit, Ray, Triangle};
 use crate::antialiasing::Antialiasing;
@@ -37,8 +38,11 @@ pub struct RayList {
     pub rays: Vec<Ray>,
     /// The pixel of each ray, y · width + x of the window.
     pub pixels: Vec<u32>,
-    /// The number of the pixel's sample that each ray goes through, and one. Empty if pixels have one sample.
+    /// The number of the pixel's sample that each ray goes through, and one; from bit [`THROUGHS_SHIFT`] on, through how many surfaces it
+    /// went. Empty if pixels have one sample and no surface lets rays through.
     pub samples: Vec<u32>,
+    /// How often the rays went on at surfaces: through them or mirrored.
+    pub depth: u32,
     /// The samples of its pixel that are shaded with each ray, a bit each; 0 if none are. Empty for camera rays, with which all
     /// are.
     pub shared: Vec<u32>,
@@ -74,9 +78,14 @@ impl RayList {
         self.cones.get(ray).copied().unwrap_or(self.cone)
     }
 
-    /// Whether mirrors reflected the rays.
-    pub(crate) fn are_mirrored(&self) -> bool {
-        !self.from_camera() && self.shared.is_empty()
+    /// Through how many surfaces a ray went.
+    pub(crate) fn throughs(&self, ray: usize) -> u32 {
+        self.sample(ray) >> THROUGHS_SHIFT
+    }
+
+    /// Whether a mirror reflected a ray.
+    pub(crate) fn is_mirrored(&self, ray: usize) -> bool {
+        self.depth > self.throughs(ray)
     }
 
     /// The angle of the cone around a ray; of those of all samples that are shaded with it, if there are several.
@@ -129,13 +138,13 @@ impl RayList {
         self.weights.is_empty()
     }
 
-    /// The number of the pixel's sample that a ray goes through, and one.
+    /// The number of the pixel's sample that a ray goes through, and one; from bit [`THROUGHS_SHIFT`] on, through how many surfaces it went.
     pub(crate) fn sample(&self, ray: usize) -> u32 {
         self.samples.get(ray).copied().unwrap_or(0)
     }
 
-    /// The key that distinguishes the random patterns of two surface points: the pixel, its sample, and whether it is in a list,
-    /// such as that of mirror rays.
+    /// The key that distinguishes the random patterns of two surface points: the pixel, its sample, the surfaces on the way that let it
+    /// through, and whether it is in a list, such as that of mirror rays.
     pub(crate) fn key(&self, ray: usize) -> u64 {
         let pixel = self.window.number(self.pixels[ray]);
         u64::from(self.sample(ray)) << 33 | u64::from(pixel) << 1 | u64::from(!self.from_camera())

@@ -23,12 +23,12 @@ pub struct DeviceFilm<R: Runtime> {
     width: u32,
     color: Buffer<R, Vec3>,
     coverage: Option<Buffer<R, f32>>,
-    /// What shadow catchers get, by pixel.
+    /// What is seen of what is behind everything, by pixel.
     caught: Option<Buffer<R, f32>>,
     layers: Option<DeviceLayers<R>>,
     /// The radiance of each ray of a wave, while groups of lights follow or pixels have several rays.
     sums: Option<Buffer<R, Vec3>>,
-    /// What the shadow catcher that each of them sees gets.
+    /// The share of that in each of them.
     ray_caught: Option<Buffer<R, f32>>,
 }
 
@@ -106,7 +106,7 @@ impl<R: Runtime> DeviceFilm<R> {
         arguments.color = self.color.output();
         arguments.sums = self.sums.as_ref().map_or(Out::NULL, Buffer::output);
         let sees = rays.is_from_camera() || rays.are_fragments;
-        let caught = |plane: &Option<Buffer<R, f32>>| plane.as_ref().filter(|_| sees).map_or(Out::NULL, Buffer::output);
+        let caught = |plane: &Option<Buffer<R, f32>>| plane.as_ref().map_or(Out::NULL, Buffer::output);
         (arguments.caught, arguments.ray_caught) = (caught(&self.caught), caught(&self.ray_caught));
         let layers = self.layers.as_ref().filter(|_| sees);
         arguments.visibility = layers.map_or(Out::NULL, |layers| layers.visibility.output());

@@ -109,7 +109,7 @@ impl<R: Runtime> Upload<'_, R> {
             v_axis: mask.transform.matrix2.y_axis.to_array(),
             translation: mask.transform.translation.to_array(),
             limit: mask.limit,
-            spare: 0,
+            blends: u32::from(mask.blends),
         };
         let masks: Vec<Mask> = table.masks.iter().map(mask).collect();
         let triangles = self.array("cut-out triangles", &table.triangles)?;
@@ -130,6 +130,10 @@ fn material_record(geometry: &Geometry, material: &lightmesh_scene::Material, te
     let (catcher, lamp) = (u32::from(material.catcher), u32::from(material.lamp));
     let shininess = material.shininess;
     let mut record = Material { shininess, texture, catcher, lamp, ..bytemuck::Zeroable::zeroed() };
+    if material.lets_through() {
+        record.blends = 1;
+        record.transmittance = vec3(material.opacity.and_then(|opacity| opacity.filter()).unwrap_or_default());
+    }
     let mut own = Coefficients::untinted(material);
     if is_tinted(geometry, material) {
         record.tinted = 1;

@@ -212,6 +212,7 @@ impl<R: Runtime> Upload<'_, R> {
         record.objects = self.array("objects", objects)?;
         record.object_runs = starts.len() as u32;
         let coverage = self.coverage(&prepared.coverage)?;
+        record.coverage = coverage;
         let structure = match prepared.accelerator.form() {
             Form::Bvh(bvh) => {
                 record.bvh = Bvh { coverage, ..self.bvh(bvh)? };

@@ -103,13 +103,14 @@ impl<'a> Resolved<'a> {
             size: window.size,
             // With one sample of a pixel, coverage is found from its depth.
             coverage: settings.transparent && antialiasing.is_some(),
-            caught: settings.transparent && scene.catches(),
+            caught: settings.transparent && (scene.catches() || scene.lets_through()),
             compositing: settings.layers,
             gathering: (settings.ambient_light.for_scene(&scene.scene) == AmbientSource::Mesh)
                 .then(|| Gathering::new(&whole, &bounds, settings.quality, left)),
             layers: (settings.layers || settings.transparent && antialiasing.is_none()).then_some(lights.lights),
             antialiasing,
             bounces: settings.bounces,
+            lets_through: scene.lets_through(),
             lights,
             most_rows: settings.partial.then(|| bands::rows_in_parts(window.size[1])),
             memory_limit: settings.memory_limit,

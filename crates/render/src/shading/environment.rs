@@ -19,7 +19,7 @@ use crate::textures::{between, bilinear, level_of};
 pub(crate) fn missed(wave: &HostWave, ray: usize) -> Vec3 {
     let lights = wave.lights();
     match (&lights.environment, lights.background) {
-        (Some(environment), background) if background.is_none() || wave.rays.are_mirrored() => {
+        (Some(environment), background) if background.is_none() || wave.rays.is_mirrored(ray) => {
             radiance(environment, wave.rays.rays[ray].direction, wave.rays.spread_of(ray))
         }
         (_, background) => background.unwrap_or(Vec3::ZERO),

@@ -1,6 +1,7 @@
-// Textures and vertex colours, which give the coefficients of formula (1) at a surface point: twin of tint.rs.
+// Textures, vertex colours and opacities, which give the coefficients of formula (1) at a surface point: twin of tint.rs.
 #pragma once
 
+#include "accel/coverage.cuh"
 #include "textures/lookup.cuh"
 
 // The inputs of tints. By value: taking the address of a kernel's argument would make all its loads slow.
@@ -11,6 +12,7 @@ struct TintSources {
     const Vec3 *colors;
     const Texture *textures;
     const float *srgb;
+    Coverage coverage;
 };
 
 // The ray that sees a surface point, or that of another sample of its pixel, and the cone around it.
@@ -55,12 +57,19 @@ DEVICE Vec3 tint_at(const TintSources &sources, const Material &material, const 
     return tint * ((1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c);
 }
 
-// Sets `own` to the material with the coefficients that a tint gives it.
-DEVICE void set_tint(const Material *material, const Vec3 &tint, Material *own) {
-    own->ka = material->ka * tint;
-    own->kd = material->kd * tint;
-    own->ks = material->ks + material->ks_tinted * tint;
-    own->emission = material->emission + material->emission_tinted * tint;
+// How opaque a surface of this material is at `hit`.
+DEVICE float opacity_at(const TintSources &sources, const Material &material, const Hit &hit) {
+    return material.blends ? opacity_at(sources.coverage, sources.triangles + hit.triangle, hit.u, hit.v) : 1.0f;
+}
+
+// Sets `own` to the material with the coefficients that a tint and an opacity give it.
+DEVICE void set_tint(const Material *material, const Vec3 &tint, float opacity, Material *own) {
+    own->ka = opacity * (material->ka * tint);
+    own->kd = opacity * (material->kd * tint);
+    own->ks = opacity * (material->ks + material->ks_tinted * tint);
+    own->emission = opacity * (material->emission + material->emission_tinted * tint);
+    own->transmittance = (1.0f - opacity) * material->transmittance;
+    own->blends = material->blends;
     own->shininess = material->shininess;
     own->catcher = material->catcher;
     own->lamp = material->lamp;
@@ -69,7 +78,7 @@ DEVICE void set_tint(const Material *material, const Vec3 &tint, Material *own) 
 
 // Sets `own` to the material with its coefficients at `hit`.
 COLD void tint_material(TintSources sources, const Material *material, Sighting from, Hit hit, Material *own) {
-    set_tint(material, tint_at(sources, *material, from, hit), own);
+    set_tint(material, tint_at(sources, *material, from, hit), opacity_at(sources, *material, hit), own);
 }
 
 // The hits of the samples of a pixel: `count` of them, `stride` apart; those whose bits are set in `shared` count.
@@ -82,21 +91,22 @@ struct SharedHits {
 // Sets `own` to the material with the mean of its coefficients at these hits; leaves it without any.
 COLD void tint_by_all(TintSources sources, const Material *material, Sighting from, SharedHits all, Material *own) {
     Vec3 sum = splat(0.0f);
-    float count = 0.0f;
+    float opacities = 0.0f, count = 0.0f;
     for (unsigned sample = 0; sample < all.count; ++sample) {
         const Hit hit = load_hit(all.hits + sample * all.stride, 0);
         if ((all.shared >> sample & 1) == 0 || hit.triangle == Hit::NONE)
             continue;
         sum = sum + tint_at(sources, *material, from, hit);
+        opacities += opacity_at(sources, *material, hit);
         count += 1.0f;
     }
     if (count > 0.0f)
-        set_tint(material, sum / count, own);
+        set_tint(material, sum / count, opacities / count, own);
 }
 
 // The inputs of the tints of a scene.
 DEVICE TintSources tint_sources(const Scene &scene) {
-    return {scene.triangles, scene.indices, scene.uvs, scene.colors, scene.textures, scene.srgb};
+    return {scene.triangles, scene.indices, scene.uvs, scene.colors, scene.textures, scene.srgb, scene.coverage};
 }
 
 // What ray number `ray` goes along.

@@ -1,7 +1,7 @@
-//! Textures and vertex colours: the coefficients of formula (1) at a surface point.
+//! Textures, vertex colours and opacities: the coefficients of formula (1) at a surface point.
 //!
 //! ```text
-//! t = texture(A · uv) · colour      k_a t      k_d t      k_s + k_s' t
+//! t = texture(A · uv) · colour      α k_a t      α k_d t      α (k_s + k_s' t)      goes through: (1 − α) filter
 //! ```
 //!
 //! Texture coordinates and colours are interpolated barycentrically. Of the texture, the mean over the [footprint](crate::footprint) of a
@@ -22,6 +22,8 @@ pub(crate) struct Coefficients {
     pub(crate) kd: Vec3,
     pub(crate) ks: Vec3,
     pub(crate) emission: Vec3,
+    /// What is left of light that goes straight on.
+    pub(crate) transmittance: Vec3,
 }
 
 impl Coefficients {
@@ -29,7 +31,7 @@ impl Coefficients {
     #[inline(always)]
     pub(crate) fn at(scene: &PreparedScene, material: &Material, ray: &Ray, cone: Cone, hit: &Hit) -> Coefficients {
         match is_tinted(&scene.scene.geometry, material) {
-            true => Coefficients::tinted(material, tint(scene, material, ray, cone, hit)),
+            true => Coefficients::tinted(material, tint(scene, material, ray, cone, hit), opacity(scene, hit)),
             false => Coefficients::untinted(material),
         }
     }
@@ -42,12 +44,13 @@ impl Coefficients {
         cone: Cone,
         hits: impl Iterator<Item = &'h Hit>,
     ) -> Option<Coefficients> {
-        let (mut sum, mut count) = (Vec3::ZERO, 0.0);
+        let (mut sum, mut opacities, mut count) = (Vec3::ZERO, 0.0, 0.0);
         for hit in hits {
             sum += tint(scene, material, ray, cone, hit);
+            opacities += opacity(scene, hit);
             count += 1.0;
         }
-        (count > 0.0).then(|| Coefficients::tinted(material, sum / count))
+        (count > 0.0).then(|| Coefficients::tinted(material, sum / count, opacities / count))
     }
 
     /// Those of a material that is the same everywhere.
@@ -58,24 +61,32 @@ impl Coefficients {
             kd: material.kd,
             ks: material.ks + material.ks_tinted,
             emission: material.emission + material.emission_tinted,
+            transmittance: Vec3::ZERO,
         }
     }
 
-    fn tinted(material: &Material, tint: Vec3) -> Coefficients {
+    fn tinted(material: &Material, tint: Vec3, opacity: f32) -> Coefficients {
+        let filter = material.opacity.and_then(|opacity| opacity.filter()).unwrap_or(Vec3::ZERO);
         Coefficients {
-            ka: material.ka * tint,
-            kd: material.kd * tint,
-            ks: material.ks + material.ks_tinted * tint,
-            emission: material.emission + material.emission_tinted * tint,
+            ka: opacity * (material.ka * tint),
+            kd: opacity * (material.kd * tint),
+            ks: opacity * (material.ks + material.ks_tinted * tint),
+            emission: opacity * (material.emission + material.emission_tinted * tint),
+            transmittance: (1.0 - opacity) * filter,
         }
     }
 }
 
-/// Whether surface points of `material` may differ in colour.
+/// Whether surface points of `material` may differ in colour or opacity.
 #[inline(always)]
 pub(crate) fn is_tinted(geometry: &Geometry, material: &Material) -> bool {
     let has_texture = || material.texture.is_some() && texture_of(geometry, material).is_some();
-    !material.catcher && (!geometry.mesh.colors.is_empty() || has_texture())
+    !material.catcher && (!geometry.mesh.colors.is_empty() || has_texture() || material.lets_through())
+}
+
+/// How opaque the surface is at `hit`.
+fn opacity(scene: &PreparedScene, hit: &Hit) -> f32 {
+    scene.geometry.coverage.opacity(&scene.geometry.triangles[hit.triangle as usize], hit)
 }
 
 /// The product of texture and vertex colour at `hit`.
@@ -163,8 +174,13 @@ mod tests {
         // The texture's right half, and half red half green.
         let tint = Vec3::new(0.0, 1.0, 1.0) * Vec3::new(0.5, 0.5, 0.0);
         let coefficients = seen(&scene, &material, Cone::default(), &hit);
-        let expected =
-            Coefficients { ka: ka * tint, kd: kd * tint, ks: ks + 1.5 * kd * tint, emission: 4.0 * kd * tint };
+        let expected = Coefficients {
+            ka: ka * tint,
+            kd: kd * tint,
+            ks: ks + 1.5 * kd * tint,
+            emission: 4.0 * kd * tint,
+            transmittance: Vec3::ZERO,
+        };
         assert_eq!(coefficients, expected);
         scene.geometry_mut().mesh.colors.clear();
         assert_eq!(seen(&scene, &material, Cone::default(), &hit).kd, kd * Vec3::new(0.0, 1.0, 1.0));

@@ -81,6 +81,8 @@ pub(crate) struct WarpWork<'a, R: Runtime> {
     pub(crate) taken: Option<&'a Buffer<R, u32>>,
     /// Units of the very first launch.
     pub(crate) first: u64,
+    /// Pieces of progress that they are.
+    pub(crate) progress: u64,
     /// Words of shared memory of a warp, apart from a search and the rows of samples.
     pub(crate) words: u32,
 }
@@ -96,7 +98,7 @@ pub(crate) fn test_samples<R: Runtime>(
     let scene = wave.scene;
     let visibility = DeviceVisibility::dark(cuda, wave.rays.len(), wave.group())?;
     let sets = SampleSets::new(aim);
-    let progress = |done: u32| work.units * u64::from(done) / u64::from(sets.count);
+    let progress = |done: u32| work.progress * u64::from(done) / u64::from(sets.count);
     for set in 0..sets.count {
         let record = complete(sets.record(cuda, wave, &visibility, set)?);
         let most = |number: fn(&SampleRows) -> u32| record.sets.iter().map(number).max().unwrap_or(0);

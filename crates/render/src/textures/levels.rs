@@ -101,8 +101,8 @@ impl MipLevels {
 fn is_cut_out(geometry: &Geometry, texture: u32) -> bool {
     let shown = |uses: TextureUse| uses.texture == texture;
     geometry.materials.iter().any(|material| {
-        let by_alpha = material.cut_out.filter(|cut_out| cut_out.channel == OpacityChannel::Alpha);
-        material.texture.is_some_and(shown) && by_alpha.and_then(|cut_out| cut_out.texture).is_some_and(shown)
+        let by_alpha = material.opacity.filter(|opacity| opacity.channel == OpacityChannel::Alpha);
+        material.texture.is_some_and(shown) && by_alpha.and_then(|opacity| opacity.texture).is_some_and(shown)
     })
 }
 
@@ -209,7 +209,7 @@ pub(super) fn unpacked(texel: u64) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use glam::{DVec3, Vec2};
-    use lightmesh_scene::{CutOut, Material, Mesh};
+    use lightmesh_scene::{Material, Mesh, Opacity};
 
     use super::*;
 
@@ -289,7 +289,7 @@ mod tests {
             };
             let texels = (0..size[0] * size[1]).map(texel).collect();
             let uses = TextureUse::new(0);
-            let by = |channel| Material::default().with_texture(uses).with_cut_out(CutOut::by(uses, channel));
+            let by = |channel| Material::default().with_texture(uses).with_opacity(Opacity::by(uses, channel));
             let levels = |material: Material| {
                 let texture = Texture { name: String::new(), size, texels: Vec::clone(&texels) };
                 let mesh = Mesh { uvs: vec![Vec2::ZERO], ..Mesh::default() };

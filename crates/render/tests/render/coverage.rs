@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec2, Vec3};
 use lightmesh_render::{Frame, Lookup, Mode, Settings, ShortTests};
-use lightmesh_scene::{CutOut, LightKind, Material, OpacityChannel, Scene, Texture, TextureUse, Wrap};
+use lightmesh_scene::{LightKind, Material, Opacity, OpacityChannel, Scene, Texture, TextureUse, Wrap};
 use lightmesh_testkit::{ACCELERATIONS, Picture, SceneDraft, TECHNIQUES, perforated, pile, render, soup};
 
 use crate::lists::{kinds, visibilities};
@@ -36,7 +36,7 @@ fn quad(x: [f64; 2], z: [f64; 2]) -> [[f64; 3]; 4] {
 /// A sheet over a floor, cut out by `alpha` of the texels of an image of so many squares.
 fn sheet(light: LightKind, alpha: impl Fn(i32, i32) -> u8) -> Scene {
     let uses = TextureUse { wrap: [Wrap::Clamp; 2], ..TextureUse::new(0) };
-    let leaf = Material::default().with_cut_out(CutOut::by(uses, OpacityChannel::Alpha));
+    let leaf = Material::default().with_opacity(Opacity::by(uses, OpacityChannel::Alpha));
     let mut scene = draft(light).painted(leaf).quad(quad([-HALF, HALF], [-HALF, HALF])).finish("sheet");
     let geometry = scene.geometry_mut();
     let texel = |index: i32| [0, 0, 0, alpha(index % SQUARES, index / SQUARES)];

@@ -23,6 +23,7 @@ mod partial;
 mod placement;
 mod points;
 mod progress;
+mod see_through;
 mod shading;
 mod shadow_rays;
 mod textures;

@@ -11,9 +11,9 @@ use serde_json::{Map, Value, json};
 
 use super::{ExportError, own_lights, pictures::Pictures, refused};
 use crate::{
-    Camera, CutOut, Falloff, Fov, Light, LightKind, Material, Mesh, OpacityChannel, Projection, Scene,
+    Camera, Falloff, Fov, Light, LightKind, Material, Mesh, Opacity, OpacityChannel, OpacityMode, Projection, Scene,
     formats::{
-        gltf::extras::{CameraExtras, CutOutExtras, LightExtras, MaterialExtras, SceneExtras, ShapeExtras},
+        gltf::extras::{CameraExtras, LightExtras, MaterialExtras, OpacityExtras, SceneExtras, ShapeExtras},
         toml::upright,
     },
     shapes::tangents,
@@ -291,10 +291,10 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
         catcher: material.catcher,
         lamp: material.lamp,
         texture_transform: pictures.exact_transform(index),
-        cut_out: material
-            .cut_out
-            .filter(|cut_out| !is_standard(cut_out, material))
-            .map(|it| cut_out_extras(&it, index, pictures)),
+        opacity: material
+            .opacity
+            .filter(|opacity| !is_standard(opacity, material))
+            .map(|it| opacity_extras(&it, index, pictures)),
     };
     let mut entry = json!({
         "name": material.name,
@@ -307,27 +307,37 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
     if let Some(texture) = pictures.of_material(index) {
         entry["pbrMetallicRoughness"]["baseColorTexture"] = texture;
     }
-    if let Some(cut_out) = material.cut_out.filter(|cut_out| is_standard(cut_out, material)) {
-        entry["alphaMode"] = json!("MASK");
-        entry["alphaCutoff"] = json!(cut_out.cutoff);
-        entry["pbrMetallicRoughness"]["baseColorFactor"][3] = json!(cut_out.factor);
+    if let Some(opacity) = material.opacity.filter(|opacity| is_standard(opacity, material)) {
+        match opacity.mode {
+            OpacityMode::Mask { cutoff } => {
+                entry["alphaMode"] = json!("MASK");
+                entry["alphaCutoff"] = json!(cutoff);
+            }
+            OpacityMode::Blend { .. } => entry["alphaMode"] = json!("BLEND"),
+        }
+        entry["pbrMetallicRoughness"]["baseColorFactor"][3] = json!(opacity.factor);
     }
     entry
 }
 
-/// Whether `alphaMode` MASK says the same.
-fn is_standard(cut_out: &CutOut, material: &Material) -> bool {
-    cut_out.texture == material.texture && (cut_out.texture.is_none() || cut_out.channel == OpacityChannel::Alpha)
+/// Whether an `alphaMode` says the same.
+fn is_standard(opacity: &Opacity, material: &Material) -> bool {
+    let alpha = opacity.texture.is_none() || opacity.channel == OpacityChannel::Alpha;
+    alpha && opacity.texture == material.texture && opacity.filter().is_none_or(|filter| filter == Vec3::ONE)
 }
 
-fn cut_out_extras(cut_out: &CutOut, index: usize, pictures: &Pictures) -> CutOutExtras {
+fn opacity_extras(opacity: &Opacity, index: usize, pictures: &Pictures) -> OpacityExtras {
     let found = pictures.opacity_of_material(index);
-    CutOutExtras {
-        factor: cut_out.factor,
-        cutoff: cut_out.cutoff,
+    OpacityExtras {
+        factor: opacity.factor,
+        cutoff: match opacity.mode {
+            OpacityMode::Mask { cutoff } => Some(cutoff),
+            OpacityMode::Blend { .. } => None,
+        },
+        filter: opacity.filter().map(|filter| filter.to_array()),
         texture: found.map(|(texture, _)| texture as u32),
         transform: found.map(|(_, uses)| uses.transform.to_cols_array()),
-        channel: found.map(|_| cut_out.channel.name().to_owned()),
+        channel: found.map(|_| opacity.channel.name().to_owned()),
     }
 }
 

@@ -36,7 +36,7 @@ impl Pictures {
             let entry = pictures.find(scene, material.texture)?;
             pictures.transformed |= entry.is_some_and(|(_, uses)| uses.transform != Affine2::IDENTITY);
             pictures.by_material.push(entry);
-            let entry = pictures.find(scene, material.cut_out.and_then(|cut_out| cut_out.texture))?;
+            let entry = pictures.find(scene, material.opacity.and_then(|opacity| opacity.texture))?;
             pictures.opacity_by_material.push(entry);
         }
         Ok(pictures)

@@ -5,7 +5,7 @@ use std::fs;
 use glam::{Affine2, DMat4, DVec3, Vec2, Vec3};
 
 use crate::{
-    Camera, CutOut, Falloff, Fov, Light, LightKind, Material, MeshPart, OpacityChannel, Projection, Scene,
+    Camera, Falloff, Fov, Light, LightKind, Material, MeshPart, Opacity, OpacityChannel, Projection, Scene,
     SceneBuilder, Texture, TextureUse, Weight, Wrap,
 };
 
@@ -49,16 +49,21 @@ fn scene(offset: DVec3) -> Scene {
                 wrap: [Wrap::Clamp, Wrap::Mirror],
                 transform: Affine2::from_scale_angle_translation(Vec2::new(1.3, -0.7), 0.77, Vec2::new(0.1, -3.3)),
             }),
-            cut_out: Some(CutOut::by(TextureUse::new(1), OpacityChannel::Green).with_cutoff(0.3).with_factor(0.9)),
+            opacity: Some(Opacity::by(TextureUse::new(1), OpacityChannel::Green).with_cutoff(0.3).with_factor(0.9)),
         },
         Material::default(),
         Material {
             name: "tiles".into(),
             texture: Some(tiled),
-            cut_out: Some(CutOut::by(tiled, OpacityChannel::Alpha).with_cutoff(0.1).with_factor(0.7)),
+            opacity: Some(Opacity::by(tiled, OpacityChannel::Alpha).with_cutoff(0.1).with_factor(0.7)),
             ..Material::default()
         },
-        Material::default().named("bare").with_cut_out(CutOut::default()),
+        Material::default().named("bare").with_opacity(Opacity::default()),
+        Material::default().named("pane").with_opacity(Opacity::blend(0.25)),
+        Material::default().named("foil").with_opacity(Opacity::blend(0.25).with_filter([0.5, 1.0, 0.0])),
+        Material::default().named("veil").with_texture(tiled).with_opacity(
+            Opacity::by(TextureUse::new(0), OpacityChannel::Red).with_filter([0.5, 1.0, 0.125]).with_factor(0.5),
+        ),
     ];
     scene.geometry_mut().textures = vec![texture("oak.png", [3, 2]), texture("tiles", [1, 7])];
     let origin = scene.geometry.origin;
@@ -115,8 +120,8 @@ fn corners(scene: &Scene) -> Vec<[Corner; 3]> {
     let mesh = &scene.geometry.mesh;
     let corner = |vertex: u32, material: u32| {
         let vertex = vertex as usize;
-        let cut_out = scene.geometry.materials[material as usize].cut_out.is_some();
-        let opacity = if cut_out { mesh.opacities[vertex] } else { 1.0 };
+        let opacity = scene.geometry.materials[material as usize].opacity.is_some();
+        let opacity = if opacity { mesh.opacities[vertex] } else { 1.0 };
         (mesh.positions[vertex], mesh.normals[vertex], mesh.uvs[vertex], mesh.colors[vertex], opacity)
     };
     let triangles = mesh.triangles.iter().zip(&mesh.materials);

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::{CutOut, Material, Mesh};
+use crate::{Material, Mesh, Opacity};
 
 /// Gives the triangles in `ranges`, which have no texture coordinates, materials without texture. Returns a sentence if any of
 /// them had a texture.
@@ -21,8 +21,8 @@ pub(crate) fn untextured(mesh: &mut Mesh, materials: &mut Vec<Material>, ranges:
         *material = match plain.get(material) {
             Some(&known) => known,
             None => {
-                let cut_out = textured.cut_out.map(|cut_out| CutOut { texture: None, ..cut_out });
-                materials.push(Material { texture: None, cut_out, ..textured.clone() });
+                let opacity = textured.opacity.map(|opacity| Opacity { texture: None, ..opacity });
+                materials.push(Material { texture: None, opacity, ..textured.clone() });
                 plain.insert(*material, materials.len() as u32 - 1);
                 materials.len() as u32 - 1
             }
@@ -38,7 +38,7 @@ pub(crate) fn untextured(mesh: &mut Mesh, materials: &mut Vec<Material>, ranges:
 
 /// Whether a texture of the material needs texture coordinates.
 fn needs_uvs(material: &Material) -> bool {
-    material.texture.is_some() || material.cut_out.is_some_and(|cut_out| cut_out.texture.is_some())
+    material.texture.is_some() || material.opacity.is_some_and(|opacity| opacity.texture.is_some())
 }
 
 #[cfg(test)]
@@ -49,15 +49,15 @@ mod tests {
     #[test]
     fn triangles_without_a_place_in_the_picture_are_plain() {
         let uses = TextureUse::new(0);
-        let cut_out = CutOut::by(uses, OpacityChannel::Red).with_factor(0.7);
-        let textured = Material::default().with_texture(uses).with_cut_out(cut_out).named("oak");
+        let opacity = Opacity::by(uses, OpacityChannel::Red).with_factor(0.7);
+        let textured = Material::default().with_texture(uses).with_opacity(opacity).named("oak");
         let mut materials = vec![Material::default(), textured];
         let mut mesh = Mesh { materials: vec![1, 0, 1, 1, 1], ..Mesh::default() };
         let warning = untextured(&mut mesh, &mut materials, &[0..1, 1..3]).unwrap();
         assert!(warning.starts_with("2 triangles have a texture"), "{warning}");
         assert_eq!(mesh.materials, [2, 0, 2, 1, 1]);
         assert_eq!((materials.len(), materials[2].name.as_str(), materials[2].texture), (3, "oak", None));
-        assert_eq!(materials[2].cut_out, Some(CutOut { texture: None, ..cut_out }));
+        assert_eq!(materials[2].opacity, Some(Opacity { texture: None, ..opacity }));
         assert_eq!(untextured(&mut mesh, &mut materials, &[0..1, 1..2]), None);
     }
 }

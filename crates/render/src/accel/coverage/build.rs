@@ -6,18 +6,17 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use glam::Vec3;
+use lightmesh_layout::constants::OPAQUE;
 use lightmesh_layout::geometry::CutTriangle;
 use lightmesh_memory::{Budget, Short};
-use lightmesh_scene::{CutOut, Geometry, OpacityChannel, Texture, TextureUse, Wrap};
+use lightmesh_scene::{Geometry, Opacity, OpacityChannel, OpacityMode, Texture, TextureUse, Wrap};
 
 use super::{Coverage, Mask, Table};
 use crate::textures::usable;
 
 /// Bytes that a triangle takes if any is cut out: its entry and its number.
 pub(crate) const BYTES_TO_BUILD: u64 = (size_of::<CutTriangle>() + size_of::<u32>()) as u64;
-
-/// Opacity of a texel that hides everything.
-const OPAQUE: f32 = u8::MAX as f32;
 
 impl Coverage {
     /// The opacities of a geometry, whose indices must be in range, and the number of each triangle: 0 for those that are opaque
@@ -29,8 +28,8 @@ impl Coverage {
         let mut masks = Masks { geometry, budget, known: HashMap::new(), least: Vec::new(), table: Table::default() };
         let mut of_materials = Vec::new();
         for material in &geometry.materials {
-            of_materials.push(match &material.cut_out {
-                Some(cut_out) => masks.mask(cut_out)?.map(|mask| (mask, cut_out.factor)),
+            of_materials.push(match &material.opacity {
+                Some(opacity) => masks.mask(opacity)?.map(|mask| (mask, opacity.factor)),
                 None => None,
             });
         }
@@ -48,7 +47,8 @@ impl Coverage {
             let opacities = vertices.map(|vertex| factor * of_vertex(vertex));
             // Where corners differ, interpolation may round to less than the least of them.
             let same = opacities[0] == opacities[1] && opacities[1] == opacities[2];
-            if same && opacities[0] * least[mask.plane] >= mask.limit {
+            let enough = if mask.blends { OPAQUE } else { mask.limit };
+            if same && opacities[0] * least[mask.plane] >= enough {
                 return 0;
             }
             let uv = |vertex: u32| mesh.uvs.get(vertex as usize).copied().unwrap_or_default().to_array();
@@ -75,22 +75,28 @@ struct Masks<'a> {
 }
 
 impl Masks<'_> {
-    /// The index of the mask; `None` if nothing is cut out.
-    fn mask(&mut self, cut_out: &CutOut) -> Result<Option<usize>, (usize, Short)> {
-        let found = cut_out.texture.and_then(|uses| usable(self.geometry, uses));
-        let limit = OPAQUE * cut_out.cutoff;
+    /// The index of the mask; `None` if nothing is cut out or let through.
+    fn mask(&mut self, opacity: &Opacity) -> Result<Option<usize>, (usize, Short)> {
+        let found = opacity.texture.and_then(|uses| usable(self.geometry, uses));
+        // What neither shows nor filters anything is no surface.
+        let (cutoff, enough, blends) = match opacity.mode {
+            OpacityMode::Mask { cutoff } => (cutoff, cutoff, false),
+            OpacityMode::Blend { filter } if filter == Vec3::ONE => (Opacity::LEAST, 1.0, true),
+            OpacityMode::Blend { .. } => (0.0, 1.0, true),
+        };
         let plane = match found {
-            Some((uses, texture)) => self.plane(uses.texture, texture, cut_out.channel)?,
+            Some((uses, texture)) => self.plane(uses.texture, texture, opacity.channel)?,
             None => self.opaque_plane(),
         };
-        let opaque = cut_out.factor * self.least[plane] >= limit;
+        let opaque = opacity.factor * self.least[plane] >= OPAQUE * enough;
         // A cutoff that is no number cuts nothing out: the library's users may build such a material.
-        if limit.is_nan() || limit <= 0.0 || (opaque && self.geometry.mesh.opacities.is_empty()) {
+        if enough.is_nan() || enough <= 0.0 || (opaque && self.geometry.mesh.opacities.is_empty()) {
             return Ok(None);
         }
         let uses = found.map_or(TextureUse { wrap: [Wrap::Clamp; 2], ..TextureUse::new(0) }, |(uses, _)| uses);
         let size = found.map_or([1; 2], |(_, texture)| texture.size);
-        self.table.masks.push(Mask { plane, size, wrap: uses.wrap, transform: uses.transform, limit });
+        let limit = OPAQUE * cutoff;
+        self.table.masks.push(Mask { plane, size, wrap: uses.wrap, transform: uses.transform, limit, blends });
         Ok(Some(self.table.masks.len() - 1))
     }
 

@@ -1,4 +1,5 @@
-//! Where surfaces are that are cut out: leaves and fences on a few triangles. Twin of the decision: `coverage.cuh`.
+//! Where surfaces are that are cut out, leaves and fences on a few triangles, and how opaque are those that light goes through. Twin of the
+//! decisions: `coverage.cuh`.
 //!
 //! ```text
 //! opacity at (u, v) = mask(A · uv) × opacity of the corners,      a surface where that is at least the cutoff
@@ -18,6 +19,7 @@ mod tests;
 use std::sync::Arc;
 
 use glam::{Affine2, Vec2, Vec3};
+use lightmesh_layout::constants::OPAQUE;
 use lightmesh_layout::geometry::CutTriangle;
 use lightmesh_scene::Wrap;
 
@@ -56,6 +58,8 @@ pub(crate) struct Mask {
     pub(crate) transform: Affine2,
     /// The cutoff, as texels count.
     pub(crate) limit: f32,
+    /// Whether light goes through as far as the opacity is below 1.
+    pub(crate) blends: bool,
 }
 
 impl Coverage {
@@ -101,8 +105,31 @@ impl Coverage {
     #[inline(never)]
     fn covers(&self, cut: u32, u: f32, v: f32) -> bool {
         let Some(table) = self.table() else { return true };
-        let own = &table.triangles[cut as usize - 1];
-        let mask = &table.masks[own.mask as usize];
+        // NaN is nothing.
+        table.value(cut, u, v) >= table.mask_of(cut).limit
+    }
+
+    /// How opaque `triangle` is where it is hit, from 0 to 1.
+    pub(crate) fn opacity(&self, triangle: &Triangle, hit: &Hit) -> f32 {
+        match self.table() {
+            Some(table) if triangle.cut() != 0 && table.mask_of(triangle.cut()).blends => {
+                (table.value(triangle.cut(), hit.u, hit.v) / OPAQUE).min(1.0)
+            }
+            _ => 1.0,
+        }
+    }
+}
+
+impl Table {
+    /// The mask of cut-out triangle number `cut`.
+    fn mask_of(&self, cut: u32) -> &Mask {
+        &self.masks[self.triangles[cut as usize - 1].mask as usize]
+    }
+
+    /// The opacity of cut-out triangle number `cut` at these barycentric weights of its second and third corner, as texels count.
+    fn value(&self, cut: u32, u: f32, v: f32) -> f32 {
+        let own = &self.triangles[cut as usize - 1];
+        let mask = &self.masks[own.mask as usize];
 
         // 1. The opacity of the corners; exactly theirs if it is the same.
         let [a, b, c] = own.opacities;
@@ -112,8 +139,8 @@ impl Coverage {
         let [a, b, c] = own.uvs.map(Vec2::from);
         let place = mask.transform.transform_point2((1.0 - u - v) * a + u * b + v * c);
 
-        // 3. What is there. NaN is nothing.
-        opacity * mask.at(&table.planes[mask.plane], place) >= mask.limit
+        // 3. What is there.
+        opacity * mask.at(&self.planes[mask.plane], place)
     }
 }
 

@@ -1,7 +1,7 @@
 //! What is there and what is not.
 
 use glam::{Vec2, Vec3};
-use lightmesh_scene::{CutOut, Material, Mesh, OpacityChannel, Texture, TextureUse};
+use lightmesh_scene::{Material, Mesh, Opacity, OpacityChannel, Texture, TextureUse};
 
 use lightmesh_memory::Budget;
 use lightmesh_scene::Geometry;
@@ -10,7 +10,7 @@ use super::*;
 use crate::accel::Ray;
 
 /// A triangle over half of the unit square, cut out by `alphas`, two by two texels, with `opacities` at its corners.
-fn geometry(alphas: [u8; 4], opacities: &[f32], cut_out: impl Fn(CutOut) -> CutOut) -> Geometry {
+fn geometry(alphas: [u8; 4], opacities: &[f32], opacity: impl Fn(Opacity) -> Opacity) -> Geometry {
     let mesh = Mesh {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
         uvs: vec![Vec2::ZERO, Vec2::X, Vec2::Y],
@@ -21,7 +21,7 @@ fn geometry(alphas: [u8; 4], opacities: &[f32], cut_out: impl Fn(CutOut) -> CutO
     };
     let texture = Texture { name: "leaf".into(), size: [2; 2], texels: alphas.map(|alpha| [9, 9, 9, alpha]).to_vec() };
     let uses = TextureUse { wrap: [Wrap::Clamp; 2], ..TextureUse::new(0) };
-    let material = Material::default().with_cut_out(cut_out(CutOut::by(uses, OpacityChannel::Alpha)));
+    let material = Material::default().with_opacity(opacity(Opacity::by(uses, OpacityChannel::Alpha)));
     Geometry { mesh, materials: vec![material], textures: vec![texture], ..Geometry::default() }
 }
 
@@ -77,28 +77,28 @@ fn what_is_nowhere_below_the_cutoff_is_opaque() {
     let opacities = |opacities: [f32; 3]| is_opaque(&geometry([255; 4], &opacities, |it| it));
     assert!(opacities([1.0; 3]) && opacities([0.5; 3]) && !opacities([0.5, 0.4, 1.0]));
     let mut plain = geometry([0; 4], &[], |it| it);
-    plain.materials[0].cut_out = None;
+    plain.materials[0].opacity = None;
     assert!(is_opaque(&plain));
 }
 
 #[test]
 fn a_cut_out_without_an_image_goes_by_its_corners() {
-    let without_image = |mut cut_out: CutOut| {
-        cut_out.texture = None;
-        cut_out
+    let without_image = |mut opacity: Opacity| {
+        opacity.texture = None;
+        opacity
     };
     let mut geometry = geometry([0; 4], &[1.0, 0.0, 0.0], without_image);
     let (coverage, _) = of(&geometry);
     assert!(coverage.covers(1, 0.25, 0.25) && coverage.covers(1, 0.5, 0.0) && !coverage.covers(1, 0.3, 0.3));
     // An image that is not there hides nothing, and shows nothing.
     geometry.mesh.opacities.clear();
-    geometry.materials[0].cut_out = Some(CutOut::by(TextureUse::new(7), OpacityChannel::Alpha));
+    geometry.materials[0].opacity = Some(Opacity::by(TextureUse::new(7), OpacityChannel::Alpha));
     assert!(is_opaque(&geometry));
 }
 
 #[test]
 fn the_channel_is_the_one_that_is_named() {
-    let mut geometry = geometry([255; 4], &[], |it| CutOut::by(it.texture.unwrap(), OpacityChannel::Green));
+    let mut geometry = geometry([255; 4], &[], |it| Opacity::by(it.texture.unwrap(), OpacityChannel::Green));
     geometry.textures[0].texels = vec![[0, 255, 0, 0]; 4];
     assert!(is_opaque(&geometry));
     geometry.textures[0].texels[3] = [255, 0, 255, 255];

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 use lightmesh_memory::Budget;
-use lightmesh_scene::{CutOut, Geometry, Material, Mesh, OpacityChannel, Texture, TextureUse, Wrap};
+use lightmesh_scene::{Geometry, Material, Mesh, Opacity, OpacityChannel, Texture, TextureUse, Wrap};
 
 use super::Random;
 use crate::accel::{Coverage, Triangle};
@@ -74,7 +74,7 @@ pub(super) fn cut_out(triangles: Vec<Triangle>, cut: bool, random: &mut Random) 
         ..Mesh::default()
     };
     let uses = TextureUse { wrap: [Wrap::Repeat, Wrap::Mirror], ..TextureUse::new(0) };
-    let leaves = Material::default().with_cut_out(CutOut::by(uses, OpacityChannel::Alpha).with_cutoff(0.4));
+    let leaves = Material::default().with_opacity(Opacity::by(uses, OpacityChannel::Alpha).with_cutoff(0.4));
     let textures = vec![Texture { name: String::new(), size: [16, 4], texels }];
     let geometry = Geometry { mesh, materials: vec![Material::default(), leaves], textures, ..Geometry::default() };
     let (coverage, numbers) = Coverage::of(&geometry, Budget::default()).unwrap();

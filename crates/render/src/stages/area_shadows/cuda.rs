@@ -28,6 +28,7 @@ pub(crate) fn area_shadows<R: Runtime>(
         units: warps,
         taken: None,
         first: FIRST_WARPS,
+        progress: wave.rays.len() as u64,
         words: PLANE_WORDS + SHAFT_WORDS + FOUND_TRIANGLES + 2 * ROW_TABLE_WORDS,
     };
     test_samples(cuda, wave, aim, (&KERNELS, work), |record| record)

@@ -14,7 +14,7 @@ use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
 use crate::data::wave::HostWave;
 use crate::sampling::Pattern;
-use crate::stages::pixel_samples::alike::{Facet, mirrors};
+use crate::stages::pixel_samples::alike::{Facet, goes_on};
 
 /// Number of pixels per task.
 const BATCH: usize = 1024;
@@ -146,7 +146,7 @@ impl Pixel<'_> {
         for first in (0..count).filter(|&sample| u32::from(owners[sample as usize]) == sample) {
             // What sees nothing costs nothing.
             let hit = samples.hit(pixel, first);
-            if mirrors(wave.scene, all, hit) {
+            if goes_on(wave.scene, all, hit) {
                 owned(first).for_each(|sample| add(1, sample, 0, single));
                 continue;
             }

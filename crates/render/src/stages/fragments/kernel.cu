@@ -109,7 +109,7 @@ DEVICE void add_fragments(const PixelSamples &args, unsigned index, Taker &taker
         rest &= ~part;
         // What sees nothing costs nothing.
         const Hit hit = sample_hit(args, index, first);
-        if (hit.triangle != Hit::NONE && mirrors(args, hit)) {
+        if (hit.triangle != Hit::NONE && goes_on(args, hit)) {
             for (unsigned left = part; left != 0; left &= left - 1)
                 take(args, index, taker, 1, __ffs(left) - 1, 0, args.weight);
             continue;

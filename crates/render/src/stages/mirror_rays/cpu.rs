@@ -1,6 +1,7 @@
-//! Mirror rays on the CPU.
+//! Rays that go on, on the CPU.
 
 use glam::Vec3;
+use lightmesh_layout::constants::{LEAST_THROUGH, MOST_THROUGHS, THROUGHS_SHIFT};
 
 use crate::accel::Ray;
 use crate::data::rays::RayList;
@@ -8,35 +9,43 @@ use crate::data::wave::HostWave;
 use crate::footprint::{Cone, curvature};
 use crate::shading::Surface;
 
-pub(crate) fn mirror_rays(wave: &HostWave) -> RayList {
-    let mut next = RayList { window: wave.rays.window, ..RayList::default() };
-    for ray in (0..wave.hits.len()).filter(|&ray| wave.sees(ray)) {
-        let surface = Surface::new(wave, ray);
-        let weight = wave.rays.weight(ray) * surface.coefficients.ks;
-        if weight == Vec3::ZERO {
-            continue;
-        }
-        next.rays.push(Ray {
-            origin: surface.point.origin,
-            direction: surface.mirrored().normalize(),
-            t_max: f32::INFINITY,
-        });
-        if wave.rays.has_cones() {
-            next.cones.push(reflected(wave, ray, &surface));
-        }
-        next.pixels.push(wave.rays.pixels[ray]);
+pub(crate) fn mirror_rays(wave: &HostWave, bounces: u32) -> RayList {
+    let (list, has_cones) = (wave.rays, wave.rays.has_cones());
+    let mut next = RayList { window: list.window, depth: list.depth + 1, ..RayList::default() };
+    let has_samples = !list.samples.is_empty() || wave.scene.lets_through();
+    let mut add = |index: usize, ray: Ray, cone: Option<Cone>, weight: Vec3, sample: u32| {
+        next.rays.push(ray);
+        next.cones.extend(cone);
+        next.pixels.push(list.pixels[index]);
         next.weights.push(weight);
-        if !wave.rays.samples.is_empty() {
-            next.samples.push(wave.rays.sample(ray));
+        if has_samples {
+            next.samples.push(sample);
+        }
+    };
+    for index in (0..wave.hits.len()).filter(|&ray| wave.sees(ray)) {
+        let surface = Surface::new(wave, index);
+        let (ray, hit, throughs) = (&list.rays[index], &wave.hits[index], list.throughs(index));
+        let cone = || list.cone_of(index).after(hit.t);
+
+        // 1. Straight on, from the other side.
+        let weight = list.weight(index) * surface.coefficients.transmittance;
+        if weight.max_element() >= LEAST_THROUGH && throughs < MOST_THROUGHS {
+            let onward = Ray { origin: surface.point.behind(), direction: ray.direction, t_max: f32::INFINITY };
+            add(index, onward, has_cones.then(cone), weight, list.sample(index) + (1 << THROUGHS_SHIFT));
+        }
+
+        // 2. Mirrored.
+        let weight = list.weight(index) * surface.coefficients.ks;
+        if weight != Vec3::ZERO && list.depth - throughs < bounces {
+            let direction = surface.mirrored().normalize();
+            let onward = Ray { origin: surface.point.origin, direction, t_max: f32::INFINITY };
+            let cone = || {
+                let corners = wave.scene.geometry.triangles[hit.triangle as usize].corners();
+                let mesh = &wave.scene.scene.geometry.mesh;
+                cone().reflected(curvature(mesh, hit, corners, surface.point.normal))
+            };
+            add(index, onward, has_cones.then(cone), weight, list.sample(index));
         }
     }
     next
-}
-
-/// The cone that a mirror reflects.
-fn reflected(wave: &HostWave, ray: usize, surface: &Surface) -> Cone {
-    let hit = &wave.hits[ray];
-    let corners = wave.scene.geometry.triangles[hit.triangle as usize].corners();
-    let curvature = curvature(&wave.scene.scene.geometry.mesh, hit, corners, surface.point.normal);
-    wave.rays.cone_of(ray).after(hit.t).reflected(curvature)
 }

@@ -1,4 +1,4 @@
-//! Mirror rays on a CUDA device: counted, summed, written in the order of the rays.
+//! Rays that go on, on a CUDA device: counted, summed, written in the order of the rays.
 
 use bytemuck::Zeroable;
 use lightmesh_layout::geometry::{Cone, Rays};
@@ -13,7 +13,11 @@ use crate::gpu::{BLOCK, Cuda, blocks_for};
 const COUNT: Kernel = Kernel { module: "mirror_rays", name: "mirror_rays_count" };
 const EMIT: Kernel = Kernel { module: "mirror_rays", name: "mirror_rays_emit" };
 
-pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> Result<DeviceRays<R>, RenderError> {
+pub(crate) fn mirror_rays<R: Runtime>(
+    cuda: &Cuda<R>,
+    wave: &DeviceWave<R>,
+    bounces: u32,
+) -> Result<DeviceRays<R>, RenderError> {
     wave.job.check()?;
     let rays = wave.rays;
     let blocks = rays.record.count.div_ceil(BLOCK);
@@ -24,26 +28,29 @@ pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> R
         rays: rays.record,
         hits: wave.hits.hits.input(),
         counts: counts.output(),
+        bounces,
         ..MirrorRays::zeroed()
     };
-    // 1. How many rays of each block are mirrored?
+    // 1. How many rays go on from each block?
     cuda.launch(COUNT, launch, &arguments)?;
     // 2. Where do those of each block begin?
     let total = cuda.scan_total(&counts)?;
-    // 3. The mirror rays.
+    // 3. These rays.
     let list = cuda.pool().room("mirror rays", total)?;
     let cones = match rays.has_cones() {
         true => Some(cuda.pool().room("cones of mirror rays", total)?),
         false => None,
     };
-    let mirrored = list.output();
+    let onward = list.output();
     let outputs = cones.as_ref().map_or(Out::NULL, Buffer::output);
     if total > 0 {
-        cuda.launch(EMIT, launch, &MirrorRays { mirrored, cones: outputs, ..arguments })?;
+        cuda.launch(EMIT, launch, &MirrorRays { onward, cones: outputs, ..arguments })?;
     }
     let inputs = cones.as_ref().map_or(In::NULL, Buffer::input);
     // Cones are those of the list alone.
     let own = Rays { cones: inputs, cone: Cone::zeroed(), first_pixel: 0, count: total as u32, ..rays.record };
-    let record = Rays { list: list.input(), ..own };
-    Ok(DeviceRays { several: rays.several, cones, ..DeviceRays::new(record, Some(list), [0.0; 2]) })
+    let record = Rays { list: list.input(), depth: rays.record.depth + 1, ..own };
+    // A surface may both let rays through and mirror them.
+    let several = rays.several || wave.scene.host.lets_through();
+    Ok(DeviceRays { several, cones, ..DeviceRays::new(record, Some(list), [0.0; 2]) })
 }

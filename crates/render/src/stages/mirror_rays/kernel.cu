@@ -1,21 +1,31 @@
-// The last term of formula (1) on a CUDA device: twin of cpu.rs, one thread per ray.
+// Rays that go on, on a CUDA device: twin of cpu.rs, one thread per ray.
 //
-// 1. `mirror_rays_count`: how many rays of each block of 256 are mirrored; then a scan.
-// 2. `mirror_rays_emit`: the mirror rays, in the order of the rays.
+// 1. `mirror_rays_count`: how many rays go on from each block of 256; then a scan.
+// 2. `mirror_rays_emit`: these rays, in the order of the rays.
 #include "cuda/prelude.cuh"
 
 #include "cuda/warp.cuh"
 #include "shading/shading.cuh"
 
-// The share of what a mirror at the surface point of `ray` shows that reaches the pixel; zero if there is no mirror.
-DEVICE Vec3 mirror_weight(const MirrorRays &args, unsigned ray) {
+// The shares of what is behind the surface point of a ray, and in the mirror there, that reach the pixel; zero where no ray goes on.
+struct Shares {
+    Vec3 through, mirrored;
+};
+
+DEVICE Shares shares_of(const MirrorRays &args, unsigned ray) {
+    const Shares none = {splat(0.0f), splat(0.0f)};
     if (ray >= args.rays.count)
-        return splat(0.0f);
+        return none;
     const Hit hit = load_hit(args.hits, ray);
     if (hit.triangle == Hit::NONE)
-        return splat(0.0f);
+        return none;
     Material own;
-    return weight_of(args.rays, ray) * material_at(args.scene, args.rays, ray, hit, own)->ks;
+    const Material *material = material_at(args.scene, args.rays, ray, hit, own);
+    const Vec3 weight = weight_of(args.rays, ray);
+    const Vec3 through = weight * material->transmittance, mirrored = weight * material->ks;
+    const unsigned throughs = throughs_of(args.rays, ray);
+    const bool goes = max_element(through) >= LEAST_THROUGH && throughs < MOST_THROUGHS;
+    return Shares{goes ? through : none.through, args.rays.depth - throughs < args.bounces ? mirrored : none.mirrored};
 }
 
 // The cone that the mirror at a surface point reflects.
@@ -26,15 +36,15 @@ DEVICE Cone reflected_cone(const MirrorRays &args, unsigned ray, const Surface &
     return cone_reflected(cone, curvature(args.scene, hit, corners, surface.point.normal));
 }
 
-// How many threads of the block before this one have the flag set, and how many in all.
-DEVICE unsigned flags_before(bool flag, unsigned &all) {
+// How many of the threads of the block before this one have the first flag set and how many the second, together, and how many in all.
+DEVICE unsigned flags_before(bool first, bool second, unsigned &all) {
     SHARED(unsigned, warps, [BLOCK / WARP]);
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / WARP;
-    const unsigned flags = __ballot_sync(ALL_LANES, flag);
+    const unsigned firsts = __ballot_sync(ALL_LANES, first), seconds = __ballot_sync(ALL_LANES, second);
     if (lane == 0)
-        warps[warp] = __popc(flags);
+        warps[warp] = __popc(firsts) + __popc(seconds);
     __syncthreads();
-    unsigned before = __popc(flags & lanes_below(lane));
+    unsigned before = __popc(firsts & lanes_below(lane)) + __popc(seconds & lanes_below(lane));
     all = 0;
     for (unsigned other = 0; other < BLOCK / WARP; ++other) {
         before += other < warp ? warps[other] : 0;
@@ -44,27 +54,37 @@ DEVICE unsigned flags_before(bool flag, unsigned &all) {
 }
 
 KERNEL(mirror_rays_count, MirrorRays, BLOCK, 4) {
-    const Vec3 weight = mirror_weight(args, blockIdx.x * BLOCK + threadIdx.x);
+    const Shares shares = shares_of(args, blockIdx.x * BLOCK + threadIdx.x);
     unsigned all;
-    flags_before(weight != splat(0.0f), all);
+    flags_before(shares.through != splat(0.0f), shares.mirrored != splat(0.0f), all);
     if (threadIdx.x == 0)
         args.counts[blockIdx.x] = all;
 }
 
 KERNEL(mirror_rays_emit, MirrorRays, BLOCK, 4) {
     const unsigned ray = blockIdx.x * BLOCK + threadIdx.x;
-    const Vec3 weight = mirror_weight(args, ray);
-    const bool mirrors = weight != splat(0.0f);
+    const Shares shares = shares_of(args, ray);
+    const bool goes = shares.through != splat(0.0f), mirrors = shares.mirrored != splat(0.0f);
     unsigned all;
-    const unsigned before = flags_before(mirrors, all);
-    if (!mirrors)
+    unsigned place = args.counts[blockIdx.x] + flags_before(goes, mirrors, all);
+    if (!goes && !mirrors)
         return;
     Material own;
     const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
-    const Vec3 direction = normalize(mirrored(surface));
-    const unsigned place = args.counts[blockIdx.x] + before;
-    if (args.cones != nullptr)
-        args.cones[place] = reflected_cone(args, ray, surface);
-    args.mirrored[place] =
-        ListedRay{surface.point.origin, pixel_of(args.rays, ray), direction, sample_of(args.rays, ray), weight, 0};
+    const unsigned pixel = pixel_of(args.rays, ray), sample = sample_of(args.rays, ray);
+
+    // 1. Straight on, from the other side.
+    if (goes) {
+        if (args.cones != nullptr)
+            args.cones[place] = cone_after(cone_of(args.rays, ray), load_hit(args.hits, ray).t);
+        const unsigned through = sample + (1u << THROUGHS_SHIFT);
+        args.onward[place++] = ListedRay{behind(surface.point), pixel, ray_at(args.rays, ray).direction, through, shares.through, 0};
+    }
+
+    // 2. Mirrored.
+    if (mirrors) {
+        if (args.cones != nullptr)
+            args.cones[place] = reflected_cone(args, ray, surface);
+        args.onward[place] = ListedRay{surface.point.origin, pixel, normalize(mirrored(surface)), sample, shares.mirrored, 0};
+    }
 }

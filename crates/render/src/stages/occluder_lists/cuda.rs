@@ -51,6 +51,7 @@ pub(crate) fn occluder_lists<R: Runtime>(
     // The items. See `ListMemory` in item.cuh.
     let words =
         4 * OCCLUDER_PARTS * WARP + SEARCHED_WORDS + PLANE_WORDS + FOUND_TRIANGLES + MOST_STARTS + 2 * ROW_TABLE_WORDS;
-    let work = WarpWork { units: items.count as u64, taken: Some(&taken), first: FIRST_ITEMS, words };
+    let units = items.count as u64;
+    let work = WarpWork { units, taken: Some(&taken), first: FIRST_ITEMS, progress: units, words };
     test_samples(cuda, wave, aim, (&KERNELS, work), complete)
 }

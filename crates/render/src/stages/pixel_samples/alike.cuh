@@ -60,10 +60,10 @@ DEVICE bool continues(const Facet &a, const Facet &b) {
 // Whether the surface of a neighbouring pixel may be compared.
 DEVICE bool is_near(const Facet &a, const Facet &b) { return dot(a.smooth, b.smooth) >= NEAR_COSINE && is_level(a, b, NEAR_HEIGHT); }
 
-// Whether rays that a mirror reflects are followed from here.
-DEVICE bool mirrors(const PixelSamples &args, const Hit &hit) {
-    if (!args.mirrors || hit.triangle == Hit::NONE)
+// Whether rays that a surface mirrors or lets through are followed from here.
+DEVICE bool goes_on(const PixelSamples &args, const Hit &hit) {
+    if (hit.triangle == Hit::NONE)
         return false;
     const Material &material = args.scene.materials[__ldg(args.scene.triangle_materials + hit.triangle)];
-    return material.ks != splat(0.0f) || material.ks_tinted != splat(0.0f);
+    return material.blends || (args.mirrors && (material.ks != splat(0.0f) || material.ks_tinted != splat(0.0f)));
 }

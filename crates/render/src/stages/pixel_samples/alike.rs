@@ -135,13 +135,13 @@ impl<'a> Surfaces<'a> {
     }
 }
 
-/// Whether rays that a mirror reflects are followed from here.
+/// Whether rays that a surface mirrors or lets through are followed from here.
 #[inline(always)]
-pub(crate) fn mirrors(scene: &PreparedScene, all: &Antialiasing, hit: &Hit) -> bool {
-    if !all.mirrors || !hit.is_some() {
+pub(crate) fn goes_on(scene: &PreparedScene, all: &Antialiasing, hit: &Hit) -> bool {
+    if !hit.is_some() {
         return false;
     }
     let geometry = &scene.scene.geometry;
     let material = &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize];
-    material.ks != Vec3::ZERO || material.ks_tinted != Vec3::ZERO
+    material.lets_through() || all.mirrors && (material.ks != Vec3::ZERO || material.ks_tinted != Vec3::ZERO)
 }

@@ -8,7 +8,7 @@ use lightmesh_layout::constants::PIXEL_SHARED;
 use rayon::prelude::*;
 
 use super::SampleRange;
-use super::alike::{Facet, Surfaces, mirrors};
+use super::alike::{Facet, Surfaces, goes_on};
 use crate::accel::Hit;
 use crate::counters::Tally;
 use crate::data::mattes::count;
@@ -80,7 +80,7 @@ pub(crate) fn pixel_samples(
             for ((&pixel, hit), ray) in pixels.iter().zip(hits).zip(through) {
                 let others = samples.of(pixel);
                 // Each sample has a mirror ray of its own.
-                let may_share = !mirrors(scene, all, hit);
+                let may_share = !goes_on(scene, all, hit);
                 // Most pixels need no surfaces.
                 if may_share && others.iter().all(|other| other.triangle == hit.triangle) {
                     parted.shared.push(pixel);

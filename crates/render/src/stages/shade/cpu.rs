@@ -36,13 +36,14 @@ pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, gathered: Option<&
     });
     if visibility.lights.end == wave.lights().len() {
         let caught = if wave.scene.catches() { catch_shadows(wave, &targets, &ambient, &mut sums) } else { Vec::new() };
+        let keeps = picture.caught.is_some();
         for (ray, (&pixel, &sum)) in wave.rays.pixels.iter().zip(&sums).enumerate() {
-            picture.add(pixel, wave.rays.weight(ray) * sum);
+            picture.add(pixel, weight_in_film(wave, keeps, ray) * sum);
         }
-        if wave.rays.from_camera() || !wave.rays.shared.is_empty() {
-            for (ray, (&pixel, caught)) in wave.rays.pixels.iter().zip(caught).enumerate() {
-                picture.catch(pixel, wave.rays.weight(ray).x * caught);
-            }
+        for (ray, &pixel) in wave.rays.pixels.iter().enumerate().filter(|(ray, _)| !wave.rays.is_mirrored(*ray)) {
+            let passed = !wave.sees(ray) && wave.rays.throughs(ray) > 0;
+            let share = if passed { 1.0 } else { caught.get(ray).copied().unwrap_or(0.0) };
+            picture.catch(pixel, mean(wave.rays.weight(ray)) * share);
         }
     }
     add_light_groups(wave, visibility, &targets, &ambient, &sums, picture);
@@ -54,6 +55,19 @@ pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, gathered: Option<&
     } else if !wave.rays.shared.is_empty() {
         add_to_layers(wave, visibility, picture);
     }
+}
+
+/// The mean of three channels.
+fn mean(color: Vec3) -> f32 {
+    color.element_sum() / 3.0
+}
+
+/// The share of a ray's radiance that reaches its pixel. What is behind everything is seen on shadow catchers, and by rays that went through all
+/// surfaces: where the image `keeps` how much of it there is, for it to be taken out again, filters do not colour it.
+fn weight_in_film(wave: &HostWave, keeps: bool, ray: usize) -> Vec3 {
+    let (rays, weight) = (wave.rays, wave.rays.weight(ray));
+    let through = keeps && rays.throughs(ray) > 0 && !rays.is_mirrored(ray);
+    if through && (!wave.sees(ray) || catches(wave, ray)) { Vec3::splat(mean(weight)) } else { weight }
 }
 
 /// Formula (1) without its last term: the terms of a group of lights are added to those before.
@@ -94,7 +108,7 @@ fn add_light_groups(
 ) {
     let start = (picture.rows.start * picture.size[0]) as usize;
     let Some(layers) = picture.layers.as_mut().filter(|layers| !layers.rest.is_empty()) else { return };
-    let lights = visibility.lights.clone();
+    let (lights, keeps) = (visibility.lights.clone(), picture.caught.is_some());
     let planes = lights.len() + 1;
     let mut groups: Vec<&mut Vec<[f32; 3]>> = light_groups_of(layers).skip(lights.start).collect();
     // The last one belongs to no light.
@@ -113,7 +127,7 @@ fn add_light_groups(
             },
         );
         for (ray, terms) in (first..).zip(terms.chunks_exact(planes)) {
-            let (pixel, weight) = (wave.rays.pixels[ray] as usize - start, wave.rays.weight(ray));
+            let (pixel, weight) = (wave.rays.pixels[ray] as usize - start, weight_in_film(wave, keeps, ray));
             for (plane, &term) in groups.iter_mut().zip(terms) {
                 plane[pixel] = (Vec3::from_array(plane[pixel]) + weight * term).to_array();
             }

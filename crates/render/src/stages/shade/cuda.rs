@@ -43,7 +43,6 @@ pub(crate) fn shade<R: Runtime>(
         end_light: lights.end as u32,
         several: u32::from(rays.several),
         catches: u32::from(catches),
-        mirrored: u32::from(!rays.is_from_camera() && !rays.are_fragments),
         ..Shade::zeroed()
     };
     film.expose(rays, &mut record);

@@ -14,17 +14,32 @@ DEVICE float share_of(const Shade &args, unsigned light, unsigned ray) {
 // The angle of the cone around a ray; of those of all samples that are shaded with it, if there are several.
 DEVICE float spread_of(const Shade &args, unsigned ray) {
     unsigned samples = 1;
-    if (args.rays.list != nullptr && !args.mirrored)
+    if (args.rays.list != nullptr)
         samples = max(__popc(__ldg(&args.rays.list[ray].shared)), 1);
     else if (args.rays.list == nullptr && args.samples != nullptr)
         samples = args.sample_count;
     return fabsf(cone_of(args.rays, ray).spread) * sqrtf((float)samples);
 }
 
+// The mean of three channels.
+DEVICE float mean(Vec3 color) { return (color.x + color.y + color.z) / 3.0f; }
+
+// The share of a ray's radiance that reaches its pixel. What is behind everything is seen on shadow catchers, and by rays that went through all
+// surfaces: where the image keeps how much of it there is, for it to be taken out again, filters do not colour it.
+DEVICE Vec3 weight_in_film(const Shade &args, unsigned ray) {
+    const Vec3 weight = weight_of(args.rays, ray);
+    if (args.caught == nullptr || throughs_of(args.rays, ray) == 0 || is_mirrored(args.rays, ray))
+        return weight;
+    const unsigned triangle = load_hit(args.hits, ray).triangle;
+    const bool sees = triangle != Hit::NONE;
+    const bool catches = sees && args.scene.materials[__ldg(args.scene.triangle_materials + triangle)].catcher;
+    return !sees || catches ? splat(mean(weight)) : weight;
+}
+
 // What a ray that hits nothing sees: the background or the environment.
 DEVICE Vec3 missed(const Shade &args, unsigned ray) {
     const Environment &environment = args.scene.environment;
-    if (environment.levels == nullptr || (environment.hidden && !args.mirrored))
+    if (environment.levels == nullptr || (environment.hidden && !is_mirrored(args.rays, ray)))
         return args.scene.background;
     return environment_radiance(&environment, ray_at(args.rays, ray).direction, spread_of(args, ray));
 }
@@ -101,9 +116,10 @@ DEVICE float lit_share(const Shade &args, const Surface &surface, Vec3 lit) {
 // Shows what is behind a shadow catcher, as far as it gets light.
 COLD Vec3 catch_shadow(const Shade &args, unsigned ray, unsigned long long place, const Surface &surface, Vec3 lit) {
     const float share = lit_share(args, surface, lit);
+    const bool mirrored = is_mirrored(args.rays, ray);
     if (args.several && args.ray_caught != nullptr)
-        args.ray_caught[ray] = share;
-    else if (!args.several && args.caught != nullptr)
+        args.ray_caught[ray] = mirrored ? 0.0f : share;
+    else if (!args.several && args.caught != nullptr && !mirrored)
         args.caught[place] = share;
     return share * missed(args, ray);
 }
@@ -119,8 +135,9 @@ KERNEL(shade, Shade, BLOCK, 4) {
     Vec3 &sum = args.sums != nullptr ? args.sums[ray] : args.color[place];
     const bool sees = load_hit(args.hits, ray).triangle != Hit::NONE;
     Vec3 radiance = first ? sees ? Vec3{} : missed(args, ray) : sum;
+    // What is behind everything is seen on shadow catchers, and by rays that went through all surfaces.
     if (last && args.several && args.ray_caught != nullptr)
-        args.ray_caught[ray] = 0.0f;
+        args.ray_caught[ray] = !sees && throughs_of(args.rays, ray) > 0 && !is_mirrored(args.rays, ray) ? 1.0f : 0.0f;
     if (sees && (first || fills || (last && args.catches) || sees_any(args, ray))) {
         Material own;
         Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
@@ -162,11 +179,11 @@ KERNEL(add_rays, Shade, BLOCK, 4) {
     const unsigned long long place = pixel - args.film_pixel;
     const bool last = args.end_light == args.scene.light_count;
     for (unsigned next = ray; next < args.rays.count && pixel_of(args.rays, next) == pixel; ++next) {
-        const Vec3 weight = weight_of(args.rays, next);
+        const Vec3 weight = weight_in_film(args, next);
         if (last)
             args.color[place] = args.color[place] + weight * args.sums[next];
         if (last && args.caught != nullptr)
-            args.caught[place] += weight.x * args.ray_caught[next];
+            args.caught[place] += mean(weight_of(args.rays, next)) * args.ray_caught[next];
         if (args.visibility == nullptr || load_hit(args.hits, next).triangle == Hit::NONE)
             continue;
         if (args.used != nullptr)
@@ -186,7 +203,7 @@ DEVICE void add_to_group(const Shade &args, unsigned group, unsigned long long p
 DEVICE void add_by_light(const Shade &args, unsigned ray, unsigned long long place) {
     const unsigned rest = args.scene.light_count;
     const bool first = args.first_light == 0, last = args.end_light == args.scene.light_count;
-    const Vec3 weight = weight_of(args.rays, ray);
+    const Vec3 weight = weight_in_film(args, ray);
     if (load_hit(args.hits, ray).triangle == Hit::NONE) {
         if (first)
             add_to_group(args, rest, place, weight * missed(args, ray));

@@ -29,17 +29,22 @@ pub(crate) struct MaterialExtras {
     /// The transform from texture coordinates to the image's, by columns, if an angle and factors would round it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) texture_transform: Option<[f32; 6]>,
-    /// Where the surface is, unless `alphaMode` says so.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) cut_out: Option<CutOutExtras>,
+    /// Where the surface is, and what it lets through, unless `alphaMode` says so.
+    #[serde(default, alias = "cut_out", skip_serializing_if = "Option::is_none")]
+    pub(crate) opacity: Option<OpacityExtras>,
 }
 
-/// A cut-out by something else than the alpha of the base colour.
+/// An opacity by something else than the alpha of the base colour.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct CutOutExtras {
+pub(crate) struct OpacityExtras {
     pub(crate) factor: f32,
-    pub(crate) cutoff: f32,
+    /// Of a mask.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) cutoff: Option<f32>,
+    /// Of a surface that lets a share of the light through.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) filter: Option<[f32; 3]>,
     /// Index of the file's texture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) texture: Option<u32>,
@@ -66,7 +71,7 @@ impl MaterialExtras {
             texture: None,
             catcher: self.catcher,
             lamp: self.lamp,
-            cut_out: None,
+            opacity: None,
         }
     }
 }

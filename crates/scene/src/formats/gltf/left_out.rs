@@ -19,8 +19,6 @@ pub(super) struct LeftOut {
     pub(super) morphed: usize,
     /// Primitives whose material does not exist.
     pub(super) missing_materials: usize,
-    /// Materials that let light through.
-    pub(super) see_through: usize,
     /// Materials that are cut out everywhere.
     pub(super) invisible: usize,
     pub(super) roughness_textures: usize,
@@ -51,7 +49,6 @@ impl LeftOut {
             (self.skinned, "skinned mesh", "shown in its rest pose, without its skeleton"),
             (self.morphed, "mesh", "shown without the morph targets that the file blends in"),
             (self.missing_materials, "primitive", "with a material that the file does not contain: shown white"),
-            (self.see_through, "material", "with transparency (alphaMode BLEND): shown opaque"),
             (self.invisible, "material", "not seen: the alpha of the base colour is below alphaCutoff"),
             (self.roughness_textures, "metallic-roughness texture", "not shown: the material's factors are used"),
             (self.normal_textures, "normal texture", "not shown"),

@@ -22,10 +22,10 @@ use glam::{Affine2, Vec3};
 use super::{
     container::malformed,
     document::{self, MaterialExtensions, MetallicRoughness},
-    extras::{self, CutOutExtras, MaterialExtras},
+    extras::{self, MaterialExtras, OpacityExtras},
     left_out::LeftOut,
 };
-use crate::{CutOut, LoadError, Material, TextureUse};
+use crate::{LoadError, Material, Opacity, OpacityMode, TextureUse};
 
 /// Reflectance of a dielectric at normal incidence, for the index of refraction 1.5.
 const DIELECTRIC: f32 = 0.04;
@@ -59,21 +59,19 @@ pub(super) fn texture_transform(
 }
 
 /// What cuts the material out, if our own extras specify it.
-pub(super) fn cut_out_extras(
+pub(super) fn opacity_extras(
     path: &Path,
     index: usize,
     of: &document::Material,
-) -> Result<Option<CutOutExtras>, LoadError> {
+) -> Result<Option<OpacityExtras>, LoadError> {
     let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
-    Ok(own.and_then(|own| own.cut_out))
+    Ok(own.and_then(|own| own.opacity))
 }
 
 /// Counts the properties of the material that are not shown.
 pub(super) fn count_left_out(of: &document::Material, left_out: &mut LeftOut) {
     let pbr = of.pbr_metallic_roughness.as_deref();
     let specular = of.extensions.as_deref().and_then(|extensions| extensions.specular.as_ref());
-    let opaque = matches!(of.alpha_mode.as_deref(), None | Some("OPAQUE" | "MASK"));
-    left_out.see_through += usize::from(!opaque);
     left_out.roughness_textures += usize::from(pbr.is_some_and(|pbr| pbr.metallic_roughness_texture.is_some()));
     left_out.normal_textures += usize::from(of.normal_texture.is_some());
     left_out.occlusion_textures += usize::from(of.occlusion_texture.is_some());
@@ -84,14 +82,16 @@ pub(super) fn count_left_out(of: &document::Material, left_out: &mut LeftOut) {
     );
 }
 
-/// Where the surface of a material with `alphaMode` MASK is, by the alpha of its base colour and `texture`. A cutoff or factor that
-/// is no number, or negative, counts as 0, as does any without the other.
-pub(super) fn cut_out(of: &document::Material, texture: Option<TextureUse>) -> Option<CutOut> {
-    (of.alpha_mode.as_deref() == Some("MASK")).then(|| {
-        let factor = of.pbr_metallic_roughness.as_deref().map_or(1.0, |pbr| pbr.base_color_factor[3]);
-        let (factor, cutoff) = (factor.max(0.0), of.alpha_cutoff.unwrap_or(CutOut::CUTOFF).max(0.0));
-        CutOut { texture, factor, cutoff, ..CutOut::default() }
-    })
+/// What an `alphaMode` other than OPAQUE says, by the alpha of its base colour and `texture`. A cutoff or factor that is no number, or
+/// negative, counts as 0.
+pub(super) fn opacity(of: &document::Material, texture: Option<TextureUse>) -> Option<Opacity> {
+    let mode = match of.alpha_mode.as_deref()? {
+        "MASK" => OpacityMode::Mask { cutoff: of.alpha_cutoff.unwrap_or(Opacity::CUTOFF).max(0.0) },
+        "BLEND" => OpacityMode::Blend { filter: Vec3::ONE },
+        _ => return None,
+    };
+    let factor = of.pbr_metallic_roughness.as_deref().map_or(1.0, |pbr| pbr.base_color_factor[3]).max(0.0);
+    Some(Opacity { texture, factor, mode, ..Opacity::default() })
 }
 
 /// The material in glTF's own terms.

@@ -6,13 +6,13 @@ use glam::Affine2;
 
 use super::{
     document::{self, Document, Primitive, TextureInfo},
-    extras::CutOutExtras,
+    extras::OpacityExtras,
     left_out::LeftOut,
     material,
     picture::Pictures,
 };
 use crate::{
-    CutOut, LoadError, Material, OpacityChannel, TextureUse,
+    LoadError, Material, Opacity, OpacityChannel, OpacityMode, TextureUse,
     draft::{Draft, Placement},
 };
 
@@ -27,16 +27,19 @@ pub(super) struct Materials {
 }
 
 /// What our own extras say.
-fn cut_out(own: &CutOutExtras, pictures: &mut Pictures, draft: &mut Draft) -> CutOut {
+fn opacity(own: &OpacityExtras, pictures: &mut Pictures, draft: &mut Draft) -> Opacity {
     let info = own.texture.map(|index| TextureInfo { index, tex_coord: 0, extensions: None });
     let found = info.and_then(|info| pictures.find(&info, draft));
     let transform = own.transform.map_or(Affine2::IDENTITY, |columns| Affine2::from_cols_array(&columns));
     let channel = OpacityChannel::ALL.iter().find(|channel| own.channel.as_deref() == Some(channel.name()));
-    CutOut {
+    Opacity {
         texture: found.map(|(uses, _)| TextureUse { transform, ..uses }),
         channel: channel.copied().unwrap_or_default(),
         factor: own.factor,
-        cutoff: own.cutoff,
+        mode: match own.filter {
+            Some(filter) => OpacityMode::Blend { filter: filter.into() },
+            None => OpacityMode::Mask { cutoff: own.cutoff.unwrap_or(Opacity::CUTOFF) },
+        },
     }
 }
 
@@ -48,7 +51,7 @@ struct Read {
     /// The set of texture coordinates that its texture needs.
     set: Option<u32>,
     /// Whether the alpha of vertex colours counts.
-    cut_out: bool,
+    opacity: bool,
 }
 
 /// The material of a primitive, and the attributes it needs.
@@ -91,13 +94,13 @@ impl Materials {
             if let (Some(texture), Some(exact)) = (&mut texture, material::texture_transform(path, index, entry)?) {
                 texture.transform = exact;
             }
-            let cut_out = match material::cut_out_extras(path, index, entry)? {
-                Some(own) => Some(cut_out(&own, &mut pictures, draft)),
-                None => material::cut_out(entry, texture),
+            let opacity = match material::opacity_extras(path, index, entry)? {
+                Some(own) => Some(opacity(&own, &mut pictures, draft)),
+                None => material::opacity(entry, texture),
             };
-            left_out.invisible += usize::from(cut_out.is_some_and(|it| it.texture.is_none() && it.factor < it.cutoff));
-            materials.read.push(Read { material: draft.materials.len() as u32, set, cut_out: cut_out.is_some() });
-            draft.materials.push(Material { texture, cut_out, ..material });
+            left_out.invisible += usize::from(opacity.is_some_and(|opacity| opacity.is_nowhere()));
+            materials.read.push(Read { material: draft.materials.len() as u32, set, opacity: opacity.is_some() });
+            draft.materials.push(Material { texture, opacity, ..material });
         }
         left_out.missing_textures += pictures.missing;
         Ok(materials)
@@ -113,16 +116,16 @@ impl Materials {
         }
         let named = primitive.material.map(|material| self.read.get(material as usize));
         left_out.missing_materials += usize::from(named == Some(None));
-        let Read { material, set, cut_out } = match named.flatten() {
+        let Read { material, set, opacity } = match named.flatten() {
             Some(&found) => found,
-            None => Read { material: self.default_material(draft), set: None, cut_out: false },
+            None => Read { material: self.default_material(draft), set: None, opacity: false },
         };
         let uvs = match set {
             None | Some(0) => first,
             Some(1) => attributes.texcoord_1,
             Some(_) => None,
         };
-        Chosen { material, uvs, colors, opacities: colors.filter(|_| cut_out) }
+        Chosen { material, uvs, colors, opacities: colors.filter(|_| opacity) }
     }
 
     fn default_material(&mut self, draft: &mut Draft) -> u32 {

@@ -13,7 +13,7 @@ use super::{
     map::{Map, unquoted},
 };
 use crate::{
-    CutOut, LoadError, Material, OpacityChannel, TextureUse,
+    LoadError, Material, Opacity, OpacityChannel, TextureUse,
     draft::Draft,
     error::Place,
     formats::{
@@ -37,6 +37,7 @@ pub(super) struct Entry {
     opacity: Option<Map>,
     dissolve: Option<f64>,
     transparency: Option<f64>,
+    filter: Option<Vec3>,
 }
 
 /// Statements of libraries that the scene's model cannot represent.
@@ -67,12 +68,6 @@ pub(super) fn read_libraries(
             Err(error) => draft.warnings.push(format!("{}; light grey is used instead", error.named_by(place))),
         }
         seen.insert(name);
-    }
-    let transparent = entries.iter().filter(|entry| entry.is_transparent()).count();
-    if transparent > 0 {
-        draft
-            .warnings
-            .push(format!("{}: {transparent} materials are transparent (d, Tr), but are shown opaque", obj.display()));
     }
     Ok(entries)
 }
@@ -153,7 +148,7 @@ impl Entry {
     /// Parses one line; the error describes the problem.
     fn set(&mut self, word: &[u8], rest: &[u8], left_out: &mut LeftOut) -> Result<(), String> {
         match word {
-            b"Ka" | b"Kd" | b"Ks" | b"Ke" => {
+            b"Ka" | b"Kd" | b"Ks" | b"Ke" | b"Tf" => {
                 if matches!(words(rest).next(), Some(b"spectral" | b"xyz")) {
                     left_out.spectral += 1;
                     return Ok(());
@@ -163,6 +158,7 @@ impl Entry {
                     b"Ka" => self.ambient = color,
                     b"Kd" => self.diffuse = color,
                     b"Ks" => self.specular = color,
+                    b"Tf" => self.filter = color,
                     _ => self.emissive = color,
                 }
             }
@@ -184,12 +180,10 @@ impl Entry {
         Ok(())
     }
 
-    /// Some exporters write `Tr 1` for opaque materials; then there is also `d 1`.
-    fn is_transparent(&self) -> bool {
-        match (self.dissolve, self.transparency) {
-            (Some(dissolve), _) => dissolve < 1.0,
-            (None, transparency) => transparency.is_some_and(|transparency| transparency > 0.0),
-        }
+    /// The share of the surface that is there. Some exporters write `Tr 1` for opaque materials; then there is also `d 1`.
+    fn dissolved(&self) -> f32 {
+        let share = self.dissolve.or(self.transparency.map(|transparency| 1.0 - transparency));
+        share.map_or(1.0, |share| share.clamp(0.0, 1.0) as f32)
     }
 
     /// The material for the shading model. Without Ka, or with `Ka 0`, which many exporters write whatever the material, the ambient
@@ -209,21 +203,33 @@ impl Entry {
             emission: self.emissive.unwrap_or(default.emission),
             lamp: true,
             texture,
-            cut_out: self.cut_out(used, texture, draft),
+            opacity: self.opacity(used, texture, draft),
             ..default
         }
     }
 
+    /// What `d` and `Tr` let through, times the colour of `Tf`, which some exporters write as black where they mean white; without
+    /// these where `map_d` says that the surface is.
+    fn opacity(&self, used: bool, color: Option<TextureUse>, draft: &mut Draft) -> Option<Opacity> {
+        let (factor, filter) = (self.dissolved(), self.filter.filter(|filter| *filter != Vec3::ZERO));
+        let map = self.mask(used, color, draft);
+        if factor == 1.0 {
+            return map;
+        }
+        let filter = filter.unwrap_or(Vec3::ONE).clamp(Vec3::ZERO, Vec3::ONE);
+        Some(map.unwrap_or_default().with_factor(factor).with_filter(filter))
+    }
+
     /// Where the surface is, by the channel that `-imfchan` names. Without that option, the alpha of the image that colours the surface
     /// counts if both are the same; of another image alpha counts if there is any, else luminance, as the format says for numbers.
-    fn cut_out(&self, used: bool, color: Option<TextureUse>, draft: &mut Draft) -> Option<CutOut> {
+    fn mask(&self, used: bool, color: Option<TextureUse>, draft: &mut Draft) -> Option<Opacity> {
         let map = self.opacity.as_ref().filter(|_| used)?;
         let texture = map.texture_use(&self.path, draft)?;
         let channel = map.channel.unwrap_or_else(|| match color {
             Some(color) if color.texture == texture.texture => OpacityChannel::Alpha,
             _ => OpacityChannel::suggested_by(&draft.textures[texture.texture as usize]),
         });
-        Some(CutOut::by(texture, channel))
+        Some(Opacity::by(texture, channel))
     }
 }
 

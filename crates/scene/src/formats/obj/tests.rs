@@ -4,7 +4,7 @@ use std::fs;
 
 use glam::Vec3;
 
-use crate::Scene;
+use crate::{Opacity, OpacityMode, Scene};
 
 const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
 
@@ -198,9 +198,43 @@ fn textures_come_from_map_kd_with_its_options() {
     assert_eq!((scene.geometry.materials[1].kd, scene.geometry.materials[1].texture), (Vec3::splat(0.5), None));
     let warned = |part: &str| scene.warnings.iter().filter(|warning| warning.contains(part)).count();
     assert_eq!(
-        ["gone.png", "other.png", "1 textures other than map_Kd and map_d", "2 materials are transparent"].map(warned),
-        [1, 0, 1, 1]
+        ["gone.png", "other.png", "1 textures other than map_Kd and map_d", "transparent"].map(warned),
+        [1, 0, 1, 0]
     );
+}
+
+#[test]
+fn d_and_tr_let_light_through() {
+    let folder = tempfile::tempdir().unwrap();
+    image::RgbaImage::from_pixel(2, 2, image::Rgba([0, 0, 0, 99])).save(folder.path().join("leaf.png")).unwrap();
+    let materials = [
+        "d 0.25",
+        "Tr 0.25",
+        "Tr 1\nd 1",
+        "d -halo 0.5\nTf 0.5 1 0.25",
+        "d 0.5\nTf 0 0 0",
+        "d 0.5\nmap_d leaf.png",
+        "Tf 0.5 0.5 0.5",
+    ];
+    let mut mtl = String::new();
+    let mut faces = "vt 0.5 0.25\n".to_owned();
+    for (index, lines) in materials.iter().enumerate() {
+        mtl += &format!("newmtl m{index}\n{lines}\n");
+        faces += &format!("usemtl m{index}\nf 1/1 2/1 3/1\n");
+    }
+    fs::write(folder.path().join("a.mtl"), mtl).unwrap();
+    let path = folder.path().join("shape.obj");
+    fs::write(&path, format!("mtllib a.mtl\n{TETRAHEDRON}{faces}")).unwrap();
+    let scene = Scene::open(&path).unwrap();
+    let found = |index: usize| scene.geometry.materials[index].opacity;
+    assert_eq!(found(0), Some(Opacity::blend(0.25)));
+    assert_eq!(found(1), Some(Opacity::blend(0.75)));
+    assert_eq!((found(2), found(6)), (None, None), "opaque");
+    assert_eq!(found(3), Some(Opacity::blend(0.5).with_filter([0.5, 1.0, 0.25])));
+    assert_eq!(found(4), Some(Opacity::blend(0.5)), "black means that nothing was said");
+    let both = found(5).unwrap();
+    assert_eq!((both.factor, both.filter(), both.texture.is_some()), (0.5, Some(Vec3::ONE), true));
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
 }
 
 #[test]
@@ -228,13 +262,13 @@ fn map_d_cuts_out() {
     let path = folder.path().join("shape.obj");
     fs::write(&path, format!("mtllib a.mtl\n{TETRAHEDRON}{faces}")).unwrap();
     let scene = Scene::open(&path).unwrap();
-    let found = |index: usize| scene.geometry.materials[index].cut_out;
+    let found = |index: usize| scene.geometry.materials[index].opacity;
     let channels: Vec<_> = (0..5).map(|index| found(index).expect("a texture").channel.name()).collect();
     // The image that colours the surface: its alpha. Another: alpha if there is any.
     assert_eq!(channels, ["alpha", "alpha", "luminance", "alpha", "blue"]);
-    assert!((0..5).all(|index| found(index).unwrap().cutoff == 0.5));
+    assert!((0..5).all(|index| found(index).unwrap().mode == OpacityMode::Mask { cutoff: 0.5 }));
     assert_eq!((found(5), found(6)), (None, None));
-    let uses = [found(2), found(4)].map(|cut_out| cut_out.unwrap().texture.unwrap());
+    let uses = [found(2), found(4)].map(|opacity| opacity.unwrap().texture.unwrap());
     assert_eq!(
         uses.map(|uses| (uses.transform.matrix2.x_axis.x, uses.wrap[0])),
         [(2.0, crate::Wrap::Repeat), (1.0, crate::Wrap::Clamp)]

@@ -2,14 +2,14 @@
 
 use std::collections::HashMap;
 
-use glam::{Affine2, DVec2, Vec2};
+use glam::{Affine2, DVec2, Vec2, Vec3};
 
 use super::{
     check::Source,
-    schema::{MaterialEntry, Text, TextureScale, TextureWrap, WrapName},
+    schema::{Color, MaterialEntry, Number, Text, TextureScale, TextureWrap, WrapName},
     spanned::Spanned,
 };
-use crate::{CutOut, LoadError, Material, OpacityChannel, TextureUse, Wrap, draft::Draft};
+use crate::{LoadError, Material, Opacity, OpacityChannel, TextureUse, Wrap, draft::Draft};
 
 /// Adds the file's materials and returns the index of each name.
 pub(super) fn read(
@@ -29,8 +29,8 @@ pub(super) fn read(
             Some(TextureUse { texture, ..placed })
         };
         let texture = find(draft, &entry.texture);
-        let cut_out = cut_out(source, entry, find(draft, &entry.opacity_texture), draft)?;
-        draft.materials.push(Material { texture, cut_out, ..coefficients(source, entry)? });
+        let opacity = opacity(source, entry, find(draft, &entry.opacity_texture), draft)?;
+        draft.materials.push(Material { texture, opacity, ..coefficients(source, entry)? });
     }
     Ok(names)
 }
@@ -67,25 +67,48 @@ fn placed(source: &Source, entry: &MaterialEntry) -> Result<TextureUse, LoadErro
     Ok(TextureUse { wrap, transform, ..TextureUse::new(0) })
 }
 
-/// Where the surface is, if its opacity has a texture and that is available.
-fn cut_out(
+/// What the surface lets through; else where it is, if its opacity has a texture and that is available.
+fn opacity(
     source: &Source,
     entry: &MaterialEntry,
     texture: Option<TextureUse>,
     draft: &Draft,
-) -> Result<Option<CutOut>, LoadError> {
-    let mut cutoff = CutOut::CUTOFF;
-    if let Some(value) = &entry.opacity_cutoff {
-        cutoff = source.between("opacity_cutoff", value, 0.0, 1.0)? as f32;
-        if entry.opacity_texture.is_none() {
-            let remedy = "add `opacity_texture = \"FILE\"`";
-            return Err(source.refuse("opacity_cutoff", value, "has no effect without an opacity texture", remedy));
-        }
-    }
-    Ok(texture.map(|uses| {
+) -> Result<Option<Opacity>, LoadError> {
+    let by_texture = texture.map(|uses| {
         let channel = OpacityChannel::suggested_by(&draft.textures[uses.texture as usize]);
-        CutOut::by(uses, channel).with_cutoff(cutoff)
-    }))
+        Opacity::by(uses, channel)
+    });
+    let mask = entry.opacity_cutoff.as_ref().map(|value| cutoff(source, entry, value)).transpose()?;
+    let filter = entry.filter.as_ref().map(|filter| passive_filter(source, entry, filter)).transpose()?;
+    if entry.opacity.is_none() && filter.is_none() {
+        return Ok(by_texture.map(|opacity| opacity.with_cutoff(mask.unwrap_or(Opacity::CUTOFF))));
+    }
+    let factor = entry.opacity.as_ref().map_or(Ok(1.0), |value| source.between("opacity", value, 0.0, 1.0))? as f32;
+    Ok(Some(by_texture.unwrap_or_default().with_factor(factor).with_filter(filter.unwrap_or(Vec3::ONE))))
+}
+
+/// The cutoff, if there is something to cut out.
+fn cutoff(source: &Source, entry: &MaterialEntry, value: &Number) -> Result<f32, LoadError> {
+    let refuse = |fault, remedy| Err(source.refuse("opacity_cutoff", value, fault, remedy));
+    if entry.opacity_texture.is_none() {
+        return refuse("has no effect without an opacity texture", "add `opacity_texture = \"FILE\"`");
+    }
+    if entry.opacity.is_some() || entry.filter.is_some() {
+        return refuse("has no effect where light goes through", "remove it, or `opacity` and `filter`");
+    }
+    Ok(source.between("opacity_cutoff", value, 0.0, 1.0)? as f32)
+}
+
+/// What is left of light that goes through, if any does.
+fn passive_filter(source: &Source, entry: &MaterialEntry, value: &Spanned<Color>) -> Result<Vec3, LoadError> {
+    let filter = source.color("filter", value)?;
+    if filter.max_element() > 1.0 {
+        return Err(source.refuse("filter", value, "adds light that is not there", "write numbers from 0 to 1"));
+    }
+    if entry.opacity.is_none() && entry.opacity_texture.is_none() {
+        return Err(source.refuse("filter", value, "has no effect on an opaque surface", "add `opacity = 0`"));
+    }
+    Ok(filter)
 }
 
 /// A key that requires a texture, if it is present without one.

@@ -284,9 +284,16 @@ pub(crate) struct MaterialEntry {
     /// Placed as `texture` is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) opacity_texture: Option<Text>,
-    /// The least opacity at which there is a surface, from 0 to 1. Default: 0.5.
+    /// The least opacity at which there is a surface, from 0 to 1. Not with `opacity` or `filter`. Default: 0.5.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) opacity_cutoff: Option<Number>,
+    /// The share of the surface that is there, from 0 to 1; it lets the rest of the light through. With it, or with `filter`, the image's
+    /// opacities are such shares, too. Default: 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) opacity: Option<Number>,
+    /// What is left, from 0 to 1, of light that goes through. Default: 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) filter: Option<Spanned<Color>>,
     /// How the image continues beyond its edge; one word, or one for each direction. Default: repeat.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture_wrap: Option<Spanned<TextureWrap>>,

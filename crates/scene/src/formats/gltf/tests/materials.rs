@@ -6,7 +6,7 @@ use glam::{Affine2, Vec2, Vec3};
 use image::{ImageFormat, Rgba, RgbaImage};
 
 use super::*;
-use crate::{CutOut, OpacityChannel, Wrap};
+use crate::{Opacity, OpacityChannel, OpacityMode, Wrap};
 
 /// An image of one texel.
 fn png() -> Vec<u8> {
@@ -225,7 +225,6 @@ fn what_of_materials_is_not_shown_is_one_sentence_a_kind() {
     document["materials"][1]["alphaMode"] = json!("CLOUDS");
     let warnings = warnings(&document);
     for sentence in [
-        "2 materials with transparency (alphaMode BLEND): shown opaque",
         "2 metallic-roughness textures not shown",
         "2 normal textures not shown",
         "2 occlusion textures not shown",
@@ -233,24 +232,27 @@ fn what_of_materials_is_not_shown_is_one_sentence_a_kind() {
     ] {
         assert!(warnings.contains(sentence), "{warnings}");
     }
-    assert_eq!(warnings.lines().count(), 5, "{warnings}");
+    assert_eq!(warnings.lines().count(), 4, "{warnings}");
 }
 
 #[test]
 fn a_mask_cuts_out_by_the_alpha_of_the_base_colour() {
     let mut document = textured();
-    let cut_out = |document: &Value| open(document).geometry.materials[0].cut_out;
-    assert_eq!(cut_out(&document), None);
+    let opacity = |document: &Value| open(document).geometry.materials[0].opacity;
+    assert_eq!(opacity(&document), None);
     document["materials"][0]["alphaMode"] = json!("MASK");
     let scene = open(&document);
-    let wanted = CutOut { texture: scene.geometry.materials[0].texture, ..CutOut::default() };
-    assert!(wanted.texture.is_some() && wanted.cutoff == 0.5 && wanted.channel == OpacityChannel::Alpha);
-    assert_eq!((scene.geometry.materials[0].cut_out, &scene.warnings[..]), (Some(wanted), &[][..]));
+    let wanted = Opacity { texture: scene.geometry.materials[0].texture, ..Opacity::default() };
+    assert!(wanted.texture.is_some() && wanted.channel == OpacityChannel::Alpha);
+    assert_eq!(wanted.mode, OpacityMode::Mask { cutoff: 0.5 });
+    assert_eq!((scene.geometry.materials[0].opacity, &scene.warnings[..]), (Some(wanted), &[][..]));
     document["materials"][0]["alphaCutoff"] = json!(0.25);
     document["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = json!([1, 1, 1, 0.75]);
-    assert_eq!(cut_out(&document), Some(wanted.with_cutoff(0.25).with_factor(0.75)));
+    assert_eq!(opacity(&document), Some(wanted.with_cutoff(0.25).with_factor(0.75)));
     document["materials"][0]["alphaMode"] = json!("BLEND");
-    assert_eq!(cut_out(&document), None);
+    assert_eq!(opacity(&document), Some(wanted.with_factor(0.75).with_filter(Vec3::ONE)));
+    document["materials"][0]["alphaMode"] = json!("CLOUDS");
+    assert_eq!(opacity(&document), None);
 }
 
 #[test]

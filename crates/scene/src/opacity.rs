@@ -1,4 +1,7 @@
-//! Cut-outs: surfaces that are only where their opacity says so, such as leaves and fences on a few triangles.
+//! Opacity: surfaces that are only where it says so, such as leaves and fences on a few triangles, and such that let a share of the light
+//! through, such as curtains and tinted glass.
+
+use glam::Vec3;
 
 use crate::{Texture, TextureUse};
 
@@ -60,45 +63,96 @@ impl OpacityChannel {
     }
 }
 
-/// Where a surface is: nowhere that its opacity is below a cutoff. Opacity is the product of `factor`, the texture's channel and the
-/// [opacity of vertices](crate::Mesh::opacities), all from 0 to 1. Where there is no surface, nothing is hit, hidden or shaded.
+/// What an opacity below 1 means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OpacityMode {
+    /// There is a surface where the opacity is at least the cutoff; elsewhere nothing is hit, hidden or shaded.
+    Mask {
+        /// The least opacity at which there is a surface. At 0 it is everywhere.
+        cutoff: f32,
+    },
+    /// The surface shows that share of what it would if it was opaque. The rest of the light goes straight on, times a colour (glTF's
+    /// `alphaMode` BLEND, with white).
+    Blend {
+        /// The share of each channel, from 0 to 1, that is left of the light that goes through.
+        filter: Vec3,
+    },
+}
+
+/// How much of a surface is there: the product of `factor`, the texture's channel and the [opacity of vertices](crate::Mesh::opacities),
+/// all from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct CutOut {
+pub struct Opacity {
     /// The image; without one its part is 1.
     pub texture: Option<TextureUse>,
     /// What of the image counts.
     pub channel: OpacityChannel,
     /// Opacity of the whole surface.
     pub factor: f32,
-    /// The least opacity at which there is a surface. At 0 it is everywhere.
-    pub cutoff: f32,
+    /// What it means.
+    pub mode: OpacityMode,
 }
 
-impl Default for CutOut {
-    /// Nothing is cut out; the cutoff is 0.5.
-    fn default() -> CutOut {
-        CutOut { texture: None, channel: OpacityChannel::Alpha, factor: 1.0, cutoff: CutOut::CUTOFF }
+impl Default for Opacity {
+    /// 1 everywhere, and a mask.
+    fn default() -> Opacity {
+        Opacity {
+            texture: None,
+            channel: OpacityChannel::Alpha,
+            factor: 1.0,
+            mode: OpacityMode::Mask { cutoff: Opacity::CUTOFF },
+        }
     }
 }
 
-impl CutOut {
+impl Opacity {
     /// The cutoff where none is given.
     pub const CUTOFF: f32 = 0.5;
 
-    /// By a channel of a texture.
-    pub fn by(texture: TextureUse, channel: OpacityChannel) -> CutOut {
-        CutOut { texture: Some(texture), channel, ..CutOut::default() }
+    /// What is less opaque and does not filter is not there: half the smallest step of an image's opacities.
+    pub const LEAST: f32 = 0.5 / 255.0;
+
+    /// That of a whole surface, of which light goes through in part.
+    pub fn blend(factor: f32) -> Opacity {
+        Opacity { factor, mode: OpacityMode::Blend { filter: Vec3::ONE }, ..Opacity::default() }
     }
 
-    /// With another cutoff.
-    pub fn with_cutoff(self, cutoff: f32) -> CutOut {
-        CutOut { cutoff, ..self }
+    /// By a channel of a texture, as a mask.
+    pub fn by(texture: TextureUse, channel: OpacityChannel) -> Opacity {
+        Opacity { texture: Some(texture), channel, ..Opacity::default() }
+    }
+
+    /// As a mask with this cutoff.
+    pub fn with_cutoff(self, cutoff: f32) -> Opacity {
+        Opacity { mode: OpacityMode::Mask { cutoff }, ..self }
+    }
+
+    /// With this colour for light that goes through.
+    pub fn with_filter(self, filter: impl Into<Vec3>) -> Opacity {
+        Opacity { mode: OpacityMode::Blend { filter: filter.into() }, ..self }
+    }
+
+    /// The colour that is left of white light that goes through; `None` if it is a mask.
+    pub fn filter(&self) -> Option<Vec3> {
+        match self.mode {
+            OpacityMode::Blend { filter } => Some(filter),
+            OpacityMode::Mask { .. } => None,
+        }
+    }
+
+    /// Whether there is no surface anywhere.
+    pub(crate) fn is_nowhere(&self) -> bool {
+        let within = |limit: f32| self.texture.is_none() && self.factor < limit;
+        match self.mode {
+            OpacityMode::Mask { cutoff } => within(cutoff),
+            OpacityMode::Blend { filter } => filter == Vec3::ONE && within(Opacity::LEAST),
+        }
     }
 
     /// With another opacity of the whole surface.
-    pub fn with_factor(self, factor: f32) -> CutOut {
-        CutOut { factor, ..self }
+    pub fn with_factor(self, factor: f32) -> Opacity {
+        Opacity { factor, ..self }
     }
 }
 
