@@ -231,7 +231,7 @@ constants! {
     /// The opacity of a texel that hides everything, as texels count.
     OPAQUE: f32 = 255.0;
     /// The bit from which on the number of surfaces that a ray went through is in a list, above its sample.
-    THROUGHS_SHIFT: u32 = 16;
+    THROUGHS_SHIFT: u32 = 20;
     /// A ray goes through so many surfaces.
     MOST_THROUGHS: u32 = 64;
     /// A ray goes on through a surface if at least this share of the radiance behind it reaches the pixel: less changes no code of an image.

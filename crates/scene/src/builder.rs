@@ -7,7 +7,7 @@ use crate::{
     geometry_check::check_room,
     loaded_mesh::LoadedMesh,
     mesh_part::Room,
-    usable::{keep_finite, keep_passive},
+    usable::{keep_finite, keep_passive, unseen},
     vertices::Vertices,
 };
 
@@ -196,7 +196,8 @@ impl SceneBuilder {
         if materials.is_empty() && self.triangle_count() > 0 {
             materials.push(Material::default());
         }
-        let warnings = [keep_finite(&mut materials), keep_passive(&mut materials)].into_iter().flatten().collect();
+        let warnings = [keep_finite(&mut materials), keep_passive(&mut materials), unseen(&materials)];
+        let warnings = warnings.into_iter().flatten().collect();
         let (origin, mesh) = self.finish();
         Scene { warnings, ..Scene::new(name, Geometry { origin, mesh, materials, ..Geometry::default() }) }
     }

@@ -18,7 +18,7 @@ use crate::{
     quote::reference,
     smooth::{Unsmooth, smooth},
     texture::{TextureFiles, untextured},
-    usable::{is_place, keep_finite, keep_passive, keep_placed},
+    usable::{is_place, keep_finite, keep_passive, keep_placed, unseen},
     warnings::Warnings,
 };
 
@@ -337,8 +337,8 @@ impl Draft {
         self.warnings.extend(keep_placed(&mut self.cameras, "cameras"));
         self.warnings.extend(keep_placed(&mut self.lights, "lights"));
         self.warnings.extend(keep_finite(&mut self.materials));
-        let adding = keep_passive(&mut self.materials);
-        self.warnings.extend(adding.map(|warning| format!("{}: {warning}", self.path.display())));
+        let named = [keep_passive(&mut self.materials), unseen(&self.materials)].into_iter().flatten();
+        self.warnings.extend(named.map(|warning| format!("{}: {warning}", self.path.display())));
         self.warnings.extend(self.texture_files.warning(&self.path));
         if self.builder.triangle_count() == 0 {
             self.warnings.push("the scene has no triangles".to_owned());

@@ -30,9 +30,8 @@ pub(crate) fn keep_finite(materials: &mut [Material]) -> Option<String> {
         }
         if let Some(Opacity { factor, mode, .. }) = opacity {
             let mut keep = |number: &mut f32, most: f32| {
-                let usable = number.is_finite() && (0.0..=most).contains(number);
-                odd |= !usable;
-                *number = if usable || *number > most { number.min(most) } else { 0.0 };
+                odd |= !(0.0..=most).contains(number);
+                *number = if number.is_finite() { number.clamp(0.0, most) } else { 0.0 };
             };
             match mode {
                 OpacityMode::Mask { cutoff } => {
@@ -50,6 +49,15 @@ pub(crate) fn keep_finite(materials: &mut [Material]) -> Option<String> {
     }
     (count > 0)
         .then(|| format!("{count} materials have infinite, undefined or negative coefficients, which count as 0"))
+}
+
+/// Names the materials that are nowhere opaque and filter nothing.
+pub(crate) fn unseen(materials: &[Material]) -> Option<String> {
+    let nowhere = |material: &&Material| material.opacity.is_some_and(|opacity| opacity.is_nowhere());
+    let names: Vec<String> = materials.iter().filter(nowhere).map(|material| format!("`{}`", material.name)).collect();
+    let of = if names.len() == 1 { "material is" } else { "materials are" };
+    let listed = list(names.iter().map(String::as_str));
+    (!names.is_empty()).then(|| format!("{} {of} not seen, for lack of opacity: {listed}", names.len()))
 }
 
 /// Lowers specular coefficients above 1: between such mirrors light would grow beyond every number.
@@ -100,6 +108,24 @@ mod tests {
         assert_eq!((materials[0].ks, materials[1].ks), (Vec3::new(1.0, 1.0, 0.5), Vec3::splat(0.5)));
         assert_eq!((materials[1].ks_tinted, &materials[2]), (Vec3::new(0.5, 0.25, 0.5), &usual));
         assert_eq!(keep_passive(&mut materials), None);
+    }
+
+    #[test]
+    fn opacities_out_of_range_are_brought_back() {
+        let of = |factor: f32| Material { opacity: Some(Opacity::blend(factor)), ..Material::default() };
+        let mut materials = [0.5, 2.0, -1.0, f32::INFINITY, f32::NAN].map(of);
+        assert!(keep_finite(&mut materials).is_some_and(|warning| warning.starts_with("4 materials have infinite")));
+        assert_eq!(materials.map(|material| material.opacity.unwrap().factor), [0.5, 1.0, 0.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn what_is_nowhere_opaque_is_named() {
+        let of = |opacity: Opacity, name: &str| Material { opacity: Some(opacity), ..Material::default() }.named(name);
+        let foil = of(Opacity::blend(0.0).with_filter([1.0, 0.0, 0.0]), "foil");
+        let mut materials = vec![foil, of(Opacity::blend(0.5), "pane"), Material::default()];
+        assert_eq!(unseen(&materials), None);
+        materials.push(of(Opacity::blend(0.0), "air"));
+        assert_eq!(unseen(&materials).as_deref(), Some("1 material is not seen, for lack of opacity: `air`"));
     }
 
     #[test]

@@ -138,7 +138,7 @@
 // The opacity of a texel that hides everything, as texels count.
 #define OPAQUE 0x1.fep7f
 // The bit from which on the number of surfaces that a ray went through is in a list, above its sample.
-#define THROUGHS_SHIFT 16u
+#define THROUGHS_SHIFT 20u
 // A ray goes through so many surfaces.
 #define MOST_THROUGHS 64u
 // A ray goes on through a surface if at least this share of the radiance behind it reaches the pixel: less changes no code of an image.

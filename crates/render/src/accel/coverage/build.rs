@@ -47,8 +47,7 @@ impl Coverage {
             let opacities = vertices.map(|vertex| factor * of_vertex(vertex));
             // Where corners differ, interpolation may round to less than the least of them.
             let same = opacities[0] == opacities[1] && opacities[1] == opacities[2];
-            let enough = if mask.blends { OPAQUE } else { mask.limit };
-            if same && opacities[0] * least[mask.plane] >= enough {
+            if same && opacities[0] * least[mask.plane] >= mask.enough() {
                 return 0;
             }
             let uv = |vertex: u32| mesh.uvs.get(vertex as usize).copied().unwrap_or_default().to_array();
@@ -79,24 +78,25 @@ impl Masks<'_> {
     fn mask(&mut self, opacity: &Opacity) -> Result<Option<usize>, (usize, Short)> {
         let found = opacity.texture.and_then(|uses| usable(self.geometry, uses));
         // What neither shows nor filters anything is no surface.
-        let (cutoff, enough, blends) = match opacity.mode {
-            OpacityMode::Mask { cutoff } => (cutoff, cutoff, false),
-            OpacityMode::Blend { filter } if filter == Vec3::ONE => (Opacity::LEAST, 1.0, true),
-            OpacityMode::Blend { .. } => (0.0, 1.0, true),
+        let (cutoff, blends) = match opacity.mode {
+            OpacityMode::Mask { cutoff } => (cutoff, false),
+            OpacityMode::Blend { filter } if filter == Vec3::ONE => (Opacity::LEAST, true),
+            OpacityMode::Blend { .. } => (0.0, true),
         };
         let plane = match found {
             Some((uses, texture)) => self.plane(uses.texture, texture, opacity.channel)?,
             None => self.opaque_plane(),
         };
-        let opaque = opacity.factor * self.least[plane] >= OPAQUE * enough;
-        // A cutoff that is no number cuts nothing out: the library's users may build such a material.
-        if enough.is_nan() || enough <= 0.0 || (opaque && self.geometry.mesh.opacities.is_empty()) {
-            return Ok(None);
-        }
         let uses = found.map_or(TextureUse { wrap: [Wrap::Clamp; 2], ..TextureUse::new(0) }, |(uses, _)| uses);
         let size = found.map_or([1; 2], |(_, texture)| texture.size);
         let limit = OPAQUE * cutoff;
-        self.table.masks.push(Mask { plane, size, wrap: uses.wrap, transform: uses.transform, limit, blends });
+        let mask = Mask { plane, size, wrap: uses.wrap, transform: uses.transform, limit, blends };
+        let opaque = opacity.factor * self.least[plane] >= mask.enough();
+        // A cutoff that is no number cuts nothing out: the library's users may build such a material.
+        if mask.enough().is_nan() || mask.enough() <= 0.0 || (opaque && self.geometry.mesh.opacities.is_empty()) {
+            return Ok(None);
+        }
+        self.table.masks.push(mask);
         Ok(Some(self.table.masks.len() - 1))
     }
 

@@ -120,6 +120,13 @@ impl Coverage {
     }
 }
 
+impl Mask {
+    /// What at least is opaque everywhere, as texels count.
+    fn enough(&self) -> f32 {
+        if self.blends { OPAQUE } else { self.limit }
+    }
+}
+
 impl Table {
     /// The mask of cut-out triangle number `cut`.
     fn mask_of(&self, cut: u32) -> &Mask {

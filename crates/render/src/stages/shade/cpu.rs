@@ -40,10 +40,8 @@ pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, gathered: Option<&
         for (ray, (&pixel, &sum)) in wave.rays.pixels.iter().zip(&sums).enumerate() {
             picture.add(pixel, weight_in_film(wave, keeps, ray) * sum);
         }
-        for (ray, &pixel) in wave.rays.pixels.iter().enumerate().filter(|(ray, _)| !wave.rays.is_mirrored(*ray)) {
-            let passed = !wave.sees(ray) && wave.rays.throughs(ray) > 0;
-            let share = if passed { 1.0 } else { caught.get(ray).copied().unwrap_or(0.0) };
-            picture.catch(pixel, mean(wave.rays.weight(ray)) * share);
+        if keeps {
+            keep_what_is_behind(wave, &caught, picture);
         }
     }
     add_light_groups(wave, visibility, &targets, &ambient, &sums, picture);
@@ -60,6 +58,15 @@ pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, gathered: Option<&
 /// The mean of three channels.
 fn mean(color: Vec3) -> f32 {
     color.element_sum() / 3.0
+}
+
+/// Adds how much of what is behind everything the camera's rays show, those of shadow catchers as much as they `caught`.
+fn keep_what_is_behind(wave: &HostWave, caught: &[f32], picture: &mut Picture) {
+    for (ray, &pixel) in wave.rays.pixels.iter().enumerate().filter(|(ray, _)| !wave.rays.is_mirrored(*ray)) {
+        let passed = !wave.sees(ray) && wave.rays.throughs(ray) > 0;
+        let share = if passed { 1.0 } else { caught.get(ray).copied().unwrap_or(0.0) };
+        picture.catch(pixel, mean(wave.rays.weight(ray)) * share);
+    }
 }
 
 /// The share of a ray's radiance that reaches its pixel. What is behind everything is seen on shadow catchers, and by rays that went through all

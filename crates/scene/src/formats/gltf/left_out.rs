@@ -19,8 +19,8 @@ pub(super) struct LeftOut {
     pub(super) morphed: usize,
     /// Primitives whose material does not exist.
     pub(super) missing_materials: usize,
-    /// Materials that are cut out everywhere.
-    pub(super) invisible: usize,
+    /// Materials with an `alphaMode` that glTF does not define.
+    pub(super) unknown_alpha_modes: usize,
     pub(super) roughness_textures: usize,
     pub(super) normal_textures: usize,
     pub(super) occlusion_textures: usize,
@@ -49,7 +49,7 @@ impl LeftOut {
             (self.skinned, "skinned mesh", "shown in its rest pose, without its skeleton"),
             (self.morphed, "mesh", "shown without the morph targets that the file blends in"),
             (self.missing_materials, "primitive", "with a material that the file does not contain: shown white"),
-            (self.invisible, "material", "not seen: the alpha of the base colour is below alphaCutoff"),
+            (self.unknown_alpha_modes, "material", "with an unknown alphaMode: shown opaque"),
             (self.roughness_textures, "metallic-roughness texture", "not shown: the material's factors are used"),
             (self.normal_textures, "normal texture", "not shown"),
             (self.occlusion_textures, "occlusion texture", "not shown"),

@@ -58,7 +58,7 @@ pub(super) fn texture_transform(
     Ok(own.and_then(|own| own.texture_transform).map(|columns| Affine2::from_cols_array(&columns)))
 }
 
-/// What cuts the material out, if our own extras specify it.
+/// Where the surface is, and what it lets through, if our own extras specify it.
 pub(super) fn opacity_extras(
     path: &Path,
     index: usize,
@@ -72,6 +72,8 @@ pub(super) fn opacity_extras(
 pub(super) fn count_left_out(of: &document::Material, left_out: &mut LeftOut) {
     let pbr = of.pbr_metallic_roughness.as_deref();
     let specular = of.extensions.as_deref().and_then(|extensions| extensions.specular.as_ref());
+    let alpha_mode = of.alpha_mode.as_deref().unwrap_or("OPAQUE");
+    left_out.unknown_alpha_modes += usize::from(!matches!(alpha_mode, "OPAQUE" | "MASK" | "BLEND"));
     left_out.roughness_textures += usize::from(pbr.is_some_and(|pbr| pbr.metallic_roughness_texture.is_some()));
     left_out.normal_textures += usize::from(of.normal_texture.is_some());
     left_out.occlusion_textures += usize::from(of.occlusion_texture.is_some());

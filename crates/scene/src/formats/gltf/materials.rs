@@ -98,7 +98,6 @@ impl Materials {
                 Some(own) => Some(opacity(&own, &mut pictures, draft)),
                 None => material::opacity(entry, texture),
             };
-            left_out.invisible += usize::from(opacity.is_some_and(|opacity| opacity.is_nowhere()));
             materials.read.push(Read { material: draft.materials.len() as u32, set, opacity: opacity.is_some() });
             draft.materials.push(Material { texture, opacity, ..material });
         }

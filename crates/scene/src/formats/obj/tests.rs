@@ -203,6 +203,20 @@ fn textures_come_from_map_kd_with_its_options() {
     );
 }
 
+/// A scene with a face of each material, whose statements are given.
+fn with_materials(folder: &tempfile::TempDir, materials: &[&str]) -> Scene {
+    let mut mtl = String::new();
+    let mut faces = "vt 0.5 0.25\n".to_owned();
+    for (index, lines) in materials.iter().enumerate() {
+        mtl += &format!("newmtl m{index}\n{lines}\n");
+        faces += &format!("usemtl m{index}\nf 1/1 2/1 3/1\n");
+    }
+    fs::write(folder.path().join("a.mtl"), mtl).unwrap();
+    let path = folder.path().join("shape.obj");
+    fs::write(&path, format!("mtllib a.mtl\n{TETRAHEDRON}{faces}")).unwrap();
+    Scene::open(&path).unwrap()
+}
+
 #[test]
 fn d_and_tr_let_light_through() {
     let folder = tempfile::tempdir().unwrap();
@@ -216,16 +230,7 @@ fn d_and_tr_let_light_through() {
         "d 0.5\nmap_d leaf.png",
         "Tf 0.5 0.5 0.5",
     ];
-    let mut mtl = String::new();
-    let mut faces = "vt 0.5 0.25\n".to_owned();
-    for (index, lines) in materials.iter().enumerate() {
-        mtl += &format!("newmtl m{index}\n{lines}\n");
-        faces += &format!("usemtl m{index}\nf 1/1 2/1 3/1\n");
-    }
-    fs::write(folder.path().join("a.mtl"), mtl).unwrap();
-    let path = folder.path().join("shape.obj");
-    fs::write(&path, format!("mtllib a.mtl\n{TETRAHEDRON}{faces}")).unwrap();
-    let scene = Scene::open(&path).unwrap();
+    let scene = with_materials(&folder, &materials);
     let found = |index: usize| scene.geometry.materials[index].opacity;
     assert_eq!(found(0), Some(Opacity::blend(0.25)));
     assert_eq!(found(1), Some(Opacity::blend(0.75)));
@@ -252,16 +257,7 @@ fn map_d_cuts_out() {
         "map_d gone.png",
         "map_Kd leaf.png",
     ];
-    let mut mtl = String::new();
-    let mut faces = "vt 0.5 0.25\n".to_owned();
-    for (index, lines) in materials.iter().enumerate() {
-        mtl += &format!("newmtl m{index}\n{lines}\n");
-        faces += &format!("usemtl m{index}\nf 1/1 2/1 3/1\n");
-    }
-    fs::write(folder.path().join("a.mtl"), mtl).unwrap();
-    let path = folder.path().join("shape.obj");
-    fs::write(&path, format!("mtllib a.mtl\n{TETRAHEDRON}{faces}")).unwrap();
-    let scene = Scene::open(&path).unwrap();
+    let scene = with_materials(&folder, &materials);
     let found = |index: usize| scene.geometry.materials[index].opacity;
     let channels: Vec<_> = (0..5).map(|index| found(index).expect("a texture").channel.name()).collect();
     // The image that colours the surface: its alpha. Another: alpha if there is any.

@@ -229,10 +229,11 @@ fn what_of_materials_is_not_shown_is_one_sentence_a_kind() {
         "2 normal textures not shown",
         "2 occlusion textures not shown",
         "2 emissive textures not shown",
+        "1 material with an unknown alphaMode: shown opaque",
     ] {
         assert!(warnings.contains(sentence), "{warnings}");
     }
-    assert_eq!(warnings.lines().count(), 4, "{warnings}");
+    assert_eq!(warnings.lines().count(), 5, "{warnings}");
 }
 
 #[test]
@@ -260,7 +261,7 @@ fn a_mask_without_a_texture_may_hide_everything() {
     let mut document = textured();
     document["materials"][0] =
         json!({"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.4]}});
-    assert!(warnings(&document).contains("1 material not seen: the alpha of the base colour is below alphaCutoff"));
+    assert!(warnings(&document).contains("1 material is not seen, for lack of opacity"));
     document["materials"][0]["alphaCutoff"] = json!(0.4);
     assert_eq!(warnings(&document), "");
 }
