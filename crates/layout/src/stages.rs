@@ -1,7 +1,7 @@
 //! The arguments of kernels: one record for those of a stage.
 
 use crate::constants::FIRST_TARGETS;
-use crate::geometry::{Cone, Hit, ListedRay, Rays, Tally, Vec3};
+use crate::geometry::{Cone, Hit, ListedRay, Rays, Tally, Triangle, Vec3};
 use crate::mesh::{BrickTable, Item, KeptBy, LightMesh, LitBy, UsedPoints};
 use crate::record::records;
 use crate::scene::{SampleRows, Sampling, Scene};
@@ -82,6 +82,22 @@ records! {
         end_light: u32,
     }
 
+    /// `filters`: one thread per ray.
+    Filters {
+        /// The scene, of which only what is opaque hides.
+        scene: Scene,
+        /// What kernels that test samples need; of its scene only what lets light through is hit.
+        shadows: Shadows,
+        /// What is hit, by index in the mesh: given points have other triangles in a scene.
+        triangles: In<Triangle>,
+        /// What is left of each light by light, then ray; what is lost until the last set.
+        passed: Out<Vec3>,
+        /// 1: one ray to the centre of each light.
+        middle: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
+    }
+
     /// `first_rays`: one thread per ray; `find_open` and `list_open`: one block per light and 256 rays; `open_rays`: one thread per entry.
     AdaptiveShadows {
         /// The scene.
@@ -152,6 +168,8 @@ records! {
         hits: In<Hit>,
         /// Share of each light by light, then ray.
         share: In<f32>,
+        /// What is left of each light, in the same order; null if all surfaces are opaque.
+        passed: In<Vec3>,
         /// Number of light points used, by ray; null if the technique uses none.
         used: In<u32>,
         /// What was gathered, by ray; null if ambient light stands for it.

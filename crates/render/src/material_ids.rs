@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use lightmesh_scene::Geometry;
 
 /// Materials by name: those of the same name have one number.
+#[derive(Clone)]
 pub(crate) struct MaterialIds {
     /// The number of each material.
     pub(crate) numbers: Vec<u32>,

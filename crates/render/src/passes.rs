@@ -15,10 +15,12 @@ use crate::data::visibility::Visibility;
 use crate::error::RenderError;
 use crate::gathered::Gathering;
 use crate::plan::Plan;
+use crate::prepared::SeeThrough;
 use crate::probes::GivenPoints;
+use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stages::pixel_samples::SampleRange;
-use crate::techniques::Technique;
+use crate::techniques::{Taker, Technique};
 use crate::view::View;
 
 /// A shared fragment takes this part of a pixel's samples of lights. Two or three of them make most of these pixels.
@@ -36,7 +38,8 @@ impl<B: Backend> Baking<'_, B> {
     /// Finds what each probe sees of each light. Also returns how many rows of probes were processed at once.
     pub(crate) fn bake(&self, points: &GivenPoints) -> Result<(Visibility, u32), RenderError> {
         let Baking { run, scene, technique, plan } = self;
-        run.job.work.expect(points.len() as u64 * technique.stages().len() as u64);
+        let stages = technique.stages().len() as u64 + u64::from(plan.lets_through);
+        run.job.work.expect(points.len() as u64 * stages);
         let at_once = run.or_forget(|backend| backend.rows_at_once(scene, plan))?;
         let mut all = Visibility::dark(0..plan.lights.lights, points.len());
         let at_once = in_bands(run, points.rows(), at_once, |rows| {
@@ -52,7 +55,8 @@ impl<B: Backend> Baking<'_, B> {
                 parts: 1,
             };
             let mut seen = None;
-            technique.visibility(run, &wave, plan.lights, &mut |visibility| {
+            let light = Light { run, technique, plan };
+            light.each_group(&wave, run.backend.see_through(&scene).as_ref(), &mut |visibility| {
                 seen = Some(visibility);
                 Ok(())
             })?;
@@ -68,10 +72,41 @@ impl<B: Backend> Baking<'_, B> {
     }
 }
 
+/// How surface points find what they see of lights.
+struct Light<'a, 'run, B: Backend> {
+    run: &'a Run<'run, B>,
+    technique: &'a Technique,
+    plan: &'a Plan,
+}
+
+impl<B: Backend> Light<'_, '_, B> {
+    /// Hands what each surface point of a wave sees of each light to `taker`, group by group of lights. Of a scene that is `see_through` only
+    /// what is opaque hides, and the rest filters.
+    fn each_group(
+        &self,
+        wave: &WaveOf<B>,
+        see_through: Option<&SeeThrough<B::Scene>>,
+        taker: &mut Taker<B>,
+    ) -> Result<(), RenderError> {
+        let Light { run, technique, plan } = self;
+        let Some(SeeThrough { blockers, panes, .. }) = see_through else {
+            return technique.visibility(run, wave, plan.lights, taker);
+        };
+        let wave = WaveOf::<B> { scene: blockers, ..*wave };
+        let n = run.backend.ray_count(wave.rays);
+        let aim = if technique.aims_at_centers() { Aim::Middle } else { wave.aim() };
+        technique.visibility(run, &wave, plan.lights, &mut |visibility| {
+            taker(run.stage(Stage::Filters, [n; 2], |backend| backend.filters(&wave, panes, &aim, visibility))?)
+        })
+    }
+}
+
 /// The passes over one image.
 pub(crate) struct Passes<'a, B: Backend> {
     pub(crate) run: Run<'a, B>,
     pub(crate) scene: &'a B::Scene,
+    /// The scene taken apart for shadow rays, if some of its surfaces are not opaque.
+    pub(crate) see_through: Option<SeeThrough<B::Scene>>,
     pub(crate) technique: &'a Technique,
     pub(crate) view: &'a View,
     pub(crate) plan: &'a Plan,
@@ -156,11 +191,14 @@ impl<B: Backend> Passes<'_, B> {
     fn light(&self, wave: &WaveOf<B>, film: &mut B::Film) -> Result<(), RenderError> {
         let Passes { run, technique, plan, .. } = self;
         let n = run.backend.ray_count(wave.rays);
+        let solid = self.see_through.as_ref().map_or(wave.scene, |parts| &parts.solid);
         let gather = |how: &Gathering| {
-            run.stage(Stage::Gather, [n; 2], |backend| run.with_gathered(|kept| backend.gather(wave, how, kept)))
+            let wave = WaveOf::<B> { scene: solid, ..*wave };
+            run.stage(Stage::Gather, [n; 2], |backend| run.with_gathered(|kept| backend.gather(&wave, how, kept)))
         };
         let gathered = plan.gathering.as_ref().map(gather).transpose()?;
-        technique.visibility(run, wave, plan.lights, &mut |visibility| {
+        let light = Light { run, technique, plan };
+        light.each_group(wave, self.see_through.as_ref(), &mut |visibility| {
             run.stage(Stage::Shade, [n; 2], |backend| backend.shade(wave, &visibility, gathered.as_ref(), film))
         })
     }
@@ -211,7 +249,8 @@ impl<B: Backend> Passes<'_, B> {
         // The technique's stages, gathering, shading; long tests and shading again for each further group.
         let further = self.plan.lights.iter().len() as u64 - 1;
         let gathering = u64::from(self.plan.gathering.is_some());
-        rays * (self.technique.stages().len() as u64 + gathering + 1 + 2 * further)
+        let filters = u64::from(self.plan.lets_through) * (1 + further);
+        rays * (self.technique.stages().len() as u64 + gathering + filters + 1 + 2 * further)
     }
 }
 
@@ -337,7 +376,8 @@ mod tests {
             let job = Job::new(&Unobserved, Sampling { samples: 9, seed: 0, spread: true });
             let run = Run::new(&Cpu, &job, None);
             let mut picture = Picture::planned(&plan, [0..size[1], 0..size[1]]);
-            let rows = Passes { run, scene, technique: &technique, view: &view, plan: &plan }.render(&mut picture)?;
+            let passes = Passes { run, scene, see_through: None, technique: &technique, view: &view, plan: &plan };
+            let rows = passes.render(&mut picture)?;
             assert_eq!(job.work.done(), job.work.total(), "{settings:?}: progress");
             let layers = picture.layers.take().unwrap();
             if let Some(samples) = samples {

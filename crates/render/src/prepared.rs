@@ -9,7 +9,7 @@ use glam::Vec3;
 use lightmesh_memory::{Budget, Short};
 use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Material, Scene, Texture};
 
-use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Coverage, Grid, GridOptions, Triangle, coverage};
+use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Coverage, Grid, GridOptions, Hit, Triangle, coverage};
 use crate::error::RenderError;
 use crate::material_ids::MaterialIds;
 use crate::observer::Observer;
@@ -24,7 +24,7 @@ const BYTES_TO_BUILD: u64 = 400;
 /// that devices keep.
 pub struct PreparedGeometry {
     /// The triangles by index.
-    pub triangles: Vec<Triangle>,
+    pub triangles: Arc<[Triangle]>,
     /// The acceleration structure.
     pub accelerator: Box<dyn Accelerator>,
     /// The box around all triangles that can be hit.
@@ -34,7 +34,9 @@ pub struct PreparedGeometry {
     /// The numbers and names of materials.
     pub(crate) materials: MaterialIds,
     /// The smaller levels of textures, by number; empty if no texture is seen.
-    pub(crate) mip_levels: Vec<MipLevels>,
+    pub(crate) mip_levels: Arc<Vec<MipLevels>>,
+    /// The same triangles for shadow rays, if some are not opaque.
+    pub(crate) see_through: Option<SeeThrough<Arc<PreparedGeometry>>>,
     /// The setting that chose the structure.
     acceleration: Acceleration,
     /// Build time in seconds, until the first image reports it.
@@ -42,6 +44,17 @@ pub struct PreparedGeometry {
     center: Vec3,
     /// Slightly more than the diagonal of the bounds; 1 if they are empty.
     far: f32,
+}
+
+/// A scene, or its geometry, taken apart for shadow rays: rays hit the same triangles as in the whole, but only some of these hide anything.
+#[derive(Clone, Debug)]
+pub struct SeeThrough<T> {
+    /// Only what is opaque hides.
+    pub blockers: T,
+    /// Only what lets light through is hit.
+    pub panes: T,
+    /// For gathered light: what is at least half opaque is opaque, and what is less is not there.
+    pub solid: T,
 }
 
 impl PreparedGeometry {
@@ -66,22 +79,18 @@ impl PreparedGeometry {
         let mesh = &geometry.mesh;
         let triangles = mesh.triangles.len();
         let cut_out = geometry.materials.iter().any(|material| material.opacity.is_some());
-        let bytes = BYTES_TO_BUILD + if cut_out { coverage::BYTES_TO_BUILD } else { 0 };
+        let parts = if geometry.materials.iter().any(Material::lets_through) { 3 } else { 1 };
+        let bytes = parts * BYTES_TO_BUILD + if cut_out { coverage::BYTES_TO_BUILD } else { 0 };
         let needed = triangles as u64 * bytes;
         budget.check(needed).map_err(|short| RenderError::BuildMemory { triangles, short })?;
         observer.begin(Stage::Build, mesh.triangles.len() as u64);
         let start = std::time::Instant::now();
         let (triangles, coverage) = triangles_of(geometry, budget)?;
         let accelerator: Box<dyn Accelerator> = match acceleration {
-            Acceleration::Auto | Acceleration::Bvh => Box::new(Bvh::new(&triangles).with_coverage(&coverage)),
-            Acceleration::Grid(dims) => {
-                let options = GridOptions { dims: *dims, budget, ..GridOptions::default() };
-                Box::new(Grid::new(&triangles, &options)?.with_coverage(&coverage))
-            }
             Acceleration::GridFile(path) => Box::new(Grid::load(path, &triangles)?.with_coverage(&coverage)),
-            Acceleration::BruteForce => Box::new(BruteForce::new(&triangles).with_coverage(&coverage)),
+            other => accelerator(&triangles, &coverage, other, budget)?,
         };
-        let mip_levels = mip_levels(geometry, budget)?;
+        let mip_levels = Arc::new(mip_levels(geometry, budget)?);
         let unreported = Mutex::new(start.elapsed().as_secs_f64());
         observer.advance(mesh.triangles.len() as u64);
         observer.end(Stage::Build);
@@ -90,18 +99,65 @@ impl PreparedGeometry {
         let bounds = Bounds::around(usable.flat_map(Triangle::corners));
         let (center, far) =
             if bounds.is_empty() { (Vec3::ZERO, 1.0) } else { (bounds.center(), 1.25 * bounds.diagonal()) };
-        Ok(PreparedGeometry {
-            triangles,
+        let mut prepared = PreparedGeometry {
+            triangles: triangles.into(),
             accelerator,
             bounds,
             coverage,
             materials: MaterialIds::new(geometry),
             mip_levels,
+            see_through: None,
             acceleration: acceleration.clone(),
             unreported,
             center,
             far,
-        })
+        };
+        if geometry.materials.iter().any(Material::lets_through) {
+            let lets_through = |triangle: &Triangle| {
+                let material = geometry.mesh.materials[triangle.index() as usize];
+                triangle.cut() != 0 && geometry.materials[material as usize].lets_through()
+            };
+            prepared.see_through = Some(SeeThrough {
+                blockers: Arc::new(prepared.part(|triangle| !lets_through(triangle), budget)?),
+                panes: Arc::new(prepared.part(lets_through, budget)?),
+                solid: Arc::new(prepared.solid()),
+            });
+        }
+        Ok(prepared)
+    }
+
+    /// The same with a structure over some of the triangles alone.
+    fn part(&self, holds: impl Fn(&Triangle) -> bool, budget: Budget) -> Result<PreparedGeometry, RenderError> {
+        // Structures leave out what cannot be hit.
+        let held = |triangle: &Triangle| match holds(triangle) {
+            true => *triangle,
+            false => Triangle::new([Vec3::NAN; 3], triangle.index()),
+        };
+        let held: Vec<Triangle> = self.triangles.iter().map(held).collect();
+        Ok(self.over(accelerator(&held, &self.coverage, &self.acceleration, budget)?, self.coverage.clone()))
+    }
+
+    /// The same where what is at least half opaque is opaque, and the rest is none.
+    fn solid(&self) -> PreparedGeometry {
+        let coverage = self.coverage.halved();
+        self.over(self.accelerator.covered_by(&coverage), coverage)
+    }
+
+    /// The same with another structure, cut out by `coverage`.
+    fn over(&self, accelerator: Box<dyn Accelerator>, coverage: Coverage) -> PreparedGeometry {
+        PreparedGeometry {
+            triangles: Arc::clone(&self.triangles),
+            accelerator,
+            bounds: self.bounds,
+            coverage,
+            materials: self.materials.clone(),
+            mip_levels: Arc::clone(&self.mip_levels),
+            see_through: None,
+            acceleration: self.acceleration.clone(),
+            unreported: Mutex::new(0.0),
+            center: self.center,
+            far: self.far,
+        }
     }
 
     /// The triangles of a geometry by index, as structures take them: those that are cut out are marked as such.
@@ -133,13 +189,33 @@ impl PreparedGeometry {
     /// opacities.
     pub fn memory(&self) -> usize {
         let levels: usize = self.mip_levels.iter().map(MipLevels::memory).sum();
-        size_of_val(self.triangles.as_slice()) + self.accelerator.memory() + self.coverage.memory() + levels
+        let parts = self.see_through.iter().flat_map(|parts| [&parts.blockers, &parts.panes]);
+        let parts: usize = parts.map(|part| part.accelerator.memory()).sum();
+        size_of_val(&*self.triangles) + self.accelerator.memory() + self.coverage.memory() + levels + parts
     }
 
     /// The build time in seconds at the first call; 0 at all later ones. So it counts for the first image alone.
     pub(crate) fn take_build_seconds(&self) -> f64 {
         std::mem::take(&mut *self.unreported.lock().unwrap_or_else(PoisonError::into_inner))
     }
+}
+
+/// The structure that a setting chooses; a grid from a file is built, as it has all triangles.
+fn accelerator(
+    triangles: &[Triangle],
+    coverage: &Coverage,
+    acceleration: &Acceleration,
+    budget: Budget,
+) -> Result<Box<dyn Accelerator>, RenderError> {
+    let dims = if let Acceleration::Grid(dims) = acceleration { *dims } else { None };
+    Ok(match acceleration {
+        Acceleration::Auto | Acceleration::Bvh => Box::new(Bvh::new(triangles).with_coverage(coverage)),
+        Acceleration::Grid(_) | Acceleration::GridFile(_) => {
+            let options = GridOptions { dims, budget, ..GridOptions::default() };
+            Box::new(Grid::new(triangles, &options)?.with_coverage(coverage))
+        }
+        Acceleration::BruteForce => Box::new(BruteForce::new(triangles).with_coverage(coverage)),
+    })
 }
 
 /// The triangles of a geometry by index, and where they are cut out.
@@ -196,6 +272,25 @@ impl PreparedScene {
     ) -> Result<PreparedScene, RenderError> {
         let geometry = Arc::new(PreparedGeometry::new(&scene.geometry, acceleration, budget, observer)?);
         Ok(PreparedScene { scene: scene.clone(), geometry })
+    }
+
+    /// The scene taken apart for shadow rays, if some of its surfaces are not opaque.
+    pub(crate) fn see_through(&self) -> Option<SeeThrough<PreparedScene>> {
+        let SeeThrough { blockers, panes, solid } = self.geometry.see_through.as_ref()?;
+        let part = |geometry: &Arc<PreparedGeometry>| PreparedScene {
+            scene: self.scene.clone(),
+            geometry: Arc::clone(geometry),
+        };
+        Some(SeeThrough { blockers: part(blockers), panes: part(panes), solid: part(solid) })
+    }
+
+    /// What is left of light that goes straight on at `hit`.
+    pub(crate) fn transmittance(&self, hit: &Hit) -> Vec3 {
+        let geometry = &self.scene.geometry;
+        let material = &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize];
+        let filter = material.opacity.and_then(|opacity| opacity.filter()).unwrap_or(Vec3::ZERO);
+        let opacity = self.geometry.coverage.opacity(&self.geometry.triangles[hit.triangle as usize], hit);
+        (1.0 - opacity) * filter
     }
 
     /// Whether anything only shows the shadows on it.

@@ -72,6 +72,8 @@ stages! {
     LongTests = long_tests,
     /// Formula (3).
     Interpolate = interpolate,
+    /// What surfaces that are not opaque leave of the lights.
+    Filters = filters,
     /// What surfaces receive from their surroundings and from each other.
     Gather = gather,
     /// Formula (1).

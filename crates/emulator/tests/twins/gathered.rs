@@ -4,14 +4,14 @@ use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{AmbientSource, Frame, Kept, Quality, Settings, Step, Unobserved, render_on, render_on_with};
 
 use crate::pictures::same_frame;
-use crate::scenes::{ACCELERATIONS, LAMPS, SUBJECTS, SURROUNDED, Subject};
+use crate::scenes::{ACCELERATIONS, GLAZED, LAMPS, SUBJECTS, SURROUNDED, Subject};
 use crate::trials::{Case, Target};
 
 const SIZE: [u32; 2] = [33, 27];
 
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     let mut cases = Vec::new();
-    for subject in SUBJECTS.iter().chain([&SURROUNDED, &LAMPS]) {
+    for subject in SUBJECTS.iter().chain([&SURROUNDED, &LAMPS, &GLAZED]) {
         let structures = if subject.small { ACCELERATIONS.len() } else { 2 };
         for structure in 0..structures {
             let name = format!("{}::gathered::{structure}", subject.name);

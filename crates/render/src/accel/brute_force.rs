@@ -1,5 +1,7 @@
 //! Tests every triangle: the reference with which the other structures are compared.
 
+use std::sync::Arc;
+
 use fearless_simd::Level;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
@@ -14,7 +16,7 @@ use crate::simd::dispatch;
 /// A list of triangles, all of which are tested.
 #[derive(Clone, Debug)]
 pub struct BruteForce {
-    triangles: Vec<Triangle>,
+    triangles: Arc<[Triangle]>,
     approach: Approach,
     coverage: Coverage,
 }
@@ -22,7 +24,7 @@ pub struct BruteForce {
 impl BruteForce {
     /// Keeps the usable triangles, one of identical ones.
     pub fn new(triangles: &[Triangle]) -> BruteForce {
-        let triangles: Vec<_> = distinct(triangles).into_iter().map(|at| triangles[at as usize]).collect();
+        let triangles: Arc<[_]> = distinct(triangles).into_iter().map(|at| triangles[at as usize]).collect();
         BruteForce { approach: Approach::around(&triangles), triangles, coverage: Coverage::default() }
     }
 
@@ -78,6 +80,10 @@ impl Accelerator for BruteForce {
         dispatch!(Level::new(), simd => search(simd, &self.triangles, region, take));
     }
 
+    fn covered_by(&self, coverage: &Coverage) -> Box<dyn Accelerator> {
+        Box::new(self.clone().with_coverage(coverage))
+    }
+
     fn name(&self) -> &'static str {
         "brute-force"
     }
@@ -87,7 +93,7 @@ impl Accelerator for BruteForce {
     }
 
     fn memory(&self) -> usize {
-        size_of_val(self.triangles.as_slice())
+        size_of_val(&*self.triangles)
     }
 }
 

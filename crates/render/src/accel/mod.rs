@@ -163,6 +163,9 @@ pub trait Accelerator: Send + Sync {
         found.dedup();
     }
 
+    /// The same structure over the same triangles, cut out by `coverage`; both share what they hold.
+    fn covered_by(&self, coverage: &Coverage) -> Box<dyn Accelerator>;
+
     /// Its name in settings and statistics: `grid`, `bvh` or `brute-force`.
     fn name(&self) -> &'static str;
 

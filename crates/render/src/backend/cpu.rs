@@ -24,7 +24,7 @@ use crate::gathered::{self, Gathering, SurfaceLight};
 use crate::job::Job;
 use crate::light_mesh::{LightMesh, UsedPoints};
 use crate::plan::Plan;
-use crate::prepared::PreparedScene;
+use crate::prepared::{PreparedScene, SeeThrough};
 use crate::probes::Probes;
 use crate::shadow::Aim;
 use crate::stage::Stage;
@@ -75,6 +75,10 @@ impl Backend for Cpu {
 
     fn scene(&self, _: &Job, scene: &PreparedScene, _: Option<u64>) -> Result<PreparedScene, RenderError> {
         Ok(scene.clone())
+    }
+
+    fn see_through(&self, scene: &PreparedScene) -> Option<SeeThrough<PreparedScene>> {
+        scene.see_through()
     }
 
     fn check_host_memory(&self, plan: &Plan) -> Result<(), RenderError> {

@@ -24,7 +24,7 @@ use crate::gathered::{self, Gathering};
 use crate::job::Job;
 use crate::light_mesh::LightMesh;
 use crate::plan::Plan;
-use crate::prepared::PreparedScene;
+use crate::prepared::{PreparedScene, SeeThrough};
 use crate::probes::Probes;
 use crate::shadow::Aim;
 use crate::stage::Stage;
@@ -72,6 +72,10 @@ impl<R: Runtime> Backend for Cuda<R> {
     ) -> Result<DeviceScene<R>, RenderError> {
         self.pool().set_limit(memory_limit);
         self.device_scene(job, scene)
+    }
+
+    fn see_through(&self, scene: &DeviceScene<R>) -> Option<SeeThrough<DeviceScene<R>>> {
+        scene.see_through()
     }
 
     fn check_host_memory(&self, plan: &Plan) -> Result<(), RenderError> {

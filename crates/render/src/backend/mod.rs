@@ -34,7 +34,7 @@ use crate::gathered::Gathering;
 use crate::job::Job;
 use crate::light_mesh::LightMesh;
 use crate::plan::Plan;
-use crate::prepared::PreparedScene;
+use crate::prepared::{PreparedScene, SeeThrough};
 use crate::probes::Probes;
 pub use crate::shadow::Aim;
 use crate::stage::Stage;
@@ -106,6 +106,9 @@ pub trait Backend: Sized {
 
     /// Rejects an image for which the host's memory does not suffice, before any of it is allocated.
     fn check_host_memory(&self, plan: &Plan) -> Result<(), RenderError>;
+
+    /// The scene taken apart for shadow rays, if some of its surfaces are not opaque.
+    fn see_through(&self, scene: &Self::Scene) -> Option<SeeThrough<Self::Scene>>;
 
     /// How many rows of the image can be rendered at once: an estimate from the sizes of all buffers, before any is allocated.
     fn rows_at_once(&self, scene: &Self::Scene, plan: &Plan) -> Result<u32, RenderError>;

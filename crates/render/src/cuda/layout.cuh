@@ -1399,6 +1399,22 @@ static_assert(PLACE_OF(Shadows, set_count) == 2132, "place of Shadows::set_count
 static_assert(PLACE_OF(Shadows, first_light) == 2136, "place of Shadows::first_light");
 static_assert(PLACE_OF(Shadows, end_light) == 2140, "place of Shadows::end_light");
 
+struct alignas(8) Filters {
+    Scene scene;
+    Shadows shadows;
+    const Triangle *triangles;
+    Vec3 *passed;
+    unsigned middle;
+    unsigned spare;
+};
+static_assert(sizeof(Filters) == 2752, "size of Filters");
+static_assert(PLACE_OF(Filters, scene) == 0, "place of Filters::scene");
+static_assert(PLACE_OF(Filters, shadows) == 584, "place of Filters::shadows");
+static_assert(PLACE_OF(Filters, triangles) == 2728, "place of Filters::triangles");
+static_assert(PLACE_OF(Filters, passed) == 2736, "place of Filters::passed");
+static_assert(PLACE_OF(Filters, middle) == 2744, "place of Filters::middle");
+static_assert(PLACE_OF(Filters, spare) == 2748, "place of Filters::spare");
+
 struct alignas(8) AdaptiveShadows {
     Scene scene;
     Shadows shadows;
@@ -1464,6 +1480,7 @@ struct alignas(8) Shade {
     Rays rays;
     const Hit *hits;
     const float *share;
+    const Vec3 *passed;
     const unsigned *used;
     const Vec3 *gathered;
     unsigned long long film_pixel;
@@ -1491,37 +1508,38 @@ struct alignas(8) Shade {
     unsigned catches;
     unsigned spare;
 };
-static_assert(sizeof(Shade) == 896, "size of Shade");
+static_assert(sizeof(Shade) == 904, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
 static_assert(PLACE_OF(Shade, rays) == 584, "place of Shade::rays");
 static_assert(PLACE_OF(Shade, hits) == 704, "place of Shade::hits");
 static_assert(PLACE_OF(Shade, share) == 712, "place of Shade::share");
-static_assert(PLACE_OF(Shade, used) == 720, "place of Shade::used");
-static_assert(PLACE_OF(Shade, gathered) == 728, "place of Shade::gathered");
-static_assert(PLACE_OF(Shade, film_pixel) == 736, "place of Shade::film_pixel");
-static_assert(PLACE_OF(Shade, color) == 744, "place of Shade::color");
-static_assert(PLACE_OF(Shade, sums) == 752, "place of Shade::sums");
-static_assert(PLACE_OF(Shade, caught) == 760, "place of Shade::caught");
-static_assert(PLACE_OF(Shade, ray_caught) == 768, "place of Shade::ray_caught");
-static_assert(PLACE_OF(Shade, samples) == 776, "place of Shade::samples");
-static_assert(PLACE_OF(Shade, depth) == 784, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 792, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 800, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 808, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 816, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, light_groups) == 824, "place of Shade::light_groups");
-static_assert(PLACE_OF(Shade, ids) == 832, "place of Shade::ids");
-static_assert(PLACE_OF(Shade, film_pixels) == 840, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 848, "place of Shade::first_block");
-static_assert(PLACE_OF(Shade, first_light) == 856, "place of Shade::first_light");
-static_assert(PLACE_OF(Shade, end_light) == 860, "place of Shade::end_light");
-static_assert(PLACE_OF(Shade, several) == 864, "place of Shade::several");
-static_assert(PLACE_OF(Shade, sampled) == 868, "place of Shade::sampled");
-static_assert(PLACE_OF(Shade, sample_count) == 872, "place of Shade::sample_count");
-static_assert(PLACE_OF(Shade, first_sampled) == 876, "place of Shade::first_sampled");
-static_assert(PLACE_OF(Shade, sampled_pixels) == 880, "place of Shade::sampled_pixels");
-static_assert(PLACE_OF(Shade, catches) == 888, "place of Shade::catches");
-static_assert(PLACE_OF(Shade, spare) == 892, "place of Shade::spare");
+static_assert(PLACE_OF(Shade, passed) == 720, "place of Shade::passed");
+static_assert(PLACE_OF(Shade, used) == 728, "place of Shade::used");
+static_assert(PLACE_OF(Shade, gathered) == 736, "place of Shade::gathered");
+static_assert(PLACE_OF(Shade, film_pixel) == 744, "place of Shade::film_pixel");
+static_assert(PLACE_OF(Shade, color) == 752, "place of Shade::color");
+static_assert(PLACE_OF(Shade, sums) == 760, "place of Shade::sums");
+static_assert(PLACE_OF(Shade, caught) == 768, "place of Shade::caught");
+static_assert(PLACE_OF(Shade, ray_caught) == 776, "place of Shade::ray_caught");
+static_assert(PLACE_OF(Shade, samples) == 784, "place of Shade::samples");
+static_assert(PLACE_OF(Shade, depth) == 792, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 800, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 808, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 816, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 824, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, light_groups) == 832, "place of Shade::light_groups");
+static_assert(PLACE_OF(Shade, ids) == 840, "place of Shade::ids");
+static_assert(PLACE_OF(Shade, film_pixels) == 848, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 856, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, first_light) == 864, "place of Shade::first_light");
+static_assert(PLACE_OF(Shade, end_light) == 868, "place of Shade::end_light");
+static_assert(PLACE_OF(Shade, several) == 872, "place of Shade::several");
+static_assert(PLACE_OF(Shade, sampled) == 876, "place of Shade::sampled");
+static_assert(PLACE_OF(Shade, sample_count) == 880, "place of Shade::sample_count");
+static_assert(PLACE_OF(Shade, first_sampled) == 884, "place of Shade::first_sampled");
+static_assert(PLACE_OF(Shade, sampled_pixels) == 888, "place of Shade::sampled_pixels");
+static_assert(PLACE_OF(Shade, catches) == 896, "place of Shade::catches");
+static_assert(PLACE_OF(Shade, spare) == 900, "place of Shade::spare");
 
 struct alignas(8) PixelSamples {
     Scene scene;

@@ -19,6 +19,12 @@ impl LightGroup {
     }
 }
 
+impl From<Range<usize>> for LightGroup {
+    fn from(Range { start, end }: Range<usize>) -> LightGroup {
+        LightGroup { first: start, end }
+    }
+}
+
 /// All lights of a scene, `at_once` in a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightGroups {

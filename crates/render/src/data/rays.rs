@@ -154,6 +154,6 @@ impl RayList {
 /// The surface point that ray number `ray` sees; the ray must have hit something.
 #[inline(always)]
 pub(crate) fn surface_point_of(scene: &PreparedScene, list: &RayList, hits: &[Hit], ray: usize) -> SurfacePoint {
-    let triangles = if list.probes.is_empty() { &scene.geometry.triangles } else { &list.probes };
+    let triangles = if list.probes.is_empty() { &*scene.geometry.triangles } else { &list.probes };
     SurfacePoint::new(&list.rays[ray], &hits[ray], &triangles[hits[ray].triangle as usize])
 }

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use glam::Vec3;
+
 /// The visibility of each light at each surface point, including χ: 0 if the light is behind the surface.
 ///
 /// On devices, [`DeviceVisibility`](crate::gpu::rays::DeviceVisibility) has the same form: a plane of shares for each light.
@@ -13,6 +15,9 @@ pub struct Visibility {
     pub lights: Range<usize>,
     /// Shares in [0, 1] by light, then ray; 0 for rays that missed.
     pub share: Vec<f32>,
+    /// What is left of each light after surfaces that are not opaque, by light, then ray; shares are the means of its channels. Empty if
+    /// all are opaque.
+    pub passed: Vec<Vec3>,
     /// Number of light points that each ray's surface point used; empty if the technique uses none.
     pub used: Vec<u32>,
 }
@@ -20,13 +25,20 @@ pub struct Visibility {
 impl Visibility {
     /// No visibility of the lights numbered `lights` from `rays` rays.
     pub(crate) fn dark(lights: Range<usize>, rays: usize) -> Visibility {
-        Visibility { rays, share: vec![0.0; lights.len() * rays], lights, used: Vec::new() }
+        Visibility { rays, share: vec![0.0; lights.len() * rays], lights, passed: Vec::new(), used: Vec::new() }
     }
 
     /// The share of light number `light` that ray number `ray` sees.
     #[inline(always)]
     pub fn of(&self, light: usize, ray: usize) -> f32 {
         self.share[(light - self.lights.start) * self.rays + ray]
+    }
+
+    /// What is left of light number `light` at ray number `ray`.
+    #[inline(always)]
+    pub(crate) fn color(&self, light: usize, ray: usize) -> Vec3 {
+        let place = (light - self.lights.start) * self.rays + ray;
+        self.passed.get(place).copied().unwrap_or(Vec3::splat(self.share[place]))
     }
 
     /// Takes over what `part` knows of the rays in `range`.
@@ -43,6 +55,18 @@ impl Visibility {
         for plane in self.share.chunks_exact_mut(self.rays.max(1)) {
             for (part, slice) in parts.iter_mut().zip(plane.chunks_mut(size)) {
                 part.push(slice);
+            }
+        }
+        parts
+    }
+
+    /// The same with what is left in each part.
+    pub(crate) fn colored_parts(&mut self, size: usize) -> Vec<Vec<(&mut [f32], &mut [Vec3])>> {
+        let mut parts: Vec<Vec<_>> = (0..self.rays.div_ceil(size)).map(|_| Vec::new()).collect();
+        let planes = self.share.chunks_exact_mut(self.rays.max(1)).zip(self.passed.chunks_exact_mut(self.rays.max(1)));
+        for (shares, passed) in planes {
+            for (part, slices) in parts.iter_mut().zip(shares.chunks_mut(size).zip(passed.chunks_mut(size))) {
+                part.push(slices);
             }
         }
         parts

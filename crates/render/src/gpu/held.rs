@@ -6,6 +6,7 @@ use lightmesh_layout::Structure;
 use lightmesh_layout::scene::{EnvironmentLevel, Scene};
 
 use crate::cuda::{Buffer, Runtime};
+use crate::prepared::SeeThrough;
 
 /// A template on a device.
 pub(super) struct DeviceTemplate<R: Runtime> {
@@ -19,6 +20,8 @@ pub(super) struct DeviceTemplate<R: Runtime> {
 pub(crate) struct DeviceGeometry<R: Runtime> {
     /// The part of the record that describes geometry.
     pub(super) record: Scene,
+    /// The same with the structures for shadow rays, if some surfaces are not opaque.
+    pub(super) see_through: Option<SeeThrough<Scene>>,
     pub(super) structure: Structure,
     /// What the record points to.
     #[expect(dead_code, reason = "only kept")]

@@ -47,6 +47,8 @@ impl<R: Runtime> DeviceVisibility<R> {
     /// [`RenderError::DeviceFault`] if the device fails.
     pub(crate) fn to_host(&self) -> Result<Visibility, RenderError> {
         let used = self.used.as_ref().map_or(Ok(Vec::new()), |used| used.read())?;
-        Ok(Visibility { rays: self.rays, lights: self.lights.clone(), share: self.read()?, used })
+        let passed = self.passed.as_ref().map_or(Ok(Vec::new()), |passed| passed.read())?;
+        let passed = bytemuck::cast_vec(passed);
+        Ok(Visibility { rays: self.rays, lights: self.lights.clone(), share: self.read()?, passed, used })
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use lightmesh_layout::Out;
-use lightmesh_layout::geometry::{Cone, Hit, ListedRay, Rays};
+use lightmesh_layout::geometry::{Cone, Hit, ListedRay, Rays, Vec3};
 
 use super::device::Cuda;
 use super::samples::DeviceSampled;
@@ -46,6 +46,8 @@ pub struct DeviceVisibility<R: Runtime> {
     pub(crate) lights: Range<usize>,
     /// By light, then ray.
     pub(crate) share: Buffer<R, f32>,
+    /// As in [`Visibility`](crate::data::visibility::Visibility).
+    pub(crate) passed: Option<Buffer<R, Vec3>>,
     /// Number of light points used by each ray.
     pub(crate) used: Option<Buffer<R, u32>>,
 }
@@ -71,13 +73,20 @@ impl<R: Runtime> DeviceVisibility<R> {
     /// No visibility of the lights numbered `lights`.
     pub(crate) fn dark(cuda: &Cuda<R>, rays: usize, lights: Range<usize>) -> Result<DeviceVisibility<R>, RenderError> {
         let share = cuda.pool().zeros("shares of lights", rays * lights.len())?;
-        Ok(DeviceVisibility { rays, lights, share, used: None })
+        Ok(DeviceVisibility { rays, lights, share, passed: None, used: None })
     }
 
     /// Where the shares of light 0 would be: kernels find those of a light by its number.
     pub(crate) fn planes(&self) -> Out<f32> {
         let before = self.lights.start as u64 * self.rays as u64 * size_of::<f32>() as u64;
         Out::to(self.share.output().address().wrapping_sub(before))
+    }
+
+    /// The same for what is let through; null if nothing was asked.
+    pub(crate) fn passed_planes(&self) -> Out<Vec3> {
+        let before = self.lights.start as u64 * self.rays as u64 * size_of::<Vec3>() as u64;
+        let start = self.passed.as_ref().map(|passed| Out::to(passed.output().address().wrapping_sub(before)));
+        start.unwrap_or(Out::NULL)
     }
 
     /// Reads the shares, by light, then ray.

@@ -15,7 +15,7 @@ use crate::accel::{self, Form};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::job::Job;
-use crate::prepared::{PreparedGeometry, PreparedScene};
+use crate::prepared::{PreparedGeometry, PreparedScene, SeeThrough};
 use crate::sampling::disk_radius;
 use crate::shading::LightTargets;
 use crate::shading::ambient::AmbientLight;
@@ -41,16 +41,42 @@ pub struct DeviceScene<R: Runtime> {
 impl<R: Runtime> DeviceScene<R> {
     /// The same scene with other triangles for rays to see; the triangles that hide lights stay.
     pub(super) fn with_triangles(&self, triangles: Arc<Buffer<R, Triangle>>) -> DeviceScene<R> {
+        // Given points have no vertex normals.
+        let record = Scene { triangles: triangles.input(), normals: In::NULL, ..self.record };
+        DeviceScene { record, _probes: Some(triangles), ..self.clone() }
+    }
+
+    /// Its triangles by index in the mesh, whatever rays see.
+    pub(crate) fn triangles(&self) -> In<Triangle> {
+        self._geometry.record.triangles
+    }
+
+    /// The scene taken apart for shadow rays, if some of its surfaces are not opaque.
+    pub(crate) fn see_through(&self) -> Option<SeeThrough<DeviceScene<R>>> {
+        let (on_host, parts) = (self.host.see_through()?, self._geometry.see_through.as_ref()?);
+        let part = |part: &Scene, host: PreparedScene| {
+            let Scene { bvh, grid, brute_force, coverage, .. } = *part;
+            DeviceScene { record: Scene { bvh, grid, brute_force, coverage, ..self.record }, host, ..self.clone() }
+        };
+        Some(SeeThrough {
+            blockers: part(&parts.blockers, on_host.blockers),
+            panes: part(&parts.panes, on_host.panes),
+            solid: part(&parts.solid, on_host.solid),
+        })
+    }
+}
+
+impl<R: Runtime> Clone for DeviceScene<R> {
+    fn clone(&self) -> DeviceScene<R> {
         DeviceScene {
-            // Given points have no vertex normals.
-            record: Scene { triangles: triangles.input(), normals: In::NULL, ..self.record },
+            record: self.record,
             structure: self.structure,
             cut_out: self.cut_out,
             host: self.host.clone(),
             _geometry: Arc::clone(&self._geometry),
             _lights: Arc::clone(&self._lights),
             _environment: self._environment.clone(),
-            _probes: Some(triangles),
+            _probes: self._probes.clone(),
         }
     }
 }
@@ -213,7 +239,30 @@ impl<R: Runtime> Upload<'_, R> {
         record.object_runs = starts.len() as u32;
         let coverage = self.coverage(&prepared.coverage)?;
         record.coverage = coverage;
-        let structure = match prepared.accelerator.form() {
+        let structure = self.structure(prepared, coverage, &mut record)?;
+        let mut part = |prepared: &PreparedGeometry| {
+            let mut record = record;
+            self.structure(prepared, coverage, &mut record).map(|_| record)
+        };
+        let see_through = match &prepared.see_through {
+            Some(SeeThrough { blockers, panes, solid }) => Some(SeeThrough {
+                blockers: part(blockers)?,
+                panes: part(panes)?,
+                solid: covered_by(self.coverage(&solid.coverage)?, record),
+            }),
+            None => None,
+        };
+        Ok(DeviceGeometry { record, see_through, structure, buffers: self.buffers })
+    }
+
+    /// Adds the structure over a geometry to the record of a scene.
+    fn structure(
+        &mut self,
+        prepared: &PreparedGeometry,
+        coverage: Coverage,
+        record: &mut Scene,
+    ) -> Result<Structure, RenderError> {
+        Ok(match prepared.accelerator.form() {
             Form::Bvh(bvh) => {
                 record.bvh = Bvh { coverage, ..self.bvh(bvh)? };
                 Structure::Bvh
@@ -226,8 +275,7 @@ impl<R: Runtime> Upload<'_, R> {
                 record.brute_force = BruteForce { coverage, ..self.brute_force(all)? };
                 Structure::BruteForce
             }
-        };
-        Ok(DeviceGeometry { record, structure, buffers: self.buffers })
+        })
     }
 
     /// The record of a scene with these lights.
@@ -286,6 +334,17 @@ impl<R: Runtime> Upload<'_, R> {
             count: all.triangles().len() as u32,
             spare: 0,
         })
+    }
+}
+
+/// A scene cut out by another `coverage`.
+fn covered_by(coverage: Coverage, scene: Scene) -> Scene {
+    Scene {
+        bvh: Bvh { coverage, ..scene.bvh },
+        grid: Grid { coverage, ..scene.grid },
+        brute_force: BruteForce { coverage, ..scene.brute_force },
+        coverage,
+        ..scene
     }
 }
 

@@ -318,7 +318,8 @@ fn picture_on<B: Backend>(
     if let Some(sources) = &sources {
         run.recall_gathered(scene, sources);
     }
-    let passes = Passes { run, scene: &on_device, technique, view, plan };
+    let see_through = backend.see_through(&on_device);
+    let passes = Passes { run, scene: &on_device, see_through, technique, view, plan };
     let rendered = passes.render(&mut picture);
     // What a cancelled image gathered is not complete.
     if let (Ok(_), Some(sources)) = (&rendered, sources) {

@@ -1,5 +1,6 @@
 //! Checks the settings, and chooses what they leave open.
 
+use glam::Vec3;
 use lightmesh_layout::constants::AROUND;
 use lightmesh_memory::Budget;
 use lightmesh_scene::{Bounds, Camera};
@@ -56,7 +57,7 @@ impl<'a> Resolved<'a> {
         let mut resolved = Resolved::within(points.bounds, points.scene, settings, observer)?;
         // What is asked for is the visibility of all lights.
         let lights = LightGroups { at_once: usize::MAX, ..resolved.plan.lights };
-        let Footprint { host, device } = resolved.technique.footprint(lights.held() as u64);
+        let Footprint { host, device } = footprint(points.scene, &resolved.technique, lights);
         let footprint = Footprint { host: host + Probes::BYTES, device: device + Probes::BYTES };
         resolved.plan = Plan {
             size: [ROW, points.rows()],
@@ -116,7 +117,7 @@ impl<'a> Resolved<'a> {
             memory_limit: settings.memory_limit,
             left,
             kept: 0,
-            footprint: technique.footprint(lights.held() as u64),
+            footprint: footprint(scene, &technique, lights),
         };
         let sampling = Sampling { samples, seed: settings.seed, spread: technique.spreads_points() };
         let pixels = plan.pixels();
@@ -180,6 +181,14 @@ fn check(settings: &Settings) -> Result<(), RenderError> {
         });
     }
     Ok(())
+}
+
+/// The bytes of a ray for the technique, and for what surfaces that are not opaque leave of the lights.
+fn footprint(scene: &PreparedScene, technique: &Technique, lights: LightGroups) -> Footprint {
+    let held = lights.held() as u64;
+    let Footprint { host, device } = technique.footprint(held);
+    let colors = if scene.lets_through() { size_of::<Vec3>() as u64 * held } else { 0 };
+    Footprint { host: host + colors, device: device + colors }
 }
 
 /// The pixels that are rendered: those that are asked for, and those around them on which they depend.

@@ -148,16 +148,28 @@ impl<'a> Emitter<'a> {
     /// Calls `take` with each sample as the surface point of ray number `ray` sees it.
     #[inline(always)]
     pub(crate) fn each_target(&self, wave: &HostWave, ray: usize, point: &SurfacePoint, mut take: impl FnMut(Vec3)) {
+        self.each_target_of_set(wave, ray, point, |_, target| take(target));
+    }
+
+    /// The same with the number of the set that each sample belongs to.
+    #[inline(always)]
+    pub(crate) fn each_target_of_set(
+        &self,
+        wave: &HostWave,
+        ray: usize,
+        point: &SurfacePoint,
+        mut take: impl FnMut(u32, Vec3),
+    ) {
         if self.is_point() {
-            take(light_center(self.light, point.origin, wave.scene.geometry.reach(point.origin)));
+            take(0, light_center(self.light, point.origin, wave.scene.geometry.reach(point.origin)));
             return;
         }
         let sight = self.sight(wave, ray, point);
-        for set in self.sets {
+        for (number, set) in (0..).zip(self.sets) {
             for row in 0..set.rows as usize {
                 let mut rest = sight.valid(set, row);
                 while rest != 0 {
-                    take(point.origin + sight.sample(set, row, rest.trailing_zeros(), self.scale));
+                    take(number, point.origin + sight.sample(set, row, rest.trailing_zeros(), self.scale));
                     rest &= rest - 1;
                 }
             }
@@ -201,6 +213,11 @@ impl<'a> Emitter<'a> {
             LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } => radius,
             _ => f32::INFINITY,
         }
+    }
+
+    /// Number of its samples.
+    pub(crate) fn samples(&self) -> u32 {
+        self.samples
     }
 
     /// The share of `seen` of its samples: exactly 1 for all of them.

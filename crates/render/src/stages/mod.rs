@@ -4,6 +4,7 @@
 pub(crate) mod adaptive_shadows;
 pub(crate) mod area_shadows;
 pub(crate) mod cells;
+pub(crate) mod filters;
 pub(crate) mod fragments;
 pub(crate) mod interpolate;
 pub(crate) mod items;

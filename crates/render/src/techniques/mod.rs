@@ -101,6 +101,11 @@ pub(crate) trait Visible: Sized {
         false
     }
 
+    /// Whether surface points look for the centres of lights alone.
+    fn aims_at_centers(&self) -> bool {
+        false
+    }
+
     /// Light points of the template; 0 without one.
     fn template(&self) -> u64 {
         0
@@ -151,6 +156,7 @@ macro_rules! techniques {
                 footprint(lights: u64) -> Footprint;
                 needs_neighbours() -> bool;
                 spreads_points() -> bool;
+                aims_at_centers() -> bool;
                 template() -> u64;
                 describe(scene: &PreparedScene, settings: &Settings, stats: &mut SettingsStats) -> ();
             );

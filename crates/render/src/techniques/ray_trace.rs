@@ -42,6 +42,10 @@ impl Visible for RayTrace {
         })
     }
 
+    fn aims_at_centers(&self) -> bool {
+        true
+    }
+
     fn footprint(&self, lights: u64) -> Footprint {
         Footprint { host: 4 * lights, device: 4 * lights }
     }

@@ -1,11 +1,11 @@
 //! Surfaces that let rays through: what is behind them is seen as far as they are not opaque, through any number of them, also in mirrors.
 
 use glam::{DVec3, Vec3};
-use lightmesh_render::{Frame, Settings};
-use lightmesh_scene::{Material, Opacity, Scene};
-use lightmesh_testkit::{ACCELERATIONS, SceneDraft, glazed, pile, render};
+use lightmesh_render::{AmbientSource, Frame, Lookup, Mode, Settings, Unobserved};
+use lightmesh_scene::{LightKind, Lights, Material, Opacity, Scene, Sky, SkyKind, Up};
+use lightmesh_testkit::{ACCELERATIONS, Picture, SceneDraft, TECHNIQUES, glazed, pile, render};
 
-use crate::{LAMP, POINT};
+use crate::{LAMP, POINT, prepared, renderer};
 
 const SIZE: [u32; 2] = [24, 18];
 const BACKGROUND: Vec3 = Vec3::new(0.5, 0.25, 1.0);
@@ -135,4 +135,100 @@ fn every_structure_shows_the_same_bits() {
         let frames = ACCELERATIONS.map(|it| render(&scene, &settings.clone().with_acceleration(it)));
         assert!(frames.iter().all(|frame| frame.color() == frames[0].color()), "{aa}");
     }
+}
+
+/// A floor under a lamp, and panes one over the other between the two, of which the camera sees nothing but their shadow.
+fn shaded(light: LightKind, materials: &[Material]) -> Scene {
+    let draft = SceneDraft::new().floor(0.0, 20.0).light(light).orthographic([0.0, 0.5, 0.0], [0.0; 3], 2.0);
+    let draft = materials.iter().enumerate().fold(draft, |draft, (index, material)| {
+        let height = 1.0 + index as f64 / 4.0;
+        let corner = |x: f64, z: f64| [4.0 * x, height, 4.0 * z];
+        draft.painted(material.clone()).quad([
+            corner(-1.0, -1.0),
+            corner(1.0, -1.0),
+            corner(1.0, 1.0),
+            corner(-1.0, 1.0),
+        ])
+    });
+    draft.finish("shaded")
+}
+
+/// Settings of every technique, without antialiasing.
+fn techniques() -> impl Iterator<Item = (String, Settings)> {
+    TECHNIQUES.into_iter().map(|(mode, lookup)| {
+        let settings = Settings::default().with_mode(mode).with_lookup(lookup).with_size(SIZE).with_samples(16);
+        let settings = settings.with_step(lightmesh_render::Step::Fixed(0.15)).with_radius(2.1).with_aa(1);
+        (format!("{mode:?}, {lookup:?}"), settings)
+    })
+}
+
+#[test]
+fn what_is_behind_panes_gets_what_they_leave_of_the_light() {
+    let pane = |opacity, filter: [f32; 3]| black().with_opacity(Opacity::blend(opacity).with_filter(filter));
+    let stack = [pane(0.25, [1.0, 0.5, 0.25]), pane(0.5, [0.5, 1.0, 1.0])];
+    let left = 0.75 * 0.5 * Vec3::new(0.5, 0.5, 0.25);
+    for (name, settings) in techniques() {
+        for light in [POINT, LAMP] {
+            let lit = render(&shaded(light.clone(), &[]), &settings);
+            for acceleration in ACCELERATIONS {
+                let seen = render(&shaded(light.clone(), &stack), &settings.clone().with_acceleration(acceleration));
+                for (seen, lit) in seen.color().iter().zip(lit.color()) {
+                    let (seen, lit) = (Vec3::from(*seen), Vec3::from(*lit));
+                    assert!(lit.min_element() > 0.01, "{name}: the floor is lit");
+                    assert!((seen - left * lit).abs().max_element() < 1e-4, "{name}: {seen}, not {left} of {lit}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn filtered_light_is_a_mean_over_the_samples_that_nothing_hides() {
+    // Half of the lamp is behind a wall, whatever part of it is behind a pane.
+    let scene = glazed(pile(DVec3::ZERO, &[LAMP, POINT]));
+    for samples in [5, 64, 330] {
+        let settings = settings().with_size([40, 30]).with_samples(samples).with_layers(true);
+        let lists = render(&scene, &settings.clone().with_lookup(Lookup::Lists));
+        let area = render(&scene, &settings.clone().with_mode(Mode::Area));
+        assert!(lists.color() == area.color(), "{samples}");
+        let seen = |light: usize| Picture::new(&area).visibilities(light);
+        let solid = render(&pile(DVec3::ZERO, &[LAMP, POINT]), &settings.with_mode(Mode::Area));
+        let more = seen(0).iter().sum::<f32>() > Picture::new(&solid).visibilities(0).iter().sum::<f32>();
+        assert!(more && seen(0).iter().all(|share| (0.0..=1.0).contains(share)), "{samples}: light goes through");
+    }
+}
+
+#[test]
+fn given_points_get_what_panes_leave() {
+    let pane = black().with_opacity(Opacity::blend(0.25).with_filter([1.0, 0.5, 0.75]));
+    let scene = prepared(&shaded(POINT, &[pane]));
+    let points = [Vec3::new(0.1, 0.0, 0.2), Vec3::new(0.1, 1.5, 0.2)];
+    for (name, settings) in techniques() {
+        let baked = renderer().visibility(&scene, &points, &[Vec3::Y; 2], &settings, &Unobserved).unwrap();
+        // The mean of its channels; nothing is above the second one.
+        let expected = [0.75 * 0.75, 1.0];
+        for (point, expected) in expected.into_iter().enumerate() {
+            assert!((baked.of(0, point) - expected).abs() < 1e-5, "{name}: {}", baked.of(0, point));
+        }
+    }
+}
+
+#[test]
+fn a_sky_reaches_what_is_below_a_pane_unless_it_is_rather_opaque() {
+    let under = |opacity: Option<Opacity>| {
+        let roof = opacity.map_or(black(), |opacity| black().with_opacity(opacity));
+        let mut scene = shaded(POINT, &[roof]);
+        scene.lights = Lights::default();
+        scene.lights.surround(Sky::new(SkyKind::Uniform { color: Vec3::ONE }).surroundings(Up::Y).unwrap());
+        scene.lights.list.clear();
+        render(&scene, &settings().with_ambient_light(AmbientSource::Mesh))
+    };
+    let seen = |opacity| under(Some(Opacity::blend(opacity))).color().to_vec();
+    let solid = under(None);
+    assert!(seen(0.5) == solid.color() && seen(0.75) == solid.color());
+    assert!(seen(0.25) == seen(0.0));
+    let brightness = |colors: &[[f32; 3]]| colors.iter().map(|color| color[1]).sum::<f32>() / colors.len() as f32;
+    let (open, covered) = (brightness(&seen(0.25)), brightness(solid.color()));
+    // The floor reflects 0.8 of what it receives.
+    assert!((open - 0.8).abs() < 1e-4 && covered < 0.1, "{open} and {covered}");
 }

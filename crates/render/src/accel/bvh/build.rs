@@ -44,7 +44,14 @@ pub(super) fn build(triangles: &[Triangle]) -> Bvh {
     let triangles: Vec<_> = tree.primitive_indices.iter().map(|&index| triangles[index as usize]).collect();
     let mut nodes = tree.nodes;
     enclose(&mut nodes, &triangles);
-    Bvh { depth: depth(&nodes), nodes, triangles, approach, coverage: Coverage::default(), level: Level::new() }
+    Bvh {
+        depth: depth(&nodes),
+        nodes: nodes.into(),
+        triangles: triangles.into(),
+        approach,
+        coverage: Coverage::default(),
+        level: Level::new(),
+    }
 }
 
 fn tree(triangles: &[Triangle], work: &mut Work) -> CwBvh {

@@ -20,7 +20,7 @@ impl Bvh {
         let Some(root) = self.nodes.first() else { return BvhCost::default() };
         let whole = area(root, 0..8);
         let mut cost = BvhCost { nodes: 1.0, triangles: 0.0, levels: self.depth };
-        for node in &self.nodes {
+        for node in self.nodes.iter() {
             for (slot, child) in children(node) {
                 let share = area(node, slot..slot + 1) / whole;
                 match child {

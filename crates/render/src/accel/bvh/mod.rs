@@ -12,6 +12,8 @@ mod packet;
 mod search;
 mod walk;
 
+use std::sync::Arc;
+
 use fearless_simd::{Level, Simd};
 use glam::Vec3;
 use obvhs::cwbvh::node::CwBvhNode as Node;
@@ -22,13 +24,13 @@ use super::approach::Approach;
 use super::{Accelerator, Coverage, Form, Hit, Ray, Region, ShortSegments, Take, Triangle, Visitor};
 use crate::simd::dispatch;
 
-/// A compressed wide bounding volume hierarchy.
+/// A compressed wide bounding volume hierarchy; clones share it.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     /// Root first; empty if there are no triangles.
-    nodes: Vec<Node>,
+    nodes: Arc<[Node]>,
     /// In leaf order.
-    triangles: Vec<Triangle>,
+    triangles: Arc<[Triangle]>,
     /// Number of levels: the largest stack that a walk needs.
     depth: usize,
     approach: Approach,
@@ -119,6 +121,10 @@ impl Accelerator for Bvh {
         dispatch!(self.level, simd => search::search(simd, self, region, take));
     }
 
+    fn covered_by(&self, coverage: &Coverage) -> Box<dyn Accelerator> {
+        Box::new(self.clone().with_coverage(coverage))
+    }
+
     fn name(&self) -> &'static str {
         "bvh"
     }
@@ -128,6 +134,6 @@ impl Accelerator for Bvh {
     }
 
     fn memory(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.triangles.as_slice())
+        size_of_val(&*self.nodes) + size_of_val(&*self.triangles)
     }
 }

@@ -31,7 +31,7 @@ pub(crate) use build::BYTES_TO_BUILD;
 
 /// The opacities of cut-out triangles; clones share them.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Coverage {
+pub struct Coverage {
     /// `None`: all triangles are opaque.
     table: Option<Arc<Table>>,
 }
@@ -66,6 +66,20 @@ impl Coverage {
     /// Everything that is cut out, if anything is.
     pub(crate) fn table(&self) -> Option<&Table> {
         self.table.as_deref()
+    }
+
+    /// The same where what is at least half opaque is a surface, and the rest is none.
+    pub(crate) fn halved(&self) -> Coverage {
+        let halve = |mask: &Mask| match mask.blends {
+            true => Mask { limit: 0.5 * OPAQUE, blends: false, ..mask.clone() },
+            false => mask.clone(),
+        };
+        let table = self.table().map(|table| Table {
+            triangles: table.triangles.clone(),
+            masks: table.masks.iter().map(halve).collect(),
+            planes: table.planes.clone(),
+        });
+        Coverage { table: table.map(Arc::new) }
     }
 
     /// Bytes on the heap.

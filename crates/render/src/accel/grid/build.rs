@@ -76,8 +76,8 @@ pub(super) fn build(triangles: &[Triangle], options: &GridOptions) -> Result<Gri
         coverage: Coverage::default(),
         lattice,
         margin,
-        cells,
-        sources,
+        cells: cells.into(),
+        sources: sources.into(),
         approach,
     })
 }

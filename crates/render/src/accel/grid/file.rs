@@ -58,10 +58,10 @@ impl Grid {
         output.write(&self.geometry.to_le_bytes())?;
         output.write(&(self.cells.len() as u64).to_le_bytes())?;
         output.write(&(self.sources.len() as u64).to_le_bytes())?;
-        for number in &self.cells {
+        for number in self.cells.iter() {
             output.write(&number.to_le_bytes())?;
         }
-        for source in &self.sources {
+        for source in self.sources.iter() {
             output.write(&source.to_le_bytes())?;
         }
         let hash = output.hash.digest();
@@ -151,8 +151,8 @@ fn decode(header: &Header, bytes: &[u8], triangles: &[Triangle]) -> Result<Grid,
         triangles: sources.iter().map(|&source| triangles[source as usize]).collect(),
         lattice,
         margin,
-        cells,
-        sources,
+        cells: cells.into(),
+        sources: sources.into(),
         approach,
         geometry,
         built_from: header.built_from,

@@ -25,6 +25,7 @@ pub(super) mod overlap;
 mod search;
 mod walk;
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use fearless_simd::Level;
@@ -98,11 +99,11 @@ pub struct Grid {
     lattice: Lattice,
     margin: f32,
     /// The flat nested form.
-    cells: Vec<i32>,
+    cells: Arc<[i32]>,
     /// The triangles of all cells, one cell after the other.
-    triangles: Vec<Triangle>,
+    triangles: Arc<[Triangle]>,
     /// The position of each in the list that the grid was built from.
-    sources: Vec<u32>,
+    sources: Arc<[u32]>,
     approach: Approach,
     coverage: Coverage,
     /// Hash of the list that the grid was built from.
@@ -235,6 +236,17 @@ impl Accelerator for Grid {
         dispatch!(Level::new(), simd => search::search(simd, self, region, take));
     }
 
+    fn covered_by(&self, coverage: &Coverage) -> Box<dyn Accelerator> {
+        Box::new(Grid {
+            cells: Arc::clone(&self.cells),
+            triangles: Arc::clone(&self.triangles),
+            sources: Arc::clone(&self.sources),
+            coverage: coverage.clone(),
+            overruns: 0.into(),
+            ..*self
+        })
+    }
+
     fn name(&self) -> &'static str {
         "grid"
     }
@@ -244,8 +256,6 @@ impl Accelerator for Grid {
     }
 
     fn memory(&self) -> usize {
-        size_of_val(self.cells.as_slice())
-            + size_of_val(self.triangles.as_slice())
-            + size_of_val(self.sources.as_slice())
+        size_of_val(&*self.cells) + size_of_val(&*self.triangles) + size_of_val(&*self.sources)
     }
 }

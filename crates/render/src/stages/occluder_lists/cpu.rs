@@ -67,7 +67,7 @@ pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, aim: &Aim) -> Visib
     });
     // In the same memory.
     let share = shares.into_iter().map(|share| f32::from_bits(share.into_inner())).collect();
-    Visibility { rays, lights: wave.group(), share, used: Vec::new() }
+    Visibility { rays, lights: wave.group(), share, ..Visibility::default() }
 }
 
 /// Writes the visible shares of all emitters from the surface points of some items.

@@ -96,9 +96,9 @@ fn add_group(
     }
     let reach = wave.scene.geometry.reach(surface.point.origin);
     for index in visibility.lights.clone() {
-        let share = visibility.of(index, ray);
-        if share > 0.0 {
-            *radiance += share * targets.unshadowed(&surface, &wave.lights()[index], index, reach);
+        if visibility.of(index, ray) > 0.0 {
+            *radiance +=
+                visibility.color(index, ray) * targets.unshadowed(&surface, &wave.lights()[index], index, reach);
         }
     }
 }
@@ -177,9 +177,8 @@ fn by_light(
     }
     let reach = wave.scene.geometry.reach(surface.point.origin);
     for (index, term) in lights.zip(terms) {
-        let share = visibility.of(index, ray);
-        if share > 0.0 {
-            *term = share * targets.unshadowed(&surface, &wave.lights()[index], index, reach);
+        if visibility.of(index, ray) > 0.0 {
+            *term = visibility.color(index, ray) * targets.unshadowed(&surface, &wave.lights()[index], index, reach);
         }
     }
 }

@@ -37,6 +37,7 @@ pub(crate) fn shade<R: Runtime>(
         rays: rays.record,
         hits: wave.hits.hits.input(),
         share: In::to(visibility.planes().address()),
+        passed: In::to(visibility.passed_planes().address()),
         used: visibility.used.as_ref().map_or(In::NULL, Buffer::input),
         gathered: gathered.map_or(In::NULL, |gathered| gathered.light.input()),
         first_light: lights.start as u32,

@@ -11,6 +11,13 @@ DEVICE float share_of(const Shade &args, unsigned light, unsigned ray) {
     return __ldg(args.share + (unsigned long long)light * args.rays.count + ray);
 }
 
+// What is left of a light for a ray.
+DEVICE Vec3 color_of(const Shade &args, unsigned light, unsigned ray) {
+    if (args.passed == nullptr)
+        return splat(share_of(args, light, ray));
+    return args.passed[(unsigned long long)light * args.rays.count + ray];
+}
+
 // The angle of the cone around a ray; of those of all samples that are shaded with it, if there are several.
 DEVICE float spread_of(const Shade &args, unsigned ray) {
     unsigned samples = 1;
@@ -66,9 +73,8 @@ DEVICE Vec3 add_group(const Shade &args, unsigned ray, const Surface &surface, V
         radiance = unlit(args, ray, surface);
     const float reach = scene_reach(args.scene, surface.point.origin);
     for (unsigned light = args.first_light; light < args.end_light; ++light) {
-        const float share = share_of(args, light, ray);
-        if (share > 0.0f)
-            radiance = radiance + share * unshadowed(surface, args.scene, light, reach);
+        if (share_of(args, light, ray) > 0.0f)
+            radiance = radiance + color_of(args, light, ray) * unshadowed(surface, args.scene, light, reach);
     }
     return radiance;
 }
@@ -225,9 +231,8 @@ DEVICE void add_by_light(const Shade &args, unsigned ray, unsigned long long pla
         add_to_group(args, rest, place, weight * unlit(args, ray, surface));
     const float reach = scene_reach(args.scene, surface.point.origin);
     for (unsigned light = args.first_light; light < args.end_light; ++light) {
-        const float share = share_of(args, light, ray);
-        if (share > 0.0f)
-            add_to_group(args, light, place, weight * (share * unshadowed(surface, args.scene, light, reach)));
+        if (share_of(args, light, ray) > 0.0f)
+            add_to_group(args, light, place, weight * (color_of(args, light, ray) * unshadowed(surface, args.scene, light, reach)));
     }
 }
 

@@ -62,7 +62,7 @@ fn every_box_holds_its_triangles() {
         (0..999).map(|index| Triangle::new([0, 1, 2].map(|turn| corner(index + turn)), index)).collect();
     let bvh = Bvh::new(&triangles);
     let mut leaves = 0;
-    for node in &bvh.nodes {
+    for node in bvh.nodes.iter() {
         for (slot, child) in children(node) {
             let Child::Leaf(range) = child else { continue };
             leaves += range.len();

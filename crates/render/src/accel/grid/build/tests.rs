@@ -18,9 +18,9 @@ fn the_flat_form_is_that_of_the_thesis() {
     let triangles = [triangle(Vec3::ZERO, 5), triangle(Vec3::new(4.0, 4.0, 0.0), 6), triangle(0.1 * Vec3::X, 7)];
     let grid = built(&triangles, [2, 2, 1], Levels::One).unwrap();
     // nx ny nz, four offsets, a leaf with triangles 0 and 1, a leaf with triangle 2.
-    assert_eq!(grid.cells, [2, 2, 1, 7, -1, -1, 9, -2, 0, -1, 2]);
+    assert_eq!(*grid.cells, [2, 2, 1, 7, -1, -1, 9, -2, 0, -1, 2]);
     assert_eq!(grid.triangles.iter().map(Triangle::index).collect::<Vec<_>>(), [5, 7, 6]);
-    assert_eq!(grid.sources, [0, 2, 1]);
+    assert_eq!(*grid.sources, [0, 2, 1]);
 }
 
 #[test]

@@ -1,0 +1,149 @@
+//! Filtered light on the CPU: all samples of a light from one surface point at once.
+
+use glam::Vec3;
+use lightmesh_layout::constants::MOST_THROUGHS;
+use lightmesh_scene::Bounds;
+use rayon::prelude::*;
+
+use crate::accel::{Hit, Ray, TangentPlanes};
+use crate::counters::Tally;
+use crate::data::visibility::Visibility;
+use crate::data::wave::{HostWave, Wave};
+use crate::prepared::PreparedScene;
+use crate::shadow::rows::Rows;
+use crate::shadow::sight::Emitter;
+use crate::shadow::{Aim, hidden};
+use crate::surface::{SurfacePoint, long_segment};
+
+/// Maximum number of surface points per task.
+const BATCH: usize = 64;
+
+/// `visibility` with what `panes` leave of it.
+pub(crate) fn filters(wave: &HostWave, panes: &PreparedScene, aim: &Aim, mut visibility: Visibility) -> Visibility {
+    let wave = Wave { lights: visibility.lights.clone().into(), ..*wave };
+    let rows = Rows::of(aim);
+    let emitters = Emitter::all(&wave, aim, &rows);
+    visibility.passed = visibility.share.iter().map(|&share| Vec3::splat(share)).collect();
+    visibility.colored_parts(BATCH).into_par_iter().enumerate().for_each(|(number, mut planes)| {
+        let first = number * BATCH;
+        let rays = first..wave.hits.len().min(first + BATCH);
+        wave.job.piece(rays.len(), || {
+            let mut batch = Batch::new(&wave, panes);
+            for ray in rays.filter(|&ray| wave.sees(ray)) {
+                let point = wave.shadow_point(ray);
+                for (emitter, (shares, passed)) in emitters.iter().zip(&mut planes) {
+                    let (share, passed) = (&mut shares[ray - first], &mut passed[ray - first]);
+                    if *share <= 0.0 {
+                        continue;
+                    }
+                    let lost = batch.lost(emitter, ray, &emitter.seen_from(&wave.scene.geometry, &point));
+                    if lost != Vec3::ZERO {
+                        *passed = (Vec3::splat(*share) - lost / emitter.samples() as f32).max(Vec3::ZERO);
+                        *share = passed.element_sum() / 3.0;
+                    }
+                }
+            }
+        });
+    });
+    visibility
+}
+
+/// The shadow rays of one surface point to one light.
+struct Batch<'a> {
+    wave: &'a HostWave<'a>,
+    panes: &'a PreparedScene,
+    /// Where they end.
+    targets: Vec<Vec3>,
+    /// The set of samples that each belongs to.
+    sets: Vec<u32>,
+    /// What is left at each.
+    left: Vec<Vec3>,
+    /// Those that are still on their way: their numbers, and the rest of the way.
+    going: Vec<(usize, Ray)>,
+}
+
+impl<'a> Batch<'a> {
+    fn new(wave: &'a HostWave<'a>, panes: &'a PreparedScene) -> Batch<'a> {
+        Batch { wave, panes, targets: Vec::new(), sets: Vec::new(), left: Vec::new(), going: Vec::new() }
+    }
+
+    /// The sum of what is lost on the way to samples that nothing opaque hides.
+    fn lost(&mut self, emitter: &Emitter, ray: usize, point: &SurfacePoint) -> Vec3 {
+        // 1. What is left of each sample, if any surface may be on the way.
+        if !self.may_meet(emitter, point) {
+            return Vec3::ZERO;
+        }
+        self.targets.clear();
+        self.sets.clear();
+        emitter.each_target_of_set(self.wave, ray, point, |set, target| {
+            if point.normal.dot(target - point.origin) > 0.0 {
+                self.targets.push(target);
+                self.sets.push(set);
+            }
+        });
+        if !self.pass(point.origin) {
+            return Vec3::ZERO;
+        }
+
+        // 2. What is opaque hides some of those of which something is lost.
+        let dimmed = (0..self.targets.len()).filter(|&index| self.left[index] != Vec3::ONE);
+        let (mut owners, mut segments) = (Vec::new(), Vec::new());
+        for index in dimmed {
+            owners.push(index);
+            segments.push(long_segment(point.origin, self.targets[index]));
+        }
+        Tally::add(&self.wave.job.tally.shadow_rays, segments.len() as u64);
+
+        // 3. The sums of sets.
+        let (mut sum, mut of_set, mut set) = (Vec3::ZERO, Vec3::ZERO, 0);
+        for (index, hidden) in owners.into_iter().zip(hidden(self.wave, &segments)) {
+            if self.sets[index] != set {
+                (sum, of_set, set) = (sum + of_set, Vec3::ZERO, self.sets[index]);
+            }
+            if !hidden {
+                of_set += Vec3::ONE - self.left[index];
+            }
+        }
+        sum + of_set
+    }
+
+    /// Whether any pane may be between a surface point and an emitter.
+    fn may_meet(&self, emitter: &Emitter, point: &SurfacePoint) -> bool {
+        let geometry = &self.panes.geometry;
+        let origin = Bounds { min: point.origin, max: point.origin };
+        let planes = TangentPlanes::new(point.origin, [(point.origin, point.normal)], 0.0);
+        let mut found = false;
+        geometry.accelerator.search(&emitter.region(geometry, &origin).above(planes), &mut |_| {
+            found = true;
+            false
+        });
+        found
+    }
+
+    /// Follows rays through all surfaces that they meet. Returns whether they meet any.
+    fn pass(&mut self, origin: Vec3) -> bool {
+        let geometry = &self.panes.geometry;
+        self.left.clear();
+        self.left.resize(self.targets.len(), Vec3::ONE);
+        self.going.clear();
+        self.going.extend(self.targets.iter().map(|&target| long_segment(origin, target)).enumerate());
+        let mut met = false;
+        for _ in 0..MOST_THROUGHS {
+            let rays: Vec<Ray> = self.going.iter().map(|(_, ray)| *ray).collect();
+            let mut hits = vec![Hit::MISS; rays.len()];
+            geometry.accelerator.closest_hits(&rays, &mut hits);
+            let mut next = Vec::new();
+            for (&(index, ray), hit) in self.going.iter().zip(&hits).filter(|(_, hit)| hit.is_some()) {
+                self.left[index] *= self.panes.transmittance(hit);
+                let point = SurfacePoint::new(&ray, hit, &geometry.triangles[hit.triangle as usize]);
+                next.push((index, long_segment(point.behind(), self.targets[index])));
+            }
+            self.going = next;
+            if self.going.is_empty() {
+                break;
+            }
+            met = true;
+        }
+        met
+    }
+}

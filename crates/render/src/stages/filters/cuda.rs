@@ -1,0 +1,51 @@
+//! Filtered light on a CUDA device.
+
+use lightmesh_layout::stages::{Filters, Shadows};
+
+use crate::cuda::Runtime;
+use crate::data::wave::Wave;
+use crate::error::RenderError;
+use crate::gpu::rays::{DeviceVisibility, DeviceWave};
+use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerStructure, Work, blocks_for, per_structure};
+use crate::shadow::Aim;
+use crate::shadow::launch::SampleSets;
+
+const KERNEL: PerStructure = per_structure!("filters", "filters");
+
+/// `visibility` with what `panes` leave of it: light by light and set by set, so that no thread casts more rays than a launch may take.
+pub(crate) fn filters<R: Runtime>(
+    cuda: &Cuda<R>,
+    wave: &DeviceWave<R>,
+    panes: &DeviceScene<R>,
+    aim: &Aim,
+    visibility: DeviceVisibility<R>,
+) -> Result<DeviceVisibility<R>, RenderError> {
+    let lights = visibility.lights.len() as u64;
+    let passed = cuda.pool().room("light that is let through", wave.rays.len() * lights as usize)?;
+    let visibility = DeviceVisibility { passed: Some(passed), ..visibility };
+    let kernel = KERNEL.of(panes);
+    let sets = SampleSets::new(aim);
+    let of_panes = Wave { scene: panes, ..*wave };
+    // A light without samples has its centre.
+    let slices = u64::from(sets.count.max(1)) * lights;
+    let progress = |slices_done: u64| wave.rays.len() as u64 * slices_done / slices.max(1);
+    for slice in 0..slices {
+        let (set, light) = ((slice / lights) as u32, visibility.lights.start as u32 + (slice % lights) as u32);
+        let shadows = sets.record(cuda, &of_panes, &visibility, set)?;
+        let record = Filters {
+            scene: wave.scene.record,
+            shadows: Shadows { first_light: light, end_light: light + 1, ..shadows },
+            triangles: panes.triangles(),
+            passed: visibility.passed_planes(),
+            middle: u32::from(matches!(aim, Aim::Middle)),
+            spare: 0,
+        };
+        let rays = sets.most(set).max(1);
+        let work = Work::of_rays(wave.rays.blocks(BLOCK_SIDE), &(0..rays), progress(slice + 1) - progress(slice));
+        cuda.in_pieces(wave.job, kernel, work, |piece| {
+            let shadows = Shadows { first: piece.start, count: piece.end - piece.start, ..record.shadows };
+            cuda.launch(kernel, blocks_for(&piece, BLOCK), &Filters { shadows, ..record })
+        })?;
+    }
+    Ok(visibility)
+}
