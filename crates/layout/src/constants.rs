@@ -232,6 +232,24 @@ constants! {
     OPAQUE: f32 = 255.0;
     /// The bit from which on the number of surfaces that a ray went through is in a list, above its sample.
     THROUGHS_SHIFT: u32 = 20;
+    /// 1/ln 2.
+    LOG2_E: f32 = std::f32::consts::LOG2_E;
+    /// ln 2 in two parts, the first of few digits.
+    LN_2_HIGH: f32 = 0.693_359_4;
+    /// ln 2 without that part.
+    LN_2_LOW: f32 = -2.1219444e-4;
+    /// exp(x) = 1 + x + EXP_2 x² + …, so 1/2.
+    EXP_2: f32 = 0.5;
+    /// 1/6.
+    EXP_3: f32 = 0.16666667;
+    /// 1/24.
+    EXP_4: f32 = 0.041666668;
+    /// 1/120.
+    EXP_5: f32 = 0.008333334;
+    /// 1/720.
+    EXP_6: f32 = 0.0013888889;
+    /// exp(−x) is 0 for larger x.
+    LARGEST_EXPONENT: f32 = 87.0;
     /// A ray goes through so many surfaces.
     MOST_THROUGHS: u32 = 64;
     /// A ray goes on through a surface if at least this share of the radiance behind it reaches the pixel: less changes no code of an image.

@@ -109,6 +109,14 @@ records! {
         transmittance: Vec3,
         /// 1: light goes through as far as the opacity is below 1.
         blends: u32,
+        /// Absorption coefficient of the body that the surface bounds.
+        absorption: Vec3,
+        /// Its index of refraction; 0 without one.
+        ior: f32,
+        /// 1: surfaces are thin walls.
+        thin: u32,
+        /// At a surface point that bends light: n₁/n₂, from the side of the viewer to the other; else 0.
+        eta: f32,
     }
 
     /// A level of an environment.

@@ -9,7 +9,7 @@ use glam::Vec3;
 use lightmesh_memory::{Budget, Short};
 use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Material, Scene, Texture};
 
-use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Coverage, Grid, GridOptions, Hit, Triangle, coverage};
+use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Coverage, Grid, GridOptions, Triangle, coverage};
 use crate::error::RenderError;
 use crate::material_ids::MaterialIds;
 use crate::observer::Observer;
@@ -282,15 +282,6 @@ impl PreparedScene {
             geometry: Arc::clone(geometry),
         };
         Some(SeeThrough { blockers: part(blockers), panes: part(panes), solid: part(solid) })
-    }
-
-    /// What is left of light that goes straight on at `hit`.
-    pub(crate) fn transmittance(&self, hit: &Hit) -> Vec3 {
-        let geometry = &self.scene.geometry;
-        let material = &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize];
-        let filter = material.opacity.and_then(|opacity| opacity.filter()).unwrap_or(Vec3::ZERO);
-        let opacity = self.geometry.coverage.opacity(&self.geometry.triangles[hit.triangle as usize], hit);
-        (1.0 - opacity) * filter
     }
 
     /// Whether anything only shows the shadows on it.

@@ -47,10 +47,14 @@ struct Normals {
     Vec3 a, b, c;
 };
 
+DEVICE Normals load_normals(const Vec3 *normals, const Indices *indices, unsigned triangle) {
+    const unsigned *vertices = indices[triangle].vertices;
+    return Normals{load_normal(normals, __ldg(vertices)), load_normal(normals, __ldg(vertices + 1)),
+                   load_normal(normals, __ldg(vertices + 2))};
+}
+
 DEVICE Normals load_normals(const Scene &scene, unsigned triangle) {
-    const unsigned *vertices = scene.indices[triangle].vertices;
-    return Normals{load_normal(scene.normals, __ldg(vertices)), load_normal(scene.normals, __ldg(vertices + 1)),
-                   load_normal(scene.normals, __ldg(vertices + 2))};
+    return load_normals(scene.normals, scene.indices, triangle);
 }
 
 // What the normals of a triangle's corners are between them: interpolated, not of unit length, and the square of its length. False on flat
@@ -63,13 +67,17 @@ DEVICE bool smooth_at(const Hit &hit, const Normals &corners, Vec3 &normal, floa
 }
 
 // The unit normal that shading uses, on the side of the geometric normal `facing`.
-DEVICE Vec3 shading_normal(const Scene &scene, const Hit &hit, Vec3 facing) {
+DEVICE Vec3 shading_normal(const Vec3 *normals, const Indices *indices, const Hit &hit, Vec3 facing) {
     Vec3 smooth;
     float square;
-    if (scene.normals == nullptr || !smooth_at(hit, load_normals(scene, hit.triangle), smooth, square))
+    if (normals == nullptr || !smooth_at(hit, load_normals(normals, indices, hit.triangle), smooth, square))
         return facing;
     const Vec3 normal = smooth / sqrtf(square);
     return dot(normal, facing) < 0.0f ? -normal : normal;
+}
+
+DEVICE Vec3 shading_normal(const Scene &scene, const Hit &hit, Vec3 facing) {
+    return shading_normal(scene.normals, scene.indices, hit, facing);
 }
 
 // The segment from `origin` to `target` for a long test, shortened at its far end.

@@ -13,6 +13,7 @@ mod border;
 mod builder;
 pub mod builtin;
 mod camera;
+mod dielectric;
 mod draft;
 mod environment;
 mod error;
@@ -50,6 +51,7 @@ pub use glam;
 
 pub use builder::SceneBuilder;
 pub use camera::{Camera, CameraError, Fov, Projection};
+pub use dielectric::Dielectric;
 pub use environment::{
     Environment, EnvironmentError, EnvironmentLevel, Moment, Sky, SkyError, SkyKind, Sun, SunError, SunPosition,
     Surroundings,

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::{Opacity, TextureUse};
+use crate::{Dielectric, Opacity, TextureUse};
 
 /// How a surface reflects light: ambient, diffuse and Phong terms (Whitted 1980, Phong 1975).
 ///
@@ -37,6 +37,8 @@ pub struct Material {
     pub lamp: bool,
     /// Where the surface is, and what it lets through; opaque everywhere without it.
     pub opacity: Option<Opacity>,
+    /// Of glass and the like: how light is reflected, and goes on, where the opacity lets it through.
+    pub dielectric: Option<Dielectric>,
 }
 
 impl Default for Material {
@@ -55,6 +57,7 @@ impl Default for Material {
             catcher: false,
             lamp: false,
             opacity: None,
+            dielectric: None,
         }
     }
 }
@@ -78,6 +81,21 @@ impl Material {
     /// Whether light may go through a surface of this material.
     pub fn lets_through(&self) -> bool {
         !self.catcher && self.opacity.is_some_and(|opacity| opacity.filter().is_some())
+    }
+
+    /// What it is made of, if light goes through.
+    pub fn boundary(&self) -> Option<&Dielectric> {
+        self.dielectric.as_ref().filter(|_| self.lets_through())
+    }
+
+    /// Whether there is no surface of this material anywhere.
+    pub(crate) fn is_nowhere(&self) -> bool {
+        self.dielectric.is_none() && self.opacity.is_some_and(|opacity| opacity.is_nowhere())
+    }
+
+    /// Glass and the like, which is black apart from what it reflects and what goes through.
+    pub fn of(dielectric: Dielectric) -> Material {
+        Material::matt(Vec3::ZERO).with_opacity(Opacity::blend(0.0)).with_dielectric(dielectric)
     }
 
     /// A matt surface of this colour, also in ambient light.
@@ -144,5 +162,10 @@ impl Material {
     /// Where the surface is, and what it lets through.
     pub fn with_opacity(self, opacity: Opacity) -> Material {
         Material { opacity: Some(opacity), ..self }
+    }
+
+    /// How light is reflected, and goes on, where the opacity lets it through.
+    pub fn with_dielectric(self, dielectric: Dielectric) -> Material {
+        Material { dielectric: Some(dielectric), ..self }
     }
 }

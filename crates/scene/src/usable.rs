@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::{Material, Opacity, OpacityMode, draft::LARGEST_COORDINATE, quote::list};
+use crate::{Dielectric, Material, Opacity, OpacityMode, draft::LARGEST_COORDINATE, quote::list};
 
 /// Whether a world position is usable.
 pub(crate) fn is_place(world: DVec3) -> bool {
@@ -21,7 +21,7 @@ pub(crate) fn keep_placed<T>(items: &mut Vec<(T, DVec3)>, kind: &str) -> Option<
 /// Replaces infinite, NaN and negative coefficients by 0.
 pub(crate) fn keep_finite(materials: &mut [Material]) -> Option<String> {
     let mut count = 0;
-    for Material { ka, kd, ks, ks_tinted, emission, emission_tinted, opacity, .. } in materials {
+    for Material { ka, kd, ks, ks_tinted, emission, emission_tinted, opacity, dielectric, .. } in materials {
         let mut odd = false;
         for color in [ka, kd, ks, ks_tinted, emission, emission_tinted] {
             let usable = color.is_finite_mask() & color.cmpge(Vec3::ZERO);
@@ -45,6 +45,13 @@ pub(crate) fn keep_finite(materials: &mut [Material]) -> Option<String> {
                 }
             }
         }
+        if let Some(Dielectric { ior, absorption, .. }) = dielectric {
+            let usable = absorption.is_finite_mask() & absorption.cmpge(Vec3::ZERO);
+            let bends = ior.is_finite() && *ior > 0.0;
+            odd |= !(usable.all() && bends);
+            *absorption = Vec3::select(usable, *absorption, Vec3::ZERO);
+            *ior = if bends { *ior } else { 1.0 };
+        }
         count += usize::from(odd);
     }
     (count > 0)
@@ -53,8 +60,8 @@ pub(crate) fn keep_finite(materials: &mut [Material]) -> Option<String> {
 
 /// Names the materials that are nowhere opaque and filter nothing.
 pub(crate) fn unseen(materials: &[Material]) -> Option<String> {
-    let nowhere = |material: &&Material| material.opacity.is_some_and(|opacity| opacity.is_nowhere());
-    let names: Vec<String> = materials.iter().filter(nowhere).map(|material| format!("`{}`", material.name)).collect();
+    let nowhere = materials.iter().filter(|material| material.is_nowhere());
+    let names: Vec<String> = nowhere.map(|material| format!("`{}`", material.name)).collect();
     let of = if names.len() == 1 { "material is" } else { "materials are" };
     let listed = list(names.iter().map(String::as_str));
     (!names.is_empty()).then(|| format!("{} {of} not seen, for lack of opacity: {listed}", names.len()))
@@ -123,6 +130,8 @@ mod tests {
         let of = |opacity: Opacity, name: &str| Material { opacity: Some(opacity), ..Material::default() }.named(name);
         let foil = of(Opacity::blend(0.0).with_filter([1.0, 0.0, 0.0]), "foil");
         let mut materials = vec![foil, of(Opacity::blend(0.5), "pane"), Material::default()];
+        assert_eq!(unseen(&materials), None);
+        materials.push(of(Opacity::blend(0.0), "glass").with_dielectric(Dielectric::new(1.5)));
         assert_eq!(unseen(&materials), None);
         materials.push(of(Opacity::blend(0.0), "air"));
         assert_eq!(unseen(&materials).as_deref(), Some("1 material is not seen, for lack of opacity: `air`"));

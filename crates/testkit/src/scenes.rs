@@ -1,7 +1,7 @@
 //! Analytic scenes: what is lit and what is in shadow is known without rendering.
 
 use glam::{DVec3, Vec2, Vec3};
-use lightmesh_scene::{LightKind, Opacity, OpacityChannel, Scene, Texture, TextureUse, Wrap};
+use lightmesh_scene::{Dielectric, LightKind, Material, Opacity, OpacityChannel, Scene, Texture, TextureUse, Wrap};
 
 use crate::{Random, SceneDraft};
 
@@ -65,9 +65,25 @@ pub fn perforated(scene: Scene) -> Scene {
     with_opacity(scene, |opacity| opacity.with_cutoff(0.45))
 }
 
-/// The same scene with panes: two of three triangles let light through in part.
+/// The same scene with panes: two of three triangles let light through in part, some of them as glass.
 pub fn glazed(scene: Scene) -> Scene {
-    with_opacity(scene, |opacity| opacity.with_filter([0.9, 0.6, 1.0]).with_factor(0.8))
+    let mut scene = with_opacity(scene, |opacity| opacity.with_filter([0.9, 0.6, 1.0]).with_factor(0.8));
+    let geometry = scene.geometry_mut();
+    let all = geometry.materials.len();
+    let glass = Dielectric::new(1.5).with_absorption([0.1, 0.7, 0.3]);
+    for thin in [false, true] {
+        let panes = &geometry.materials[all / 2..all];
+        let of_glass = |pane: &Material| pane.clone().with_dielectric(glass.with_thin(thin));
+        geometry.materials.extend(panes.iter().map(of_glass).collect::<Vec<_>>());
+    }
+    for (material, index) in geometry.mesh.materials.iter_mut().zip(0..) {
+        *material += match index % 6 {
+            2 => all as u32 / 2,
+            5 => all as u32,
+            _ => 0,
+        };
+    }
+    scene
 }
 
 /// Gives two of three triangles opacities that are noise in an image, and vary between their corners.

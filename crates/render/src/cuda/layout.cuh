@@ -139,6 +139,24 @@
 #define OPAQUE 0x1.fep7f
 // The bit from which on the number of surfaces that a ray went through is in a list, above its sample.
 #define THROUGHS_SHIFT 20u
+// 1/ln 2.
+#define LOG2_E 0x1.715476p0f
+// ln 2 in two parts, the first of few digits.
+#define LN_2_HIGH 0x1.63p-1f
+// ln 2 without that part.
+#define LN_2_LOW -0x1.bd0106p-13f
+// exp(x) = 1 + x + EXP_2 x² + …, so 1/2.
+#define EXP_2 0x1p-1f
+// 1/6.
+#define EXP_3 0x1.555556p-3f
+// 1/24.
+#define EXP_4 0x1.555556p-5f
+// 1/120.
+#define EXP_5 0x1.111112p-7f
+// 1/720.
+#define EXP_6 0x1.6c16c2p-10f
+// exp(−x) is 0 for larger x.
+#define LARGEST_EXPONENT 0x1.5cp6f
 // A ray goes through so many surfaces.
 #define MOST_THROUGHS 64u
 // A ray goes on through a surface if at least this share of the radiance behind it reaches the pixel: less changes no code of an image.
@@ -717,8 +735,12 @@ struct alignas(4) Material {
     unsigned lamp;
     Vec3 transmittance;
     unsigned blends;
+    Vec3 absorption;
+    float ior;
+    unsigned thin;
+    float eta;
 };
-static_assert(sizeof(Material) == 112, "size of Material");
+static_assert(sizeof(Material) == 136, "size of Material");
 static_assert(PLACE_OF(Material, ka) == 0, "place of Material::ka");
 static_assert(PLACE_OF(Material, shininess) == 12, "place of Material::shininess");
 static_assert(PLACE_OF(Material, kd) == 16, "place of Material::kd");
@@ -733,6 +755,10 @@ static_assert(PLACE_OF(Material, emission_tinted) == 80, "place of Material::emi
 static_assert(PLACE_OF(Material, lamp) == 92, "place of Material::lamp");
 static_assert(PLACE_OF(Material, transmittance) == 96, "place of Material::transmittance");
 static_assert(PLACE_OF(Material, blends) == 108, "place of Material::blends");
+static_assert(PLACE_OF(Material, absorption) == 112, "place of Material::absorption");
+static_assert(PLACE_OF(Material, ior) == 124, "place of Material::ior");
+static_assert(PLACE_OF(Material, thin) == 128, "place of Material::thin");
+static_assert(PLACE_OF(Material, eta) == 132, "place of Material::eta");
 
 struct alignas(8) EnvironmentLevel {
     const Vec3 *texels;

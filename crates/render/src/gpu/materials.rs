@@ -134,6 +134,10 @@ fn material_record(geometry: &Geometry, material: &lightmesh_scene::Material, te
         record.blends = 1;
         record.transmittance = vec3(material.opacity.and_then(|opacity| opacity.filter()).unwrap_or_default());
     }
+    if let Some(glass) = material.boundary() {
+        record.absorption = vec3(glass.absorption);
+        (record.ior, record.thin) = (glass.ior, u32::from(glass.thin));
+    }
     let mut own = Coefficients::untinted(material);
     if is_tinted(geometry, material) {
         record.tinted = 1;

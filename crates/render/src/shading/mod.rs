@@ -9,6 +9,7 @@
 //! `shading.cuh`, `tint.cuh`.
 
 pub(crate) mod ambient;
+pub(crate) mod dielectric;
 pub(crate) mod environment;
 pub(crate) mod ids;
 #[cfg(test)]
@@ -25,6 +26,7 @@ use crate::data::wave::HostWave;
 use crate::sampling::{Pattern, light_center, light_point};
 use crate::surface::{SurfacePoint, shading_normal};
 use ambient::AmbientLight;
+use dielectric::{eta_seen, refracted};
 use tint::{Coefficients, is_tinted};
 
 /// A surface point with what formula (1) needs.
@@ -36,6 +38,8 @@ pub(crate) struct Surface {
     pub(crate) coefficients: Coefficients,
     /// Phong exponent.
     shininess: f32,
+    /// n₁/n₂, from the side of the viewer to the other, of a surface that bends light.
+    eta: Option<f32>,
 }
 
 impl Surface {
@@ -52,6 +56,9 @@ impl Surface {
             view: -ray.direction,
             coefficients: Coefficients::at(wave.scene, material, ray, cone, hit),
             shininess: material.shininess,
+            eta: material
+                .boundary()
+                .and_then(|glass| eta_seen(glass, ray, &wave.scene.geometry.triangles[hit.triangle as usize])),
         }
     }
 
@@ -155,6 +162,21 @@ impl Surface {
         let about = |normal: Vec3| 2.0 * normal.dot(self.view) * normal - self.view;
         let direction = about(self.normal);
         if direction.dot(self.point.normal) > 0.0 { direction } else { about(self.point.normal) }
+    }
+
+    /// Where a ray starts, and its direction, that the surface lets through: straight on from the other side, bent by a body, or reflected where
+    /// the body reflects everything. A smooth normal may bend it back; then the geometric normal is used.
+    pub(crate) fn onward(&self) -> (Vec3, Vec3) {
+        let direction = -self.view;
+        let Some(eta) = self.eta else { return (self.point.behind(), direction) };
+        let bent = refracted(direction, self.normal, eta).and_then(|bent| {
+            let is_behind = bent.dot(self.point.normal) < 0.0;
+            if is_behind { Some(bent) } else { refracted(direction, self.point.normal, eta) }
+        });
+        match bent {
+            Some(bent) => (self.point.behind(), bent),
+            None => (self.point.origin, self.mirrored().normalize()),
+        }
     }
 }
 

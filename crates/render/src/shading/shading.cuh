@@ -117,3 +117,18 @@ DEVICE Vec3 mirrored(const Surface &surface) {
     const Vec3 direction = mirrored_about(surface.normal, surface.view);
     return dot(direction, surface.point.normal) > 0.0f ? direction : mirrored_about(surface.point.normal, surface.view);
 }
+
+// The ray that goes on through the surface: straight on from the other side, bent by a body, or reflected where the body reflects everything.
+DEVICE Ray onward(const Surface &surface) {
+    const SurfacePoint &point = surface.point;
+    const float eta = surface.material->eta;
+    Vec3 bent = -surface.view;
+    if (eta != 0.0f) {
+        bool goes = refracted(-surface.view, surface.normal, eta, bent);
+        if (goes && !(dot(bent, point.normal) < 0.0f))
+            goes = refracted(-surface.view, point.normal, eta, bent);
+        if (!goes)
+            return Ray{point.origin, normalize(mirrored(surface)), INFINITE};
+    }
+    return Ray{behind(point), bent, INFINITE};
+}

@@ -2,12 +2,14 @@
 #pragma once
 
 #include "accel/coverage.cuh"
+#include "shading/dielectric.cuh"
 #include "textures/lookup.cuh"
 
 // The inputs of tints. By value: taking the address of a kernel's argument would make all its loads slow.
 struct TintSources {
     const Triangle *triangles;
     const Indices *indices;
+    const Vec3 *normals;
     const Uv *uvs;
     const Vec3 *colors;
     const Texture *textures;
@@ -70,6 +72,7 @@ DEVICE void set_tint(const Material *material, const Vec3 &tint, float opacity, 
     own->emission = opacity * (material->emission + material->emission_tinted * tint);
     own->transmittance = (1.0f - opacity) * material->transmittance;
     own->blends = material->blends;
+    own->eta = 0.0f;
     own->shininess = material->shininess;
     own->catcher = material->catcher;
     own->lamp = material->lamp;
@@ -79,6 +82,11 @@ DEVICE void set_tint(const Material *material, const Vec3 &tint, float opacity, 
 // Sets `own` to the material with its coefficients at `hit`.
 COLD void tint_material(TintSources sources, const Material *material, Sighting from, Hit hit, Material *own) {
     set_tint(material, tint_at(sources, *material, from, hit), opacity_at(sources, *material, hit), own);
+    if (material->ior != 0.0f) {
+        const Ray ray = {from.origin, from.direction, INFINITE};
+        const Corners corners = load_corners(sources.triangles + hit.triangle);
+        divide(boundary_met(sources.normals, sources.indices, corners, *material, ray, hit), own);
+    }
 }
 
 // The hits of the samples of a pixel: `count` of them, `stride` apart; those whose bits are set in `shared` count.
@@ -106,7 +114,7 @@ COLD void tint_by_all(TintSources sources, const Material *material, Sighting fr
 
 // The inputs of the tints of a scene.
 DEVICE TintSources tint_sources(const Scene &scene) {
-    return {scene.triangles, scene.indices, scene.uvs, scene.colors, scene.textures, scene.srgb, scene.coverage};
+    return {scene.triangles, scene.indices, scene.normals, scene.uvs, scene.colors, scene.textures, scene.srgb, scene.coverage};
 }
 
 // What ray number `ray` goes along.

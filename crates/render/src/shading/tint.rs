@@ -10,6 +10,7 @@
 use glam::{Vec2, Vec3};
 use lightmesh_scene::{Geometry, Material, Mesh};
 
+use super::dielectric::{Boundary, left_straight_on};
 use crate::accel::{Hit, Ray};
 use crate::footprint::{self, Cone};
 use crate::prepared::PreparedScene;
@@ -31,7 +32,13 @@ impl Coefficients {
     #[inline(always)]
     pub(crate) fn at(scene: &PreparedScene, material: &Material, ray: &Ray, cone: Cone, hit: &Hit) -> Coefficients {
         match is_tinted(&scene.scene.geometry, material) {
-            true => Coefficients::tinted(material, tint(scene, material, ray, cone, hit), opacity(scene, hit)),
+            true => {
+                let own = Coefficients::tinted(material, tint(scene, material, ray, cone, hit), opacity(scene, hit));
+                match material.boundary() {
+                    Some(glass) => Boundary::met(scene, glass, ray, hit).divide(own),
+                    None => own,
+                }
+            }
             false => Coefficients::untinted(material),
         }
     }
@@ -82,6 +89,18 @@ impl Coefficients {
 pub(crate) fn is_tinted(geometry: &Geometry, material: &Material) -> bool {
     let has_texture = || material.texture.is_some() && texture_of(geometry, material).is_some();
     !material.catcher && (!geometry.mesh.colors.is_empty() || has_texture() || material.lets_through())
+}
+
+/// What is left of light that goes straight on along `ray` at `hit`.
+pub(crate) fn transmittance(scene: &PreparedScene, ray: &Ray, hit: &Hit) -> Vec3 {
+    let geometry = &scene.scene.geometry;
+    let material = &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize];
+    let filter = material.opacity.and_then(|opacity| opacity.filter()).unwrap_or(Vec3::ZERO);
+    let through = (1.0 - opacity(scene, hit)) * filter;
+    match material.boundary() {
+        Some(glass) => left_straight_on(scene, glass, ray, hit) * through,
+        None => through,
+    }
 }
 
 /// How opaque the surface is at `hit`.

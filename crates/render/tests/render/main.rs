@@ -11,6 +11,7 @@ mod environment;
 mod fallback;
 mod figures;
 mod gathered;
+mod glass;
 mod ground;
 mod kept;
 mod lamps;

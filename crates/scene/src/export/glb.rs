@@ -11,9 +11,12 @@ use serde_json::{Map, Value, json};
 
 use super::{ExportError, own_lights, pictures::Pictures, refused};
 use crate::{
-    Camera, Falloff, Fov, Light, LightKind, Material, Mesh, Opacity, OpacityChannel, OpacityMode, Projection, Scene,
+    Camera, Dielectric, Falloff, Fov, Light, LightKind, Material, Mesh, Opacity, OpacityChannel, OpacityMode,
+    Projection, Scene,
     formats::{
-        gltf::extras::{CameraExtras, LightExtras, MaterialExtras, OpacityExtras, SceneExtras, ShapeExtras},
+        gltf::extras::{
+            CameraExtras, DielectricExtras, LightExtras, MaterialExtras, OpacityExtras, SceneExtras, ShapeExtras,
+        },
         toml::upright,
     },
     shapes::tangents,
@@ -40,6 +43,13 @@ pub(super) fn encode(scene: &Scene, content: Content, path: &Path) -> Result<Vec
             scene.geometry.materials.iter().enumerate().map(|(index, it)| material(it, index, &pictures)).collect();
         if pictures.transformed() {
             extensions.push("KHR_texture_transform");
+        }
+        let glass: Vec<_> = scene.geometry.materials.iter().filter_map(|material| material.dielectric).collect();
+        if !glass.is_empty() {
+            extensions.extend(["KHR_materials_ior", "KHR_materials_transmission"]);
+        }
+        if glass.iter().any(|glass| !glass.thin) {
+            extensions.push("KHR_materials_volume");
         }
         let arrays = Arrays::new(&scene.geometry.mesh);
         (root["accessors"], root["bufferViews"], root["meshes"]) = arrays.describe();
@@ -279,7 +289,14 @@ fn bounds_of(positions: &[[f32; 3]]) -> [[f32; 3]; 2] {
 fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
     let clamped = |color: Vec3| color.clamp(Vec3::ZERO, Vec3::ONE).to_array();
     let [r, g, b] = clamped(material.kd);
-    let roughness = if material.ks == Vec3::ZERO { 1.0 } else { (2.0 / (material.shininess + 2.0)).powf(0.25) };
+    let matt = material.ks == Vec3::ZERO && material.dielectric.is_none();
+    let roughness = if matt {
+        1.0
+    } else if material.dielectric.is_some() {
+        0.0
+    } else {
+        (2.0 / (material.shininess + 2.0)).powf(0.25)
+    };
     let extras = MaterialExtras {
         ka: material.ka.to_array(),
         kd: material.kd.to_array(),
@@ -295,6 +312,7 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
             .opacity
             .filter(|opacity| !is_standard(opacity, material))
             .map(|it| opacity_extras(&it, index, pictures)),
+        dielectric: material.dielectric.map(DielectricExtras::from),
     };
     let mut entry = json!({
         "name": material.name,
@@ -317,13 +335,35 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
         }
         entry["pbrMetallicRoughness"]["baseColorFactor"][3] = json!(opacity.factor);
     }
+    if let Some((dielectric, opacity)) = material.dielectric.zip(material.opacity) {
+        entry["extensions"] = transmission(&dielectric, &opacity);
+        let [r, g, b] = clamped(opacity.filter().unwrap_or(Vec3::ONE));
+        entry["pbrMetallicRoughness"]["baseColorFactor"] = json!([r, g, b, 1.0]);
+    }
     entry
+}
+
+/// Glass for other programs.
+fn transmission(Dielectric { ior, thin, absorption }: &Dielectric, opacity: &Opacity) -> Value {
+    let mut extensions = json!({
+        "KHR_materials_ior": {"ior": ior},
+        "KHR_materials_transmission": {"transmissionFactor": 1.0 - opacity.factor},
+    });
+    if !thin {
+        let left = absorption.map(|channel| (-channel).exp()).to_array();
+        extensions["KHR_materials_volume"] =
+            json!({"thicknessFactor": 1.0, "attenuationColor": left, "attenuationDistance": 1.0});
+    }
+    extensions
 }
 
 /// Whether an `alphaMode` says the same.
 fn is_standard(opacity: &Opacity, material: &Material) -> bool {
     let alpha = opacity.texture.is_none() || opacity.channel == OpacityChannel::Alpha;
-    alpha && opacity.texture == material.texture && opacity.filter().is_none_or(|filter| filter == Vec3::ONE)
+    alpha
+        && material.dielectric.is_none()
+        && opacity.texture == material.texture
+        && opacity.filter().is_none_or(|filter| filter == Vec3::ONE)
 }
 
 fn opacity_extras(opacity: &Opacity, index: usize, pictures: &Pictures) -> OpacityExtras {

@@ -5,7 +5,7 @@ use std::fs;
 use glam::{Affine2, DMat4, DVec3, Vec2, Vec3};
 
 use crate::{
-    Camera, Falloff, Fov, Light, LightKind, Material, MeshPart, Opacity, OpacityChannel, Projection, Scene,
+    Camera, Dielectric, Falloff, Fov, Light, LightKind, Material, MeshPart, Opacity, OpacityChannel, Projection, Scene,
     SceneBuilder, Texture, TextureUse, Weight, Wrap,
 };
 
@@ -50,6 +50,7 @@ fn scene(offset: DVec3) -> Scene {
                 transform: Affine2::from_scale_angle_translation(Vec2::new(1.3, -0.7), 0.77, Vec2::new(0.1, -3.3)),
             }),
             opacity: Some(Opacity::by(TextureUse::new(1), OpacityChannel::Green).with_cutoff(0.3).with_factor(0.9)),
+            dielectric: None,
         },
         Material::default(),
         Material {
@@ -61,6 +62,8 @@ fn scene(offset: DVec3) -> Scene {
         Material::default().named("bare").with_opacity(Opacity::default()),
         Material::default().named("pane").with_opacity(Opacity::blend(0.25)),
         Material::default().named("foil").with_opacity(Opacity::blend(0.25).with_filter([0.5, 1.0, 0.0])),
+        Material::of(Dielectric::new(1.33).with_absorption([0.5, 0.1, 0.7])).named("water"),
+        Material::of(Dielectric::new(1.5).with_thin(true)).with_opacity(Opacity::blend(0.25)).named("window"),
         Material::default().named("veil").with_texture(tiled).with_opacity(
             Opacity::by(TextureUse::new(0), OpacityChannel::Red).with_filter([0.5, 1.0, 0.125]).with_factor(0.5),
         ),

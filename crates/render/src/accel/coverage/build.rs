@@ -29,7 +29,7 @@ impl Coverage {
         let mut of_materials = Vec::new();
         for material in &geometry.materials {
             of_materials.push(match &material.opacity {
-                Some(opacity) => masks.mask(opacity)?.map(|mask| (mask, opacity.factor)),
+                Some(opacity) => masks.mask(opacity, material.boundary().is_some())?.map(|mask| (mask, opacity.factor)),
                 None => None,
             });
         }
@@ -74,13 +74,13 @@ struct Masks<'a> {
 }
 
 impl Masks<'_> {
-    /// The index of the mask; `None` if nothing is cut out or let through.
-    fn mask(&mut self, opacity: &Opacity) -> Result<Option<usize>, (usize, Short)> {
+    /// The index of the mask; `None` if nothing is cut out or let through. `reflects`: whether it is seen without any opacity.
+    fn mask(&mut self, opacity: &Opacity, reflects: bool) -> Result<Option<usize>, (usize, Short)> {
         let found = opacity.texture.and_then(|uses| usable(self.geometry, uses));
         // What neither shows nor filters anything is no surface.
         let (cutoff, blends) = match opacity.mode {
             OpacityMode::Mask { cutoff } => (cutoff, false),
-            OpacityMode::Blend { filter } if filter == Vec3::ONE => (Opacity::LEAST, true),
+            OpacityMode::Blend { filter } if filter == Vec3::ONE && !reflects => (Opacity::LEAST, true),
             OpacityMode::Blend { .. } => (0.0, true),
         };
         let plane = match found {

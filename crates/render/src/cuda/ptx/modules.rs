@@ -8,7 +8,6 @@
     ("cells", include_str!("cells.ptx")),
     ("copy", include_str!("copy.ptx")),
     ("filters", include_str!("filters.ptx")),
-    ("filters_cut_out", include_str!("filters_cut_out.ptx")),
     ("fragments", include_str!("fragments.ptx")),
     ("gathered", include_str!("gathered.ptx")),
     ("gathered_rays", include_str!("gathered_rays.ptx")),

@@ -10,6 +10,7 @@ use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::{HostWave, Wave};
 use crate::prepared::PreparedScene;
+use crate::shading::tint::transmittance;
 use crate::shadow::rows::Rows;
 use crate::shadow::sight::Emitter;
 use crate::shadow::{Aim, hidden};
@@ -133,9 +134,9 @@ impl<'a> Batch<'a> {
             let mut hits = vec![Hit::MISS; rays.len()];
             geometry.accelerator.closest_hits(&rays, &mut hits);
             let mut next = Vec::new();
-            for (&(index, ray), hit) in self.going.iter().zip(&hits).filter(|(_, hit)| hit.is_some()) {
-                self.left[index] *= self.panes.transmittance(hit);
-                let point = SurfacePoint::new(&ray, hit, &geometry.triangles[hit.triangle as usize]);
+            for (&(index, ref ray), hit) in self.going.iter().zip(&hits).filter(|(_, hit)| hit.is_some()) {
+                self.left[index] *= transmittance(self.panes, ray, hit);
+                let point = SurfacePoint::new(ray, hit, &geometry.triangles[hit.triangle as usize]);
                 next.push((index, long_segment(point.behind(), self.targets[index])));
             }
             self.going = next;

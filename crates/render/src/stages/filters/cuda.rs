@@ -6,11 +6,16 @@ use crate::cuda::Runtime;
 use crate::data::wave::Wave;
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
-use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerStructure, Work, blocks_for, per_structure};
+use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerStructure, Work, blocks_for};
 use crate::shadow::Aim;
 use crate::shadow::launch::SampleSets;
 
-const KERNEL: PerStructure = per_structure!("filters", "filters");
+/// One for all scenes: see the kernel.
+const KERNEL: PerStructure = PerStructure {
+    module: "filters",
+    cut_out_module: "filters",
+    names: lightmesh_layout::names_per_structure!("filters"),
+};
 
 /// `visibility` with what `panes` leave of it: light by light and set by set, so that no thread casts more rays than a launch may take.
 pub(crate) fn filters<R: Runtime>(

@@ -1,7 +1,10 @@
-// Filtered light on a CUDA device: twin of cpu.rs, one thread per surface point.
+// Filtered light on a CUDA device: twin of cpu.rs, one thread per surface point. Whatever lets light through has entries among the triangles
+// that are cut out.
+#define CUT_OUTS 1
 #include "cuda/prelude.cuh"
 
 #include "cuda/rays.cuh"
+#include "shading/dielectric.cuh"
 #include "shadow/seen.cuh"
 #include "shadow/shadow.cuh"
 #include "shadow/terminator.cuh"
@@ -11,10 +14,18 @@ DEVICE const Bvh &structure_of(const Scene &scene, const Bvh &) { return scene.b
 DEVICE const Grid &structure_of(const Scene &scene, const Grid &) { return scene.grid; }
 DEVICE const BruteForce &structure_of(const Scene &scene, const BruteForce &) { return scene.brute_force; }
 
+// What a dielectric leaves of light. A function of its own, so that its callers keep their registers.
+COLD Vec3 left_by_glass(const Vec3 *normals, const Indices *indices, const Triangle *triangle, const Material *material, Ray ray, Hit hit) {
+    return left_straight_on(boundary_met(normals, indices, load_corners(triangle), *material, ray, hit), *material);
+}
+
 // What is left of light that goes through a surface.
-DEVICE Vec3 transmittance_at(const Scene &scene, const Triangle *triangle, const Hit &hit) {
+DEVICE Vec3 transmittance_at(const Scene &scene, const Triangle *triangle, const Ray &ray, const Hit &hit) {
     const Material &material = scene.materials[__ldg(scene.triangle_materials + hit.triangle)];
-    return (1.0f - opacity_at(scene.coverage, triangle, hit.u, hit.v)) * material.transmittance;
+    const Vec3 through = (1.0f - opacity_at(scene.coverage, triangle, hit.u, hit.v)) * material.transmittance;
+    if (material.ior == 0.0f)
+        return through;
+    return left_by_glass(scene.normals, scene.indices, triangle, &material, ray, hit) * through;
 }
 
 // Follows a ray through all surfaces that it meets: what is left of the light.
@@ -27,7 +38,7 @@ DEVICE Vec3 pass(const Filters &args, const Structure &panes, Vec3 from, Vec3 ta
         if (hit.triangle == Hit::NONE)
             break;
         const Triangle *triangle = args.triangles + hit.triangle;
-        left = left * transmittance_at(args.shadows.scene, triangle, hit);
+        left = left * transmittance_at(args.shadows.scene, triangle, ray, hit);
         from = behind(surface_point(ray, hit, load_corners(triangle)));
     }
     return left;

@@ -24,19 +24,22 @@ pub(crate) fn mirror_rays(wave: &HostWave, bounces: u32) -> RayList {
     };
     for index in (0..wave.hits.len()).filter(|&ray| wave.sees(ray)) {
         let surface = Surface::new(wave, index);
-        let (ray, hit, throughs) = (&list.rays[index], &wave.hits[index], list.throughs(index));
+        let (hit, throughs) = (&wave.hits[index], list.throughs(index));
         let cone = || list.cone_of(index).after(hit.t);
 
-        // 1. Straight on, from the other side.
+        // 1. Through the surface.
         let weight = list.weight(index) * surface.coefficients.transmittance;
         if weight.max_element() >= LEAST_THROUGH && throughs < MOST_THROUGHS {
-            let onward = Ray { origin: surface.point.behind(), direction: ray.direction, t_max: f32::INFINITY };
+            let (origin, direction) = surface.onward();
+            let onward = Ray { origin, direction, t_max: f32::INFINITY };
             add(index, onward, has_cones.then(cone), weight, list.sample(index) + (1 << THROUGHS_SHIFT));
         }
 
         // 2. Mirrored.
         let weight = list.weight(index) * surface.coefficients.ks;
-        if weight != Vec3::ZERO && list.depth - throughs < bounces {
+        // Of mirrors alone every ray counts; between the sides of glass there is no end of them.
+        let least = if throughs > 0 { LEAST_THROUGH } else { 0.0 };
+        if weight != Vec3::ZERO && weight.max_element() >= least && list.depth - throughs < bounces {
             let direction = surface.mirrored().normalize();
             let onward = Ray { origin: surface.point.origin, direction, t_max: f32::INFINITY };
             let cone = || {

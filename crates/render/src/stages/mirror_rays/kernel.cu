@@ -25,7 +25,9 @@ DEVICE Shares shares_of(const MirrorRays &args, unsigned ray) {
     const Vec3 through = weight * material->transmittance, mirrored = weight * material->ks;
     const unsigned throughs = throughs_of(args.rays, ray);
     const bool goes = max_element(through) >= LEAST_THROUGH && throughs < MOST_THROUGHS;
-    return Shares{goes ? through : none.through, args.rays.depth - throughs < args.bounces ? mirrored : none.mirrored};
+    // Of mirrors alone every ray counts; between the sides of glass there is no end of them.
+    const bool mirrors = max_element(mirrored) >= (throughs > 0 ? LEAST_THROUGH : 0.0f) && args.rays.depth - throughs < args.bounces;
+    return Shares{goes ? through : none.through, mirrors ? mirrored : none.mirrored};
 }
 
 // The cone that the mirror at a surface point reflects.
@@ -73,12 +75,13 @@ KERNEL(mirror_rays_emit, MirrorRays, BLOCK, 4) {
     const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
     const unsigned pixel = pixel_of(args.rays, ray), sample = sample_of(args.rays, ray);
 
-    // 1. Straight on, from the other side.
+    // 1. Through the surface.
     if (goes) {
         if (args.cones != nullptr)
             args.cones[place] = cone_after(cone_of(args.rays, ray), load_hit(args.hits, ray).t);
         const unsigned through = sample + (1u << THROUGHS_SHIFT);
-        args.onward[place++] = ListedRay{behind(surface.point), pixel, ray_at(args.rays, ray).direction, through, shares.through, 0};
+        const Ray beyond = onward(surface);
+        args.onward[place++] = ListedRay{beyond.origin, pixel, beyond.direction, through, shares.through, 0};
     }
 
     // 2. Mirrored.

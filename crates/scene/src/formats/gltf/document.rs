@@ -12,6 +12,8 @@ use serde::{
 };
 use serde_json::value::RawValue;
 
+use crate::Dielectric;
+
 /// A complete file.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -322,6 +324,28 @@ pub(super) struct MaterialExtensions {
     pub(super) ior: Option<Ior>,
     #[serde(rename = "KHR_materials_specular")]
     pub(super) specular: Option<Specular>,
+    #[serde(rename = "KHR_materials_transmission")]
+    pub(super) transmission: Option<Transmission>,
+    #[serde(rename = "KHR_materials_volume")]
+    pub(super) volume: Option<Volume>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Transmission {
+    #[serde(default)]
+    pub(super) transmission_factor: f32,
+    pub(super) transmission_texture: Option<IgnoredAny>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Volume {
+    #[serde(default)]
+    pub(super) thickness_factor: f32,
+    #[serde(default = "white")]
+    pub(super) attenuation_color: [f32; 3],
+    pub(super) attenuation_distance: Option<f32>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -339,7 +363,7 @@ pub(super) struct Ior {
 
 impl Ior {
     fn glass() -> f32 {
-        1.5
+        Dielectric::GLASS
     }
 }
 

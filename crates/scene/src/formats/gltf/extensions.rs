@@ -6,14 +6,16 @@ use super::document::Document;
 use crate::{LoadError, draft::Draft, quote::list};
 
 /// Extensions that are read. A file may require them.
-const KNOWN: [&str; 9] = [
+const KNOWN: [&str; 11] = [
     "EXT_lights_image_based",
     "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_specular",
+    "KHR_materials_transmission",
     "KHR_materials_unlit",
+    "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];

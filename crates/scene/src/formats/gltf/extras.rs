@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::value::RawValue;
 
 use super::container::malformed;
-use crate::{LoadError, Material, quote::abridged};
+use crate::{Dielectric, LoadError, Material, quote::abridged};
 
 /// Of a material: the coefficients that metallic-roughness cannot represent.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
@@ -32,6 +32,31 @@ pub(crate) struct MaterialExtras {
     /// Where the surface is, and what it lets through, unless `alphaMode` says so.
     #[serde(default, alias = "cut_out", skip_serializing_if = "Option::is_none")]
     pub(crate) opacity: Option<OpacityExtras>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) dielectric: Option<DielectricExtras>,
+}
+
+/// The boundary of a transparent body.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DielectricExtras {
+    pub(crate) ior: f32,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) thin: bool,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub(crate) absorption: [f32; 3],
+}
+
+impl From<Dielectric> for DielectricExtras {
+    fn from(Dielectric { ior, thin, absorption }: Dielectric) -> DielectricExtras {
+        DielectricExtras { ior, thin, absorption: absorption.to_array() }
+    }
+}
+
+impl From<DielectricExtras> for Dielectric {
+    fn from(DielectricExtras { ior, thin, absorption }: DielectricExtras) -> Dielectric {
+        Dielectric::new(ior).with_thin(thin).with_absorption(absorption)
+    }
 }
 
 /// An opacity by something else than the alpha of the base colour.
@@ -72,6 +97,7 @@ impl MaterialExtras {
             catcher: self.catcher,
             lamp: self.lamp,
             opacity: None,
+            dielectric: self.dielectric.map(Dielectric::from),
         }
     }
 }

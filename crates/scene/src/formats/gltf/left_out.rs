@@ -26,6 +26,9 @@ pub(super) struct LeftOut {
     pub(super) occlusion_textures: usize,
     pub(super) emissive_textures: usize,
     pub(super) specular_textures: usize,
+    pub(super) transmission_textures: usize,
+    /// Materials whose roughness should blur what goes through them.
+    pub(super) frosted: usize,
     pub(super) missing_textures: usize,
     /// Buffer views with a stride of 0, which older versions of the format had.
     pub(super) strides_of_zero: usize,
@@ -55,6 +58,8 @@ impl LeftOut {
             (self.occlusion_textures, "occlusion texture", "not shown"),
             (self.emissive_textures, "emissive texture", "not shown: the surface emits no light"),
             (self.specular_textures, "specular texture", "not shown: the material's factors are used"),
+            (self.transmission_textures, "transmission texture", "not shown: the material's factors are used"),
+            (self.frosted, "material", "with rough transmission: what is behind is shown sharp"),
             (self.missing_textures, "material", "with a texture that the file does not contain: shown in plain colour"),
             (self.strides_of_zero, "buffer view", "with a byteStride of 0: read without gaps"),
         ];

@@ -12,6 +12,9 @@
 //! so that a rough metal is matt in its own colour, as it looks under point lights, and a smooth one reflects. If a texture or
 //! vertex colours tint b, the part b m s of k_s is tinted with it.
 //!
+//! With `KHR_materials_transmission`, the share of the light that is not scattered goes through, times b, as glass of the index that
+//! `KHR_materials_ior` specifies: straight on through thin walls, or bent and absorbed by the body that `KHR_materials_volume` says there is.
+//!
 //! An unlit material (`KHR_materials_unlit`) shows its base colour, tinted, whatever the lights: k_a = k_d = k_s = 0, and the colour
 //! is what the surface emits. It still casts shadows, like everything else.
 
@@ -21,14 +24,17 @@ use glam::{Affine2, Vec3};
 
 use super::{
     container::malformed,
-    document::{self, MaterialExtensions, MetallicRoughness},
+    document::{self, MaterialExtensions, MetallicRoughness, Transmission, Volume},
     extras::{self, MaterialExtras, OpacityExtras},
     left_out::LeftOut,
 };
-use crate::{LoadError, Material, Opacity, OpacityMode, TextureUse};
+use crate::{Dielectric, LoadError, Material, Opacity, OpacityMode, TextureUse};
 
 /// Reflectance of a dielectric at normal incidence, for the index of refraction 1.5.
 const DIELECTRIC: f32 = 0.04;
+
+/// Above this roughness, what is behind glass is visibly blurred.
+const CLEAR: f32 = 0.1;
 
 /// Higher Phong exponents look like mirrors, and cause problems in `f32`.
 const SHARPEST: f32 = 10_000.0;
@@ -78,15 +84,32 @@ pub(super) fn count_left_out(of: &document::Material, left_out: &mut LeftOut) {
     left_out.normal_textures += usize::from(of.normal_texture.is_some());
     left_out.occlusion_textures += usize::from(of.occlusion_texture.is_some());
     left_out.emissive_textures += usize::from(of.emissive_texture.is_some());
+    if let Some(transmission) = transmission(of) {
+        left_out.transmission_textures += usize::from(transmission.transmission_texture.is_some());
+        left_out.frosted += usize::from(pbr.is_none_or(|pbr| pbr.roughness_factor > CLEAR));
+    }
     left_out.specular_textures += usize::from(
         specular
             .is_some_and(|specular| specular.specular_texture.is_some() || specular.specular_color_texture.is_some()),
     );
 }
 
-/// What an `alphaMode` other than OPAQUE says, by the alpha of its base colour and `texture`. A cutoff or factor that is no number, or
+/// What lets light through, if anything does.
+fn transmission<'a>(of: &'a document::Material) -> Option<&'a Transmission> {
+    let transmission = of.extensions.as_deref()?.transmission.as_ref()?;
+    (transmission.transmission_factor > 0.0).then_some(transmission)
+}
+
+/// What is transmitted; else what an `alphaMode` other than OPAQUE says, by the alpha of its base colour and `texture`. A cutoff or factor that is no number, or
 /// negative, counts as 0.
 pub(super) fn opacity(of: &document::Material, texture: Option<TextureUse>) -> Option<Opacity> {
+    if let Some(transmission) = transmission(of) {
+        let defaults = MetallicRoughness::default();
+        let pbr = of.pbr_metallic_roughness.as_deref().unwrap_or(&defaults);
+        let [r, g, b, _] = pbr.base_color_factor;
+        let share = transmission.transmission_factor.min(1.0) * (1.0 - pbr.metallic_factor.clamp(0.0, 1.0));
+        return Some(Opacity::blend(1.0 - share).with_filter(Vec3::new(r, g, b).clamp(Vec3::ZERO, Vec3::ONE)));
+    }
     let mode = match of.alpha_mode.as_deref()? {
         "MASK" => OpacityMode::Mask { cutoff: of.alpha_cutoff.unwrap_or(Opacity::CUTOFF).max(0.0) },
         "BLEND" => OpacityMode::Blend { filter: Vec3::ONE },
@@ -107,6 +130,9 @@ pub(super) fn translated(of: &document::Material, tinted: bool) -> Material {
         return unlit(base, tinted);
     }
     let mut material = phong(base, pbr.metallic_factor, pbr.roughness_factor, dielectric(extensions), tinted);
+    if transmission(of).is_some() {
+        material.dielectric = Some(boundary(extensions));
+    }
     let strength = extensions.and_then(|extensions| extensions.emissive_strength.as_ref());
     // Such a texture is black nearly everywhere: better no light than light from the whole surface.
     if of.emissive_texture.is_none() {
@@ -131,6 +157,21 @@ fn phong(base: Vec3, metallic: f32, roughness: f32, dielectric: Vec3, tinted: bo
 fn unlit(base: Vec3, tinted: bool) -> Material {
     let (emission, emission_tinted) = if tinted { (Vec3::ZERO, base) } else { (base, Vec3::ZERO) };
     Material { ka: Vec3::ZERO, kd: Vec3::ZERO, ks: Vec3::ZERO, emission, emission_tinted, ..Material::default() }
+}
+
+/// The boundary of what transmits light.
+fn boundary(extensions: Option<&MaterialExtensions>) -> Dielectric {
+    let ior =
+        extensions.and_then(|extensions| extensions.ior.as_ref()).map_or(Dielectric::GLASS, |ior| ior.ior.max(1.0));
+    let volume = extensions.and_then(|extensions| extensions.volume.as_ref());
+    let glass = Dielectric::new(ior);
+    match volume.filter(|volume| volume.thickness_factor > 0.0) {
+        None => glass.with_thin(true),
+        Some(Volume { attenuation_color, attenuation_distance, .. }) => match attenuation_distance {
+            Some(distance) if *distance > 0.0 => glass.with_attenuation(*attenuation_color, *distance),
+            _ => glass,
+        },
+    }
 }
 
 /// Reflectance of the surface at normal incidence, apart from its metallic part.

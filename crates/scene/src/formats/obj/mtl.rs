@@ -13,7 +13,7 @@ use super::{
     map::{Map, unquoted},
 };
 use crate::{
-    LoadError, Material, Opacity, OpacityChannel, TextureUse,
+    Dielectric, LoadError, Material, Opacity, OpacityChannel, TextureUse,
     draft::Draft,
     error::Place,
     formats::{
@@ -38,6 +38,9 @@ pub(super) struct Entry {
     dissolve: Option<f64>,
     transparency: Option<f64>,
     filter: Option<Vec3>,
+    /// Whether the illumination model refracts.
+    refracts: bool,
+    ior: Option<f64>,
 }
 
 /// Statements of libraries that the scene's model cannot represent.
@@ -169,6 +172,8 @@ impl Entry {
             }
             // In `d -halo 0.5` the number comes last.
             b"d" => self.dissolve = words(rest).last().and_then(value),
+            b"illum" => self.refracts = matches!(words(rest).next(), Some(b"6" | b"7")),
+            b"Ni" => self.ior = words(rest).next().and_then(value),
             b"Tr" => self.transparency = words(rest).last().and_then(value),
             b"map_Kd" => self.map = Map::parse(&decoded(rest)),
             b"map_d" => self.opacity = Map::parse(&decoded(rest)),
@@ -204,14 +209,24 @@ impl Entry {
             lamp: true,
             texture,
             opacity: self.opacity(used, texture, draft),
+            dielectric: self.dielectric(),
             ..default
         }
     }
 
-    /// What `d` and `Tr` let through, times the colour of `Tf`, which some exporters write as black where they mean white; without
-    /// these where `map_d` says that the surface is.
+    /// What refracts: illumination models 6 and 7 with an index of refraction `Ni`. Exporters write `Ni 1` where there is none.
+    fn dielectric(&self) -> Option<Dielectric> {
+        let ior = self.ior.filter(|&ior| self.refracts && ior > 0.0 && ior != 1.0)?;
+        Some(Dielectric::new(ior as f32))
+    }
+
+    /// What `d` and `Tr` let through, all of it where the surface refracts and they say nothing, times the colour of `Tf`, which some
+    /// exporters write as black where they mean white; without these where `map_d` says that the surface is.
     fn opacity(&self, used: bool, color: Option<TextureUse>, draft: &mut Draft) -> Option<Opacity> {
-        let (factor, filter) = (self.dissolved(), self.filter.filter(|filter| *filter != Vec3::ZERO));
+        let (mut factor, filter) = (self.dissolved(), self.filter.filter(|filter| *filter != Vec3::ZERO));
+        if factor == 1.0 && self.dielectric().is_some() {
+            factor = 0.0;
+        }
         let map = self.mask(used, color, draft);
         if factor == 1.0 {
             return map;

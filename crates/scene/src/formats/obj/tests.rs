@@ -4,7 +4,7 @@ use std::fs;
 
 use glam::Vec3;
 
-use crate::{Opacity, OpacityMode, Scene};
+use crate::{Dielectric, Material, Opacity, OpacityMode, Scene};
 
 const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
 
@@ -240,6 +240,21 @@ fn d_and_tr_let_light_through() {
     let both = found(5).unwrap();
     assert_eq!((both.factor, both.filter(), both.texture.is_some()), (0.5, Some(Vec3::ONE), true));
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
+fn what_refracts_is_a_body() {
+    let folder = tempfile::tempdir().unwrap();
+    let materials = ["illum 7\nNi 1.5", "illum 6\nNi 1.33\nTf 0.5 1 1\nd 0.25", "illum 7\nNi 1", "illum 2\nNi 1.5"];
+    let scene = with_materials(&folder, &materials);
+    let found = |index: usize| {
+        let Material { dielectric, opacity, .. } = &scene.geometry.materials[index];
+        (*dielectric, *opacity)
+    };
+    assert_eq!(found(0), (Some(Dielectric::new(1.5)), Some(Opacity::blend(0.0))));
+    let tinted = Opacity::blend(0.25).with_filter([0.5, 1.0, 1.0]);
+    assert_eq!(found(1), (Some(Dielectric::new(1.33)), Some(tinted)));
+    assert_eq!((found(2), found(3)), ((None, None), (None, None)));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! `[[material]]` to materials and their textures.
 
-use std::collections::HashMap;
+use std::{collections::HashMap, ops::Range};
 
 use glam::{Affine2, DVec2, Vec2, Vec3};
 
@@ -9,7 +9,7 @@ use super::{
     schema::{Color, MaterialEntry, Number, Text, TextureScale, TextureWrap, WrapName},
     spanned::Spanned,
 };
-use crate::{LoadError, Material, Opacity, OpacityChannel, TextureUse, Wrap, draft::Draft};
+use crate::{Dielectric, LoadError, Material, Opacity, OpacityChannel, TextureUse, Wrap, draft::Draft};
 
 /// Adds the file's materials and returns the index of each name.
 pub(super) fn read(
@@ -30,7 +30,8 @@ pub(super) fn read(
         };
         let texture = find(draft, &entry.texture);
         let opacity = opacity(source, entry, find(draft, &entry.opacity_texture), draft)?;
-        draft.materials.push(Material { texture, opacity, ..coefficients(source, entry)? });
+        let dielectric = dielectric(source, entry)?;
+        draft.materials.push(Material { texture, opacity, dielectric, ..coefficients(source, entry)? });
     }
     Ok(names)
 }
@@ -80,10 +81,12 @@ fn opacity(
     });
     let mask = entry.opacity_cutoff.as_ref().map(|value| cutoff(source, entry, value)).transpose()?;
     let filter = entry.filter.as_ref().map(|filter| passive_filter(source, entry, filter)).transpose()?;
-    if entry.opacity.is_none() && filter.is_none() {
+    if entry.opacity.is_none() && filter.is_none() && entry.ior.is_none() {
         return Ok(by_texture.map(|opacity| opacity.with_cutoff(mask.unwrap_or(Opacity::CUTOFF))));
     }
-    let factor = entry.opacity.as_ref().map_or(Ok(1.0), |value| source.between("opacity", value, 0.0, 1.0))? as f32;
+    let unsaid = if entry.ior.is_some() && entry.opacity_texture.is_none() { 0.0 } else { 1.0 };
+    let opacity = entry.opacity.as_ref().map(|value| source.between("opacity", value, 0.0, 1.0)).transpose()?;
+    let factor = opacity.unwrap_or(unsaid) as f32;
     Ok(Some(by_texture.unwrap_or_default().with_factor(factor).with_filter(filter.unwrap_or(Vec3::ONE))))
 }
 
@@ -93,10 +96,32 @@ fn cutoff(source: &Source, entry: &MaterialEntry, value: &Number) -> Result<f32,
     if entry.opacity_texture.is_none() {
         return refuse("has no effect without an opacity texture", "add `opacity_texture = \"FILE\"`");
     }
-    if entry.opacity.is_some() || entry.filter.is_some() {
-        return refuse("has no effect where light goes through", "remove it, or `opacity` and `filter`");
+    if entry.opacity.is_some() || entry.filter.is_some() || entry.ior.is_some() {
+        return refuse("has no effect where light goes through", "remove it, or `opacity`, `filter` and `ior`");
     }
     Ok(source.between("opacity_cutoff", value, 0.0, 1.0)? as f32)
+}
+
+/// How light is reflected and bent.
+fn dielectric(source: &Source, entry: &MaterialEntry) -> Result<Option<Dielectric>, LoadError> {
+    let thin = entry.thin.as_ref().is_some_and(|thin| *thin.get_ref());
+    let Some(ior) = &entry.ior else {
+        let keys = [
+            ("thin", entry.thin.as_ref().map(Spanned::span)),
+            ("absorption", entry.absorption.as_ref().map(Spanned::span)),
+        ];
+        let Some((key, place)) = present(keys) else { return Ok(None) };
+        return Err(source.refuse(key, &place, "has no effect without an index of refraction", "add `ior = 1.5`"));
+    };
+    let glass = Dielectric::new(source.positive("ior", ior)? as f32).with_thin(thin);
+    match &entry.absorption {
+        Some(absorption) if thin => {
+            let remedy = "remove it, or `thin`";
+            Err(source.refuse("absorption", absorption, "has no effect in a wall without thickness", remedy))
+        }
+        Some(absorption) => Ok(Some(glass.with_absorption(source.color("absorption", absorption)?))),
+        None => Ok(Some(glass)),
+    }
 }
 
 /// What is left of light that goes through, if any does.
@@ -105,7 +130,7 @@ fn passive_filter(source: &Source, entry: &MaterialEntry, value: &Spanned<Color>
     if filter.max_element() > 1.0 {
         return Err(source.refuse("filter", value, "adds light that is not there", "write numbers from 0 to 1"));
     }
-    if entry.opacity.is_none() && entry.opacity_texture.is_none() {
+    if entry.opacity.is_none() && entry.opacity_texture.is_none() && entry.ior.is_none() {
         return Err(source.refuse("filter", value, "has no effect on an opaque surface", "add `opacity = 0`"));
     }
     Ok(filter)
@@ -119,6 +144,11 @@ fn without_texture(entry: &MaterialEntry) -> Option<(&'static str, Spanned<()>)>
         ("texture_rotate", entry.texture_rotate.as_ref().map(Spanned::span)),
         ("texture_offset", entry.texture_offset.as_ref().map(Spanned::span)),
     ];
+    present(keys)
+}
+
+/// The first key that is present.
+fn present<const N: usize>(keys: [(&'static str, Option<Range<usize>>); N]) -> Option<(&'static str, Spanned<()>)> {
     keys.into_iter().find_map(|(key, span)| Some((key, Spanned::new(span?, ()))))
 }
 

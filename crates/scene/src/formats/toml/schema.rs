@@ -294,6 +294,16 @@ pub(crate) struct MaterialEntry {
     /// What is left, from 0 to 1, of light that goes through. Default: 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) filter: Option<Spanned<Color>>,
+    /// Index of refraction of what the surface bounds, glass 1.5 or water 1.33: it reflects by Fresnel's equations and bends what goes
+    /// through, all of the light unless `opacity` says otherwise. The fronts of triangles are outside.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) ior: Option<Number>,
+    /// With `ior`: whether the triangles are panes, which do not bend light, in place of the surface of a body. Default: false.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) thin: Option<Spanned<bool>>,
+    /// With `ior`: the absorption coefficient of the body, per unit of length. After the distance d, exp(-absorption d) is left. Default: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) absorption: Option<Spanned<Color>>,
     /// How the image continues beyond its edge; one word, or one for each direction. Default: repeat.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture_wrap: Option<Spanned<TextureWrap>>,

@@ -6,7 +6,7 @@ use glam::{Affine2, Vec2, Vec3};
 use image::{ImageFormat, Rgba, RgbaImage};
 
 use super::*;
-use crate::{Opacity, OpacityChannel, OpacityMode, Wrap};
+use crate::{Dielectric, Material, Opacity, OpacityChannel, OpacityMode, Wrap};
 
 /// An image of one texel.
 fn png() -> Vec<u8> {
@@ -264,6 +264,32 @@ fn a_mask_without_a_texture_may_hide_everything() {
     assert!(warnings(&document).contains("1 material is not seen, for lack of opacity"));
     document["materials"][0]["alphaCutoff"] = json!(0.4);
     assert_eq!(warnings(&document), "");
+}
+
+#[test]
+fn what_is_transmitted_goes_through_walls_and_bodies() {
+    let mut document = textured();
+    let glass = |document: &Value| {
+        let Material { dielectric, opacity, .. } = open(document).geometry.materials[0].clone();
+        (dielectric, opacity)
+    };
+    document["materials"][0] = json!({
+        "pbrMetallicRoughness": {"baseColorFactor": [0.5, 1, 0.25, 1], "metallicFactor": 0.5, "roughnessFactor": 0},
+        "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5}},
+    });
+    let tinted = Opacity::blend(0.75).with_filter([0.5, 1.0, 0.25]);
+    assert_eq!(glass(&document), (Some(Dielectric::new(1.5).with_thin(true)), Some(tinted)));
+    document["materials"][0]["extensions"]["KHR_materials_ior"] = json!({"ior": 1.33});
+    document["materials"][0]["extensions"]["KHR_materials_volume"] = json!({"thicknessFactor": 0.1});
+    assert_eq!(glass(&document), (Some(Dielectric::new(1.33)), Some(tinted)));
+    document["materials"][0]["extensions"]["KHR_materials_volume"] =
+        json!({"thicknessFactor": 0.1, "attenuationDistance": 2, "attenuationColor": [1, 0.5, 1]});
+    let body = Dielectric::new(1.33).with_attenuation([1.0, 0.5, 1.0], 2.0);
+    assert_eq!((glass(&document), warnings(&document)), ((Some(body), Some(tinted)), String::new()));
+    document["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = json!(0.5);
+    assert!(warnings(&document).contains("1 material with rough transmission: what is behind is shown sharp"));
+    document["materials"][0]["extensions"]["KHR_materials_transmission"] = json!({});
+    assert_eq!(glass(&document), (None, None));
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use super::textured_folder;
-use crate::{Opacity, OpacityChannel, OpacityMode, Scene, Wrap};
+use super::{open, textured_folder};
+use crate::{Dielectric, Opacity, OpacityChannel, OpacityMode, Scene, Wrap};
 
 #[test]
 fn a_material_may_be_cut_out() {
@@ -70,6 +70,30 @@ fn a_material_may_let_light_through() {
 }
 
 #[test]
+fn a_material_may_be_glass() {
+    let scene = open(
+        r#"
+        [[material]]
+        name = "lens"
+        ior = 1.5
+        absorption = [1, 0, 0.5]
+        [[material]]
+        name = "window"
+        ior = 1.6
+        thin = true
+        opacity = 0.25
+        filter = [0.5, 1, 1]
+        "#,
+    );
+    let material = |index: usize| &scene.geometry.materials[index];
+    let lens = Dielectric::new(1.5).with_absorption([1.0, 0.0, 0.5]);
+    assert_eq!((material(0).dielectric, material(0).opacity), (Some(lens), Some(Opacity::blend(0.0))));
+    let window = Dielectric::new(1.6).with_thin(true);
+    let tinted = Opacity::blend(0.25).with_filter([0.5, 1.0, 1.0]);
+    assert_eq!((material(1).dielectric, material(1).opacity), (Some(window), Some(tinted)));
+}
+
+#[test]
 fn wrong_opacities_name_line_and_key() {
     let message = |lines: &str| {
         let (_folder, path) = textured_folder(&format!("[[material]]\nname = \"leaf\"\n{lines}"));
@@ -83,6 +107,10 @@ fn wrong_opacities_name_line_and_key() {
     assert!(solid.contains("room.toml:3") && solid.contains("no effect on an opaque surface"), "{solid}");
     let adding = message("opacity = 0\nfilter = [1, 2, 0]");
     assert!(adding.contains("room.toml:4") && adding.contains("adds light that is not there"), "{adding}");
+    let solid = message("kd = 0.5\nthin = true");
+    assert!(solid.contains("room.toml:4") && solid.contains("without an index of refraction"), "{solid}");
+    let flat = message("ior = 1.5\nthin = true\nabsorption = 1");
+    assert!(flat.contains("room.toml:5") && flat.contains("a wall without thickness"), "{flat}");
     let large = message("opacity_texture = \"oak.png\"\nopacity_cutoff = 2");
     assert!(large.contains("room.toml:4") && large.contains("is not between 0 and 1"), "{large}");
 }

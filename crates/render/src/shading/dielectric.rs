@@ -1,0 +1,157 @@
+//! Where light meets glass and the like: Fresnel's equations, Snell's law, absorption on the way through a body. Twin: `dielectric.cuh`.
+//!
+//! ```text
+//! η = n₁/n₂      cos θ₂ = √(1 − η² (1 − cos² θ₁))      F = ½ [(η c₁ − c₂)² / (η c₁ + c₂)² + (η c₂ − c₁)² / (η c₂ + c₁)²]
+//! ```
+//!
+//! (Born and Wolf, *Principles of Optics*, 1.5.) What is not reflected goes on: bent towards η D + (η c₁ − c₂) N, or straight on through a thin
+//! wall, which reflects 2 F / (1 + F) for all the reflections between its two sides. Where a body reflects everything, what is reflected is
+//! what goes on.
+
+use glam::Vec3;
+use lightmesh_layout::constants::{EXP_2, EXP_3, EXP_4, EXP_5, EXP_6, LARGEST_EXPONENT, LN_2_HIGH, LN_2_LOW, LOG2_E};
+use lightmesh_scene::Dielectric;
+
+use super::tint::Coefficients;
+use crate::accel::{Hit, Ray, Triangle};
+use crate::prepared::PreparedScene;
+use crate::surface::{SurfacePoint, shading_normal};
+
+/// Where a ray meets a dielectric.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Boundary {
+    /// n₁/n₂, from the side that the ray comes from to the other.
+    eta: f32,
+    /// Whether it is that of a wall.
+    thin: bool,
+    /// The cosine of the angle at which the ray arrives.
+    cosine: f32,
+    /// What is left of light that came through the body up to here; all of it outside.
+    left: Vec3,
+}
+
+impl Boundary {
+    /// Where `ray` meets a dielectric at `hit`.
+    pub(crate) fn met(scene: &PreparedScene, glass: &Dielectric, ray: &Ray, hit: &Hit) -> Boundary {
+        let triangle = &scene.geometry.triangles[hit.triangle as usize];
+        let point = SurfacePoint::new(ray, hit, triangle);
+        let normal = shading_normal(&scene.scene.geometry.mesh, hit, point.normal);
+        let length = ray.direction.length();
+        let inside = is_inside(glass, ray, triangle);
+        Boundary {
+            eta: if inside { glass.ior } else { 1.0 / glass.ior },
+            thin: glass.thin,
+            cosine: (-(normal.dot(ray.direction) / length)).clamp(0.0, 1.0),
+            left: if inside { (hit.t * length * glass.absorption).map(exp_of_minus) } else { Vec3::ONE },
+        }
+    }
+
+    /// The coefficients of a surface at this boundary.
+    pub(crate) fn divide(&self, of: Coefficients) -> Coefficients {
+        let all = !self.thin && cosine_beyond(self.cosine, self.eta).is_none();
+        let reflected = if all { 0.0 } else { self.reflectance() };
+        Coefficients {
+            ka: self.left * of.ka,
+            kd: self.left * of.kd,
+            ks: reflected * self.left,
+            emission: self.left * of.emission,
+            transmittance: (1.0 - reflected) * self.left * of.transmittance,
+        }
+    }
+
+    /// The share of the light that is reflected.
+    fn reflectance(&self) -> f32 {
+        let once = fresnel(self.cosine, self.eta);
+        if self.thin { 2.0 * once / (1.0 + once) } else { once }
+    }
+}
+
+/// Whether `ray` meets the surface from inside of a body.
+fn is_inside(glass: &Dielectric, ray: &Ray, triangle: &Triangle) -> bool {
+    let [a, b, c] = triangle.corners();
+    !glass.thin && (b - a).cross(c - a).dot(ray.direction) > 0.0
+}
+
+/// n₁/n₂, from the side that `ray` comes from to the other, of a body; `None` of a wall.
+pub(crate) fn eta_seen(glass: &Dielectric, ray: &Ray, triangle: &Triangle) -> Option<f32> {
+    let eta = if is_inside(glass, ray, triangle) { glass.ior } else { 1.0 / glass.ior };
+    (!glass.thin).then_some(eta)
+}
+
+/// What a dielectric leaves of light that goes straight on along `ray`, as if its two sides were parallel.
+pub(crate) fn left_straight_on(scene: &PreparedScene, glass: &Dielectric, ray: &Ray, hit: &Hit) -> Vec3 {
+    let boundary = Boundary { eta: 1.0 / glass.ior, ..Boundary::met(scene, glass, ray, hit) };
+    (1.0 - boundary.reflectance()) * boundary.left
+}
+
+/// The unit direction of light that comes along the unit vector `direction` and goes on through a boundary; `None` if all of it is reflected.
+pub(crate) fn refracted(direction: Vec3, normal: Vec3, eta: f32) -> Option<Vec3> {
+    let cosine = (-normal.dot(direction)).clamp(0.0, 1.0);
+    let beyond = cosine_beyond(cosine, eta)?;
+    Some((eta * direction + (eta * cosine - beyond) * normal).normalize())
+}
+
+/// The share of unpolarised light that a boundary reflects.
+fn fresnel(cosine: f32, eta: f32) -> f32 {
+    let Some(beyond) = cosine_beyond(cosine, eta) else { return 1.0 };
+    let across = (eta * cosine - beyond) / (eta * cosine + beyond);
+    let along = (eta * beyond - cosine) / (eta * beyond + cosine);
+    0.5 * (across * across + along * along)
+}
+
+/// The cosine of the angle beyond the boundary; `None` if all light is reflected.
+fn cosine_beyond(cosine: f32, eta: f32) -> Option<f32> {
+    let square = 1.0 - eta * eta * (1.0 - cosine * cosine);
+    (square > 0.0).then(|| square.sqrt())
+}
+
+/// exp(−x) for x ≥ 0, to two units in the last place, with the same bits everywhere: the libraries of CPUs and GPUs differ.
+fn exp_of_minus(x: f32) -> f32 {
+    if x > LARGEST_EXPONENT {
+        return 0.0;
+    }
+    let whole = (-x * LOG2_E).round_ties_even();
+    let rest = (-x - whole * LN_2_HIGH) - whole * LN_2_LOW;
+    let sum = ((((EXP_6 * rest + EXP_5) * rest + EXP_4) * rest + EXP_3) * rest + EXP_2) * rest * rest + rest + 1.0;
+    sum * f32::from_bits(((whole as i32 + 127) as u32) << 23)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_exponential_is_that_of_the_library() {
+        for step in 0..8700 {
+            let x = step as f32 / 100.0;
+            let (found, expected) = (f64::from(exp_of_minus(x)), (-f64::from(x)).exp());
+            assert!(((found - expected) / expected).abs() < 3e-7, "{x}: {found}, not {expected}");
+        }
+        assert_eq!((exp_of_minus(0.0), exp_of_minus(200.0), exp_of_minus(f32::INFINITY)), (1.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn fresnels_equations_have_their_known_values() {
+        // Glass at normal incidence, at Brewster's angle (where all reflected light is polarised across), and at a grazing angle.
+        let (glass, brewster) = (1.0 / 1.5, 1.5_f32.atan().cos());
+        assert!((fresnel(1.0, glass) - 0.04).abs() < 1e-6);
+        assert!((fresnel(brewster, glass) - 0.5 * (5.0_f32 / 13.0).powi(2)).abs() < 1e-6);
+        assert!(fresnel(1e-4, glass) > 0.999);
+        // The way back, and beyond the critical angle of 41.8 degrees.
+        assert!((fresnel(1.0, 1.5) - 0.04).abs() < 1e-6);
+        assert_eq!(fresnel(42_f32.to_radians().cos(), 1.5), 1.0);
+        assert!(fresnel(41_f32.to_radians().cos(), 1.5) < 0.5);
+    }
+
+    #[test]
+    fn snells_law_holds_both_ways() {
+        for degrees in [0.0_f32, 10.0, 35.0, 60.0, 85.0] {
+            let (sine, cosine) = degrees.to_radians().sin_cos();
+            let down = Vec3::new(sine, -cosine, 0.0);
+            let within = refracted(down, Vec3::Y, 1.0 / 1.5).unwrap();
+            assert!((1.5 * within.x - sine).abs() < 1e-6 && within.is_normalized() && within.y < 0.0, "{within}");
+            assert!(refracted(within, Vec3::Y, 1.5).unwrap().abs_diff_eq(down, 2e-6), "{degrees}");
+        }
+        assert_eq!(refracted(Vec3::new(0.8, -0.6, 0.0), Vec3::Y, 1.5), None);
+    }
+}
