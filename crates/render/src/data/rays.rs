@@ -124,13 +124,14 @@ impl RayList {
         self.weights.reserve_exact(count);
     }
 
-    /// Adds the rays of another list, which goes through samples of pixels as this does.
+    /// Adds the rays of another list, which has the same data of each.
     pub(crate) fn append(&mut self, mut other: RayList) {
         self.rays.append(&mut other.rays);
         self.pixels.append(&mut other.pixels);
         self.samples.append(&mut other.samples);
         self.shared.append(&mut other.shared);
         self.weights.append(&mut other.weights);
+        self.cones.append(&mut other.cones);
     }
 
     /// Whether the rays go through the centres of a camera's pixels.

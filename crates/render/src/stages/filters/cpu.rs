@@ -14,20 +14,19 @@ use crate::shading::tint::transmittance;
 use crate::shadow::rows::Rows;
 use crate::shadow::sight::Emitter;
 use crate::shadow::{Aim, hidden};
+use crate::stages::primary_rays::cpu::batch;
 use crate::surface::{SurfacePoint, long_segment};
-
-/// Maximum number of surface points per task.
-const BATCH: usize = 64;
 
 /// `visibility` with what `panes` leave of it.
 pub(crate) fn filters(wave: &HostWave, panes: &PreparedScene, aim: &Aim, mut visibility: Visibility) -> Visibility {
     let wave = Wave { lights: visibility.lights.clone().into(), ..*wave };
     let rows = Rows::of(aim);
     let emitters = Emitter::all(&wave, aim, &rows);
-    visibility.passed = visibility.share.iter().map(|&share| Vec3::splat(share)).collect();
-    visibility.colored_parts(BATCH).into_par_iter().enumerate().for_each(|(number, mut planes)| {
-        let first = number * BATCH;
-        let rays = first..wave.hits.len().min(first + BATCH);
+    visibility.passed = visibility.share.par_iter().map(|&share| Vec3::splat(share)).collect();
+    let size = batch(wave.hits.len());
+    visibility.colored_parts(size).into_par_iter().enumerate().for_each(|(number, mut planes)| {
+        let first = number * size;
+        let rays = first..wave.hits.len().min(first + size);
         wave.job.piece(rays.len(), || {
             let mut batch = Batch::new(&wave, panes);
             for ray in rays.filter(|&ray| wave.sees(ray)) {

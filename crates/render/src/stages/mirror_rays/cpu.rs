@@ -1,7 +1,10 @@
 //! Rays that go on, on the CPU.
 
+use std::ops::Range;
+
 use glam::Vec3;
 use lightmesh_layout::constants::{LEAST_THROUGH, MOST_THROUGHS, THROUGHS_SHIFT};
+use rayon::prelude::*;
 
 use crate::accel::Ray;
 use crate::data::rays::RayList;
@@ -9,9 +12,28 @@ use crate::data::wave::HostWave;
 use crate::footprint::{Cone, curvature};
 use crate::shading::Surface;
 
+/// Number of rays per task.
+const BATCH: usize = 1024;
+
 pub(crate) fn mirror_rays(wave: &HostWave, bounces: u32) -> RayList {
+    let count = wave.hits.len();
+    let starts: Vec<usize> = (0..count).step_by(BATCH).collect();
+    let of_batch = |start: usize| onward(wave, bounces, start..count.min(start + BATCH));
+    let parts: Vec<RayList> = starts.into_par_iter().map(of_batch).collect();
+    let mut next = beyond(wave.rays);
+    parts.into_iter().for_each(|part| next.append(part));
+    next
+}
+
+/// No rays that go on from those of `list`.
+fn beyond(list: &RayList) -> RayList {
+    RayList { window: list.window, depth: list.depth + 1, ..RayList::default() }
+}
+
+/// The rays that go on from those in `range`.
+fn onward(wave: &HostWave, bounces: u32, range: Range<usize>) -> RayList {
     let (list, has_cones) = (wave.rays, wave.rays.has_cones());
-    let mut next = RayList { window: list.window, depth: list.depth + 1, ..RayList::default() };
+    let mut next = beyond(list);
     let has_samples = !list.samples.is_empty() || wave.scene.lets_through();
     let mut add = |index: usize, ray: Ray, cone: Option<Cone>, weight: Vec3, sample: u32| {
         next.rays.push(ray);
@@ -22,7 +44,7 @@ pub(crate) fn mirror_rays(wave: &HostWave, bounces: u32) -> RayList {
             next.samples.push(sample);
         }
     };
-    for index in (0..wave.hits.len()).filter(|&ray| wave.sees(ray)) {
+    for index in range.filter(|&ray| wave.sees(ray)) {
         let surface = Surface::new(wave, index);
         let (hit, throughs) = (&wave.hits[index], list.throughs(index));
         let cone = || list.cone_of(index).after(hit.t);
