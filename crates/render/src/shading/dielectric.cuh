@@ -64,16 +64,10 @@ DEVICE float reflectance(const Boundary &met) {
     return met.thin ? 2.0f * once / (1.0f + once) : once;
 }
 
-// Sets the coefficients of a surface at this boundary.
-DEVICE void divide(const Boundary &met, Material *own) {
+// The share of the light that is mirrored, apart from what goes on where a body reflects everything.
+DEVICE float mirrored_share(const Boundary &met) {
     const bool all = !met.thin && cosine_beyond(met.cosine, met.eta) == 0.0f;
-    const float reflected = all ? 0.0f : reflectance(met);
-    own->ka = met.left * own->ka;
-    own->kd = met.left * own->kd;
-    own->ks = reflected * met.left;
-    own->emission = met.left * own->emission;
-    own->transmittance = (1.0f - reflected) * met.left * own->transmittance;
-    own->eta = met.thin ? 0.0f : met.eta;
+    return all ? 0.0f : reflectance(met);
 }
 
 // What a dielectric leaves of light that goes straight on, as if its two sides were parallel.

@@ -12,7 +12,6 @@ use glam::Vec3;
 use lightmesh_layout::constants::{EXP_2, EXP_3, EXP_4, EXP_5, EXP_6, LARGEST_EXPONENT, LN_2_HIGH, LN_2_LOW, LOG2_E};
 use lightmesh_scene::Dielectric;
 
-use super::tint::Coefficients;
 use crate::accel::{Hit, Ray, Triangle};
 use crate::prepared::PreparedScene;
 use crate::surface::{SurfacePoint, shading_normal};
@@ -27,7 +26,7 @@ pub(crate) struct Boundary {
     /// The cosine of the angle at which the ray arrives.
     cosine: f32,
     /// What is left of light that came through the body up to here; all of it outside.
-    left: Vec3,
+    pub(crate) left: Vec3,
 }
 
 impl Boundary {
@@ -46,17 +45,10 @@ impl Boundary {
         }
     }
 
-    /// The coefficients of a surface at this boundary.
-    pub(crate) fn divide(&self, of: Coefficients) -> Coefficients {
+    /// The share of the light that is mirrored, apart from what goes on where a body reflects everything.
+    pub(crate) fn mirrored(&self) -> f32 {
         let all = !self.thin && cosine_beyond(self.cosine, self.eta).is_none();
-        let reflected = if all { 0.0 } else { self.reflectance() };
-        Coefficients {
-            ka: self.left * of.ka,
-            kd: self.left * of.kd,
-            ks: reflected * self.left,
-            emission: self.left * of.emission,
-            transmittance: (1.0 - reflected) * self.left * of.transmittance,
-        }
+        if all { 0.0 } else { self.reflectance() }
     }
 
     /// The share of the light that is reflected.

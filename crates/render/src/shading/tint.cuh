@@ -79,13 +79,24 @@ DEVICE void set_tint(const Material *material, const Vec3 &tint, float opacity, 
     own->number = material->number;
 }
 
+// Changes the coefficients where a dielectric begins or ends.
+DEVICE void set_boundary(const Boundary &met, Material *own) {
+    const float mirrored = mirrored_share(met);
+    own->ka = met.left * own->ka;
+    own->kd = met.left * own->kd;
+    own->ks = mirrored * met.left;
+    own->emission = met.left * own->emission;
+    own->transmittance = (1.0f - mirrored) * met.left * own->transmittance;
+    own->eta = met.thin ? 0.0f : met.eta;
+}
+
 // Sets `own` to the material with its coefficients at `hit`.
 COLD void tint_material(TintSources sources, const Material *material, Sighting from, Hit hit, Material *own) {
     set_tint(material, tint_at(sources, *material, from, hit), opacity_at(sources, *material, hit), own);
     if (material->ior != 0.0f) {
         const Ray ray = {from.origin, from.direction, INFINITE};
         const Corners corners = load_corners(sources.triangles + hit.triangle);
-        divide(boundary_met(sources.normals, sources.indices, corners, *material, ray, hit), own);
+        set_boundary(boundary_met(sources.normals, sources.indices, corners, *material, ray, hit), own);
     }
 }
 

@@ -35,7 +35,7 @@ impl Coefficients {
             true => {
                 let own = Coefficients::tinted(material, tint(scene, material, ray, cone, hit), opacity(scene, hit));
                 match material.boundary() {
-                    Some(glass) => Boundary::met(scene, glass, ray, hit).divide(own),
+                    Some(glass) => own.at_boundary(&Boundary::met(scene, glass, ray, hit)),
                     None => own,
                 }
             }
@@ -80,6 +80,18 @@ impl Coefficients {
             ks: opacity * (material.ks + material.ks_tinted * tint),
             emission: opacity * (material.emission + material.emission_tinted * tint),
             transmittance: (1.0 - opacity) * filter,
+        }
+    }
+
+    /// The same where a dielectric begins or ends.
+    fn at_boundary(self, boundary: &Boundary) -> Coefficients {
+        let (mirrored, left) = (boundary.mirrored(), boundary.left);
+        Coefficients {
+            ka: left * self.ka,
+            kd: left * self.kd,
+            ks: mirrored * left,
+            emission: left * self.emission,
+            transmittance: (1.0 - mirrored) * left * self.transmittance,
         }
     }
 }
