@@ -90,6 +90,8 @@ records! {
         shadows: Shadows,
         /// What is hit, by index in the mesh: given points have other triangles in a scene.
         triangles: In<Triangle>,
+        /// Normals of the mesh's vertices; null without any.
+        normals: In<Vec3>,
         /// What is left of each light by light, then ray; what is lost until the last set.
         passed: Out<Vec3>,
         /// 1: one ray to the centre of each light.

@@ -15,6 +15,7 @@ use crate::material_ids::MaterialIds;
 use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
 use crate::stage::Stage;
+use crate::sync::locked;
 use crate::textures::MipLevels;
 
 /// Bytes that a triangle takes at most while a BVH is built, with what is kept of it.
@@ -91,9 +92,6 @@ impl PreparedGeometry {
             other => accelerator(&triangles, &coverage, other, budget)?,
         };
         let mip_levels = Arc::new(mip_levels(geometry, budget)?);
-        let unreported = Mutex::new(start.elapsed().as_secs_f64());
-        observer.advance(mesh.triangles.len() as u64);
-        observer.end(Stage::Build);
         // Triangles that cannot be hit do not count.
         let usable = triangles.iter().filter(|triangle| triangle.is_usable());
         let bounds = Bounds::around(usable.flat_map(Triangle::corners));
@@ -108,7 +106,7 @@ impl PreparedGeometry {
             mip_levels,
             see_through: None,
             acceleration: acceleration.clone(),
-            unreported,
+            unreported: Mutex::new(0.0),
             center,
             far,
         };
@@ -123,6 +121,9 @@ impl PreparedGeometry {
                 solid: Arc::new(prepared.solid()),
             });
         }
+        *locked(&prepared.unreported) = start.elapsed().as_secs_f64();
+        observer.advance(mesh.triangles.len() as u64);
+        observer.end(Stage::Build);
         Ok(prepared)
     }
 
@@ -196,7 +197,7 @@ impl PreparedGeometry {
 
     /// The build time in seconds at the first call; 0 at all later ones. So it counts for the first image alone.
     pub(crate) fn take_build_seconds(&self) -> f64 {
-        std::mem::take(&mut *self.unreported.lock().unwrap_or_else(PoisonError::into_inner))
+        std::mem::take(&mut *locked(&self.unreported))
     }
 }
 

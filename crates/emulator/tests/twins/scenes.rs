@@ -48,7 +48,7 @@ pub(crate) static TEXTURED: Subject = subject("textured", 0.25, true, crate::tex
 pub(crate) static SURROUNDED: Subject = subject("surrounded", 0.25, true, surrounded);
 
 /// For images with rays that surfaces let through.
-pub(crate) static GLAZED: Subject = subject("glazed", 0.25, true, || glazed(all_lights()));
+pub(crate) static GLAZED: Subject = subject("glazed", 0.25, true, || rounded(glazed(all_lights())));
 
 /// For gathered light.
 pub(crate) static LAMPS: Subject = subject("lamps", 0.5, true, lamps);
@@ -91,6 +91,13 @@ fn surrounded() -> Scene {
     let mut scene = crate::textured::textured();
     let sky = Sky { north: 20.0, ..Sky::clear(SunPosition { elevation: 30.0, azimuth: 170.0 }) };
     scene.lights.surround(sky.surroundings(Up::Y).expect("there is such a sky"));
+    scene
+}
+
+/// With the vertex normals of a ball, whatever its shape.
+fn rounded(mut scene: Scene) -> Scene {
+    let mesh = &mut scene.geometry_mut().mesh;
+    mesh.normals = mesh.positions.iter().map(|position| position.normalize_or(Vec3::Y)).collect();
     scene
 }
 

@@ -1429,17 +1429,19 @@ struct alignas(8) Filters {
     Scene scene;
     Shadows shadows;
     const Triangle *triangles;
+    const Vec3 *normals;
     Vec3 *passed;
     unsigned middle;
     unsigned spare;
 };
-static_assert(sizeof(Filters) == 2752, "size of Filters");
+static_assert(sizeof(Filters) == 2760, "size of Filters");
 static_assert(PLACE_OF(Filters, scene) == 0, "place of Filters::scene");
 static_assert(PLACE_OF(Filters, shadows) == 584, "place of Filters::shadows");
 static_assert(PLACE_OF(Filters, triangles) == 2728, "place of Filters::triangles");
-static_assert(PLACE_OF(Filters, passed) == 2736, "place of Filters::passed");
-static_assert(PLACE_OF(Filters, middle) == 2744, "place of Filters::middle");
-static_assert(PLACE_OF(Filters, spare) == 2748, "place of Filters::spare");
+static_assert(PLACE_OF(Filters, normals) == 2736, "place of Filters::normals");
+static_assert(PLACE_OF(Filters, passed) == 2744, "place of Filters::passed");
+static_assert(PLACE_OF(Filters, middle) == 2752, "place of Filters::middle");
+static_assert(PLACE_OF(Filters, spare) == 2756, "place of Filters::spare");
 
 struct alignas(8) AdaptiveShadows {
     Scene scene;

@@ -51,24 +51,26 @@ impl Visibility {
 
     /// The planes of the lights, split into parts of `size` rays: for each part a slice of every plane.
     pub(crate) fn parts(&mut self, size: usize) -> Vec<Vec<&mut [f32]>> {
-        let mut parts: Vec<Vec<&mut [f32]>> = (0..self.rays.div_ceil(size)).map(|_| Vec::new()).collect();
-        for plane in self.share.chunks_exact_mut(self.rays.max(1)) {
-            for (part, slice) in parts.iter_mut().zip(plane.chunks_mut(size)) {
-                part.push(slice);
-            }
-        }
-        parts
+        let planes = self.share.chunks_exact_mut(self.rays.max(1));
+        in_parts(self.rays.div_ceil(size), planes.map(|plane| plane.chunks_mut(size)))
     }
 
     /// The same with what is left in each part.
     pub(crate) fn colored_parts(&mut self, size: usize) -> Vec<Vec<(&mut [f32], &mut [Vec3])>> {
-        let mut parts: Vec<Vec<_>> = (0..self.rays.div_ceil(size)).map(|_| Vec::new()).collect();
-        let planes = self.share.chunks_exact_mut(self.rays.max(1)).zip(self.passed.chunks_exact_mut(self.rays.max(1)));
-        for (shares, passed) in planes {
-            for (part, slices) in parts.iter_mut().zip(shares.chunks_mut(size).zip(passed.chunks_mut(size))) {
-                part.push(slices);
-            }
-        }
-        parts
+        let rays = self.rays.max(1);
+        let planes = self.share.chunks_exact_mut(rays).zip(self.passed.chunks_exact_mut(rays));
+        let slices = planes.map(|(shares, passed)| shares.chunks_mut(size).zip(passed.chunks_mut(size)));
+        in_parts(self.rays.div_ceil(size), slices)
     }
+}
+
+/// For each part the slices of all planes, which are split into so many.
+fn in_parts<T>(parts: usize, planes: impl Iterator<Item = impl Iterator<Item = T>>) -> Vec<Vec<T>> {
+    let mut slices: Vec<Vec<T>> = (0..parts).map(|_| Vec::new()).collect();
+    for plane in planes {
+        for (part, slice) in slices.iter_mut().zip(plane) {
+            part.push(slice);
+        }
+    }
+    slices
 }

@@ -94,14 +94,31 @@ impl<R: Runtime> Upload<'_, R> {
 }
 
 impl<R: Runtime> Upload<'_, R> {
-    /// Where triangles are cut out; nothing if all are opaque.
-    pub(super) fn coverage(&mut self, coverage: &accel::Coverage) -> Result<Coverage, RenderError> {
-        let Some(table) = coverage.table() else { return Ok(Coverage { triangles: In::NULL, masks: In::NULL }) };
+    /// Where triangles are cut out, nothing if all are opaque; and the same with the masks of `halved`, which shares the rest.
+    pub(super) fn coverage(
+        &mut self,
+        coverage: &accel::Coverage,
+        halved: Option<&accel::Coverage>,
+    ) -> Result<[Coverage; 2], RenderError> {
+        let Some(table) = coverage.table() else { return Ok([Coverage { triangles: In::NULL, masks: In::NULL }; 2]) };
         let mut planes = Vec::new();
         for plane in &table.planes {
             planes.push(self.array("opacities of textures", plane)?);
         }
-        let mask = |mask: &accel::coverage::Mask| Mask {
+        let own = Coverage {
+            triangles: self.array("cut-out triangles", &table.triangles)?,
+            masks: self.masks(&table.masks, &planes)?,
+        };
+        let halved = match halved.and_then(accel::Coverage::table) {
+            Some(halved) => Coverage { masks: self.masks(&halved.masks, &planes)?, ..own },
+            None => own,
+        };
+        Ok([own, halved])
+    }
+
+    /// How materials are cut out, by their `planes` of opacities.
+    fn masks(&mut self, masks: &[accel::coverage::Mask], planes: &[In<u8>]) -> Result<In<Mask>, RenderError> {
+        let record = |mask: &accel::coverage::Mask| Mask {
             texels: planes[mask.plane],
             size: mask.size,
             wrap: mask.wrap.map(wrap),
@@ -111,9 +128,8 @@ impl<R: Runtime> Upload<'_, R> {
             limit: mask.limit,
             blends: u32::from(mask.blends),
         };
-        let masks: Vec<Mask> = table.masks.iter().map(mask).collect();
-        let triangles = self.array("cut-out triangles", &table.triangles)?;
-        Ok(Coverage { triangles, masks: self.array("masks", &masks)? })
+        let records: Vec<Mask> = masks.iter().map(record).collect();
+        self.array("masks", &records)
     }
 }
 

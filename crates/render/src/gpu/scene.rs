@@ -51,6 +51,11 @@ impl<R: Runtime> DeviceScene<R> {
         self._geometry.record.triangles
     }
 
+    /// The normals of its vertices, whatever rays see; null without any.
+    pub(crate) fn normals(&self) -> In<Vec3> {
+        self._geometry.record.normals
+    }
+
     /// The scene taken apart for shadow rays, if some of its surfaces are not opaque.
     pub(crate) fn see_through(&self) -> Option<SeeThrough<DeviceScene<R>>> {
         let (on_host, parts) = (self.host.see_through()?, self._geometry.see_through.as_ref()?);
@@ -237,7 +242,8 @@ impl<R: Runtime> Upload<'_, R> {
         record.object_starts = self.array("runs of objects", starts)?;
         record.objects = self.array("objects", objects)?;
         record.object_runs = starts.len() as u32;
-        let coverage = self.coverage(&prepared.coverage)?;
+        let solid = prepared.see_through.as_ref().map(|parts| &parts.solid.coverage);
+        let [coverage, halved] = self.coverage(&prepared.coverage, solid)?;
         record.coverage = coverage;
         let structure = self.structure(prepared, coverage, &mut record)?;
         let mut part = |prepared: &PreparedGeometry| {
@@ -245,11 +251,9 @@ impl<R: Runtime> Upload<'_, R> {
             self.structure(prepared, coverage, &mut record).map(|_| record)
         };
         let see_through = match &prepared.see_through {
-            Some(SeeThrough { blockers, panes, solid }) => Some(SeeThrough {
-                blockers: part(blockers)?,
-                panes: part(panes)?,
-                solid: covered_by(self.coverage(&solid.coverage)?, record),
-            }),
+            Some(SeeThrough { blockers, panes, .. }) => {
+                Some(SeeThrough { blockers: part(blockers)?, panes: part(panes)?, solid: covered_by(halved, record) })
+            }
             None => None,
         };
         Ok(DeviceGeometry { record, see_through, structure, buffers: self.buffers })

@@ -39,7 +39,7 @@ impl Coverage {
         }
         let mesh = &geometry.mesh;
         let masked = mesh.materials.iter().filter(|material| of_materials[**material as usize].is_some());
-        table.triangles.reserve_exact(masked.count());
+        let mut triangles = Vec::with_capacity(masked.count());
         let number = |(vertices, &material): (&[u32; 3], &u32)| {
             let Some((index, factor)) = of_materials[material as usize] else { return 0 };
             let mask = &table.masks[index];
@@ -51,13 +51,14 @@ impl Coverage {
                 return 0;
             }
             let uv = |vertex: u32| mesh.uvs.get(vertex as usize).copied().unwrap_or_default().to_array();
-            table.triangles.push(CutTriangle { uvs: vertices.map(uv), opacities, mask: index as u32 });
-            table.triangles.len() as u32
+            triangles.push(CutTriangle { uvs: vertices.map(uv), opacities, mask: index as u32 });
+            triangles.len() as u32
         };
         let numbers: Vec<u32> = mesh.triangles.iter().zip(&mesh.materials).map(number).collect();
-        if table.triangles.is_empty() {
+        if triangles.is_empty() {
             return Ok((Coverage::default(), Vec::new()));
         }
+        table.triangles = triangles.into();
         Ok((Coverage { table: Some(Arc::new(table)) }, numbers))
     }
 }
@@ -118,7 +119,7 @@ impl Masks<'_> {
 
     fn add(&mut self, key: Option<(u32, OpacityChannel)>, plane: Vec<u8>) -> usize {
         self.least.push(f32::from(plane.iter().copied().min().unwrap_or(u8::MAX)));
-        self.table.planes.push(plane);
+        self.table.planes.push(plane.into());
         self.known.insert(key, self.least.len() - 1);
         self.least.len() - 1
     }

@@ -40,10 +40,10 @@ pub struct Coverage {
 #[derive(Debug, Default)]
 pub(crate) struct Table {
     /// By number, from 1.
-    pub(crate) triangles: Vec<CutTriangle>,
+    pub(crate) triangles: Arc<[CutTriangle]>,
     pub(crate) masks: Vec<Mask>,
     /// Opacities of texels, from 0 to 255, row by row.
-    pub(crate) planes: Vec<Vec<u8>>,
+    pub(crate) planes: Vec<Arc<[u8]>>,
 }
 
 /// How a material is cut out.
@@ -68,14 +68,14 @@ impl Coverage {
         self.table.as_deref()
     }
 
-    /// The same where what is at least half opaque is a surface, and the rest is none.
+    /// The same where what is at least half opaque is a surface, and the rest is none. Both share all but the masks.
     pub(crate) fn halved(&self) -> Coverage {
         let halve = |mask: &Mask| match mask.blends {
             true => Mask { limit: 0.5 * OPAQUE, blends: false, ..mask.clone() },
             false => mask.clone(),
         };
         let table = self.table().map(|table| Table {
-            triangles: table.triangles.clone(),
+            triangles: Arc::clone(&table.triangles),
             masks: table.masks.iter().map(halve).collect(),
             planes: table.planes.clone(),
         });
@@ -85,7 +85,7 @@ impl Coverage {
     /// Bytes on the heap.
     pub(crate) fn memory(&self) -> usize {
         self.table().map_or(0, |table| {
-            size_of_val(table.triangles.as_slice()) + table.planes.iter().map(Vec::len).sum::<usize>()
+            size_of_val(&*table.triangles) + table.planes.iter().map(|plane| plane.len()).sum::<usize>()
         })
     }
 

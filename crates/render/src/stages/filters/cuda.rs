@@ -41,6 +41,7 @@ pub(crate) fn filters<R: Runtime>(
             scene: wave.scene.record,
             shadows: Shadows { first_light: light, end_light: light + 1, ..shadows },
             triangles: panes.triangles(),
+            normals: panes.normals(),
             passed: visibility.passed_planes(),
             middle: u32::from(matches!(aim, Aim::Middle)),
             spare: 0,

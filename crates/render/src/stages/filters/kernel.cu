@@ -20,12 +20,14 @@ COLD Vec3 left_by_glass(const Vec3 *normals, const Indices *indices, const Trian
 }
 
 // What is left of light that goes through a surface.
-DEVICE Vec3 transmittance_at(const Scene &scene, const Triangle *triangle, const Ray &ray, const Hit &hit) {
+DEVICE Vec3 transmittance_at(const Filters &args, const Ray &ray, const Hit &hit) {
+    const Scene &scene = args.shadows.scene;
+    const Triangle *triangle = args.triangles + hit.triangle;
     const Material &material = scene.materials[__ldg(scene.triangle_materials + hit.triangle)];
     const Vec3 through = (1.0f - opacity_at(scene.coverage, triangle, hit.u, hit.v)) * material.transmittance;
     if (material.ior == 0.0f)
         return through;
-    return left_by_glass(scene.normals, scene.indices, triangle, &material, ray, hit) * through;
+    return left_by_glass(args.normals, scene.indices, triangle, &material, ray, hit) * through;
 }
 
 // Follows a ray through all surfaces that it meets: what is left of the light.
@@ -37,9 +39,8 @@ DEVICE Vec3 pass(const Filters &args, const Structure &panes, Vec3 from, Vec3 ta
         const Hit hit = closest_hit(panes, args.shadows.tally, ray);
         if (hit.triangle == Hit::NONE)
             break;
-        const Triangle *triangle = args.triangles + hit.triangle;
-        left = left * transmittance_at(args.shadows.scene, triangle, ray, hit);
-        from = behind(surface_point(ray, hit, load_corners(triangle)));
+        left = left * transmittance_at(args, ray, hit);
+        from = behind(surface_point(ray, hit, load_corners(args.triangles + hit.triangle)));
     }
     return left;
 }
