@@ -22,7 +22,8 @@ fn the_repository_s_scenes_render_in_every_mode() {
                 Settings::default().with_aa(1).with_mode(mode).with_size([40, 30]).with_samples(4).with_bounces(1);
             let frame = renderer.render(&scene, &settings).unwrap();
             let seen = frame.stats.counts.hits as f64 / frame.stats.counts.pixels as f64;
-            assert!(seen > 0.9, "{}: {seen} of the image shows something", path.display());
+            // The rest is sky, where a scene has one.
+            assert!(seen > 0.8, "{}: {seen} of the image shows something", path.display());
             assert!(frame.image.color().iter().flatten().all(|value| value.is_finite()), "{}", path.display());
         }
     }

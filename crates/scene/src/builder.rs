@@ -196,9 +196,9 @@ impl SceneBuilder {
         if materials.is_empty() && self.triangle_count() > 0 {
             materials.push(Material::default());
         }
-        let warnings = [keep_finite(&mut materials), keep_passive(&mut materials), unseen(&materials)];
-        let warnings = warnings.into_iter().flatten().collect();
+        let changed = [keep_finite(&mut materials), keep_passive(&mut materials)];
         let (origin, mesh) = self.finish();
+        let warnings = changed.into_iter().chain([unseen(&materials, &mesh.materials)]).flatten().collect();
         Scene { warnings, ..Scene::new(name, Geometry { origin, mesh, materials, ..Geometry::default() }) }
     }
 }

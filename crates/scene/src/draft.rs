@@ -337,14 +337,16 @@ impl Draft {
         self.warnings.extend(keep_placed(&mut self.cameras, "cameras"));
         self.warnings.extend(keep_placed(&mut self.lights, "lights"));
         self.warnings.extend(keep_finite(&mut self.materials));
-        let named = [keep_passive(&mut self.materials), unseen(&self.materials)].into_iter().flatten();
-        self.warnings.extend(named.map(|warning| format!("{}: {warning}", self.path.display())));
+        let adding = keep_passive(&mut self.materials);
+        self.warnings.extend(adding.map(|warning| format!("{}: {warning}", self.path.display())));
         self.warnings.extend(self.texture_files.warning(&self.path));
         if self.builder.triangle_count() == 0 {
             self.warnings.push("the scene has no triangles".to_owned());
         }
         let name = self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let (origin, mut mesh) = self.builder.finish();
+        let nowhere = unseen(&self.materials, &mesh.materials);
+        self.warnings.extend(nowhere.map(|warning| format!("{}: {warning}", self.path.display())));
         self.warnings.extend(untextured(&mut mesh, &mut self.materials, &self.without_uvs));
         let warnings = self.warnings.into_list();
         if self.strict && !warnings.is_empty() {

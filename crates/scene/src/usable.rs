@@ -58,10 +58,11 @@ pub(crate) fn keep_finite(materials: &mut [Material]) -> Option<String> {
         .then(|| format!("{count} materials have infinite, undefined or negative coefficients, which count as 0"))
 }
 
-/// Names the materials that are nowhere opaque and filter nothing.
-pub(crate) fn unseen(materials: &[Material]) -> Option<String> {
-    let nowhere = materials.iter().filter(|material| material.is_nowhere());
-    let names: Vec<String> = nowhere.map(|material| format!("`{}`", material.name)).collect();
+/// Names the materials of triangles that are nowhere opaque and filter nothing.
+pub(crate) fn unseen(materials: &[Material], of_triangles: &[u32]) -> Option<String> {
+    let nowhere = (0..).zip(materials).filter(|(_, material)| material.is_nowhere());
+    let used = nowhere.filter(|(index, _)| of_triangles.contains(index));
+    let names: Vec<String> = used.map(|(_, material)| format!("`{}`", material.name)).collect();
     let of = if names.len() == 1 { "material is" } else { "materials are" };
     let listed = list(names.iter().map(String::as_str));
     (!names.is_empty()).then(|| format!("{} {of} not seen, for lack of opacity: {listed}", names.len()))
@@ -130,11 +131,15 @@ mod tests {
         let of = |opacity: Opacity, name: &str| Material { opacity: Some(opacity), ..Material::default() }.named(name);
         let foil = of(Opacity::blend(0.0).with_filter([1.0, 0.0, 0.0]), "foil");
         let mut materials = vec![foil, of(Opacity::blend(0.5), "pane"), Material::default()];
-        assert_eq!(unseen(&materials), None);
+        assert_eq!(unseen(&materials, &[0, 1, 2, 3]), None);
         materials.push(of(Opacity::blend(0.0), "glass").with_dielectric(Dielectric::new(1.5)));
-        assert_eq!(unseen(&materials), None);
+        assert_eq!(unseen(&materials, &[0, 1, 2, 3]), None);
         materials.push(of(Opacity::blend(0.0), "air"));
-        assert_eq!(unseen(&materials).as_deref(), Some("1 material is not seen, for lack of opacity: `air`"));
+        assert_eq!(unseen(&materials, &[0, 1, 2, 3]), None, "nothing is made of it");
+        assert_eq!(
+            unseen(&materials, &[4, 4, 0]).as_deref(),
+            Some("1 material is not seen, for lack of opacity: `air`")
+        );
     }
 
     #[test]
