@@ -117,6 +117,10 @@ records! {
         thin: u32,
         /// At a surface point that bends light: n₁/n₂, from the side of the viewer to the other; else 0.
         eta: f32,
+        /// Index of the texture that emitted light is multiplied with, or [`Material::NO_TEXTURE`].
+        emission_texture: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
     }
 
     /// A level of an environment.

@@ -45,7 +45,8 @@ pub(crate) fn lamps(geometry: &mut Geometry) -> Vec<Light> {
     for number in 0..geometry.materials.len() {
         let material = &mut geometry.materials[number];
         // What an image emits is not a lamp's.
-        material.lamp &= material.emission != Vec3::ZERO && material.emission_tinted == Vec3::ZERO;
+        let plain = material.emission_tinted == Vec3::ZERO && material.emission_texture.is_none();
+        material.lamp &= material.emission != Vec3::ZERO && plain;
         if !material.lamp {
             continue;
         }

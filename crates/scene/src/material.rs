@@ -7,7 +7,8 @@ use crate::{Dielectric, Opacity, TextureUse};
 /// How a surface reflects light: ambient, diffuse and Phong terms (Whitted 1980, Phong 1975).
 ///
 /// If a texture or vertex colours give a surface point a tint t — their product, white if there are neither — its coefficients
-/// are `ka` t, `kd` t and `ks` + `ks_tinted` t, and it emits `emission` + `emission_tinted` t.
+/// are `ka` t, `kd` t and `ks` + `ks_tinted` t, and it emits `emission` e + `emission_tinted` t, where e is the colour of the
+/// [emission texture](Material::emission_texture), white without one.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Material {
@@ -30,6 +31,8 @@ pub struct Material {
     pub emission_tinted: Vec3,
     /// An image that tints the surface.
     pub texture: Option<TextureUse>,
+    /// An image that `emission` is multiplied with. Lights never stand for such a surface: it lights others where light is gathered.
+    pub emission_texture: Option<TextureUse>,
     /// Whether only the shadows on it are seen: it shows the background, darker where it gets less light than it would alone, or is
     /// transparent there. Then nothing but `ka` and `kd` counts.
     pub catcher: bool,
@@ -54,6 +57,7 @@ impl Default for Material {
             emission: Vec3::ZERO,
             emission_tinted: Vec3::ZERO,
             texture: None,
+            emission_texture: None,
             catcher: false,
             lamp: false,
             opacity: None,
@@ -157,6 +161,11 @@ impl Material {
     /// An image that tints the surface.
     pub fn with_texture(self, texture: TextureUse) -> Material {
         Material { texture: Some(texture), ..self }
+    }
+
+    /// An image that the emission is multiplied with.
+    pub fn with_emission_texture(self, texture: TextureUse) -> Material {
+        Material { emission_texture: Some(texture), ..self }
     }
 
     /// Where the surface is, and what it lets through.

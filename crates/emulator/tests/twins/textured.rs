@@ -46,6 +46,12 @@ pub(crate) fn textured() -> Scene {
         material(uses(0, [Wrap::Clamp, Wrap::Mirror]), 0.0, 0.75),
         material(Some(TextureUse::new(7)), 0.0, 0.5),
     ];
+    // Emission with images: the other one, the same one, and alone.
+    for (number, image) in [(0, 1), (1, 1), (2, 0)] {
+        let material = &mut scene.geometry_mut().materials[number];
+        material.emission = Vec3::new(0.5, 0.25, 1.0);
+        material.emission_texture = uses(image, [Wrap::Mirror, Wrap::Repeat]);
+    }
     let mesh = &mut scene.geometry_mut().mesh;
     mesh.materials = (0..mesh.triangles.len() as u32).map(|index| index % 5).collect();
     mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(1.3 * p.x + 0.7 * p.y, p.z - 0.2 * p.y)).collect();

@@ -739,8 +739,10 @@ struct alignas(4) Material {
     float ior;
     unsigned thin;
     float eta;
+    unsigned emission_texture;
+    unsigned spare;
 };
-static_assert(sizeof(Material) == 136, "size of Material");
+static_assert(sizeof(Material) == 144, "size of Material");
 static_assert(PLACE_OF(Material, ka) == 0, "place of Material::ka");
 static_assert(PLACE_OF(Material, shininess) == 12, "place of Material::shininess");
 static_assert(PLACE_OF(Material, kd) == 16, "place of Material::kd");
@@ -759,6 +761,8 @@ static_assert(PLACE_OF(Material, absorption) == 112, "place of Material::absorpt
 static_assert(PLACE_OF(Material, ior) == 124, "place of Material::ior");
 static_assert(PLACE_OF(Material, thin) == 128, "place of Material::thin");
 static_assert(PLACE_OF(Material, eta) == 132, "place of Material::eta");
+static_assert(PLACE_OF(Material, emission_texture) == 136, "place of Material::emission_texture");
+static_assert(PLACE_OF(Material, spare) == 140, "place of Material::spare");
 
 struct alignas(8) EnvironmentLevel {
     const Vec3 *texels;

@@ -7,14 +7,14 @@ use lightmesh_image::Transfer;
 use lightmesh_layout::In;
 use lightmesh_layout::geometry::{Coverage, Mask, Vec3};
 use lightmesh_layout::scene::{Material, Scene as Record, Texture, TextureLevel, Uv};
-use lightmesh_scene::{Geometry, Wrap};
+use lightmesh_scene::{Geometry, TextureUse, Wrap};
 
 use super::scene::{Upload, vec3};
 use crate::accel;
 use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::shading::tint::{Coefficients, is_tinted};
-use crate::textures::{Level, MipLevels, texture_of};
+use crate::textures::{Level, MipLevels, emission_texture_of, texture_of};
 
 impl<R: Runtime> Upload<'_, R> {
     /// What determines the colours of surfaces. Texture coordinates and the sRGB table are uploaded only if a texture needs
@@ -40,19 +40,20 @@ impl<R: Runtime> Upload<'_, R> {
             .iter()
             .zip(numbers)
             .map(|(material, &number)| {
-                let texture = texture_of(geometry, material).and_then(|_| used.next());
-                Material { number, ..material_record(geometry, material, texture.unwrap_or(Material::NO_TEXTURE)) }
+                let images = images_of(geometry, material).map(|found| found.and_then(|_| used.next()));
+                let [texture, emission_texture] = images.map(|image| image.unwrap_or(Material::NO_TEXTURE));
+                Material { number, texture, emission_texture, ..material_record(geometry, material) }
             })
             .collect();
         record.materials = self.array("materials", &materials)?;
         Ok(())
     }
 
-    /// The textures of the materials that have one, in their order. Each texture is uploaded once.
+    /// The images of the materials, in their order. Each texture is uploaded once.
     fn textures(&mut self, geometry: &Geometry, levels: &[MipLevels]) -> Result<Vec<Texture>, RenderError> {
         let mut uploaded: HashMap<u32, (In<u32>, In<TextureLevel>)> = HashMap::new();
         let mut records = Vec::new();
-        for (uses, texture) in geometry.materials.iter().filter_map(|material| texture_of(geometry, material)) {
+        for (uses, texture) in geometry.materials.iter().flat_map(|material| images_of(geometry, material)).flatten() {
             let lower = &levels[uses.texture as usize].levels;
             let (texels, levels) = match uploaded.get(&uses.texture) {
                 Some(&known) => known,
@@ -133,6 +134,14 @@ impl<R: Runtime> Upload<'_, R> {
     }
 }
 
+/// The images that colour a material and what it emits.
+fn images_of<'s>(
+    geometry: &'s Geometry,
+    material: &lightmesh_scene::Material,
+) -> [Option<(TextureUse, &'s lightmesh_scene::Texture)>; 2] {
+    [texture_of(geometry, material), emission_texture_of(geometry, material)]
+}
+
 fn wrap(wrap: Wrap) -> u32 {
     match wrap {
         Wrap::Repeat => Texture::REPEAT,
@@ -142,10 +151,10 @@ fn wrap(wrap: Wrap) -> u32 {
 }
 
 /// A material without tint is uploaded as the sum that applies everywhere, so that kernels need no further lookups.
-fn material_record(geometry: &Geometry, material: &lightmesh_scene::Material, texture: u32) -> Material {
+fn material_record(geometry: &Geometry, material: &lightmesh_scene::Material) -> Material {
     let (catcher, lamp) = (u32::from(material.catcher), u32::from(material.lamp));
     let shininess = material.shininess;
-    let mut record = Material { shininess, texture, catcher, lamp, ..bytemuck::Zeroable::zeroed() };
+    let mut record = Material { shininess, catcher, lamp, ..bytemuck::Zeroable::zeroed() };
     if material.lets_through() {
         record.blends = 1;
         record.transmittance = vec3(material.opacity.and_then(|opacity| opacity.filter()).unwrap_or_default());

@@ -41,22 +41,43 @@ DEVICE Uv in_image(const Texture &texture, Uv at) {
 // The interpolated value of the vertices of the triangle at `hit`.
 DEVICE float interpolated(const Hit &hit, float a, float b, float c) { return (1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c; }
 
+// The colour of texture number `number` at `hit`.
+DEVICE Vec3 texel_at(const TintSources &sources, unsigned number, const Sighting &from, const Hit &hit) {
+    const unsigned *vertices = sources.indices[hit.triangle].vertices;
+    const Texture &texture = sources.textures[number];
+    const Uv a = sources.uvs[vertices[0]], b = sources.uvs[vertices[1]], c = sources.uvs[vertices[2]];
+    const Uv uv = in_image(texture, Uv{interpolated(hit, a.u, b.u, c.u), interpolated(hit, a.v, b.v, c.v)});
+    const Axes axes = axes_at(sources.triangles, from, hit, a, b, c);
+    return filtered(sources.srgb, texture, Uv{uv.u + texture.translation[0], uv.v + texture.translation[1]},
+                    Axes{in_image(texture, axes.a), in_image(texture, axes.b)});
+}
+
+// The colour of what is emitted at `hit`: few materials have an image of it, which is not worth registers everywhere.
+COLD Vec3 emission_texel_at(TintSources sources, unsigned number, Sighting from, Hit hit) { return texel_at(sources, number, from, hit); }
+
+// The colours of images at a surface point.
+struct Colors {
+    // The product of texture and vertex colour, and the texture of what is emitted.
+    Vec3 tint, glow;
+};
+
 // The product of texture and vertex colour at `hit`.
 DEVICE Vec3 tint_at(const TintSources &sources, const Material &material, const Sighting &from, const Hit &hit) {
     const unsigned *vertices = sources.indices[hit.triangle].vertices;
     Vec3 tint = splat(1.0f);
-    if (material.texture != Material::NO_TEXTURE) {
-        const Texture &texture = sources.textures[material.texture];
-        const Uv a = sources.uvs[vertices[0]], b = sources.uvs[vertices[1]], c = sources.uvs[vertices[2]];
-        const Uv uv = in_image(texture, Uv{interpolated(hit, a.u, b.u, c.u), interpolated(hit, a.v, b.v, c.v)});
-        const Axes axes = axes_at(sources.triangles, from, hit, a, b, c);
-        tint = filtered(sources.srgb, texture, Uv{uv.u + texture.translation[0], uv.v + texture.translation[1]},
-                        Axes{in_image(texture, axes.a), in_image(texture, axes.b)});
-    }
+    if (material.texture != Material::NO_TEXTURE)
+        tint = texel_at(sources, material.texture, from, hit);
     if (sources.colors == nullptr)
         return tint;
     const Vec3 a = sources.colors[vertices[0]], b = sources.colors[vertices[1]], c = sources.colors[vertices[2]];
     return tint * ((1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c);
+}
+
+DEVICE Colors colors_at(const TintSources &sources, const Material &material, const Sighting &from, const Hit &hit) {
+    Colors colors = {tint_at(sources, material, from, hit), splat(1.0f)};
+    if (material.emission_texture != Material::NO_TEXTURE)
+        colors.glow = emission_texel_at(sources, material.emission_texture, from, hit);
+    return colors;
 }
 
 // How opaque a surface of this material is at `hit`.
@@ -64,12 +85,13 @@ DEVICE float opacity_at(const TintSources &sources, const Material &material, co
     return material.blends ? opacity_at(sources.coverage, sources.triangles + hit.triangle, hit.u, hit.v) : 1.0f;
 }
 
-// Sets `own` to the material with the coefficients that a tint and an opacity give it.
-DEVICE void set_tint(const Material *material, const Vec3 &tint, float opacity, Material *own) {
+// Sets `own` to the material with the coefficients that colours and an opacity give it.
+DEVICE void set_tint(const Material *material, const Colors &colors, float opacity, Material *own) {
+    const Vec3 &tint = colors.tint;
     own->ka = opacity * (material->ka * tint);
     own->kd = opacity * (material->kd * tint);
     own->ks = opacity * (material->ks + material->ks_tinted * tint);
-    own->emission = opacity * (material->emission + material->emission_tinted * tint);
+    own->emission = opacity * (material->emission * colors.glow + material->emission_tinted * tint);
     own->transmittance = (1.0f - opacity) * material->transmittance;
     own->blends = material->blends;
     own->eta = 0.0f;
@@ -92,7 +114,7 @@ DEVICE void set_boundary(const Boundary &met, Material *own) {
 
 // Sets `own` to the material with its coefficients at `hit`.
 COLD void tint_material(TintSources sources, const Material *material, Sighting from, Hit hit, Material *own) {
-    set_tint(material, tint_at(sources, *material, from, hit), opacity_at(sources, *material, hit), own);
+    set_tint(material, colors_at(sources, *material, from, hit), opacity_at(sources, *material, hit), own);
     if (material->ior != 0.0f) {
         const Ray ray = {from.origin, from.direction, INFINITE};
         const Corners corners = load_corners(sources.triangles + hit.triangle);
@@ -109,18 +131,19 @@ struct SharedHits {
 
 // Sets `own` to the material with the mean of its coefficients at these hits; leaves it without any.
 COLD void tint_by_all(TintSources sources, const Material *material, Sighting from, SharedHits all, Material *own) {
-    Vec3 sum = splat(0.0f);
+    Colors sum = {splat(0.0f), splat(0.0f)};
     float opacities = 0.0f, count = 0.0f;
     for (unsigned sample = 0; sample < all.count; ++sample) {
         const Hit hit = load_hit(all.hits + sample * all.stride, 0);
         if ((all.shared >> sample & 1) == 0 || hit.triangle == Hit::NONE)
             continue;
-        sum = sum + tint_at(sources, *material, from, hit);
+        const Colors colors = colors_at(sources, *material, from, hit);
+        sum = Colors{sum.tint + colors.tint, sum.glow + colors.glow};
         opacities += opacity_at(sources, *material, hit);
         count += 1.0f;
     }
     if (count > 0.0f)
-        set_tint(material, sum / count, opacities / count, own);
+        set_tint(material, Colors{sum.tint / count, sum.glow / count}, opacities / count, own);
 }
 
 // The inputs of the tints of a scene.

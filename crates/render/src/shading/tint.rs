@@ -2,19 +2,20 @@
 //!
 //! ```text
 //! t = texture(A · uv) · colour      α k_a t      α k_d t      α (k_s + k_s' t)      goes through: (1 − α) filter
+//! e = emission texture(A' · uv)     emitted: α (L e + L' t)
 //! ```
 //!
 //! Texture coordinates and colours are interpolated barycentrically. Of the texture, the mean over the [footprint](crate::footprint) of a
 //! sample counts; without one, at a single sample of a pixel, it is the colour at a point, and minified textures flicker.
 
 use glam::{Vec2, Vec3};
-use lightmesh_scene::{Geometry, Material, Mesh};
+use lightmesh_scene::{Geometry, Material, Mesh, Texture, TextureUse};
 
 use super::dielectric::{Boundary, left_straight_on};
 use crate::accel::{Hit, Ray};
 use crate::footprint::{self, Cone};
 use crate::prepared::PreparedScene;
-use crate::textures::{filtered, texture_of};
+use crate::textures::{emission_texture_of, filtered, texture_of};
 
 /// The coefficients of formula (1) at a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +34,7 @@ impl Coefficients {
     pub(crate) fn at(scene: &PreparedScene, material: &Material, ray: &Ray, cone: Cone, hit: &Hit) -> Coefficients {
         match is_tinted(&scene.scene.geometry, material) {
             true => {
-                let own = Coefficients::tinted(material, tint(scene, material, ray, cone, hit), opacity(scene, hit));
+                let own = Coefficients::tinted(material, colors(scene, material, ray, cone, hit), opacity(scene, hit));
                 match material.boundary() {
                     Some(glass) => own.at_boundary(&Boundary::met(scene, glass, ray, hit)),
                     None => own,
@@ -51,13 +52,15 @@ impl Coefficients {
         cone: Cone,
         hits: impl Iterator<Item = &'h Hit>,
     ) -> Option<Coefficients> {
-        let (mut sum, mut opacities, mut count) = (Vec3::ZERO, 0.0, 0.0);
+        let (mut sum, mut opacities, mut count) = (Colors { tint: Vec3::ZERO, glow: Vec3::ZERO }, 0.0, 0.0);
         for hit in hits {
-            sum += tint(scene, material, ray, cone, hit);
+            let own = colors(scene, material, ray, cone, hit);
+            sum = Colors { tint: sum.tint + own.tint, glow: sum.glow + own.glow };
             opacities += opacity(scene, hit);
             count += 1.0;
         }
-        (count > 0.0).then(|| Coefficients::tinted(material, sum / count, opacities / count))
+        let mean = || Colors { tint: sum.tint / count, glow: sum.glow / count };
+        (count > 0.0).then(|| Coefficients::tinted(material, mean(), opacities / count))
     }
 
     /// Those of a material that is the same everywhere.
@@ -72,13 +75,13 @@ impl Coefficients {
         }
     }
 
-    fn tinted(material: &Material, tint: Vec3, opacity: f32) -> Coefficients {
+    fn tinted(material: &Material, Colors { tint, glow }: Colors, opacity: f32) -> Coefficients {
         let filter = material.opacity.and_then(|opacity| opacity.filter()).unwrap_or(Vec3::ZERO);
         Coefficients {
             ka: opacity * (material.ka * tint),
             kd: opacity * (material.kd * tint),
             ks: opacity * (material.ks + material.ks_tinted * tint),
-            emission: opacity * (material.emission + material.emission_tinted * tint),
+            emission: opacity * (material.emission * glow + material.emission_tinted * tint),
             transmittance: (1.0 - opacity) * filter,
         }
     }
@@ -99,7 +102,7 @@ impl Coefficients {
 /// Whether surface points of `material` may differ in colour or opacity.
 #[inline(always)]
 pub(crate) fn is_tinted(geometry: &Geometry, material: &Material) -> bool {
-    let has_texture = || material.texture.is_some() && texture_of(geometry, material).is_some();
+    let has_texture = || texture_of(geometry, material).or(emission_texture_of(geometry, material)).is_some();
     !material.catcher && (!geometry.mesh.colors.is_empty() || has_texture() || material.lets_through())
 }
 
@@ -120,17 +123,31 @@ fn opacity(scene: &PreparedScene, hit: &Hit) -> f32 {
     scene.geometry.coverage.opacity(&scene.geometry.triangles[hit.triangle as usize], hit)
 }
 
-/// The product of texture and vertex colour at `hit`.
+/// The colours of images at a surface point.
+#[derive(Clone, Copy)]
+struct Colors {
+    /// The product of texture and vertex colour.
+    tint: Vec3,
+    /// The texture of what is emitted.
+    glow: Vec3,
+}
+
 #[inline(never)]
-fn tint(scene: &PreparedScene, material: &Material, ray: &Ray, cone: Cone, hit: &Hit) -> Vec3 {
+fn colors(scene: &PreparedScene, material: &Material, ray: &Ray, cone: Cone, hit: &Hit) -> Colors {
     let geometry = &scene.scene.geometry;
-    let texel = texture_of(geometry, material).map_or(Vec3::ONE, |(uses, texture)| {
-        let uvs = geometry.mesh.triangles[hit.triangle as usize].map(|vertex| geometry.mesh.uvs[vertex as usize]);
-        let place = uses.transform.transform_point2(interpolated(hit, uvs));
-        let axes = axes_of(scene, ray, cone, hit, uvs).map(|axis| uses.transform.matrix2 * axis);
-        filtered(texture, &scene.geometry.mip_levels[uses.texture as usize], uses.wrap, place, axes)
-    });
-    if geometry.mesh.colors.is_empty() { texel } else { texel * color_at(&geometry.mesh, hit) }
+    let texel = |found: Option<(TextureUse, &Texture)>| {
+        found.map_or(Vec3::ONE, |(uses, texture)| {
+            let uvs = geometry.mesh.triangles[hit.triangle as usize].map(|vertex| geometry.mesh.uvs[vertex as usize]);
+            let place = uses.transform.transform_point2(interpolated(hit, uvs));
+            let axes = axes_of(scene, ray, cone, hit, uvs).map(|axis| uses.transform.matrix2 * axis);
+            filtered(texture, &scene.geometry.mip_levels[uses.texture as usize], uses.wrap, place, axes)
+        })
+    };
+    let tint = texel(texture_of(geometry, material));
+    Colors {
+        tint: if geometry.mesh.colors.is_empty() { tint } else { tint * color_at(&geometry.mesh, hit) },
+        glow: texel(emission_texture_of(geometry, material)),
+    }
 }
 
 /// The axes of the footprint at `hit`, in texture coordinates.
@@ -215,6 +232,20 @@ mod tests {
         assert_eq!(coefficients, expected);
         scene.geometry_mut().mesh.colors.clear();
         assert_eq!(seen(&scene, &material, Cone::default(), &hit).kd, kd * Vec3::new(0.0, 1.0, 1.0));
+    }
+
+    #[test]
+    fn what_is_emitted_has_an_image_of_its_own() {
+        let (mut scene, hit) = scene(true);
+        scene.geometry_mut().textures.push(texture([1, 1], &[[0, 0, 255]]));
+        let material = Material::matt(Vec3::ONE).with_emission([2.0, 3.0, 4.0]).with_emission_tinted([1.0; 3]);
+        let material = material.with_texture(TextureUse::new(0)).with_emission_texture(TextureUse::new(1));
+        let found = seen(&scene, &material, Cone::default(), &hit);
+        assert_eq!(found.emission, Vec3::new(0.0, 0.0, 4.0) + found.kd, "the tint belongs to the other part");
+        scene.geometry_mut().mesh.colors.clear();
+        let mut alone = material;
+        alone.texture = None;
+        assert_eq!(seen(&scene, &alone, Cone::default(), &hit).emission, Vec3::new(1.0, 1.0, 5.0));
     }
 
     #[test]

@@ -23,6 +23,14 @@ pub(crate) fn texture_of<'s>(geometry: &'s Geometry, material: &Material) -> Opt
     material.texture.and_then(|uses| usable(geometry, uses))
 }
 
+/// The texture of what `material` emits, if it has one that can be looked up.
+pub(crate) fn emission_texture_of<'s>(
+    geometry: &'s Geometry,
+    material: &Material,
+) -> Option<(TextureUse, &'s Texture)> {
+    material.emission_texture.and_then(|uses| usable(geometry, uses))
+}
+
 /// A texture that is used like this, if it can be looked up.
 pub(crate) fn usable(geometry: &Geometry, uses: TextureUse) -> Option<(TextureUse, &Texture)> {
     if geometry.mesh.uvs.is_empty() {

@@ -297,6 +297,7 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
     } else {
         (2.0 / (material.shininess + 2.0)).powf(0.25)
     };
+    let [texture_transform, emission_transform] = pictures.exact_transforms(index);
     let extras = MaterialExtras {
         ka: material.ka.to_array(),
         kd: material.kd.to_array(),
@@ -307,7 +308,8 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
         emission_tinted: material.emission_tinted.to_array(),
         catcher: material.catcher,
         lamp: material.lamp,
-        texture_transform: pictures.exact_transform(index),
+        texture_transform,
+        emission_transform,
         opacity: material
             .opacity
             .filter(|opacity| !is_standard(opacity, material))
@@ -324,6 +326,9 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
     });
     if let Some(texture) = pictures.of_material(index) {
         entry["pbrMetallicRoughness"]["baseColorTexture"] = texture;
+    }
+    if let Some(texture) = pictures.emission_of_material(index) {
+        entry["emissiveTexture"] = texture;
     }
     if let Some(opacity) = material.opacity.filter(|opacity| is_standard(opacity, material)) {
         match opacity.mode {

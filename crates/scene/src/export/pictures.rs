@@ -23,6 +23,8 @@ pub(super) struct Pictures {
     textures: Distinct<(usize, usize)>,
     /// For each material, its glTF texture.
     by_material: Vec<Option<(usize, TextureUse)>>,
+    /// The same of what it emits.
+    emission_by_material: Vec<Option<(usize, TextureUse)>>,
     /// The same of what cuts it out.
     opacity_by_material: Vec<Option<(usize, TextureUse)>>,
     transformed: bool,
@@ -33,9 +35,13 @@ impl Pictures {
     pub(super) fn new(scene: &Scene) -> io::Result<Pictures> {
         let mut pictures = Pictures { files: vec![None; scene.geometry.textures.len()], ..Pictures::default() };
         for material in &scene.geometry.materials {
-            let entry = pictures.find(scene, material.texture)?;
-            pictures.transformed |= entry.is_some_and(|(_, uses)| uses.transform != Affine2::IDENTITY);
-            pictures.by_material.push(entry);
+            let [color, emission] =
+                [material.texture, material.emission_texture].map(|uses| pictures.find(scene, uses));
+            let (color, emission) = (color?, emission?);
+            let is_placed = |(_, uses): &(usize, TextureUse)| uses.transform != Affine2::IDENTITY;
+            pictures.transformed |= [&color, &emission].into_iter().flatten().any(is_placed);
+            pictures.by_material.push(color);
+            pictures.emission_by_material.push(emission);
             let entry = pictures.find(scene, material.opacity.and_then(|opacity| opacity.texture))?;
             pictures.opacity_by_material.push(entry);
         }
@@ -63,14 +69,12 @@ impl Pictures {
 
     /// The `baseColorTexture` of a material.
     pub(super) fn of_material(&self, index: usize) -> Option<Value> {
-        let (texture, uses) = self.by_material[index].as_ref()?;
-        let mut info = json!({"index": texture});
-        if uses.transform != Affine2::IDENTITY {
-            let (scale, rotation, offset) = parts(&uses.transform);
-            info["extensions"] = json!({"KHR_texture_transform":
-                {"offset": offset.to_array(), "rotation": rotation, "scale": scale.to_array()}});
-        }
-        Some(info)
+        Some(info(self.by_material[index].as_ref()?))
+    }
+
+    /// The `emissiveTexture` of a material.
+    pub(super) fn emission_of_material(&self, index: usize) -> Option<Value> {
+        Some(info(self.emission_by_material[index].as_ref()?))
     }
 
     /// The index of the glTF texture that cuts a material out, and how it is used.
@@ -78,11 +82,13 @@ impl Pictures {
         self.opacity_by_material[index]
     }
 
-    /// The transform of a material's texture, if glTF's angle and factors do not reproduce it to the last bit.
-    pub(super) fn exact_transform(&self, index: usize) -> Option<[f32; 6]> {
-        let transform = self.by_material[index].as_ref()?.1.transform;
-        let (scale, rotation, offset) = parts(&transform);
-        (affine(scale, rotation, offset) != transform).then(|| transform.to_cols_array())
+    /// The transforms of a material's texture and of its emission's, if glTF's angle and factors do not reproduce them to the last bit.
+    pub(super) fn exact_transforms(&self, index: usize) -> [Option<[f32; 6]>; 2] {
+        [self.by_material[index], self.emission_by_material[index]].map(|entry| {
+            let transform = entry?.1.transform;
+            let (scale, rotation, offset) = parts(&transform);
+            (affine(scale, rotation, offset) != transform).then(|| transform.to_cols_array())
+        })
     }
 
     /// Whether the file needs KHR_texture_transform.
@@ -137,6 +143,17 @@ impl<T: Copy + Eq + Hash> Distinct<T> {
             self.list.len() - 1
         })
     }
+}
+
+/// A texture and how it is placed.
+fn info((texture, uses): &(usize, TextureUse)) -> Value {
+    let mut info = json!({"index": texture});
+    if uses.transform != Affine2::IDENTITY {
+        let (scale, rotation, offset) = parts(&uses.transform);
+        info["extensions"] = json!({"KHR_texture_transform":
+            {"offset": offset.to_array(), "rotation": rotation, "scale": scale.to_array()}});
+    }
+    info
 }
 
 fn is_whole(texture: &Texture) -> bool {

@@ -49,6 +49,7 @@ fn scene(offset: DVec3) -> Scene {
                 wrap: [Wrap::Clamp, Wrap::Mirror],
                 transform: Affine2::from_scale_angle_translation(Vec2::new(1.3, -0.7), 0.77, Vec2::new(0.1, -3.3)),
             }),
+            emission_texture: None,
             opacity: Some(Opacity::by(TextureUse::new(1), OpacityChannel::Green).with_cutoff(0.3).with_factor(0.9)),
             dielectric: None,
         },
@@ -59,6 +60,10 @@ fn scene(offset: DVec3) -> Scene {
             opacity: Some(Opacity::by(tiled, OpacityChannel::Alpha).with_cutoff(0.1).with_factor(0.7)),
             ..Material::default()
         },
+        Material::default().named("sign").with_emission([2.0, 1.0, 0.5]).with_emission_texture(TextureUse {
+            transform: Affine2::from_scale_angle_translation(Vec2::new(0.3, 1.7), -0.4, Vec2::new(0.1, 0.2)),
+            ..TextureUse::new(0)
+        }),
         Material::default().named("bare").with_opacity(Opacity::default()),
         Material::default().named("pane").with_opacity(Opacity::blend(0.25)),
         Material::default().named("foil").with_opacity(Opacity::blend(0.25).with_filter([0.5, 1.0, 0.0])),

@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use glam::Vec3;
+
 use crate::{Material, Mesh, Opacity};
 
 /// Gives the triangles in `ranges`, which have no texture coordinates, materials without texture. Returns a sentence if any of
@@ -22,7 +24,16 @@ pub(crate) fn untextured(mesh: &mut Mesh, materials: &mut Vec<Material>, ranges:
             Some(&known) => known,
             None => {
                 let opacity = textured.opacity.map(|opacity| Opacity { texture: None, ..opacity });
-                materials.push(Material { texture: None, opacity, ..textured.clone() });
+                // An image of lights is black nearly everywhere: better no light than light from the whole surface.
+                let dark = textured.emission_texture.is_some();
+                let emission = if dark { Vec3::ZERO } else { textured.emission };
+                materials.push(Material {
+                    texture: None,
+                    emission_texture: None,
+                    emission,
+                    opacity,
+                    ..textured.clone()
+                });
                 plain.insert(*material, materials.len() as u32 - 1);
                 materials.len() as u32 - 1
             }
@@ -38,7 +49,8 @@ pub(crate) fn untextured(mesh: &mut Mesh, materials: &mut Vec<Material>, ranges:
 
 /// Whether a texture of the material needs texture coordinates.
 fn needs_uvs(material: &Material) -> bool {
-    material.texture.is_some() || material.opacity.is_some_and(|opacity| opacity.texture.is_some())
+    let of_opacity = material.opacity.and_then(|opacity| opacity.texture);
+    [material.texture, material.emission_texture, of_opacity].iter().any(Option::is_some)
 }
 
 #[cfg(test)]
@@ -51,12 +63,14 @@ mod tests {
         let uses = TextureUse::new(0);
         let opacity = Opacity::by(uses, OpacityChannel::Red).with_factor(0.7);
         let textured = Material::default().with_texture(uses).with_opacity(opacity).named("oak");
+        let textured = textured.with_emission(Vec3::ONE).with_emission_texture(uses);
         let mut materials = vec![Material::default(), textured];
         let mut mesh = Mesh { materials: vec![1, 0, 1, 1, 1], ..Mesh::default() };
         let warning = untextured(&mut mesh, &mut materials, &[0..1, 1..3]).unwrap();
         assert!(warning.starts_with("2 triangles have a texture"), "{warning}");
         assert_eq!(mesh.materials, [2, 0, 2, 1, 1]);
         assert_eq!((materials.len(), materials[2].name.as_str(), materials[2].texture), (3, "oak", None));
+        assert_eq!((materials[2].emission, materials[2].emission_texture), (Vec3::ZERO, None));
         assert_eq!(materials[2].opacity, Some(Opacity { texture: None, ..opacity }));
         assert_eq!(untextured(&mut mesh, &mut materials, &[0..1, 1..2]), None);
     }

@@ -281,7 +281,7 @@ pub(super) struct Material<'a> {
     pub(super) pbr_metallic_roughness: Option<Box<MetallicRoughness>>,
     pub(super) normal_texture: Option<IgnoredAny>,
     pub(super) occlusion_texture: Option<IgnoredAny>,
-    pub(super) emissive_texture: Option<IgnoredAny>,
+    pub(super) emissive_texture: Option<TextureInfo>,
     #[serde(default)]
     pub(super) emissive_factor: [f32; 3],
     #[serde(borrow)]

@@ -29,6 +29,9 @@ pub(crate) struct MaterialExtras {
     /// The transform from texture coordinates to the image's, by columns, if an angle and factors would round it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) texture_transform: Option<[f32; 6]>,
+    /// The same for the image that the emission is multiplied with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) emission_transform: Option<[f32; 6]>,
     /// Where the surface is, and what it lets through, unless `alphaMode` says so.
     #[serde(default, alias = "cut_out", skip_serializing_if = "Option::is_none")]
     pub(crate) opacity: Option<OpacityExtras>,
@@ -94,6 +97,7 @@ impl MaterialExtras {
             emission: self.emission.into(),
             emission_tinted: self.emission_tinted.into(),
             texture: None,
+            emission_texture: None,
             catcher: self.catcher,
             lamp: self.lamp,
             opacity: None,

@@ -24,6 +24,7 @@ pub(super) struct LeftOut {
     pub(super) roughness_textures: usize,
     pub(super) normal_textures: usize,
     pub(super) occlusion_textures: usize,
+    /// Those with other texture coordinates than the base colour's.
     pub(super) emissive_textures: usize,
     pub(super) specular_textures: usize,
     pub(super) transmission_textures: usize,
@@ -56,7 +57,11 @@ impl LeftOut {
             (self.roughness_textures, "metallic-roughness texture", "not shown: the material's factors are used"),
             (self.normal_textures, "normal texture", "not shown"),
             (self.occlusion_textures, "occlusion texture", "not shown"),
-            (self.emissive_textures, "emissive texture", "not shown: the surface emits no light"),
+            (
+                self.emissive_textures,
+                "emissive texture",
+                "that cannot be placed beside the base colour's: the surface emits no light",
+            ),
             (self.specular_textures, "specular texture", "not shown: the material's factors are used"),
             (self.transmission_textures, "transmission texture", "not shown: the material's factors are used"),
             (self.frosted, "material", "with rough transmission: what is behind is shown sharp"),

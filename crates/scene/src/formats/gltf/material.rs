@@ -24,7 +24,7 @@ use glam::{Affine2, Vec3};
 
 use super::{
     container::malformed,
-    document::{self, MaterialExtensions, MetallicRoughness, Transmission, Volume},
+    document::{self, MaterialExtensions, MetallicRoughness, TextureInfo, Transmission, Volume},
     extras::{self, MaterialExtras, OpacityExtras},
     left_out::LeftOut,
 };
@@ -54,14 +54,21 @@ pub(super) fn read(path: &Path, index: usize, of: &document::Material, tinted: b
     Ok(Material { name, ..translated(of, tinted) })
 }
 
-/// How the material places its texture, if our own extras specify it.
-pub(super) fn texture_transform(
+/// How the material places its texture, and that of its emission, if our own extras specify it.
+pub(super) fn texture_transforms(
     path: &Path,
     index: usize,
     of: &document::Material,
-) -> Result<Option<Affine2>, LoadError> {
+) -> Result<[Option<Affine2>; 2], LoadError> {
     let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
-    Ok(own.and_then(|own| own.texture_transform).map(|columns| Affine2::from_cols_array(&columns)))
+    let columns = own.map_or([None; 2], |own| [own.texture_transform, own.emission_transform]);
+    Ok(columns.map(|columns| columns.map(|columns| Affine2::from_cols_array(&columns))))
+}
+
+/// The image that the emission is multiplied with. What an unlit material emits is its base colour.
+pub(super) fn emissive_texture<'a>(of: &'a document::Material) -> Option<&'a TextureInfo> {
+    let unlit = of.extensions.as_deref().is_some_and(|extensions| extensions.unlit.is_some());
+    of.emissive_texture.as_ref().filter(|_| !unlit)
 }
 
 /// Where the surface is, and what it lets through, if our own extras specify it.
@@ -83,7 +90,6 @@ pub(super) fn count_left_out(of: &document::Material, left_out: &mut LeftOut) {
     left_out.roughness_textures += usize::from(pbr.is_some_and(|pbr| pbr.metallic_roughness_texture.is_some()));
     left_out.normal_textures += usize::from(of.normal_texture.is_some());
     left_out.occlusion_textures += usize::from(of.occlusion_texture.is_some());
-    left_out.emissive_textures += usize::from(of.emissive_texture.is_some());
     if let Some(transmission) = transmission(of) {
         left_out.transmission_textures += usize::from(transmission.transmission_texture.is_some());
         left_out.frosted += usize::from(pbr.is_none_or(|pbr| pbr.roughness_factor > CLEAR));
@@ -134,12 +140,9 @@ pub(super) fn translated(of: &document::Material, tinted: bool) -> Material {
         material.dielectric = Some(boundary(extensions));
     }
     let strength = extensions.and_then(|extensions| extensions.emissive_strength.as_ref());
-    // Such a texture is black nearly everywhere: better no light than light from the whole surface.
-    if of.emissive_texture.is_none() {
-        let strength = strength.map_or(1.0, |strength| strength.emissive_strength);
-        material.emission = (strength * Vec3::from(of.emissive_factor)).max(Vec3::ZERO);
-        material.lamp = true;
-    }
+    let strength = strength.map_or(1.0, |strength| strength.emissive_strength);
+    material.emission = (strength * Vec3::from(of.emissive_factor)).max(Vec3::ZERO);
+    material.lamp = true;
     material
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use glam::Affine2;
+use glam::{Affine2, Vec3};
 
 use super::{
     document::{self, Document, Primitive, TextureInfo},
@@ -90,16 +90,31 @@ impl Materials {
             let info = entry.pbr_metallic_roughness.as_deref().and_then(|pbr| pbr.base_color_texture.as_ref());
             let found = info.and_then(|info| pictures.find(info, draft));
             let material = material::read(path, index, entry, colored || found.is_some())?;
-            let (mut texture, set) = found.unzip();
-            if let (Some(texture), Some(exact)) = (&mut texture, material::texture_transform(path, index, entry)?) {
-                texture.transform = exact;
+            let (mut texture, mut set) = found.unzip();
+            let (mut emission, mut emission_texture) = (material.emission, None);
+            if let Some(info) = material::emissive_texture(entry) {
+                let found = pictures.find(info, draft);
+                // A vertex has one pair of texture coordinates.
+                let placed = found.filter(|(_, own)| set.is_none_or(|set| set == *own));
+                left_out.emissive_textures += usize::from(found.is_some() && placed.is_none());
+                match placed {
+                    Some((uses, own)) => (emission_texture, set) = (Some(uses), Some(own)),
+                    // Such an image is black nearly everywhere: better no light than light from the whole surface.
+                    None => emission = Vec3::ZERO,
+                }
+            }
+            let exact = material::texture_transforms(path, index, entry)?;
+            for (texture, exact) in [&mut texture, &mut emission_texture].into_iter().zip(exact) {
+                if let (Some(texture), Some(exact)) = (texture, exact) {
+                    texture.transform = exact;
+                }
             }
             let opacity = match material::opacity_extras(path, index, entry)? {
                 Some(own) => Some(opacity(&own, &mut pictures, draft)),
                 None => material::opacity(entry, texture),
             };
             materials.read.push(Read { material: draft.materials.len() as u32, set, opacity: opacity.is_some() });
-            draft.materials.push(Material { texture, opacity, ..material });
+            draft.materials.push(Material { texture, emission, emission_texture, opacity, ..material });
         }
         left_out.missing_textures += pictures.missing;
         Ok(materials)

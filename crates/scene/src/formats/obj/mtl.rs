@@ -1,4 +1,4 @@
-//! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke and map_Kd to the coefficients of formula (1), map_d to where the surface is.
+//! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke, map_Kd and map_Ke to the coefficients of formula (1), map_d to where the surface is.
 
 use std::{
     collections::HashSet,
@@ -35,6 +35,7 @@ pub(super) struct Entry {
     shininess: Option<f32>,
     map: Option<Map>,
     opacity: Option<Map>,
+    glow: Option<Map>,
     dissolve: Option<f64>,
     transparency: Option<f64>,
     filter: Option<Vec3>,
@@ -139,7 +140,9 @@ fn read_library(path: &Path, text: &[u8], entries: &mut Vec<Entry>, draft: &mut 
     entries.extend(entry);
     draft.warnings.extend(notes.warnings(path));
     let LeftOut { maps, spectral } = left_out;
-    for (count, what) in [(maps, "textures other than map_Kd and map_d"), (spectral, "spectral or CIE-XYZ colours")] {
+    for (count, what) in
+        [(maps, "textures other than map_Kd, map_d and map_Ke"), (spectral, "spectral or CIE-XYZ colours")]
+    {
         if count > 0 {
             draft.warnings.push(format!("{}: {count} {what} were ignored", path.display()));
         }
@@ -176,6 +179,7 @@ impl Entry {
             b"Ni" => self.ior = words(rest).next().and_then(value),
             b"Tr" => self.transparency = words(rest).last().and_then(value),
             b"map_Kd" => self.map = Map::parse(&decoded(rest)),
+            b"map_Ke" => self.glow = Map::parse(&decoded(rest)),
             b"map_d" => self.opacity = Map::parse(&decoded(rest)),
             // Exporters repeat the texture as the ambient texture.
             b"map_Ka" | b"map_aat" => {}
@@ -193,21 +197,31 @@ impl Entry {
 
     /// The material for the shading model. Without Ka, or with `Ka 0`, which many exporters write whatever the material, the ambient
     /// coefficient is the diffuse one; without Kd a texture is shown as it is; negative values count as 0. An exponent below 1 would smear the highlight over everything (exporters write `Ns 0`
-    /// for "none"), so it counts as 1. The texture is read only if the material is `used`.
+    /// for "none"), so it counts as 1. An image of emitted light is shown as it is without `Ke`, or with `Ke 0`. The texture is read only if the material is `used`.
     pub(super) fn material(&self, used: bool, draft: &mut Draft) -> Material {
         let default = Material::default();
         let texture = self.map.as_ref().filter(|_| used).and_then(|map| map.texture_use(&self.path, draft));
         let plain = if texture.is_some() { Vec3::ONE } else { default.kd };
         let kd = self.diffuse.unwrap_or(plain);
+        let glow = self.glow.as_ref().filter(|_| used);
+        let emission_texture = glow.and_then(|map| map.texture_use(&self.path, draft));
+        let emission = match self.emissive.filter(|&emission| glow.is_none() || emission != Vec3::ZERO) {
+            // Such an image is black nearly everywhere: better no light than light from the whole surface.
+            _ if glow.is_some() && emission_texture.is_none() => Vec3::ZERO,
+            Some(emission) => emission,
+            None if glow.is_some() => Vec3::ONE,
+            None => default.emission,
+        };
         Material {
             name: self.name.clone(),
             ka: self.ambient.filter(|ka| *ka != Vec3::ZERO).unwrap_or(kd),
             kd,
             ks: self.specular.unwrap_or(default.ks),
             shininess: self.shininess.map_or(default.shininess, |exponent| exponent.max(1.0)),
-            emission: self.emissive.unwrap_or(default.emission),
+            emission,
             lamp: true,
             texture,
+            emission_texture,
             opacity: self.opacity(used, texture, draft),
             dielectric: self.dielectric(),
             ..default

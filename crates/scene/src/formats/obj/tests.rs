@@ -198,9 +198,24 @@ fn textures_come_from_map_kd_with_its_options() {
     assert_eq!((scene.geometry.materials[1].kd, scene.geometry.materials[1].texture), (Vec3::splat(0.5), None));
     let warned = |part: &str| scene.warnings.iter().filter(|warning| warning.contains(part)).count();
     assert_eq!(
-        ["gone.png", "other.png", "1 textures other than map_Kd and map_d", "transparent"].map(warned),
+        ["gone.png", "other.png", "1 textures other than map_Kd, map_d and map_Ke", "transparent"].map(warned),
         [1, 0, 1, 0]
     );
+}
+
+#[test]
+fn images_of_emitted_light_come_from_map_ke() {
+    let folder = tempfile::tempdir().unwrap();
+    image::RgbImage::new(2, 2).save(folder.path().join("sign.png")).unwrap();
+    let statements =
+        ["map_Ke sign.png", "Ke 0 0 0\nmap_Ke sign.png", "Ke 0.5 4 0\nmap_Ke sign.png", "Ke 3\nmap_Ke gone.png"];
+    let scene = with_materials(&folder, &statements);
+    let found =
+        |index: usize| (scene.geometry.materials[index].emission, scene.geometry.materials[index].emission_texture);
+    let [unsaid, black, colored, gone] = [0, 1, 2, 3].map(found);
+    assert_eq!((unsaid.0, unsaid.1.map(|uses| uses.texture)), (Vec3::ONE, Some(0)));
+    assert_eq!((black, colored), (unsaid, (Vec3::new(0.5, 4.0, 0.0), unsaid.1)));
+    assert_eq!(gone, (Vec3::ZERO, None), "black nearly everywhere rather than bright everywhere");
 }
 
 /// A scene with a face of each material, whose statements are given.

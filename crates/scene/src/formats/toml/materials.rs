@@ -31,7 +31,14 @@ pub(super) fn read(
         let texture = find(draft, &entry.texture);
         let opacity = opacity(source, entry, find(draft, &entry.opacity_texture), draft)?;
         let dielectric = dielectric(source, entry)?;
-        draft.materials.push(Material { texture, opacity, dielectric, ..coefficients(source, entry)? });
+        let mut material = Material { texture, opacity, dielectric, ..coefficients(source, entry)? };
+        if entry.emission_texture.is_some() {
+            material.emission_texture = find(draft, &entry.emission_texture);
+            // Such an image is black nearly everywhere: better no light than light from the whole surface.
+            let shown = if material.emission_texture.is_some() { Vec3::ONE } else { Vec3::ZERO };
+            material.emission = if entry.emission.is_some() { shown * material.emission } else { shown };
+        }
+        draft.materials.push(material);
     }
     Ok(names)
 }
@@ -62,7 +69,8 @@ fn placed(source: &Source, entry: &MaterialEntry) -> Result<TextureUse, LoadErro
         TextureWrap::Each(words) => words.map(Wrap::from),
     });
     let transform = transform(source, entry)?;
-    if let (None, None, Some((key, line))) = (&entry.texture, &entry.opacity_texture, without_texture(entry)) {
+    let images = [&entry.texture, &entry.emission_texture, &entry.opacity_texture];
+    if let (true, Some((key, line))) = (images.iter().all(|image| image.is_none()), without_texture(entry)) {
         return Err(source.refuse(key, &line, "has no effect without a texture", "add `texture = \"FILE\"`"));
     }
     Ok(TextureUse { wrap, transform, ..TextureUse::new(0) })

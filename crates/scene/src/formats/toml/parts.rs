@@ -34,8 +34,8 @@ pub(super) fn read(
     let add = |draft: &mut Draft, shape: Shape, transform: &DMat4, name: &Option<Text>, object: String| {
         let material = material(draft, name)?;
         draft.begin_object(object);
-        let Material { texture, opacity, .. } = &draft.materials[material as usize];
-        let textured = texture.is_some() || opacity.is_some();
+        let Material { texture, emission_texture, opacity, .. } = &draft.materials[material as usize];
+        let textured = texture.is_some() || emission_texture.is_some() || opacity.is_some();
         let shape = if textured { shape.textured() } else { shape };
         draft.add(shape.part(), transform, |_| material)
     };

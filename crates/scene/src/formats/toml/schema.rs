@@ -280,6 +280,9 @@ pub(crate) struct MaterialEntry {
     /// An image that `ka` and `kd` are multiplied with: PNG, JPEG, BMP or TGA, relative to the scene file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) texture: Option<Text>,
+    /// An image that `emission` is multiplied with, placed as `texture` is. Default of `emission` with it: 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) emission_texture: Option<Text>,
     /// An image that says where the surface is, leaves on a few triangles for example: by its alpha if it has any, else by its luminance.
     /// Placed as `texture` is.
     #[serde(skip_serializing_if = "Option::is_none")]

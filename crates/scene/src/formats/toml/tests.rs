@@ -373,6 +373,23 @@ fn a_material_may_have_a_texture() {
 }
 
 #[test]
+fn what_a_material_emits_may_have_a_texture() {
+    let material = |lines: &str| {
+        let shape = "[[box]]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nmaterial = \"sign\"";
+        let (_folder, path) = textured_folder(&format!("[[material]]\nname = \"sign\"\n{lines}\n{shape}"));
+        let scene = Scene::open(path).unwrap();
+        assert_eq!(scene.geometry.mesh.uvs.is_empty(), scene.geometry.textures.is_empty());
+        scene.geometry.materials[0].clone()
+    };
+    let shown = material("emission_texture = \"oak.png\"\ntexture_scale = 3");
+    assert_eq!((shown.emission, shown.texture, shown.lamp), (Vec3::ONE, None, false));
+    assert_eq!(shown.emission_texture.unwrap().transform.matrix2.x_axis, Vec2::new(3.0, 0.0));
+    assert_eq!(material("emission_texture = \"oak.png\"\nemission = [2, 0, 4]").emission, Vec3::new(2.0, 0.0, 4.0));
+    let gone = material("emission_texture = \"gone.png\"\nemission = [2, 0, 4]");
+    assert_eq!((gone.emission, gone.emission_texture), (Vec3::ZERO, None));
+}
+
+#[test]
 fn scenes_without_textures_have_no_texture_coordinates() {
     let scene = open("[[sphere]]\ncenter = [0, 0, 0]\nradius = 1");
     assert!(scene.geometry.mesh.uvs.is_empty() && scene.geometry.textures.is_empty());

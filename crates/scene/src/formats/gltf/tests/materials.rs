@@ -206,16 +206,43 @@ fn emission_has_its_strength() {
     assert_eq!(open(&document).geometry.materials[0].emission, Vec3::new(1.0, 0.5, 0.0));
     document["materials"][0]["extensions"] = json!({"KHR_materials_emissive_strength": {"emissiveStrength": 4}});
     assert_eq!(open(&document).geometry.materials[0].emission, Vec3::new(4.0, 2.0, 0.0));
-    // A texture that is black nearly everywhere must not make the whole surface glow.
-    document["materials"][0]["emissiveTexture"] = json!({"index": 0});
-    assert_eq!(open(&document).geometry.materials[0].emission, Vec3::ZERO);
+    // An image is placed by itself, also without one of the base colour.
+    document["materials"][0]["emissiveTexture"] = json!({"index": 0, "texCoord": 0,
+        "extensions": {"KHR_texture_transform": {"offset": [0.5, 0.25]}}});
+    for _ in 0..2 {
+        let material = open(&document).geometry.materials[0].clone();
+        let uses = material.emission_texture.unwrap();
+        assert_eq!((material.emission, uses.texture), (Vec3::new(4.0, 2.0, 0.0), 0));
+        assert_eq!(uses.transform.translation, Vec2::new(0.5, 0.25));
+        assert!(!material.lamp, "no light stands for it");
+        document["materials"][0]["pbrMetallicRoughness"].as_object_mut().unwrap().remove("baseColorTexture");
+    }
+    let uvs = |document: &Value| open(document).geometry.mesh.uvs.clone();
+    let first = uvs(&document);
+    document["materials"][0]["emissiveTexture"]["texCoord"] = json!(1);
+    assert_ne!(uvs(&document), first);
+}
+
+#[test]
+fn an_emissive_texture_that_cannot_be_shown_makes_nothing_glow() {
+    let mut document = textured();
+    document["materials"][0]["emissiveFactor"] = json!([1, 0.5, 0]);
+    for (info, sentence) in [
+        (json!({"index": 0, "texCoord": 1}), "1 emissive texture that cannot be placed beside the base colour's"),
+        (json!({"index": 7}), "1 material with a texture that the file does not contain"),
+    ] {
+        document["materials"][0]["emissiveTexture"] = info;
+        let material = open(&document).geometry.materials[0].clone();
+        assert_eq!((material.emission, material.emission_texture), (Vec3::ZERO, None));
+        assert!(warnings(&document).contains(sentence), "{}", warnings(&document));
+    }
 }
 
 #[test]
 fn what_of_materials_is_not_shown_is_one_sentence_a_kind() {
     let mut document = textured();
     let material = &mut document["materials"][0];
-    for key in ["normalTexture", "occlusionTexture", "emissiveTexture"] {
+    for key in ["normalTexture", "occlusionTexture"] {
         material[key] = json!({"index": 0});
     }
     material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({"index": 0});
@@ -228,12 +255,11 @@ fn what_of_materials_is_not_shown_is_one_sentence_a_kind() {
         "2 metallic-roughness textures not shown",
         "2 normal textures not shown",
         "2 occlusion textures not shown",
-        "2 emissive textures not shown",
         "1 material with an unknown alphaMode: shown opaque",
     ] {
         assert!(warnings.contains(sentence), "{warnings}");
     }
-    assert_eq!(warnings.lines().count(), 5, "{warnings}");
+    assert_eq!(warnings.lines().count(), 4, "{warnings}");
 }
 
 #[test]
