@@ -36,8 +36,8 @@ const WELDED: f64 = 1e-6;
 /// How far lights lie in front of their surface, relative to its size and to the scene's.
 const RAISED: [f64; 2] = [1e-3, 1e-5];
 
-/// Makes lights for the lamps of a geometry, among the materials that are [marked](crate::Material::lamp). The mark of those that are none, such as
-/// all that emit nothing, is taken away.
+/// Makes lights for the lamps of a geometry, among the materials that are [marked](crate::Material::lamp). The mark of those that
+/// are none, such as all that emit nothing, is taken away.
 pub(crate) fn lamps(geometry: &mut Geometry) -> Vec<Light> {
     let bounds = geometry.mesh.bounds();
     let scene = Extent { middle: bounds.center().as_dvec3(), diagonal: f64::from(bounds.diagonal()) };

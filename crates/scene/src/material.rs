@@ -75,6 +75,10 @@ impl Default for Material {
 /// assert_eq!(brass.ka, brass.kd);
 /// ```
 impl Material {
+    /// What a surface emits whose image of emitted light cannot be shown. Such images are black nearly everywhere: better no light
+    /// than light from the whole surface.
+    pub(crate) const EMISSION_WITHOUT_IMAGE: Vec3 = Vec3::ZERO;
+
     /// The specular coefficient, with the tinted part, if it exceeds 1 by more than rounding: a mirror that adds light.
     pub(crate) fn excess(&self) -> Option<Vec3> {
         const ROUNDING: f32 = 4.0 * f32::EPSILON;

@@ -7,14 +7,14 @@ use lightmesh_image::Transfer;
 use lightmesh_layout::In;
 use lightmesh_layout::geometry::{Coverage, Mask, Vec3};
 use lightmesh_layout::scene::{Material, Scene as Record, Texture, TextureLevel, Uv};
-use lightmesh_scene::{Geometry, TextureUse, Wrap};
+use lightmesh_scene::{Geometry, Wrap};
 
 use super::scene::{Upload, vec3};
 use crate::accel;
 use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::shading::tint::{Coefficients, is_tinted};
-use crate::textures::{Level, MipLevels, emission_texture_of, texture_of};
+use crate::textures::{Level, MipLevels, images_of};
 
 impl<R: Runtime> Upload<'_, R> {
     /// What determines the colours of surfaces. Texture coordinates and the sRGB table are uploaded only if a texture needs
@@ -132,14 +132,6 @@ impl<R: Runtime> Upload<'_, R> {
         let records: Vec<Mask> = masks.iter().map(record).collect();
         self.array("masks", &records)
     }
-}
-
-/// The images that colour a material and what it emits.
-fn images_of<'s>(
-    geometry: &'s Geometry,
-    material: &lightmesh_scene::Material,
-) -> [Option<(TextureUse, &'s lightmesh_scene::Texture)>; 2] {
-    [texture_of(geometry, material), emission_texture_of(geometry, material)]
 }
 
 fn wrap(wrap: Wrap) -> u32 {

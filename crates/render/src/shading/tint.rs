@@ -15,7 +15,7 @@ use super::dielectric::{Boundary, left_straight_on};
 use crate::accel::{Hit, Ray};
 use crate::footprint::{self, Cone};
 use crate::prepared::PreparedScene;
-use crate::textures::{emission_texture_of, filtered, texture_of};
+use crate::textures::{filtered, images_of};
 
 /// The coefficients of formula (1) at a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,7 +102,7 @@ impl Coefficients {
 /// Whether surface points of `material` may differ in colour or opacity.
 #[inline(always)]
 pub(crate) fn is_tinted(geometry: &Geometry, material: &Material) -> bool {
-    let has_texture = || texture_of(geometry, material).or(emission_texture_of(geometry, material)).is_some();
+    let has_texture = || images_of(geometry, material).iter().any(Option::is_some);
     !material.catcher && (!geometry.mesh.colors.is_empty() || has_texture() || material.lets_through())
 }
 
@@ -143,11 +143,8 @@ fn colors(scene: &PreparedScene, material: &Material, ray: &Ray, cone: Cone, hit
             filtered(texture, &scene.geometry.mip_levels[uses.texture as usize], uses.wrap, place, axes)
         })
     };
-    let tint = texel(texture_of(geometry, material));
-    Colors {
-        tint: if geometry.mesh.colors.is_empty() { tint } else { tint * color_at(&geometry.mesh, hit) },
-        glow: texel(emission_texture_of(geometry, material)),
-    }
+    let [tint, glow] = images_of(geometry, material).map(texel);
+    Colors { tint: if geometry.mesh.colors.is_empty() { tint } else { tint * color_at(&geometry.mesh, hit) }, glow }
 }
 
 /// The axes of the footprint at `hit`, in texture coordinates.

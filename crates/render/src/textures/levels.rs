@@ -15,7 +15,7 @@ use lightmesh_memory::{Budget, Short};
 use lightmesh_scene::{Geometry, OpacityChannel, Texture, TextureUse};
 use rayon::prelude::*;
 
-use super::texture_of;
+use super::images_of;
 
 /// Texels of one axis of a level that a texel of the next one covers, at most: two whole ones, or parts of three.
 const TAPS: usize = 3;
@@ -47,7 +47,8 @@ impl MipLevels {
     /// The number of the texture whose levels do not fit into the budget.
     pub(crate) fn of(geometry: &Geometry, budget: Budget) -> Result<Vec<MipLevels>, (usize, Short)> {
         let mut all = Vec::new();
-        for (uses, texture) in geometry.materials.iter().filter_map(|material| texture_of(geometry, material)) {
+        let images = geometry.materials.iter().flat_map(|material| images_of(geometry, material));
+        for (uses, texture) in images.flatten() {
             let index = uses.texture as usize;
             all.resize_with(geometry.textures.len(), MipLevels::default);
             if all[index].levels.is_empty() {

@@ -31,6 +31,11 @@ pub(crate) fn emission_texture_of<'s>(
     material.emission_texture.and_then(|uses| usable(geometry, uses))
 }
 
+/// The images that colour a material and what it emits.
+pub(crate) fn images_of<'s>(geometry: &'s Geometry, material: &Material) -> [Option<(TextureUse, &'s Texture)>; 2] {
+    [texture_of(geometry, material), emission_texture_of(geometry, material)]
+}
+
 /// A texture that is used like this, if it can be looked up.
 pub(crate) fn usable(geometry: &Geometry, uses: TextureUse) -> Option<(TextureUse, &Texture)> {
     if geometry.mesh.uvs.is_empty() {

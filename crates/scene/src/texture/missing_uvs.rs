@@ -3,8 +3,6 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use glam::Vec3;
-
 use crate::{Material, Mesh, Opacity};
 
 /// Gives the triangles in `ranges`, which have no texture coordinates, materials without texture. Returns a sentence if any of
@@ -24,9 +22,8 @@ pub(crate) fn untextured(mesh: &mut Mesh, materials: &mut Vec<Material>, ranges:
             Some(&known) => known,
             None => {
                 let opacity = textured.opacity.map(|opacity| Opacity { texture: None, ..opacity });
-                // An image of lights is black nearly everywhere: better no light than light from the whole surface.
                 let dark = textured.emission_texture.is_some();
-                let emission = if dark { Vec3::ZERO } else { textured.emission };
+                let emission = if dark { Material::EMISSION_WITHOUT_IMAGE } else { textured.emission };
                 materials.push(Material {
                     texture: None,
                     emission_texture: None,
@@ -57,6 +54,7 @@ fn needs_uvs(material: &Material) -> bool {
 mod tests {
     use super::*;
     use crate::{OpacityChannel, TextureUse};
+    use glam::Vec3;
 
     #[test]
     fn triangles_without_a_place_in_the_picture_are_plain() {

@@ -106,8 +106,8 @@ fn transmission<'a>(of: &'a document::Material) -> Option<&'a Transmission> {
     (transmission.transmission_factor > 0.0).then_some(transmission)
 }
 
-/// What is transmitted; else what an `alphaMode` other than OPAQUE says, by the alpha of its base colour and `texture`. A cutoff or factor that is no number, or
-/// negative, counts as 0.
+/// What is transmitted; else what an `alphaMode` other than OPAQUE says, by the alpha of its base colour and `texture`. A cutoff or
+/// factor that is no number, or negative, counts as 0.
 pub(super) fn opacity(of: &document::Material, texture: Option<TextureUse>) -> Option<Opacity> {
     if let Some(transmission) = transmission(of) {
         let defaults = MetallicRoughness::default();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use glam::{Affine2, Vec3};
+use glam::Affine2;
 
 use super::{
     document::{self, Document, Primitive, TextureInfo},
@@ -99,8 +99,7 @@ impl Materials {
                 left_out.emissive_textures += usize::from(found.is_some() && placed.is_none());
                 match placed {
                     Some((uses, own)) => (emission_texture, set) = (Some(uses), Some(own)),
-                    // Such an image is black nearly everywhere: better no light than light from the whole surface.
-                    None => emission = Vec3::ZERO,
+                    None => emission = Material::EMISSION_WITHOUT_IMAGE,
                 }
             }
             let exact = material::texture_transforms(path, index, entry)?;

@@ -196,8 +196,9 @@ impl Entry {
     }
 
     /// The material for the shading model. Without Ka, or with `Ka 0`, which many exporters write whatever the material, the ambient
-    /// coefficient is the diffuse one; without Kd a texture is shown as it is; negative values count as 0. An exponent below 1 would smear the highlight over everything (exporters write `Ns 0`
-    /// for "none"), so it counts as 1. An image of emitted light is shown as it is without `Ke`, or with `Ke 0`. The texture is read only if the material is `used`.
+    /// coefficient is the diffuse one; without Kd a texture is shown as it is; negative values count as 0. An exponent below 1 would
+    /// smear the highlight over everything (exporters write `Ns 0` for "none"), so it counts as 1. An image of emitted light is shown
+    /// as it is without `Ke`, or with `Ke 0`. Textures are read only if the material is `used`.
     pub(super) fn material(&self, used: bool, draft: &mut Draft) -> Material {
         let default = Material::default();
         let texture = self.map.as_ref().filter(|_| used).and_then(|map| map.texture_use(&self.path, draft));
@@ -206,8 +207,7 @@ impl Entry {
         let glow = self.glow.as_ref().filter(|_| used);
         let emission_texture = glow.and_then(|map| map.texture_use(&self.path, draft));
         let emission = match self.emissive.filter(|&emission| glow.is_none() || emission != Vec3::ZERO) {
-            // Such an image is black nearly everywhere: better no light than light from the whole surface.
-            _ if glow.is_some() && emission_texture.is_none() => Vec3::ZERO,
+            _ if glow.is_some() && emission_texture.is_none() => Material::EMISSION_WITHOUT_IMAGE,
             Some(emission) => emission,
             None if glow.is_some() => Vec3::ONE,
             None => default.emission,

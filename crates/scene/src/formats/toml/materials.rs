@@ -34,9 +34,11 @@ pub(super) fn read(
         let mut material = Material { texture, opacity, dielectric, ..coefficients(source, entry)? };
         if entry.emission_texture.is_some() {
             material.emission_texture = find(draft, &entry.emission_texture);
-            // Such an image is black nearly everywhere: better no light than light from the whole surface.
-            let shown = if material.emission_texture.is_some() { Vec3::ONE } else { Vec3::ZERO };
-            material.emission = if entry.emission.is_some() { shown * material.emission } else { shown };
+            material.emission = match material.emission_texture {
+                None => Material::EMISSION_WITHOUT_IMAGE,
+                Some(_) if entry.emission.is_none() => Vec3::ONE,
+                Some(_) => material.emission,
+            };
         }
         draft.materials.push(material);
     }
