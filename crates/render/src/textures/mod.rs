@@ -18,22 +18,9 @@ pub(crate) use neighbours::neighbours;
 
 use lightmesh_scene::{Geometry, Material, Texture, TextureUse};
 
-/// The texture of `material`, if it has one that can be looked up.
-pub(crate) fn texture_of<'s>(geometry: &'s Geometry, material: &Material) -> Option<(TextureUse, &'s Texture)> {
-    material.texture.and_then(|uses| usable(geometry, uses))
-}
-
-/// The texture of what `material` emits, if it has one that can be looked up.
-pub(crate) fn emission_texture_of<'s>(
-    geometry: &'s Geometry,
-    material: &Material,
-) -> Option<(TextureUse, &'s Texture)> {
-    material.emission_texture.and_then(|uses| usable(geometry, uses))
-}
-
-/// The images that colour a material and what it emits.
+/// The images that colour a material and what it emits, those that can be looked up.
 pub(crate) fn images_of<'s>(geometry: &'s Geometry, material: &Material) -> [Option<(TextureUse, &'s Texture)>; 2] {
-    [texture_of(geometry, material), emission_texture_of(geometry, material)]
+    [material.texture, material.emission_texture].map(|uses| usable(geometry, uses?))
 }
 
 /// A texture that is used like this, if it can be looked up.

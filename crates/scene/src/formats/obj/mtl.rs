@@ -1,4 +1,5 @@
-//! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke, map_Kd and map_Ke to the coefficients of formula (1), map_d to where the surface is.
+//! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke, map_Kd and map_Ke to the coefficients of formula (1), map_d to where the
+//! surface is.
 
 use std::{
     collections::HashSet,
@@ -206,11 +207,10 @@ impl Entry {
         let kd = self.diffuse.unwrap_or(plain);
         let glow = self.glow.as_ref().filter(|_| used);
         let emission_texture = glow.and_then(|map| map.texture_use(&self.path, draft));
-        let emission = match self.emissive.filter(|&emission| glow.is_none() || emission != Vec3::ZERO) {
-            _ if glow.is_some() && emission_texture.is_none() => Material::EMISSION_WITHOUT_IMAGE,
-            Some(emission) => emission,
-            None if glow.is_some() => Vec3::ONE,
-            None => default.emission,
+        let emission = match (glow, emission_texture) {
+            (None, _) => self.emissive.unwrap_or(default.emission),
+            (Some(_), None) => Material::EMISSION_WITHOUT_IMAGE,
+            (Some(_), Some(_)) => self.emissive.filter(|&emission| emission != Vec3::ZERO).unwrap_or(Vec3::ONE),
         };
         Material {
             name: self.name.clone(),
