@@ -191,6 +191,20 @@ constants! {
     TEXEL_BITS: u32 = 21;
     /// White in such a channel.
     TEXEL_ONE: f32 = (1u32 << (TEXEL_BITS - 1)) as f32;
+    /// Places of the table of what facets reflect, along each axis.
+    FACET_PLACES: u32 = 32;
+    /// The least width of their lobes: smoother ones are points in single precision.
+    LEAST_FACET_WIDTH: f32 = 0.002;
+    /// The least cosine at which they are seen.
+    LEAST_VIEW_COSINE: f32 = 1e-3;
+    /// Up to this roughness, mirror rays show all that facets reflect,
+    MIRROR_FADES: f32 = 0.13;
+    /// and from here on nothing.
+    MIRROR_ENDS: f32 = 0.5;
+    /// The angle of the cone that a mirror ray of facets stands for, in widths of their lobes: most of what they reflect comes from there.
+    WIDTH_OF_LOBE: f32 = 3.0;
+    /// Half of the part of a light that one of its points stands for, as a share of its size.
+    PART_OF_LIGHT: f32 = 0.35;
     /// Share of each channel in the brightness of a colour (ITU-R BT.709-6, item 3.2).
     LUMINANCE_RED: f32 = 0.2126;
     /// Of green.

@@ -221,8 +221,8 @@ records! {
         count: u32,
         /// How often they went on at surfaces: 0 for a camera's.
         depth: u32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
+        /// How often they are mirrored at most.
+        bounces: u32,
         /// The cone of all rays; without a width, textures are looked up at points.
         cone: Cone,
     }

@@ -35,8 +35,8 @@ records! {
         scale: f32,
         /// 1: it stands for an emissive surface.
         surface: u32,
-        /// Padding to a multiple of sixteen bytes.
-        spare: u32,
+        /// 1: mirror rays see it.
+        seen: u32,
     }
 
     /// The vertices of a triangle.
@@ -76,6 +76,14 @@ records! {
         level_count: u32,
         /// Padding to a multiple of eight bytes.
         spare: u32,
+    }
+
+    /// What facets reflect of light from all sides.
+    FacetShare {
+        /// As a multiple of what they reflect at normal incidence.
+        normal: f32,
+        /// As a multiple of what they reflect at grazing incidence.
+        grazing: f32,
     }
 
     /// The coefficients of formula (1).
@@ -119,6 +127,30 @@ records! {
         eta: f32,
         /// Index of the texture that emitted light is multiplied with, or [`Material::NO_TEXTURE`].
         emission_texture: u32,
+        /// 1: it reflects by facets; then the coefficients of a material are its base colour and its layer.
+        facets: u32,
+        /// Roughness of the facets.
+        roughness: f32,
+        /// How metallic they are.
+        metallic: f32,
+        /// What they reflect at grazing incidence.
+        grazing: f32,
+        /// At a surface point with facets: how opaque it is.
+        opacity: f32,
+        /// What is reflected of light from all sides, where it is gathered.
+        all: Vec3,
+        /// At a surface point with facets: the square of the width of their lobe.
+        square: f32,
+        /// What is mirrored.
+        mirrored: Vec3,
+        /// At a surface point with facets: the same for the part of the surface that is seen.
+        seen_square: f32,
+        /// At a surface point with facets: what repeated reflection adds, a factor.
+        gain: Vec3,
+        /// At a surface point with facets: the cosine between the normal and the direction to the eye.
+        cosine: f32,
+        /// At a surface point with facets: the share of reflections that mirror rays do not show.
+        unmirrored: f32,
         /// Padding to a multiple of eight bytes.
         spare: u32,
     }
@@ -182,6 +214,9 @@ records! {
         triangle_materials: In<u32>,
         /// Materials.
         materials: In<Material>,
+        /// What facets reflect of light from all sides, [`FACET_PLACES`](crate::constants::FACET_PLACES)² of them by roughness, then by the root
+        /// of the cosine; null if there are none.
+        facet_table: In<FacetShare>,
         /// The first triangle of each run of one object; null if nothing has a name.
         object_starts: In<u32>,
         /// The object of each run, from 0.

@@ -322,10 +322,6 @@ records! {
         onward: Out<ListedRay>,
         /// Their cones; null if textures are not filtered.
         cones: Out<Cone>,
-        /// How often rays may be mirrored.
-        bounces: u32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
     }
 
     /// `group_points` and `gather_items`: one block per tile of 1024 rays.

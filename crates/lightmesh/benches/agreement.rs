@@ -125,9 +125,9 @@ fn stages(
     let sampling = Sampling { samples: 4, seed: 0, spread: false };
     let job = |short_tests| Job::new(&Unobserved, sampling).with_short_tests(short_tests);
     let (by_cell, plain) = (job(ShortTests::Cells), job(ShortTests::Plain));
-    let rays = Cpu.camera_rays(&view, 0..size)?;
+    let rays = Cpu.camera_rays(&view, 0..size, 0)?;
     let hits = Cpu.primary_rays(&by_cell, scene, &rays)?;
-    let device_rays = cuda.camera_rays(&view, 0..size)?;
+    let device_rays = cuda.camera_rays(&view, 0..size, 0)?;
     let device_scene = cuda.scene(&by_cell, scene, None)?;
     let device_hits = cuda.primary_rays(&by_cell, &device_scene, &device_rays)?;
 

@@ -83,10 +83,10 @@ DEVICE Vec3 direction_to(Vec3 position, const Ray &ray, Cone cone) {
 }
 
 // The mean curvature of the normals that shading uses, at a hit; `facing` is the geometric normal on the viewer's side.
-DEVICE float curvature(const Scene &scene, const Hit &hit, const Corners &corners, Vec3 facing) {
-    if (scene.normals == nullptr)
+DEVICE float curvature(const Vec3 *all, const Indices *indices, const Hit &hit, const Corners &corners, Vec3 facing) {
+    if (all == nullptr)
         return 0.0f;
-    const Normals normals = load_normals(scene, hit.triangle);
+    const Normals normals = load_normals(all, indices, hit.triangle);
     Vec3 smooth;
     float square;
     if (!smooth_at(hit, normals, smooth, square))
@@ -97,4 +97,8 @@ DEVICE float curvature(const Scene &scene, const Hit &hit, const Corners &corner
     const float divergence = (dot(gradients.u, normals.b - normals.a) + dot(gradients.v, normals.c - normals.a)) / sqrtf(square);
     const float half = dot(smooth, facing) < 0.0f ? -0.5f * divergence : 0.5f * divergence;
     return is_finite(half) ? half : 0.0f;
+}
+
+DEVICE float curvature(const Scene &scene, const Hit &hit, const Corners &corners, Vec3 facing) {
+    return curvature(scene.normals, scene.indices, hit, corners, facing);
 }

@@ -146,7 +146,7 @@ impl<B: Backend> Passes<'_, B> {
             // Camera rays, and what they see.
             run.job.work.expect(2 * pixels as u64);
         }
-        let rays = run.stage(Stage::CameraRays, [pixels; 2], |backend| backend.camera_rays(view, all))?;
+        let rays = run.stage(Stage::CameraRays, [pixels; 2], |backend| backend.camera_rays(view, all, plan.bounces))?;
         match &plan.antialiasing {
             None => self.waves(rays, None, 1, &mut film)?,
             Some(samples) => self.samples(rays, samples, &mut film)?,
@@ -182,7 +182,7 @@ impl<B: Backend> Passes<'_, B> {
             if depth >= plan.bounces && !plan.lets_through {
                 break;
             }
-            rays = run.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave, plan.bounces))?;
+            rays = run.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
         }
         Ok(())
     }

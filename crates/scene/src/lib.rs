@@ -18,6 +18,7 @@ mod draft;
 mod environment;
 mod error;
 mod export;
+mod facets;
 mod formats;
 mod framing;
 mod geometry;
@@ -58,6 +59,7 @@ pub use environment::{
 };
 pub use error::{LoadError, Place};
 pub use export::ExportError;
+pub use facets::Facets;
 pub use framing::{Added, UnknownCamera, Viewpoint};
 pub use geometry::Geometry;
 pub use geometry_check::GeometryError;

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use crate::{Dielectric, Opacity, TextureUse};
+use crate::{Dielectric, Facets, Opacity, TextureUse};
 
-/// How a surface reflects light: ambient, diffuse and Phong terms (Whitted 1980, Phong 1975).
+/// How a surface reflects light: ambient, diffuse and Phong terms (Whitted 1980, Phong 1975), or by [facets](Material::facets).
 ///
 /// If a texture or vertex colours give a surface point a tint t — their product, white if there are neither — its coefficients
 /// are `ka` t, `kd` t and `ks` + `ks_tinted` t, and it emits `emission` e + `emission_tinted` t, where e is the colour of the
@@ -25,6 +25,9 @@ pub struct Material {
     pub ks_tinted: Vec3,
     /// Phong exponent `pow`.
     pub shininess: f32,
+    /// With these the surface reflects as glTF describes it: they say what `kd` and `ks` are then, and only these two count, and the tint of
+    /// `kd`. Glass reflects by its own rules.
+    pub facets: Option<Facets>,
     /// Emitted radiance. It lights other surfaces where light is gathered, or by the lights of a [lamp](Material::lamp).
     pub emission: Vec3,
     /// The part of the emitted radiance that is tinted: a surface that shows its image unlit. It also counts without a tint.
@@ -54,6 +57,7 @@ impl Default for Material {
             ks: Vec3::ZERO,
             ks_tinted: Vec3::ZERO,
             shininess: 20.0,
+            facets: None,
             emission: Vec3::ZERO,
             emission_tinted: Vec3::ZERO,
             texture: None,
@@ -94,6 +98,11 @@ impl Material {
     /// What it is made of, if light goes through.
     pub fn boundary(&self) -> Option<&Dielectric> {
         self.dielectric.as_ref().filter(|_| self.lets_through())
+    }
+
+    /// Its facets, unless it is glass.
+    pub fn faceted(&self) -> Option<&Facets> {
+        self.facets.as_ref().filter(|_| self.dielectric.is_none() && !self.catcher)
     }
 
     /// Whether there is no surface of this material anywhere.
@@ -140,6 +149,11 @@ impl Material {
     /// Phong exponent.
     pub fn with_shininess(self, shininess: f32) -> Material {
         Material { shininess, ..self }
+    }
+
+    /// How rough and metallic it is.
+    pub fn with_facets(self, facets: Facets) -> Material {
+        Material { facets: Some(facets), ..self }
     }
 
     /// Emitted radiance.

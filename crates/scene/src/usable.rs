@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::{Dielectric, Material, Opacity, OpacityMode, draft::LARGEST_COORDINATE, quote::list};
+use crate::{Dielectric, Facets, Material, Opacity, OpacityMode, draft::LARGEST_COORDINATE, quote::list};
 
 /// Whether a world position is usable.
 pub(crate) fn is_place(world: DVec3) -> bool {
@@ -21,18 +21,21 @@ pub(crate) fn keep_placed<T>(items: &mut Vec<(T, DVec3)>, kind: &str) -> Option<
 /// Replaces infinite, NaN and negative coefficients by 0.
 pub(crate) fn keep_finite(materials: &mut [Material]) -> Option<String> {
     let mut count = 0;
-    for Material { ka, kd, ks, ks_tinted, emission, emission_tinted, opacity, dielectric, .. } in materials {
+    for Material { ka, kd, ks, ks_tinted, facets, emission, emission_tinted, opacity, dielectric, .. } in materials {
         let mut odd = false;
         for color in [ka, kd, ks, ks_tinted, emission, emission_tinted] {
             let usable = color.is_finite_mask() & color.cmpge(Vec3::ZERO);
             odd |= !usable.all();
             *color = Vec3::select(usable, *color, Vec3::ZERO);
         }
+        let mut keep = |number: &mut f32, most: f32| {
+            odd |= !(0.0..=most).contains(number);
+            *number = if number.is_finite() { number.clamp(0.0, most) } else { 0.0 };
+        };
+        if let Some(Facets { roughness, metallic, grazing }) = facets {
+            [roughness, metallic, grazing].into_iter().for_each(|share| keep(share, 1.0));
+        }
         if let Some(Opacity { factor, mode, .. }) = opacity {
-            let mut keep = |number: &mut f32, most: f32| {
-                odd |= !(0.0..=most).contains(number);
-                *number = if number.is_finite() { number.clamp(0.0, most) } else { 0.0 };
-            };
             match mode {
                 OpacityMode::Mask { cutoff } => {
                     keep(factor, f32::MAX);

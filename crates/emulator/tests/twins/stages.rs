@@ -97,10 +97,10 @@ impl<'a, R: Target> Twins<'a, R> {
     fn new(cuda: &'a Cuda<R>, subject: &'static Subject, acceleration: usize, size: [u32; 2]) -> Twins<'a, R> {
         let scene = subject.prepared(acceleration);
         let view = subject.view(size);
-        let rays = Cpu.camera_rays(&view, 0..size[1]).unwrap();
+        let rays = Cpu.camera_rays(&view, 0..size[1], 0).unwrap();
         let job = job(4);
         let hits = Cpu.primary_rays(&job, scene, &rays).unwrap();
-        let device_rays = cuda.camera_rays(&view, 0..size[1]).unwrap();
+        let device_rays = cuda.camera_rays(&view, 0..size[1], 0).unwrap();
         let device_scene = cuda.scene(&job, scene, None).unwrap();
         let device_hits = cuda.primary_rays(&job, &device_scene, &device_rays).unwrap();
         let found = device_hits.read().unwrap();
@@ -181,7 +181,7 @@ impl<'a, R: Target> Twins<'a, R> {
 
         let [width, height] = self.size;
         let rows = height / 3..height / 3 + 2;
-        let rays = self.cuda.camera_rays(&self.subject.view(self.size), rows.clone()).unwrap();
+        let rays = self.cuda.camera_rays(&self.subject.view(self.size), rows.clone(), 0).unwrap();
         let hits = self.cuda.primary_rays(&job, &self.device_scene, &rays).unwrap();
         let wave =
             Wave { job: &job, scene: &self.device_scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };

@@ -5,7 +5,9 @@ use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{
     Acceleration, AmbientSource, Frame, Mode, PreparedScene, Settings, Sharing, Unobserved, render_on,
 };
-use lightmesh_scene::{Environment, LightKind, Material, Scene, Sun, Texture, TextureUse, Up, Wrap};
+use lightmesh_scene::{
+    Environment, Facets, Light, LightKind, Material, Opacity, Scene, Sun, Texture, TextureUse, Up, Wrap,
+};
 use lightmesh_testkit::{SceneDraft, pile};
 
 use crate::trials::{Case, Target};
@@ -15,6 +17,12 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     for aa in [1, 4, 40] {
         let name = format!("textured::surrounded::{aa}");
         cases.push(Case::new(name, move |cuda: &Cuda<R>| same_surrounded_bits(cuda, aa)));
+    }
+    for ambient in [AmbientSource::Constant, AmbientSource::Mesh] {
+        for aa in [1, 4] {
+            let name = format!("textured::facets::{}::{aa}", ambient.name());
+            cases.push(Case::new(name, move |cuda: &Cuda<R>| same_facet_bits(cuda, ambient, aa)));
+        }
     }
     for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
         for height in [None, Some(4.0)] {
@@ -82,15 +90,37 @@ fn same_bits<R: Target>(cuda: &Cuda<R>) {
 
 /// A panorama with a sun, seen directly, in flat and curved mirrors and as ambient light.
 fn same_surrounded_bits<R: Target>(cuda: &Cuda<R>, aa: u32) {
+    let scene = PreparedScene::new(&surrounded(), &Acceleration::Bvh, &Unobserved).unwrap();
+    let settings = Settings::default().with_ambient_light(AmbientSource::Constant).with_bounces(2);
+    assert_same_bits(cuda, &scene, &settings.with_size([64, 48]).with_aa(aa), 2);
+}
+
+/// The floor and the mirrors in a panorama with a sun.
+fn surrounded() -> Scene {
     let mut scene = small_texels(Wrap::Repeat, None);
     let texel = |index: u32| [0.1 * (index % 7) as f32, (index % 1021) as f32 / 1021.0, 0.001 * (index / 331) as f32];
     let map = Environment::new("noise", [331, 170], (0..331 * 170).map(texel).collect(), Up::Y).turned(17.0);
     let sun = Sun::new(Vec3::new(0.1, 0.2, -1.0), 6.0, Vec3::new(3.0, 2.0, 1.0));
     scene.lights.environment = Some(map.with_sun(Some(sun)).into());
     (scene.lights.ambient, scene.lights.background) = (None, None);
+    scene
+}
+
+/// Smooth and rough facets under lights with a size and without, one of them the panorama's sun, in mirrors and in gathered light.
+fn same_facet_bits<R: Target>(cuda: &Cuda<R>, ambient: AmbientSource, aa: u32) {
+    let mut scene = surrounded();
+    let facets = [Facets::new(0.6), Facets::new(0.2).with_metallic(1.0), Facets::new(0.35).with_metallic(0.5)];
+    for (material, facets) in scene.geometry_mut().materials.iter_mut().zip(facets) {
+        *material = material.clone().with_kd([0.8, 0.6, 0.4]).with_ks([0.04; 3]).with_facets(facets);
+    }
+    let last = scene.geometry.materials.len() - 1;
+    scene.geometry_mut().materials[last].opacity = Some(Opacity::blend(0.75));
+    let sun = scene.lights.environment.as_ref().and_then(|around| around.sun()).expect("there is a sun").direction;
+    let panel = Light::rectangle(Vec3::new(-1.0, 2.5, 1.0), 0.5 * Vec3::X, 0.25 * Vec3::Z).unwrap();
+    let lights = [Light::directional(-sun).unwrap(), panel, Light::point(Vec3::new(1.0, 2.0, 2.0))];
+    scene.lights.list = lights.map(|light| light.with_intensity([0.4; 3])).to_vec();
     let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
-    let settings = Settings::default().with_ambient_light(AmbientSource::Constant).with_bounces(2);
-    let settings = settings.with_size([64, 48]).with_aa(aa);
+    let settings = Settings::default().with_ambient_light(ambient).with_bounces(2).with_size([48, 36]).with_aa(aa);
     assert_same_bits(cuda, &scene, &settings, 2);
 }
 

@@ -93,8 +93,8 @@ impl Backend for Cpu {
         Ok(Picture::planned(plan, rows).with_counted(plan))
     }
 
-    fn camera_rays(&self, view: &View, rows: Range<u32>) -> Result<RayList, RenderError> {
-        Ok(primary_rays::cpu::camera_rays(view, rows))
+    fn camera_rays(&self, view: &View, rows: Range<u32>, bounces: u32) -> Result<RayList, RenderError> {
+        Ok(RayList { bounces, ..primary_rays::cpu::camera_rays(view, rows) })
     }
 
     fn ray_count(&self, rays: &RayList) -> usize {

@@ -93,11 +93,11 @@ impl<R: Runtime> Backend for Cuda<R> {
         DeviceFilm::new(self, plan, rows)
     }
 
-    fn camera_rays(&self, view: &View, rows: Range<u32>) -> Result<DeviceRays<R>, RenderError> {
+    fn camera_rays(&self, view: &View, rows: Range<u32>, bounces: u32) -> Result<DeviceRays<R>, RenderError> {
         let [width, _] = view.size();
         let count = width * rows.len() as u32;
         let first_pixel = rows.start * width;
-        let record = Rays { view: view.record(), list: In::NULL, first_pixel, count, ..Rays::zeroed() };
+        let record = Rays { view: view.record(), list: In::NULL, first_pixel, count, bounces, ..Rays::zeroed() };
         Ok(DeviceRays::new(record, None, view.spacing()))
     }
 

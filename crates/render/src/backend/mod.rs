@@ -117,8 +117,8 @@ pub trait Backend: Sized {
     /// last band ended.
     fn film(&self, plan: &Plan, rows: [Range<u32>; 2]) -> Result<Self::Film, RenderError>;
 
-    /// The camera rays of the rows `rows`, one per pixel, row by row.
-    fn camera_rays(&self, view: &View, rows: Range<u32>) -> Result<Self::Rays, RenderError>;
+    /// The camera rays of the rows `rows`, one per pixel, row by row; they are mirrored `bounces` times at most.
+    fn camera_rays(&self, view: &View, rows: Range<u32>, bounces: u32) -> Result<Self::Rays, RenderError>;
 
     /// Number of rays.
     fn ray_count(&self, rays: &Self::Rays) -> usize;

@@ -59,8 +59,8 @@ macro_rules! stage_table {
                 film: &mut Self::Film
             ) -> ();
             /// Generates the rays of the last term of formula (1), from every mirroring surface point along the mirrored view, unless they were
-            /// mirrored `bounces` times; and those that go straight on where a surface is not opaque.
-            mirror_rays(wave: &WaveOf<Self>, bounces: u32) -> Self::Rays;
+            /// mirrored often enough; and those that go straight on where a surface is not opaque.
+            mirror_rays(wave: &WaveOf<Self>) -> Self::Rays;
         }
     };
 }

@@ -104,6 +104,20 @@
 #define TEXEL_BITS 21u
 // White in such a channel.
 #define TEXEL_ONE 0x1p20f
+// Places of the table of what facets reflect, along each axis.
+#define FACET_PLACES 32u
+// The least width of their lobes: smoother ones are points in single precision.
+#define LEAST_FACET_WIDTH 0x1.0624dep-9f
+// The least cosine at which they are seen.
+#define LEAST_VIEW_COSINE 0x1.0624dep-10f
+// Up to this roughness, mirror rays show all that facets reflect,
+#define MIRROR_FADES 0x1.0a3d7p-3f
+// and from here on nothing.
+#define MIRROR_ENDS 0x1p-1f
+// The angle of the cone that a mirror ray of facets stands for, in widths of their lobes: most of what they reflect comes from there.
+#define WIDTH_OF_LOBE 0x1.8p1f
+// Half of the part of a light that one of its points stands for, as a share of its size.
+#define PART_OF_LIGHT 0x1.666666p-2f
 // Share of each channel in the brightness of a colour (ITU-R BT.709-6, item 3.2).
 #define LUMINANCE_RED 0x1.b367ap-3f
 // Of green.
@@ -595,7 +609,7 @@ struct alignas(8) Rays {
     unsigned first_pixel;
     unsigned count;
     unsigned depth;
-    unsigned spare;
+    unsigned bounces;
     Cone cone;
 };
 static_assert(sizeof(Rays) == 120, "size of Rays");
@@ -605,7 +619,7 @@ static_assert(PLACE_OF(Rays, cones) == 88, "place of Rays::cones");
 static_assert(PLACE_OF(Rays, first_pixel) == 96, "place of Rays::first_pixel");
 static_assert(PLACE_OF(Rays, count) == 100, "place of Rays::count");
 static_assert(PLACE_OF(Rays, depth) == 104, "place of Rays::depth");
-static_assert(PLACE_OF(Rays, spare) == 108, "place of Rays::spare");
+static_assert(PLACE_OF(Rays, bounces) == 108, "place of Rays::bounces");
 static_assert(PLACE_OF(Rays, cone) == 112, "place of Rays::cone");
 
 struct alignas(8) Tally {
@@ -646,7 +660,7 @@ struct alignas(4) Light {
     float cone_scale;
     float scale;
     unsigned surface;
-    unsigned spare;
+    unsigned seen;
 };
 static_assert(sizeof(Light) == 96, "size of Light");
 static_assert(PLACE_OF(Light, position) == 0, "place of Light::position");
@@ -662,7 +676,7 @@ static_assert(PLACE_OF(Light, cos_outer) == 76, "place of Light::cos_outer");
 static_assert(PLACE_OF(Light, cone_scale) == 80, "place of Light::cone_scale");
 static_assert(PLACE_OF(Light, scale) == 84, "place of Light::scale");
 static_assert(PLACE_OF(Light, surface) == 88, "place of Light::surface");
-static_assert(PLACE_OF(Light, spare) == 92, "place of Light::spare");
+static_assert(PLACE_OF(Light, seen) == 92, "place of Light::seen");
 
 struct alignas(4) Indices {
     unsigned vertices[3];
@@ -716,6 +730,14 @@ static_assert(PLACE_OF(Texture, translation) == 48, "place of Texture::translati
 static_assert(PLACE_OF(Texture, level_count) == 56, "place of Texture::level_count");
 static_assert(PLACE_OF(Texture, spare) == 60, "place of Texture::spare");
 
+struct alignas(4) FacetShare {
+    float normal;
+    float grazing;
+};
+static_assert(sizeof(FacetShare) == 8, "size of FacetShare");
+static_assert(PLACE_OF(FacetShare, normal) == 0, "place of FacetShare::normal");
+static_assert(PLACE_OF(FacetShare, grazing) == 4, "place of FacetShare::grazing");
+
 struct alignas(4) Material {
     enum : unsigned {
         // The material has no texture.
@@ -740,9 +762,21 @@ struct alignas(4) Material {
     unsigned thin;
     float eta;
     unsigned emission_texture;
+    unsigned facets;
+    float roughness;
+    float metallic;
+    float grazing;
+    float opacity;
+    Vec3 all;
+    float square;
+    Vec3 mirrored;
+    float seen_square;
+    Vec3 gain;
+    float cosine;
+    float unmirrored;
     unsigned spare;
 };
-static_assert(sizeof(Material) == 144, "size of Material");
+static_assert(sizeof(Material) == 216, "size of Material");
 static_assert(PLACE_OF(Material, ka) == 0, "place of Material::ka");
 static_assert(PLACE_OF(Material, shininess) == 12, "place of Material::shininess");
 static_assert(PLACE_OF(Material, kd) == 16, "place of Material::kd");
@@ -762,7 +796,19 @@ static_assert(PLACE_OF(Material, ior) == 124, "place of Material::ior");
 static_assert(PLACE_OF(Material, thin) == 128, "place of Material::thin");
 static_assert(PLACE_OF(Material, eta) == 132, "place of Material::eta");
 static_assert(PLACE_OF(Material, emission_texture) == 136, "place of Material::emission_texture");
-static_assert(PLACE_OF(Material, spare) == 140, "place of Material::spare");
+static_assert(PLACE_OF(Material, facets) == 140, "place of Material::facets");
+static_assert(PLACE_OF(Material, roughness) == 144, "place of Material::roughness");
+static_assert(PLACE_OF(Material, metallic) == 148, "place of Material::metallic");
+static_assert(PLACE_OF(Material, grazing) == 152, "place of Material::grazing");
+static_assert(PLACE_OF(Material, opacity) == 156, "place of Material::opacity");
+static_assert(PLACE_OF(Material, all) == 160, "place of Material::all");
+static_assert(PLACE_OF(Material, square) == 172, "place of Material::square");
+static_assert(PLACE_OF(Material, mirrored) == 176, "place of Material::mirrored");
+static_assert(PLACE_OF(Material, seen_square) == 188, "place of Material::seen_square");
+static_assert(PLACE_OF(Material, gain) == 192, "place of Material::gain");
+static_assert(PLACE_OF(Material, cosine) == 204, "place of Material::cosine");
+static_assert(PLACE_OF(Material, unmirrored) == 208, "place of Material::unmirrored");
+static_assert(PLACE_OF(Material, spare) == 212, "place of Material::spare");
 
 struct alignas(8) EnvironmentLevel {
     const Vec3 *texels;
@@ -812,6 +858,7 @@ struct alignas(8) Scene {
     const float *srgb;
     const unsigned *triangle_materials;
     const Material *materials;
+    const FacetShare *facet_table;
     const unsigned *object_starts;
     const unsigned *objects;
     const Light *lights;
@@ -828,7 +875,7 @@ struct alignas(8) Scene {
     float far;
     unsigned object_runs;
 };
-static_assert(sizeof(Scene) == 584, "size of Scene");
+static_assert(sizeof(Scene) == 592, "size of Scene");
 static_assert(PLACE_OF(Scene, triangles) == 0, "place of Scene::triangles");
 static_assert(PLACE_OF(Scene, indices) == 8, "place of Scene::indices");
 static_assert(PLACE_OF(Scene, normals) == 16, "place of Scene::normals");
@@ -838,21 +885,22 @@ static_assert(PLACE_OF(Scene, textures) == 40, "place of Scene::textures");
 static_assert(PLACE_OF(Scene, srgb) == 48, "place of Scene::srgb");
 static_assert(PLACE_OF(Scene, triangle_materials) == 56, "place of Scene::triangle_materials");
 static_assert(PLACE_OF(Scene, materials) == 64, "place of Scene::materials");
-static_assert(PLACE_OF(Scene, object_starts) == 72, "place of Scene::object_starts");
-static_assert(PLACE_OF(Scene, objects) == 80, "place of Scene::objects");
-static_assert(PLACE_OF(Scene, lights) == 88, "place of Scene::lights");
-static_assert(PLACE_OF(Scene, light_targets) == 96, "place of Scene::light_targets");
-static_assert(PLACE_OF(Scene, coverage) == 104, "place of Scene::coverage");
-static_assert(PLACE_OF(Scene, environment) == 120, "place of Scene::environment");
-static_assert(PLACE_OF(Scene, grid) == 320, "place of Scene::grid");
-static_assert(PLACE_OF(Scene, bvh) == 432, "place of Scene::bvh");
-static_assert(PLACE_OF(Scene, brute_force) == 488, "place of Scene::brute_force");
-static_assert(PLACE_OF(Scene, light_count) == 536, "place of Scene::light_count");
-static_assert(PLACE_OF(Scene, ambient) == 540, "place of Scene::ambient");
-static_assert(PLACE_OF(Scene, background) == 552, "place of Scene::background");
-static_assert(PLACE_OF(Scene, center) == 564, "place of Scene::center");
-static_assert(PLACE_OF(Scene, far) == 576, "place of Scene::far");
-static_assert(PLACE_OF(Scene, object_runs) == 580, "place of Scene::object_runs");
+static_assert(PLACE_OF(Scene, facet_table) == 72, "place of Scene::facet_table");
+static_assert(PLACE_OF(Scene, object_starts) == 80, "place of Scene::object_starts");
+static_assert(PLACE_OF(Scene, objects) == 88, "place of Scene::objects");
+static_assert(PLACE_OF(Scene, lights) == 96, "place of Scene::lights");
+static_assert(PLACE_OF(Scene, light_targets) == 104, "place of Scene::light_targets");
+static_assert(PLACE_OF(Scene, coverage) == 112, "place of Scene::coverage");
+static_assert(PLACE_OF(Scene, environment) == 128, "place of Scene::environment");
+static_assert(PLACE_OF(Scene, grid) == 328, "place of Scene::grid");
+static_assert(PLACE_OF(Scene, bvh) == 440, "place of Scene::bvh");
+static_assert(PLACE_OF(Scene, brute_force) == 496, "place of Scene::brute_force");
+static_assert(PLACE_OF(Scene, light_count) == 544, "place of Scene::light_count");
+static_assert(PLACE_OF(Scene, ambient) == 548, "place of Scene::ambient");
+static_assert(PLACE_OF(Scene, background) == 560, "place of Scene::background");
+static_assert(PLACE_OF(Scene, center) == 572, "place of Scene::center");
+static_assert(PLACE_OF(Scene, far) == 584, "place of Scene::far");
+static_assert(PLACE_OF(Scene, object_runs) == 588, "place of Scene::object_runs");
 
 struct alignas(8) Sampling {
     unsigned long long seed;
@@ -1193,17 +1241,17 @@ struct alignas(8) Lookup {
     unsigned count;
     unsigned first;
 };
-static_assert(sizeof(Lookup) == 728, "size of Lookup");
+static_assert(sizeof(Lookup) == 736, "size of Lookup");
 static_assert(PLACE_OF(Lookup, scene) == 0, "place of Lookup::scene");
-static_assert(PLACE_OF(Lookup, tally) == 584, "place of Lookup::tally");
-static_assert(PLACE_OF(Lookup, table) == 592, "place of Lookup::table");
-static_assert(PLACE_OF(Lookup, places) == 680, "place of Lookup::places");
-static_assert(PLACE_OF(Lookup, offsets) == 688, "place of Lookup::offsets");
-static_assert(PLACE_OF(Lookup, links) == 696, "place of Lookup::links");
-static_assert(PLACE_OF(Lookup, nearest) == 704, "place of Lookup::nearest");
-static_assert(PLACE_OF(Lookup, fine) == 712, "place of Lookup::fine");
-static_assert(PLACE_OF(Lookup, count) == 720, "place of Lookup::count");
-static_assert(PLACE_OF(Lookup, first) == 724, "place of Lookup::first");
+static_assert(PLACE_OF(Lookup, tally) == 592, "place of Lookup::tally");
+static_assert(PLACE_OF(Lookup, table) == 600, "place of Lookup::table");
+static_assert(PLACE_OF(Lookup, places) == 688, "place of Lookup::places");
+static_assert(PLACE_OF(Lookup, offsets) == 696, "place of Lookup::offsets");
+static_assert(PLACE_OF(Lookup, links) == 704, "place of Lookup::links");
+static_assert(PLACE_OF(Lookup, nearest) == 712, "place of Lookup::nearest");
+static_assert(PLACE_OF(Lookup, fine) == 720, "place of Lookup::fine");
+static_assert(PLACE_OF(Lookup, count) == 728, "place of Lookup::count");
+static_assert(PLACE_OF(Lookup, first) == 732, "place of Lookup::first");
 
 struct alignas(8) Fans {
     Scene scene;
@@ -1225,25 +1273,25 @@ struct alignas(8) Fans {
     unsigned lamps;
     unsigned spare;
 };
-static_assert(sizeof(Fans) == 816, "size of Fans");
+static_assert(sizeof(Fans) == 824, "size of Fans");
 static_assert(PLACE_OF(Fans, scene) == 0, "place of Fans::scene");
-static_assert(PLACE_OF(Fans, rays) == 584, "place of Fans::rays");
-static_assert(PLACE_OF(Fans, sampling) == 704, "place of Fans::sampling");
-static_assert(PLACE_OF(Fans, tally) == 720, "place of Fans::tally");
-static_assert(PLACE_OF(Fans, sites) == 728, "place of Fans::sites");
-static_assert(PLACE_OF(Fans, owners) == 736, "place of Fans::owners");
-static_assert(PLACE_OF(Fans, nodes) == 744, "place of Fans::nodes");
-static_assert(PLACE_OF(Fans, list) == 752, "place of Fans::list");
-static_assert(PLACE_OF(Fans, weights) == 760, "place of Fans::weights");
-static_assert(PLACE_OF(Fans, hits) == 768, "place of Fans::hits");
-static_assert(PLACE_OF(Fans, seen) == 776, "place of Fans::seen");
-static_assert(PLACE_OF(Fans, nearest) == 784, "place of Fans::nearest");
-static_assert(PLACE_OF(Fans, count) == 792, "place of Fans::count");
-static_assert(PLACE_OF(Fans, side) == 796, "place of Fans::side");
-static_assert(PLACE_OF(Fans, reach) == 800, "place of Fans::reach");
-static_assert(PLACE_OF(Fans, is_near) == 804, "place of Fans::is_near");
-static_assert(PLACE_OF(Fans, lamps) == 808, "place of Fans::lamps");
-static_assert(PLACE_OF(Fans, spare) == 812, "place of Fans::spare");
+static_assert(PLACE_OF(Fans, rays) == 592, "place of Fans::rays");
+static_assert(PLACE_OF(Fans, sampling) == 712, "place of Fans::sampling");
+static_assert(PLACE_OF(Fans, tally) == 728, "place of Fans::tally");
+static_assert(PLACE_OF(Fans, sites) == 736, "place of Fans::sites");
+static_assert(PLACE_OF(Fans, owners) == 744, "place of Fans::owners");
+static_assert(PLACE_OF(Fans, nodes) == 752, "place of Fans::nodes");
+static_assert(PLACE_OF(Fans, list) == 760, "place of Fans::list");
+static_assert(PLACE_OF(Fans, weights) == 768, "place of Fans::weights");
+static_assert(PLACE_OF(Fans, hits) == 776, "place of Fans::hits");
+static_assert(PLACE_OF(Fans, seen) == 784, "place of Fans::seen");
+static_assert(PLACE_OF(Fans, nearest) == 792, "place of Fans::nearest");
+static_assert(PLACE_OF(Fans, count) == 800, "place of Fans::count");
+static_assert(PLACE_OF(Fans, side) == 804, "place of Fans::side");
+static_assert(PLACE_OF(Fans, reach) == 808, "place of Fans::reach");
+static_assert(PLACE_OF(Fans, is_near) == 812, "place of Fans::is_near");
+static_assert(PLACE_OF(Fans, lamps) == 816, "place of Fans::lamps");
+static_assert(PLACE_OF(Fans, spare) == 820, "place of Fans::spare");
 
 struct alignas(8) Bounce {
     Scene scene;
@@ -1259,19 +1307,19 @@ struct alignas(8) Bounce {
     unsigned first;
     unsigned count;
 };
-static_assert(sizeof(Bounce) == 1496, "size of Bounce");
+static_assert(sizeof(Bounce) == 1512, "size of Bounce");
 static_assert(PLACE_OF(Bounce, scene) == 0, "place of Bounce::scene");
-static_assert(PLACE_OF(Bounce, fans) == 584, "place of Bounce::fans");
-static_assert(PLACE_OF(Bounce, names) == 1400, "place of Bounce::names");
-static_assert(PLACE_OF(Bounce, nodes) == 1440, "place of Bounce::nodes");
-static_assert(PLACE_OF(Bounce, sites) == 1448, "place of Bounce::sites");
-static_assert(PLACE_OF(Bounce, stamps) == 1456, "place of Bounce::stamps");
-static_assert(PLACE_OF(Bounce, listed) == 1464, "place of Bounce::listed");
-static_assert(PLACE_OF(Bounce, listed_count) == 1472, "place of Bounce::listed_count");
-static_assert(PLACE_OF(Bounce, order) == 1480, "place of Bounce::order");
-static_assert(PLACE_OF(Bounce, stamp) == 1484, "place of Bounce::stamp");
-static_assert(PLACE_OF(Bounce, first) == 1488, "place of Bounce::first");
-static_assert(PLACE_OF(Bounce, count) == 1492, "place of Bounce::count");
+static_assert(PLACE_OF(Bounce, fans) == 592, "place of Bounce::fans");
+static_assert(PLACE_OF(Bounce, names) == 1416, "place of Bounce::names");
+static_assert(PLACE_OF(Bounce, nodes) == 1456, "place of Bounce::nodes");
+static_assert(PLACE_OF(Bounce, sites) == 1464, "place of Bounce::sites");
+static_assert(PLACE_OF(Bounce, stamps) == 1472, "place of Bounce::stamps");
+static_assert(PLACE_OF(Bounce, listed) == 1480, "place of Bounce::listed");
+static_assert(PLACE_OF(Bounce, listed_count) == 1488, "place of Bounce::listed_count");
+static_assert(PLACE_OF(Bounce, order) == 1496, "place of Bounce::order");
+static_assert(PLACE_OF(Bounce, stamp) == 1500, "place of Bounce::stamp");
+static_assert(PLACE_OF(Bounce, first) == 1504, "place of Bounce::first");
+static_assert(PLACE_OF(Bounce, count) == 1508, "place of Bounce::count");
 
 struct alignas(8) GatherFar {
     Fans fans;
@@ -1282,14 +1330,14 @@ struct alignas(8) GatherFar {
     unsigned first;
     unsigned before;
 };
-static_assert(sizeof(GatherFar) == 856, "size of GatherFar");
+static_assert(sizeof(GatherFar) == 864, "size of GatherFar");
 static_assert(PLACE_OF(GatherFar, fans) == 0, "place of GatherFar::fans");
-static_assert(PLACE_OF(GatherFar, far) == 816, "place of GatherFar::far");
-static_assert(PLACE_OF(GatherFar, owners) == 824, "place of GatherFar::owners");
-static_assert(PLACE_OF(GatherFar, uneven) == 832, "place of GatherFar::uneven");
-static_assert(PLACE_OF(GatherFar, uneven_count) == 840, "place of GatherFar::uneven_count");
-static_assert(PLACE_OF(GatherFar, first) == 848, "place of GatherFar::first");
-static_assert(PLACE_OF(GatherFar, before) == 852, "place of GatherFar::before");
+static_assert(PLACE_OF(GatherFar, far) == 824, "place of GatherFar::far");
+static_assert(PLACE_OF(GatherFar, owners) == 832, "place of GatherFar::owners");
+static_assert(PLACE_OF(GatherFar, uneven) == 840, "place of GatherFar::uneven");
+static_assert(PLACE_OF(GatherFar, uneven_count) == 848, "place of GatherFar::uneven_count");
+static_assert(PLACE_OF(GatherFar, first) == 856, "place of GatherFar::first");
+static_assert(PLACE_OF(GatherFar, before) == 860, "place of GatherFar::before");
 
 struct alignas(8) GatherFine {
     Fans fans;
@@ -1303,17 +1351,17 @@ struct alignas(8) GatherFine {
     unsigned count;
     unsigned spare;
 };
-static_assert(sizeof(GatherFine) == 1592, "size of GatherFine");
+static_assert(sizeof(GatherFine) == 1608, "size of GatherFine");
 static_assert(PLACE_OF(GatherFine, fans) == 0, "place of GatherFine::fans");
-static_assert(PLACE_OF(GatherFine, lookup) == 816, "place of GatherFine::lookup");
-static_assert(PLACE_OF(GatherFine, far) == 1544, "place of GatherFine::far");
-static_assert(PLACE_OF(GatherFine, fine) == 1552, "place of GatherFine::fine");
-static_assert(PLACE_OF(GatherFine, alone) == 1560, "place of GatherFine::alone");
-static_assert(PLACE_OF(GatherFine, alone_count) == 1568, "place of GatherFine::alone_count");
-static_assert(PLACE_OF(GatherFine, first) == 1576, "place of GatherFine::first");
-static_assert(PLACE_OF(GatherFine, first_alone) == 1580, "place of GatherFine::first_alone");
-static_assert(PLACE_OF(GatherFine, count) == 1584, "place of GatherFine::count");
-static_assert(PLACE_OF(GatherFine, spare) == 1588, "place of GatherFine::spare");
+static_assert(PLACE_OF(GatherFine, lookup) == 824, "place of GatherFine::lookup");
+static_assert(PLACE_OF(GatherFine, far) == 1560, "place of GatherFine::far");
+static_assert(PLACE_OF(GatherFine, fine) == 1568, "place of GatherFine::fine");
+static_assert(PLACE_OF(GatherFine, alone) == 1576, "place of GatherFine::alone");
+static_assert(PLACE_OF(GatherFine, alone_count) == 1584, "place of GatherFine::alone_count");
+static_assert(PLACE_OF(GatherFine, first) == 1592, "place of GatherFine::first");
+static_assert(PLACE_OF(GatherFine, first_alone) == 1596, "place of GatherFine::first_alone");
+static_assert(PLACE_OF(GatherFine, count) == 1600, "place of GatherFine::count");
+static_assert(PLACE_OF(GatherFine, spare) == 1604, "place of GatherFine::spare");
 
 struct alignas(8) GatherPoints {
     Scene scene;
@@ -1336,26 +1384,26 @@ struct alignas(8) GatherPoints {
     unsigned count;
     unsigned first_alone;
 };
-static_assert(sizeof(GatherPoints) == 1544, "size of GatherPoints");
+static_assert(sizeof(GatherPoints) == 1560, "size of GatherPoints");
 static_assert(PLACE_OF(GatherPoints, scene) == 0, "place of GatherPoints::scene");
-static_assert(PLACE_OF(GatherPoints, rays) == 584, "place of GatherPoints::rays");
-static_assert(PLACE_OF(GatherPoints, hits) == 704, "place of GatherPoints::hits");
-static_assert(PLACE_OF(GatherPoints, lookup) == 712, "place of GatherPoints::lookup");
-static_assert(PLACE_OF(GatherPoints, fine) == 1440, "place of GatherPoints::fine");
-static_assert(PLACE_OF(GatherPoints, places) == 1448, "place of GatherPoints::places");
-static_assert(PLACE_OF(GatherPoints, means) == 1456, "place of GatherPoints::means");
-static_assert(PLACE_OF(GatherPoints, alone) == 1464, "place of GatherPoints::alone");
-static_assert(PLACE_OF(GatherPoints, alone_count) == 1472, "place of GatherPoints::alone_count");
-static_assert(PLACE_OF(GatherPoints, sites) == 1480, "place of GatherPoints::sites");
-static_assert(PLACE_OF(GatherPoints, far) == 1488, "place of GatherPoints::far");
-static_assert(PLACE_OF(GatherPoints, light) == 1496, "place of GatherPoints::light");
-static_assert(PLACE_OF(GatherPoints, eye) == 1504, "place of GatherPoints::eye");
-static_assert(PLACE_OF(GatherPoints, spacing) == 1516, "place of GatherPoints::spacing");
-static_assert(PLACE_OF(GatherPoints, pixels) == 1524, "place of GatherPoints::pixels");
-static_assert(PLACE_OF(GatherPoints, least_level) == 1528, "place of GatherPoints::least_level");
-static_assert(PLACE_OF(GatherPoints, first) == 1532, "place of GatherPoints::first");
-static_assert(PLACE_OF(GatherPoints, count) == 1536, "place of GatherPoints::count");
-static_assert(PLACE_OF(GatherPoints, first_alone) == 1540, "place of GatherPoints::first_alone");
+static_assert(PLACE_OF(GatherPoints, rays) == 592, "place of GatherPoints::rays");
+static_assert(PLACE_OF(GatherPoints, hits) == 712, "place of GatherPoints::hits");
+static_assert(PLACE_OF(GatherPoints, lookup) == 720, "place of GatherPoints::lookup");
+static_assert(PLACE_OF(GatherPoints, fine) == 1456, "place of GatherPoints::fine");
+static_assert(PLACE_OF(GatherPoints, places) == 1464, "place of GatherPoints::places");
+static_assert(PLACE_OF(GatherPoints, means) == 1472, "place of GatherPoints::means");
+static_assert(PLACE_OF(GatherPoints, alone) == 1480, "place of GatherPoints::alone");
+static_assert(PLACE_OF(GatherPoints, alone_count) == 1488, "place of GatherPoints::alone_count");
+static_assert(PLACE_OF(GatherPoints, sites) == 1496, "place of GatherPoints::sites");
+static_assert(PLACE_OF(GatherPoints, far) == 1504, "place of GatherPoints::far");
+static_assert(PLACE_OF(GatherPoints, light) == 1512, "place of GatherPoints::light");
+static_assert(PLACE_OF(GatherPoints, eye) == 1520, "place of GatherPoints::eye");
+static_assert(PLACE_OF(GatherPoints, spacing) == 1532, "place of GatherPoints::spacing");
+static_assert(PLACE_OF(GatherPoints, pixels) == 1540, "place of GatherPoints::pixels");
+static_assert(PLACE_OF(GatherPoints, least_level) == 1544, "place of GatherPoints::least_level");
+static_assert(PLACE_OF(GatherPoints, first) == 1548, "place of GatherPoints::first");
+static_assert(PLACE_OF(GatherPoints, count) == 1552, "place of GatherPoints::count");
+static_assert(PLACE_OF(GatherPoints, first_alone) == 1556, "place of GatherPoints::first_alone");
 
 struct alignas(4) TileBox {
     Vec3 low;
@@ -1377,17 +1425,17 @@ struct alignas(8) GroupItems {
     unsigned long long first_block;
     float spacing[2];
 };
-static_assert(sizeof(GroupItems) == 768, "size of GroupItems");
+static_assert(sizeof(GroupItems) == 776, "size of GroupItems");
 static_assert(PLACE_OF(GroupItems, scene) == 0, "place of GroupItems::scene");
-static_assert(PLACE_OF(GroupItems, rays) == 584, "place of GroupItems::rays");
-static_assert(PLACE_OF(GroupItems, hits) == 704, "place of GroupItems::hits");
-static_assert(PLACE_OF(GroupItems, members) == 712, "place of GroupItems::members");
-static_assert(PLACE_OF(GroupItems, ends) == 720, "place of GroupItems::ends");
-static_assert(PLACE_OF(GroupItems, counts) == 728, "place of GroupItems::counts");
-static_assert(PLACE_OF(GroupItems, items) == 736, "place of GroupItems::items");
-static_assert(PLACE_OF(GroupItems, tiles) == 744, "place of GroupItems::tiles");
-static_assert(PLACE_OF(GroupItems, first_block) == 752, "place of GroupItems::first_block");
-static_assert(PLACE_OF(GroupItems, spacing) == 760, "place of GroupItems::spacing");
+static_assert(PLACE_OF(GroupItems, rays) == 592, "place of GroupItems::rays");
+static_assert(PLACE_OF(GroupItems, hits) == 712, "place of GroupItems::hits");
+static_assert(PLACE_OF(GroupItems, members) == 720, "place of GroupItems::members");
+static_assert(PLACE_OF(GroupItems, ends) == 728, "place of GroupItems::ends");
+static_assert(PLACE_OF(GroupItems, counts) == 736, "place of GroupItems::counts");
+static_assert(PLACE_OF(GroupItems, items) == 744, "place of GroupItems::items");
+static_assert(PLACE_OF(GroupItems, tiles) == 752, "place of GroupItems::tiles");
+static_assert(PLACE_OF(GroupItems, first_block) == 760, "place of GroupItems::first_block");
+static_assert(PLACE_OF(GroupItems, spacing) == 768, "place of GroupItems::spacing");
 
 struct alignas(8) Shadows {
     Scene scene;
@@ -1409,25 +1457,25 @@ struct alignas(8) Shadows {
     unsigned first_light;
     unsigned end_light;
 };
-static_assert(sizeof(Shadows) == 2144, "size of Shadows");
+static_assert(sizeof(Shadows) == 2152, "size of Shadows");
 static_assert(PLACE_OF(Shadows, scene) == 0, "place of Shadows::scene");
-static_assert(PLACE_OF(Shadows, rays) == 584, "place of Shadows::rays");
-static_assert(PLACE_OF(Shadows, hits) == 704, "place of Shadows::hits");
-static_assert(PLACE_OF(Shadows, members) == 712, "place of Shadows::members");
-static_assert(PLACE_OF(Shadows, items) == 720, "place of Shadows::items");
-static_assert(PLACE_OF(Shadows, tiles) == 728, "place of Shadows::tiles");
-static_assert(PLACE_OF(Shadows, starts) == 736, "place of Shadows::starts");
-static_assert(PLACE_OF(Shadows, taken) == 744, "place of Shadows::taken");
-static_assert(PLACE_OF(Shadows, share) == 752, "place of Shadows::share");
-static_assert(PLACE_OF(Shadows, sampling) == 760, "place of Shadows::sampling");
-static_assert(PLACE_OF(Shadows, tally) == 776, "place of Shadows::tally");
-static_assert(PLACE_OF(Shadows, first) == 784, "place of Shadows::first");
-static_assert(PLACE_OF(Shadows, count) == 792, "place of Shadows::count");
-static_assert(PLACE_OF(Shadows, sets) == 800, "place of Shadows::sets");
-static_assert(PLACE_OF(Shadows, set) == 2128, "place of Shadows::set");
-static_assert(PLACE_OF(Shadows, set_count) == 2132, "place of Shadows::set_count");
-static_assert(PLACE_OF(Shadows, first_light) == 2136, "place of Shadows::first_light");
-static_assert(PLACE_OF(Shadows, end_light) == 2140, "place of Shadows::end_light");
+static_assert(PLACE_OF(Shadows, rays) == 592, "place of Shadows::rays");
+static_assert(PLACE_OF(Shadows, hits) == 712, "place of Shadows::hits");
+static_assert(PLACE_OF(Shadows, members) == 720, "place of Shadows::members");
+static_assert(PLACE_OF(Shadows, items) == 728, "place of Shadows::items");
+static_assert(PLACE_OF(Shadows, tiles) == 736, "place of Shadows::tiles");
+static_assert(PLACE_OF(Shadows, starts) == 744, "place of Shadows::starts");
+static_assert(PLACE_OF(Shadows, taken) == 752, "place of Shadows::taken");
+static_assert(PLACE_OF(Shadows, share) == 760, "place of Shadows::share");
+static_assert(PLACE_OF(Shadows, sampling) == 768, "place of Shadows::sampling");
+static_assert(PLACE_OF(Shadows, tally) == 784, "place of Shadows::tally");
+static_assert(PLACE_OF(Shadows, first) == 792, "place of Shadows::first");
+static_assert(PLACE_OF(Shadows, count) == 800, "place of Shadows::count");
+static_assert(PLACE_OF(Shadows, sets) == 808, "place of Shadows::sets");
+static_assert(PLACE_OF(Shadows, set) == 2136, "place of Shadows::set");
+static_assert(PLACE_OF(Shadows, set_count) == 2140, "place of Shadows::set_count");
+static_assert(PLACE_OF(Shadows, first_light) == 2144, "place of Shadows::first_light");
+static_assert(PLACE_OF(Shadows, end_light) == 2148, "place of Shadows::end_light");
 
 struct alignas(8) Filters {
     Scene scene;
@@ -1438,14 +1486,14 @@ struct alignas(8) Filters {
     unsigned middle;
     unsigned spare;
 };
-static_assert(sizeof(Filters) == 2760, "size of Filters");
+static_assert(sizeof(Filters) == 2776, "size of Filters");
 static_assert(PLACE_OF(Filters, scene) == 0, "place of Filters::scene");
-static_assert(PLACE_OF(Filters, shadows) == 584, "place of Filters::shadows");
-static_assert(PLACE_OF(Filters, triangles) == 2728, "place of Filters::triangles");
-static_assert(PLACE_OF(Filters, normals) == 2736, "place of Filters::normals");
-static_assert(PLACE_OF(Filters, passed) == 2744, "place of Filters::passed");
-static_assert(PLACE_OF(Filters, middle) == 2752, "place of Filters::middle");
-static_assert(PLACE_OF(Filters, spare) == 2756, "place of Filters::spare");
+static_assert(PLACE_OF(Filters, shadows) == 592, "place of Filters::shadows");
+static_assert(PLACE_OF(Filters, triangles) == 2744, "place of Filters::triangles");
+static_assert(PLACE_OF(Filters, normals) == 2752, "place of Filters::normals");
+static_assert(PLACE_OF(Filters, passed) == 2760, "place of Filters::passed");
+static_assert(PLACE_OF(Filters, middle) == 2768, "place of Filters::middle");
+static_assert(PLACE_OF(Filters, spare) == 2772, "place of Filters::spare");
 
 struct alignas(8) AdaptiveShadows {
     Scene scene;
@@ -1460,18 +1508,18 @@ struct alignas(8) AdaptiveShadows {
     unsigned tiles;
     unsigned spare;
 };
-static_assert(sizeof(AdaptiveShadows) == 3184, "size of AdaptiveShadows");
+static_assert(sizeof(AdaptiveShadows) == 3200, "size of AdaptiveShadows");
 static_assert(PLACE_OF(AdaptiveShadows, scene) == 0, "place of AdaptiveShadows::scene");
-static_assert(PLACE_OF(AdaptiveShadows, shadows) == 584, "place of AdaptiveShadows::shadows");
-static_assert(PLACE_OF(AdaptiveShadows, answers) == 2728, "place of AdaptiveShadows::answers");
-static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2736, "place of AdaptiveShadows::answer_count");
-static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2744, "place of AdaptiveShadows::first_answer");
-static_assert(PLACE_OF(AdaptiveShadows, counts) == 2752, "place of AdaptiveShadows::counts");
-static_assert(PLACE_OF(AdaptiveShadows, entries) == 2760, "place of AdaptiveShadows::entries");
-static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2768, "place of AdaptiveShadows::entry_count");
-static_assert(PLACE_OF(AdaptiveShadows, places) == 2776, "place of AdaptiveShadows::places");
-static_assert(PLACE_OF(AdaptiveShadows, tiles) == 3176, "place of AdaptiveShadows::tiles");
-static_assert(PLACE_OF(AdaptiveShadows, spare) == 3180, "place of AdaptiveShadows::spare");
+static_assert(PLACE_OF(AdaptiveShadows, shadows) == 592, "place of AdaptiveShadows::shadows");
+static_assert(PLACE_OF(AdaptiveShadows, answers) == 2744, "place of AdaptiveShadows::answers");
+static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2752, "place of AdaptiveShadows::answer_count");
+static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2760, "place of AdaptiveShadows::first_answer");
+static_assert(PLACE_OF(AdaptiveShadows, counts) == 2768, "place of AdaptiveShadows::counts");
+static_assert(PLACE_OF(AdaptiveShadows, entries) == 2776, "place of AdaptiveShadows::entries");
+static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2784, "place of AdaptiveShadows::entry_count");
+static_assert(PLACE_OF(AdaptiveShadows, places) == 2792, "place of AdaptiveShadows::places");
+static_assert(PLACE_OF(AdaptiveShadows, tiles) == 3192, "place of AdaptiveShadows::tiles");
+static_assert(PLACE_OF(AdaptiveShadows, spare) == 3196, "place of AdaptiveShadows::spare");
 
 struct alignas(8) PrimaryRays {
     Scene scene;
@@ -1480,12 +1528,12 @@ struct alignas(8) PrimaryRays {
     Tally tally;
     unsigned long long first_block;
 };
-static_assert(sizeof(PrimaryRays) == 728, "size of PrimaryRays");
+static_assert(sizeof(PrimaryRays) == 736, "size of PrimaryRays");
 static_assert(PLACE_OF(PrimaryRays, scene) == 0, "place of PrimaryRays::scene");
-static_assert(PLACE_OF(PrimaryRays, rays) == 584, "place of PrimaryRays::rays");
-static_assert(PLACE_OF(PrimaryRays, hits) == 704, "place of PrimaryRays::hits");
-static_assert(PLACE_OF(PrimaryRays, tally) == 712, "place of PrimaryRays::tally");
-static_assert(PLACE_OF(PrimaryRays, first_block) == 720, "place of PrimaryRays::first_block");
+static_assert(PLACE_OF(PrimaryRays, rays) == 592, "place of PrimaryRays::rays");
+static_assert(PLACE_OF(PrimaryRays, hits) == 712, "place of PrimaryRays::hits");
+static_assert(PLACE_OF(PrimaryRays, tally) == 720, "place of PrimaryRays::tally");
+static_assert(PLACE_OF(PrimaryRays, first_block) == 728, "place of PrimaryRays::first_block");
 
 struct alignas(8) ShadowRays {
     Scene scene;
@@ -1497,15 +1545,15 @@ struct alignas(8) ShadowRays {
     unsigned first_light;
     unsigned light_count;
 };
-static_assert(sizeof(ShadowRays) == 744, "size of ShadowRays");
+static_assert(sizeof(ShadowRays) == 752, "size of ShadowRays");
 static_assert(PLACE_OF(ShadowRays, scene) == 0, "place of ShadowRays::scene");
-static_assert(PLACE_OF(ShadowRays, rays) == 584, "place of ShadowRays::rays");
-static_assert(PLACE_OF(ShadowRays, hits) == 704, "place of ShadowRays::hits");
-static_assert(PLACE_OF(ShadowRays, share) == 712, "place of ShadowRays::share");
-static_assert(PLACE_OF(ShadowRays, tally) == 720, "place of ShadowRays::tally");
-static_assert(PLACE_OF(ShadowRays, first_block) == 728, "place of ShadowRays::first_block");
-static_assert(PLACE_OF(ShadowRays, first_light) == 736, "place of ShadowRays::first_light");
-static_assert(PLACE_OF(ShadowRays, light_count) == 740, "place of ShadowRays::light_count");
+static_assert(PLACE_OF(ShadowRays, rays) == 592, "place of ShadowRays::rays");
+static_assert(PLACE_OF(ShadowRays, hits) == 712, "place of ShadowRays::hits");
+static_assert(PLACE_OF(ShadowRays, share) == 720, "place of ShadowRays::share");
+static_assert(PLACE_OF(ShadowRays, tally) == 728, "place of ShadowRays::tally");
+static_assert(PLACE_OF(ShadowRays, first_block) == 736, "place of ShadowRays::first_block");
+static_assert(PLACE_OF(ShadowRays, first_light) == 744, "place of ShadowRays::first_light");
+static_assert(PLACE_OF(ShadowRays, light_count) == 748, "place of ShadowRays::light_count");
 
 struct alignas(8) Shade {
     Scene scene;
@@ -1540,38 +1588,38 @@ struct alignas(8) Shade {
     unsigned catches;
     unsigned spare;
 };
-static_assert(sizeof(Shade) == 904, "size of Shade");
+static_assert(sizeof(Shade) == 912, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
-static_assert(PLACE_OF(Shade, rays) == 584, "place of Shade::rays");
-static_assert(PLACE_OF(Shade, hits) == 704, "place of Shade::hits");
-static_assert(PLACE_OF(Shade, share) == 712, "place of Shade::share");
-static_assert(PLACE_OF(Shade, passed) == 720, "place of Shade::passed");
-static_assert(PLACE_OF(Shade, used) == 728, "place of Shade::used");
-static_assert(PLACE_OF(Shade, gathered) == 736, "place of Shade::gathered");
-static_assert(PLACE_OF(Shade, film_pixel) == 744, "place of Shade::film_pixel");
-static_assert(PLACE_OF(Shade, color) == 752, "place of Shade::color");
-static_assert(PLACE_OF(Shade, sums) == 760, "place of Shade::sums");
-static_assert(PLACE_OF(Shade, caught) == 768, "place of Shade::caught");
-static_assert(PLACE_OF(Shade, ray_caught) == 776, "place of Shade::ray_caught");
-static_assert(PLACE_OF(Shade, samples) == 784, "place of Shade::samples");
-static_assert(PLACE_OF(Shade, depth) == 792, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 800, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 808, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 816, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 824, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, light_groups) == 832, "place of Shade::light_groups");
-static_assert(PLACE_OF(Shade, ids) == 840, "place of Shade::ids");
-static_assert(PLACE_OF(Shade, film_pixels) == 848, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 856, "place of Shade::first_block");
-static_assert(PLACE_OF(Shade, first_light) == 864, "place of Shade::first_light");
-static_assert(PLACE_OF(Shade, end_light) == 868, "place of Shade::end_light");
-static_assert(PLACE_OF(Shade, several) == 872, "place of Shade::several");
-static_assert(PLACE_OF(Shade, sampled) == 876, "place of Shade::sampled");
-static_assert(PLACE_OF(Shade, sample_count) == 880, "place of Shade::sample_count");
-static_assert(PLACE_OF(Shade, first_sampled) == 884, "place of Shade::first_sampled");
-static_assert(PLACE_OF(Shade, sampled_pixels) == 888, "place of Shade::sampled_pixels");
-static_assert(PLACE_OF(Shade, catches) == 896, "place of Shade::catches");
-static_assert(PLACE_OF(Shade, spare) == 900, "place of Shade::spare");
+static_assert(PLACE_OF(Shade, rays) == 592, "place of Shade::rays");
+static_assert(PLACE_OF(Shade, hits) == 712, "place of Shade::hits");
+static_assert(PLACE_OF(Shade, share) == 720, "place of Shade::share");
+static_assert(PLACE_OF(Shade, passed) == 728, "place of Shade::passed");
+static_assert(PLACE_OF(Shade, used) == 736, "place of Shade::used");
+static_assert(PLACE_OF(Shade, gathered) == 744, "place of Shade::gathered");
+static_assert(PLACE_OF(Shade, film_pixel) == 752, "place of Shade::film_pixel");
+static_assert(PLACE_OF(Shade, color) == 760, "place of Shade::color");
+static_assert(PLACE_OF(Shade, sums) == 768, "place of Shade::sums");
+static_assert(PLACE_OF(Shade, caught) == 776, "place of Shade::caught");
+static_assert(PLACE_OF(Shade, ray_caught) == 784, "place of Shade::ray_caught");
+static_assert(PLACE_OF(Shade, samples) == 792, "place of Shade::samples");
+static_assert(PLACE_OF(Shade, depth) == 800, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 808, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 816, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 824, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 832, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, light_groups) == 840, "place of Shade::light_groups");
+static_assert(PLACE_OF(Shade, ids) == 848, "place of Shade::ids");
+static_assert(PLACE_OF(Shade, film_pixels) == 856, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 864, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, first_light) == 872, "place of Shade::first_light");
+static_assert(PLACE_OF(Shade, end_light) == 876, "place of Shade::end_light");
+static_assert(PLACE_OF(Shade, several) == 880, "place of Shade::several");
+static_assert(PLACE_OF(Shade, sampled) == 884, "place of Shade::sampled");
+static_assert(PLACE_OF(Shade, sample_count) == 888, "place of Shade::sample_count");
+static_assert(PLACE_OF(Shade, first_sampled) == 892, "place of Shade::first_sampled");
+static_assert(PLACE_OF(Shade, sampled_pixels) == 896, "place of Shade::sampled_pixels");
+static_assert(PLACE_OF(Shade, catches) == 904, "place of Shade::catches");
+static_assert(PLACE_OF(Shade, spare) == 908, "place of Shade::spare");
 
 struct alignas(8) PixelSamples {
     Scene scene;
@@ -1613,45 +1661,45 @@ struct alignas(8) PixelSamples {
     unsigned matte_slots;
     float quantiles[64];
 };
-static_assert(sizeof(PixelSamples) == 1224, "size of PixelSamples");
+static_assert(sizeof(PixelSamples) == 1232, "size of PixelSamples");
 static_assert(PLACE_OF(PixelSamples, scene) == 0, "place of PixelSamples::scene");
-static_assert(PLACE_OF(PixelSamples, rays) == 584, "place of PixelSamples::rays");
-static_assert(PLACE_OF(PixelSamples, hits) == 704, "place of PixelSamples::hits");
-static_assert(PLACE_OF(PixelSamples, centers) == 712, "place of PixelSamples::centers");
-static_assert(PLACE_OF(PixelSamples, state) == 720, "place of PixelSamples::state");
-static_assert(PLACE_OF(PixelSamples, owners) == 728, "place of PixelSamples::owners");
-static_assert(PLACE_OF(PixelSamples, color) == 736, "place of PixelSamples::color");
-static_assert(PLACE_OF(PixelSamples, counts) == 744, "place of PixelSamples::counts");
-static_assert(PLACE_OF(PixelSamples, fragments) == 760, "place of PixelSamples::fragments");
-static_assert(PLACE_OF(PixelSamples, fragment_hits) == 776, "place of PixelSamples::fragment_hits");
-static_assert(PLACE_OF(PixelSamples, coverage) == 792, "place of PixelSamples::coverage");
-static_assert(PLACE_OF(PixelSamples, caught) == 800, "place of PixelSamples::caught");
-static_assert(PLACE_OF(PixelSamples, depth) == 808, "place of PixelSamples::depth");
-static_assert(PLACE_OF(PixelSamples, normal) == 816, "place of PixelSamples::normal");
-static_assert(PLACE_OF(PixelSamples, position) == 824, "place of PixelSamples::position");
-static_assert(PLACE_OF(PixelSamples, visibility) == 832, "place of PixelSamples::visibility");
-static_assert(PLACE_OF(PixelSamples, light_points) == 840, "place of PixelSamples::light_points");
-static_assert(PLACE_OF(PixelSamples, light_groups) == 848, "place of PixelSamples::light_groups");
-static_assert(PLACE_OF(PixelSamples, ids) == 856, "place of PixelSamples::ids");
-static_assert(PLACE_OF(PixelSamples, mattes) == 864, "place of PixelSamples::mattes");
-static_assert(PLACE_OF(PixelSamples, tally) == 872, "place of PixelSamples::tally");
-static_assert(PLACE_OF(PixelSamples, first_block) == 880, "place of PixelSamples::first_block");
-static_assert(PLACE_OF(PixelSamples, seed) == 888, "place of PixelSamples::seed");
-static_assert(PLACE_OF(PixelSamples, film_pixels) == 896, "place of PixelSamples::film_pixels");
-static_assert(PLACE_OF(PixelSamples, spacing) == 904, "place of PixelSamples::spacing");
-static_assert(PLACE_OF(PixelSamples, samples) == 912, "place of PixelSamples::samples");
-static_assert(PLACE_OF(PixelSamples, inner) == 920, "place of PixelSamples::inner");
-static_assert(PLACE_OF(PixelSamples, all_samples) == 928, "place of PixelSamples::all_samples");
-static_assert(PLACE_OF(PixelSamples, together) == 932, "place of PixelSamples::together");
-static_assert(PLACE_OF(PixelSamples, lanes) == 936, "place of PixelSamples::lanes");
-static_assert(PLACE_OF(PixelSamples, light_count) == 940, "place of PixelSamples::light_count");
-static_assert(PLACE_OF(PixelSamples, weight) == 944, "place of PixelSamples::weight");
-static_assert(PLACE_OF(PixelSamples, contrast) == 948, "place of PixelSamples::contrast");
-static_assert(PLACE_OF(PixelSamples, apart) == 952, "place of PixelSamples::apart");
-static_assert(PLACE_OF(PixelSamples, mirrors) == 956, "place of PixelSamples::mirrors");
-static_assert(PLACE_OF(PixelSamples, keeps) == 960, "place of PixelSamples::keeps");
-static_assert(PLACE_OF(PixelSamples, matte_slots) == 964, "place of PixelSamples::matte_slots");
-static_assert(PLACE_OF(PixelSamples, quantiles) == 968, "place of PixelSamples::quantiles");
+static_assert(PLACE_OF(PixelSamples, rays) == 592, "place of PixelSamples::rays");
+static_assert(PLACE_OF(PixelSamples, hits) == 712, "place of PixelSamples::hits");
+static_assert(PLACE_OF(PixelSamples, centers) == 720, "place of PixelSamples::centers");
+static_assert(PLACE_OF(PixelSamples, state) == 728, "place of PixelSamples::state");
+static_assert(PLACE_OF(PixelSamples, owners) == 736, "place of PixelSamples::owners");
+static_assert(PLACE_OF(PixelSamples, color) == 744, "place of PixelSamples::color");
+static_assert(PLACE_OF(PixelSamples, counts) == 752, "place of PixelSamples::counts");
+static_assert(PLACE_OF(PixelSamples, fragments) == 768, "place of PixelSamples::fragments");
+static_assert(PLACE_OF(PixelSamples, fragment_hits) == 784, "place of PixelSamples::fragment_hits");
+static_assert(PLACE_OF(PixelSamples, coverage) == 800, "place of PixelSamples::coverage");
+static_assert(PLACE_OF(PixelSamples, caught) == 808, "place of PixelSamples::caught");
+static_assert(PLACE_OF(PixelSamples, depth) == 816, "place of PixelSamples::depth");
+static_assert(PLACE_OF(PixelSamples, normal) == 824, "place of PixelSamples::normal");
+static_assert(PLACE_OF(PixelSamples, position) == 832, "place of PixelSamples::position");
+static_assert(PLACE_OF(PixelSamples, visibility) == 840, "place of PixelSamples::visibility");
+static_assert(PLACE_OF(PixelSamples, light_points) == 848, "place of PixelSamples::light_points");
+static_assert(PLACE_OF(PixelSamples, light_groups) == 856, "place of PixelSamples::light_groups");
+static_assert(PLACE_OF(PixelSamples, ids) == 864, "place of PixelSamples::ids");
+static_assert(PLACE_OF(PixelSamples, mattes) == 872, "place of PixelSamples::mattes");
+static_assert(PLACE_OF(PixelSamples, tally) == 880, "place of PixelSamples::tally");
+static_assert(PLACE_OF(PixelSamples, first_block) == 888, "place of PixelSamples::first_block");
+static_assert(PLACE_OF(PixelSamples, seed) == 896, "place of PixelSamples::seed");
+static_assert(PLACE_OF(PixelSamples, film_pixels) == 904, "place of PixelSamples::film_pixels");
+static_assert(PLACE_OF(PixelSamples, spacing) == 912, "place of PixelSamples::spacing");
+static_assert(PLACE_OF(PixelSamples, samples) == 920, "place of PixelSamples::samples");
+static_assert(PLACE_OF(PixelSamples, inner) == 928, "place of PixelSamples::inner");
+static_assert(PLACE_OF(PixelSamples, all_samples) == 936, "place of PixelSamples::all_samples");
+static_assert(PLACE_OF(PixelSamples, together) == 940, "place of PixelSamples::together");
+static_assert(PLACE_OF(PixelSamples, lanes) == 944, "place of PixelSamples::lanes");
+static_assert(PLACE_OF(PixelSamples, light_count) == 948, "place of PixelSamples::light_count");
+static_assert(PLACE_OF(PixelSamples, weight) == 952, "place of PixelSamples::weight");
+static_assert(PLACE_OF(PixelSamples, contrast) == 956, "place of PixelSamples::contrast");
+static_assert(PLACE_OF(PixelSamples, apart) == 960, "place of PixelSamples::apart");
+static_assert(PLACE_OF(PixelSamples, mirrors) == 964, "place of PixelSamples::mirrors");
+static_assert(PLACE_OF(PixelSamples, keeps) == 968, "place of PixelSamples::keeps");
+static_assert(PLACE_OF(PixelSamples, matte_slots) == 972, "place of PixelSamples::matte_slots");
+static_assert(PLACE_OF(PixelSamples, quantiles) == 976, "place of PixelSamples::quantiles");
 
 struct alignas(8) MirrorRays {
     Scene scene;
@@ -1660,18 +1708,14 @@ struct alignas(8) MirrorRays {
     unsigned *counts;
     ListedRay *onward;
     Cone *cones;
-    unsigned bounces;
-    unsigned spare;
 };
 static_assert(sizeof(MirrorRays) == 744, "size of MirrorRays");
 static_assert(PLACE_OF(MirrorRays, scene) == 0, "place of MirrorRays::scene");
-static_assert(PLACE_OF(MirrorRays, rays) == 584, "place of MirrorRays::rays");
-static_assert(PLACE_OF(MirrorRays, hits) == 704, "place of MirrorRays::hits");
-static_assert(PLACE_OF(MirrorRays, counts) == 712, "place of MirrorRays::counts");
-static_assert(PLACE_OF(MirrorRays, onward) == 720, "place of MirrorRays::onward");
-static_assert(PLACE_OF(MirrorRays, cones) == 728, "place of MirrorRays::cones");
-static_assert(PLACE_OF(MirrorRays, bounces) == 736, "place of MirrorRays::bounces");
-static_assert(PLACE_OF(MirrorRays, spare) == 740, "place of MirrorRays::spare");
+static_assert(PLACE_OF(MirrorRays, rays) == 592, "place of MirrorRays::rays");
+static_assert(PLACE_OF(MirrorRays, hits) == 712, "place of MirrorRays::hits");
+static_assert(PLACE_OF(MirrorRays, counts) == 720, "place of MirrorRays::counts");
+static_assert(PLACE_OF(MirrorRays, onward) == 728, "place of MirrorRays::onward");
+static_assert(PLACE_OF(MirrorRays, cones) == 736, "place of MirrorRays::cones");
 
 struct alignas(8) GroupCells {
     Scene scene;
@@ -1684,16 +1728,16 @@ struct alignas(8) GroupCells {
     Item *items;
     unsigned long long first_block;
 };
-static_assert(sizeof(GroupCells) == 832, "size of GroupCells");
+static_assert(sizeof(GroupCells) == 840, "size of GroupCells");
 static_assert(PLACE_OF(GroupCells, scene) == 0, "place of GroupCells::scene");
-static_assert(PLACE_OF(GroupCells, rays) == 584, "place of GroupCells::rays");
-static_assert(PLACE_OF(GroupCells, hits) == 704, "place of GroupCells::hits");
-static_assert(PLACE_OF(GroupCells, mesh) == 712, "place of GroupCells::mesh");
-static_assert(PLACE_OF(GroupCells, members) == 792, "place of GroupCells::members");
-static_assert(PLACE_OF(GroupCells, tile_items) == 800, "place of GroupCells::tile_items");
-static_assert(PLACE_OF(GroupCells, counts) == 808, "place of GroupCells::counts");
-static_assert(PLACE_OF(GroupCells, items) == 816, "place of GroupCells::items");
-static_assert(PLACE_OF(GroupCells, first_block) == 824, "place of GroupCells::first_block");
+static_assert(PLACE_OF(GroupCells, rays) == 592, "place of GroupCells::rays");
+static_assert(PLACE_OF(GroupCells, hits) == 712, "place of GroupCells::hits");
+static_assert(PLACE_OF(GroupCells, mesh) == 720, "place of GroupCells::mesh");
+static_assert(PLACE_OF(GroupCells, members) == 800, "place of GroupCells::members");
+static_assert(PLACE_OF(GroupCells, tile_items) == 808, "place of GroupCells::tile_items");
+static_assert(PLACE_OF(GroupCells, counts) == 816, "place of GroupCells::counts");
+static_assert(PLACE_OF(GroupCells, items) == 824, "place of GroupCells::items");
+static_assert(PLACE_OF(GroupCells, first_block) == 832, "place of GroupCells::first_block");
 
 struct alignas(8) ShortTests {
     Scene scene;
@@ -1707,17 +1751,17 @@ struct alignas(8) ShortTests {
     unsigned long long first_item;
     unsigned long long item_count;
 };
-static_assert(sizeof(ShortTests) == 840, "size of ShortTests");
+static_assert(sizeof(ShortTests) == 848, "size of ShortTests");
 static_assert(PLACE_OF(ShortTests, scene) == 0, "place of ShortTests::scene");
-static_assert(PLACE_OF(ShortTests, rays) == 584, "place of ShortTests::rays");
-static_assert(PLACE_OF(ShortTests, hits) == 704, "place of ShortTests::hits");
-static_assert(PLACE_OF(ShortTests, mesh) == 712, "place of ShortTests::mesh");
-static_assert(PLACE_OF(ShortTests, members) == 792, "place of ShortTests::members");
-static_assert(PLACE_OF(ShortTests, items) == 800, "place of ShortTests::items");
-static_assert(PLACE_OF(ShortTests, masks) == 808, "place of ShortTests::masks");
-static_assert(PLACE_OF(ShortTests, tally) == 816, "place of ShortTests::tally");
-static_assert(PLACE_OF(ShortTests, first_item) == 824, "place of ShortTests::first_item");
-static_assert(PLACE_OF(ShortTests, item_count) == 832, "place of ShortTests::item_count");
+static_assert(PLACE_OF(ShortTests, rays) == 592, "place of ShortTests::rays");
+static_assert(PLACE_OF(ShortTests, hits) == 712, "place of ShortTests::hits");
+static_assert(PLACE_OF(ShortTests, mesh) == 720, "place of ShortTests::mesh");
+static_assert(PLACE_OF(ShortTests, members) == 800, "place of ShortTests::members");
+static_assert(PLACE_OF(ShortTests, items) == 808, "place of ShortTests::items");
+static_assert(PLACE_OF(ShortTests, masks) == 816, "place of ShortTests::masks");
+static_assert(PLACE_OF(ShortTests, tally) == 824, "place of ShortTests::tally");
+static_assert(PLACE_OF(ShortTests, first_item) == 832, "place of ShortTests::first_item");
+static_assert(PLACE_OF(ShortTests, item_count) == 840, "place of ShortTests::item_count");
 
 struct alignas(8) LightPoints {
     LightMesh mesh;
@@ -1760,18 +1804,18 @@ struct alignas(8) LongTests {
     unsigned first_sample;
     unsigned sample_count;
 };
-static_assert(sizeof(LongTests) == 768, "size of LongTests");
+static_assert(sizeof(LongTests) == 776, "size of LongTests");
 static_assert(PLACE_OF(LongTests, scene) == 0, "place of LongTests::scene");
-static_assert(PLACE_OF(LongTests, mesh) == 584, "place of LongTests::mesh");
-static_assert(PLACE_OF(LongTests, points) == 664, "place of LongTests::points");
-static_assert(PLACE_OF(LongTests, lit) == 704, "place of LongTests::lit");
-static_assert(PLACE_OF(LongTests, sampling) == 720, "place of LongTests::sampling");
-static_assert(PLACE_OF(LongTests, tally) == 736, "place of LongTests::tally");
-static_assert(PLACE_OF(LongTests, light) == 744, "place of LongTests::light");
-static_assert(PLACE_OF(LongTests, point_count) == 748, "place of LongTests::point_count");
-static_assert(PLACE_OF(LongTests, first_point) == 752, "place of LongTests::first_point");
-static_assert(PLACE_OF(LongTests, first_sample) == 760, "place of LongTests::first_sample");
-static_assert(PLACE_OF(LongTests, sample_count) == 764, "place of LongTests::sample_count");
+static_assert(PLACE_OF(LongTests, mesh) == 592, "place of LongTests::mesh");
+static_assert(PLACE_OF(LongTests, points) == 672, "place of LongTests::points");
+static_assert(PLACE_OF(LongTests, lit) == 712, "place of LongTests::lit");
+static_assert(PLACE_OF(LongTests, sampling) == 728, "place of LongTests::sampling");
+static_assert(PLACE_OF(LongTests, tally) == 744, "place of LongTests::tally");
+static_assert(PLACE_OF(LongTests, light) == 752, "place of LongTests::light");
+static_assert(PLACE_OF(LongTests, point_count) == 756, "place of LongTests::point_count");
+static_assert(PLACE_OF(LongTests, first_point) == 760, "place of LongTests::first_point");
+static_assert(PLACE_OF(LongTests, first_sample) == 768, "place of LongTests::first_sample");
+static_assert(PLACE_OF(LongTests, sample_count) == 772, "place of LongTests::sample_count");
 
 struct alignas(8) Cache {
     UsedPoints points;
@@ -1815,25 +1859,25 @@ struct alignas(8) Interpolate {
     unsigned long long first;
     unsigned long long count;
 };
-static_assert(sizeof(Interpolate) == 944, "size of Interpolate");
+static_assert(sizeof(Interpolate) == 952, "size of Interpolate");
 static_assert(PLACE_OF(Interpolate, scene) == 0, "place of Interpolate::scene");
-static_assert(PLACE_OF(Interpolate, rays) == 584, "place of Interpolate::rays");
-static_assert(PLACE_OF(Interpolate, hits) == 704, "place of Interpolate::hits");
-static_assert(PLACE_OF(Interpolate, mesh) == 712, "place of Interpolate::mesh");
-static_assert(PLACE_OF(Interpolate, members) == 792, "place of Interpolate::members");
-static_assert(PLACE_OF(Interpolate, items) == 800, "place of Interpolate::items");
-static_assert(PLACE_OF(Interpolate, masks) == 808, "place of Interpolate::masks");
-static_assert(PLACE_OF(Interpolate, points) == 816, "place of Interpolate::points");
-static_assert(PLACE_OF(Interpolate, slots) == 856, "place of Interpolate::slots");
-static_assert(PLACE_OF(Interpolate, lit) == 864, "place of Interpolate::lit");
-static_assert(PLACE_OF(Interpolate, share) == 872, "place of Interpolate::share");
-static_assert(PLACE_OF(Interpolate, used) == 880, "place of Interpolate::used");
-static_assert(PLACE_OF(Interpolate, fallback_rays) == 888, "place of Interpolate::fallback_rays");
-static_assert(PLACE_OF(Interpolate, fallback_count) == 896, "place of Interpolate::fallback_count");
-static_assert(PLACE_OF(Interpolate, sampling) == 904, "place of Interpolate::sampling");
-static_assert(PLACE_OF(Interpolate, tally) == 920, "place of Interpolate::tally");
-static_assert(PLACE_OF(Interpolate, first) == 928, "place of Interpolate::first");
-static_assert(PLACE_OF(Interpolate, count) == 936, "place of Interpolate::count");
+static_assert(PLACE_OF(Interpolate, rays) == 592, "place of Interpolate::rays");
+static_assert(PLACE_OF(Interpolate, hits) == 712, "place of Interpolate::hits");
+static_assert(PLACE_OF(Interpolate, mesh) == 720, "place of Interpolate::mesh");
+static_assert(PLACE_OF(Interpolate, members) == 800, "place of Interpolate::members");
+static_assert(PLACE_OF(Interpolate, items) == 808, "place of Interpolate::items");
+static_assert(PLACE_OF(Interpolate, masks) == 816, "place of Interpolate::masks");
+static_assert(PLACE_OF(Interpolate, points) == 824, "place of Interpolate::points");
+static_assert(PLACE_OF(Interpolate, slots) == 864, "place of Interpolate::slots");
+static_assert(PLACE_OF(Interpolate, lit) == 872, "place of Interpolate::lit");
+static_assert(PLACE_OF(Interpolate, share) == 880, "place of Interpolate::share");
+static_assert(PLACE_OF(Interpolate, used) == 888, "place of Interpolate::used");
+static_assert(PLACE_OF(Interpolate, fallback_rays) == 896, "place of Interpolate::fallback_rays");
+static_assert(PLACE_OF(Interpolate, fallback_count) == 904, "place of Interpolate::fallback_count");
+static_assert(PLACE_OF(Interpolate, sampling) == 912, "place of Interpolate::sampling");
+static_assert(PLACE_OF(Interpolate, tally) == 928, "place of Interpolate::tally");
+static_assert(PLACE_OF(Interpolate, first) == 936, "place of Interpolate::first");
+static_assert(PLACE_OF(Interpolate, count) == 944, "place of Interpolate::count");
 
 struct alignas(8) Scan {
     unsigned *values;

@@ -43,6 +43,8 @@ pub struct RayList {
     pub samples: Vec<u32>,
     /// How often the rays went on at surfaces: through them or mirrored.
     pub depth: u32,
+    /// How often rays are mirrored at most.
+    pub bounces: u32,
     /// The samples of its pixel that are shaded with each ray, a bit each; 0 if none are. Empty for camera rays, with which all
     /// are.
     pub shared: Vec<u32>,
@@ -88,6 +90,11 @@ impl RayList {
         self.depth > self.throughs(ray)
     }
 
+    /// Whether the mirror ray of what a ray sees is followed.
+    pub(crate) fn mirrors(&self, ray: usize) -> bool {
+        self.depth - self.throughs(ray) < self.bounces
+    }
+
     /// The angle of the cone around a ray; of those of all samples that are shaded with it, if there are several.
     #[inline(always)]
     pub(crate) fn spread_of(&self, ray: usize) -> f32 {
@@ -106,7 +113,8 @@ impl RayList {
 
     /// An empty list of rays from the same camera.
     pub(crate) fn empty(&self) -> RayList {
-        RayList { spacing: self.spacing, cone: self.cone, window: self.window, ..RayList::default() }
+        let (spacing, cone, window, bounces) = (self.spacing, self.cone, self.window, self.bounces);
+        RayList { spacing, cone, window, bounces, ..RayList::default() }
     }
 
     /// The ray through a sample of a pixel. The rays must be a camera's.

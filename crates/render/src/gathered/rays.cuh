@@ -82,7 +82,7 @@ DEVICE unsigned add_lights(const Fans &fans, const Structure &structure, const S
         const Vec3 to = target(targets_of(fans.scene, fans.sampling, light, surface.point.origin, key), 0);
         if (dot(surface.point.normal, to - surface.point.origin) <= 0.0f)
             continue;
-        const Vec3 gain = surface.material->kd * arriving(surface, fans.scene, light, reach, to);
+        const Vec3 gain = surface.material->all * arriving(surface, fans.scene, light, reach, to);
         if (gain == splat(0.0f))
             continue;
         ++cast;
@@ -108,7 +108,8 @@ DEVICE SeenRay seen_by(const Fans &fans, const Structure &structure, unsigned ra
     Material own;
     const Surface surface = surface_at(fans.scene, fans.rays, fans.hits, ray, own);
     seen.radiance = fans.lamps && surface.material->lamp ? splat(0.0f) : surface.material->emission;
-    if (surface.material->kd == splat(0.0f))
+    // Facets reflect as if they scattered.
+    if (surface.material->all == splat(0.0f))
         return seen;
     const unsigned number = ray / rays_of_fan(fans), index = ray % rays_of_fan(fans);
     const Site &site = fans.sites[number];
@@ -118,7 +119,7 @@ DEVICE SeenRay seen_by(const Fans &fans, const Structure &structure, unsigned ra
     float rest;
     seen.position = surface.point.position;
     seen.normal = surface.point.normal;
-    seen.kd = surface.material->kd;
+    seen.kd = surface.material->all;
     seen.level = max(level_of_width(BOUNCE_SIZE * hit.t, rest), site.level + BOUNCE_COARSER);
     seen.kind = surface_kind(surface.point.normal, front);
     return seen;

@@ -182,7 +182,8 @@ fn seen_by(wave: &HostWave, cast: &Cast, lights: &Lights, [ray, place]: [usize; 
         return Seen { radiance: surroundings(wave.lights(), direction, spread), ..Seen::default() };
     };
     let surface = Surface::new(wave, ray);
-    let kd = surface.coefficients.kd;
+    // Facets reflect as if they scattered.
+    let kd = surface.coefficients.all;
     let radiance = if lights.lamps && material.lamp { Vec3::ZERO } else { surface.coefficients.emission };
     if kd == Vec3::ZERO {
         return Seen { radiance, ..Seen::default() };
@@ -232,7 +233,7 @@ impl Segments {
                 continue;
             }
             let arriving = surface.arriving(&lights.targets, light, index, reach);
-            let gain = surface.coefficients.kd * arriving.unwrap_or_else(|| surface.arriving_from(light, target));
+            let gain = surface.coefficients.all * arriving.unwrap_or_else(|| surface.arriving_from(light, target));
             if gain != Vec3::ZERO {
                 self.rays.push(long_segment(point.origin, target));
                 self.gains.push((place, gain));

@@ -6,13 +6,14 @@ use glam::Vec2;
 use lightmesh_image::Transfer;
 use lightmesh_layout::In;
 use lightmesh_layout::geometry::{Coverage, Mask, Vec3};
-use lightmesh_layout::scene::{Material, Scene as Record, Texture, TextureLevel, Uv};
+use lightmesh_layout::scene::{FacetShare, Material, Scene as Record, Texture, TextureLevel, Uv};
 use lightmesh_scene::{Geometry, Wrap};
 
 use super::scene::{Upload, vec3};
 use crate::accel;
 use crate::cuda::Runtime;
 use crate::error::RenderError;
+use crate::shading::facets;
 use crate::shading::tint::{Coefficients, is_tinted};
 use crate::textures::{Level, MipLevels, images_of};
 
@@ -46,6 +47,9 @@ impl<R: Runtime> Upload<'_, R> {
             })
             .collect();
         record.materials = self.array("materials", &materials)?;
+        if geometry.materials.iter().any(|material| material.faceted().is_some()) {
+            record.facet_table = self.array::<FacetShare>("table of facets", bytemuck::cast_slice(facets::table()))?;
+        }
         Ok(())
     }
 
@@ -162,5 +166,10 @@ fn material_record(geometry: &Geometry, material: &lightmesh_scene::Material) ->
         record.ks_tinted = vec3(material.ks_tinted);
         record.emission_tinted = vec3(material.emission_tinted);
     }
+    if let Some(facets) = material.faceted() {
+        record.facets = 1;
+        (record.roughness, record.metallic, record.grazing) = (facets.roughness, facets.metallic, facets.grazing);
+    }
+    (record.all, record.mirrored) = (vec3(own.all), vec3(own.mirrored));
     Material { ka: vec3(own.ka), kd: vec3(own.kd), ks: vec3(own.ks), emission: vec3(own.emission), ..record }
 }

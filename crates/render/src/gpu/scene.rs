@@ -17,9 +17,9 @@ use crate::error::RenderError;
 use crate::job::Job;
 use crate::prepared::{PreparedGeometry, PreparedScene, SeeThrough};
 use crate::sampling::disk_radius;
-use crate::shading::LightTargets;
 use crate::shading::ambient::AmbientLight;
 use crate::shading::tint::is_tinted;
+use crate::shading::{LightTargets, is_seen};
 use crate::stage::Stage;
 use crate::sync::locked;
 
@@ -285,7 +285,10 @@ impl<R: Runtime> Upload<'_, R> {
     /// The record of a scene with these lights.
     fn lights(&mut self, scene: &PreparedScene, geometry: Scene) -> Result<Scene, RenderError> {
         let lights = &scene.scene.lights;
-        let records: Vec<Light> = lights.iter().map(|it| light(&scene.geometry, it)).collect();
+        let records: Vec<Light> = lights
+            .iter()
+            .map(|it| Light { seen: u32::from(is_seen(lights, it)), ..light(&scene.geometry, it) })
+            .collect();
         let targets = LightTargets::new(lights).flat();
         Ok(Scene {
             lights: self.array("lights", &records)?,

@@ -55,6 +55,13 @@ DEVICE Vec3 radiance_without_sun(const Environment *environment, Vec3 direction,
     return seen;
 }
 
+// How much fainter a disc is with an edge as wide as `spread`, so that it gives as much light.
+DEVICE float faded(float radius, float spread) {
+    const float end = radius + 0.5f * spread;
+    return spread <= 2.0f * radius ? 12.0f * radius * radius / (12.0f * radius * radius + spread * spread)
+                                   : 3.0f * radius * radius * spread / (end * end * end);
+}
+
 // The same with the sun. A function of its own, so that its callers keep their registers.
 COLD Vec3 environment_radiance(const Environment *environment, Vec3 direction, float spread) {
     const Vec3 seen = radiance_without_sun(environment, direction, spread);
@@ -63,7 +70,7 @@ COLD Vec3 environment_radiance(const Environment *environment, Vec3 direction, f
         return seen;
     const float inside = environment->sun_radius - length(direction - environment->sun);
     const float share = spread > 0.0f ? fminf(fmaxf(inside / spread + 0.5f, 0.0f), 1.0f) : inside >= 0.0f ? 1.0f : 0.0f;
-    return share > 0.0f ? between(seen, environment->sun_radiance, share) : seen;
+    return share > 0.0f ? between(seen, environment->sun_radiance, share * faded(environment->sun_radius, spread)) : seen;
 }
 
 // What surfaces receive from outside of the scene along a direction, but for lights.

@@ -3,7 +3,7 @@
 //! 1. The direction becomes a place in the panorama. Devices round arc tangents differently, so that one polynomial serves all.
 //! 2. A cone that is no wider than a texel is magnified: the four nearest texels are interpolated. Wider ones take the mean of the two levels
 //!    whose texels are just smaller and just larger.
-//! 3. The sun is a disc with an edge as wide as the cone.
+//! 3. The sun is a disc with an edge as wide as the cone, and as much light.
 
 use glam::{Vec2, Vec3};
 use lightmesh_layout::constants::{
@@ -38,7 +38,18 @@ pub(crate) fn radiance(environment: &Environment, direction: Vec3, spread: f32) 
     let Some(sun) = environment.sun() else { return seen };
     let inside = sun.radius - (direction - sun.direction).length();
     let share = if spread > 0.0 { (inside / spread + 0.5).clamp(0.0, 1.0) } else { f32::from(inside >= 0.0) };
-    if share > 0.0 { between(seen, sun.radiance, share) } else { seen }
+    if share > 0.0 { between(seen, sun.radiance, share * faded(sun.radius, spread)) } else { seen }
+}
+
+/// How much fainter a disc is with an edge as wide as `spread`, so that it gives as much light: the edge is a frustum of a cone, or a cone.
+#[inline(always)]
+fn faded(radius: f32, spread: f32) -> f32 {
+    let end = radius + 0.5 * spread;
+    if spread <= 2.0 * radius {
+        12.0 * radius * radius / (12.0 * radius * radius + spread * spread)
+    } else {
+        3.0 * radius * radius * spread / (end * end * end)
+    }
 }
 
 /// The same without the sun, which is a light.
@@ -150,6 +161,9 @@ mod tests {
             radiance(&map, Vec3::new(cos, sin, 0.0), spread).x / sun.radiance.x
         };
         assert_eq!([at(0.0, 0.0), at(4.9, 0.0), at(5.1, 0.0), at(180.0, 0.0)], [1.0, 1.0, 0.0, 0.0]);
-        assert!((at(5.0, 0.01) - 0.5).abs() < 0.05 && at(4.6, 0.01) == 1.0 && at(5.4, 0.01) == 0.0);
+        assert!((at(5.0, 0.01) - 0.5).abs() < 0.05 && at(4.6, 0.01) > 0.99 && at(5.4, 0.01) == 0.0);
+        // Wide cones see as much light.
+        let all = |spread: f32| (0..1800).map(|step| (step as f32 + 0.5) * at(0.05 * step as f32, spread)).sum::<f32>();
+        assert!((all(1.0) / all(0.0) - 1.0).abs() < 0.1, "{} of {}", all(1.0), all(0.0));
     }
 }

@@ -4,6 +4,7 @@
 //! I(P) = I_a k_a + Σ_i V(L_i, P) · I_i · [ k_d (N·D_i) + k_s (R_i·View)^pow ] + k_s · I_r
 //! ```
 //!
+//! or, of surfaces with [`facets`], their lobe in place of the Phong lobe.
 //! Both dot products are clamped at 0, channels are independent. This module has the terms, their coefficients ([`tint`]) and the points
 //! that represent a light; the stages [`shade`](crate::stages::shade) and [`mirror_rays`](crate::stages::mirror_rays) combine them. Twins:
 //! `shading.cuh`, `tint.cuh`.
@@ -11,6 +12,7 @@
 pub(crate) mod ambient;
 pub(crate) mod dielectric;
 pub(crate) mod environment;
+pub(crate) mod facets;
 pub(crate) mod ids;
 #[cfg(test)]
 mod tests;
@@ -19,15 +21,22 @@ pub(crate) mod tint;
 use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
-use lightmesh_layout::constants::{LIGHT_TARGETS, LUMINANCE_BLUE, LUMINANCE_GREEN, LUMINANCE_RED};
-use lightmesh_scene::{Falloff, Light, LightKind, Material};
+use lightmesh_layout::constants::{LIGHT_TARGETS, LUMINANCE_BLUE, LUMINANCE_GREEN, LUMINANCE_RED, PART_OF_LIGHT};
+use lightmesh_scene::{Falloff, Light, LightKind, Lights, Material};
 
+use crate::accel::Hit;
 use crate::data::wave::HostWave;
+use crate::footprint::{Cone, curvature};
 use crate::sampling::{Pattern, light_center, light_point};
+use crate::shadow::size;
 use crate::surface::{SurfacePoint, shading_normal};
 use ambient::AmbientLight;
 use dielectric::{eta_seen, refracted};
+use facets::{Lobe, Sight};
 use tint::{Coefficients, is_tinted};
+
+/// The cosine between the way of its light and the direction to the sun of which a directional light is the same: single precision errs by less.
+const SAME_SUN: f32 = -0.999_999;
 
 /// A surface point with what formula (1) needs.
 pub(crate) struct Surface {
@@ -38,35 +47,58 @@ pub(crate) struct Surface {
     pub(crate) coefficients: Coefficients,
     /// Phong exponent.
     shininess: f32,
+    /// In its place, of a surface with facets.
+    lobe: Option<Lobe>,
     /// n₁/n₂, from the side of the viewer to the other, of a surface that bends light.
     eta: Option<f32>,
 }
 
 impl Surface {
     #[inline(always)]
-    pub(crate) fn new(wave: &HostWave, ray: usize) -> Surface {
-        let point = wave.surface_point(ray);
-        let (ray, cone, hit) = (&wave.rays.rays[ray], wave.rays.cone_of(ray), &wave.hits[ray]);
+    pub(crate) fn new(wave: &HostWave, index: usize) -> Surface {
+        let point = wave.surface_point(index);
+        let (ray, cone, hit) = (&wave.rays.rays[index], wave.rays.cone_of(index), &wave.hits[index]);
         let geometry = &wave.scene.scene.geometry;
         let mesh = &geometry.mesh;
         let material = &geometry.materials[mesh.materials[hit.triangle as usize] as usize];
-        Surface {
+        let surface = Surface {
             normal: shading_normal(mesh, hit, point.normal),
             point,
             view: -ray.direction,
             coefficients: Coefficients::at(wave.scene, material, ray, cone, hit),
             shininess: material.shininess,
+            lobe: None,
             eta: material
                 .boundary()
                 .and_then(|glass| eta_seen(glass, ray, &wave.scene.geometry.triangles[hit.triangle as usize])),
+        };
+        surface.faceted(wave, index, material)
+    }
+
+    /// The same with what facets make of its coefficients, if its material has any.
+    #[inline(always)]
+    fn faceted(mut self, wave: &HostWave, ray: usize, material: &Material) -> Surface {
+        if let Some(facets) = material.faceted() {
+            let (hit, followed) = (&wave.hits[ray], wave.rays.mirrors(ray));
+            let cone = wave.rays.cone_of(ray).after(hit.t);
+            let spread = if cone.is_point() { 0.0 } else { self.mirrored_cone(wave, hit, cone).spread.abs() };
+            let sight = Sight { cosine: self.normal.dot(self.view), spread, followed };
+            self.lobe = Some(Lobe::new(facets, &mut self.coefficients, &sight));
         }
+        self
+    }
+
+    /// The cone that the surface mirrors, if it is smooth, of one that meets it at `hit`.
+    pub(crate) fn mirrored_cone(&self, wave: &HostWave, hit: &Hit, cone: Cone) -> Cone {
+        let corners = wave.scene.geometry.triangles[hit.triangle as usize].corners();
+        cone.reflected(curvature(&wave.scene.scene.geometry.mesh, hit, corners, self.point.normal))
     }
 
     /// What ray number `ray` sees of it without lights: ambient, or gathered, and emitted light.
     #[inline(always)]
     pub(crate) fn unlit(&self, ambient: &AmbientLight, ray: usize) -> Vec3 {
         match ambient.gathered {
-            Some(gathered) => gathered[ray] * self.coefficients.kd + self.coefficients.emission,
+            Some(gathered) => gathered[ray] * self.coefficients.all + self.coefficients.emission,
             None => self.alone(ambient),
         }
     }
@@ -74,7 +106,7 @@ impl Surface {
     /// The same if nothing else was there.
     #[inline(always)]
     pub(crate) fn alone(&self, ambient: &AmbientLight) -> Vec3 {
-        let reflected = if ambient.gathered.is_some() { self.coefficients.kd } else { self.coefficients.ka };
+        let reflected = if ambient.gathered.is_some() { self.coefficients.all } else { self.coefficients.ka };
         ambient.at(self.normal) * reflected + self.coefficients.emission
     }
 
@@ -88,9 +120,10 @@ impl Surface {
             let shared = wave.rays.shared.get(ray).copied().unwrap_or(u32::MAX);
             if is_tinted(geometry, material) && shared != 0 {
                 let hits = sampled.hits_of(wave.rays.pixels[ray], shared);
-                let (ray, cone) = (&wave.rays.rays[ray], wave.rays.cone_of(ray));
-                let mean = Coefficients::mean(wave.scene, material, ray, cone, hits);
-                surface.coefficients = mean.unwrap_or(surface.coefficients);
+                let (along, cone) = (&wave.rays.rays[ray], wave.rays.cone_of(ray));
+                if let Some(mean) = Coefficients::mean(wave.scene, material, along, cone, hits) {
+                    surface = Surface { coefficients: mean, ..surface }.faceted(wave, ray, material);
+                }
             }
         }
         surface
@@ -98,7 +131,7 @@ impl Surface {
 
     /// Light of `light` that reaches the eye if all of it comes from `target`: one term of the sum without V.
     #[inline(always)]
-    pub(crate) fn reflected(&self, light: &Light, target: Vec3) -> Vec3 {
+    fn reflected(&self, light: &Light, target: Vec3, glint: Glint) -> Vec3 {
         let to_light = target - self.point.position;
         let distance = to_light.length();
         if distance == 0.0 {
@@ -110,7 +143,10 @@ impl Surface {
             return Vec3::ZERO;
         }
         let mut answer = cosine * self.coefficients.kd;
-        if self.coefficients.ks != Vec3::ZERO {
+        if let Some(lobe) = &self.lobe {
+            let share = if glint.seen { lobe.unmirrored } else { 1.0 };
+            answer += (cosine * share) * lobe.toward(self.normal, self.view, direction, glint.part / distance);
+        } else if self.coefficients.ks != Vec3::ZERO {
             let mirrored = 2.0 * cosine * self.normal - direction;
             answer += mirrored.dot(self.view).max(0.0).powf(self.shininess) * self.coefficients.ks;
         }
@@ -144,9 +180,9 @@ impl Surface {
 
     /// The same for the whole light, averaged over `targets`; those of a directional light are seen from the surface, at distance 1.
     #[inline(always)]
-    pub(crate) fn reflected_from_all(&self, light: &Light, targets: &[Vec3], reach: f32) -> Vec3 {
+    fn reflected_from_all(&self, light: &Light, targets: &[Vec3], reach: f32, glint: Glint) -> Vec3 {
         let place = |target: Vec3| self.place_of(light, target, reach);
-        let sum: Vec3 = targets.iter().map(|&target| self.reflected(light, place(target))).sum();
+        let sum: Vec3 = targets.iter().map(|&target| self.reflected(light, place(target), glint)).sum();
         sum / targets.len() as f32
     }
 
@@ -226,10 +262,29 @@ fn cone(light: &Light, direction: Vec3) -> f32 {
 /// light are at distance 1 from the origin.
 pub(crate) struct LightTargets {
     points: Vec<Vec<Vec3>>,
+    /// Whether mirror rays see each light, too.
+    seen: Vec<bool>,
+}
+
+/// What the highlight of a light is about.
+#[derive(Clone, Copy)]
+struct Glint {
+    /// Half of the width of the part of the light that a point stands for.
+    part: f32,
+    /// Whether mirror rays see the light, too.
+    seen: bool,
+}
+
+/// Whether mirror rays see a light: an emissive surface, or the sun of what surrounds the scene.
+pub(crate) fn is_seen(lights: &Lights, light: &Light) -> bool {
+    let sun = lights.environment.as_ref().and_then(|environment| environment.sun());
+    let is_sun = matches!((&light.kind, sun), (LightKind::Directional { direction, .. }, Some(sun))
+        if direction.dot(sun.direction) < SAME_SUN);
+    light.surface.is_some() || is_sun
 }
 
 impl LightTargets {
-    pub(crate) fn new(lights: &[Light]) -> LightTargets {
+    pub(crate) fn new(lights: &Lights) -> LightTargets {
         let pattern = Pattern::new(0, 0, 0);
         // In pairs on either side of the centre: what falls off linearly over the light is averaged exactly.
         let pair = |light: &Light, index: u32| {
@@ -239,6 +294,7 @@ impl LightTargets {
         let spread = |light: &Light| (0..LIGHT_TARGETS / 2).flat_map(|index| pair(light, index)).collect();
         LightTargets {
             points: lights.iter().map(|light| if light.has_size() { spread(light) } else { Vec::new() }).collect(),
+            seen: lights.iter().map(|light| is_seen(lights, light)).collect(),
         }
     }
 
@@ -253,9 +309,10 @@ impl LightTargets {
     /// Unshadowed light of light number `index` at `surface`.
     #[inline(always)]
     pub(crate) fn unshadowed(&self, surface: &Surface, light: &Light, index: usize, reach: f32) -> Vec3 {
+        let glint = Glint { part: PART_OF_LIGHT * size(light, reach), seen: self.seen[index] };
         match self.points[index].as_slice() {
-            [] => surface.reflected(light, light_center(light, surface.point.origin, reach)),
-            points => surface.reflected_from_all(light, points, reach),
+            [] => surface.reflected(light, light_center(light, surface.point.origin, reach), glint),
+            points => surface.reflected_from_all(light, points, reach, glint),
         }
     }
 }

@@ -83,9 +83,38 @@ DEVICE Vec3 place_of_target(const Surface &surface, const Scene &scene, unsigned
     return scene.lights[index].kind == Light::DIRECTIONAL ? surface.point.origin + reach * target : target;
 }
 
+// The same of a surface with facets; half of the part of the light that the point stands for is `part` wide.
+DEVICE Vec3 reflected_by_facets(const Surface &surface, const Light &light, Vec3 target, float part) {
+    const Vec3 to_light = target - surface.point.position;
+    const float distance = length(to_light);
+    if (distance == 0.0f)
+        return splat(0.0f);
+    const Vec3 direction = to_light / distance;
+    const float cosine = dot(surface.normal, direction);
+    if (cosine <= 0.0f)
+        return splat(0.0f);
+    const float share = light.seen ? surface.material->unmirrored : 1.0f;
+    const Vec3 lobe = facets_toward(*surface.material, surface.normal, surface.view, direction, part / distance);
+    return strength(light, direction, distance) * (cosine * surface.material->kd + (cosine * share) * lobe);
+}
+
+// Unshadowed light of light number `index` on a surface with facets. A function of its own, so that others keep their registers.
+COLD Vec3 unshadowed_by_facets(Surface surface, const Scene &scene, unsigned index, float reach) {
+    const Light &light = scene.lights[index];
+    const float part = PART_OF_LIGHT * (light.kind == Light::DIRECTIONAL ? reach * light.size : light.size);
+    if (!has_size(light))
+        return reflected_by_facets(surface, light, light_center(light, surface.point.origin, reach), part);
+    Vec3 sum = splat(0.0f);
+    for (unsigned i = 0; i < LIGHT_TARGETS; ++i)
+        sum = sum + reflected_by_facets(surface, light, place_of_target(surface, scene, index, i, reach), part);
+    return sum / (float)LIGHT_TARGETS;
+}
+
 // Unshadowed light of light number `index`.
 DEVICE Vec3 unshadowed(const Surface &surface, const Scene &scene, unsigned index, float reach) {
     const Light &light = scene.lights[index];
+    if (surface.material->facets)
+        return unshadowed_by_facets(surface, scene, index, reach);
     if (!has_size(light))
         return reflected(surface, light, light_center(light, surface.point.origin, reach));
     Vec3 sum = splat(0.0f);

@@ -49,7 +49,7 @@ fn strength_falls_with_the_square_or_not_at_all() {
 #[test]
 fn only_lights_with_a_size_are_spread() {
     let sphere = Light::sphere(Vec3::Y, 0.5).unwrap();
-    let targets = LightTargets::new(&[spot(0.1, 0.2), sphere]);
+    let targets = LightTargets::new(&vec![spot(0.1, 0.2), sphere].into());
     assert!(targets.points[0].is_empty());
     assert_eq!(targets.points[1].len(), LIGHT_TARGETS as usize);
     assert!(targets.points[1].iter().all(|point| point.distance(Vec3::Y) <= 0.5));
@@ -60,7 +60,7 @@ fn only_lights_with_a_size_are_spread() {
 #[test]
 fn a_directional_light_with_an_angle_is_spread_over_its_disk() {
     let sun = Light::directional(Vec3::NEG_Y).unwrap();
-    let targets = LightTargets::new(&[sun.clone(), sun.with_angle(0.2)]);
+    let targets = LightTargets::new(&vec![sun.clone(), sun.with_angle(0.2)].into());
     assert!(targets.points[0].is_empty());
     assert_eq!(targets.points[1].len(), LIGHT_TARGETS as usize);
     for target in &targets.points[1] {

@@ -3,6 +3,7 @@
 
 #include "accel/coverage.cuh"
 #include "shading/dielectric.cuh"
+#include "shading/facets.cuh"
 #include "textures/lookup.cuh"
 
 // The inputs of tints. By value: taking the address of a kernel's argument would make all its loads slow.
@@ -14,6 +15,7 @@ struct TintSources {
     const Vec3 *colors;
     const Texture *textures;
     const float *srgb;
+    const FacetShare *facet_table;
     Coverage coverage;
 };
 
@@ -88,9 +90,18 @@ DEVICE float opacity_at(const TintSources &sources, const Material &material, co
 // Sets `own` to the material with the coefficients that colours and an opacity give it.
 DEVICE void set_tint(const Material *material, const Colors &colors, float opacity, Material *own) {
     const Vec3 &tint = colors.tint;
-    own->ka = opacity * (material->ka * tint);
-    own->kd = opacity * (material->kd * tint);
-    own->ks = opacity * (material->ks + material->ks_tinted * tint);
+    // Of facets, these are what they are made of.
+    const float there = material->facets ? 1.0f : opacity;
+    own->ka = there * (material->ka * tint);
+    own->kd = there * (material->kd * tint);
+    own->ks = there * (material->ks + material->ks_tinted * tint);
+    own->all = own->kd;
+    own->mirrored = own->ks;
+    own->facets = material->facets;
+    own->opacity = opacity;
+    own->roughness = material->roughness;
+    own->metallic = material->metallic;
+    own->grazing = material->grazing;
     own->emission = opacity * (material->emission * colors.glow + material->emission_tinted * tint);
     own->transmittance = (1.0f - opacity) * material->transmittance;
     own->blends = material->blends;
@@ -107,19 +118,34 @@ DEVICE void set_boundary(const Boundary &met, Material *own) {
     own->ka = met.left * own->ka;
     own->kd = met.left * own->kd;
     own->ks = mirrored * met.left;
+    own->all = own->kd;
+    own->mirrored = own->ks;
     own->emission = met.left * own->emission;
     own->transmittance = (1.0f - mirrored) * met.left * own->transmittance;
     own->eta = met.thin ? 0.0f : met.eta;
 }
 
+// Turns the coefficients of a material with facets into what these make of them at `hit`; `followed` says whether its mirror ray is.
+DEVICE void face(const TintSources &sources, const Sighting &from, const Hit &hit, bool followed, Material *own) {
+    const Corners corners = load_corners(sources.triangles + hit.triangle);
+    const SurfacePoint point = surface_point(Ray{from.origin, from.direction, INFINITE}, hit, corners);
+    const Vec3 normal = shading_normal(sources.normals, sources.indices, hit, point.normal);
+    const Cone cone = cone_after(from.cone, hit.t);
+    const float turn = is_point(cone) ? 0.0f : curvature(sources.normals, sources.indices, hit, corners, point.normal);
+    const float spread = is_point(cone) ? 0.0f : fabsf(cone_reflected(cone, turn).spread);
+    set_facets(sources.facet_table, FacetSight{dot(normal, -from.direction), spread, followed}, own);
+}
+
 // Sets `own` to the material with its coefficients at `hit`.
-COLD void tint_material(TintSources sources, const Material *material, Sighting from, Hit hit, Material *own) {
+COLD void tint_material(TintSources sources, const Material *material, Sighting from, Hit hit, bool followed, Material *own) {
     set_tint(material, colors_at(sources, *material, from, hit), opacity_at(sources, *material, hit), own);
     if (material->ior != 0.0f) {
         const Ray ray = {from.origin, from.direction, INFINITE};
         const Corners corners = load_corners(sources.triangles + hit.triangle);
         set_boundary(boundary_met(sources.normals, sources.indices, corners, *material, ray, hit), own);
     }
+    if (material->facets)
+        face(sources, from, hit, followed, own);
 }
 
 // The hits of the samples of a pixel: `count` of them, `stride` apart; those whose bits are set in `shared` count.
@@ -129,8 +155,9 @@ struct SharedHits {
     unsigned count, shared;
 };
 
-// Sets `own` to the material with the mean of its coefficients at these hits; leaves it without any.
-COLD void tint_by_all(TintSources sources, const Material *material, Sighting from, SharedHits all, Material *own) {
+// Sets `own` to the material with the mean of its coefficients at these hits, seen at `center`; leaves it without any.
+COLD void tint_by_all(TintSources sources, const Material *material, Sighting from, SharedHits all, Hit center, bool followed,
+                      Material *own) {
     Colors sum = {splat(0.0f), splat(0.0f)};
     float opacities = 0.0f, count = 0.0f;
     for (unsigned sample = 0; sample < all.count; ++sample) {
@@ -142,14 +169,21 @@ COLD void tint_by_all(TintSources sources, const Material *material, Sighting fr
         opacities += opacity_at(sources, *material, hit);
         count += 1.0f;
     }
-    if (count > 0.0f)
-        set_tint(material, Colors{sum.tint / count, sum.glow / count}, opacities / count, own);
+    if (count == 0.0f)
+        return;
+    set_tint(material, Colors{sum.tint / count, sum.glow / count}, opacities / count, own);
+    if (material->facets)
+        face(sources, from, center, followed, own);
 }
 
 // The inputs of the tints of a scene.
 DEVICE TintSources tint_sources(const Scene &scene) {
-    return {scene.triangles, scene.indices, scene.normals, scene.uvs, scene.colors, scene.textures, scene.srgb, scene.coverage};
+    return {scene.triangles, scene.indices, scene.normals, scene.uvs, scene.colors, scene.textures, scene.srgb,
+            scene.facet_table, scene.coverage};
 }
+
+// Whether the mirror ray of what a ray sees is followed.
+DEVICE bool mirrors(const Rays &rays, unsigned ray) { return rays.depth - throughs_of(rays, ray) < rays.bounces; }
 
 // What ray number `ray` goes along.
 DEVICE Sighting sighting_of(const Rays &rays, unsigned ray) {
@@ -163,6 +197,6 @@ DEVICE const Material *material_at(const Scene &scene, const Rays &rays, unsigne
     const Material *material = scene.materials + __ldg(scene.triangle_materials + hit.triangle);
     if (!material->tinted)
         return material;
-    tint_material(tint_sources(scene), material, sighting_of(rays, ray), hit, &own);
+    tint_material(tint_sources(scene), material, sighting_of(rays, ray), hit, mirrors(rays, ray), &own);
     return &own;
 }

@@ -26,6 +26,12 @@ pub(crate) struct Coefficients {
     pub(crate) emission: Vec3,
     /// What is left of light that goes straight on.
     pub(crate) transmittance: Vec3,
+    /// How opaque a surface with [facets](super::facets) is, whose other coefficients do not know.
+    pub(crate) opacity: f32,
+    /// What is reflected of light from all sides, where it is gathered.
+    pub(crate) all: Vec3,
+    /// What is mirrored.
+    pub(crate) mirrored: Vec3,
 }
 
 impl Coefficients {
@@ -66,44 +72,60 @@ impl Coefficients {
     /// Those of a material that is the same everywhere.
     #[inline(always)]
     pub(crate) fn untinted(material: &Material) -> Coefficients {
+        let ks = material.ks + material.ks_tinted;
         Coefficients {
             ka: material.ka,
             kd: material.kd,
-            ks: material.ks + material.ks_tinted,
+            ks,
             emission: material.emission + material.emission_tinted,
             transmittance: Vec3::ZERO,
+            opacity: 1.0,
+            all: material.kd,
+            mirrored: ks,
         }
     }
 
     fn tinted(material: &Material, Colors { tint, glow }: Colors, opacity: f32) -> Coefficients {
         let filter = material.opacity.and_then(|opacity| opacity.filter()).unwrap_or(Vec3::ZERO);
+        // Of facets, these are what they are made of.
+        let there = if material.faceted().is_some() { 1.0 } else { opacity };
+        let kd = there * (material.kd * tint);
+        let ks = there * (material.ks + material.ks_tinted * tint);
         Coefficients {
-            ka: opacity * (material.ka * tint),
-            kd: opacity * (material.kd * tint),
-            ks: opacity * (material.ks + material.ks_tinted * tint),
+            ka: there * (material.ka * tint),
+            kd,
+            ks,
             emission: opacity * (material.emission * glow + material.emission_tinted * tint),
             transmittance: (1.0 - opacity) * filter,
+            opacity,
+            all: kd,
+            mirrored: ks,
         }
     }
 
     /// The same where a dielectric begins or ends.
     fn at_boundary(self, boundary: &Boundary) -> Coefficients {
         let (mirrored, left) = (boundary.mirrored(), boundary.left);
+        let (kd, ks) = (left * self.kd, mirrored * left);
         Coefficients {
             ka: left * self.ka,
-            kd: left * self.kd,
-            ks: mirrored * left,
+            kd,
+            ks,
             emission: left * self.emission,
             transmittance: (1.0 - mirrored) * left * self.transmittance,
+            all: kd,
+            mirrored: ks,
+            ..self
         }
     }
 }
 
-/// Whether surface points of `material` may differ in colour or opacity.
+/// Whether surface points of `material` may differ in their coefficients.
 #[inline(always)]
 pub(crate) fn is_tinted(geometry: &Geometry, material: &Material) -> bool {
     let has_texture = || images_of(geometry, material).iter().any(Option::is_some);
-    !material.catcher && (!geometry.mesh.colors.is_empty() || has_texture() || material.lets_through())
+    let differs = material.lets_through() || material.faceted().is_some();
+    !material.catcher && (differs || !geometry.mesh.colors.is_empty() || has_texture())
 }
 
 /// What is left of light that goes straight on along `ray` at `hit`.
@@ -225,6 +247,9 @@ mod tests {
             ks: ks + 1.5 * kd * tint,
             emission: 4.0 * kd * tint,
             transmittance: Vec3::ZERO,
+            opacity: 1.0,
+            all: kd * tint,
+            mirrored: ks + 1.5 * kd * tint,
         };
         assert_eq!(coefficients, expected);
         scene.geometry_mut().mesh.colors.clear();

@@ -15,7 +15,8 @@ use crate::{
     Projection, Scene,
     formats::{
         gltf::extras::{
-            CameraExtras, DielectricExtras, LightExtras, MaterialExtras, OpacityExtras, SceneExtras, ShapeExtras,
+            CameraExtras, DielectricExtras, FacetExtras, LightExtras, MaterialExtras, OpacityExtras, SceneExtras,
+            ShapeExtras,
         },
         toml::upright,
     },
@@ -290,12 +291,11 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
     let clamped = |color: Vec3| color.clamp(Vec3::ZERO, Vec3::ONE).to_array();
     let [r, g, b] = clamped(material.kd);
     let matt = material.ks == Vec3::ZERO && material.dielectric.is_none();
-    let roughness = if matt {
-        1.0
-    } else if material.dielectric.is_some() {
-        0.0
-    } else {
-        (2.0 / (material.shininess + 2.0)).powf(0.25)
+    let (metallic, roughness) = match material.faceted() {
+        Some(facets) => (facets.metallic, facets.roughness),
+        None if matt => (0.0, 1.0),
+        None if material.dielectric.is_some() => (0.0, 0.0),
+        None => (0.0, (2.0 / (material.shininess + 2.0)).powf(0.25)),
     };
     let [texture_transform, emission_transform] = pictures.exact_transforms(index);
     let extras = MaterialExtras {
@@ -315,11 +315,12 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
             .filter(|opacity| !is_standard(opacity, material))
             .map(|it| opacity_extras(&it, index, pictures)),
         dielectric: material.dielectric.map(DielectricExtras::from),
+        facets: material.facets.map(FacetExtras::from),
     };
     let mut entry = json!({
         "name": material.name,
         "pbrMetallicRoughness":
-            {"baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": roughness},
+            {"baseColorFactor": [r, g, b, 1.0], "metallicFactor": metallic, "roughnessFactor": roughness},
         "emissiveFactor": clamped(material.emission),
         "doubleSided": true,
         "extras": {"lightmesh": extras},

@@ -39,7 +39,7 @@ fn visibility_is_the_weighted_mean_of_the_light_points() {
         let mesh = LightMesh { lattice, template, radius: 0.2 * radius, weight };
         let job = Job::new(&Unobserved, Sampling { samples: 5, seed: 0, spread: false });
         let cpu = Cpu;
-        let rays = cpu.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64).unwrap();
+        let rays = cpu.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64, 0).unwrap();
         let hits = cpu.primary_rays(&job, &scene, &rays).unwrap();
         let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
         let cells = cpu.cells(&wave, &mesh).unwrap();

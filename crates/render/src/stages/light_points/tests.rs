@@ -27,7 +27,7 @@ fn the_list_is_the_union_of_all_masks() {
         let mesh = LightMesh { lattice, template, radius: radius * step, weight: Weight::Smooth };
         let job = Job::new(&Unobserved, Sampling { samples: 4, seed: 0, spread: false });
         let backend = Cpu;
-        let rays = backend.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64).unwrap();
+        let rays = backend.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64, 0).unwrap();
         let hits = backend.primary_rays(&job, &scene, &rays).unwrap();
         let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
         let cells = backend.cells(&wave, &mesh).unwrap();

@@ -37,7 +37,7 @@ fn with_light_points(radius: f32, judge: impl Fn(&PreparedScene, &LightMesh, &Us
     let mesh = LightMesh { lattice, template: Template::new(2.1).unwrap(), radius: 0.42, weight: Weight::Smooth };
     let job = Job::new(&Unobserved, Sampling { samples: SAMPLES, seed: 0, spread: false });
     let cpu = Cpu;
-    let rays = cpu.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64).unwrap();
+    let rays = cpu.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64, 0).unwrap();
     let hits = cpu.primary_rays(&job, &scene, &rays).unwrap();
     let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
     let cells = cpu.cells(&wave, &mesh).unwrap();

@@ -4,21 +4,23 @@ use std::ops::Range;
 
 use glam::Vec3;
 use lightmesh_layout::constants::{LEAST_THROUGH, MOST_THROUGHS, THROUGHS_SHIFT};
+use lightmesh_scene::Material;
 use rayon::prelude::*;
 
 use crate::accel::Ray;
 use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
-use crate::footprint::{Cone, curvature};
-use crate::shading::Surface;
+use crate::footprint::Cone;
+use crate::shading::facets::blurred;
+use crate::shading::{Surface, material_of};
 
 /// Number of rays per task.
 const BATCH: usize = 1024;
 
-pub(crate) fn mirror_rays(wave: &HostWave, bounces: u32) -> RayList {
+pub(crate) fn mirror_rays(wave: &HostWave) -> RayList {
     let count = wave.hits.len();
     let starts: Vec<usize> = (0..count).step_by(BATCH).collect();
-    let of_batch = |start: usize| onward(wave, bounces, start..count.min(start + BATCH));
+    let of_batch = |start: usize| onward(wave, start..count.min(start + BATCH));
     let parts: Vec<RayList> = starts.into_par_iter().map(of_batch).collect();
     let mut next = beyond(wave.rays);
     parts.into_iter().for_each(|part| next.append(part));
@@ -27,11 +29,11 @@ pub(crate) fn mirror_rays(wave: &HostWave, bounces: u32) -> RayList {
 
 /// No rays that go on from those of `list`.
 fn beyond(list: &RayList) -> RayList {
-    RayList { window: list.window, depth: list.depth + 1, ..RayList::default() }
+    RayList { window: list.window, depth: list.depth + 1, bounces: list.bounces, ..RayList::default() }
 }
 
 /// The rays that go on from those in `range`.
-fn onward(wave: &HostWave, bounces: u32, range: Range<usize>) -> RayList {
+fn onward(wave: &HostWave, range: Range<usize>) -> RayList {
     let (list, has_cones) = (wave.rays, wave.rays.has_cones());
     let mut next = beyond(list);
     let has_samples = !list.samples.is_empty() || wave.scene.lets_through();
@@ -58,16 +60,16 @@ fn onward(wave: &HostWave, bounces: u32, range: Range<usize>) -> RayList {
         }
 
         // 2. Mirrored.
-        let weight = list.weight(index) * surface.coefficients.ks;
+        let weight = list.weight(index) * surface.coefficients.mirrored;
         // Of mirrors alone every ray counts; between the sides of glass there is no end of them.
         let least = if throughs > 0 { LEAST_THROUGH } else { 0.0 };
-        if weight != Vec3::ZERO && weight.max_element() >= least && list.depth - throughs < bounces {
+        if weight != Vec3::ZERO && weight.max_element() >= least && list.mirrors(index) {
             let direction = surface.mirrored().normalize();
             let onward = Ray { origin: surface.point.origin, direction, t_max: f32::INFINITY };
             let cone = || {
-                let corners = wave.scene.geometry.triangles[hit.triangle as usize].corners();
-                let mesh = &wave.scene.scene.geometry.mesh;
-                cone().reflected(curvature(mesh, hit, corners, surface.point.normal))
+                let cone = surface.mirrored_cone(wave, hit, cone());
+                let facets = material_of(wave, index).and_then(Material::faceted);
+                facets.map_or(cone, |facets| blurred(cone, facets))
             };
             add(index, onward, has_cones.then(cone), weight, list.sample(index));
         }

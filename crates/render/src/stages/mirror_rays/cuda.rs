@@ -13,11 +13,7 @@ use crate::gpu::{BLOCK, Cuda, blocks_for};
 const COUNT: Kernel = Kernel { module: "mirror_rays", name: "mirror_rays_count" };
 const EMIT: Kernel = Kernel { module: "mirror_rays", name: "mirror_rays_emit" };
 
-pub(crate) fn mirror_rays<R: Runtime>(
-    cuda: &Cuda<R>,
-    wave: &DeviceWave<R>,
-    bounces: u32,
-) -> Result<DeviceRays<R>, RenderError> {
+pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> Result<DeviceRays<R>, RenderError> {
     wave.job.check()?;
     let rays = wave.rays;
     let blocks = rays.record.count.div_ceil(BLOCK);
@@ -28,7 +24,6 @@ pub(crate) fn mirror_rays<R: Runtime>(
         rays: rays.record,
         hits: wave.hits.hits.input(),
         counts: counts.output(),
-        bounces,
         ..MirrorRays::zeroed()
     };
     // 1. How many rays go on from each block?

@@ -22,20 +22,21 @@ DEVICE Shares shares_of(const MirrorRays &args, unsigned ray) {
     Material own;
     const Material *material = material_at(args.scene, args.rays, ray, hit, own);
     const Vec3 weight = weight_of(args.rays, ray);
-    const Vec3 through = weight * material->transmittance, mirrored = weight * material->ks;
+    const Vec3 through = weight * material->transmittance, mirrored = weight * material->mirrored;
     const unsigned throughs = throughs_of(args.rays, ray);
     const bool goes = max_element(through) >= LEAST_THROUGH && throughs < MOST_THROUGHS;
     // Of mirrors alone every ray counts; between the sides of glass there is no end of them.
-    const bool mirrors = max_element(mirrored) >= (throughs > 0 ? LEAST_THROUGH : 0.0f) && args.rays.depth - throughs < args.bounces;
-    return Shares{goes ? through : none.through, mirrors ? mirrored : none.mirrored};
+    const bool returns = max_element(mirrored) >= (throughs > 0 ? LEAST_THROUGH : 0.0f) && mirrors(args.rays, ray);
+    return Shares{goes ? through : none.through, returns ? mirrored : none.mirrored};
 }
 
 // The cone that the mirror at a surface point reflects.
 DEVICE Cone reflected_cone(const MirrorRays &args, unsigned ray, const Surface &surface) {
     const Hit hit = load_hit(args.hits, ray);
     const Corners corners = load_corners(args.scene.triangles + hit.triangle);
-    const Cone cone = cone_after(cone_of(args.rays, ray), hit.t);
-    return cone_reflected(cone, curvature(args.scene, hit, corners, surface.point.normal));
+    const Cone seen = cone_after(cone_of(args.rays, ray), hit.t);
+    const Cone cone = cone_reflected(seen, curvature(args.scene, hit, corners, surface.point.normal));
+    return surface.material->facets ? facets_blurred(cone, surface.material->roughness) : cone;
 }
 
 // How many of the threads of the block before this one have the first flag set and how many the second, together, and how many in all.
@@ -66,10 +67,10 @@ KERNEL(mirror_rays_count, MirrorRays, BLOCK, 4) {
 KERNEL(mirror_rays_emit, MirrorRays, BLOCK, 4) {
     const unsigned ray = blockIdx.x * BLOCK + threadIdx.x;
     const Shares shares = shares_of(args, ray);
-    const bool goes = shares.through != splat(0.0f), mirrors = shares.mirrored != splat(0.0f);
+    const bool goes = shares.through != splat(0.0f), returns = shares.mirrored != splat(0.0f);
     unsigned all;
-    unsigned place = args.counts[blockIdx.x] + flags_before(goes, mirrors, all);
-    if (!goes && !mirrors)
+    unsigned place = args.counts[blockIdx.x] + flags_before(goes, returns, all);
+    if (!goes && !returns)
         return;
     Material own;
     const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
@@ -85,7 +86,7 @@ KERNEL(mirror_rays_emit, MirrorRays, BLOCK, 4) {
     }
 
     // 2. Mirrored.
-    if (mirrors) {
+    if (returns) {
         if (args.cones != nullptr)
             args.cones[place] = reflected_cone(args, ray, surface);
         args.onward[place] = ListedRay{surface.point.origin, pixel, normalize(mirrored(surface)), sample, shares.mirrored, 0};

@@ -27,7 +27,8 @@ fn mirrored(material: Material, normals: Option<Vec3>, list: &RayList) -> RayLis
     let mut hits = vec![Hit::MISS; list.rays.len()];
     scene.geometry.accelerator.closest_hits(&list.rays, &mut hits);
     let job = Job::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
-    mirror_rays(&Wave { job: &job, scene: &scene, rays: list, hits: &hits, lights: LightGroup::ALL, parts: 1 }, 1)
+    let list = &RayList { bounces: 1, ..list.clone() };
+    mirror_rays(&Wave { job: &job, scene: &scene, rays: list, hits: &hits, lights: LightGroup::ALL, parts: 1 })
 }
 
 /// Rays of unit length: two that meet the floor and, between them, one that does not.

@@ -3,6 +3,7 @@
 
 #include "cuda/rays.cuh"
 #include "sampling.cuh"
+#include "shading/facets.cuh"
 #include "surface.cuh"
 
 // The offset below which the share `u` of the filter lies, for `u` in [0, 1).
@@ -65,5 +66,7 @@ DEVICE bool goes_on(const PixelSamples &args, const Hit &hit) {
     if (hit.triangle == Hit::NONE)
         return false;
     const Material &material = args.scene.materials[__ldg(args.scene.triangle_materials + hit.triangle)];
-    return material.blends || (args.mirrors && (material.ks != splat(0.0f) || material.ks_tinted != splat(0.0f)));
+    const bool mirrors = material.facets ? facets_mirrored_share(material.roughness) > 0.0f
+                                         : material.ks != splat(0.0f) || material.ks_tinted != splat(0.0f);
+    return material.blends || (args.mirrors && mirrors);
 }

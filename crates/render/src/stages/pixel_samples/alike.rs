@@ -7,6 +7,7 @@ use crate::accel::{Hit, Ray};
 use crate::antialiasing::Antialiasing;
 use crate::data::rays::RayList;
 use crate::prepared::PreparedScene;
+use crate::shading::facets::mirrored_share;
 use crate::surface::{SurfacePoint, shading_normal};
 
 /// A piece of a surface, about as large as a pixel.
@@ -143,5 +144,9 @@ pub(crate) fn goes_on(scene: &PreparedScene, all: &Antialiasing, hit: &Hit) -> b
     }
     let geometry = &scene.scene.geometry;
     let material = &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize];
-    material.lets_through() || all.mirrors && (material.ks != Vec3::ZERO || material.ks_tinted != Vec3::ZERO)
+    let mirrors = match material.faceted() {
+        Some(facets) => mirrored_share(facets.roughness) > 0.0,
+        None => material.ks != Vec3::ZERO || material.ks_tinted != Vec3::ZERO,
+    };
+    material.lets_through() || all.mirrors && mirrors
 }

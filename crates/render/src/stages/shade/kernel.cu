@@ -64,7 +64,7 @@ DEVICE Vec3 unlit(const Shade &args, unsigned ray, const Surface &surface) {
     if (args.gathered == nullptr)
         return alone(args.scene, surface, surface.material->ka);
     const float *gathered = &args.gathered[ray].x;
-    return Vec3{__ldg(gathered), __ldg(gathered + 1), __ldg(gathered + 2)} * surface.material->kd + surface.material->emission;
+    return Vec3{__ldg(gathered), __ldg(gathered + 1), __ldg(gathered + 2)} * surface.material->all + surface.material->emission;
 }
 
 // Formula (1) without its last term: the terms of a group of lights are added to those before.
@@ -106,13 +106,13 @@ DEVICE void share_tint(const Shade &args, unsigned ray, Material &own) {
         return;
     const SharedHits hits = {args.samples + (pixel_of(args.rays, ray) - args.first_sampled), args.sampled_pixels, args.sample_count,
                              shared};
-    tint_by_all(tint_sources(args.scene), material, sighting_of(args.rays, ray), hits, &own);
+    tint_by_all(tint_sources(args.scene), material, sighting_of(args.rays, ray), hits, hit, mirrors(args.rays, ray), &own);
 }
 
 // The light that a surface gets as a share of what it would get alone.
 DEVICE float lit_share(const Shade &args, const Surface &surface, Vec3 lit) {
     const float reach = scene_reach(args.scene, surface.point.origin);
-    Vec3 sum = alone(args.scene, surface, args.gathered != nullptr ? surface.material->kd : surface.material->ka);
+    Vec3 sum = alone(args.scene, surface, args.gathered != nullptr ? surface.material->all : surface.material->ka);
     for (unsigned light = 0; light < args.scene.light_count; ++light)
         sum = sum + unshadowed(surface, args.scene, light, reach);
     const float alone = luminance(sum);

@@ -34,7 +34,7 @@ fn mesh(scene: &PreparedScene, step: f32, radius: f32) -> LightMesh {
 fn look(scene: &PreparedScene, pixels: u32) -> (RayList, Vec<Hit>) {
     let view = View::new(&scene.scene.cameras[0], [pixels, pixels]);
     let backend = Cpu;
-    let rays = backend.camera_rays(&view, 0..pixels).unwrap();
+    let rays = backend.camera_rays(&view, 0..pixels, 0).unwrap();
     let hits = backend.primary_rays(&job(), scene, &rays).unwrap();
     (rays, hits)
 }

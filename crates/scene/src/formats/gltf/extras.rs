@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::value::RawValue;
 
 use super::container::malformed;
-use crate::{Dielectric, LoadError, Material, quote::abridged};
+use crate::{Dielectric, Facets, LoadError, Material, quote::abridged};
 
 /// Of a material: the coefficients that metallic-roughness cannot represent.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
@@ -37,6 +37,29 @@ pub(crate) struct MaterialExtras {
     pub(crate) opacity: Option<OpacityExtras>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) dielectric: Option<DielectricExtras>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) facets: Option<FacetExtras>,
+}
+
+/// Facets.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FacetExtras {
+    pub(crate) roughness: f32,
+    pub(crate) metallic: f32,
+    pub(crate) grazing: f32,
+}
+
+impl From<Facets> for FacetExtras {
+    fn from(Facets { roughness, metallic, grazing }: Facets) -> FacetExtras {
+        FacetExtras { roughness, metallic, grazing }
+    }
+}
+
+impl From<FacetExtras> for Facets {
+    fn from(FacetExtras { roughness, metallic, grazing }: FacetExtras) -> Facets {
+        Facets::new(roughness).with_metallic(metallic).with_grazing(grazing)
+    }
 }
 
 /// The boundary of a transparent body.
@@ -94,6 +117,7 @@ impl MaterialExtras {
             ks: self.ks.into(),
             ks_tinted: self.ks_tinted.into(),
             shininess: self.shininess,
+            facets: self.facets.map(Facets::from),
             emission: self.emission.into(),
             emission_tinted: self.emission_tinted.into(),
             texture: None,

@@ -1,16 +1,5 @@
-//! Metallic-roughness to the coefficients of formula (1).
-//!
-//! With the base colour b, metalness m, roughness r and the reflectance f of a dielectric at normal incidence (0.04, unless
-//! `KHR_materials_ior` or `KHR_materials_specular` specify another), s = (1 − r)² is how much of a mirror the surface is (glTF 2.0,
-//! appendix B):
-//!
-//! ```text
-//! k_d = b (1 − m s)    k_s = (f (1 − m) + b m) s    pow = 2/r⁴ − 2  (Walter et al. 2007: the Phong lobe as wide as a facet
-//!                                                                    lobe of α = r²)
-//! ```
-//!
-//! so that a rough metal is matt in its own colour, as it looks under point lights, and a smooth one reflects. If a texture or
-//! vertex colours tint b, the part b m s of k_s is tinted with it.
+//! Metallic-roughness materials (glTF 2.0, appendix B): the base colour is k_d, and k_s what the layer above reflects at normal incidence,
+//! 0.04 unless `KHR_materials_ior` or `KHR_materials_specular` specify another; the rest are [facets](crate::Facets).
 //!
 //! With `KHR_materials_transmission`, the share of the light that is not scattered goes through, times b, as glass of the index that
 //! `KHR_materials_ior` specifies: straight on through thin walls, or bent and absorbed by the body that `KHR_materials_volume` says there is.
@@ -28,10 +17,7 @@ use super::{
     extras::{self, MaterialExtras, OpacityExtras},
     left_out::LeftOut,
 };
-use crate::{Dielectric, LoadError, Material, Opacity, OpacityMode, TextureUse};
-
-/// Reflectance of a dielectric at normal incidence, for the index of refraction 1.5.
-const DIELECTRIC: f32 = 0.04;
+use crate::{Dielectric, Facets, LoadError, Material, Opacity, OpacityMode, TextureUse};
 
 /// Above this roughness, what is behind glass is visibly blurred.
 const CLEAR: f32 = 0.1;
@@ -135,10 +121,15 @@ pub(super) fn translated(of: &document::Material, tinted: bool) -> Material {
     if extensions.is_some_and(|extensions| extensions.unlit.is_some()) {
         return unlit(base, tinted);
     }
-    let mut material = phong(base, pbr.metallic_factor, pbr.roughness_factor, dielectric(extensions), tinted);
-    if transmission(of).is_some() {
-        material.dielectric = Some(boundary(extensions));
-    }
+    let mut material = match transmission(of) {
+        None => faceted(base, pbr.metallic_factor, pbr.roughness_factor, extensions),
+        // What glass reflects is Fresnel's.
+        Some(_) => Material {
+            shininess: shininess(pbr.roughness_factor),
+            dielectric: Some(boundary(extensions)),
+            ..Material::matt(base)
+        },
+    };
     let strength = extensions.and_then(|extensions| extensions.emissive_strength.as_ref());
     let strength = strength.map_or(1.0, |strength| strength.emissive_strength);
     material.emission = (strength * Vec3::from(of.emissive_factor)).max(Vec3::ZERO);
@@ -146,15 +137,16 @@ pub(super) fn translated(of: &document::Material, tinted: bool) -> Material {
     material
 }
 
-fn phong(base: Vec3, metallic: f32, roughness: f32, dielectric: Vec3, tinted: bool) -> Material {
-    let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));
-    let mirror = (1.0 - roughness).powi(2);
-    let kd = base * (1.0 - metallic * mirror);
-    let plain = dielectric * (1.0 - metallic) * mirror;
-    let colored = base * metallic * mirror;
-    let (ks, ks_tinted) = if tinted { (plain, colored) } else { (plain + colored, Vec3::ZERO) };
-    let shininess = (2.0 / roughness.powi(4) - 2.0).clamp(1.0, SHARPEST);
-    Material { ka: kd, kd, ks, ks_tinted, shininess, ..Material::default() }
+fn faceted(base: Vec3, metallic: f32, roughness: f32, extensions: Option<&MaterialExtensions>) -> Material {
+    let share = |factor: f32| factor.clamp(0.0, 1.0);
+    let (layer, grazing) = reflectance(extensions);
+    let facets = Facets::new(share(roughness)).with_metallic(share(metallic)).with_grazing(grazing);
+    Material::matt(base).with_ks(layer).with_facets(facets)
+}
+
+/// The lobe of a body's highlights, which is Phong's: as wide as facets of this roughness are (Walter et al. 2007).
+fn shininess(roughness: f32) -> f32 {
+    (2.0 / roughness.clamp(0.0, 1.0).powi(4) - 2.0).clamp(1.0, SHARPEST)
 }
 
 fn unlit(base: Vec3, tinted: bool) -> Material {
@@ -177,9 +169,9 @@ fn boundary(extensions: Option<&MaterialExtensions>) -> Dielectric {
     }
 }
 
-/// Reflectance of the surface at normal incidence, apart from its metallic part.
-fn dielectric(extensions: Option<&MaterialExtensions>) -> Vec3 {
-    let ior = extensions.and_then(|extensions| extensions.ior.as_ref()).map_or(DIELECTRIC, |ior| match ior.ior {
+/// What the layer reflects at normal and at grazing incidence, apart from a metal.
+fn reflectance(extensions: Option<&MaterialExtensions>) -> (Vec3, f32) {
+    let ior = extensions.and_then(|extensions| extensions.ior.as_ref()).map_or(Facets::LAYER, |ior| match ior.ior {
         // As defined by the extension: a surface that reflects everything.
         0.0 => 1.0,
         ior => ((ior.max(1.0) - 1.0) / (ior.max(1.0) + 1.0)).powi(2),
@@ -187,7 +179,8 @@ fn dielectric(extensions: Option<&MaterialExtensions>) -> Vec3 {
     let (factor, color) = extensions
         .and_then(|extensions| extensions.specular.as_ref())
         .map_or((1.0, Vec3::ONE), |specular| (specular.specular_factor, specular.specular_color_factor.into()));
-    (ior * color).clamp(Vec3::ZERO, Vec3::ONE) * factor.clamp(0.0, 1.0)
+    let factor = factor.clamp(0.0, 1.0);
+    ((ior * color).clamp(Vec3::ZERO, Vec3::ONE) * factor, factor)
 }
 
 #[cfg(test)]
@@ -197,41 +190,20 @@ mod tests {
     const COPPER: Vec3 = Vec3::new(0.95, 0.64, 0.54);
 
     fn plain(metallic: f32, roughness: f32) -> Material {
-        phong(COPPER, metallic, roughness, dielectric(None), false)
+        faceted(COPPER, metallic, roughness, None)
     }
 
     #[test]
-    fn a_rough_surface_is_matt_in_its_own_colour() {
-        for metallic in [0.0, 1.0] {
-            let material = plain(metallic, 1.0);
-            assert_eq!((material.kd, material.ka, material.ks), (COPPER, COPPER, Vec3::ZERO));
-            assert_eq!(material.shininess, 1.0);
-        }
+    fn factors_are_facets_of_the_base_colour() {
+        let copper = plain(0.75, 0.5);
+        assert_eq!((copper.kd, copper.ks), (COPPER, Vec3::splat(0.04)));
+        assert_eq!(copper.facets, Some(Facets { roughness: 0.5, metallic: 0.75, grazing: 1.0 }));
     }
 
     #[test]
-    fn a_smooth_metal_is_a_mirror_of_its_colour() {
-        let material = plain(1.0, 0.0);
-        assert_eq!(material.kd, Vec3::ZERO);
-        assert!((material.ks - COPPER).length() < 1e-6);
-        assert_eq!(material.shininess, SHARPEST);
-    }
-
-    #[test]
-    fn a_smooth_dielectric_reflects_four_percent() {
-        let material = plain(0.0, 0.5);
-        assert_eq!(material.kd, COPPER);
-        assert!((material.ks - Vec3::splat(0.01)).length() < 1e-7);
-        assert!((material.shininess - 30.0).abs() < 1e-4);
-    }
-
-    #[test]
-    fn a_tint_reaches_the_reflection_of_the_metal_alone() {
-        let material = phong(COPPER, 0.25, 0.5, dielectric(None), true);
-        assert!((material.ks - Vec3::splat(0.0075)).length() < 1e-7, "{}", material.ks);
-        assert!((material.ks_tinted - COPPER / 16.0).length() < 1e-7, "{}", material.ks_tinted);
-        assert!((material.ks + material.ks_tinted - plain(0.25, 0.5).ks).length() < 1e-7);
-        assert_eq!(plain(0.25, 0.5).ks_tinted, Vec3::ZERO);
+    fn the_lobe_of_glass_is_as_wide_as_its_roughness_says() {
+        assert!((shininess(0.5) - 30.0).abs() < 1e-4);
+        assert_eq!((shininess(0.0), shininess(1.0)), (SHARPEST, 1.0));
     }
 
     #[test]
@@ -242,12 +214,14 @@ mod tests {
 
     #[test]
     fn the_index_of_refraction_and_the_specular_factor_set_the_reflectance() {
-        let of = |extensions: &str| dielectric(Some(&serde_json::from_str(extensions).unwrap()));
-        let near = |found: Vec3, expected: [f32; 3]| (found - Vec3::from(expected)).length() < 1e-6;
-        assert!(near(of(r#"{"KHR_materials_ior": {}}"#), [0.04; 3]));
-        assert!(near(of(r#"{"KHR_materials_ior": {"ior": 2}}"#), [1.0 / 9.0; 3]));
-        assert!(near(of(r#"{"KHR_materials_ior": {"ior": 1}}"#), [0.0; 3]));
+        let of = |extensions: &str| reflectance(Some(&serde_json::from_str(extensions).unwrap()));
+        let near = |(found, grazing): (Vec3, f32), expected: [f32; 3], end: f32| {
+            (found - Vec3::from(expected)).length() < 1e-6 && grazing == end
+        };
+        assert!(near(of(r#"{"KHR_materials_ior": {}}"#), [0.04; 3], 1.0));
+        assert!(near(of(r#"{"KHR_materials_ior": {"ior": 2}}"#), [1.0 / 9.0; 3], 1.0));
+        assert!(near(of(r#"{"KHR_materials_ior": {"ior": 1}}"#), [0.0; 3], 1.0));
         let halved = r#"{"KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [1, 0, 100]}}"#;
-        assert!(near(of(halved), [0.02, 0.0, 0.5]));
+        assert!(near(of(halved), [0.02, 0.0, 0.5], 0.5));
     }
 }

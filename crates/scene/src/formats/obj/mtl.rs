@@ -1,5 +1,5 @@
-//! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke, map_Kd and map_Ke to the coefficients of formula (1), map_d to where the
-//! surface is.
+//! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke, map_Kd and map_Ke to the coefficients of formula (1), Pr and Pm to facets, map_d to
+//! where the surface is.
 
 use std::{
     collections::HashSet,
@@ -14,7 +14,7 @@ use super::{
     map::{Map, unquoted},
 };
 use crate::{
-    Dielectric, LoadError, Material, Opacity, OpacityChannel, TextureUse,
+    Dielectric, Facets, LoadError, Material, Opacity, OpacityChannel, TextureUse,
     draft::Draft,
     error::Place,
     formats::{
@@ -34,6 +34,8 @@ pub(super) struct Entry {
     specular: Option<Vec3>,
     emissive: Option<Vec3>,
     shininess: Option<f32>,
+    roughness: Option<f64>,
+    metallic: Option<f64>,
     map: Option<Map>,
     opacity: Option<Map>,
     glow: Option<Map>,
@@ -174,6 +176,8 @@ impl Entry {
                 let usable = exponent.filter(|exponent| exponent.is_finite());
                 self.shininess = Some(usable.ok_or("`Ns` must have a number")?);
             }
+            b"Pr" => self.roughness = words(rest).next().and_then(value),
+            b"Pm" => self.metallic = words(rest).next().and_then(value),
             // In `d -halo 0.5` the number comes last.
             b"d" => self.dissolve = words(rest).last().and_then(value),
             b"illum" => self.refracts = matches!(words(rest).next(), Some(b"6" | b"7")),
@@ -212,11 +216,13 @@ impl Entry {
             (Some(_), None) => Material::EMISSION_WITHOUT_IMAGE,
             (Some(_), Some(_)) => self.emissive.filter(|&emission| emission != Vec3::ZERO).unwrap_or(Vec3::ONE),
         };
+        let facets = self.facets();
         Material {
             name: self.name.clone(),
             ka: self.ambient.filter(|ka| *ka != Vec3::ZERO).unwrap_or(kd),
             kd,
-            ks: self.specular.unwrap_or(default.ks),
+            ks: if facets.is_some() { Vec3::splat(Facets::LAYER) } else { self.specular.unwrap_or(default.ks) },
+            facets,
             shininess: self.shininess.map_or(default.shininess, |exponent| exponent.max(1.0)),
             emission,
             lamp: true,
@@ -226,6 +232,14 @@ impl Entry {
             dielectric: self.dielectric(),
             ..default
         }
+    }
+
+    /// What the extension for physically based rendering says: `Pr` and `Pm`. Then `Kd` is the base colour, and `Ks`, which exporters write
+    /// for others, does not count.
+    fn facets(&self) -> Option<Facets> {
+        let share = |value: Option<f64>, unsaid: f32| value.map_or(unsaid, |value| value.clamp(0.0, 1.0) as f32);
+        (self.roughness.is_some() || self.metallic.is_some())
+            .then(|| Facets::new(share(self.roughness, 1.0)).with_metallic(share(self.metallic, 0.0)))
     }
 
     /// What refracts: illumination models 6 and 7 with an index of refraction `Ni`. Exporters write `Ni 1` where there is none.

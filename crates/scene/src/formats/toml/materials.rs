@@ -9,7 +9,7 @@ use super::{
     schema::{Color, MaterialEntry, Number, Text, TextureScale, TextureWrap, WrapName},
     spanned::Spanned,
 };
-use crate::{Dielectric, LoadError, Material, Opacity, OpacityChannel, TextureUse, Wrap, draft::Draft};
+use crate::{Dielectric, Facets, LoadError, Material, Opacity, OpacityChannel, TextureUse, Wrap, draft::Draft};
 
 /// Adds the file's materials and returns the index of each name.
 pub(super) fn read(
@@ -52,16 +52,39 @@ fn coefficients(source: &Source, entry: &MaterialEntry) -> Result<Material, Load
         Some(shininess) => source.positive("shininess", shininess)? as f32,
         None => default.shininess,
     };
+    let facets = facets(source, entry)?;
+    let ks = if facets.is_some() { Vec3::splat(Facets::LAYER) } else { default.ks };
     Ok(Material {
         name: entry.name.get_ref().clone(),
         ka: entry.ka.as_ref().map_or(Ok(kd), |ka| source.color("ka", ka))?,
         kd,
-        ks: entry.ks.as_ref().map_or(Ok(default.ks), |ks| source.color("ks", ks))?,
+        ks: entry.ks.as_ref().map_or(Ok(ks), |ks| source.color("ks", ks))?,
         shininess,
+        facets,
         emission: entry.emission.as_ref().map_or(Ok(default.emission), |color| source.color("emission", color))?,
         lamp: true,
         ..default
     })
+}
+
+/// How rough and metallic the surface is, if that is said.
+fn facets(source: &Source, entry: &MaterialEntry) -> Result<Option<Facets>, LoadError> {
+    let share =
+        |key, value: &Option<Number>| value.as_ref().map(|value| source.between(key, value, 0.0, 1.0)).transpose();
+    let (roughness, metallic) = (share("roughness", &entry.roughness)?, share("metallic", &entry.metallic)?);
+    if roughness.is_none() && metallic.is_none() {
+        return Ok(None);
+    }
+    if let Some(shininess) = &entry.shininess {
+        let remedy = "remove it, or `roughness` and `metallic`";
+        return Err(source.refuse("shininess", shininess, "has no effect on facets", remedy));
+    }
+    if let Some(ior) = &entry.ior {
+        let remedy = "remove `roughness` and `metallic`, or write `ks` in place of `ior`";
+        return Err(source.refuse("ior", ior, "makes the surface glass, which has no facets", remedy));
+    }
+    let [roughness, metallic] = [roughness.unwrap_or(1.0), metallic.unwrap_or(0.0)].map(|share| share as f32);
+    Ok(Some(Facets::new(roughness).with_metallic(metallic)))
 }
 
 /// How the material's textures are placed. Fails if there are none to be placed.

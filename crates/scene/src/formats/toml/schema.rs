@@ -274,6 +274,13 @@ pub(crate) struct MaterialEntry {
     /// Default: 20.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) shininess: Option<Number>,
+    /// From 0, a mirror, to 1: the surface reflects by facets (GGX), as glTF describes it. Then `kd` is its base colour, and `ks`, by default
+    /// 0.04, what the layer above it reflects at normal incidence. Not with `shininess`. Default with `metallic`: 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) roughness: Option<Number>,
+    /// From 0 to 1, a metal, whose reflections have the colour `kd`. Default with `roughness`: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) metallic: Option<Number>,
     /// Default: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) emission: Option<Spanned<Color>>,

@@ -6,7 +6,7 @@ use glam::{Affine2, Vec2, Vec3};
 use image::{ImageFormat, Rgba, RgbaImage};
 
 use super::*;
-use crate::{Dielectric, Material, Opacity, OpacityChannel, OpacityMode, Wrap};
+use crate::{Dielectric, Facets, Material, Opacity, OpacityChannel, OpacityMode, Wrap};
 
 /// An image of one texel.
 fn png() -> Vec<u8> {
@@ -49,16 +49,10 @@ fn a_texture_in_a_view_is_read() {
 }
 
 #[test]
-fn a_textured_material_has_its_metal_part_tinted() {
+fn metal_and_roughness_are_facets_of_the_base_colour() {
     let material = &open(&textured()).geometry.materials[0];
-    let base = Vec3::new(1.0, 0.5, 0.25);
-    assert!((material.kd - 0.875 * base).length() < 1e-6);
-    assert!((material.ks - Vec3::splat(0.005)).length() < 1e-7 && (material.ks_tinted - 0.125 * base).length() < 1e-6);
-    let mut document = textured();
-    document["materials"][0]["pbrMetallicRoughness"].as_object_mut().unwrap().remove("baseColorTexture");
-    let material = &open(&document).geometry.materials[0];
-    assert_eq!(material.ks_tinted, Vec3::ZERO);
-    assert!((material.ks - (Vec3::splat(0.005) + 0.125 * base)).length() < 1e-6);
+    assert_eq!((material.kd, material.ks), (Vec3::new(1.0, 0.5, 0.25), Vec3::splat(Facets::LAYER)));
+    assert_eq!(material.facets, Some(Facets::new(0.5).with_metallic(0.5)));
 }
 
 #[test]
