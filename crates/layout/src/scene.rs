@@ -58,7 +58,7 @@ records! {
 
     /// A texture on a material: the image, and how texture coordinates are mapped to it.
     Texture {
-        /// Row by row, red in the lowest byte, encoded as sRGB.
+        /// Row by row, red in the lowest byte.
         texels: In<u32>,
         /// The levels below the image, from the largest to the one that is a single texel.
         levels: In<TextureLevel>,
@@ -74,8 +74,8 @@ records! {
         translation: [f32; 2],
         /// Number of levels below the image.
         level_count: u32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
+        /// Where the linear values of its codes begin in the scene's table.
+        first_code: u32,
     }
 
     /// The coefficients of formula (1).
@@ -176,8 +176,8 @@ records! {
         colors: In<Vec3>,
         /// Textures, by material.
         textures: In<Texture>,
-        /// Linear values of the 256 codes of sRGB.
-        srgb: In<f32>,
+        /// Linear values of the 256 codes of sRGB, and of those of data.
+        codes: In<f32>,
         /// The material of each triangle.
         triangle_materials: In<u32>,
         /// Materials.

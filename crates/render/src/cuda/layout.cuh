@@ -703,7 +703,7 @@ struct alignas(8) Texture {
     float v_axis[2];
     float translation[2];
     unsigned level_count;
-    unsigned spare;
+    unsigned first_code;
 };
 static_assert(sizeof(Texture) == 64, "size of Texture");
 static_assert(PLACE_OF(Texture, texels) == 0, "place of Texture::texels");
@@ -714,7 +714,7 @@ static_assert(PLACE_OF(Texture, u_axis) == 32, "place of Texture::u_axis");
 static_assert(PLACE_OF(Texture, v_axis) == 40, "place of Texture::v_axis");
 static_assert(PLACE_OF(Texture, translation) == 48, "place of Texture::translation");
 static_assert(PLACE_OF(Texture, level_count) == 56, "place of Texture::level_count");
-static_assert(PLACE_OF(Texture, spare) == 60, "place of Texture::spare");
+static_assert(PLACE_OF(Texture, first_code) == 60, "place of Texture::first_code");
 
 struct alignas(4) Material {
     enum : unsigned {
@@ -809,7 +809,7 @@ struct alignas(8) Scene {
     const Uv *uvs;
     const Vec3 *colors;
     const Texture *textures;
-    const float *srgb;
+    const float *codes;
     const unsigned *triangle_materials;
     const Material *materials;
     const unsigned *object_starts;
@@ -835,7 +835,7 @@ static_assert(PLACE_OF(Scene, normals) == 16, "place of Scene::normals");
 static_assert(PLACE_OF(Scene, uvs) == 24, "place of Scene::uvs");
 static_assert(PLACE_OF(Scene, colors) == 32, "place of Scene::colors");
 static_assert(PLACE_OF(Scene, textures) == 40, "place of Scene::textures");
-static_assert(PLACE_OF(Scene, srgb) == 48, "place of Scene::srgb");
+static_assert(PLACE_OF(Scene, codes) == 48, "place of Scene::codes");
 static_assert(PLACE_OF(Scene, triangle_materials) == 56, "place of Scene::triangle_materials");
 static_assert(PLACE_OF(Scene, materials) == 64, "place of Scene::materials");
 static_assert(PLACE_OF(Scene, object_starts) == 72, "place of Scene::object_starts");

@@ -12,6 +12,7 @@ pub(crate) mod ambient;
 pub(crate) mod dielectric;
 pub(crate) mod environment;
 pub(crate) mod ids;
+mod texel;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tint;
