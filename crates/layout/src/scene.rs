@@ -119,8 +119,12 @@ records! {
         eta: f32,
         /// Index of the texture that emitted light is multiplied with, or [`Material::NO_TEXTURE`].
         emission_texture: u32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
+        /// Index of the image of its normals, or [`Material::NO_TEXTURE`].
+        normal_texture: u32,
+        /// At a surface point with an image of normals: the unit normal without it.
+        smooth: Vec3,
+        /// What the slopes of the image of normals are multiplied with.
+        normal_scale: f32,
     }
 
     /// A level of an environment.

@@ -3,9 +3,11 @@
 use glam::{Affine2, DVec3, Vec2, Vec3};
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{
-    Acceleration, AmbientSource, Frame, Mode, PreparedScene, Settings, Sharing, Unobserved, render_on,
+    Acceleration, AmbientSource, Frame, Mode, PreparedScene, Quality, Settings, Sharing, Unobserved, render_on,
 };
-use lightmesh_scene::{Environment, LightKind, Material, Scene, Sun, Texture, TextureUse, Up, Wrap};
+use lightmesh_scene::{
+    Dielectric, Environment, LightKind, Material, NormalMap, Scene, Sun, Texture, TextureUse, Up, Wrap,
+};
 use lightmesh_testkit::{SceneDraft, pile};
 
 use crate::trials::{Case, Target};
@@ -15,6 +17,10 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     for aa in [1, 4, 40] {
         let name = format!("textured::surrounded::{aa}");
         cases.push(Case::new(name, move |cuda: &Cuda<R>| same_surrounded_bits(cuda, aa)));
+    }
+    for (aa, ambient) in [(1, AmbientSource::Constant), (4, AmbientSource::Constant), (4, AmbientSource::Mesh)] {
+        let name = format!("textured::relief::{aa}::{}", ambient.name());
+        cases.push(Case::new(name, move |cuda: &Cuda<R>| same_relief_bits(cuda, aa, ambient)));
     }
     for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
         for height in [None, Some(4.0)] {
@@ -52,6 +58,11 @@ pub(crate) fn textured() -> Scene {
         material.emission = Vec3::new(0.5, 0.25, 1.0);
         material.emission_texture = uses(image, [Wrap::Mirror, Wrap::Repeat]);
     }
+    // Normals with images that are colours elsewhere.
+    for (number, image, scale) in [(0, 1, 0.7), (2, 0, -1.5), (3, 0, 1.0)] {
+        let map = uses(image, [Wrap::Repeat, Wrap::Mirror]).map(NormalMap::new);
+        scene.geometry_mut().materials[number].normal_texture = map.map(|map| map.with_scale(scale));
+    }
     let mesh = &mut scene.geometry_mut().mesh;
     mesh.materials = (0..mesh.triangles.len() as u32).map(|index| index % 5).collect();
     mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(1.3 * p.x + 0.7 * p.y, p.z - 0.2 * p.y)).collect();
@@ -82,16 +93,38 @@ fn same_bits<R: Target>(cuda: &Cuda<R>) {
 
 /// A panorama with a sun, seen directly, in flat and curved mirrors and as ambient light.
 fn same_surrounded_bits<R: Target>(cuda: &Cuda<R>, aa: u32) {
+    let scene = PreparedScene::new(&surrounded(), &Acceleration::Bvh, &Unobserved).unwrap();
+    let settings = Settings::default().with_ambient_light(AmbientSource::Constant).with_bounces(2);
+    let settings = settings.with_size([64, 48]).with_aa(aa);
+    assert_same_bits(cuda, &scene, &settings, 2);
+}
+
+/// The same with relief on everything, and the curved mirror, or a body of glass in its place.
+fn same_relief_bits<R: Target>(cuda: &Cuda<R>, aa: u32, ambient: AmbientSource) {
+    let mut scene = surrounded();
+    for glass in [false, true] {
+        let materials = &mut scene.geometry_mut().materials;
+        if glass {
+            materials[2] = Material::of(Dielectric::new(1.4).with_absorption([0.2, 0.1, 0.0]));
+        }
+        for (material, scale) in materials[1..].iter_mut().zip([0.5, 0.2, -0.7]) {
+            material.kd = Vec3::splat(0.3);
+            material.normal_texture = Some(NormalMap::new(TextureUse::new(0)).with_scale(scale));
+        }
+        let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
+        let settings = Settings::default().with_ambient_light(ambient).with_quality(Quality::Draft).with_bounces(2);
+        assert_same_bits(cuda, &scene, &settings.with_size([40, 30]).with_aa(aa), 3);
+    }
+}
+
+fn surrounded() -> Scene {
     let mut scene = small_texels(Wrap::Repeat, None);
     let texel = |index: u32| [0.1 * (index % 7) as f32, (index % 1021) as f32 / 1021.0, 0.001 * (index / 331) as f32];
     let map = Environment::new("noise", [331, 170], (0..331 * 170).map(texel).collect(), Up::Y).turned(17.0);
     let sun = Sun::new(Vec3::new(0.1, 0.2, -1.0), 6.0, Vec3::new(3.0, 2.0, 1.0));
     scene.lights.environment = Some(map.with_sun(Some(sun)).into());
     (scene.lights.ambient, scene.lights.background) = (None, None);
-    let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
-    let settings = Settings::default().with_ambient_light(AmbientSource::Constant).with_bounces(2);
-    let settings = settings.with_size([64, 48]).with_aa(aa);
-    assert_same_bits(cuda, &scene, &settings, 2);
+    scene
 }
 
 /// Fails if any colour differs, or if there are not more colours than one for every `most` pixels.

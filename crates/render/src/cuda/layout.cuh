@@ -96,6 +96,13 @@
 #define LEAST_SQUARE 0x1.4484cp-100f
 // If the square of its length is below this, an interpolated normal has cancelled out.
 #define LEAST_SMOOTH_SQUARE 0x1.197998p-40f
+// The code of 0 in an image of normals.
+#define NORMAL_CODE_ZERO 0x1p7f
+// By how much that of 1 is larger.
+#define NORMAL_CODE_ONE 0x1.fcp6f
+// What surfaces with images of normals mirror goes at least at this cosine from the geometric normal, or half as far from the surface as the
+// view.
+#define LEAST_MIRRORED_COSINE 0x1.47ae14p-7f
 // The ellipse in which a cone meets a surface is longer than wide by at most the reciprocal of this cosine.
 #define LEAST_FOOTPRINT_COSINE 0x1.0c6f7ap-20f
 // Lookups along the major axis of a footprint in a texture, at most.
@@ -740,9 +747,11 @@ struct alignas(4) Material {
     unsigned thin;
     float eta;
     unsigned emission_texture;
-    unsigned spare;
+    unsigned normal_texture;
+    Vec3 smooth;
+    float normal_scale;
 };
-static_assert(sizeof(Material) == 144, "size of Material");
+static_assert(sizeof(Material) == 160, "size of Material");
 static_assert(PLACE_OF(Material, ka) == 0, "place of Material::ka");
 static_assert(PLACE_OF(Material, shininess) == 12, "place of Material::shininess");
 static_assert(PLACE_OF(Material, kd) == 16, "place of Material::kd");
@@ -762,7 +771,9 @@ static_assert(PLACE_OF(Material, ior) == 124, "place of Material::ior");
 static_assert(PLACE_OF(Material, thin) == 128, "place of Material::thin");
 static_assert(PLACE_OF(Material, eta) == 132, "place of Material::eta");
 static_assert(PLACE_OF(Material, emission_texture) == 136, "place of Material::emission_texture");
-static_assert(PLACE_OF(Material, spare) == 140, "place of Material::spare");
+static_assert(PLACE_OF(Material, normal_texture) == 140, "place of Material::normal_texture");
+static_assert(PLACE_OF(Material, smooth) == 144, "place of Material::smooth");
+static_assert(PLACE_OF(Material, normal_scale) == 156, "place of Material::normal_scale");
 
 struct alignas(8) EnvironmentLevel {
     const Vec3 *texels;
@@ -1328,6 +1339,11 @@ struct alignas(8) GatherPoints {
     Site *sites;
     const FarLight *far;
     Vec3 *light;
+    Vec3 *normals;
+    const Hit *samples;
+    unsigned long long sampled_pixels;
+    unsigned sample_count;
+    unsigned first_sampled;
     Vec3 eye;
     float spacing[2];
     float pixels;
@@ -1336,7 +1352,7 @@ struct alignas(8) GatherPoints {
     unsigned count;
     unsigned first_alone;
 };
-static_assert(sizeof(GatherPoints) == 1544, "size of GatherPoints");
+static_assert(sizeof(GatherPoints) == 1576, "size of GatherPoints");
 static_assert(PLACE_OF(GatherPoints, scene) == 0, "place of GatherPoints::scene");
 static_assert(PLACE_OF(GatherPoints, rays) == 584, "place of GatherPoints::rays");
 static_assert(PLACE_OF(GatherPoints, hits) == 704, "place of GatherPoints::hits");
@@ -1349,13 +1365,18 @@ static_assert(PLACE_OF(GatherPoints, alone_count) == 1472, "place of GatherPoint
 static_assert(PLACE_OF(GatherPoints, sites) == 1480, "place of GatherPoints::sites");
 static_assert(PLACE_OF(GatherPoints, far) == 1488, "place of GatherPoints::far");
 static_assert(PLACE_OF(GatherPoints, light) == 1496, "place of GatherPoints::light");
-static_assert(PLACE_OF(GatherPoints, eye) == 1504, "place of GatherPoints::eye");
-static_assert(PLACE_OF(GatherPoints, spacing) == 1516, "place of GatherPoints::spacing");
-static_assert(PLACE_OF(GatherPoints, pixels) == 1524, "place of GatherPoints::pixels");
-static_assert(PLACE_OF(GatherPoints, least_level) == 1528, "place of GatherPoints::least_level");
-static_assert(PLACE_OF(GatherPoints, first) == 1532, "place of GatherPoints::first");
-static_assert(PLACE_OF(GatherPoints, count) == 1536, "place of GatherPoints::count");
-static_assert(PLACE_OF(GatherPoints, first_alone) == 1540, "place of GatherPoints::first_alone");
+static_assert(PLACE_OF(GatherPoints, normals) == 1504, "place of GatherPoints::normals");
+static_assert(PLACE_OF(GatherPoints, samples) == 1512, "place of GatherPoints::samples");
+static_assert(PLACE_OF(GatherPoints, sampled_pixels) == 1520, "place of GatherPoints::sampled_pixels");
+static_assert(PLACE_OF(GatherPoints, sample_count) == 1528, "place of GatherPoints::sample_count");
+static_assert(PLACE_OF(GatherPoints, first_sampled) == 1532, "place of GatherPoints::first_sampled");
+static_assert(PLACE_OF(GatherPoints, eye) == 1536, "place of GatherPoints::eye");
+static_assert(PLACE_OF(GatherPoints, spacing) == 1548, "place of GatherPoints::spacing");
+static_assert(PLACE_OF(GatherPoints, pixels) == 1556, "place of GatherPoints::pixels");
+static_assert(PLACE_OF(GatherPoints, least_level) == 1560, "place of GatherPoints::least_level");
+static_assert(PLACE_OF(GatherPoints, first) == 1564, "place of GatherPoints::first");
+static_assert(PLACE_OF(GatherPoints, count) == 1568, "place of GatherPoints::count");
+static_assert(PLACE_OF(GatherPoints, first_alone) == 1572, "place of GatherPoints::first_alone");
 
 struct alignas(4) TileBox {
     Vec3 low;

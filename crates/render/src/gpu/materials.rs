@@ -45,8 +45,12 @@ impl<R: Runtime> Upload<'_, R> {
             .zip(numbers)
             .map(|(material, &number)| {
                 let images = images_of(geometry, material).map(|image| image.and_then(|_| used.next()));
-                let [texture, emission_texture] = images.map(|image| image.unwrap_or(Material::NO_TEXTURE));
-                Material { number, texture, emission_texture, ..material_record(geometry, material) }
+                let [texture, emission_texture, normal_texture] =
+                    images.map(|image| image.unwrap_or(Material::NO_TEXTURE));
+                let own = material_record(geometry, material);
+                // Shadow catchers are seen by their shadows alone.
+                let normal_texture = if own.tinted == 1 { normal_texture } else { Material::NO_TEXTURE };
+                Material { number, texture, emission_texture, normal_texture, ..own }
             })
             .collect();
         record.materials = self.array("materials", &materials)?;
@@ -162,6 +166,7 @@ fn material_record(geometry: &Geometry, material: &lightmesh_scene::Material) ->
     let mut own = Coefficients::untinted(material);
     if is_tinted(geometry, material) {
         record.tinted = 1;
+        record.normal_scale = material.normal_texture.map_or(0.0, |map| map.scale);
         (own.ks, own.emission) = (material.ks, material.emission);
         record.ks_tinted = vec3(material.ks_tinted);
         record.emission_tinted = vec3(material.emission_tinted);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "accel/coverage.cuh"
+#include "cuda/warp.cuh"
 #include "footprint.cuh"
 #include "textures/lookup.cuh"
 
@@ -50,4 +51,38 @@ DEVICE Vec3 texel_at(const TintSources &sources, unsigned number, const Sighting
     const Axes axes = axes_at(sources.triangles, from, hit, a, b, c);
     return filtered(sources.codes, texture, Uv{uv.u + texture.translation[0], uv.v + texture.translation[1]},
                     Axes{in_image(texture, axes.a), in_image(texture, axes.b)});
+}
+
+// Those of a scene.
+DEVICE TintSources tint_sources(const Scene &scene) {
+    return {scene.triangles, scene.indices, scene.normals, scene.uvs, scene.colors, scene.textures, scene.codes, scene.coverage};
+}
+
+// What ray number `ray` goes along.
+DEVICE Sighting sighting_of(const Rays &rays, unsigned ray) {
+    const Ray along = ray_at(rays, ray);
+    return Sighting{along.origin, along.direction, cone_of(rays, ray)};
+}
+
+// The hits of the samples of a pixel: `count` of them, `stride` apart; those whose bits are set in `shared` count.
+struct SharedHits {
+    const Hit *hits;
+    unsigned long long stride;
+    unsigned count, shared;
+};
+
+// What the samples of the camera's pixels see, if they have several.
+struct Samples {
+    const Hit *hits;
+    unsigned first;
+    unsigned long long pixels;
+    unsigned count;
+};
+
+// Those of its pixel that are shaded with a ray; none if `samples` are none.
+DEVICE SharedHits shared_hits(const Rays &rays, unsigned ray, const Samples &samples) {
+    if (samples.hits == nullptr)
+        return SharedHits{};
+    const unsigned shared = rays.list == nullptr ? ALL_LANES : __ldg(&rays.list[ray].shared);
+    return SharedHits{samples.hits + (pixel_of(rays, ray) - samples.first), samples.pixels, samples.count, shared};
 }

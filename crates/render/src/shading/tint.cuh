@@ -2,7 +2,7 @@
 #pragma once
 
 #include "shading/dielectric.cuh"
-#include "shading/texel.cuh"
+#include "shading/normal_map.cuh"
 
 // The colour of what is emitted at `hit`: few materials have an image of it, which is not worth registers everywhere.
 COLD Vec3 emission_texel_at(TintSources sources, unsigned number, Sighting from, Hit hit) { return texel_at(sources, number, from, hit); }
@@ -51,6 +51,8 @@ DEVICE void set_tint(const Material *material, const Colors &colors, float opaci
     own->catcher = material->catcher;
     own->lamp = material->lamp;
     own->number = material->number;
+    own->normal_texture = material->normal_texture;
+    own->normal_scale = material->normal_scale;
 }
 
 // Changes the coefficients where a dielectric begins or ends.
@@ -70,16 +72,13 @@ COLD void tint_material(TintSources sources, const Material *material, Sighting 
     if (material->ior != 0.0f) {
         const Ray ray = {from.origin, from.direction, INFINITE};
         const Corners corners = load_corners(sources.triangles + hit.triangle);
-        set_boundary(boundary_met(sources.normals, sources.indices, corners, *material, ray, hit), own);
+        const Vec3 facing = surface_point(ray, hit, corners).normal;
+        Vec3 normal = shading_normal(sources.normals, sources.indices, hit, facing);
+        if (material->normal_texture != Material::NO_TEXTURE)
+            normal = mirroring(mapped_normal(sources, material, from, hit, normal), facing, -from.direction);
+        set_boundary(boundary_about(normal, corners, *material, ray, hit), own);
     }
 }
-
-// The hits of the samples of a pixel: `count` of them, `stride` apart; those whose bits are set in `shared` count.
-struct SharedHits {
-    const Hit *hits;
-    unsigned long long stride;
-    unsigned count, shared;
-};
 
 // Sets `own` to the material with the mean of its coefficients at these hits; leaves it without any.
 COLD void tint_by_all(TintSources sources, const Material *material, Sighting from, SharedHits all, Material *own) {
@@ -96,17 +95,6 @@ COLD void tint_by_all(TintSources sources, const Material *material, Sighting fr
     }
     if (count > 0.0f)
         set_tint(material, Colors{sum.tint / count, sum.glow / count}, opacities / count, own);
-}
-
-// The inputs of the tints of a scene.
-DEVICE TintSources tint_sources(const Scene &scene) {
-    return {scene.triangles, scene.indices, scene.normals, scene.uvs, scene.colors, scene.textures, scene.codes, scene.coverage};
-}
-
-// What ray number `ray` goes along.
-DEVICE Sighting sighting_of(const Rays &rays, unsigned ray) {
-    const Ray along = ray_at(rays, ray);
-    return Sighting{along.origin, along.direction, cone_of(rays, ray)};
 }
 
 // The material at `hit`: that of its triangle, or `own` if it has a tint. So a material without one takes no registers for

@@ -9,13 +9,15 @@
 //! sample counts; without one, at a single sample of a pixel, it is the colour at a point, and minified textures flicker.
 
 use glam::Vec3;
-use lightmesh_scene::{Geometry, Material, Mesh};
+use lightmesh_scene::{Dielectric, Geometry, Material, Mesh};
 
 use super::dielectric::{Boundary, left_straight_on};
+use super::normal_map::{mirroring, normal_at};
 use super::texel::texel_at;
 use crate::accel::{Hit, Ray};
 use crate::footprint::Cone;
 use crate::prepared::PreparedScene;
+use crate::surface::SurfacePoint;
 use crate::textures::{Image, images_of};
 
 /// The coefficients of formula (1) at a surface point.
@@ -37,7 +39,7 @@ impl Coefficients {
             true => {
                 let own = Coefficients::tinted(material, colors(scene, material, ray, cone, hit), opacity(scene, hit));
                 match material.boundary() {
-                    Some(glass) => own.at_boundary(&Boundary::met(scene, glass, ray, hit)),
+                    Some(glass) => own.at_boundary(&boundary(scene, material, glass, (ray, cone), hit)),
                     None => own,
                 }
             }
@@ -100,7 +102,21 @@ impl Coefficients {
     }
 }
 
-/// Whether surface points of `material` may differ in colour or opacity.
+/// Where `ray` with a cone meets a dielectric.
+fn boundary(
+    scene: &PreparedScene,
+    material: &Material,
+    glass: &Dielectric,
+    (ray, cone): (&Ray, Cone),
+    hit: &Hit,
+) -> Boundary {
+    let point = SurfacePoint::new(ray, hit, &scene.geometry.triangles[hit.triangle as usize]);
+    let (normal, relief) = normal_at(scene, material, (ray, cone), hit, &point);
+    let turned = relief.map_or(normal, |_| mirroring(normal, point.normal, -ray.direction));
+    Boundary::about(turned, scene, glass, ray, hit)
+}
+
+/// Whether surface points of `material` may differ in colour, opacity or relief.
 #[inline(always)]
 pub(crate) fn is_tinted(geometry: &Geometry, material: &Material) -> bool {
     let has_texture = || images_of(geometry, material).iter().any(Option::is_some);
@@ -137,7 +153,8 @@ struct Colors {
 fn colors(scene: &PreparedScene, material: &Material, ray: &Ray, cone: Cone, hit: &Hit) -> Colors {
     let geometry = &scene.scene.geometry;
     let texel = |found: Option<Image>| found.map_or(Vec3::ONE, |image| texel_at(scene, &image, ray, cone, hit));
-    let [tint, glow] = images_of(geometry, material).map(texel);
+    let [tint, glow, _] = images_of(geometry, material);
+    let [tint, glow] = [tint, glow].map(texel);
     Colors { tint: if geometry.mesh.colors.is_empty() { tint } else { tint * color_at(&geometry.mesh, hit) }, glow }
 }
 

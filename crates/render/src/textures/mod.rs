@@ -28,12 +28,23 @@ pub(crate) struct Image<'s> {
     pub(crate) encoding: Encoding,
 }
 
-/// The images of a material, except that of its opacity: of its colour, and of what it emits.
-pub(crate) fn images_of<'s>(geometry: &'s Geometry, material: &Material) -> [Option<Image<'s>>; 2] {
-    [(material.texture, Encoding::Color), (material.emission_texture, Encoding::Color)].map(|(uses, encoding)| {
-        let (uses, texture) = usable(geometry, uses?)?;
+impl<'s> Image<'s> {
+    fn new(geometry: &'s Geometry, uses: TextureUse, encoding: Encoding) -> Option<Image<'s>> {
+        let (uses, texture) = usable(geometry, uses)?;
         Some(Image { uses, texture, encoding })
-    })
+    }
+}
+
+/// The images of a material, except that of its opacity: of its colour, of what it emits, and of its normals.
+pub(crate) fn images_of<'s>(geometry: &'s Geometry, material: &Material) -> [Option<Image<'s>>; 3] {
+    let [color, glow] =
+        [material.texture, material.emission_texture].map(|uses| Image::new(geometry, uses?, Encoding::Color));
+    [color, glow, normals_of(geometry, material)]
+}
+
+/// The image of a material's normals.
+pub(crate) fn normals_of<'s>(geometry: &'s Geometry, material: &Material) -> Option<Image<'s>> {
+    Image::new(geometry, material.normal_texture?.uses, Encoding::Data)
 }
 
 /// A texture that is used like this, if it can be looked up.
