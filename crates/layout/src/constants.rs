@@ -183,6 +183,13 @@ constants! {
     LEAST_SQUARE: f32 = 1e-30;
     /// If the square of its length is below this, an interpolated normal has cancelled out.
     LEAST_SMOOTH_SQUARE: f32 = 1e-12;
+    /// The code of 0 in an image of normals.
+    NORMAL_CODE_ZERO: f32 = 128.0;
+    /// By how much that of 1 is larger.
+    NORMAL_CODE_ONE: f32 = 127.0;
+    /// What surfaces with images of normals mirror goes at least at this cosine from the geometric normal, or half as far from the surface as the
+    /// view.
+    LEAST_MIRRORED_COSINE: f32 = 0.01;
     /// The ellipse in which a cone meets a surface is longer than wide by at most the reciprocal of this cosine.
     LEAST_FOOTPRINT_COSINE: f32 = 1e-6;
     /// Lookups along the major axis of a footprint in a texture, at most.

@@ -318,7 +318,7 @@ records! {
         spare: u32,
     }
 
-    /// `ask_light`, `add_means`: one thread per ray; `mean_light`: one thread per place; `take_alone` and `give_alone`: one thread per place
+    /// `ask_light`, `find_normals`, `add_means`: one thread per ray; `mean_light`: one thread per place; `take_alone` and `give_alone`: one thread per place
     /// that sees no site.
     GatherPoints {
         /// The scene.
@@ -345,6 +345,16 @@ records! {
         far: In<FarLight>,
         /// The mean radiance that each surface point receives, by ray.
         light: Out<Vec3>,
+        /// The normals of the surface points of this launch's rays; null if no material has an image of normals.
+        normals: Out<Vec3>,
+        /// What the samples of the camera's pixels see, sample by sample; null if a pixel has one.
+        samples: In<Hit>,
+        /// Number of pixels of `samples`.
+        sampled_pixels: u64,
+        /// Samples of a pixel in `samples`.
+        sample_count: u32,
+        /// The first pixel of `samples`.
+        first_sampled: u32,
         /// The eye.
         eye: Vec3,
         /// The size of a pixel: a constant, and a multiple of its distance.

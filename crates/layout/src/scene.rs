@@ -58,7 +58,7 @@ records! {
 
     /// A texture on a material: the image, and how texture coordinates are mapped to it.
     Texture {
-        /// Row by row, red in the lowest byte, encoded as sRGB.
+        /// Row by row, red in the lowest byte.
         texels: In<u32>,
         /// The levels below the image, from the largest to the one that is a single texel.
         levels: In<TextureLevel>,
@@ -74,8 +74,8 @@ records! {
         translation: [f32; 2],
         /// Number of levels below the image.
         level_count: u32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
+        /// Where the linear values of its codes begin in the scene's table.
+        first_code: u32,
     }
 
     /// What facets reflect of light from all sides.
@@ -127,6 +127,12 @@ records! {
         eta: f32,
         /// Index of the texture that emitted light is multiplied with, or [`Material::NO_TEXTURE`].
         emission_texture: u32,
+        /// Index of the image of its normals, or [`Material::NO_TEXTURE`].
+        normal_texture: u32,
+        /// At a surface point with an image of normals: the unit normal without it.
+        smooth: Vec3,
+        /// What the slopes of the image of normals are multiplied with.
+        normal_scale: f32,
         /// 1: it reflects by facets; then the coefficients of a material are its base colour and its layer.
         facets: u32,
         /// Roughness of the facets.
@@ -135,8 +141,6 @@ records! {
         metallic: f32,
         /// What they reflect at grazing incidence.
         grazing: f32,
-        /// At a surface point with facets: how opaque it is.
-        opacity: f32,
         /// What is reflected of light from all sides, where it is gathered.
         all: Vec3,
         /// At a surface point with facets: the square of the width of their lobe.
@@ -151,8 +155,8 @@ records! {
         cosine: f32,
         /// At a surface point with facets: the share of reflections that mirror rays do not show.
         unmirrored: f32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
+        /// At a surface point with facets: how opaque it is.
+        opacity: f32,
     }
 
     /// A level of an environment.
@@ -208,8 +212,8 @@ records! {
         colors: In<Vec3>,
         /// Textures, by material.
         textures: In<Texture>,
-        /// Linear values of the 256 codes of sRGB.
-        srgb: In<f32>,
+        /// Linear values of the 256 codes of sRGB, and of those of data.
+        codes: In<f32>,
         /// The material of each triangle.
         triangle_materials: In<u32>,
         /// Materials.

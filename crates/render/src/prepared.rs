@@ -16,7 +16,7 @@ use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
 use crate::stage::Stage;
 use crate::sync::locked;
-use crate::textures::MipLevels;
+use crate::textures::AllLevels;
 
 /// Bytes that a triangle takes at most while a BVH is built, with what is kept of it.
 const BYTES_TO_BUILD: u64 = 400;
@@ -35,7 +35,7 @@ pub struct PreparedGeometry {
     /// The numbers and names of materials.
     pub(crate) materials: MaterialIds,
     /// The smaller levels of textures, by number; empty if no texture is seen.
-    pub(crate) mip_levels: Arc<Vec<MipLevels>>,
+    pub(crate) mip_levels: Arc<AllLevels>,
     /// The same triangles for shadow rays, if some are not opaque.
     pub(crate) see_through: Option<SeeThrough<Arc<PreparedGeometry>>>,
     /// The setting that chose the structure.
@@ -189,7 +189,7 @@ impl PreparedGeometry {
     /// Bytes that the geometry occupies on the host, including the acceleration structure, the smaller levels of textures and
     /// opacities.
     pub fn memory(&self) -> usize {
-        let levels: usize = self.mip_levels.iter().map(MipLevels::memory).sum();
+        let levels = self.mip_levels.memory();
         let parts = self.see_through.iter().flat_map(|parts| [&parts.blockers, &parts.panes]);
         let parts: usize = parts.map(|part| part.accelerator.memory()).sum();
         size_of_val(&*self.triangles) + self.accelerator.memory() + self.coverage.memory() + levels + parts
@@ -229,8 +229,8 @@ fn triangles_of(geometry: &Geometry, budget: Budget) -> Result<(Vec<Triangle>, C
     Ok(((0..geometry.mesh.triangles.len()).map(triangle).collect(), coverage))
 }
 
-fn mip_levels(geometry: &Geometry, budget: Budget) -> Result<Vec<MipLevels>, RenderError> {
-    MipLevels::of(geometry, budget).map_err(|found| too_large(geometry, found))
+fn mip_levels(geometry: &Geometry, budget: Budget) -> Result<AllLevels, RenderError> {
+    AllLevels::of(geometry, budget).map_err(|found| too_large(geometry, found))
 }
 
 /// The error for a texture of which something does not fit into memory.

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::{Dielectric, Facets, Opacity, TextureUse};
+use crate::{Dielectric, Facets, NormalMap, Opacity, TextureUse};
 
 /// How a surface reflects light: ambient, diffuse and Phong terms (Whitted 1980, Phong 1975), or by [facets](Material::facets).
 ///
@@ -36,6 +36,8 @@ pub struct Material {
     pub texture: Option<TextureUse>,
     /// An image that `emission` is multiplied with. Lights never stand for such a surface: it lights others where light is gathered.
     pub emission_texture: Option<TextureUse>,
+    /// An image of normals, which the shading uses in place of the surface's.
+    pub normal_texture: Option<NormalMap>,
     /// Whether only the shadows on it are seen: it shows the background, darker where it gets less light than it would alone, or is
     /// transparent there. Then nothing but `ka` and `kd` counts.
     pub catcher: bool,
@@ -62,6 +64,7 @@ impl Default for Material {
             emission_tinted: Vec3::ZERO,
             texture: None,
             emission_texture: None,
+            normal_texture: None,
             catcher: false,
             lamp: false,
             opacity: None,
@@ -108,6 +111,13 @@ impl Material {
     /// Whether there is no surface of this material anywhere.
     pub(crate) fn is_nowhere(&self) -> bool {
         self.dielectric.is_none() && self.opacity.is_some_and(|opacity| opacity.is_nowhere())
+    }
+
+    /// Whether any of its images needs texture coordinates.
+    pub(crate) fn needs_uvs(&self) -> bool {
+        let of_normals = self.normal_texture.map(|map| map.uses);
+        let of_opacity = self.opacity.and_then(|opacity| opacity.texture);
+        [self.texture, self.emission_texture, of_normals, of_opacity].iter().any(Option::is_some)
     }
 
     /// Glass and the like, which is black apart from what it reflects and what goes through.
@@ -184,6 +194,11 @@ impl Material {
     /// An image that the emission is multiplied with.
     pub fn with_emission_texture(self, texture: TextureUse) -> Material {
         Material { emission_texture: Some(texture), ..self }
+    }
+
+    /// An image of normals, which the shading uses in place of the surface's.
+    pub fn with_normal_texture(self, map: NormalMap) -> Material {
+        Material { normal_texture: Some(map), ..self }
     }
 
     /// Where the surface is, and what it lets through.

@@ -1,7 +1,8 @@
-//! Textures: images that colour surfaces.
+//! Textures: images that colour surfaces, or turn their normals.
 
 mod decode;
 mod files;
+mod heights;
 mod missing_uvs;
 
 use glam::Affine2;
@@ -12,7 +13,7 @@ pub(crate) use missing_uvs::untextured;
 
 /// An image in memory.
 ///
-/// Eight bits per channel, encoded as sRGB; row 0 is the top, texture coordinate (0, 0) its upper left corner, as in glTF.
+/// Eight bits per channel: colours encoded as sRGB, or the data of a [`NormalMap`]; row 0 is the top, texture coordinate (0, 0) its upper left corner, as in glTF.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
     /// For display: the file's name, or its index in the file that contains it.
@@ -50,5 +51,29 @@ impl TextureUse {
     /// The texture without a transform, repeated.
     pub fn new(texture: u32) -> TextureUse {
         TextureUse { texture, wrap: [Wrap::Repeat; 2], transform: Affine2::IDENTITY }
+    }
+}
+
+/// An image of normals on a material: of directions in which the surface would face if it had the relief that the image stands for.
+///
+/// Red is the direction in which the image goes on to the right, green that to its top, and blue that of the surface, as in glTF: 128 is 0
+/// and 255 is 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NormalMap {
+    /// The image, and how it is placed.
+    pub uses: TextureUse,
+    /// What slopes are multiplied with: 0 is flat, negative numbers make dents of bumps.
+    pub scale: f32,
+}
+
+impl NormalMap {
+    /// An image with the slopes that it has.
+    pub fn new(uses: TextureUse) -> NormalMap {
+        NormalMap { uses, scale: 1.0 }
+    }
+
+    /// The same with slopes multiplied by `scale`.
+    pub fn with_scale(self, scale: f32) -> NormalMap {
+        NormalMap { scale, ..self }
     }
 }

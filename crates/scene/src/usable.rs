@@ -3,7 +3,9 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::{Dielectric, Facets, Material, Opacity, OpacityMode, draft::LARGEST_COORDINATE, quote::list};
+use crate::{
+    Dielectric, Facets, Material, NormalMap, Opacity, OpacityMode, draft::LARGEST_COORDINATE, quote::list,
+};
 
 /// Whether a world position is usable.
 pub(crate) fn is_place(world: DVec3) -> bool {
@@ -21,12 +23,18 @@ pub(crate) fn keep_placed<T>(items: &mut Vec<(T, DVec3)>, kind: &str) -> Option<
 /// Replaces infinite, NaN and negative coefficients by 0.
 pub(crate) fn keep_finite(materials: &mut [Material]) -> Option<String> {
     let mut count = 0;
-    for Material { ka, kd, ks, ks_tinted, facets, emission, emission_tinted, opacity, dielectric, .. } in materials {
+    for material in materials {
+        let Material { ka, kd, ks, ks_tinted, facets, emission, emission_tinted, normal_texture, opacity, dielectric, .. } =
+            material;
         let mut odd = false;
         for color in [ka, kd, ks, ks_tinted, emission, emission_tinted] {
             let usable = color.is_finite_mask() & color.cmpge(Vec3::ZERO);
             odd |= !usable.all();
             *color = Vec3::select(usable, *color, Vec3::ZERO);
+        }
+        if let Some(NormalMap { scale, .. }) = normal_texture {
+            odd |= !scale.is_finite();
+            *scale = if scale.is_finite() { *scale } else { 0.0 };
         }
         let mut keep = |number: &mut f32, most: f32| {
             odd |= !(0.0..=most).contains(number);

@@ -3,10 +3,11 @@
 use glam::{Affine2, DVec3, Vec2, Vec3};
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{
-    Acceleration, AmbientSource, Frame, Mode, PreparedScene, Settings, Sharing, Unobserved, render_on,
+    Acceleration, AmbientSource, Frame, Mode, PreparedScene, Quality, Settings, Sharing, Unobserved, render_on,
 };
 use lightmesh_scene::{
-    Environment, Facets, Light, LightKind, Material, Opacity, Scene, Sun, Texture, TextureUse, Up, Wrap,
+    Dielectric, Environment, Facets, Light, LightKind, Material, NormalMap, Opacity, Scene, Sun, Texture, TextureUse, Up,
+    Wrap,
 };
 use lightmesh_testkit::{SceneDraft, pile};
 
@@ -23,6 +24,10 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
             let name = format!("textured::facets::{}::{aa}", ambient.name());
             cases.push(Case::new(name, move |cuda: &Cuda<R>| same_facet_bits(cuda, ambient, aa)));
         }
+    }
+    for (aa, ambient) in [(1, AmbientSource::Constant), (4, AmbientSource::Constant), (4, AmbientSource::Mesh)] {
+        let name = format!("textured::relief::{aa}::{}", ambient.name());
+        cases.push(Case::new(name, move |cuda: &Cuda<R>| same_relief_bits(cuda, aa, ambient)));
     }
     for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
         for height in [None, Some(4.0)] {
@@ -60,6 +65,11 @@ pub(crate) fn textured() -> Scene {
         material.emission = Vec3::new(0.5, 0.25, 1.0);
         material.emission_texture = uses(image, [Wrap::Mirror, Wrap::Repeat]);
     }
+    // Normals with images that are colours elsewhere.
+    for (number, image, scale) in [(0, 1, 0.7), (2, 0, -1.5), (3, 0, 1.0)] {
+        let map = uses(image, [Wrap::Repeat, Wrap::Mirror]).map(NormalMap::new);
+        scene.geometry_mut().materials[number].normal_texture = map.map(|map| map.with_scale(scale));
+    }
     let mesh = &mut scene.geometry_mut().mesh;
     mesh.materials = (0..mesh.triangles.len() as u32).map(|index| index % 5).collect();
     mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(1.3 * p.x + 0.7 * p.y, p.z - 0.2 * p.y)).collect();
@@ -92,7 +102,26 @@ fn same_bits<R: Target>(cuda: &Cuda<R>) {
 fn same_surrounded_bits<R: Target>(cuda: &Cuda<R>, aa: u32) {
     let scene = PreparedScene::new(&surrounded(), &Acceleration::Bvh, &Unobserved).unwrap();
     let settings = Settings::default().with_ambient_light(AmbientSource::Constant).with_bounces(2);
-    assert_same_bits(cuda, &scene, &settings.with_size([64, 48]).with_aa(aa), 2);
+    let settings = settings.with_size([64, 48]).with_aa(aa);
+    assert_same_bits(cuda, &scene, &settings, 2);
+}
+
+/// The same with relief on everything, and the curved mirror, or a body of glass in its place.
+fn same_relief_bits<R: Target>(cuda: &Cuda<R>, aa: u32, ambient: AmbientSource) {
+    let mut scene = surrounded();
+    for glass in [false, true] {
+        let materials = &mut scene.geometry_mut().materials;
+        if glass {
+            materials[2] = Material::of(Dielectric::new(1.4).with_absorption([0.2, 0.1, 0.0]));
+        }
+        for (material, scale) in materials[1..].iter_mut().zip([0.5, 0.2, -0.7]) {
+            material.kd = Vec3::splat(0.3);
+            material.normal_texture = Some(NormalMap::new(TextureUse::new(0)).with_scale(scale));
+        }
+        let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
+        let settings = Settings::default().with_ambient_light(ambient).with_quality(Quality::Draft).with_bounces(2);
+        assert_same_bits(cuda, &scene, &settings.with_size([40, 30]).with_aa(aa), 3);
+    }
 }
 
 /// The floor and the mirrors in a panorama with a sun.
@@ -115,6 +144,7 @@ fn same_facet_bits<R: Target>(cuda: &Cuda<R>, ambient: AmbientSource, aa: u32) {
     }
     let last = scene.geometry.materials.len() - 1;
     scene.geometry_mut().materials[last].opacity = Some(Opacity::blend(0.75));
+    scene.geometry_mut().materials[last].normal_texture = Some(NormalMap::new(TextureUse::new(0)).with_scale(0.4));
     let sun = scene.lights.environment.as_ref().and_then(|around| around.sun()).expect("there is a sun").direction;
     let panel = Light::rectangle(Vec3::new(-1.0, 2.5, 1.0), 0.5 * Vec3::X, 0.25 * Vec3::Z).unwrap();
     let lights = [Light::directional(-sun).unwrap(), panel, Light::point(Vec3::new(1.0, 2.0, 2.0))];

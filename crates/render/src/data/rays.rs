@@ -106,6 +106,13 @@ impl RayList {
         self.cone_of(ray).spread.abs() * samples.sqrt()
     }
 
+    /// What the samples of its pixel see that are shaded with a ray, if any are.
+    pub(crate) fn shared_hits(&self, ray: usize) -> Option<impl Iterator<Item = &Hit>> {
+        let shared = self.shared.get(ray).copied().unwrap_or(u32::MAX);
+        let sampled = self.sampled.as_ref().filter(|_| shared != 0)?;
+        Some(sampled.hits_of(self.pixels[ray], shared))
+    }
+
     /// Whether textures are filtered.
     pub(crate) fn has_cones(&self) -> bool {
         !self.cones.is_empty() || !self.cone.is_point()

@@ -141,6 +141,13 @@ KERNEL(ask_light, GatherPoints, BLOCK, 4) {
         ask_at(args, index);
 }
 
+// Only where there are images of normals.
+KERNEL(find_normals, GatherPoints, BLOCK, 4) {
+    unsigned index;
+    if (thread_has_work(args.count, index))
+        find_normal(args, index);
+}
+
 KERNEL(mean_light, GatherPoints, BLOCK, 4) {
     unsigned index;
     if (thread_has_work(args.count, index))

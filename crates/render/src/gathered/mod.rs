@@ -31,7 +31,8 @@ use rayon::prelude::*;
 use crate::data::wave::HostWave;
 use crate::prepared::PreparedScene;
 use crate::settings::Quality;
-use crate::surface::{SurfacePoint, shading_normal};
+use crate::shading::normal_seen;
+use crate::surface::SurfacePoint;
 use crate::view::View;
 use bounce::Bounce;
 use cells::{Cells, Site, level_of};
@@ -204,8 +205,7 @@ fn gather_part(
     links.settle(scene, fine_cells, &places, |_, site| known(site).nearest);
 
     // 3. The mean. Where there is none, rays from the point itself.
-    let normal =
-        |ask: &Ask| shading_normal(&wave.scene.scene.geometry.mesh, &wave.hits[first + ask.index], ask.point.normal);
+    let normal = |ask: &Ask| normal_seen(wave, first + ask.index);
     let mean = |(number, ask): (usize, &Ask)| {
         let (normal, mut sum, mut weights) = (normal(ask), Vec3::ZERO, 0.0);
         for (site, weight) in links.of(number) {

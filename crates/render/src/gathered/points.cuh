@@ -3,7 +3,7 @@
 
 #include "gathered/light.cuh"
 #include "gathered/lookup.cuh"
-#include "surface.cuh"
+#include "shading/normal_map.cuh"
 
 // Asks for light at a ray's surface point: at one level, or between two.
 DEVICE void ask_at(const GatherPoints &args, unsigned index) {
@@ -21,8 +21,29 @@ DEVICE void ask_at(const GatherPoints &args, unsigned index) {
     args.places[2 * index + 1] = places[1];
 }
 
+// Finds the normal that shading uses at a ray's surface point, by an image if there is one; the mean over the samples of the pixel that are shaded
+// with it.
+DEVICE void find_normal(const GatherPoints &args, unsigned index) {
+    const unsigned ray = args.first + index;
+    const Hit hit = load_hit(args.hits, ray);
+    if (hit.triangle == Hit::NONE)
+        return;
+    const Vec3 smooth = shading_normal(args.scene, hit, surface_point_of(args.scene, args.rays, args.hits, ray).normal);
+    args.normals[index] = smooth;
+    const Material *material = args.scene.materials + __ldg(args.scene.triangle_materials + hit.triangle);
+    if (material->normal_texture == Material::NO_TEXTURE)
+        return;
+    const TintSources sources = tint_sources(args.scene);
+    const Sighting from = sighting_of(args.rays, ray);
+    const Vec3 own = mapped_normal(sources, material, from, hit, smooth);
+    const SharedHits shared = shared_hits(args.rays, ray, Samples{args.samples, args.first_sampled, args.sampled_pixels, args.sample_count});
+    args.normals[index] = shared.shared != 0 ? mean_normal(sources, material, from, shared, own) : own;
+}
+
 // The normal that shading uses.
 DEVICE Vec3 normal_at(const GatherPoints &args, unsigned place, Vec3 facing) {
+    if (args.normals != nullptr)
+        return args.normals[place / 2];
     return shading_normal(args.scene, load_hit(args.hits, args.first + place / 2), facing);
 }
 

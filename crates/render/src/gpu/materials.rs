@@ -1,9 +1,9 @@
 //! Materials, their textures and what cuts them out in a device's memory.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use glam::Vec2;
-use lightmesh_image::Transfer;
 use lightmesh_layout::In;
 use lightmesh_layout::geometry::{Coverage, Mask, Vec3};
 use lightmesh_layout::scene::{FacetShare, Material, Scene as Record, Texture, TextureLevel, Uv};
@@ -15,23 +15,27 @@ use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::shading::facets;
 use crate::shading::tint::{Coefficients, is_tinted};
-use crate::textures::{Level, MipLevels, images_of};
+use crate::textures::{AllLevels, Encoding, Image, Level, images_of};
+
+/// Codes of a channel.
+const CODES: u32 = 1 << u8::BITS;
 
 impl<R: Runtime> Upload<'_, R> {
-    /// What determines the colours of surfaces. Texture coordinates and the sRGB table are uploaded only if a texture needs
+    /// What determines the colours of surfaces. Texture coordinates and the table of codes are uploaded only if a texture needs
     /// them.
     pub(super) fn materials(
         &mut self,
         geometry: &Geometry,
-        (numbers, levels): (&[u32], &[MipLevels]),
+        (numbers, levels): (&[u32], &AllLevels),
         record: &mut Record,
     ) -> Result<(), RenderError> {
         record.triangle_materials = self.array("materials of triangles", &geometry.mesh.materials)?;
         record.colors = self.array::<Vec3>("colours", bytemuck::cast_slice(&geometry.mesh.colors))?;
         let textures = self.textures(geometry, levels)?;
         if !textures.is_empty() {
-            let srgb: Vec<f32> = (0..=u8::MAX).map(|code| Transfer::Srgb.decode(code)).collect();
-            record.srgb = self.array("table of sRGB", &srgb)?;
+            let codes = |encoding: Encoding| (0..=u8::MAX).map(move |code| encoding.decode(code));
+            let codes: Vec<f32> = Encoding::ALL.into_iter().flat_map(codes).collect();
+            record.codes = self.array("linear values of codes", &codes)?;
             record.uvs = self.array::<Uv>("texture coordinates", bytemuck::cast_slice(&geometry.mesh.uvs))?;
             record.textures = self.array("textures", &textures)?;
         }
@@ -41,9 +45,13 @@ impl<R: Runtime> Upload<'_, R> {
             .iter()
             .zip(numbers)
             .map(|(material, &number)| {
-                let images = images_of(geometry, material).map(|found| found.and_then(|_| used.next()));
-                let [texture, emission_texture] = images.map(|image| image.unwrap_or(Material::NO_TEXTURE));
-                Material { number, texture, emission_texture, ..material_record(geometry, material) }
+                let images = images_of(geometry, material).map(|image| image.and_then(|_| used.next()));
+                let [texture, emission_texture, normal_texture] =
+                    images.map(|image| image.unwrap_or(Material::NO_TEXTURE));
+                let own = material_record(geometry, material);
+                // Shadow catchers are seen by their shadows alone.
+                let normal_texture = if own.tinted == 1 { normal_texture } else { Material::NO_TEXTURE };
+                Material { number, texture, emission_texture, normal_texture, ..own }
             })
             .collect();
         record.materials = self.array("materials", &materials)?;
@@ -53,32 +61,32 @@ impl<R: Runtime> Upload<'_, R> {
         Ok(())
     }
 
-    /// The images of the materials, in their order. Each texture is uploaded once.
-    fn textures(&mut self, geometry: &Geometry, levels: &[MipLevels]) -> Result<Vec<Texture>, RenderError> {
-        let mut uploaded: HashMap<u32, (In<u32>, In<TextureLevel>)> = HashMap::new();
+    /// The images of the materials, in their order. Each texture is uploaded once, and the levels for each of its encodings.
+    fn textures(&mut self, geometry: &Geometry, levels: &AllLevels) -> Result<Vec<Texture>, RenderError> {
+        let mut texels: HashMap<u32, In<u32>> = HashMap::new();
+        let mut lower: HashMap<(u32, Encoding), In<TextureLevel>> = HashMap::new();
         let mut records = Vec::new();
-        for (uses, texture) in geometry.materials.iter().flat_map(|material| images_of(geometry, material)).flatten() {
-            let lower = &levels[uses.texture as usize].levels;
-            let (texels, levels) = match uploaded.get(&uses.texture) {
-                Some(&known) => known,
-                None => {
-                    let packed: Vec<u32> = texture.texels.iter().map(|&texel| u32::from_le_bytes(texel)).collect();
-                    let own = (self.array("texels", &packed)?, self.levels(lower)?);
-                    uploaded.insert(uses.texture, own);
-                    own
-                }
-            };
+        for image in geometry.materials.iter().flat_map(|material| images_of(geometry, material)).flatten() {
+            let Image { uses, texture, encoding } = image;
+            let own = &levels.of_image(&image).levels;
+            if let Entry::Vacant(place) = texels.entry(uses.texture) {
+                let packed: Vec<u32> = texture.texels.iter().map(|&texel| u32::from_le_bytes(texel)).collect();
+                place.insert(self.array("texels", &packed)?);
+            }
+            if let Entry::Vacant(place) = lower.entry((uses.texture, encoding)) {
+                place.insert(self.levels(own)?);
+            }
             let axis = |axis: Vec2| axis.to_array();
             records.push(Texture {
-                texels,
-                levels,
+                texels: texels[&uses.texture],
+                levels: lower[&(uses.texture, encoding)],
                 size: texture.size,
                 wrap: uses.wrap.map(wrap),
                 u_axis: axis(uses.transform.matrix2.x_axis),
                 v_axis: axis(uses.transform.matrix2.y_axis),
                 translation: axis(uses.transform.translation),
-                level_count: lower.len() as u32,
-                spare: 0,
+                level_count: own.len() as u32,
+                first_code: encoding as u32 * CODES,
             });
         }
         Ok(records)
@@ -162,6 +170,7 @@ fn material_record(geometry: &Geometry, material: &lightmesh_scene::Material) ->
     let mut own = Coefficients::untinted(material);
     if is_tinted(geometry, material) {
         record.tinted = 1;
+        record.normal_scale = material.normal_texture.map_or(0.0, |map| map.scale);
         (own.ks, own.emission) = (material.ks, material.emission);
         record.ks_tinted = vec3(material.ks_tinted);
         record.emission_tinted = vec3(material.emission_tinted);

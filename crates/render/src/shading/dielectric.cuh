@@ -25,11 +25,8 @@ DEVICE float exp_of_minus(float x) {
     return sum * __uint_as_float((unsigned)((int)whole + 127) << 23);
 }
 
-// Where `ray` meets a dielectric at `hit` on the triangle with these corners.
-DEVICE Boundary boundary_met(const Vec3 *normals, const Indices *indices, const Corners &corners, const Material &glass, const Ray &ray,
-                             const Hit &hit) {
-    const SurfacePoint point = surface_point(ray, hit, corners);
-    const Vec3 normal = shading_normal(normals, indices, hit, point.normal);
+// Where `ray` meets a dielectric with this normal at `hit` on the triangle with these corners.
+DEVICE Boundary boundary_about(Vec3 normal, const Corners &corners, const Material &glass, const Ray &ray, const Hit &hit) {
     const float size = length(ray.direction);
     const bool thin = glass.thin != 0;
     const bool inside = !thin && dot(cross(corners.b - corners.a, corners.c - corners.a), ray.direction) > 0.0f;
@@ -40,6 +37,13 @@ DEVICE Boundary boundary_met(const Vec3 *normals, const Indices *indices, const 
         met.left = Vec3{exp_of_minus(depth.x), exp_of_minus(depth.y), exp_of_minus(depth.z)};
     }
     return met;
+}
+
+// The same, whatever images of normals say.
+DEVICE Boundary boundary_met(const Vec3 *normals, const Indices *indices, const Corners &corners, const Material &glass, const Ray &ray,
+                             const Hit &hit) {
+    const Vec3 facing = surface_point(ray, hit, corners).normal;
+    return boundary_about(shading_normal(normals, indices, hit, facing), corners, glass, ray, hit);
 }
 
 // The cosine of the angle beyond the boundary; 0 if all light is reflected.

@@ -14,15 +14,17 @@ pub(crate) mod dielectric;
 pub(crate) mod environment;
 pub(crate) mod facets;
 pub(crate) mod ids;
+mod normal_map;
 #[cfg(test)]
 mod tests;
+mod texel;
 pub(crate) mod tint;
 
 use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 use lightmesh_layout::constants::{LIGHT_TARGETS, LUMINANCE_BLUE, LUMINANCE_GREEN, LUMINANCE_RED, PART_OF_LIGHT};
-use lightmesh_scene::{Falloff, Light, LightKind, Lights, Material};
+use lightmesh_scene::{Falloff, Geometry, Light, LightKind, Lights, Material};
 
 use crate::accel::Hit;
 use crate::data::wave::HostWave;
@@ -33,6 +35,7 @@ use crate::surface::{SurfacePoint, shading_normal};
 use ambient::AmbientLight;
 use dielectric::{eta_seen, refracted};
 use facets::{Lobe, Sight};
+use normal_map::{Relief, has_relief, mapped_normal, mean_normal, mirroring, normal_at};
 use tint::{Coefficients, is_tinted};
 
 /// The cosine between the way of its light and the direction to the sun of which a directional light is the same: single precision errs by less.
@@ -42,6 +45,8 @@ const SAME_SUN: f32 = -0.999_999;
 pub(crate) struct Surface {
     pub(crate) point: SurfacePoint,
     normal: Vec3,
+    /// If it has an image of normals.
+    relief: Option<Relief>,
     /// Unit vector to the viewer.
     view: Vec3,
     pub(crate) coefficients: Coefficients,
@@ -61,8 +66,10 @@ impl Surface {
         let geometry = &wave.scene.scene.geometry;
         let mesh = &geometry.mesh;
         let material = &geometry.materials[mesh.materials[hit.triangle as usize] as usize];
+        let (normal, relief) = normal_at(wave.scene, material, (ray, cone), hit, &point);
         let surface = Surface {
-            normal: shading_normal(mesh, hit, point.normal),
+            normal,
+            relief,
             point,
             view: -ray.direction,
             coefficients: Coefficients::at(wave.scene, material, ray, cone, hit),
@@ -110,21 +117,25 @@ impl Surface {
         ambient.at(self.normal) * reflected + self.coefficients.emission
     }
 
-    /// The same with the mean colour of the samples of its pixel that are shaded with it.
+    /// The same with the mean colour, and the mean of the normals, of the samples of its pixel that are shaded with it.
     #[inline(always)]
     pub(crate) fn shared(wave: &HostWave, ray: usize) -> Surface {
         let mut surface = Surface::new(wave, ray);
-        if let Some(sampled) = &wave.rays.sampled {
-            let geometry = &wave.scene.scene.geometry;
-            let material = &geometry.materials[geometry.mesh.materials[wave.hits[ray].triangle as usize] as usize];
-            let shared = wave.rays.shared.get(ray).copied().unwrap_or(u32::MAX);
-            if is_tinted(geometry, material) && shared != 0 {
-                let hits = sampled.hits_of(wave.rays.pixels[ray], shared);
-                let (along, cone) = (&wave.rays.rays[ray], wave.rays.cone_of(ray));
-                if let Some(mean) = Coefficients::mean(wave.scene, material, along, cone, hits) {
-                    surface = Surface { coefficients: mean, ..surface }.faceted(wave, ray, material);
-                }
-            }
+        let geometry = &wave.scene.scene.geometry;
+        let material = &geometry.materials[geometry.mesh.materials[wave.hits[ray].triangle as usize] as usize];
+        if wave.rays.sampled.is_none() || !is_tinted(geometry, material) {
+            return surface;
+        }
+        let along = (&wave.rays.rays[ray], wave.rays.cone_of(ray));
+        if let Some(hits) = wave.rays.shared_hits(ray)
+            && let Some(mean) = Coefficients::mean(wave.scene, material, along.0, along.1, hits)
+        {
+            surface = Surface { coefficients: mean, ..surface }.faceted(wave, ray, material);
+        }
+        if surface.relief.is_some()
+            && let Some(hits) = wave.rays.shared_hits(ray)
+        {
+            surface.normal = mean_normal(wave.scene, material, along, hits, surface.normal);
         }
         surface
     }
@@ -142,13 +153,16 @@ impl Surface {
         if cosine <= 0.0 {
             return Vec3::ZERO;
         }
-        let mut answer = cosine * self.coefficients.kd;
+        let softened = self.softened(direction, cosine);
+        let mut answer = softened * self.coefficients.kd;
         if let Some(lobe) = &self.lobe {
             let share = if glint.seen { lobe.unmirrored } else { 1.0 };
-            answer += (cosine * share) * lobe.toward(self.normal, self.view, direction, glint.part / distance);
+            answer += (softened * share) * lobe.toward(self.normal, self.view, direction, glint.part / distance);
         } else if self.coefficients.ks != Vec3::ZERO {
             let mirrored = 2.0 * cosine * self.normal - direction;
-            answer += mirrored.dot(self.view).max(0.0).powf(self.shininess) * self.coefficients.ks;
+            let highlight = mirrored.dot(self.view).max(0.0).powf(self.shininess);
+            let highlight = if softened == cosine { highlight } else { softened / cosine * highlight };
+            answer += highlight * self.coefficients.ks;
         }
         strength(light, direction, distance) * answer
     }
@@ -175,7 +189,17 @@ impl Surface {
         let to_light = target - self.point.position;
         let distance = to_light.length();
         let cosine = self.normal.dot(to_light) / distance;
-        if cosine > 0.0 { cosine * strength(light, to_light / distance, distance) } else { Vec3::ZERO }
+        if cosine <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let direction = to_light / distance;
+        self.softened(direction, cosine) * strength(light, direction, distance)
+    }
+
+    /// The cosine of light along `direction`, by the image of normals if there is one.
+    #[inline(always)]
+    fn softened(&self, direction: Vec3, cosine: f32) -> f32 {
+        self.relief.map_or(cosine, |relief| relief.softened(direction, cosine))
     }
 
     /// The same for the whole light, averaged over `targets`; those of a directional light are seen from the surface, at distance 1.
@@ -193,10 +217,15 @@ impl Surface {
         if directional { self.point.origin + reach * target } else { target }
     }
 
+    /// The normal of mirrored and refracted rays.
+    fn mirroring(&self) -> Vec3 {
+        self.relief.map_or(self.normal, |_| mirroring(self.normal, self.point.normal, self.view))
+    }
+
     /// The reflection direction of the view. A smooth normal may reflect into the surface; then the geometric normal is used.
     pub(crate) fn mirrored(&self) -> Vec3 {
         let about = |normal: Vec3| 2.0 * normal.dot(self.view) * normal - self.view;
-        let direction = about(self.normal);
+        let direction = about(self.mirroring());
         if direction.dot(self.point.normal) > 0.0 { direction } else { about(self.point.normal) }
     }
 
@@ -205,7 +234,7 @@ impl Surface {
     pub(crate) fn onward(&self) -> (Vec3, Vec3) {
         let direction = -self.view;
         let Some(eta) = self.eta else { return (self.point.behind(), direction) };
-        let bent = refracted(direction, self.normal, eta).and_then(|bent| {
+        let bent = refracted(direction, self.mirroring(), eta).and_then(|bent| {
             let is_behind = bent.dot(self.point.normal) < 0.0;
             if is_behind { Some(bent) } else { refracted(direction, self.point.normal, eta) }
         });
@@ -221,6 +250,26 @@ pub(crate) fn material_of<'a>(wave: &HostWave<'a>, ray: usize) -> Option<&'a Mat
     let geometry = &wave.scene.scene.geometry;
     let material = || &geometry.materials[geometry.mesh.materials[wave.hits[ray].triangle as usize] as usize];
     wave.sees(ray).then(material)
+}
+
+/// Whether any material has an image of normals.
+pub(crate) fn has_reliefs(geometry: &Geometry) -> bool {
+    geometry.materials.iter().any(|material| has_relief(geometry, material))
+}
+
+/// The normal that shading uses of what ray number `ray` sees; the mean over the samples of its pixel that are shaded with it.
+pub(crate) fn normal_seen(wave: &HostWave, ray: usize) -> Vec3 {
+    let (hit, point) = (&wave.hits[ray], wave.surface_point(ray));
+    let smooth = shading_normal(&wave.scene.scene.geometry.mesh, hit, point.normal);
+    match material_of(wave, ray) {
+        Some(material) if has_relief(&wave.scene.scene.geometry, material) => {
+            let along = (&wave.rays.rays[ray], wave.rays.cone_of(ray));
+            let own = mapped_normal(wave.scene, material, along, hit, smooth);
+            let shared = wave.rays.shared_hits(ray);
+            shared.map_or(own, |hits| mean_normal(wave.scene, material, along, hits, own))
+        }
+        _ => smooth,
+    }
 }
 
 /// Whether a ray sees a shadow catcher.

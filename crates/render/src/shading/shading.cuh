@@ -14,13 +14,38 @@ struct Surface {
     const Material *material;
 };
 
+// Whether it has an image of normals.
+DEVICE bool has_relief(const Surface &surface) { return surface.material->normal_texture != Material::NO_TEXTURE; }
+
 // The surface point that ray number `ray` sees; `own` provides memory for its material.
 DEVICE Surface surface_at(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray, Material &own) {
     const Hit hit = load_hit(hits, ray);
     const Ray seen_along = ray_at(rays, ray);
     const SurfacePoint point = surface_point(seen_along, hit, load_corners(scene.triangles + hit.triangle));
     const Material *material = material_at(scene, rays, ray, hit, own);
-    return Surface{point, shading_normal(scene, hit, point.normal), -seen_along.direction, material};
+    Surface surface = {point, shading_normal(scene, hit, point.normal), -seen_along.direction, material};
+    if (has_relief(surface)) {
+        own.smooth = surface.normal;
+        surface.normal = mapped_normal(tint_sources(scene), &own, sighting_of(rays, ray), hit, surface.normal);
+    }
+    return surface;
+}
+
+// Gives a surface with an image of normals their mean over the samples of its pixel that are shaded with it.
+DEVICE void share_normal(const Scene &scene, const Rays &rays, unsigned ray, const Samples &samples, Surface &surface) {
+    const SharedHits shared = shared_hits(rays, ray, samples);
+    if (shared.shared != 0 && has_relief(surface))
+        surface.normal = mean_normal(tint_sources(scene), surface.material, sighting_of(rays, ray), shared, surface.normal);
+}
+
+// The cosine of light along `direction`, by the image of normals if there is one.
+DEVICE float softened(const Surface &surface, Vec3 direction, float cosine) {
+    return has_relief(surface) ? softened(surface.material->smooth, direction, cosine) : cosine;
+}
+
+// The normal of mirrored and refracted rays.
+DEVICE Vec3 mirroring(const Surface &surface) {
+    return has_relief(surface) ? mirroring(surface.normal, surface.point.normal, surface.view) : surface.normal;
 }
 
 // The share of a light's strength along `direction`, from the surface to the light: a spot's, or that of an emissive surface.
@@ -52,10 +77,13 @@ DEVICE Vec3 reflected(const Surface &surface, const Light &light, Vec3 target) {
     const float cosine = dot(surface.normal, direction);
     if (cosine <= 0.0f)
         return splat(0.0f);
-    Vec3 answer = cosine * surface.material->kd;
+    const float soft = softened(surface, direction, cosine);
+    Vec3 answer = soft * surface.material->kd;
     if (surface.material->ks != splat(0.0f)) {
         const Vec3 mirrored = 2.0f * cosine * surface.normal - direction;
-        const float highlight = powf(fmaxf(dot(mirrored, surface.view), 0.0f), surface.material->shininess);
+        float highlight = powf(fmaxf(dot(mirrored, surface.view), 0.0f), surface.material->shininess);
+        if (soft != cosine)
+            highlight = soft / cosine * highlight;
         answer = answer + highlight * surface.material->ks;
     }
     return strength(light, direction, distance) * answer;
@@ -66,7 +94,10 @@ DEVICE Vec3 arriving_from(const Surface &surface, const Light &light, Vec3 targe
     const Vec3 to_light = target - surface.point.position;
     const float distance = length(to_light);
     const float cosine = dot(surface.normal, to_light) / distance;
-    return cosine > 0.0f ? cosine * strength(light, to_light / distance, distance) : splat(0.0f);
+    if (!(cosine > 0.0f))
+        return splat(0.0f);
+    const Vec3 direction = to_light / distance;
+    return softened(surface, direction, cosine) * strength(light, direction, distance);
 }
 
 // What a surface shows without lights if nothing else was there; `reflected` is the share of ambient light that it reflects.
@@ -143,7 +174,7 @@ DEVICE Vec3 mirrored_about(Vec3 normal, Vec3 view) { return 2.0f * dot(normal, v
 
 // The reflection direction of the view.
 DEVICE Vec3 mirrored(const Surface &surface) {
-    const Vec3 direction = mirrored_about(surface.normal, surface.view);
+    const Vec3 direction = mirrored_about(mirroring(surface), surface.view);
     return dot(direction, surface.point.normal) > 0.0f ? direction : mirrored_about(surface.point.normal, surface.view);
 }
 
@@ -153,7 +184,7 @@ DEVICE Ray onward(const Surface &surface) {
     const float eta = surface.material->eta;
     Vec3 bent = -surface.view;
     if (eta != 0.0f) {
-        bool goes = refracted(-surface.view, surface.normal, eta, bent);
+        bool goes = refracted(-surface.view, mirroring(surface), eta, bent);
         if (goes && !(dot(bent, point.normal) < 0.0f))
             goes = refracted(-surface.view, point.normal, eta, bent);
         if (!goes)

@@ -1,58 +1,9 @@
 // Textures, vertex colours and opacities, which give the coefficients of formula (1) at a surface point: twin of tint.rs.
 #pragma once
 
-#include "accel/coverage.cuh"
 #include "shading/dielectric.cuh"
 #include "shading/facets.cuh"
-#include "textures/lookup.cuh"
-
-// The inputs of tints. By value: taking the address of a kernel's argument would make all its loads slow.
-struct TintSources {
-    const Triangle *triangles;
-    const Indices *indices;
-    const Vec3 *normals;
-    const Uv *uvs;
-    const Vec3 *colors;
-    const Texture *textures;
-    const float *srgb;
-    const FacetShare *facet_table;
-    Coverage coverage;
-};
-
-// The ray that sees a surface point, or that of another sample of its pixel, and the cone around it.
-struct Sighting {
-    Vec3 origin, direction;
-    Cone cone;
-};
-
-// The axes of the footprint at `hit`, in texture coordinates.
-DEVICE Axes axes_at(const Triangle *triangles, const Sighting &from, const Hit &hit, Uv a, Uv b, Uv c) {
-    if (is_point(from.cone))
-        return Axes{};
-    const Corners corners = load_corners(triangles + hit.triangle);
-    const Vec3 position = (1.0f - hit.u - hit.v) * corners.a + hit.u * corners.b + hit.v * corners.c;
-    const Vec3 direction = direction_to(position, Ray{from.origin, from.direction, INFINITE}, from.cone);
-    return footprint_axes(direction, cone_after(from.cone, hit.t).width, corners, a, b, c);
-}
-
-// Texture coordinates as the image has them: a place or, without the translation, a step.
-DEVICE Uv in_image(const Texture &texture, Uv at) {
-    return Uv{texture.u_axis[0] * at.u + texture.v_axis[0] * at.v, texture.u_axis[1] * at.u + texture.v_axis[1] * at.v};
-}
-
-// The interpolated value of the vertices of the triangle at `hit`.
-DEVICE float interpolated(const Hit &hit, float a, float b, float c) { return (1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c; }
-
-// The colour of texture number `number` at `hit`.
-DEVICE Vec3 texel_at(const TintSources &sources, unsigned number, const Sighting &from, const Hit &hit) {
-    const unsigned *vertices = sources.indices[hit.triangle].vertices;
-    const Texture &texture = sources.textures[number];
-    const Uv a = sources.uvs[vertices[0]], b = sources.uvs[vertices[1]], c = sources.uvs[vertices[2]];
-    const Uv uv = in_image(texture, Uv{interpolated(hit, a.u, b.u, c.u), interpolated(hit, a.v, b.v, c.v)});
-    const Axes axes = axes_at(sources.triangles, from, hit, a, b, c);
-    return filtered(sources.srgb, texture, Uv{uv.u + texture.translation[0], uv.v + texture.translation[1]},
-                    Axes{in_image(texture, axes.a), in_image(texture, axes.b)});
-}
+#include "shading/normal_map.cuh"
 
 // The colour of what is emitted at `hit`: few materials have an image of it, which is not worth registers everywhere.
 COLD Vec3 emission_texel_at(TintSources sources, unsigned number, Sighting from, Hit hit) { return texel_at(sources, number, from, hit); }
@@ -110,6 +61,8 @@ DEVICE void set_tint(const Material *material, const Colors &colors, float opaci
     own->catcher = material->catcher;
     own->lamp = material->lamp;
     own->number = material->number;
+    own->normal_texture = material->normal_texture;
+    own->normal_scale = material->normal_scale;
 }
 
 // Changes the coefficients where a dielectric begins or ends.
@@ -129,7 +82,9 @@ DEVICE void set_boundary(const Boundary &met, Material *own) {
 DEVICE void face(const TintSources &sources, const Sighting &from, const Hit &hit, bool followed, Material *own) {
     const Corners corners = load_corners(sources.triangles + hit.triangle);
     const SurfacePoint point = surface_point(Ray{from.origin, from.direction, INFINITE}, hit, corners);
-    const Vec3 normal = shading_normal(sources.normals, sources.indices, hit, point.normal);
+    Vec3 normal = shading_normal(sources.normals, sources.indices, hit, point.normal);
+    if (own->normal_texture != Material::NO_TEXTURE)
+        normal = mapped_normal(sources, own, from, hit, normal);
     const Cone cone = cone_after(from.cone, hit.t);
     const float turn = is_point(cone) ? 0.0f : curvature(sources.normals, sources.indices, hit, corners, point.normal);
     const float spread = is_point(cone) ? 0.0f : fabsf(cone_reflected(cone, turn).spread);
@@ -142,18 +97,15 @@ COLD void tint_material(TintSources sources, const Material *material, Sighting 
     if (material->ior != 0.0f) {
         const Ray ray = {from.origin, from.direction, INFINITE};
         const Corners corners = load_corners(sources.triangles + hit.triangle);
-        set_boundary(boundary_met(sources.normals, sources.indices, corners, *material, ray, hit), own);
+        const Vec3 facing = surface_point(ray, hit, corners).normal;
+        Vec3 normal = shading_normal(sources.normals, sources.indices, hit, facing);
+        if (material->normal_texture != Material::NO_TEXTURE)
+            normal = mirroring(mapped_normal(sources, material, from, hit, normal), facing, -from.direction);
+        set_boundary(boundary_about(normal, corners, *material, ray, hit), own);
     }
     if (material->facets)
         face(sources, from, hit, followed, own);
 }
-
-// The hits of the samples of a pixel: `count` of them, `stride` apart; those whose bits are set in `shared` count.
-struct SharedHits {
-    const Hit *hits;
-    unsigned long long stride;
-    unsigned count, shared;
-};
 
 // Sets `own` to the material with the mean of its coefficients at these hits, seen at `center`; leaves it without any.
 COLD void tint_by_all(TintSources sources, const Material *material, Sighting from, SharedHits all, Hit center, bool followed,
@@ -176,20 +128,8 @@ COLD void tint_by_all(TintSources sources, const Material *material, Sighting fr
         face(sources, from, center, followed, own);
 }
 
-// The inputs of the tints of a scene.
-DEVICE TintSources tint_sources(const Scene &scene) {
-    return {scene.triangles, scene.indices, scene.normals, scene.uvs, scene.colors, scene.textures, scene.srgb,
-            scene.facet_table, scene.coverage};
-}
-
 // Whether the mirror ray of what a ray sees is followed.
 DEVICE bool mirrors(const Rays &rays, unsigned ray) { return rays.depth - throughs_of(rays, ray) < rays.bounces; }
-
-// What ray number `ray` goes along.
-DEVICE Sighting sighting_of(const Rays &rays, unsigned ray) {
-    const Ray along = ray_at(rays, ray);
-    return Sighting{along.origin, along.direction, cone_of(rays, ray)};
-}
 
 // The material at `hit`: that of its triangle, or `own` if it has a tint. So a material without one takes no registers for
 // coefficients.

@@ -8,14 +8,17 @@
 //! Texture coordinates and colours are interpolated barycentrically. Of the texture, the mean over the [footprint](crate::footprint) of a
 //! sample counts; without one, at a single sample of a pixel, it is the colour at a point, and minified textures flicker.
 
-use glam::{Vec2, Vec3};
-use lightmesh_scene::{Geometry, Material, Mesh, Texture, TextureUse};
+use glam::Vec3;
+use lightmesh_scene::{Dielectric, Geometry, Material, Mesh};
 
 use super::dielectric::{Boundary, left_straight_on};
+use super::normal_map::{mirroring, normal_at};
+use super::texel::texel_at;
 use crate::accel::{Hit, Ray};
-use crate::footprint::{self, Cone};
+use crate::footprint::Cone;
 use crate::prepared::PreparedScene;
-use crate::textures::{filtered, images_of};
+use crate::surface::SurfacePoint;
+use crate::textures::{Image, images_of};
 
 /// The coefficients of formula (1) at a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +45,7 @@ impl Coefficients {
             true => {
                 let own = Coefficients::tinted(material, colors(scene, material, ray, cone, hit), opacity(scene, hit));
                 match material.boundary() {
-                    Some(glass) => own.at_boundary(&Boundary::met(scene, glass, ray, hit)),
+                    Some(glass) => own.at_boundary(&boundary(scene, material, glass, (ray, cone), hit)),
                     None => own,
                 }
             }
@@ -120,7 +123,21 @@ impl Coefficients {
     }
 }
 
-/// Whether surface points of `material` may differ in their coefficients.
+/// Where `ray` with a cone meets a dielectric.
+fn boundary(
+    scene: &PreparedScene,
+    material: &Material,
+    glass: &Dielectric,
+    (ray, cone): (&Ray, Cone),
+    hit: &Hit,
+) -> Boundary {
+    let point = SurfacePoint::new(ray, hit, &scene.geometry.triangles[hit.triangle as usize]);
+    let (normal, relief) = normal_at(scene, material, (ray, cone), hit, &point);
+    let turned = relief.map_or(normal, |_| mirroring(normal, point.normal, -ray.direction));
+    Boundary::about(turned, scene, glass, ray, hit)
+}
+
+/// Whether surface points of `material` may differ in their coefficients or relief.
 #[inline(always)]
 pub(crate) fn is_tinted(geometry: &Geometry, material: &Material) -> bool {
     let has_texture = || images_of(geometry, material).iter().any(Option::is_some);
@@ -157,31 +174,10 @@ struct Colors {
 #[inline(never)]
 fn colors(scene: &PreparedScene, material: &Material, ray: &Ray, cone: Cone, hit: &Hit) -> Colors {
     let geometry = &scene.scene.geometry;
-    let texel = |found: Option<(TextureUse, &Texture)>| {
-        found.map_or(Vec3::ONE, |(uses, texture)| {
-            let uvs = geometry.mesh.triangles[hit.triangle as usize].map(|vertex| geometry.mesh.uvs[vertex as usize]);
-            let place = uses.transform.transform_point2(interpolated(hit, uvs));
-            let axes = axes_of(scene, ray, cone, hit, uvs).map(|axis| uses.transform.matrix2 * axis);
-            filtered(texture, &scene.geometry.mip_levels[uses.texture as usize], uses.wrap, place, axes)
-        })
-    };
-    let [tint, glow] = images_of(geometry, material).map(texel);
+    let texel = |found: Option<Image>| found.map_or(Vec3::ONE, |image| texel_at(scene, &image, ray, cone, hit));
+    let [tint, glow, _] = images_of(geometry, material);
+    let [tint, glow] = [tint, glow].map(texel);
     Colors { tint: if geometry.mesh.colors.is_empty() { tint } else { tint * color_at(&geometry.mesh, hit) }, glow }
-}
-
-/// The axes of the footprint at `hit`, in texture coordinates.
-fn axes_of(scene: &PreparedScene, ray: &Ray, cone: Cone, hit: &Hit, uvs: [Vec2; 3]) -> [Vec2; 2] {
-    if cone.is_point() {
-        return [Vec2::ZERO; 2];
-    }
-    let [a, b, c] = scene.geometry.triangles[hit.triangle as usize].corners();
-    let position = (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
-    let direction = footprint::direction_to(position, ray, cone);
-    footprint::axes(direction, cone.after(hit.t).width, [a, b, c], uvs)
-}
-
-fn interpolated(hit: &Hit, [a, b, c]: [Vec2; 3]) -> Vec2 {
-    (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c
 }
 
 fn color_at(mesh: &Mesh, hit: &Hit) -> Vec3 {
@@ -191,7 +187,7 @@ fn color_at(mesh: &Mesh, hit: &Hit) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
-    use glam::Affine2;
+    use glam::{Affine2, Vec2};
     use lightmesh_scene::{Scene, Texture, TextureUse};
 
     use super::*;

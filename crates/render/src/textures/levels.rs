@@ -2,20 +2,19 @@
 //!
 //! A level has half as many texels as the one before, rounded up, until there is one. Each texel is the mean of the area that it covers:
 //! texels of the level before count by the share of their area, so that every texel of the image has the same weight in each level, and the
-//! mean of all levels is that of the image, whatever its size. Levels are averaged in linear light and single precision, and stored with 21
+//! mean of all levels is that of the image, whatever its size. Linear values are averaged, in single precision, and stored with 21
 //! bits per channel: a step is 2⁻²⁰, so that black and white are exact.
 //!
 //! Where a material is cut out by the alpha of its own texture, texels count by their alpha: what is cut out, black in most files, would darken
 //! leaves in the distance. Texels without any alpha take the colour of the next level.
 
 use glam::Vec3;
-use lightmesh_image::Transfer;
 use lightmesh_layout::constants::{TEXEL_BITS, TEXEL_ONE};
 use lightmesh_memory::{Budget, Short};
 use lightmesh_scene::{Geometry, OpacityChannel, Texture, TextureUse};
 use rayon::prelude::*;
 
-use super::images_of;
+use super::{Encoding, Image, images_of};
 
 /// Texels of one axis of a level that a texel of the next one covers, at most: two whole ones, or parts of three.
 const TAPS: usize = 3;
@@ -34,47 +33,73 @@ pub(crate) struct Level {
     pub(crate) texels: Vec<u64>,
 }
 
-/// Texels in linear light.
+/// Texels with linear values.
 struct Linear {
     size: [u32; 2],
     texels: Vec<Vec3>,
 }
 
-impl MipLevels {
-    /// Those of all textures of a geometry that can be seen, by number; the others have none.
+/// The levels of all textures of a geometry that can be seen.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct AllLevels {
+    /// By texture, then by encoding; none of those that are not used like that.
+    by_texture: Vec<[MipLevels; Encoding::ALL.len()]>,
+}
+
+impl AllLevels {
+    /// Those of a geometry.
     ///
     /// # Errors
     /// The number of the texture whose levels do not fit into the budget.
-    pub(crate) fn of(geometry: &Geometry, budget: Budget) -> Result<Vec<MipLevels>, (usize, Short)> {
-        let mut all = Vec::new();
+    pub(crate) fn of(geometry: &Geometry, budget: Budget) -> Result<AllLevels, (usize, Short)> {
+        let mut all = AllLevels::default();
         let images = geometry.materials.iter().flat_map(|material| images_of(geometry, material));
-        for (uses, texture) in images.flatten() {
+        for Image { uses, texture, encoding } in images.flatten() {
             let index = uses.texture as usize;
-            all.resize_with(geometry.textures.len(), MipLevels::default);
-            if all[index].levels.is_empty() {
+            all.by_texture.resize_with(geometry.textures.len(), Default::default);
+            let own = &mut all.by_texture[index][encoding as usize];
+            if own.levels.is_empty() {
                 let needed = bytes_to_build(texture.size);
-                if is_cut_out(geometry, uses.texture) {
+                if encoding == Encoding::Color && is_cut_out(geometry, uses.texture) {
                     budget.check(2 * needed).map_err(|short| (index, short))?;
-                    all[index] = MipLevels::of_cut_out(texture);
+                    *own = MipLevels::of_cut_out(texture);
                 } else {
                     budget.check(needed).map_err(|short| (index, short))?;
-                    all[index] = MipLevels::new(texture);
+                    *own = MipLevels::new(texture, encoding);
                 }
             }
         }
         Ok(all)
     }
 
+    /// Those of an image of the geometry.
+    #[inline(always)]
+    pub(crate) fn of_image(&self, image: &Image) -> &MipLevels {
+        &self.by_texture[image.uses.texture as usize][image.encoding as usize]
+    }
+
+    /// Whether there are no images.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.by_texture.is_empty()
+    }
+
+    /// Bytes on the heap.
+    pub(crate) fn memory(&self) -> usize {
+        self.by_texture.iter().flatten().map(MipLevels::memory).sum()
+    }
+}
+
+impl MipLevels {
     /// The levels of `texture`, whose texels must be complete.
-    pub(crate) fn new(texture: &Texture) -> MipLevels {
-        let levels = lower(texture, linear);
+    pub(crate) fn new(texture: &Texture, encoding: Encoding) -> MipLevels {
+        let levels = lower(texture, |texel| encoding.linear(texel));
         MipLevels { levels: levels.map(|level| level.packed()).collect() }
     }
 
     /// Those of a texture by whose alpha surfaces are cut out.
     fn of_cut_out(texture: &Texture) -> MipLevels {
         let alpha = |texel: [u8; 4]| f32::from(texel[3]) / f32::from(u8::MAX);
-        let colors = lower(texture, |texel| alpha(texel) * linear(texel));
+        let colors = lower(texture, |texel| alpha(texel) * Encoding::Color.linear(texel));
         let shares = lower(texture, |texel| Vec3::splat(alpha(texel)));
         let mut levels: Vec<Level> = Vec::new();
         let mut empty: Vec<Vec<bool>> = Vec::new();
@@ -188,12 +213,6 @@ impl Linear {
     }
 }
 
-/// A texel of the image in linear light.
-pub(super) fn linear(texel: [u8; 4]) -> Vec3 {
-    let [r, g, b, _] = texel;
-    Vec3::new(Transfer::Srgb.decode(r), Transfer::Srgb.decode(g), Transfer::Srgb.decode(b))
-}
-
 /// Red in the lowest bits, then green and blue.
 fn packed(color: Vec3) -> u64 {
     let [r, g, b] = color.to_array().map(|channel| (channel * TEXEL_ONE).round() as u64);
@@ -219,6 +238,10 @@ mod tests {
         Texture { name: String::new(), size, texels: (0..size[0] * size[1]).map(texel).collect() }
     }
 
+    fn colors(texture: &Texture) -> MipLevels {
+        MipLevels::new(texture, Encoding::Color)
+    }
+
     fn mean(texels: impl ExactSizeIterator<Item = Vec3>) -> DVec3 {
         let count = texels.len() as f64;
         texels.map(|texel| texel.as_dvec3()).sum::<DVec3>() / count
@@ -226,12 +249,12 @@ mod tests {
 
     #[test]
     fn sizes_are_halved_and_rounded_up_down_to_one_texel() {
-        let sizes = |size| MipLevels::new(&texture(size)).levels.iter().map(|level| level.size).collect::<Vec<_>>();
+        let sizes = |size| colors(&texture(size)).levels.iter().map(|level| level.size).collect::<Vec<_>>();
         assert_eq!(sizes([8, 8]), [[4, 4], [2, 2], [1, 1]]);
         assert_eq!(sizes([5, 3]), [[3, 2], [2, 1], [1, 1]]);
         assert_eq!(sizes([1, 6]), [[1, 3], [1, 2], [1, 1]]);
         assert_eq!(sizes([1, 1]), [[0; 2]; 0]);
-        let largest = MipLevels::new(&texture([1, 16384])).levels;
+        let largest = colors(&texture([1, 16384])).levels;
         assert_eq!((largest.len(), largest[13].size), (14, [1, 1]));
     }
 
@@ -239,8 +262,8 @@ mod tests {
     fn every_level_has_the_mean_of_the_image() {
         for size in [[8, 8], [5, 3], [7, 7], [1, 13], [17, 1], [100, 37], [33, 64], [2, 3]] {
             let texture = texture(size);
-            let wanted = mean(texture.texels.iter().map(|&texel| linear(texel)));
-            for level in MipLevels::new(&texture).levels {
+            let wanted = mean(texture.texels.iter().map(|&texel| Encoding::Color.linear(texel)));
+            for level in colors(&texture).levels {
                 let found = mean(level.texels.iter().map(|&texel| unpacked(texel)));
                 // Half a step of the format, and rounding.
                 assert!((found - wanted).abs().max_element() < 7e-7, "{size:?}, {:?}: {found} {wanted}", level.size);
@@ -256,7 +279,7 @@ mod tests {
             texels: values.iter().map(|&value| [value, value, value, 255]).collect(),
         };
         let level = |texture: &Texture, level: usize| {
-            let texels = &MipLevels::new(texture).levels[level].texels;
+            let texels = &colors(texture).levels[level].texels;
             texels.iter().map(|&texel| unpacked(texel).x).collect::<Vec<_>>()
         };
         // In linear light: half of white, not the code in the middle.
@@ -269,6 +292,13 @@ mod tests {
         let sevenths = level(&grey(&[0, 0, 0, 255, 0, 255, 0], [7, 1]), 0);
         let wanted = [0.0, 0.5 / 1.75, 0.75 / 1.75, 0.75 / 1.75];
         assert!(sevenths.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-6), "{sevenths:?}");
+    }
+
+    #[test]
+    fn data_is_averaged_as_it_is() {
+        let texture = Texture { name: String::new(), size: [2, 1], texels: vec![[0, 128, 255, 9], [255, 128, 51, 0]] };
+        let mean = unpacked(MipLevels::new(&texture, Encoding::Data).levels[0].texels[0]);
+        assert!((mean - Vec3::new(0.5, 128.0 / 255.0, 0.6)).abs().max_element() < 1e-6, "{mean}");
     }
 
     #[test]
@@ -296,7 +326,8 @@ mod tests {
                 let mesh = Mesh { uvs: vec![Vec2::ZERO], ..Mesh::default() };
                 let scene =
                     Geometry { textures: vec![texture], materials: vec![material], mesh, ..Geometry::default() };
-                let all = MipLevels::of(&scene, Budget::default()).unwrap().remove(0).levels;
+                let all = AllLevels::of(&scene, Budget::default()).unwrap().by_texture.remove(0);
+                let all = &all[Encoding::Color as usize].levels;
                 all.iter().flat_map(|level| &level.texels).map(|&texel| unpacked(texel)).collect::<Vec<_>>()
             };
             let near = |color: Vec3| (color - Vec3::Y).length() < 1e-5;
@@ -316,10 +347,10 @@ mod tests {
             mesh: Mesh { uvs: vec![Vec2::ZERO], ..Mesh::default() },
             ..Geometry::default()
         };
-        assert_eq!(MipLevels::of(&scene, Budget::default()).unwrap()[0].levels.len(), 11);
-        let (index, short) = MipLevels::of(&scene, Budget::new(Some(1))).unwrap_err();
+        assert_eq!(AllLevels::of(&scene, Budget::default()).unwrap().by_texture[0][0].levels.len(), 11);
+        let (index, short) = AllLevels::of(&scene, Budget::new(Some(1))).unwrap_err();
         assert_eq!((index, short.needed), (0, bytes_to_build([2048, 1024])));
-        let levels = MipLevels::new(&scene.textures[0]);
+        let levels = colors(&scene.textures[0]);
         assert!((short.needed as usize) > levels.memory() && levels.memory() > 2048 * 1024 * 8 / 4);
     }
 }

@@ -7,15 +7,15 @@
 // From `a` to `b`; exactly `a` where both are the same.
 DEVICE Vec3 between(Vec3 a, Vec3 b, float share) { return a + share * (b - a); }
 
-// Texels of the image, encoded as sRGB.
+// Texels of the image, and the linear values of their codes.
 struct ImageTexels {
     const unsigned *texels;
-    const float *srgb;
+    const float *codes;
 };
 
 DEVICE Vec3 texel(const ImageTexels &image, unsigned long long index) {
     const unsigned rgba = __ldg(image.texels + index);
-    return Vec3{__ldg(image.srgb + (rgba & 255)), __ldg(image.srgb + (rgba >> 8 & 255)), __ldg(image.srgb + (rgba >> 16 & 255))};
+    return Vec3{__ldg(image.codes + (rgba & 255)), __ldg(image.codes + (rgba >> 8 & 255)), __ldg(image.codes + (rgba >> 16 & 255))};
 }
 
 // Texels of a lower level.
@@ -42,11 +42,11 @@ DEVICE Vec3 bilinear(const Texels &texels, unsigned width, unsigned height, cons
     return between(upper, lower, y.share);
 }
 
-// The colour of a level at `place`: (0, 0) is its upper left corner, (1, 1) its lower right one. A function of its own, so that its callers
+// The value of a level at `place`: (0, 0) is its upper left corner, (1, 1) its lower right one. A function of its own, so that its callers
 // keep their registers.
-COLD Vec3 at_level(const float *srgb, const Texture *texture, Uv place, unsigned level) {
+COLD Vec3 at_level(const float *codes, const Texture *texture, Uv place, unsigned level) {
     if (level == 0)
-        return bilinear(ImageTexels{texture->texels, srgb}, texture->size[0], texture->size[1], texture->wrap, place);
+        return bilinear(ImageTexels{texture->texels, codes + texture->first_code}, texture->size[0], texture->size[1], texture->wrap, place);
     const TextureLevel *lower = texture->levels + (level - 1);
     return bilinear(LevelTexels{lower->texels}, __ldg(&lower->size[0]), __ldg(&lower->size[1]), texture->wrap, place);
 }
@@ -82,8 +82,8 @@ DEVICE LevelOfDetail level_of(float width, unsigned lower) {
     return LevelOfDetail{level, mantissa - 1.0f};
 }
 
-// The mean colour that the ellipse with these axes around `place` sees. Axes are whole ones, conjugate diameters.
-DEVICE Vec3 filtered(const float *srgb, const Texture &texture, Uv place, const Axes &axes) {
+// The mean of what the ellipse with these axes around `place` sees. Axes are whole ones, conjugate diameters.
+DEVICE Vec3 filtered(const float *codes, const Texture &texture, Uv place, const Axes &axes) {
     // 1. The ellipse in texels: half the sum and half the difference of the eigenvalues.
     const float width = (float)texture.size[0], height = (float)texture.size[1];
     const Clipped x = clipped(texture.wrap[0], place.u, axes.a.u, axes.b.u), y = clipped(texture.wrap[1], place.v, axes.a.v, axes.b.v);
@@ -96,10 +96,10 @@ DEVICE Vec3 filtered(const float *srgb, const Texture &texture, Uv place, const 
 
     // 2. Magnified.
     if (major <= 1.0f)
-        return at_level(srgb, &texture, place, 0);
+        return at_level(codes, &texture, place, 0);
     // A footprint beyond all numbers sees everything, the only texel of the last level.
     if (!is_finite(major))
-        return at_level(srgb, &texture, place, texture.level_count);
+        return at_level(codes, &texture, place, texture.level_count);
 
     // 3. Probes along the major axis.
     const float most = (float)MOST_PROBES;
@@ -116,8 +116,8 @@ DEVICE Vec3 filtered(const float *srgb, const Texture &texture, Uv place, const 
         const Uv at = {x.middle + way * axis.u, y.middle + way * axis.v};
 
         // 4. Between two levels.
-        const Vec3 fine = at_level(srgb, &texture, at, detail.level);
-        const Vec3 coarse = detail.share > 0.0f ? at_level(srgb, &texture, at, detail.level + 1) : fine;
+        const Vec3 fine = at_level(codes, &texture, at, detail.level);
+        const Vec3 coarse = detail.share > 0.0f ? at_level(codes, &texture, at, detail.level + 1) : fine;
         sum = sum + between(fine, coarse, detail.share);
     }
     return sum / count;

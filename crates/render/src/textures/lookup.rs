@@ -12,16 +12,17 @@
 
 use glam::{Vec2, Vec3};
 use lightmesh_layout::constants::{F32_EXPONENT_BIAS, F32_EXPONENT_STEP, MOST_PROBES};
-use lightmesh_scene::{Texture, Wrap};
+use lightmesh_scene::Wrap;
 
-use super::levels::{linear, unpacked};
-use super::{MipLevels, neighbours};
+use super::levels::unpacked;
+use super::{Image, MipLevels, neighbours};
 
-/// The mean colour that the ellipse with these axes around `place` sees, in coordinates of the image: (0, 0) is its upper left corner, (1, 1)
+/// The mean of what the ellipse with these axes around `place` sees, in coordinates of the image: (0, 0) is its upper left corner, (1, 1)
 /// its lower right one. Axes are whole ones, conjugate diameters.
-pub(crate) fn filtered(texture: &Texture, levels: &MipLevels, wrap: [Wrap; 2], place: Vec2, axes: [Vec2; 2]) -> Vec3 {
+pub(crate) fn filtered(image: &Image, levels: &MipLevels, place: Vec2, axes: [Vec2; 2]) -> Vec3 {
+    let (size, wrap) = (image.texture.size, image.uses.wrap);
     // 1. The ellipse in texels: half the sum and half the difference of the eigenvalues.
-    let size = Vec2::new(texture.size[0] as f32, texture.size[1] as f32);
+    let size = Vec2::new(size[0] as f32, size[1] as f32);
     let [x, y] = [0, 1].map(|axis| Clipped::new(wrap[axis], place[axis], [axes[0][axis], axes[1][axis]]));
     let [a, b] = axes.map(|axis| axis * Vec2::new(x.share, y.share) * size);
     let (xx, yy, xy) = (a.x * a.x + b.x * b.x, a.y * a.y + b.y * b.y, a.x * a.y + b.x * b.y);
@@ -31,12 +32,12 @@ pub(crate) fn filtered(texture: &Texture, levels: &MipLevels, wrap: [Wrap; 2], p
 
     // 2. Magnified.
     if major <= 1.0 {
-        return sampled(texture, wrap, place);
+        return sampled(image, place);
     }
     // A footprint beyond all numbers sees everything, the only texel of the last level.
     let lower = levels.levels.len() as u32;
     if !major.is_finite() {
-        return at_level(texture, levels, wrap, place, lower);
+        return at_level(image, levels, place, lower);
     }
 
     // 3. Probes along the major axis.
@@ -53,8 +54,8 @@ pub(crate) fn filtered(texture: &Texture, levels: &MipLevels, wrap: [Wrap; 2], p
         let at = middle + ((probe as f32 + 0.5) / count - 0.5) * axis;
 
         // 4. Between two levels.
-        let fine = at_level(texture, levels, wrap, at, level);
-        let coarse = if share > 0.0 { at_level(texture, levels, wrap, at, level + 1) } else { fine };
+        let fine = at_level(image, levels, at, level);
+        let coarse = if share > 0.0 { at_level(image, levels, at, level + 1) } else { fine };
         sum += between(fine, coarse, share);
     }
     sum / count
@@ -97,19 +98,19 @@ pub(crate) fn level_of(width: f32, lower: u32) -> (u32, f32) {
     (level, mantissa - 1.0)
 }
 
-/// The colour of a level at `place`.
+/// The value of a level at `place`.
 #[inline(always)]
-fn at_level(texture: &Texture, levels: &MipLevels, wrap: [Wrap; 2], place: Vec2, level: u32) -> Vec3 {
+fn at_level(image: &Image, levels: &MipLevels, place: Vec2, level: u32) -> Vec3 {
     if level == 0 {
-        return sampled(texture, wrap, place);
+        return sampled(image, place);
     }
     let level = &levels.levels[level as usize - 1];
-    bilinear(level.size, wrap, place, |index| unpacked(level.texels[index]))
+    bilinear(level.size, image.uses.wrap, place, |index| unpacked(level.texels[index]))
 }
 
-/// The image's colour at `place`.
-fn sampled(texture: &Texture, wrap: [Wrap; 2], place: Vec2) -> Vec3 {
-    bilinear(texture.size, wrap, place, |index| linear(texture.texels[index]))
+/// The image's value at `place`.
+fn sampled(&Image { uses, texture, encoding }: &Image, place: Vec2) -> Vec3 {
+    bilinear(texture.size, uses.wrap, place, |index| encoding.linear(texture.texels[index]))
 }
 
 /// The four nearest of the texels of an image of this size, interpolated.
@@ -130,8 +131,22 @@ pub(crate) fn between(a: Vec3, b: Vec3, share: f32) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use lightmesh_image::Transfer;
+    use lightmesh_scene::{Texture, TextureUse};
 
+    use super::super::Encoding;
     use super::*;
+
+    fn color(texture: &Texture, wrap: [Wrap; 2]) -> Image<'_> {
+        Image { uses: TextureUse { wrap, ..TextureUse::new(0) }, texture, encoding: Encoding::Color }
+    }
+
+    fn sampled(texture: &Texture, wrap: [Wrap; 2], place: Vec2) -> Vec3 {
+        super::sampled(&color(texture, wrap), place)
+    }
+
+    fn filtered(texture: &Texture, levels: &MipLevels, wrap: [Wrap; 2], place: Vec2, axes: [Vec2; 2]) -> Vec3 {
+        super::filtered(&color(texture, wrap), levels, place, axes)
+    }
 
     fn texture(size: [u32; 2], texels: &[[u8; 3]]) -> Texture {
         Texture { name: String::new(), size, texels: texels.iter().map(|&[r, g, b]| [r, g, b, 255]).collect() }
@@ -187,7 +202,7 @@ mod tests {
         let picture = texture([3, 3], &[[77, 3, 200]; 9]);
         for step in 0..100 {
             let place = Vec2::new(0.037 * step as f32, -0.91 * step as f32);
-            assert_eq!(sampled(&picture, [Wrap::Repeat; 2], place), linear([77, 3, 200, 255]));
+            assert_eq!(sampled(&picture, [Wrap::Repeat; 2], place), Encoding::Color.linear([77, 3, 200, 255]));
         }
     }
 
@@ -197,7 +212,7 @@ mod tests {
     fn noise(size: [u32; 2]) -> (Texture, MipLevels) {
         let texel = |index: u32| [(77 * index) as u8, (91 * index + 5) as u8, (index % 101 * index) as u8];
         let picture = texture(size, &(0..size[0] * size[1]).map(texel).collect::<Vec<_>>());
-        let levels = MipLevels::new(&picture);
+        let levels = MipLevels::new(&picture, Encoding::Color);
         (picture, levels)
     }
 
@@ -213,7 +228,7 @@ mod tests {
                 assert_eq!(filtered(&picture, &levels, REPEATED, place, axes), texel, "level {}", number + 1);
                 // Half a power more: half of the next level.
                 let between = filtered(&picture, &levels, REPEATED, place, axes.map(|axis| 1.5 * axis));
-                let next = at_level(&picture, &levels, REPEATED, place, number as u32 + 2);
+                let next = at_level(&color(&picture, REPEATED), &levels, place, number as u32 + 2);
                 assert!((between - 0.5 * (texel + next)).abs().max_element() < 1e-6);
             }
         }
@@ -234,7 +249,7 @@ mod tests {
     fn a_long_footprint_is_sharp_across_and_smooth_along() {
         let stripes: Vec<[u8; 3]> = (0..256).map(|index| [if index % 16 < 8 { 255 } else { 0 }; 3]).collect();
         let picture = texture([16, 16], &stripes);
-        let levels = MipLevels::new(&picture);
+        let levels = MipLevels::new(&picture, Encoding::Color);
         let texel = 1.0 / 16.0;
         for column in 0..16 {
             let place = Vec2::new((column as f32 + 0.5) * texel, 0.4);
@@ -309,7 +324,7 @@ mod tests {
     fn beyond_the_border_of_a_clamped_texture_only_the_border_is_seen() {
         let mut picture = texture([32, 32], &[[0; 3]; 1024]);
         picture.texels[0] = [255; 4];
-        let levels = MipLevels::new(&picture);
+        let levels = MipLevels::new(&picture, Encoding::Color);
         let axes = [Vec2::new(0.3, 0.0), Vec2::new(0.0, 0.3)];
         let see = |u, v| filtered(&picture, &levels, [Wrap::Clamp; 2], Vec2::new(u, v), axes).x;
         assert_eq!(see(-1.0, -5.0), 1.0, "the white corner");

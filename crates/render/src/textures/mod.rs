@@ -1,26 +1,50 @@
 //! Textures at all sizes: mip levels, and what a footprint of any size sees.
 //!
 //! ```text
-//! level 0        the image: 8-bit sRGB texels
-//! level k + 1    half as many texels along each axis, rounded up; each is the mean of the area of level k that it covers, in linear light
+//! level 0        the image: 8 bits per channel, sRGB or linear data
+//! level k + 1    half as many texels along each axis, rounded up; each is the mean of the area of level k that it covers, of linear values
 //! ```
 //!
 //! Levels are built once, with the acceleration structure ([`MipLevels`]). A footprint, the ellipse of the texture that a sample of a pixel
 //! sees ([`footprint`](crate::footprint)), is averaged by [`filtered`]. Twin of the lookups: `lookup.cuh`.
 
+mod encoding;
 mod levels;
 mod lookup;
 mod neighbours;
 
-pub(crate) use levels::{Level, MipLevels};
+pub(crate) use encoding::Encoding;
+pub(crate) use levels::{AllLevels, Level, MipLevels};
 pub(crate) use lookup::{between, bilinear, filtered, level_of};
 pub(crate) use neighbours::neighbours;
 
 use lightmesh_scene::{Geometry, Material, Texture, TextureUse};
 
-/// The images that colour a material and what it emits, those that can be looked up.
-pub(crate) fn images_of<'s>(geometry: &'s Geometry, material: &Material) -> [Option<(TextureUse, &'s Texture)>; 2] {
-    [material.texture, material.emission_texture].map(|uses| usable(geometry, uses?))
+/// An image of a material that can be looked up.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Image<'s> {
+    pub(crate) uses: TextureUse,
+    pub(crate) texture: &'s Texture,
+    pub(crate) encoding: Encoding,
+}
+
+impl<'s> Image<'s> {
+    fn new(geometry: &'s Geometry, uses: TextureUse, encoding: Encoding) -> Option<Image<'s>> {
+        let (uses, texture) = usable(geometry, uses)?;
+        Some(Image { uses, texture, encoding })
+    }
+}
+
+/// The images of a material, except that of its opacity: of its colour, of what it emits, and of its normals.
+pub(crate) fn images_of<'s>(geometry: &'s Geometry, material: &Material) -> [Option<Image<'s>>; 3] {
+    let [color, glow] =
+        [material.texture, material.emission_texture].map(|uses| Image::new(geometry, uses?, Encoding::Color));
+    [color, glow, normals_of(geometry, material)]
+}
+
+/// The image of a material's normals.
+pub(crate) fn normals_of<'s>(geometry: &'s Geometry, material: &Material) -> Option<Image<'s>> {
+    Image::new(geometry, material.normal_texture?.uses, Encoding::Data)
 }
 
 /// A texture that is used like this, if it can be looked up.

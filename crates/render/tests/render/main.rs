@@ -20,6 +20,7 @@ mod lists;
 mod lives;
 mod mattes;
 mod mirrors;
+mod normal_maps;
 mod partial;
 mod placement;
 mod points;

@@ -297,7 +297,7 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
         None if material.dielectric.is_some() => (0.0, 0.0),
         None => (0.0, (2.0 / (material.shininess + 2.0)).powf(0.25)),
     };
-    let [texture_transform, emission_transform] = pictures.exact_transforms(index);
+    let [texture_transform, emission_transform, normal_transform] = pictures.exact_transforms(index);
     let extras = MaterialExtras {
         ka: material.ka.to_array(),
         kd: material.kd.to_array(),
@@ -310,6 +310,7 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
         lamp: material.lamp,
         texture_transform,
         emission_transform,
+        normal_transform,
         opacity: material
             .opacity
             .filter(|opacity| !is_standard(opacity, material))
@@ -330,6 +331,10 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
     }
     if let Some(texture) = pictures.emission_of_material(index) {
         entry["emissiveTexture"] = texture;
+    }
+    if let Some((mut texture, map)) = pictures.normals_of_material(index).zip(material.normal_texture) {
+        texture["scale"] = json!(map.scale);
+        entry["normalTexture"] = texture;
     }
     if let Some(opacity) = material.opacity.filter(|opacity| is_standard(opacity, material)) {
         match opacity.mode {

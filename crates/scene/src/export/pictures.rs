@@ -21,13 +21,26 @@ pub(super) struct Pictures {
     samplers: Distinct<[Wrap; 2]>,
     /// Image and sampler of each glTF texture.
     textures: Distinct<(usize, usize)>,
-    /// For each material, its glTF texture.
-    by_material: Vec<Option<(usize, TextureUse)>>,
-    /// The same of what it emits.
-    emission_by_material: Vec<Option<(usize, TextureUse)>>,
-    /// The same of what cuts it out.
-    opacity_by_material: Vec<Option<(usize, TextureUse)>>,
+    by_material: Vec<MaterialPictures>,
     transformed: bool,
+}
+
+/// A glTF texture, and how it is used.
+type Picture = (usize, TextureUse);
+
+/// The glTF textures of a material.
+struct MaterialPictures {
+    color: Option<Picture>,
+    emission: Option<Picture>,
+    normals: Option<Picture>,
+    opacity: Option<Picture>,
+}
+
+impl MaterialPictures {
+    /// Those that glTF has a place for.
+    fn standard(&self) -> [Option<Picture>; 3] {
+        [self.color, self.emission, self.normals]
+    }
 }
 
 impl Pictures {
@@ -35,21 +48,21 @@ impl Pictures {
     pub(super) fn new(scene: &Scene) -> io::Result<Pictures> {
         let mut pictures = Pictures { files: vec![None; scene.geometry.textures.len()], ..Pictures::default() };
         for material in &scene.geometry.materials {
-            let [color, emission] =
-                [material.texture, material.emission_texture].map(|uses| pictures.find(scene, uses));
-            let (color, emission) = (color?, emission?);
-            let is_placed = |(_, uses): &(usize, TextureUse)| uses.transform != Affine2::IDENTITY;
-            pictures.transformed |= [&color, &emission].into_iter().flatten().any(is_placed);
-            pictures.by_material.push(color);
-            pictures.emission_by_material.push(emission);
-            let entry = pictures.find(scene, material.opacity.and_then(|opacity| opacity.texture))?;
-            pictures.opacity_by_material.push(entry);
+            let own = MaterialPictures {
+                color: pictures.find(scene, material.texture)?,
+                emission: pictures.find(scene, material.emission_texture)?,
+                normals: pictures.find(scene, material.normal_texture.map(|map| map.uses))?,
+                opacity: pictures.find(scene, material.opacity.and_then(|opacity| opacity.texture))?,
+            };
+            let is_placed = |(_, uses): Picture| uses.transform != Affine2::IDENTITY;
+            pictures.transformed |= own.standard().into_iter().flatten().any(is_placed);
+            pictures.by_material.push(own);
         }
         Ok(pictures)
     }
 
     /// The index of the glTF texture that a material uses like this, if it can be used.
-    fn find(&mut self, scene: &Scene, uses: Option<TextureUse>) -> io::Result<Option<(usize, TextureUse)>> {
+    fn find(&mut self, scene: &Scene, uses: Option<TextureUse>) -> io::Result<Option<Picture>> {
         let found = uses.and_then(|uses| Some((uses, scene.geometry.textures.get(uses.texture as usize)?)));
         Ok(match found.filter(|(_, texture)| is_whole(texture)) {
             Some((uses, texture)) => Some((self.add(uses, texture)?, uses)),
@@ -69,22 +82,27 @@ impl Pictures {
 
     /// The `baseColorTexture` of a material.
     pub(super) fn of_material(&self, index: usize) -> Option<Value> {
-        Some(info(self.by_material[index].as_ref()?))
+        Some(info(self.by_material[index].color?))
     }
 
     /// The `emissiveTexture` of a material.
     pub(super) fn emission_of_material(&self, index: usize) -> Option<Value> {
-        Some(info(self.emission_by_material[index].as_ref()?))
+        Some(info(self.by_material[index].emission?))
+    }
+
+    /// The `normalTexture` of a material, without its scale.
+    pub(super) fn normals_of_material(&self, index: usize) -> Option<Value> {
+        Some(info(self.by_material[index].normals?))
     }
 
     /// The index of the glTF texture that cuts a material out, and how it is used.
-    pub(super) fn opacity_of_material(&self, index: usize) -> Option<(usize, TextureUse)> {
-        self.opacity_by_material[index]
+    pub(super) fn opacity_of_material(&self, index: usize) -> Option<Picture> {
+        self.by_material[index].opacity
     }
 
-    /// The transforms of a material's texture and of its emission's, if glTF's angle and factors do not reproduce them to the last bit.
-    pub(super) fn exact_transforms(&self, index: usize) -> [Option<[f32; 6]>; 2] {
-        [self.by_material[index], self.emission_by_material[index]].map(|entry| {
+    /// The transforms of a material's texture, of its emission's and of its normals', if glTF's angle and factors do not reproduce them to the last bit.
+    pub(super) fn exact_transforms(&self, index: usize) -> [Option<[f32; 6]>; 3] {
+        self.by_material[index].standard().map(|entry| {
             let transform = entry?.1.transform;
             let (scale, rotation, offset) = parts(&transform);
             (affine(scale, rotation, offset) != transform).then(|| transform.to_cols_array())
@@ -146,7 +164,7 @@ impl<T: Copy + Eq + Hash> Distinct<T> {
 }
 
 /// A texture and how it is placed.
-fn info((texture, uses): &(usize, TextureUse)) -> Value {
+fn info((texture, uses): Picture) -> Value {
     let mut info = json!({"index": texture});
     if uses.transform != Affine2::IDENTITY {
         let (scale, rotation, offset) = parts(&uses.transform);

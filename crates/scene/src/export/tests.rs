@@ -5,7 +5,7 @@ use std::fs;
 use glam::{Affine2, DMat4, DVec3, Vec2, Vec3};
 
 use crate::{
-    Camera, Dielectric, Facets, Falloff, Fov, Light, LightKind, Material, MeshPart, Opacity, OpacityChannel,
+    Camera, Dielectric, Facets, Falloff, Fov, Light, LightKind, Material, MeshPart, NormalMap, Opacity, OpacityChannel,
     Projection, Scene, SceneBuilder, Texture, TextureUse, Weight, Wrap,
 };
 
@@ -50,6 +50,7 @@ fn scene(offset: DVec3) -> Scene {
                 transform: Affine2::from_scale_angle_translation(Vec2::new(1.3, -0.7), 0.77, Vec2::new(0.1, -3.3)),
             }),
             emission_texture: None,
+            normal_texture: Some(NormalMap::new(TextureUse::new(1)).with_scale(-0.3)),
             opacity: Some(Opacity::by(TextureUse::new(1), OpacityChannel::Green).with_cutoff(0.3).with_factor(0.9)),
             dielectric: None,
             facets: None,
@@ -66,6 +67,11 @@ fn scene(offset: DVec3) -> Scene {
             ..TextureUse::new(0)
         }),
         Material::default().named("gold").with_facets(Facets::new(0.3).with_metallic(0.9).with_grazing(0.7)),
+        Material::default().named("bricks").with_normal_texture(NormalMap::new(TextureUse {
+            transform: Affine2::from_scale_angle_translation(Vec2::new(-0.3, 1.7), 0.4, Vec2::new(0.1, 0.2)),
+            wrap: [Wrap::Mirror, Wrap::Clamp],
+            ..TextureUse::new(0)
+        })),
         Material::default().named("bare").with_opacity(Opacity::default()),
         Material::default().named("pane").with_opacity(Opacity::blend(0.25)),
         Material::default().named("foil").with_opacity(Opacity::blend(0.25).with_filter([0.5, 1.0, 0.0])),

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use super::heights::{is_grey, normals_of_heights};
 use super::{Texture, Undecodable, decode};
 use crate::LoadError;
 use crate::draft::Draft;
@@ -16,6 +17,8 @@ const NAMED: usize = 3;
 pub(crate) struct TextureFiles {
     /// Index of the texture by its path; `None` if it is not available.
     read: HashMap<PathBuf, Option<u32>>,
+    /// Images of normals made of those of heights, by the number of these and whether they end at their edges.
+    normals: HashMap<(u32, bool), u32>,
     /// A clause about each one that is not available.
     missing: Vec<String>,
 }
@@ -66,6 +69,24 @@ impl Draft {
     pub(crate) fn texture_bytes(&mut self, source: &Path, name: &str, bytes: &[u8]) -> Option<u32> {
         let decoded = decode(name, bytes, self.border.budget);
         self.texture(source, &format!("{}: {name}", source.display()), decoded)
+    }
+
+    /// Index of a texture of the normals of another one, of heights, which may be one of normals itself. `clamp`: whether it ends at its edges.
+    /// Where memory is short, there is none.
+    pub(crate) fn normals_of(&mut self, heights: u32, clamp: bool) -> Option<u32> {
+        if let Some(&known) = self.texture_files.normals.get(&(heights, clamp)) {
+            return Some(known);
+        }
+        let texture = &self.textures[heights as usize];
+        let found = if is_grey(texture) {
+            self.border.budget.check(size_of_val(&*texture.texels) as u64).ok()?;
+            self.textures.push(normals_of_heights(texture, clamp));
+            self.textures.len() as u32 - 1
+        } else {
+            heights
+        };
+        self.texture_files.normals.insert((heights, clamp), found);
+        Some(found)
     }
 
     /// Keeps the texture of the file at `path`, called `place` in messages.

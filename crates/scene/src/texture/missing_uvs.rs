@@ -8,14 +8,14 @@ use crate::{Material, Mesh, Opacity};
 /// Gives the triangles in `ranges`, which have no texture coordinates, materials without texture. Returns a sentence if any of
 /// them had a texture.
 pub(crate) fn untextured(mesh: &mut Mesh, materials: &mut Vec<Material>, ranges: &[Range<usize>]) -> Option<String> {
-    if !materials.iter().any(needs_uvs) {
+    if !materials.iter().any(Material::needs_uvs) {
         return None;
     }
     let mut plain: HashMap<u32, u32> = HashMap::new();
     let mut count = 0;
     for triangle in ranges.iter().flat_map(|range| range.clone()) {
         let material = &mut mesh.materials[triangle];
-        let Some(textured) = materials.get(*material as usize).filter(|known| needs_uvs(known)) else {
+        let Some(textured) = materials.get(*material as usize).filter(|known| known.needs_uvs()) else {
             continue;
         };
         *material = match plain.get(material) {
@@ -27,6 +27,7 @@ pub(crate) fn untextured(mesh: &mut Mesh, materials: &mut Vec<Material>, ranges:
                 materials.push(Material {
                     texture: None,
                     emission_texture: None,
+                    normal_texture: None,
                     emission,
                     opacity,
                     ..textured.clone()
@@ -44,16 +45,10 @@ pub(crate) fn untextured(mesh: &mut Mesh, materials: &mut Vec<Material>, ranges:
     })
 }
 
-/// Whether a texture of the material needs texture coordinates.
-fn needs_uvs(material: &Material) -> bool {
-    let of_opacity = material.opacity.and_then(|opacity| opacity.texture);
-    [material.texture, material.emission_texture, of_opacity].iter().any(Option::is_some)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{OpacityChannel, TextureUse};
+    use crate::{NormalMap, OpacityChannel, TextureUse};
     use glam::Vec3;
 
     #[test]
@@ -62,6 +57,7 @@ mod tests {
         let opacity = Opacity::by(uses, OpacityChannel::Red).with_factor(0.7);
         let textured = Material::default().with_texture(uses).with_opacity(opacity).named("oak");
         let textured = textured.with_emission(Vec3::ONE).with_emission_texture(uses);
+        let textured = textured.with_normal_texture(NormalMap::new(uses));
         let mut materials = vec![Material::default(), textured];
         let mut mesh = Mesh { materials: vec![1, 0, 1, 1, 1], ..Mesh::default() };
         let warning = untextured(&mut mesh, &mut materials, &[0..1, 1..3]).unwrap();
@@ -69,6 +65,7 @@ mod tests {
         assert_eq!(mesh.materials, [2, 0, 2, 1, 1]);
         assert_eq!((materials.len(), materials[2].name.as_str(), materials[2].texture), (3, "oak", None));
         assert_eq!((materials[2].emission, materials[2].emission_texture), (Vec3::ZERO, None));
+        assert_eq!(materials[2].normal_texture, None);
         assert_eq!(materials[2].opacity, Some(Opacity { texture: None, ..opacity }));
         assert_eq!(untextured(&mut mesh, &mut materials, &[0..1, 1..2]), None);
     }

@@ -20,6 +20,7 @@ use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gpu::Cuda;
 use crate::gpu::rays::DeviceWave;
+use crate::shading::has_reliefs;
 use bounce::DeviceBounce;
 use cells::{DeviceCells, Nearest};
 use device::{Device, read_count};
@@ -132,7 +133,7 @@ fn gather_part<R: Runtime>(
     let means = cuda.pool().room::<Vec3>("answers to these", 2 * rays.len())?;
     let alone = cuda.pool().room::<u32>("places without any", 2 * rays.len())?;
     let alone_count = cuda.pool().zeros::<u32>("number of places without any", 1)?;
-    let record = GatherPoints {
+    let mut record = GatherPoints {
         scene: wave.scene.record,
         rays: wave.rays.record,
         hits: wave.hits.hits.input(),
@@ -149,7 +150,19 @@ fn gather_part<R: Runtime>(
         count: rays.len() as u32,
         ..GatherPoints::zeroed()
     };
+    if let Some(sampled) = &wave.rays.sampled {
+        record.samples = sampled.hits.input();
+        record.sample_count = sampled.count;
+        record.first_sampled = sampled.first;
+        record.sampled_pixels = sampled.pixels;
+    }
     device.threads("ask_light", rays.len(), &record)?;
+    let relief = has_reliefs(&wave.scene.host.scene.geometry);
+    let normals = relief.then(|| cuda.pool().room::<Vec3>("normals by their images", rays.len())).transpose()?;
+    if let Some(normals) = &normals {
+        record.normals = normals.output();
+        device.threads("find_normals", rays.len(), &record)?;
+    }
 
     // 2. The fine sites around that are seen, and what they receive.
     let links = fine_cells.links(device, &places)?;

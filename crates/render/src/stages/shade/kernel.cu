@@ -97,16 +97,16 @@ DEVICE void fill_layers(const Shade &args, unsigned ray, const Surface &surface,
         args.visibility[light * args.film_pixels + place] = share_of(args, light, ray);
 }
 
+// What the samples of the camera's pixels see.
+DEVICE Samples samples_of(const Shade &args) { return Samples{args.samples, args.first_sampled, args.sampled_pixels, args.sample_count}; }
+
 // Gives a surface the mean colour of the samples of its pixel that are shaded with it.
 DEVICE void share_tint(const Shade &args, unsigned ray, Material &own) {
-    const unsigned shared = args.rays.list == nullptr ? ALL_LANES : __ldg(&args.rays.list[ray].shared);
+    const SharedHits shared = shared_hits(args.rays, ray, samples_of(args));
     const Hit hit = load_hit(args.hits, ray);
     const Material *material = args.scene.materials + __ldg(args.scene.triangle_materials + hit.triangle);
-    if (shared == 0 || !material->tinted)
-        return;
-    const SharedHits hits = {args.samples + (pixel_of(args.rays, ray) - args.first_sampled), args.sampled_pixels, args.sample_count,
-                             shared};
-    tint_by_all(tint_sources(args.scene), material, sighting_of(args.rays, ray), hits, hit, mirrors(args.rays, ray), &own);
+    if (shared.shared != 0 && material->tinted)
+        tint_by_all(tint_sources(args.scene), material, sighting_of(args.rays, ray), shared, hit, mirrors(args.rays, ray), &own);
 }
 
 // The light that a surface gets as a share of what it would get alone.
@@ -147,8 +147,10 @@ KERNEL(shade, Shade, BLOCK, 4) {
     if (sees && (first || fills || (last && args.catches) || sees_any(args, ray))) {
         Material own;
         Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
-        if (args.samples != nullptr)
+        if (args.samples != nullptr) {
             share_tint(args, ray, own);
+            share_normal(args.scene, args.rays, ray, samples_of(args), surface);
+        }
         radiance = add_group(args, ray, surface, radiance);
         if (last && args.catches && surface.material->catcher)
             radiance = catch_shadow(args, ray, place, surface, radiance);
@@ -218,9 +220,11 @@ DEVICE void add_by_light(const Shade &args, unsigned ray, unsigned long long pla
     if (!first && !last && !sees_any(args, ray))
         return;
     Material own;
-    const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
-    if (args.samples != nullptr)
+    Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
+    if (args.samples != nullptr) {
         share_tint(args, ray, own);
+        share_normal(args.scene, args.rays, ray, samples_of(args), surface);
+    }
     // A shadow catcher shows what is behind it.
     if (args.catches && surface.material->catcher) {
         if (last)

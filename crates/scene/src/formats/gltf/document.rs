@@ -279,7 +279,7 @@ pub(super) struct Buffer<'a> {
 pub(super) struct Material<'a> {
     pub(super) name: Option<Box<str>>,
     pub(super) pbr_metallic_roughness: Option<Box<MetallicRoughness>>,
-    pub(super) normal_texture: Option<IgnoredAny>,
+    pub(super) normal_texture: Option<NormalTexture>,
     pub(super) occlusion_texture: Option<IgnoredAny>,
     pub(super) emissive_texture: Option<TextureInfo>,
     #[serde(default)]
@@ -385,6 +385,14 @@ pub(super) struct TextureInfo {
     #[serde(default)]
     pub(super) tex_coord: u32,
     pub(super) extensions: Option<TextureExtensions>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct NormalTexture {
+    #[serde(flatten)]
+    pub(super) info: TextureInfo,
+    #[serde(default = "one")]
+    pub(super) scale: f32,
 }
 
 #[derive(Debug, Deserialize)]

@@ -32,6 +32,9 @@ pub(crate) struct MaterialExtras {
     /// The same for the image that the emission is multiplied with.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) emission_transform: Option<[f32; 6]>,
+    /// The same for the image of normals.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) normal_transform: Option<[f32; 6]>,
     /// Where the surface is, and what it lets through, unless `alphaMode` says so.
     #[serde(default, alias = "cut_out", skip_serializing_if = "Option::is_none")]
     pub(crate) opacity: Option<OpacityExtras>,
@@ -122,6 +125,7 @@ impl MaterialExtras {
             emission_tinted: self.emission_tinted.into(),
             texture: None,
             emission_texture: None,
+            normal_texture: None,
             catcher: self.catcher,
             lamp: self.lamp,
             opacity: None,

@@ -22,10 +22,10 @@ pub(super) struct LeftOut {
     /// Materials with an `alphaMode` that glTF does not define.
     pub(super) unknown_alpha_modes: usize,
     pub(super) roughness_textures: usize,
-    pub(super) normal_textures: usize,
     pub(super) occlusion_textures: usize,
-    /// Those with other texture coordinates than the base colour's.
+    /// Those with other texture coordinates than the images before.
     pub(super) emissive_textures: usize,
+    pub(super) normal_textures: usize,
     pub(super) specular_textures: usize,
     pub(super) transmission_textures: usize,
     /// Materials whose roughness should blur what goes through them.
@@ -55,13 +55,13 @@ impl LeftOut {
             (self.missing_materials, "primitive", "with a material that the file does not contain: shown white"),
             (self.unknown_alpha_modes, "material", "with an unknown alphaMode: shown opaque"),
             (self.roughness_textures, "metallic-roughness texture", "not shown: the material's factors are used"),
-            (self.normal_textures, "normal texture", "not shown"),
             (self.occlusion_textures, "occlusion texture", "not shown"),
             (
                 self.emissive_textures,
                 "emissive texture",
                 "that cannot be placed beside the base colour's: the surface emits no light",
             ),
+            (self.normal_textures, "normal texture", "that cannot be placed beside the other images: not shown"),
             (self.specular_textures, "specular texture", "not shown: the material's factors are used"),
             (self.transmission_textures, "transmission texture", "not shown: the material's factors are used"),
             (self.frosted, "material", "with rough transmission: what is behind is shown sharp"),

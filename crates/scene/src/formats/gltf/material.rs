@@ -13,7 +13,7 @@ use glam::{Affine2, Vec3};
 
 use super::{
     container::malformed,
-    document::{self, MaterialExtensions, MetallicRoughness, TextureInfo, Transmission, Volume},
+    document::{self, MaterialExtensions, MetallicRoughness, NormalTexture, TextureInfo, Transmission, Volume},
     extras::{self, MaterialExtras, OpacityExtras},
     left_out::LeftOut,
 };
@@ -40,21 +40,29 @@ pub(super) fn read(path: &Path, index: usize, of: &document::Material, tinted: b
     Ok(Material { name, ..translated(of, tinted) })
 }
 
-/// How the material places its texture, and that of its emission, if our own extras specify it.
+/// How the material places its texture, and those of its emission and of its normals, if our own extras specify it.
 pub(super) fn texture_transforms(
     path: &Path,
     index: usize,
     of: &document::Material,
-) -> Result<[Option<Affine2>; 2], LoadError> {
+) -> Result<[Option<Affine2>; 3], LoadError> {
     let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
-    let columns = own.map_or([None; 2], |own| [own.texture_transform, own.emission_transform]);
+    let columns = own.map_or([None; 3], |own| [own.texture_transform, own.emission_transform, own.normal_transform]);
     Ok(columns.map(|columns| columns.map(|columns| Affine2::from_cols_array(&columns))))
 }
 
 /// The image that the emission is multiplied with. What an unlit material emits is its base colour.
 pub(super) fn emissive_texture<'a>(of: &'a document::Material) -> Option<&'a TextureInfo> {
-    let unlit = of.extensions.as_deref().is_some_and(|extensions| extensions.unlit.is_some());
-    of.emissive_texture.as_ref().filter(|_| !unlit)
+    of.emissive_texture.as_ref().filter(|_| !is_unlit(of))
+}
+
+/// The image of normals; where nothing is lit, they do not count.
+pub(super) fn normal_texture<'a>(of: &'a document::Material) -> Option<&'a NormalTexture> {
+    of.normal_texture.as_ref().filter(|_| !is_unlit(of))
+}
+
+fn is_unlit(of: &document::Material) -> bool {
+    of.extensions.as_deref().is_some_and(|extensions| extensions.unlit.is_some())
 }
 
 /// Where the surface is, and what it lets through, if our own extras specify it.
@@ -74,7 +82,6 @@ pub(super) fn count_left_out(of: &document::Material, left_out: &mut LeftOut) {
     let alpha_mode = of.alpha_mode.as_deref().unwrap_or("OPAQUE");
     left_out.unknown_alpha_modes += usize::from(!matches!(alpha_mode, "OPAQUE" | "MASK" | "BLEND"));
     left_out.roughness_textures += usize::from(pbr.is_some_and(|pbr| pbr.metallic_roughness_texture.is_some()));
-    left_out.normal_textures += usize::from(of.normal_texture.is_some());
     left_out.occlusion_textures += usize::from(of.occlusion_texture.is_some());
     if let Some(transmission) = transmission(of) {
         left_out.transmission_textures += usize::from(transmission.transmission_texture.is_some());
@@ -118,7 +125,7 @@ pub(super) fn translated(of: &document::Material, tinted: bool) -> Material {
     let [r, g, b, _] = pbr.base_color_factor;
     let base = Vec3::new(r, g, b).max(Vec3::ZERO);
     let extensions = of.extensions.as_deref();
-    if extensions.is_some_and(|extensions| extensions.unlit.is_some()) {
+    if is_unlit(of) {
         return unlit(base, tinted);
     }
     let mut material = match transmission(of) {

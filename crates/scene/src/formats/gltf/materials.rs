@@ -12,7 +12,7 @@ use super::{
     picture::Pictures,
 };
 use crate::{
-    LoadError, Material, Opacity, OpacityChannel, OpacityMode, TextureUse,
+    LoadError, Material, NormalMap, Opacity, OpacityChannel, OpacityMode, TextureUse,
     draft::{Draft, Placement},
 };
 
@@ -41,6 +41,24 @@ fn opacity(own: &OpacityExtras, pictures: &mut Pictures, draft: &mut Draft) -> O
             None => OpacityMode::Mask { cutoff: own.cutoff.unwrap_or(Opacity::CUTOFF) },
         },
     }
+}
+
+/// A further image of a material. It must have the `set` of texture coordinates of those before, if there are any: a vertex has one pair.
+/// Else it is counted.
+fn further(
+    info: &TextureInfo,
+    set: &mut Option<u32>,
+    misplaced: &mut usize,
+    pictures: &mut Pictures,
+    draft: &mut Draft,
+) -> Option<TextureUse> {
+    let (uses, own) = pictures.find(info, draft)?;
+    if set.is_some_and(|set| set != own) {
+        *misplaced += 1;
+        return None;
+    }
+    *set = Some(own);
+    Some(uses)
 }
 
 /// A material of the file.
@@ -93,17 +111,19 @@ impl Materials {
             let (mut texture, mut set) = found.unzip();
             let (mut emission, mut emission_texture) = (material.emission, None);
             if let Some(info) = material::emissive_texture(entry) {
-                let found = pictures.find(info, draft);
-                // A vertex has one pair of texture coordinates.
-                let placed = found.filter(|(_, own)| set.is_none_or(|set| set == *own));
-                left_out.emissive_textures += usize::from(found.is_some() && placed.is_none());
-                match placed {
-                    Some((uses, own)) => (emission_texture, set) = (Some(uses), Some(own)),
-                    None => emission = Material::EMISSION_WITHOUT_IMAGE,
+                emission_texture = further(info, &mut set, &mut left_out.emissive_textures, &mut pictures, draft);
+                if emission_texture.is_none() {
+                    emission = Material::EMISSION_WITHOUT_IMAGE;
                 }
             }
+            let (normals, misplaced) = (material::normal_texture(entry), &mut left_out.normal_textures);
+            let mut normal_texture = normals.and_then(|normals| {
+                let uses = further(&normals.info, &mut set, misplaced, &mut pictures, draft)?;
+                Some(NormalMap { uses, scale: normals.scale })
+            });
             let exact = material::texture_transforms(path, index, entry)?;
-            for (texture, exact) in [&mut texture, &mut emission_texture].into_iter().zip(exact) {
+            let normals = normal_texture.as_mut().map(|map| &mut map.uses);
+            for (texture, exact) in [texture.as_mut(), emission_texture.as_mut(), normals].into_iter().zip(exact) {
                 if let (Some(texture), Some(exact)) = (texture, exact) {
                     texture.transform = exact;
                 }
@@ -113,7 +133,7 @@ impl Materials {
                 None => material::opacity(entry, texture),
             };
             materials.read.push(Read { material: draft.materials.len() as u32, set, opacity: opacity.is_some() });
-            draft.materials.push(Material { texture, emission, emission_texture, opacity, ..material });
+            draft.materials.push(Material { texture, emission, emission_texture, normal_texture, opacity, ..material });
         }
         left_out.missing_textures += pictures.missing;
         Ok(materials)

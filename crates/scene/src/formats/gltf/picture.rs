@@ -1,4 +1,4 @@
-//! Base colour textures: image, sampler and `KHR_texture_transform`.
+//! Textures of materials: image, sampler and `KHR_texture_transform`.
 
 use std::collections::HashMap;
 use std::path::Path;

@@ -1,10 +1,10 @@
-//! `map_Kd` and `map_d`: a texture with options before its file name, as in `map_Kd -s 2 2 -clamp on brick wall.png`.
+//! `map_Kd` and the like: a texture with options before its file name, as in `map_Kd -s 2 2 -clamp on brick wall.png`.
 
 use std::path::Path;
 
 use glam::{Affine2, Mat2, Vec2};
 
-use crate::{OpacityChannel, TextureUse, Wrap, draft::Draft, formats::text::number};
+use crate::{NormalMap, OpacityChannel, TextureUse, Wrap, draft::Draft, formats::text::number};
 
 /// A texture of a material.
 #[derive(Debug, PartialEq)]
@@ -14,6 +14,8 @@ pub(super) struct Map {
     scale: Vec2,
     offset: Vec2,
     clamp: bool,
+    /// The bump multiplier `-bm`.
+    pub(super) multiplier: f32,
     /// The channel that counts where one number is wanted, if the file says so.
     pub(super) channel: Option<OpacityChannel>,
 }
@@ -23,7 +25,7 @@ impl Map {
     /// skipped.
     pub(super) fn parse(text: &str) -> Option<Map> {
         let (scale, offset) = (Vec2::ONE, Vec2::ZERO);
-        let mut map = Map { file: String::new(), scale, offset, clamp: false, channel: None };
+        let mut map = Map { file: String::new(), scale, offset, clamp: false, multiplier: 1.0, channel: None };
         let mut rest = text.trim();
         while let Some(option) = rest.strip_prefix('-') {
             let Some((name, after)) = option.split_once(char::is_whitespace) else { break };
@@ -41,8 +43,14 @@ impl Map {
                     map.channel = channel(value);
                     rest
                 }
+                "bm" => {
+                    let (value, rest) = after.trim_start().split_once(char::is_whitespace)?;
+                    let given = number(value.as_bytes()).map(|number| number as f32);
+                    map.multiplier = given.filter(|number| number.is_finite()).unwrap_or(map.multiplier);
+                    rest
+                }
                 "mm" => skip_words(after, 2)?,
-                "blendu" | "blendv" | "boost" | "texres" | "bm" | "type" | "cc" => skip_words(after, 1)?,
+                "blendu" | "blendv" | "boost" | "texres" | "type" | "cc" => skip_words(after, 1)?,
                 // The file name begins with a hyphen.
                 _ => break,
             }
@@ -50,6 +58,13 @@ impl Map {
         }
         map.file = unquoted(rest).to_owned();
         (!map.file.is_empty()).then_some(map)
+    }
+
+    /// The same texture as normals: those of an image of heights, unless it is one of normals.
+    pub(super) fn normal_map(&self, library: &Path, heights: bool, draft: &mut Draft) -> Option<NormalMap> {
+        let uses = self.texture_use(library, draft)?;
+        let texture = if heights { draft.normals_of(uses.texture, self.clamp)? } else { uses.texture };
+        Some(NormalMap { uses: TextureUse { texture, ..uses }, scale: self.multiplier })
     }
 
     /// The texture, read for `library`, the file that names it. `None` if it is not available.
@@ -111,7 +126,7 @@ mod tests {
     fn options_stand_before_a_name_that_may_hold_blanks() {
         let map = |file: &str, scale, offset, clamp| {
             let (scale, offset) = (Vec2::from(scale), Vec2::from(offset));
-            Some(Map { file: file.to_owned(), scale, offset, clamp, channel: None })
+            Some(Map { file: file.to_owned(), scale, offset, clamp, multiplier: 1.0, channel: None })
         };
         let plain = |file| map(file, [1.0; 2], [0.0; 2], false);
         assert_eq!(Map::parse("brick wall.png"), plain("brick wall.png"));
@@ -122,6 +137,8 @@ mod tests {
         assert_eq!(Map::parse("-odd.png"), plain("-odd.png"));
         assert_eq!(Map::parse("-s 1 1 1 \"brick wall.png\""), plain("brick wall.png"));
         assert_eq!(Map::parse("-odd one.png"), plain("-odd one.png"));
+        assert_eq!(Map::parse("-bm -0.25 a.png").map(|map| map.multiplier), Some(-0.25));
+        assert_eq!(Map::parse("-bm nan a.png"), plain("a.png"));
         let channels =
             ["r", "g", "b", "m", "l", "z"].map(|word| Map::parse(&format!("-imfchan {word} a.png")).unwrap().channel);
         let found: Vec<_> = channels.into_iter().flatten().map(OpacityChannel::name).collect();

@@ -1,5 +1,5 @@
 //! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke, map_Kd and map_Ke to the coefficients of formula (1), Pr and Pm to facets, map_d to
-//! where the surface is.
+//! where the surface is, norm and bump to its normals.
 
 use std::{
     collections::HashSet,
@@ -14,7 +14,7 @@ use super::{
     map::{Map, unquoted},
 };
 use crate::{
-    Dielectric, Facets, LoadError, Material, Opacity, OpacityChannel, TextureUse,
+    Dielectric, Facets, LoadError, Material, NormalMap, Opacity, OpacityChannel, TextureUse,
     draft::Draft,
     error::Place,
     formats::{
@@ -39,6 +39,9 @@ pub(super) struct Entry {
     map: Option<Map>,
     opacity: Option<Map>,
     glow: Option<Map>,
+    normals: Option<Map>,
+    /// An image of heights, or of normals: programs write both.
+    bump: Option<Map>,
     dissolve: Option<f64>,
     transparency: Option<f64>,
     filter: Option<Vec3>,
@@ -144,7 +147,7 @@ fn read_library(path: &Path, text: &[u8], entries: &mut Vec<Entry>, draft: &mut 
     draft.warnings.extend(notes.warnings(path));
     let LeftOut { maps, spectral } = left_out;
     for (count, what) in
-        [(maps, "textures other than map_Kd, map_d and map_Ke"), (spectral, "spectral or CIE-XYZ colours")]
+        [(maps, "textures other than map_Kd, map_d, map_Ke, norm and bump"), (spectral, "spectral or CIE-XYZ colours")]
     {
         if count > 0 {
             draft.warnings.push(format!("{}: {count} {what} were ignored", path.display()));
@@ -186,6 +189,8 @@ impl Entry {
             b"map_Kd" => self.map = Map::parse(&decoded(rest)),
             b"map_Ke" => self.glow = Map::parse(&decoded(rest)),
             b"map_d" => self.opacity = Map::parse(&decoded(rest)),
+            b"norm" | b"map_Kn" => self.normals = Map::parse(&decoded(rest)),
+            b"bump" | b"map_Bump" | b"map_bump" => self.bump = Map::parse(&decoded(rest)),
             // Exporters repeat the texture as the ambient texture.
             b"map_Ka" | b"map_aat" => {}
             word if is_map(word) => left_out.maps += 1,
@@ -228,6 +233,7 @@ impl Entry {
             lamp: true,
             texture,
             emission_texture,
+            normal_texture: self.normal_texture(used, draft),
             opacity: self.opacity(used, texture, draft),
             dielectric: self.dielectric(),
             ..default
@@ -240,6 +246,13 @@ impl Entry {
         let share = |value: Option<f64>, unsaid: f32| value.map_or(unsaid, |value| value.clamp(0.0, 1.0) as f32);
         (self.roughness.is_some() || self.metallic.is_some())
             .then(|| Facets::new(share(self.roughness, 1.0)).with_metallic(share(self.metallic, 0.0)))
+    }
+
+    /// The image of normals; else that of `bump`, which may be one, too.
+    fn normal_texture(&self, used: bool, draft: &mut Draft) -> Option<NormalMap> {
+        let (map, heights) =
+            self.normals.as_ref().map(|map| (map, false)).or(self.bump.as_ref().map(|map| (map, true)))?;
+        used.then(|| map.normal_map(&self.path, heights, draft)).flatten()
     }
 
     /// What refracts: illumination models 6 and 7 with an index of refraction `Ni`. Exporters write `Ni 1` where there is none.

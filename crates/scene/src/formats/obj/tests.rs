@@ -198,8 +198,8 @@ fn textures_come_from_map_kd_with_its_options() {
     assert_eq!((scene.geometry.materials[1].kd, scene.geometry.materials[1].texture), (Vec3::splat(0.5), None));
     let warned = |part: &str| scene.warnings.iter().filter(|warning| warning.contains(part)).count();
     assert_eq!(
-        ["gone.png", "other.png", "1 textures other than map_Kd, map_d and map_Ke", "transparent"].map(warned),
-        [1, 0, 1, 0]
+        ["gone.png", "other.png", "bump.png", "textures other than", "transparent"].map(warned),
+        [1, 0, 1, 0, 0]
     );
 }
 
@@ -216,6 +216,37 @@ fn images_of_emitted_light_come_from_map_ke() {
     assert_eq!((unsaid.0, unsaid.1.map(|uses| uses.texture)), (Vec3::ONE, Some(0)));
     assert_eq!((black, colored), (unsaid, (Vec3::new(0.5, 4.0, 0.0), unsaid.1)));
     assert_eq!(gone, (Vec3::ZERO, None), "black nearly everywhere rather than bright everywhere");
+}
+
+#[test]
+fn normals_come_from_norm_and_heights_from_bump() {
+    let folder = tempfile::tempdir().unwrap();
+    let save = |name: &str, texel: fn(u32) -> [u8; 3]| {
+        let image = image::RgbImage::from_fn(4, 1, |column, _| image::Rgb(texel(column)));
+        image.save(folder.path().join(name)).unwrap();
+    };
+    save("normals.png", |_| [128, 128, 255]);
+    save("heights.png", |column| [if column == 2 { 255 } else { 0 }; 3]);
+    let statements = [
+        "norm normals.png",
+        "map_Kn -bm 0.5 normals.png",
+        "bump -bm 2 heights.png",
+        "map_Bump -bm 3 -clamp on normals.png",
+        "map_bump heights.png\nnorm normals.png",
+        "map_Kd heights.png\nmap_bump heights.png",
+        "norm gone.png",
+    ];
+    let scene = with_materials(&folder, &statements);
+    let maps: Vec<_> = scene.geometry.materials.iter().map(|material| material.normal_texture).collect();
+    let scales: Vec<_> = maps.iter().map(|map| map.map(|map| map.scale)).collect();
+    assert_eq!(scales, [Some(1.0), Some(0.5), Some(2.0), Some(3.0), Some(1.0), Some(1.0), None]);
+    let name = |index: usize| &*scene.geometry.textures[maps[index].unwrap().uses.texture as usize].name;
+    assert_eq!([0, 1, 3, 4].map(name), ["normals.png"; 4]);
+    assert_eq!([2, 5].map(name), ["heights.png as normals"; 2]);
+    assert_eq!(maps[2].unwrap().uses.texture, maps[5].unwrap().uses.texture, "made once");
+    let red = scene.geometry.textures[maps[2].unwrap().uses.texture as usize].texels[1][0];
+    assert!(red < 128, "what is higher is to the right");
+    assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
 }
 
 /// A scene with a face of each material, whose statements are given.

@@ -9,7 +9,7 @@ use super::{
     schema::{Color, MaterialEntry, Number, Text, TextureScale, TextureWrap, WrapName},
     spanned::Spanned,
 };
-use crate::{Dielectric, Facets, LoadError, Material, Opacity, OpacityChannel, TextureUse, Wrap, draft::Draft};
+use crate::{Dielectric, Facets, LoadError, Material, NormalMap, Opacity, OpacityChannel, TextureUse, Wrap, draft::Draft};
 
 /// Adds the file's materials and returns the index of each name.
 pub(super) fn read(
@@ -40,6 +40,8 @@ pub(super) fn read(
                 Some(_) => material.emission,
             };
         }
+        let scale = normal_scale(source, entry)?;
+        material.normal_texture = find(draft, &entry.normal_texture).map(|uses| NormalMap { uses, scale });
         draft.materials.push(material);
     }
     Ok(names)
@@ -94,11 +96,21 @@ fn placed(source: &Source, entry: &MaterialEntry) -> Result<TextureUse, LoadErro
         TextureWrap::Each(words) => words.map(Wrap::from),
     });
     let transform = transform(source, entry)?;
-    let images = [&entry.texture, &entry.emission_texture, &entry.opacity_texture];
+    let images = [&entry.texture, &entry.emission_texture, &entry.normal_texture, &entry.opacity_texture];
     if let (true, Some((key, line))) = (images.iter().all(|image| image.is_none()), without_texture(entry)) {
         return Err(source.refuse(key, &line, "has no effect without a texture", "add `texture = \"FILE\"`"));
     }
     Ok(TextureUse { wrap, transform, ..TextureUse::new(0) })
+}
+
+/// What slopes of the image of normals are multiplied with.
+fn normal_scale(source: &Source, entry: &MaterialEntry) -> Result<f32, LoadError> {
+    let Some(scale) = &entry.normal_scale else { return Ok(1.0) };
+    if entry.normal_texture.is_none() {
+        let remedy = "add `normal_texture = \"FILE\"`";
+        return Err(source.refuse("normal_scale", scale, "has no effect without an image of normals", remedy));
+    }
+    Ok(source.number("normal_scale", scale)? as f32)
 }
 
 /// What the surface lets through; else where it is, if its opacity has a texture and that is available.

@@ -10,7 +10,7 @@ use super::{
     spanned::Spanned,
 };
 use crate::{
-    LoadError, Material,
+    LoadError,
     draft::Draft,
     open::read_part,
     shapes::{Shape, tangents},
@@ -34,9 +34,7 @@ pub(super) fn read(
     let add = |draft: &mut Draft, shape: Shape, transform: &DMat4, name: &Option<Text>, object: String| {
         let material = material(draft, name)?;
         draft.begin_object(object);
-        let Material { texture, emission_texture, opacity, .. } = &draft.materials[material as usize];
-        let textured = texture.is_some() || emission_texture.is_some() || opacity.is_some();
-        let shape = if textured { shape.textured() } else { shape };
+        let shape = if draft.materials[material as usize].needs_uvs() { shape.textured() } else { shape };
         draft.add(shape.part(), transform, |_| material)
     };
     for entry in &file.mesh {

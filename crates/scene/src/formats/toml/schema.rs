@@ -290,6 +290,12 @@ pub(crate) struct MaterialEntry {
     /// An image that `emission` is multiplied with, placed as `texture` is. Default of `emission` with it: 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) emission_texture: Option<Text>,
+    /// An image of normals, as in glTF: red to the right of the image, green to its top, blue away from the surface; placed as `texture` is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) normal_texture: Option<Text>,
+    /// What the slopes of `normal_texture` are multiplied with. Default: 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) normal_scale: Option<Number>,
     /// An image that says where the surface is, leaves on a few triangles for example: by its alpha if it has any, else by its luminance.
     /// Placed as `texture` is.
     #[serde(skip_serializing_if = "Option::is_none")]

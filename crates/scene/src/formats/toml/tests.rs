@@ -390,6 +390,27 @@ fn what_a_material_emits_may_have_a_texture() {
 }
 
 #[test]
+fn a_material_may_have_an_image_of_normals() {
+    let text = |lines: &str| {
+        let shape = "[[box]]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nmaterial = \"wall\"";
+        format!("[[material]]\nname = \"wall\"\n{lines}\n{shape}")
+    };
+    let material = |lines: &str| {
+        let (_folder, path) = textured_folder(&text(lines));
+        let scene = Scene::open(path).unwrap();
+        assert_eq!(scene.geometry.mesh.uvs.is_empty(), scene.geometry.textures.is_empty());
+        scene.geometry.materials[0].clone()
+    };
+    let shown = material("normal_texture = \"oak.png\"\nnormal_scale = -2\ntexture_scale = 3").normal_texture.unwrap();
+    assert_eq!((shown.scale, shown.uses.transform.matrix2.x_axis), (-2.0, Vec2::new(3.0, 0.0)));
+    assert_eq!(material("normal_texture = \"oak.png\"").normal_texture.unwrap().scale, 1.0);
+    assert_eq!(material("normal_texture = \"gone.png\"").normal_texture, None);
+    let (_folder, path) = textured_folder(&text("texture = \"oak.png\"\nnormal_scale = 2"));
+    let error = Scene::open(path).unwrap_err().to_string();
+    assert!(error.contains("normal_scale") && error.contains("has no effect without an image of normals"), "{error}");
+}
+
+#[test]
 fn scenes_without_textures_have_no_texture_coordinates() {
     let scene = open("[[sphere]]\ncenter = [0, 0, 0]\nradius = 1");
     assert!(scene.geometry.mesh.uvs.is_empty() && scene.geometry.textures.is_empty());

@@ -233,12 +233,50 @@ fn an_emissive_texture_that_cannot_be_shown_makes_nothing_glow() {
 }
 
 #[test]
+fn normals_have_an_image_with_a_scale() {
+    let mut document = textured();
+    assert_eq!(open(&document).geometry.materials[0].normal_texture, None);
+    document["materials"][0]["normalTexture"] = json!({"index": 0});
+    let normals = |document: &Value| open(document).geometry.materials[0].normal_texture;
+    assert_eq!(normals(&document).unwrap().scale, 1.0);
+    document["materials"][0]["normalTexture"] = json!({"index": 0, "texCoord": 0, "scale": -0.5,
+        "extensions": {"KHR_texture_transform": {"offset": [0.5, 0.25]}}});
+    for _ in 0..2 {
+        let map = normals(&document).unwrap();
+        assert_eq!((map.scale, map.uses.texture), (-0.5, 0));
+        assert_eq!(map.uses.transform.translation, Vec2::new(0.5, 0.25));
+        assert_eq!(warnings(&document), "");
+        document["materials"][0]["pbrMetallicRoughness"].as_object_mut().unwrap().remove("baseColorTexture");
+    }
+    let uvs = |document: &Value| open(document).geometry.mesh.uvs.clone();
+    let first = uvs(&document);
+    document["materials"][0]["normalTexture"]["texCoord"] = json!(1);
+    assert_ne!(uvs(&document), first);
+    document["materials"][0]["extensions"] = json!({"KHR_materials_unlit": {}});
+    assert_eq!(normals(&document), None, "nothing is lit");
+}
+
+#[test]
+fn normals_that_cannot_be_shown_leave_the_surface_as_it_was() {
+    let mut document = textured();
+    for (info, sentence) in [
+        (
+            json!({"index": 0, "texCoord": 1}),
+            "1 normal texture that cannot be placed beside the other images: not shown",
+        ),
+        (json!({"index": 7}), "1 material with a texture that the file does not contain"),
+    ] {
+        document["materials"][0]["normalTexture"] = info;
+        assert_eq!(open(&document).geometry.materials[0].normal_texture, None);
+        assert!(warnings(&document).contains(sentence), "{}", warnings(&document));
+    }
+}
+
+#[test]
 fn what_of_materials_is_not_shown_is_one_sentence_a_kind() {
     let mut document = textured();
     let material = &mut document["materials"][0];
-    for key in ["normalTexture", "occlusionTexture"] {
-        material[key] = json!({"index": 0});
-    }
+    material["occlusionTexture"] = json!({"index": 0});
     material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({"index": 0});
     material["alphaMode"] = json!("BLEND");
     let other = material.clone();
@@ -247,13 +285,12 @@ fn what_of_materials_is_not_shown_is_one_sentence_a_kind() {
     let warnings = warnings(&document);
     for sentence in [
         "2 metallic-roughness textures not shown",
-        "2 normal textures not shown",
         "2 occlusion textures not shown",
         "1 material with an unknown alphaMode: shown opaque",
     ] {
         assert!(warnings.contains(sentence), "{warnings}");
     }
-    assert_eq!(warnings.lines().count(), 4, "{warnings}");
+    assert_eq!(warnings.lines().count(), 3, "{warnings}");
 }
 
 #[test]
