@@ -165,6 +165,8 @@
 #define HORIZON_SAMPLES 64u
 // Points of an area light from which its unshadowed light is computed.
 #define LIGHT_TARGETS 16u
+// The height of the strip of an area light for which one of these points stands, relative to that of all of them.
+#define STRIP_OF_TARGET 0x1p-3f
 // First factor of the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
 #define MIX_1 0xbf58476d1ce4e5b9ull
 // Second factor.
