@@ -21,6 +21,10 @@ picture gazebo builtin:gazebo
 picture childpark builtin:childpark
 picture garden builtin:garden
 picture sponza "$models/sponza/sponza.obj" --camera "-13,3,0;10,5,0;60"
+picture sponza_sky "$models/sponza/sponza.obj" --camera "-13,3,0;10,5,0;60" --sky "clear;sun=60,120"
+picture childpark_sunset builtin:childpark --sky "clear;sun=8,250;alone"
+picture interior "$book/../scenes/interior.toml"
+picture arbour "$book/../scenes/arbour.toml" --bounces 2
 picture bunny "$models/bunny/bunny.ply"
 picture balloon "$models/balloon/scene.gltf"
 picture chess "$models/chess/chess-board.glb"

@@ -282,6 +282,8 @@ constants! {
     HORIZON_SAMPLES: u32 = 64;
     /// Points of an area light from which its unshadowed light is computed.
     LIGHT_TARGETS: u32 = 16;
+    /// The height of the strip of an area light for which one of these points stands, relative to that of all of them.
+    STRIP_OF_TARGET: f32 = 0.125;
     /// First factor of the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
     MIX_1: u64 = 0xbf58_476d_1ce4_e5b9;
     /// Second factor.

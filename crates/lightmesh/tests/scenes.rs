@@ -23,7 +23,7 @@ fn the_repository_s_scenes_render_in_every_mode() {
             let frame = renderer.render(&scene, &settings).unwrap();
             let seen = frame.stats.counts.hits as f64 / frame.stats.counts.pixels as f64;
             // The rest is sky, where a scene has one.
-            assert!(seen > 0.8, "{}: {seen} of the image shows something", path.display());
+            assert!(seen > 0.6, "{}: {seen} of the image shows something", path.display());
             assert!(frame.image.color().iter().flatten().all(|value| value.is_finite()), "{}", path.display());
         }
     }

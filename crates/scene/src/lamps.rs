@@ -17,8 +17,9 @@ use crate::{Falloff, Geometry, Light, LightKind, Scene};
 const LARGEST: f64 = 0.25;
 /// Patches of a lamp, at most.
 const PATCHES: usize = 14;
-/// Triangles whose normals deviate more, by cosine, begin a patch of their own.
-const SAME_PATCH: f64 = 0.85;
+/// Triangles whose normals deviate more, by cosine, begin a patch of their own. If there are too many lights, the next one counts: else small
+/// lamps would lose those of their sides, and the wall behind them its light.
+const SAME_PATCH: [f64; 3] = [0.85, 0.6, 0.2];
 /// Lights that are made at most: the smallest of more are added to others.
 const LIGHTS: usize = 32;
 /// Patches that give less than this share of the largest one's light are left out: the others shine for them.
@@ -41,7 +42,7 @@ const RAISED: [f64; 2] = [1e-3, 1e-5];
 pub(crate) fn lamps(geometry: &mut Geometry) -> Vec<Light> {
     let bounds = geometry.mesh.bounds();
     let scene = Extent { middle: bounds.center().as_dvec3(), diagonal: f64::from(bounds.diagonal()) };
-    let mut lights = Vec::new();
+    let mut found: Vec<(usize, Vec<Lamp>)> = Vec::new();
     for number in 0..geometry.materials.len() {
         let material = &mut geometry.materials[number];
         // What an image emits is not a lamp's.
@@ -54,11 +55,19 @@ pub(crate) fn lamps(geometry: &mut Geometry) -> Vec<Light> {
         let is_small = |lamp: &Lamp| lamp.diagonal() < LARGEST * scene.diagonal;
         let material = &mut geometry.materials[number];
         material.lamp = !lamps.is_empty() && lamps.iter().all(is_small);
-        if !material.lamp {
-            continue;
+        if material.lamp {
+            found.push((number, lamps));
         }
+    }
+    let count = |alike: f64| -> usize {
+        found.iter().flat_map(|(_, lamps)| lamps).map(|lamp| lamp.patches(&scene, alike).len()).sum()
+    };
+    let alike = SAME_PATCH.into_iter().find(|&alike| count(alike) <= LIGHTS).unwrap_or(SAME_PATCH[2]);
+    let mut lights = Vec::new();
+    for (number, lamps) in found {
+        let material = &mut geometry.materials[number];
         let name = if material.name.is_empty() { "lamp" } else { &material.name };
-        let patches = lamps.iter().flat_map(|lamp| lamp.patches(&scene));
+        let patches = lamps.iter().flat_map(|lamp| lamp.patches(&scene, alike));
         let own: Vec<Light> = patches.map(|patch| patch.light(material.emission, name, &scene)).collect();
         material.lamp = own.iter().all(is_usable);
         if material.lamp {
@@ -171,6 +180,10 @@ impl Lamp {
         for corners in &self.places {
             for edge in 0..3 {
                 let [a, b] = [corners[edge], corners[(edge + 1) % 3]];
+                // The triangles at the poles of balls are often needles.
+                if a == b {
+                    continue;
+                }
                 *edges.entry(if a < b { [a, b] } else { [b, a] }).or_default() += if a < b { 1 } else { -1 };
             }
         }
@@ -180,8 +193,8 @@ impl Lamp {
         is_closed.then(|| self.triangles.iter().map(part).sum())
     }
 
-    /// Its triangles by the way that they face.
-    fn patches(&self, scene: &Extent) -> Vec<Patch> {
+    /// Its triangles by the way that they face: within a patch by about this cosine.
+    fn patches(&self, scene: &Extent, alike: f64) -> Vec<Patch> {
         let mut triangles: Vec<&[DVec3; 3]> = self.triangles.iter().collect();
         triangles.sort_by(|a, b| outward(b).length().total_cmp(&outward(a).length()));
         let volume = self.volume();
@@ -201,7 +214,7 @@ impl Lamp {
             let is_full = patches.len() == PATCHES;
             let nearest = patches.iter_mut().map(|patch| (cosine(patch), patch)).max_by(|a, b| a.0.total_cmp(&b.0));
             match nearest {
-                Some((cosine, patch)) if cosine >= SAME_PATCH || is_full => patch.add(triangle, normal),
+                Some((cosine, patch)) if cosine >= alike || is_full => patch.add(triangle, normal),
                 _ => patches.push(Patch { triangles: vec![*triangle], outward: normal, brighter: 1.0 }),
             }
         }
@@ -334,6 +347,8 @@ fn merged(mut lights: Vec<Light>) -> Vec<Light> {
 
 #[cfg(test)]
 mod tests {
+    use std::f32::consts::PI;
+
     use super::*;
     use crate::{Bounds, Material, Mesh};
 
@@ -405,6 +420,32 @@ mod tests {
         assert!(
             (position - Vec3::new(0.0, 0.0, -3.0)).length() < 0.01 && normal.z > 0.999 && (radius - 0.5).abs() < 0.01
         );
+    }
+
+    #[test]
+    fn small_lamps_shine_to_all_sides_beside_large_ones() {
+        // Three balls of a hundred triangles each, of which one is small: with fine patches there would be more lights than may be.
+        let ball = |middle: Vec3, radius: f32| {
+            let at = |ring: i32, column: i32| {
+                let (up, around) = (ring as f32 * PI / 6.0, column as f32 * PI / 6.0);
+                (middle + radius * Vec3::new(up.sin() * around.cos(), up.cos(), up.sin() * around.sin())).to_array()
+            };
+            let quads = (0..6).flat_map(move |ring| (0..12).map(move |column| (ring, column)));
+            quads
+                .flat_map(move |(r, c)| quad([at(r, c), at(r, c + 1), at(r + 1, c + 1), at(r + 1, c)]))
+                .collect::<Vec<_>>()
+        };
+        let small = Vec3::new(3.0, 3.0, 0.0);
+        let mut triangles = ball(Vec3::ZERO, 1.0);
+        triangles.extend(ball(Vec3::new(-3.0, -3.0, 0.0), 1.0));
+        triangles.extend(ball(small, 0.2));
+        let lights = lamps(&mut room(&triangles));
+        assert!(lights.len() <= LIGHTS);
+        let of_small = |light: &&Light| light.position().unwrap().distance(small) < 0.3;
+        let normals: Vec<Vec3> = lights.iter().filter(of_small).map(|light| light.surface.unwrap()).collect();
+        for side in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
+            assert!(normals.iter().any(|normal| normal.dot(side) > 0.5), "{side}: {normals:?}");
+        }
     }
 
     #[test]

@@ -3,9 +3,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::{
-    Dielectric, Facets, Material, NormalMap, Opacity, OpacityMode, draft::LARGEST_COORDINATE, quote::list,
-};
+use crate::{Dielectric, Facets, Material, NormalMap, Opacity, OpacityMode, draft::LARGEST_COORDINATE, quote::list};
 
 /// Whether a world position is usable.
 pub(crate) fn is_place(world: DVec3) -> bool {
@@ -24,8 +22,19 @@ pub(crate) fn keep_placed<T>(items: &mut Vec<(T, DVec3)>, kind: &str) -> Option<
 pub(crate) fn keep_finite(materials: &mut [Material]) -> Option<String> {
     let mut count = 0;
     for material in materials {
-        let Material { ka, kd, ks, ks_tinted, facets, emission, emission_tinted, normal_texture, opacity, dielectric, .. } =
-            material;
+        let Material {
+            ka,
+            kd,
+            ks,
+            ks_tinted,
+            facets,
+            emission,
+            emission_tinted,
+            normal_texture,
+            opacity,
+            dielectric,
+            ..
+        } = material;
         let mut odd = false;
         for color in [ka, kd, ks, ks_tinted, emission, emission_tinted] {
             let usable = color.is_finite_mask() & color.cmpge(Vec3::ZERO);

@@ -6,8 +6,8 @@ use lightmesh_render::{
     Acceleration, AmbientSource, Frame, Mode, PreparedScene, Quality, Settings, Sharing, Unobserved, render_on,
 };
 use lightmesh_scene::{
-    Dielectric, Environment, Facets, Light, LightKind, Material, NormalMap, Opacity, Scene, Sun, Texture, TextureUse, Up,
-    Wrap,
+    Dielectric, Environment, Facets, Light, LightKind, Material, NormalMap, Opacity, Scene, Sun, Texture, TextureUse,
+    Up, Wrap,
 };
 use lightmesh_testkit::{SceneDraft, pile};
 

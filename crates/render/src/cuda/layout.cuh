@@ -96,6 +96,13 @@
 #define LEAST_SQUARE 0x1.4484cp-100f
 // If the square of its length is below this, an interpolated normal has cancelled out.
 #define LEAST_SMOOTH_SQUARE 0x1.197998p-40f
+// The code of 0 in an image of normals.
+#define NORMAL_CODE_ZERO 0x1p7f
+// By how much that of 1 is larger.
+#define NORMAL_CODE_ONE 0x1.fcp6f
+// What surfaces with images of normals mirror goes at least at this cosine from the geometric normal, or half as far from the surface as the
+// view.
+#define LEAST_MIRRORED_COSINE 0x1.47ae14p-7f
 // The ellipse in which a cone meets a surface is longer than wide by at most the reciprocal of this cosine.
 #define LEAST_FOOTPRINT_COSINE 0x1.0c6f7ap-20f
 // Lookups along the major axis of a footprint in a texture, at most.
@@ -179,6 +186,8 @@
 #define HORIZON_SAMPLES 64u
 // Points of an area light from which its unshadowed light is computed.
 #define LIGHT_TARGETS 16u
+// The height of the strip of an area light for which one of these points stands, relative to that of all of them.
+#define STRIP_OF_TARGET 0x1p-3f
 // First factor of the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
 #define MIX_1 0xbf58476d1ce4e5b9ull
 // Second factor.
@@ -717,7 +726,7 @@ struct alignas(8) Texture {
     float v_axis[2];
     float translation[2];
     unsigned level_count;
-    unsigned spare;
+    unsigned first_code;
 };
 static_assert(sizeof(Texture) == 64, "size of Texture");
 static_assert(PLACE_OF(Texture, texels) == 0, "place of Texture::texels");
@@ -728,7 +737,7 @@ static_assert(PLACE_OF(Texture, u_axis) == 32, "place of Texture::u_axis");
 static_assert(PLACE_OF(Texture, v_axis) == 40, "place of Texture::v_axis");
 static_assert(PLACE_OF(Texture, translation) == 48, "place of Texture::translation");
 static_assert(PLACE_OF(Texture, level_count) == 56, "place of Texture::level_count");
-static_assert(PLACE_OF(Texture, spare) == 60, "place of Texture::spare");
+static_assert(PLACE_OF(Texture, first_code) == 60, "place of Texture::first_code");
 
 struct alignas(4) FacetShare {
     float normal;
@@ -762,11 +771,13 @@ struct alignas(4) Material {
     unsigned thin;
     float eta;
     unsigned emission_texture;
+    unsigned normal_texture;
+    Vec3 smooth;
+    float normal_scale;
     unsigned facets;
     float roughness;
     float metallic;
     float grazing;
-    float opacity;
     Vec3 all;
     float square;
     Vec3 mirrored;
@@ -774,9 +785,9 @@ struct alignas(4) Material {
     Vec3 gain;
     float cosine;
     float unmirrored;
-    unsigned spare;
+    float opacity;
 };
-static_assert(sizeof(Material) == 216, "size of Material");
+static_assert(sizeof(Material) == 232, "size of Material");
 static_assert(PLACE_OF(Material, ka) == 0, "place of Material::ka");
 static_assert(PLACE_OF(Material, shininess) == 12, "place of Material::shininess");
 static_assert(PLACE_OF(Material, kd) == 16, "place of Material::kd");
@@ -796,19 +807,21 @@ static_assert(PLACE_OF(Material, ior) == 124, "place of Material::ior");
 static_assert(PLACE_OF(Material, thin) == 128, "place of Material::thin");
 static_assert(PLACE_OF(Material, eta) == 132, "place of Material::eta");
 static_assert(PLACE_OF(Material, emission_texture) == 136, "place of Material::emission_texture");
-static_assert(PLACE_OF(Material, facets) == 140, "place of Material::facets");
-static_assert(PLACE_OF(Material, roughness) == 144, "place of Material::roughness");
-static_assert(PLACE_OF(Material, metallic) == 148, "place of Material::metallic");
-static_assert(PLACE_OF(Material, grazing) == 152, "place of Material::grazing");
-static_assert(PLACE_OF(Material, opacity) == 156, "place of Material::opacity");
-static_assert(PLACE_OF(Material, all) == 160, "place of Material::all");
-static_assert(PLACE_OF(Material, square) == 172, "place of Material::square");
-static_assert(PLACE_OF(Material, mirrored) == 176, "place of Material::mirrored");
-static_assert(PLACE_OF(Material, seen_square) == 188, "place of Material::seen_square");
-static_assert(PLACE_OF(Material, gain) == 192, "place of Material::gain");
-static_assert(PLACE_OF(Material, cosine) == 204, "place of Material::cosine");
-static_assert(PLACE_OF(Material, unmirrored) == 208, "place of Material::unmirrored");
-static_assert(PLACE_OF(Material, spare) == 212, "place of Material::spare");
+static_assert(PLACE_OF(Material, normal_texture) == 140, "place of Material::normal_texture");
+static_assert(PLACE_OF(Material, smooth) == 144, "place of Material::smooth");
+static_assert(PLACE_OF(Material, normal_scale) == 156, "place of Material::normal_scale");
+static_assert(PLACE_OF(Material, facets) == 160, "place of Material::facets");
+static_assert(PLACE_OF(Material, roughness) == 164, "place of Material::roughness");
+static_assert(PLACE_OF(Material, metallic) == 168, "place of Material::metallic");
+static_assert(PLACE_OF(Material, grazing) == 172, "place of Material::grazing");
+static_assert(PLACE_OF(Material, all) == 176, "place of Material::all");
+static_assert(PLACE_OF(Material, square) == 188, "place of Material::square");
+static_assert(PLACE_OF(Material, mirrored) == 192, "place of Material::mirrored");
+static_assert(PLACE_OF(Material, seen_square) == 204, "place of Material::seen_square");
+static_assert(PLACE_OF(Material, gain) == 208, "place of Material::gain");
+static_assert(PLACE_OF(Material, cosine) == 220, "place of Material::cosine");
+static_assert(PLACE_OF(Material, unmirrored) == 224, "place of Material::unmirrored");
+static_assert(PLACE_OF(Material, opacity) == 228, "place of Material::opacity");
 
 struct alignas(8) EnvironmentLevel {
     const Vec3 *texels;
@@ -855,7 +868,7 @@ struct alignas(8) Scene {
     const Uv *uvs;
     const Vec3 *colors;
     const Texture *textures;
-    const float *srgb;
+    const float *codes;
     const unsigned *triangle_materials;
     const Material *materials;
     const FacetShare *facet_table;
@@ -882,7 +895,7 @@ static_assert(PLACE_OF(Scene, normals) == 16, "place of Scene::normals");
 static_assert(PLACE_OF(Scene, uvs) == 24, "place of Scene::uvs");
 static_assert(PLACE_OF(Scene, colors) == 32, "place of Scene::colors");
 static_assert(PLACE_OF(Scene, textures) == 40, "place of Scene::textures");
-static_assert(PLACE_OF(Scene, srgb) == 48, "place of Scene::srgb");
+static_assert(PLACE_OF(Scene, codes) == 48, "place of Scene::codes");
 static_assert(PLACE_OF(Scene, triangle_materials) == 56, "place of Scene::triangle_materials");
 static_assert(PLACE_OF(Scene, materials) == 64, "place of Scene::materials");
 static_assert(PLACE_OF(Scene, facet_table) == 72, "place of Scene::facet_table");
@@ -1376,6 +1389,11 @@ struct alignas(8) GatherPoints {
     Site *sites;
     const FarLight *far;
     Vec3 *light;
+    Vec3 *normals;
+    const Hit *samples;
+    unsigned long long sampled_pixels;
+    unsigned sample_count;
+    unsigned first_sampled;
     Vec3 eye;
     float spacing[2];
     float pixels;
@@ -1384,7 +1402,7 @@ struct alignas(8) GatherPoints {
     unsigned count;
     unsigned first_alone;
 };
-static_assert(sizeof(GatherPoints) == 1560, "size of GatherPoints");
+static_assert(sizeof(GatherPoints) == 1592, "size of GatherPoints");
 static_assert(PLACE_OF(GatherPoints, scene) == 0, "place of GatherPoints::scene");
 static_assert(PLACE_OF(GatherPoints, rays) == 592, "place of GatherPoints::rays");
 static_assert(PLACE_OF(GatherPoints, hits) == 712, "place of GatherPoints::hits");
@@ -1397,13 +1415,18 @@ static_assert(PLACE_OF(GatherPoints, alone_count) == 1488, "place of GatherPoint
 static_assert(PLACE_OF(GatherPoints, sites) == 1496, "place of GatherPoints::sites");
 static_assert(PLACE_OF(GatherPoints, far) == 1504, "place of GatherPoints::far");
 static_assert(PLACE_OF(GatherPoints, light) == 1512, "place of GatherPoints::light");
-static_assert(PLACE_OF(GatherPoints, eye) == 1520, "place of GatherPoints::eye");
-static_assert(PLACE_OF(GatherPoints, spacing) == 1532, "place of GatherPoints::spacing");
-static_assert(PLACE_OF(GatherPoints, pixels) == 1540, "place of GatherPoints::pixels");
-static_assert(PLACE_OF(GatherPoints, least_level) == 1544, "place of GatherPoints::least_level");
-static_assert(PLACE_OF(GatherPoints, first) == 1548, "place of GatherPoints::first");
-static_assert(PLACE_OF(GatherPoints, count) == 1552, "place of GatherPoints::count");
-static_assert(PLACE_OF(GatherPoints, first_alone) == 1556, "place of GatherPoints::first_alone");
+static_assert(PLACE_OF(GatherPoints, normals) == 1520, "place of GatherPoints::normals");
+static_assert(PLACE_OF(GatherPoints, samples) == 1528, "place of GatherPoints::samples");
+static_assert(PLACE_OF(GatherPoints, sampled_pixels) == 1536, "place of GatherPoints::sampled_pixels");
+static_assert(PLACE_OF(GatherPoints, sample_count) == 1544, "place of GatherPoints::sample_count");
+static_assert(PLACE_OF(GatherPoints, first_sampled) == 1548, "place of GatherPoints::first_sampled");
+static_assert(PLACE_OF(GatherPoints, eye) == 1552, "place of GatherPoints::eye");
+static_assert(PLACE_OF(GatherPoints, spacing) == 1564, "place of GatherPoints::spacing");
+static_assert(PLACE_OF(GatherPoints, pixels) == 1572, "place of GatherPoints::pixels");
+static_assert(PLACE_OF(GatherPoints, least_level) == 1576, "place of GatherPoints::least_level");
+static_assert(PLACE_OF(GatherPoints, first) == 1580, "place of GatherPoints::first");
+static_assert(PLACE_OF(GatherPoints, count) == 1584, "place of GatherPoints::count");
+static_assert(PLACE_OF(GatherPoints, first_alone) == 1588, "place of GatherPoints::first_alone");
 
 struct alignas(4) TileBox {
     Vec3 low;

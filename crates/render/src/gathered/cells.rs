@@ -9,7 +9,7 @@ use std::hash::{BuildHasherDefault, Hasher};
 use glam::{IVec3, Vec3};
 use lightmesh_layout::constants::{
     CELL_INDEX_BITS, CELL_OFFSET_X, CELL_OFFSET_Y, CELL_OFFSET_Z, GOLDEN_RATIO, LEAST_SQUARE, LEVEL_BIAS, NODE_REACH,
-    SITE_CANDIDATES, SITE_INWARDS, SITE_OPEN, SURFACE_KINDS,
+    SITE_CANDIDATES, SITE_INWARDS, SITE_OPEN, SITE_RADIUS, SITE_RAISED, SURFACE_KINDS,
 };
 use lightmesh_scene::Bounds;
 use rayon::prelude::*;
@@ -165,7 +165,9 @@ fn sites_of(scene: &PreparedScene, asked: &Asked, triangles: &mut Vec<u32>) -> V
             kinds.into_iter().for_each(|kind| candidates[usize::from(kind)].add(near));
         }
     }
-    let site = |(kind, candidates): (Kind, &Candidates)| candidates.site(scene, asked, kind);
+    // Ways to a site end above it: in what is thinner, such as a rug, they would lead past the cover.
+    let is_free = |site: &Site| is_free(scene, site, SITE_RAISED * SITE_RADIUS);
+    let site = |(kind, candidates): (Kind, &Candidates)| candidates.site(scene, asked, kind).filter(is_free);
     (0..).zip(&candidates).filter_map(site).collect()
 }
 
@@ -269,14 +271,18 @@ impl Candidates {
         if self.nearest[1].is_none() {
             return Some(first);
         }
-        let is_open = |site: &Site| {
-            let ray = Ray { origin: site.point.origin, direction: site.point.normal, t_max: SITE_OPEN * size };
-            let mut hidden = [false];
-            scene.geometry.accelerator.occluded(&[ray], &mut hidden);
-            !hidden[0]
-        };
+        let is_open = |site: &Site| is_free(scene, site, SITE_OPEN);
         Some(self.nearest.iter().flatten().map(site).find(is_open).unwrap_or(first))
     }
+}
+
+/// Whether nothing is above a site within this distance, in cells.
+fn is_free(scene: &PreparedScene, site: &Site, cells: f32) -> bool {
+    let t_max = cells * size_of_level(site.level);
+    let ray = Ray { origin: site.point.origin, direction: site.point.normal, t_max };
+    let mut hidden = [false];
+    scene.geometry.accelerator.occluded(&[ray], &mut hidden);
+    !hidden[0]
 }
 
 /// Along the normal of a triangle's front.

@@ -109,6 +109,12 @@ DEVICE void add_by_kind(Candidates *candidates, bool has, unsigned kind, float s
     }
 }
 
+// Whether nothing is above a site within this distance.
+template <class Structure>
+DEVICE bool is_free(const Tally &tally, const Structure &structure, Vec3 origin, Vec3 normal, float distance) {
+    return !occluded(structure, tally, Ray{origin, normal, distance});
+}
+
 // Which of the candidates becomes the site: the first one that is not covered; the nearest if all are. Each lane has its own.
 template <class Structure>
 DEVICE bool site_of_candidates(const Scene &scene, const Tally &tally, const Structure &structure, const Candidates &candidates,
@@ -122,7 +128,7 @@ DEVICE bool site_of_candidates(const Scene &scene, const Tally &tally, const Str
     for (unsigned place = 0; place < SITE_CANDIDATES && candidates.nearest[place] != NO_CANDIDATE; ++place) {
         const Corners corners = load_corners(scene.triangles + (unsigned)candidates.nearest[place]);
         const SurfacePoint point = near_surface_point(near_of(middle, corners), corners, kind, size);
-        const bool open = single || !occluded(structure, tally, Ray{point.origin, point.normal, SITE_OPEN * size});
+        const bool open = single || is_free(tally, structure, point.origin, point.normal, SITE_OPEN * size);
         if (place == 0 || open)
             chosen = point;
         if (open)
@@ -167,9 +173,11 @@ DEVICE void place_sites(const Lookup &args, const Structure &structure) {
         __syncwarp();
     }
 
-    // 2. A site of each, a lane for each kind.
+    // 2. A site of each, a lane for each kind. Ways to a site end above it: in what is thinner, such as a rug, they would lead past the cover.
     Site site = {};
-    const bool has = lane < SURFACE_KINDS && site_of_candidates(args.scene, args.tally, structure, candidates[lane], name, lane, site);
+    const float raised = SITE_RAISED * SITE_RADIUS * size_of_level(name.level);
+    const bool has = lane < SURFACE_KINDS && site_of_candidates(args.scene, args.tally, structure, candidates[lane], name, lane, site) &&
+                     is_free(args.tally, structure, site.origin, site.normal, raised);
     const unsigned lanes = __ballot_sync(ALL_LANES, has);
     unsigned first = 0;
     if (lane == 0) {

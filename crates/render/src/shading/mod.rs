@@ -23,7 +23,9 @@ pub(crate) mod tint;
 use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
-use lightmesh_layout::constants::{LIGHT_TARGETS, LUMINANCE_BLUE, LUMINANCE_GREEN, LUMINANCE_RED, PART_OF_LIGHT};
+use lightmesh_layout::constants::{
+    LIGHT_TARGETS, LUMINANCE_BLUE, LUMINANCE_GREEN, LUMINANCE_RED, PART_OF_LIGHT, STRIP_OF_TARGET,
+};
 use lightmesh_scene::{Falloff, Geometry, Light, LightKind, Lights, Material};
 
 use crate::accel::Hit;
@@ -353,6 +355,34 @@ impl LightTargets {
             (0..LIGHT_TARGETS as usize).map(|i| points.get(i).copied().unwrap_or_default()).collect()
         };
         self.points.iter().flat_map(|points| -> Vec<Vec3> { padded(points) }).collect()
+    }
+
+    /// The light of light number `index` that reaches the eye if `seen` is the share of the light that arrives. What is below the horizon is no
+    /// part of that share, nor of the [unshadowed light](Self::unshadowed), and must not be taken away twice.
+    #[inline(always)]
+    pub(crate) fn shown(&self, surface: &Surface, light: &Light, index: usize, reach: f32, seen: Vec3) -> Vec3 {
+        let seen = (seen / self.above_horizon(surface, light, index, reach)).min(Vec3::ONE);
+        seen * self.unshadowed(surface, light, index, reach)
+    }
+
+    /// The share of the light above the horizon; 1 of a light without an area, and where there is none. Each point stands for a strip.
+    #[inline(always)]
+    fn above_horizon(&self, surface: &Surface, light: &Light, index: usize, reach: f32) -> f32 {
+        let points = self.points[index].as_slice();
+        // That of the surface, whatever its relief.
+        let normal = surface.relief.map_or(surface.normal, |relief| relief.smooth);
+        let height = |target: Vec3| normal.dot(surface.place_of(light, target, reach) - surface.point.position);
+        let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
+        for &target in points {
+            let height = height(target);
+            (least, most) = (least.min(height), most.max(height));
+        }
+        if least >= 0.0 || most <= 0.0 {
+            return 1.0;
+        }
+        let strip = (most - least) * STRIP_OF_TARGET;
+        let sum: f32 = points.iter().map(|&target| (0.5 + height(target) / strip).clamp(0.0, 1.0)).sum();
+        sum / points.len() as f32
     }
 
     /// Unshadowed light of light number `index` at `surface`.

@@ -31,7 +31,7 @@ use crate::textures::{Image, normals_of};
 #[derive(Clone, Copy)]
 pub(super) struct Relief {
     /// The normal without the image.
-    smooth: Vec3,
+    pub(super) smooth: Vec3,
 }
 
 impl Relief {

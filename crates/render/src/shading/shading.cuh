@@ -126,7 +126,8 @@ DEVICE Vec3 reflected_by_facets(const Surface &surface, const Light &light, Vec3
         return splat(0.0f);
     const float share = light.seen ? surface.material->unmirrored : 1.0f;
     const Vec3 lobe = facets_toward(*surface.material, surface.normal, surface.view, direction, part / distance);
-    return strength(light, direction, distance) * (cosine * surface.material->kd + (cosine * share) * lobe);
+    const float soft = softened(surface, direction, cosine);
+    return strength(light, direction, distance) * (soft * surface.material->kd + (soft * share) * lobe);
 }
 
 // Unshadowed light of light number `index` on a surface with facets. A function of its own, so that others keep their registers.
@@ -152,6 +153,36 @@ DEVICE Vec3 unshadowed(const Surface &surface, const Scene &scene, unsigned inde
     for (unsigned i = 0; i < LIGHT_TARGETS; ++i)
         sum = sum + reflected(surface, light, place_of_target(surface, scene, index, i, reach));
     return sum / (float)LIGHT_TARGETS;
+}
+
+// The share of light number `index` above the horizon; 1 of a light without an area, and where there is none. Each target stands for a strip.
+DEVICE float above_horizon_of_targets(const Surface &surface, const Scene &scene, unsigned index, float reach) {
+    if (!has_size(scene.lights[index]))
+        return 1.0f;
+    // That of the surface, whatever its relief.
+    const Vec3 normal = has_relief(surface) ? surface.material->smooth : surface.normal;
+    float least = INFINITE, most = -INFINITE;
+    for (unsigned i = 0; i < LIGHT_TARGETS; ++i) {
+        const float height = dot(normal, place_of_target(surface, scene, index, i, reach) - surface.point.position);
+        least = fminf(least, height);
+        most = fmaxf(most, height);
+    }
+    if (least >= 0.0f || most <= 0.0f)
+        return 1.0f;
+    const float strip = (most - least) * STRIP_OF_TARGET;
+    float sum = 0.0f;
+    for (unsigned i = 0; i < LIGHT_TARGETS; ++i) {
+        const float height = dot(normal, place_of_target(surface, scene, index, i, reach) - surface.point.position);
+        sum += fminf(fmaxf(0.5f + height / strip, 0.0f), 1.0f);
+    }
+    return sum / (float)LIGHT_TARGETS;
+}
+
+// The light of light number `index` that reaches the eye if `seen` is the share of the light that arrives. What is below the horizon is no part of
+// that share, nor of the unshadowed light, and must not be taken away twice.
+DEVICE Vec3 shown(const Surface &surface, const Scene &scene, unsigned index, float reach, Vec3 seen) {
+    const Vec3 share = min(seen / above_horizon_of_targets(surface, scene, index, reach), splat(1.0f));
+    return share * unshadowed(surface, scene, index, reach);
 }
 
 // The light of light number `index` that arrives, times the cosine, if nothing is in the way; what arrives from `to` if a part of the light is

@@ -115,6 +115,19 @@ fn no_light_leaks_into_a_dark_room() {
 }
 
 #[test]
+fn what_lies_on_a_floor_gets_nothing_from_below() {
+    // A sheet, thinner than cells are wide: in it and below it is darkness.
+    for thickness in [0.001, 0.004, 0.016] {
+        let draft = SceneDraft::new().painted(Material::matt(Vec3::splat(0.5))).floor(0.0, 5.0);
+        let sheet = draft.cuboid([-4.0, 0.0, -4.0], [4.0, thickness, 4.0]);
+        let scene = under(&uniform(Vec3::ONE), sheet.camera([0.0, 2.0, 0.5], [0.0, 0.0, 0.0]));
+        for color in render(&scene, &settings([96, 64])).color() {
+            assert!((color[0] - 0.5).abs() < 1e-4, "{thickness}: {color:?}");
+        }
+    }
+}
+
+#[test]
 fn a_floor_receives_what_an_emitter_above_it_gives() {
     // A square with a side of 2 at height 1, above the middle of a black floor with a white patch.
     let draft = SceneDraft::new()

@@ -219,3 +219,27 @@ fn an_unshadowed_area_light_is_as_bright_in_every_mode() {
         }
     }
 }
+
+#[test]
+fn what_is_below_the_horizon_is_taken_away_once() {
+    // A wall, and a square light whose middle is in the plane of the wall: half of it shines on the wall.
+    let lit = |position: Vec3, half_depth: f32, intensity: f32, settings: &Settings| {
+        let light = LightKind::Rectangle {
+            position,
+            half_u: Vec3::new(0.5, 0.0, 0.0),
+            half_v: Vec3::new(0.0, 0.0, half_depth),
+        };
+        let wall = [[-2.0, -2.0, 0.0], [2.0, -2.0, 0.0], [2.0, 1.0, 0.0], [-2.0, 1.0, 0.0]];
+        let draft = SceneDraft::new().painted(matt(0.7)).quad(wall).camera([0.0, -0.5, 3.0], [0.0, -0.5, 0.0]);
+        let scene = draft.ambient(0.0).light_of(light, intensity, Falloff::InverseSquare).finish("wall");
+        let frame = render(&scene, settings);
+        frame.image.color().iter().map(|color| color[0]).sum::<f32>() / frame.image.color().len() as f32
+    };
+    for mode in [Mode::Area, Mode::LightMesh] {
+        let settings = Settings::default().with_aa(1).with_mode(mode).with_size([16, 16]).with_samples(256);
+        let whole = lit(Vec3::new(0.0, 1.5, 0.0), 0.5, 2.0, &settings);
+        let front = lit(Vec3::new(0.0, 1.5, 0.25), 0.25, 1.0, &settings);
+        // The means of a few points of both lights differ.
+        assert!((whole / front - 1.0).abs() < 0.1, "{mode:?}: {whole}, not {front}");
+    }
+}

@@ -97,8 +97,8 @@ fn add_group(
     let reach = wave.scene.geometry.reach(surface.point.origin);
     for index in visibility.lights.clone() {
         if visibility.of(index, ray) > 0.0 {
-            *radiance +=
-                visibility.color(index, ray) * targets.unshadowed(&surface, &wave.lights()[index], index, reach);
+            let light = &wave.lights()[index];
+            *radiance += targets.shown(&surface, light, index, reach, visibility.color(index, ray));
         }
     }
 }
@@ -178,7 +178,8 @@ fn by_light(
     let reach = wave.scene.geometry.reach(surface.point.origin);
     for (index, term) in lights.zip(terms) {
         if visibility.of(index, ray) > 0.0 {
-            *term = visibility.color(index, ray) * targets.unshadowed(&surface, &wave.lights()[index], index, reach);
+            let light = &wave.lights()[index];
+            *term = targets.shown(&surface, light, index, reach, visibility.color(index, ray));
         }
     }
 }

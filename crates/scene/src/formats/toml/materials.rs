@@ -9,7 +9,9 @@ use super::{
     schema::{Color, MaterialEntry, Number, Text, TextureScale, TextureWrap, WrapName},
     spanned::Spanned,
 };
-use crate::{Dielectric, Facets, LoadError, Material, NormalMap, Opacity, OpacityChannel, TextureUse, Wrap, draft::Draft};
+use crate::{
+    Dielectric, Facets, LoadError, Material, NormalMap, Opacity, OpacityChannel, TextureUse, Wrap, draft::Draft,
+};
 
 /// Adds the file's materials and returns the index of each name.
 pub(super) fn read(
