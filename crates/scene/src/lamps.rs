@@ -19,7 +19,7 @@ const LARGEST: f64 = 0.25;
 const PATCHES: usize = 14;
 /// Triangles whose normals deviate more, by cosine, begin a patch of their own. If there are too many lights, the next one counts: else small
 /// lamps would lose those of their sides, and the wall behind them its light.
-const SAME_PATCH: [f64; 3] = [0.85, 0.6, 0.2];
+const SAME_PATCH: [f64; 5] = [0.85, 0.75, 0.6, 0.4, 0.2];
 /// Lights that are made at most: the smallest of more are added to others.
 const LIGHTS: usize = 32;
 /// Patches that give less than this share of the largest one's light are left out: the others shine for them.
@@ -62,7 +62,7 @@ pub(crate) fn lamps(geometry: &mut Geometry) -> Vec<Light> {
     let count = |alike: f64| -> usize {
         found.iter().flat_map(|(_, lamps)| lamps).map(|lamp| lamp.patches(&scene, alike).len()).sum()
     };
-    let alike = SAME_PATCH.into_iter().find(|&alike| count(alike) <= LIGHTS).unwrap_or(SAME_PATCH[2]);
+    let alike = SAME_PATCH.into_iter().find(|&alike| count(alike) <= LIGHTS).unwrap_or(SAME_PATCH[4]);
     let mut lights = Vec::new();
     for (number, lamps) in found {
         let material = &mut geometry.materials[number];
