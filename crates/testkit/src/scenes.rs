@@ -60,6 +60,22 @@ pub fn pile(offset: DVec3, lights: &[LightKind]) -> Scene {
         .finish("pile")
 }
 
+/// The low and the high corner of [`mirror_room`].
+pub const MIRROR_ROOM: [DVec3; 2] = [DVec3::new(-2.0, -1.0, -1.5), DVec3::new(2.5, 1.0, 1.5)];
+/// The low and the high corner of the box in it.
+pub const BOX_IN_MIRRORS: [DVec3; 2] = [DVec3::new(0.6, -0.7, -0.9), DVec3::new(1.3, 0.1, -0.2)];
+/// Where its camera stands.
+pub const EYE_IN_MIRRORS: DVec3 = DVec3::new(-1.1, 0.3, 0.7);
+
+/// A closed room whose walls mirror `ks` of the light and nothing else, with a box that shines by 1.
+pub fn mirror_room(ks: f32) -> Scene {
+    let black = || Material::matt(Vec3::ZERO);
+    let cuboid = |draft: SceneDraft, [low, high]: [DVec3; 2]| draft.cuboid(low.to_array(), high.to_array());
+    let walls = cuboid(SceneDraft::new().painted(black().with_ks([ks; 3])), MIRROR_ROOM);
+    let both = cuboid(walls.painted(black().with_emission(Vec3::ONE)), BOX_IN_MIRRORS);
+    both.camera(EYE_IN_MIRRORS.to_array(), [0.4, -0.4, -0.3]).finish("mirror room")
+}
+
 /// The same scene with holes: two of three triangles are cut out by noise in an image, and by the opacities of their corners.
 pub fn perforated(scene: Scene) -> Scene {
     with_opacity(scene, |opacity| opacity.with_cutoff(0.45))

@@ -10,7 +10,7 @@ use lightmesh_render::{
 use lightmesh_scene::{Bounds, Up};
 use lightmesh_testkit::{Picture, Random};
 
-use crate::scenes::{GLAZED, SUBJECTS, SURROUNDED, Subject, TEXTURED};
+use crate::scenes::{GLAZED, MIRRORS, SUBJECTS, SURROUNDED, Subject, TEXTURED};
 use crate::stages::{SHARE_TOLERANCE, alike};
 use crate::trials::{Case, Target};
 
@@ -39,6 +39,11 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
             let points = format!("{}::points::{name}", subject.name);
             cases.push(Case::new(points, move |cuda| same_at_points(cuda, subject, way)));
         }
+    }
+    for bounces in [1, 6] {
+        let settings = move || settings(&MIRRORS, WAYS[0]).with_bounces(bounces);
+        let name = format!("{}::bounces::{bounces}", MIRRORS.name);
+        cases.push(Case::new(name, move |cuda| same_picture(cuda, &MIRRORS, settings())));
     }
     for way in WAYS {
         let part = format!("{}::part::{}", TEXTURED.name, way.0);

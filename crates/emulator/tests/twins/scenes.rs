@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Acceleration, PreparedScene, Unobserved, View};
 use lightmesh_scene::{Falloff, LightKind, Material, Scene, Sky, SunPosition, Up};
-use lightmesh_testkit::{SceneDraft, glazed, half_plane, perforated, pile, soup};
+use lightmesh_testkit::{SceneDraft, glazed, half_plane, mirror_room, perforated, pile, soup};
 
 /// The structures, in the order of [`Subject::prepared`].
 pub(crate) const ACCELERATIONS: [Acceleration; 3] =
@@ -49,6 +49,9 @@ pub(crate) static SURROUNDED: Subject = subject("surrounded", 0.25, true, surrou
 
 /// For images with rays that surfaces let through.
 pub(crate) static GLAZED: Subject = subject("glazed", 0.25, true, || rounded(glazed(all_lights())));
+
+/// For rays that are mirrored several times.
+pub(crate) static MIRRORS: Subject = subject("mirrors", 0.25, true, || mirror_room(0.9));
 
 /// For gathered light.
 pub(crate) static LAMPS: Subject = subject("lamps", 0.5, true, lamps);

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
-use lightmesh_render::{AmbientSource, Device, Frame, Lookup, Mode, Renderer, Settings};
+use lightmesh_render::{AmbientSource, Crop, Device, Frame, Lookup, Mode, Quality, Renderer, Settings};
 use lightmesh_scene::{Light, Material, Scene};
 use lightmesh_testkit::SceneDraft;
 
@@ -122,4 +122,52 @@ fn a_lamp_shines_where_it_is_not_hidden() {
         }
     }
     assert!(lit > 20 && dark > 20, "{lit} {dark}");
+}
+
+/// What a floor and a wall get from all lights, and what they gather. The lamp itself is above the image.
+fn direct_and_gathered(scene: &Scene) -> [Vec<Vec3>; 2] {
+    let settings = settings().with_ambient_light(AmbientSource::Mesh).with_size([64, 48]);
+    let settings = settings.with_crop(Crop::new([0, 12], [64, 36])).with_quality(Quality::Final);
+    let frame = render(scene, &settings);
+    let layers = frame.layers().unwrap();
+    let light = |pixel: usize| layers.lights.iter().map(|light| Vec3::from(light[pixel])).sum();
+    [(0..layers.rest.len()).map(light).collect(), layers.rest.iter().map(|&color| color.into()).collect()]
+}
+
+fn mean(colors: &[Vec3]) -> Vec3 {
+    colors.iter().sum::<Vec3>() / colors.len() as f32
+}
+
+#[test]
+fn a_light_a_lamp_and_what_shines_by_itself_give_the_same() {
+    // A wall of another colour stands on the floor. The lamp is large, so that rays find it.
+    let walled = |draft: SceneDraft| {
+        let large = [[-3.0, 6.0, -2.0], [3.0, 6.0, -2.0], [3.0, 6.0, 2.0], [-3.0, 6.0, 2.0]];
+        let red = Material::matt([0.7, 0.3, 0.1]);
+        let wall = [[-20.0, -1.0, -2.0], [20.0, -1.0, -2.0], [20.0, 2.0, -2.0], [-20.0, 2.0, -2.0]];
+        draft.quad(large).painted(red).quad(wall)
+    };
+    let lamp = lit_floor(walled);
+    assert_eq!(lamp.lights.len(), 1);
+    // Without the surface, and without the light.
+    let mut light = lamp.clone();
+    let shines: Vec<bool> = lamp.geometry.materials.iter().map(|material| material.emission != Vec3::ZERO).collect();
+    let mesh = &mut light.geometry_mut().mesh;
+    let is_kept = |index: &usize| !shines[mesh.materials[*index] as usize];
+    let kept: Vec<usize> = (0..mesh.triangles.len()).filter(is_kept).collect();
+    mesh.triangles = kept.iter().map(|&index| mesh.triangles[index]).collect();
+    mesh.materials = kept.iter().map(|&index| mesh.materials[index]).collect();
+    let mut surface = lamp.clone();
+    surface.lights.list.clear();
+    surface.geometry_mut().materials.iter_mut().for_each(|material| material.lamp = false);
+
+    let [[of_light, others], [of_lamp, around], [none, all]] = [&light, &lamp, &surface].map(direct_and_gathered);
+    assert!(of_light == of_lamp && mean(&of_lamp).min_element() > 0.02, "{} and {}", mean(&of_light), mean(&of_lamp));
+    assert!(none.iter().all(|color| *color == Vec3::ZERO));
+    let near = |a: Vec3, b: Vec3, error: f32| ((a - b).abs() / b).max_element() < error;
+    assert!(near(mean(&around), mean(&others), 0.002), "{} and {}", mean(&around), mean(&others));
+    let both: Vec<Vec3> = of_lamp.iter().zip(&around).map(|(a, b)| *a + *b).collect();
+    assert!(near(mean(&all), mean(&both), 0.02), "{} and {}", mean(&all), mean(&both));
+    let far = all.iter().zip(&both).filter(|(a, b)| **b != Vec3::ZERO && !near(**a, **b, 0.1)).count();
+    assert!(far < all.len() / 8, "{far}");
 }

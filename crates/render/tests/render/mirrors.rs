@@ -1,9 +1,11 @@
 //! The last term of formula (1).
 
-use glam::Vec3;
+use glam::{DVec3, IVec3, Vec3};
 use lightmesh_render::Settings;
 use lightmesh_scene::{Material, Scene};
-use lightmesh_testkit::{MODES, SceneDraft, render};
+use lightmesh_testkit::{
+    ACCELERATIONS, BOX_IN_MIRRORS, EYE_IN_MIRRORS, MIRROR_ROOM, MODES, SceneDraft, mirror_room, render,
+};
 
 fn mirror(ks: f32, emission: f32) -> Material {
     Material::matt(Vec3::ZERO).with_ks([ks; 3]).with_emission([emission; 3])
@@ -77,4 +79,65 @@ fn slanting_light_between_mirrors_walks_along_them() {
         .finish("corridor");
     let colors = [0, 1, 2, 3, 4].map(|bounces| seen(&scene, bounces).x);
     assert_eq!(colors, [0.0, 0.0, 0.0, 0.125, 0.125]);
+}
+
+#[test]
+fn in_a_closed_box_of_mirrors_every_bounce_adds_its_power() {
+    for ks in [0.9_f32, 1.0] {
+        let draft = SceneDraft::new().painted(mirror(ks, 0.3).with_ka([0.2; 3])).ambient(1.0);
+        let draft = draft.cuboid([-2.0, -1.0, -1.5], [2.0, 1.0, 1.5]).camera([0.3, 0.2, 0.1], [2.0, -0.9, 1.4]);
+        let scene = draft.finish("box of mirrors");
+        for bounces in [0, 1, 2, 7, 40] {
+            let frame = render(&scene, &Settings::default().with_aa(1).with_size([24, 16]).with_bounces(bounces));
+            let expected: f32 = (0..=bounces as i32).map(|n| 0.5 * ks.powi(n)).sum();
+            for color in frame.color() {
+                let error = (Vec3::from_array(*color) / expected - 1.0).abs().max_element();
+                assert!(error < 2e-5, "{ks}, {bounces} bounces: {color:?}, not {expected}");
+            }
+        }
+    }
+}
+
+/// The number of mirrors on the way to the nearest image of the box in [`mirror_room`], grown by `by`: walls that are crossed become mirrors, and
+/// what is behind them is the room mirrored in them. `None` beyond `most`.
+fn mirrors_to_the_box(direction: DVec3, most: i32, by: f64) -> Option<i32> {
+    let size = MIRROR_ROOM[1] - MIRROR_ROOM[0];
+    // The way on which the ray is in the image of the box in room (i, j, k).
+    let meets = |room: IVec3| {
+        let (mut from, mut to) = (0.0_f64, f64::INFINITY);
+        for axis in 0..3 {
+            let at = MIRROR_ROOM[0][axis] + f64::from(room[axis]) * size[axis];
+            let [low, high] = BOX_IN_MIRRORS.map(|corner| corner[axis] - MIRROR_ROOM[0][axis]);
+            let [low, high] = if room[axis] % 2 == 0 { [low, high] } else { [size[axis] - high, size[axis] - low] };
+            let [a, b] = [low - by, high + by].map(|side| (at + side - EYE_IN_MIRRORS[axis]) / direction[axis]);
+            (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
+        }
+        (from < to).then_some(from)
+    };
+    let rooms = (-most..=most).flat_map(|i| (-most..=most).flat_map(move |j| (-most..=most).map(move |k| [i, j, k])));
+    let seen = rooms.map(IVec3::from_array).filter_map(|room| Some((meets(room)?, room.abs().element_sum())));
+    let (_, mirrors) = seen.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    (mirrors <= most).then_some(mirrors)
+}
+
+#[test]
+fn images_of_a_box_in_a_room_of_mirrors_are_where_the_mirrors_put_them() {
+    const BOUNCES: i32 = 4;
+    let scene = mirror_room(0.5);
+    for acceleration in ACCELERATIONS {
+        let settings = Settings::default().with_aa(1).with_size([72, 54]).with_layers(true);
+        let frame = render(&scene, &settings.with_bounces(BOUNCES as u32).with_acceleration(acceleration));
+        let mut counts = [0; BOUNCES as usize + 2];
+        for (color, position) in frame.color().iter().zip(&frame.layers().unwrap().position) {
+            let direction = (Vec3::from_array(*position) - scene.cameras[0].position).as_dvec3();
+            let [mirrors, larger] = [-1e-3, 1e-3].map(|by| mirrors_to_the_box(direction, BOUNCES, by));
+            if mirrors != larger {
+                continue;
+            }
+            let expected = mirrors.map_or(0.0, |mirrors| 0.5_f32.powi(mirrors));
+            assert_eq!(color, &[expected; 3], "{direction}: behind {mirrors:?} mirrors");
+            counts[mirrors.unwrap_or(BOUNCES + 1) as usize] += 1;
+        }
+        assert!(counts.iter().all(|count| *count > 30), "{counts:?}");
+    }
 }
