@@ -139,7 +139,8 @@ fn surrounded() -> Scene {
 fn same_facet_bits<R: Target>(cuda: &Cuda<R>, ambient: AmbientSource, aa: u32) {
     let mut scene = surrounded();
     let facets = [Facets::new(0.6), Facets::new(0.2).with_metallic(1.0), Facets::new(0.35).with_metallic(0.5)];
-    for (material, facets) in scene.geometry_mut().materials.iter_mut().zip(facets) {
+    // All that are seen: Phong's powers may be rounded differently.
+    for (material, facets) in scene.geometry_mut().materials[1..].iter_mut().zip(facets) {
         *material = material.clone().with_kd([0.8, 0.6, 0.4]).with_ks([0.04; 3]).with_facets(facets);
     }
     let last = scene.geometry.materials.len() - 1;
