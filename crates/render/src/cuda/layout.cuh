@@ -1335,8 +1335,10 @@ struct alignas(8) GatherPoints {
     unsigned first;
     unsigned count;
     unsigned first_alone;
+    unsigned all_alone;
+    unsigned spare;
 };
-static_assert(sizeof(GatherPoints) == 1544, "size of GatherPoints");
+static_assert(sizeof(GatherPoints) == 1552, "size of GatherPoints");
 static_assert(PLACE_OF(GatherPoints, scene) == 0, "place of GatherPoints::scene");
 static_assert(PLACE_OF(GatherPoints, rays) == 584, "place of GatherPoints::rays");
 static_assert(PLACE_OF(GatherPoints, hits) == 704, "place of GatherPoints::hits");
@@ -1356,6 +1358,8 @@ static_assert(PLACE_OF(GatherPoints, least_level) == 1528, "place of GatherPoint
 static_assert(PLACE_OF(GatherPoints, first) == 1532, "place of GatherPoints::first");
 static_assert(PLACE_OF(GatherPoints, count) == 1536, "place of GatherPoints::count");
 static_assert(PLACE_OF(GatherPoints, first_alone) == 1540, "place of GatherPoints::first_alone");
+static_assert(PLACE_OF(GatherPoints, all_alone) == 1544, "place of GatherPoints::all_alone");
+static_assert(PLACE_OF(GatherPoints, spare) == 1548, "place of GatherPoints::spare");
 
 struct alignas(4) TileBox {
     Vec3 low;
