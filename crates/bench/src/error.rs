@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use lightmesh::image::{CompareError, EncodeError};
+use lightmesh::scene::SkyError;
 use lightmesh::{LoadError, RenderError};
 
 use crate::Suite;
@@ -18,6 +19,9 @@ pub enum BenchError {
     /// An image could not be rendered, or the suite was stopped.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// There is no such sky.
+    #[error(transparent)]
+    Sky(#[from] SkyError),
     /// An image could not be encoded.
     #[error("an image of the suite cannot be stored as PNG: {0}")]
     Picture(#[from] EncodeError),

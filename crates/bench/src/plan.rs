@@ -25,12 +25,24 @@ pub enum Suite {
     Stages,
     /// Several samples of a pixel: time and errors.
     Antialiasing,
+    /// A film with gathered light: flicker, and what is kept from frame to frame.
+    Flight,
+    /// What cut-outs, mirrors, gathered light and lamps cost.
+    Light,
 }
 
 impl Suite {
     /// All of them.
-    pub const ALL: [Suite; 6] =
-        [Suite::Thesis, Suite::Quality, Suite::Rays, Suite::Shadows, Suite::Stages, Suite::Antialiasing];
+    pub const ALL: [Suite; 8] = [
+        Suite::Thesis,
+        Suite::Quality,
+        Suite::Rays,
+        Suite::Shadows,
+        Suite::Stages,
+        Suite::Antialiasing,
+        Suite::Flight,
+        Suite::Light,
+    ];
 
     /// The name on the command line and in results.
     pub fn name(self) -> &'static str {
@@ -41,6 +53,8 @@ impl Suite {
             Suite::Shadows => "shadows",
             Suite::Stages => "stages",
             Suite::Antialiasing => "antialiasing",
+            Suite::Flight => "flight",
+            Suite::Light => "light",
         }
     }
 
@@ -59,6 +73,8 @@ impl Suite {
             Suite::Antialiasing => {
                 "what several samples of a pixel cost and gain, against a converged image, on any scene"
             }
+            Suite::Flight => "flicker of a film with gathered light, and what it gains by keeping it, on any scene",
+            Suite::Light => "what cut-outs, mirrors, gathered light and a thousand lamps cost, on any scene",
         }
     }
 }
@@ -93,6 +109,8 @@ pub struct Plan {
     pub repetitions: usize,
     /// Pixels along a side instead of the suite's own, if it accepts any.
     pub size: Option<u32>,
+    /// Frames of a film instead of the suite's own, if it has any.
+    pub frames: Option<u32>,
     /// Divisor of image sizes; 1 except in tests of the suites themselves.
     pub shrink: u32,
     /// Scenes to measure instead of the suite's own, if it accepts any.
@@ -122,6 +140,7 @@ impl Plan {
             threads: None,
             repetitions: Plan::REPETITIONS,
             size: None,
+            frames: None,
             shrink: 1,
             scenes: Vec::new(),
             smooth: None,

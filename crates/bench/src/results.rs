@@ -104,6 +104,12 @@ pub(crate) const SHADOWS: &str = "shadows";
 /// The experiment that compares defaults.
 pub(crate) const WHOLE_FRAMES: &str = "whole frames";
 
+/// The experiment on films.
+pub(crate) const FLIGHT: &str = "flight";
+
+/// The experiment on what light costs.
+pub(crate) const LIGHT: &str = "light";
+
 /// The experiment on samples of pixels.
 pub(crate) const ANTIALIASING: &str = "antialiasing";
 

@@ -369,5 +369,9 @@ records! {
         count: u32,
         /// The first of the places that see no site.
         first_alone: u32,
+        /// 1: there are no sites, and all surface points gather for themselves, by the same pattern.
+        all_alone: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
     }
 }

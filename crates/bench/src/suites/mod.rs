@@ -1,6 +1,8 @@
 //! The suites. Each is a function that fills [`Findings`].
 
 mod antialiasing;
+mod flight;
+mod light;
 mod quality;
 mod rays;
 mod shadows;
@@ -54,6 +56,8 @@ fn run_with(suite: Suite, plan: &Plan, observer: &dyn Observer, keep: Option<Kee
     }));
     let outcome = match suite {
         Suite::Antialiasing => antialiasing::run(plan, observer, &mut findings),
+        Suite::Flight => flight::run(plan, observer, &mut findings),
+        Suite::Light => light::run(plan, observer, &mut findings),
         Suite::Thesis => thesis::run(plan, observer, &mut findings),
         Suite::Quality => quality::run(plan, observer, &mut findings),
         Suite::Rays => rays::run(plan, observer, &mut findings),

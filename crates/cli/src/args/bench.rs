@@ -14,7 +14,8 @@ use crate::value::{Budget, Smooth};
 /// Suites: `thesis` reproduces all tables and figures of the thesis, `quality` measures errors relative to converged area shadows
 /// and the cost of shadow rays with equal error, `rays` measures rays per second for each acceleration structure, `stages` the time
 /// of each stage by acceleration structure, kind of short tests and radius, `antialiasing` time and errors of several samples of a
-/// pixel. A table is printed; --json saves all rows, for `lightmesh bench compare` and `lightmesh report`. To name a file
+/// pixel, `flight` the flicker of a film with gathered light and what it gains by keeping it, `light` what cut-outs, mirrors, gathered
+/// light and lamps cost. A table is printed; --json saves all rows, for `lightmesh bench compare` and `lightmesh report`. To name a file
 /// `compare`, write ./compare.
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true)]
@@ -41,7 +42,7 @@ pub(crate) struct SuiteArgs {
     pub(crate) suite: Option<Suite>,
 
     /// List the suites
-    #[arg(long, conflicts_with_all = ["suite", "json", "pictures", "report", "short", "budget", "device", "threads", "scenes", "smooth", "size", "repeat"])]
+    #[arg(long, conflicts_with_all = ["suite", "json", "pictures", "report", "short", "budget", "device", "threads", "scenes", "smooth", "size", "frames", "repeat"])]
     pub(crate) list: bool,
 
     /// Save rows and notes as JSON [default: off]
@@ -84,6 +85,10 @@ pub(crate) struct SuiteArgs {
     /// Pixels along a side, for suites that accept any [default: the suite's own]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) size: Option<u32>,
+
+    /// Frames of the film of the suite flight [default: 240, or 24 with --quick]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    pub(crate) frames: Option<u32>,
 
     /// Counted repetitions of each image; fewer if the budget is short
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = Plan::REPETITIONS as u32,

@@ -118,6 +118,7 @@ fn plan(args: &SuiteArgs) -> Plan {
         scenes: args.scenes.clone(),
         smooth: args.smooth.0,
         size: args.size,
+        frames: args.frames,
         repetitions: args.repeat as usize,
         command: command_line(std::env::args().skip(1)),
         ..plan

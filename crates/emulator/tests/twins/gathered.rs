@@ -20,6 +20,10 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         let name = format!("{}::gathered::kept", subject.name);
         cases.push(Case::new(name, move |cuda| same_as_without(cuda, subject)));
     }
+    for subject in [&SURROUNDED, &LAMPS] {
+        let name = format!("{}::gathered::rays", subject.name);
+        cases.push(Case::new(name, move |cuda| same_by_rays(cuda, subject)));
+    }
     cases
 }
 
@@ -47,6 +51,15 @@ fn same_light<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure: u
     let differ = gathered(&host).iter().zip(gathered(&device)).filter(|(a, b)| **a != *b).count();
     // Where one ray to a light passes an edge, all that take light from its site differ.
     assert!(differ <= if R::EXACT { 0 } else { gathered(&host).len() / 20 }, "{differ} differ");
+}
+
+/// Without sites: each surface point for itself.
+fn same_by_rays<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
+    let settings = settings(subject, 0.0).with_ambient_light(AmbientSource::Rays).with_size([9, 7]);
+    let [host, device] = same_frame(cuda, subject.prepared(0), settings);
+    assert!(host.stats.counts.gather_rays > 256 * host.stats.counts.hits);
+    let differ = gathered(&host).iter().zip(gathered(&device)).filter(|(a, b)| **a != *b).count();
+    assert!(differ <= if R::EXACT { 0 } else { 6 }, "{differ} differ");
 }
 
 /// From several places, with a cache.

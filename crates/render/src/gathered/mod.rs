@@ -57,6 +57,8 @@ const PART_KEPT: u64 = 4;
 const PART_FOR_RAYS: u64 = 8;
 /// Cells are no smaller than this share of the largest coordinate, whose digits would not suffice.
 const LEAST_SIZE: f32 = 1.0 / (1 << 20) as f32;
+/// Without fine sites, surface points count as such of cells with this share of it.
+const SIZE_ALONE: f32 = 1.0 / (1 << 10) as f32;
 
 /// How an image gathers light.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +70,8 @@ pub struct Gathering {
     pixels: f32,
     least_level: i32,
     fans: Fans,
+    /// Whether each surface point gathers for itself.
+    alone: bool,
     rays_at_once: usize,
     /// What is kept is dropped when it takes more bytes than this.
     most_kept: Option<u64>,
@@ -91,9 +95,24 @@ impl Gathering {
             pixels,
             least_level,
             fans,
+            alone: false,
             rays_at_once: if is_scarce { few } else { many },
             most_kept: left.map(|left| left / PART_KEPT),
         }
+    }
+
+    /// The same without sites: each surface point casts rays of its own. Nothing depends on the camera.
+    pub(crate) fn alone(view: &View, bounds: &Bounds, quality: Quality, left: Option<u64>) -> Gathering {
+        let far = match quality {
+            Quality::Draft => [16, 28],
+            Quality::Good => [32, 56],
+            Quality::Final => [64, 112],
+        };
+        let how = Gathering::new(view, bounds, quality, left);
+        let fans = Fans { far: far.map(Fan::new), ..how.fans };
+        // No pixels make a cell: all are of the least level.
+        let least_level = how.least_level.max(level_of(SIZE_ALONE * bounds.farthest()).0);
+        Gathering { pixels: 0.0, least_level, fans, alone: true, ..how }
     }
 
     /// Bytes that it needs on the host, besides the image.
@@ -194,9 +213,30 @@ fn gather_part(
     };
     let seen = (0..light.len()).into_par_iter().filter(|index| wave.sees(first + index));
     let asks: Vec<Ask> = seen.flat_map_iter(asks).collect();
-    let places: Vec<Place> = asks.iter().map(|ask| Place::new(&ask.point, ask.level)).collect();
+    let normal = |ask: &Ask| normal_seen(wave, first + ask.index);
 
+    // 2. to 3. The mean of fine sites. Where there is none, rays from the point itself.
+    let means = if how.alone { vec![None; asks.len()] } else { means(scene, how, kept, &asks, normal) };
+    let alone: Vec<&Ask> = asks.iter().zip(&means).filter(|(_, mean)| mean.is_none()).map(|(ask, _)| ask).collect();
+    let sites: Vec<Site> = alone.iter().map(|ask| site_of(ask, how.alone)).collect();
+    let own = far::plain(scene, &mut kept.bounce, &sites, how.fans.far);
+    let own = alone.iter().zip(own).map(|(ask, own): (&&Ask, Light)| (*ask, own.at(normal(ask) - ask.point.normal)));
+    let means = asks.iter().zip(means).filter_map(|(ask, mean)| Some((ask, mean?)));
+    for (ask, mean) in means.chain(own) {
+        light[ask.index] += ask.share * mean.max(Vec3::ZERO);
+    }
+}
+
+/// The mean of what the fine sites around receive; `None` where no site is seen.
+fn means(
+    scene: &Scene,
+    how: &Gathering,
+    kept: &mut SurfaceLight,
+    asks: &[Ask],
+    normal: impl Fn(&Ask) -> Vec3 + Sync,
+) -> Vec<Option<Vec3>> {
     // 2. The fine sites around that are seen, and what they receive.
+    let places: Vec<Place> = asks.iter().map(|ask| Place::new(&ask.point, ask.level)).collect();
     let SurfaceLight { fine_cells, fine, far_cells, far, bounce } = kept;
     let mut links = Links::new(scene, fine_cells, &places);
     let mut coarse = Coarse { cells: far_cells, known: far, bounce };
@@ -204,8 +244,7 @@ fn gather_part(
     let known = |site: u32| fine[site as usize].as_ref().expect("it was ensured");
     links.settle(scene, fine_cells, &places, |_, site| known(site).nearest);
 
-    // 3. The mean. Where there is none, rays from the point itself.
-    let normal = |ask: &Ask| normal_seen(wave, first + ask.index);
+    // 3. The mean.
     let mean = |(number, ask): (usize, &Ask)| {
         let (normal, mut sum, mut weights) = (normal(ask), Vec3::ZERO, 0.0);
         for (site, weight) in links.of(number) {
@@ -215,19 +254,11 @@ fn gather_part(
         }
         (weights > 0.0).then(|| sum / weights)
     };
-    let means: Vec<Option<Vec3>> = asks.par_iter().enumerate().map(mean).collect();
-    let alone: Vec<&Ask> = asks.iter().zip(&means).filter(|(_, mean)| mean.is_none()).map(|(ask, _)| ask).collect();
-    let sites: Vec<Site> = alone.iter().map(|ask| site_of(ask)).collect();
-    let own = far::plain(scene, coarse.bounce, &sites, how.fans.far);
-    let own = alone.iter().zip(own).map(|(ask, own): (&&Ask, Light)| (*ask, own.at(normal(ask) - ask.point.normal)));
-    let means = asks.iter().zip(means).filter_map(|(ask, mean)| Some((ask, mean?)));
-    for (ask, mean) in means.chain(own) {
-        light[ask.index] += ask.share * mean.max(Vec3::ZERO);
-    }
+    asks.par_iter().enumerate().map(mean).collect()
 }
 
-/// A surface point as a site.
-fn site_of(ask: &Ask) -> Site {
+/// A surface point as a site. All have the same pattern, or each its own.
+fn site_of(ask: &Ask, same: bool) -> Site {
     let [x, y, z] = ask.point.position.to_array().map(|axis| u64::from(axis.to_bits()));
-    Site { point: ask.point, level: ask.level + COARSER, seed: x ^ y << 21 ^ z << 42 }
+    Site { point: ask.point, level: ask.level + COARSER, seed: if same { 0 } else { x ^ y << 21 ^ z << 42 } }
 }

@@ -56,7 +56,8 @@ DEVICE void find_mean(const GatherPoints &args, unsigned index) {
     const Vec3 normal = normal_at(args, index, place.normal);
     Vec3 sum = splat(0.0f);
     float weights = 0.0f;
-    for (unsigned link = args.lookup.offsets[index]; link < args.lookup.offsets[index + 1]; ++link) {
+    const unsigned first = args.all_alone ? 0 : args.lookup.offsets[index], end = args.all_alone ? 0 : args.lookup.offsets[index + 1];
+    for (unsigned link = first; link < end; ++link) {
         const unsigned site = args.lookup.links[link].site;
         const float weight = args.lookup.links[link].weight;
         if (weight <= 0.0f)
@@ -71,12 +72,12 @@ DEVICE void find_mean(const GatherPoints &args, unsigned index) {
         args.alone[atomicAdd(args.alone_count, 1u)] = index;
 }
 
-// A surface point that sees no site as a site of its own.
+// A surface point that sees no site as a site of its own. All have the same pattern, or each its own.
 DEVICE void site_of_alone(const GatherPoints &args, unsigned index) {
     const unsigned place = args.alone[args.first_alone + index];
     const SurfacePoint point = surface_point_of(args.scene, args.rays, args.hits, args.first + place / 2);
     const unsigned long long x = __float_as_uint(point.position.x), y = __float_as_uint(point.position.y), z = __float_as_uint(point.position.z);
-    const unsigned long long seed = x ^ y << 21 ^ z << 42;
+    const unsigned long long seed = args.all_alone ? 0 : x ^ y << 21 ^ z << 42;
     args.sites[index] = Site{point.position, args.places[place].level + COARSER, point.origin, point.normal, seed};
 }
 

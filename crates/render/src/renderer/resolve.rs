@@ -106,8 +106,11 @@ impl<'a> Resolved<'a> {
             coverage: settings.transparent && antialiasing.is_some(),
             caught: settings.transparent && (scene.catches() || scene.lets_through()),
             compositing: settings.layers,
-            gathering: (settings.ambient_light.for_scene(&scene.scene) == AmbientSource::Mesh)
-                .then(|| Gathering::new(&whole, &bounds, settings.quality, left)),
+            gathering: match settings.ambient_light.for_scene(&scene.scene) {
+                AmbientSource::Mesh => Some(Gathering::new(&whole, &bounds, settings.quality, left)),
+                AmbientSource::Rays => Some(Gathering::alone(&whole, &bounds, settings.quality, left)),
+                AmbientSource::Auto | AmbientSource::Constant => None,
+            },
             layers: (settings.layers || settings.transparent && antialiasing.is_none()).then_some(lights.lights),
             antialiasing,
             bounces: settings.bounces,

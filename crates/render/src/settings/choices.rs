@@ -304,11 +304,15 @@ pub enum AmbientSource {
     Constant,
     /// What points of the surfaces gather from the surroundings and from other surfaces.
     Mesh,
+    /// The same, gathered by each surface point on its own: what the mesh is compared with. Thousands of rays leave each of them, in the same
+    /// directions everywhere, so that nothing changes but what is seen.
+    Rays,
 }
 
 impl AmbientSource {
     /// All of them.
-    pub const ALL: &'static [AmbientSource] = &[AmbientSource::Auto, AmbientSource::Constant, AmbientSource::Mesh];
+    pub const ALL: &'static [AmbientSource] =
+        &[AmbientSource::Auto, AmbientSource::Constant, AmbientSource::Mesh, AmbientSource::Rays];
 
     /// Its name, also in statistics.
     pub fn name(self) -> &'static str {
@@ -316,6 +320,7 @@ impl AmbientSource {
             AmbientSource::Auto => "auto",
             AmbientSource::Constant => "constant",
             AmbientSource::Mesh => "mesh",
+            AmbientSource::Rays => "rays",
         }
     }
 
@@ -327,6 +332,7 @@ impl AmbientSource {
             }
             AmbientSource::Constant => "A constant, or what a sky gives to surfaces with nothing in between",
             AmbientSource::Mesh => "Gathered from the sky and other surfaces, in place of --ambient",
+            AmbientSource::Rays => "Gathered by thousands of rays from each surface point: slow, the reference of mesh",
         }
     }
 

@@ -76,8 +76,8 @@ fn an_open_floor_receives_the_whole_sky() {
     }
 }
 
-#[test]
-fn a_black_wall_hides_half_of_the_sky_at_its_foot() {
+/// A white floor at a long black wall, in an even sky.
+fn walled() -> Scene {
     // The wall is as good as infinite along z. Seen from above, pixels are a fiftieth wide.
     let draft = SceneDraft::new()
         .painted(Material::matt(Vec3::ONE))
@@ -85,8 +85,11 @@ fn a_black_wall_hides_half_of_the_sky_at_its_foot() {
         .painted(Material::matt(Vec3::ZERO))
         .quad([[0.0, -1.0, -200.0], [0.0, 1.0, -200.0], [0.0, 1.0, 200.0], [0.0, -1.0, 200.0]])
         .orthographic([1.0, 30.0, 0.0], [1.0, 0.0, 0.0], 0.4);
-    let scene = under(&uniform(Vec3::ONE), draft);
-    let frame = render(&scene, &settings([100, 20]).with_layers(true));
+    under(&uniform(Vec3::ONE), draft)
+}
+
+/// The worst error of an image of [`walled`], and their mean.
+fn errors_at_the_wall(frame: &Frame) -> [f32; 2] {
     let layers = frame.layers().unwrap();
     let (mut worst, mut sum): (f32, f32) = (0.0, 0.0);
     for (color, position) in frame.color().iter().zip(&layers.position) {
@@ -99,8 +102,41 @@ fn a_black_wall_hides_half_of_the_sky_at_its_foot() {
         worst = worst.max((color[0] - expected).abs());
         sum += color[0] - expected;
     }
-    let mean = sum / frame.color().len() as f32;
+    [worst, sum / frame.color().len() as f32]
+}
+
+#[test]
+fn a_black_wall_hides_half_of_the_sky_at_its_foot() {
+    let [worst, mean] = errors_at_the_wall(&render(&walled(), &settings([100, 20]).with_layers(true)));
     assert!(worst < 0.05 && mean.abs() < 0.01, "{worst}, {mean}");
+}
+
+#[test]
+fn points_that_gather_for_themselves_know_the_answers_too() {
+    let by_rays = |size| settings(size).with_ambient_light(AmbientSource::Rays).with_quality(Quality::Draft);
+    let room = SceneDraft::new().painted(shining(0.5, 1.0)).cuboid([-2.0, -1.0, -1.5], [2.0, 1.0, 1.5]);
+    let room = room.camera([0.3, 0.2, 0.1], [2.0, -0.3, 0.6]).finish("furnace");
+    for color in render(&room, &by_rays([12, 8])).color() {
+        assert!(color.iter().all(|channel| (channel - 1.875).abs() < 1e-4), "{color:?}");
+    }
+    // At the foot of a wall, all along an image row: nothing but noise is left.
+    let frame = render(&walled(), &by_rays([100, 2]).with_quality(Quality::Good).with_layers(true));
+    let [worst, mean] = errors_at_the_wall(&frame);
+    assert!(worst < 0.012 && mean.abs() < 0.003, "{worst}, {mean}");
+    assert!(frame.stats.counts.gather_rays > 1000 * frame.stats.counts.pixels);
+    assert_eq!(frame.stats.settings.ambient_light, "rays");
+}
+
+#[test]
+fn the_light_of_a_surface_point_does_not_depend_on_the_camera() {
+    let scene = yard();
+    let seen = |size: [u32; 2], crop: Crop| {
+        let settings = settings(size).with_ambient_light(AmbientSource::Rays).with_quality(Quality::Draft);
+        render(&scene, &settings.with_crop(crop)).color().to_vec()
+    };
+    // The pixel in the middle of an image is that of one with three times as many.
+    let [few, many] = [seen([9, 9], Crop::new([4, 4], [1, 1])), seen([27, 27], Crop::new([13, 13], [1, 1]))];
+    assert!((Vec3::from(few[0]) - Vec3::from(many[0])).abs().max_element() < 1e-5, "{few:?} {many:?}");
 }
 
 #[test]

@@ -12,17 +12,21 @@ use super::document::{Block, Column};
 use super::numbers;
 use super::runs::{Measured, Runs, distinct};
 use crate::Key;
-pub(crate) use crate::{ANTIALIASING, MANY_LIGHTS, SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};
+pub(crate) use crate::{ANTIALIASING, FLIGHT, LIGHT, MANY_LIGHTS, SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};
 
 /// Time against the number of lights, and the break-even.
 pub(crate) const LIGHTS: &str = "figure 11";
 pub(crate) const BREAK_EVEN: &str = "figure 11, break-even";
 
 /// Keys in their usual order; others follow by name.
-const ORDER: [&str; 18] = [
+const ORDER: [&str; 22] = [
     "scene",
     "lights",
     "size",
+    "frames",
+    "cost",
+    "with",
+    "light",
     "step",
     "radius",
     "weight",
@@ -56,7 +60,7 @@ pub(crate) fn of(experiment: &str, runs: &Runs) -> (String, Vec<Block>) {
         "rays" => rays::rates(&rows),
         STAGES => thesis::by_stage(&rows),
         // They have errors, but in tables of their own.
-        SHADOWS | ANTIALIASING => generic::blocks(experiment, &rows),
+        SHADOWS | ANTIALIASING | FLIGHT | LIGHT => generic::blocks(experiment, &rows),
         WHOLE_FRAMES => shadows::whole_frames(&rows),
         MANY_LIGHTS => shadows::many_lights(&rows),
         _ if quality::fits(&rows) => quality::errors(experiment, &rows),
@@ -84,6 +88,8 @@ pub(crate) fn title(experiment: &str) -> String {
         WHOLE_FRAMES => "Whole frames: the default, the half-ball, adaptive shadow rays",
         ANTIALIASING => "Antialiasing: time and errors by those of one sample of a pixel",
         MANY_LIGHTS => "Many lights: time and memory of occluder lists",
+        FLIGHT => "A flight with gathered light: flicker, rays and time",
+        LIGHT => "What light costs: cut-outs, mirrors, gathered light, lamps",
         "soft shadows" => "Soft shadows with other renderers",
         "programs at equal error" => "Other renderers at the error of occluder lists",
         "peers" => "Other renderers",

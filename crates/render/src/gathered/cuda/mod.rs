@@ -165,14 +165,22 @@ fn gather_part<R: Runtime>(
     }
 
     // 2. The fine sites around that are seen, and what they receive.
-    let links = fine_cells.links(device, &places)?;
-    let new = fine_cells.value(device, &places, &links)?;
-    fine.extend(device, fine_cells, new, &mut fine::Coarse { cells: far_cells, far, bounce, fans: &how.fans })?;
-    fine_cells.settle(device, &places, &links, Nearest::OfSites(fine.input()))?;
+    let links = match how.alone {
+        true => None,
+        false => {
+            let links = fine_cells.links(device, &places)?;
+            let new = fine_cells.value(device, &places, &links)?;
+            fine.extend(device, fine_cells, new, &mut fine::Coarse { cells: far_cells, far, bounce, fans: &how.fans })?;
+            fine_cells.settle(device, &places, &links, Nearest::OfSites(fine.input()))?;
+            Some(links)
+        }
+    };
 
     // 3. The mean. Where there is none, rays from the point itself.
-    let lookup = fine_cells.lookup(device, &places, &links);
-    let record = GatherPoints { lookup, fine: fine.input(), ..record };
+    let record = match &links {
+        Some(links) => GatherPoints { lookup: fine_cells.lookup(device, &places, links), fine: fine.input(), ..record },
+        None => GatherPoints { all_alone: 1, ..record },
+    };
     let both = GatherPoints { count: places.len() as u32, ..record };
     device.threads("mean_light", places.len(), &both)?;
     let count = read_count(&alone_count)?;
