@@ -1401,8 +1401,10 @@ struct alignas(8) GatherPoints {
     unsigned first;
     unsigned count;
     unsigned first_alone;
+    unsigned all_alone;
+    unsigned spare;
 };
-static_assert(sizeof(GatherPoints) == 1592, "size of GatherPoints");
+static_assert(sizeof(GatherPoints) == 1600, "size of GatherPoints");
 static_assert(PLACE_OF(GatherPoints, scene) == 0, "place of GatherPoints::scene");
 static_assert(PLACE_OF(GatherPoints, rays) == 592, "place of GatherPoints::rays");
 static_assert(PLACE_OF(GatherPoints, hits) == 712, "place of GatherPoints::hits");
@@ -1427,6 +1429,8 @@ static_assert(PLACE_OF(GatherPoints, least_level) == 1576, "place of GatherPoint
 static_assert(PLACE_OF(GatherPoints, first) == 1580, "place of GatherPoints::first");
 static_assert(PLACE_OF(GatherPoints, count) == 1584, "place of GatherPoints::count");
 static_assert(PLACE_OF(GatherPoints, first_alone) == 1588, "place of GatherPoints::first_alone");
+static_assert(PLACE_OF(GatherPoints, all_alone) == 1592, "place of GatherPoints::all_alone");
+static_assert(PLACE_OF(GatherPoints, spare) == 1596, "place of GatherPoints::spare");
 
 struct alignas(4) TileBox {
     Vec3 low;
