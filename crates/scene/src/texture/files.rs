@@ -95,8 +95,8 @@ impl Draft {
         Some(found)
     }
 
-    /// Index of a texture whose green is the roughness of the first image, and whose blue how metallic the second says that surfaces are, for
-    /// `source`, which names them; `None` without any, and where memory is short, which ends the reading.
+    /// Index of a texture whose green is the roughness that the first image has, and whose blue says how metallic surfaces are by the
+    /// second, for `source`, which names them; `None` without any, and where memory is short, which ends the reading.
     pub(crate) fn packed(&mut self, source: &Path, images: [Option<Numbers>; 2]) -> Option<u32> {
         match images {
             [None, None] => return None,
