@@ -157,6 +157,8 @@ records! {
         unmirrored: f32,
         /// At a surface point with facets: how opaque it is.
         opacity: f32,
+        /// Index of the image that roughness and `metallic` of its facets are multiplied with, or [`Material::NO_TEXTURE`].
+        metallic_roughness_texture: u32,
     }
 
     /// A level of an environment.

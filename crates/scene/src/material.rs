@@ -38,6 +38,9 @@ pub struct Material {
     pub emission_texture: Option<TextureUse>,
     /// An image of normals, which the shading uses in place of the surface's.
     pub normal_texture: Option<NormalMap>,
+    /// An image of how rough and metallic the [facets](Material::facets) are: their roughness is multiplied with its green, `metallic` with
+    /// its blue, as in glTF.
+    pub metallic_roughness_texture: Option<TextureUse>,
     /// Whether only the shadows on it are seen: it shows the background, darker where it gets less light than it would alone, or is
     /// transparent there. Then nothing but `ka` and `kd` counts.
     pub catcher: bool,
@@ -65,6 +68,7 @@ impl Default for Material {
             texture: None,
             emission_texture: None,
             normal_texture: None,
+            metallic_roughness_texture: None,
             catcher: false,
             lamp: false,
             opacity: None,
@@ -117,7 +121,9 @@ impl Material {
     pub(crate) fn needs_uvs(&self) -> bool {
         let of_normals = self.normal_texture.map(|map| map.uses);
         let of_opacity = self.opacity.and_then(|opacity| opacity.texture);
-        [self.texture, self.emission_texture, of_normals, of_opacity].iter().any(Option::is_some)
+        let colors = [self.texture, self.emission_texture];
+        let others = [of_normals, self.metallic_roughness_texture, of_opacity];
+        colors.iter().chain(&others).any(Option::is_some)
     }
 
     /// Glass and the like, which is black apart from what it reflects and what goes through.
@@ -199,6 +205,11 @@ impl Material {
     /// An image of normals, which the shading uses in place of the surface's.
     pub fn with_normal_texture(self, map: NormalMap) -> Material {
         Material { normal_texture: Some(map), ..self }
+    }
+
+    /// An image that roughness (green) and `metallic` (blue) are multiplied with.
+    pub fn with_metallic_roughness_texture(self, texture: TextureUse) -> Material {
+        Material { metallic_roughness_texture: Some(texture), ..self }
     }
 
     /// Where the surface is, and what it lets through.

@@ -1,9 +1,10 @@
-//! Textures: images that colour surfaces, or turn their normals.
+//! Textures: images that colour surfaces, turn their normals, or say how rough they are.
 
 mod decode;
 mod files;
 mod heights;
 mod missing_uvs;
+mod packed;
 
 use glam::Affine2;
 
@@ -13,7 +14,8 @@ pub(crate) use missing_uvs::untextured;
 
 /// An image in memory.
 ///
-/// Eight bits per channel: colours encoded as sRGB, or the data of a [`NormalMap`]; row 0 is the top, texture coordinate (0, 0) its upper left corner, as in glTF.
+/// Eight bits per channel: colours encoded as sRGB, or the data of a [`NormalMap`] or of
+/// [facets](crate::Material::metallic_roughness_texture); row 0 is the top, texture coordinate (0, 0) its upper left corner, as in glTF.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
     /// For display: the file's name, or its index in the file that contains it.

@@ -26,6 +26,8 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         }
     }
     for (aa, ambient) in [(1, AmbientSource::Constant), (4, AmbientSource::Constant), (4, AmbientSource::Mesh)] {
+        let name = format!("textured::roughness::{aa}::{}", ambient.name());
+        cases.push(Case::new(name, move |cuda: &Cuda<R>| same_roughness_bits(cuda, aa, ambient)));
         let name = format!("textured::relief::{aa}::{}", ambient.name());
         cases.push(Case::new(name, move |cuda: &Cuda<R>| same_relief_bits(cuda, aa, ambient)));
     }
@@ -137,6 +139,31 @@ fn surrounded() -> Scene {
 
 /// Smooth and rough facets under lights with a size and without, one of them the panorama's sun, in mirrors and in gathered light.
 fn same_facet_bits<R: Target>(cuda: &Cuda<R>, ambient: AmbientSource, aa: u32) {
+    let scene = PreparedScene::new(&faceted(), &Acceleration::Bvh, &Unobserved).unwrap();
+    let settings = Settings::default().with_ambient_light(ambient).with_bounces(2).with_size([48, 36]).with_aa(aa);
+    assert_same_bits(cuda, &scene, &settings, 2);
+}
+
+/// The same with images of how rough and metallic the facets are, smaller in the picture than they are and larger.
+fn same_roughness_bits<R: Target>(cuda: &Cuda<R>, aa: u32, ambient: AmbientSource) {
+    let mut scene = faceted();
+    for (number, material) in (0..).zip(&mut scene.geometry_mut().materials[1..]) {
+        let Some(facets) = material.facets else { continue };
+        let transform = Affine2::from_scale_angle_translation(Vec2::new(1.3, -0.4), 0.7, Vec2::new(0.2, -0.3));
+        let wrap = [Wrap::Mirror, Wrap::Repeat];
+        let uses = TextureUse { wrap, transform, ..TextureUse::new(number % 2) };
+        *material = material.clone().with_facets(facets.with_metallic(0.9)).with_metallic_roughness_texture(uses);
+    }
+    let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
+    for bounces in [0, 2] {
+        let settings = Settings::default().with_ambient_light(ambient).with_quality(Quality::Draft);
+        let settings = settings.with_bounces(bounces).with_size([40, 30]).with_aa(aa);
+        assert_same_bits(cuda, &scene, &settings, 3);
+    }
+}
+
+/// The floor and the mirrors with facets, below a panorama's sun and two lights.
+fn faceted() -> Scene {
     let mut scene = surrounded();
     let facets = [Facets::new(0.6), Facets::new(0.2).with_metallic(1.0), Facets::new(0.35).with_metallic(0.5)];
     // All that are seen: Phong's powers may be rounded differently.
@@ -150,9 +177,7 @@ fn same_facet_bits<R: Target>(cuda: &Cuda<R>, ambient: AmbientSource, aa: u32) {
     let panel = Light::rectangle(Vec3::new(-1.0, 2.5, 1.0), 0.5 * Vec3::X, 0.25 * Vec3::Z).unwrap();
     let lights = [Light::directional(-sun).unwrap(), panel, Light::point(Vec3::new(1.0, 2.0, 2.0))];
     scene.lights.list = lights.map(|light| light.with_intensity([0.4; 3])).to_vec();
-    let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
-    let settings = Settings::default().with_ambient_light(ambient).with_bounces(2).with_size([48, 36]).with_aa(aa);
-    assert_same_bits(cuda, &scene, &settings, 2);
+    scene
 }
 
 /// Fails if any colour differs, or if there are not more colours than one for every `most` pixels.

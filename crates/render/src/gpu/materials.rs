@@ -46,12 +46,12 @@ impl<R: Runtime> Upload<'_, R> {
             .zip(numbers)
             .map(|(material, &number)| {
                 let images = images_of(geometry, material).map(|image| image.and_then(|_| used.next()));
-                let [texture, emission_texture, normal_texture] =
+                let [texture, emission_texture, normal_texture, metallic_roughness_texture] =
                     images.map(|image| image.unwrap_or(Material::NO_TEXTURE));
                 let own = material_record(geometry, material);
                 // Shadow catchers are seen by their shadows alone.
                 let normal_texture = if own.tinted == 1 { normal_texture } else { Material::NO_TEXTURE };
-                Material { number, texture, emission_texture, normal_texture, ..own }
+                Material { number, texture, emission_texture, normal_texture, metallic_roughness_texture, ..own }
             })
             .collect();
         record.materials = self.array("materials", &materials)?;

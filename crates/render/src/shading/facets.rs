@@ -115,8 +115,8 @@ impl Lobe {
 }
 
 /// The cone that a mirror with facets reflects, if a smooth one reflects `cone`.
-pub(crate) fn blurred(cone: Cone, facets: &Facets) -> Cone {
-    Cone { spread: cone.spread.abs() + WIDTH_OF_LOBE * (facets.roughness * facets.roughness), ..cone }
+pub(crate) fn blurred(cone: Cone, roughness: f32) -> Cone {
+    Cone { spread: cone.spread.abs() + WIDTH_OF_LOBE * (roughness * roughness), ..cone }
 }
 
 /// The share of what facets reflect that mirror rays show.

@@ -26,7 +26,7 @@ use glam::Vec3;
 use lightmesh_layout::constants::{
     LIGHT_TARGETS, LUMINANCE_BLUE, LUMINANCE_GREEN, LUMINANCE_RED, PART_OF_LIGHT, STRIP_OF_TARGET,
 };
-use lightmesh_scene::{Falloff, Geometry, Light, LightKind, Lights, Material};
+use lightmesh_scene::{Facets, Falloff, Geometry, Light, LightKind, Lights, Material};
 
 use crate::accel::Hit;
 use crate::data::wave::HostWave;
@@ -88,11 +88,13 @@ impl Surface {
     #[inline(always)]
     fn faceted(mut self, wave: &HostWave, ray: usize, material: &Material) -> Surface {
         if let Some(facets) = material.faceted() {
+            let Coefficients { roughness, metallic, .. } = self.coefficients;
+            let facets = Facets::new(roughness).with_metallic(metallic).with_grazing(facets.grazing);
             let (hit, followed) = (&wave.hits[ray], wave.rays.mirrors(ray));
             let cone = wave.rays.cone_of(ray).after(hit.t);
             let spread = if cone.is_point() { 0.0 } else { self.mirrored_cone(wave, hit, cone).spread.abs() };
             let sight = Sight { cosine: self.normal.dot(self.view), spread, followed };
-            self.lobe = Some(Lobe::new(facets, &mut self.coefficients, &sight));
+            self.lobe = Some(Lobe::new(&facets, &mut self.coefficients, &sight));
         }
         self
     }

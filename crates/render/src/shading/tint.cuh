@@ -5,13 +5,13 @@
 #include "shading/facets.cuh"
 #include "shading/normal_map.cuh"
 
-// The colour of what is emitted at `hit`: few materials have an image of it, which is not worth registers everywhere.
-COLD Vec3 emission_texel_at(TintSources sources, unsigned number, Sighting from, Hit hit) { return texel_at(sources, number, from, hit); }
+// The value at `hit` of an image of what is emitted, or of facets: few materials have one, which is not worth registers everywhere.
+COLD Vec3 rare_texel_at(TintSources sources, unsigned number, Sighting from, Hit hit) { return texel_at(sources, number, from, hit); }
 
-// The colours of images at a surface point.
+// The values of images at a surface point.
 struct Colors {
-    // The product of texture and vertex colour, and the texture of what is emitted.
-    Vec3 tint, glow;
+    // The product of texture and vertex colour, the texture of what is emitted, and that of how rough (y) and metallic (z) facets are.
+    Vec3 tint, glow, facets;
 };
 
 // The product of texture and vertex colour at `hit`.
@@ -27,9 +27,11 @@ DEVICE Vec3 tint_at(const TintSources &sources, const Material &material, const 
 }
 
 DEVICE Colors colors_at(const TintSources &sources, const Material &material, const Sighting &from, const Hit &hit) {
-    Colors colors = {tint_at(sources, material, from, hit), splat(1.0f)};
+    Colors colors = {tint_at(sources, material, from, hit), splat(1.0f), splat(1.0f)};
     if (material.emission_texture != Material::NO_TEXTURE)
-        colors.glow = emission_texel_at(sources, material.emission_texture, from, hit);
+        colors.glow = rare_texel_at(sources, material.emission_texture, from, hit);
+    if (material.metallic_roughness_texture != Material::NO_TEXTURE)
+        colors.facets = rare_texel_at(sources, material.metallic_roughness_texture, from, hit);
     return colors;
 }
 
@@ -50,8 +52,8 @@ DEVICE void set_tint(const Material *material, const Colors &colors, float opaci
     own->mirrored = own->ks;
     own->facets = material->facets;
     own->opacity = opacity;
-    own->roughness = material->roughness;
-    own->metallic = material->metallic;
+    own->roughness = material->roughness * colors.facets.y;
+    own->metallic = material->metallic * colors.facets.z;
     own->grazing = material->grazing;
     own->emission = opacity * (material->emission * colors.glow + material->emission_tinted * tint);
     own->transmittance = (1.0f - opacity) * material->transmittance;
@@ -110,20 +112,20 @@ COLD void tint_material(TintSources sources, const Material *material, Sighting 
 // Sets `own` to the material with the mean of its coefficients at these hits, seen at `center`; leaves it without any.
 COLD void tint_by_all(TintSources sources, const Material *material, Sighting from, SharedHits all, Hit center, bool followed,
                       Material *own) {
-    Colors sum = {splat(0.0f), splat(0.0f)};
+    Colors sum = {splat(0.0f), splat(0.0f), splat(0.0f)};
     float opacities = 0.0f, count = 0.0f;
     for (unsigned sample = 0; sample < all.count; ++sample) {
         const Hit hit = load_hit(all.hits + sample * all.stride, 0);
         if ((all.shared >> sample & 1) == 0 || hit.triangle == Hit::NONE)
             continue;
         const Colors colors = colors_at(sources, *material, from, hit);
-        sum = Colors{sum.tint + colors.tint, sum.glow + colors.glow};
+        sum = Colors{sum.tint + colors.tint, sum.glow + colors.glow, sum.facets + colors.facets};
         opacities += opacity_at(sources, *material, hit);
         count += 1.0f;
     }
     if (count == 0.0f)
         return;
-    set_tint(material, Colors{sum.tint / count, sum.glow / count}, opacities / count, own);
+    set_tint(material, Colors{sum.tint / count, sum.glow / count, sum.facets / count}, opacities / count, own);
     if (material->facets)
         face(sources, from, center, followed, own);
 }

@@ -3,6 +3,7 @@
 //! ```text
 //! t = texture(A · uv) · colour      α k_a t      α k_d t      α (k_s + k_s' t)      goes through: (1 − α) filter
 //! e = emission texture(A' · uv)     emitted: α (L e + L' t)
+//! m = metallic-roughness texture(A'' · uv)      of facets: roughness · m_green      metallic · m_blue
 //! ```
 //!
 //! Texture coordinates and colours are interpolated barycentrically. Of the texture, the mean over the [footprint](crate::footprint) of a
@@ -31,6 +32,9 @@ pub(crate) struct Coefficients {
     pub(crate) transmittance: Vec3,
     /// How opaque a surface with [facets](super::facets) is, whose other coefficients do not know.
     pub(crate) opacity: f32,
+    /// How rough and metallic its facets are.
+    pub(crate) roughness: f32,
+    pub(crate) metallic: f32,
     /// What is reflected of light from all sides, where it is gathered.
     pub(crate) all: Vec3,
     /// What is mirrored.
@@ -61,14 +65,15 @@ impl Coefficients {
         cone: Cone,
         hits: impl Iterator<Item = &'h Hit>,
     ) -> Option<Coefficients> {
-        let (mut sum, mut opacities, mut count) = (Colors { tint: Vec3::ZERO, glow: Vec3::ZERO }, 0.0, 0.0);
+        let nothing = Colors { tint: Vec3::ZERO, glow: Vec3::ZERO, facets: Vec3::ZERO };
+        let (mut sum, mut opacities, mut count) = (nothing, 0.0, 0.0);
         for hit in hits {
             let own = colors(scene, material, ray, cone, hit);
-            sum = Colors { tint: sum.tint + own.tint, glow: sum.glow + own.glow };
+            sum = Colors { tint: sum.tint + own.tint, glow: sum.glow + own.glow, facets: sum.facets + own.facets };
             opacities += opacity(scene, hit);
             count += 1.0;
         }
-        let mean = || Colors { tint: sum.tint / count, glow: sum.glow / count };
+        let mean = || Colors { tint: sum.tint / count, glow: sum.glow / count, facets: sum.facets / count };
         (count > 0.0).then(|| Coefficients::tinted(material, mean(), opacities / count))
     }
 
@@ -76,6 +81,7 @@ impl Coefficients {
     #[inline(always)]
     pub(crate) fn untinted(material: &Material) -> Coefficients {
         let ks = material.ks + material.ks_tinted;
+        let [roughness, metallic] = shares_of_facets(material, Vec3::ONE);
         Coefficients {
             ka: material.ka,
             kd: material.kd,
@@ -83,17 +89,20 @@ impl Coefficients {
             emission: material.emission + material.emission_tinted,
             transmittance: Vec3::ZERO,
             opacity: 1.0,
+            roughness,
+            metallic,
             all: material.kd,
             mirrored: ks,
         }
     }
 
-    fn tinted(material: &Material, Colors { tint, glow }: Colors, opacity: f32) -> Coefficients {
+    fn tinted(material: &Material, Colors { tint, glow, facets }: Colors, opacity: f32) -> Coefficients {
         let filter = material.opacity.and_then(|opacity| opacity.filter()).unwrap_or(Vec3::ZERO);
         // Of facets, these are what they are made of.
         let there = if material.faceted().is_some() { 1.0 } else { opacity };
         let kd = there * (material.kd * tint);
         let ks = there * (material.ks + material.ks_tinted * tint);
+        let [roughness, metallic] = shares_of_facets(material, facets);
         Coefficients {
             ka: there * (material.ka * tint),
             kd,
@@ -101,6 +110,8 @@ impl Coefficients {
             emission: opacity * (material.emission * glow + material.emission_tinted * tint),
             transmittance: (1.0 - opacity) * filter,
             opacity,
+            roughness,
+            metallic,
             all: kd,
             mirrored: ks,
         }
@@ -121,6 +132,12 @@ impl Coefficients {
             ..self
         }
     }
+}
+
+/// How rough and metallic the facets of a material are where their image has this value; 0 without facets.
+#[inline(always)]
+fn shares_of_facets(material: &Material, texel: Vec3) -> [f32; 2] {
+    material.faceted().map_or([0.0; 2], |facets| [facets.roughness * texel.y, facets.metallic * texel.z])
 }
 
 /// Where `ray` with a cone meets a dielectric.
@@ -162,22 +179,25 @@ fn opacity(scene: &PreparedScene, hit: &Hit) -> f32 {
     scene.geometry.coverage.opacity(&scene.geometry.triangles[hit.triangle as usize], hit)
 }
 
-/// The colours of images at a surface point.
+/// The values of images at a surface point.
 #[derive(Clone, Copy)]
 struct Colors {
     /// The product of texture and vertex colour.
     tint: Vec3,
     /// The texture of what is emitted.
     glow: Vec3,
+    /// The texture of how rough (y) and metallic (z) facets are.
+    facets: Vec3,
 }
 
 #[inline(never)]
 fn colors(scene: &PreparedScene, material: &Material, ray: &Ray, cone: Cone, hit: &Hit) -> Colors {
     let geometry = &scene.scene.geometry;
     let texel = |found: Option<Image>| found.map_or(Vec3::ONE, |image| texel_at(scene, &image, ray, cone, hit));
-    let [tint, glow, _] = images_of(geometry, material);
-    let [tint, glow] = [tint, glow].map(texel);
-    Colors { tint: if geometry.mesh.colors.is_empty() { tint } else { tint * color_at(&geometry.mesh, hit) }, glow }
+    let [tint, glow, _, facets] = images_of(geometry, material);
+    let [tint, glow, facets] = [tint, glow, facets].map(texel);
+    let tint = if geometry.mesh.colors.is_empty() { tint } else { tint * color_at(&geometry.mesh, hit) };
+    Colors { tint, glow, facets }
 }
 
 fn color_at(mesh: &Mesh, hit: &Hit) -> Vec3 {
@@ -188,7 +208,7 @@ fn color_at(mesh: &Mesh, hit: &Hit) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use glam::{Affine2, Vec2};
-    use lightmesh_scene::{Scene, Texture, TextureUse};
+    use lightmesh_scene::{Facets, Scene, Texture, TextureUse};
 
     use super::*;
     use crate::observer::Unobserved;
@@ -244,6 +264,8 @@ mod tests {
             emission: 4.0 * kd * tint,
             transmittance: Vec3::ZERO,
             opacity: 1.0,
+            roughness: 0.0,
+            metallic: 0.0,
             all: kd * tint,
             mirrored: ks + 1.5 * kd * tint,
         };
@@ -264,6 +286,24 @@ mod tests {
         let mut alone = material;
         alone.texture = None;
         assert_eq!(seen(&scene, &alone, Cone::default(), &hit).emission, Vec3::new(1.0, 1.0, 5.0));
+    }
+
+    #[test]
+    fn facets_are_as_rough_and_metallic_as_an_image_says() {
+        let (mut scene, hit) = scene(false);
+        scene.geometry_mut().textures.push(texture([1, 1], &[[9, 51, 204]]));
+        let facets = Facets::new(0.5).with_metallic(0.25);
+        let material = Material::matt(Vec3::ONE).with_metallic_roughness_texture(TextureUse::new(1));
+        let shares = |material: &Material| {
+            let found = seen(&scene, material, Cone::default(), &hit);
+            assert_eq!(found.kd, Vec3::ONE);
+            [found.roughness, found.metallic]
+        };
+        assert_eq!(shares(&material), [0.0; 2], "no facets");
+        let [roughness, metallic] = shares(&material.clone().with_facets(facets));
+        assert!((roughness - 0.1).abs() < 1e-6 && (metallic - 0.2).abs() < 1e-6, "{roughness} {metallic}");
+        let gone = material.with_facets(facets).with_metallic_roughness_texture(TextureUse::new(7));
+        assert_eq!(shares(&gone), [0.5, 0.25]);
     }
 
     #[test]

@@ -35,16 +35,22 @@ impl<'s> Image<'s> {
     }
 }
 
-/// The images of a material, except that of its opacity: of its colour, of what it emits, and of its normals.
-pub(crate) fn images_of<'s>(geometry: &'s Geometry, material: &Material) -> [Option<Image<'s>>; 3] {
+/// The images of a material, except that of its opacity: of its colour, of what it emits, of its normals, and of its facets.
+pub(crate) fn images_of<'s>(geometry: &'s Geometry, material: &Material) -> [Option<Image<'s>>; 4] {
     let [color, glow] =
         [material.texture, material.emission_texture].map(|uses| Image::new(geometry, uses?, Encoding::Color));
-    [color, glow, normals_of(geometry, material)]
+    [color, glow, normals_of(geometry, material), facets_of(geometry, material)]
 }
 
 /// The image of a material's normals.
 pub(crate) fn normals_of<'s>(geometry: &'s Geometry, material: &Material) -> Option<Image<'s>> {
     Image::new(geometry, material.normal_texture?.uses, Encoding::Data)
+}
+
+/// The image of how rough and metallic a material's facets are.
+pub(crate) fn facets_of<'s>(geometry: &'s Geometry, material: &Material) -> Option<Image<'s>> {
+    material.faceted()?;
+    Image::new(geometry, material.metallic_roughness_texture?, Encoding::Data)
 }
 
 /// A texture that is used like this, if it can be looked up.

@@ -25,6 +25,7 @@ mod partial;
 mod placement;
 mod points;
 mod progress;
+mod roughness_maps;
 mod see_through;
 mod shading;
 mod shadow_rays;

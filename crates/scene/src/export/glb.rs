@@ -297,7 +297,8 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
         None if material.dielectric.is_some() => (0.0, 0.0),
         None => (0.0, (2.0 / (material.shininess + 2.0)).powf(0.25)),
     };
-    let [texture_transform, emission_transform, normal_transform] = pictures.exact_transforms(index);
+    let [texture_transform, emission_transform, normal_transform, metallic_roughness_transform] =
+        pictures.exact_transforms(index);
     let extras = MaterialExtras {
         ka: material.ka.to_array(),
         kd: material.kd.to_array(),
@@ -311,6 +312,7 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
         texture_transform,
         emission_transform,
         normal_transform,
+        metallic_roughness_transform,
         opacity: material
             .opacity
             .filter(|opacity| !is_standard(opacity, material))
@@ -328,6 +330,9 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
     });
     if let Some(texture) = pictures.of_material(index) {
         entry["pbrMetallicRoughness"]["baseColorTexture"] = texture;
+    }
+    if let Some(texture) = pictures.roughness_of_material(index) {
+        entry["pbrMetallicRoughness"]["metallicRoughnessTexture"] = texture;
     }
     if let Some(texture) = pictures.emission_of_material(index) {
         entry["emissiveTexture"] = texture;

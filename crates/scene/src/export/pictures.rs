@@ -33,13 +33,14 @@ struct MaterialPictures {
     color: Option<Picture>,
     emission: Option<Picture>,
     normals: Option<Picture>,
+    roughness: Option<Picture>,
     opacity: Option<Picture>,
 }
 
 impl MaterialPictures {
     /// Those that glTF has a place for.
-    fn standard(&self) -> [Option<Picture>; 3] {
-        [self.color, self.emission, self.normals]
+    fn standard(&self) -> [Option<Picture>; 4] {
+        [self.color, self.emission, self.normals, self.roughness]
     }
 }
 
@@ -52,6 +53,7 @@ impl Pictures {
                 color: pictures.find(scene, material.texture)?,
                 emission: pictures.find(scene, material.emission_texture)?,
                 normals: pictures.find(scene, material.normal_texture.map(|map| map.uses))?,
+                roughness: pictures.find(scene, material.metallic_roughness_texture)?,
                 opacity: pictures.find(scene, material.opacity.and_then(|opacity| opacity.texture))?,
             };
             let is_placed = |(_, uses): Picture| uses.transform != Affine2::IDENTITY;
@@ -95,13 +97,19 @@ impl Pictures {
         Some(info(self.by_material[index].normals?))
     }
 
+    /// The `metallicRoughnessTexture` of a material.
+    pub(super) fn roughness_of_material(&self, index: usize) -> Option<Value> {
+        Some(info(self.by_material[index].roughness?))
+    }
+
     /// The index of the glTF texture that cuts a material out, and how it is used.
     pub(super) fn opacity_of_material(&self, index: usize) -> Option<Picture> {
         self.by_material[index].opacity
     }
 
-    /// The transforms of a material's texture, of its emission's and of its normals', if glTF's angle and factors do not reproduce them to the last bit.
-    pub(super) fn exact_transforms(&self, index: usize) -> [Option<[f32; 6]>; 3] {
+    /// The transforms of a material's texture, of its emission's, its normals' and its facets', if glTF's angle and factors do not reproduce
+    /// them to the last bit.
+    pub(super) fn exact_transforms(&self, index: usize) -> [Option<[f32; 6]>; 4] {
         self.by_material[index].standard().map(|entry| {
             let transform = entry?.1.transform;
             let (scale, rotation, offset) = parts(&transform);

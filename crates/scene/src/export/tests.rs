@@ -51,6 +51,7 @@ fn scene(offset: DVec3) -> Scene {
             }),
             emission_texture: None,
             normal_texture: Some(NormalMap::new(TextureUse::new(1)).with_scale(-0.3)),
+            metallic_roughness_texture: None,
             opacity: Some(Opacity::by(TextureUse::new(1), OpacityChannel::Green).with_cutoff(0.3).with_factor(0.9)),
             dielectric: None,
             facets: None,
@@ -67,6 +68,11 @@ fn scene(offset: DVec3) -> Scene {
             ..TextureUse::new(0)
         }),
         Material::default().named("gold").with_facets(Facets::new(0.3).with_metallic(0.9).with_grazing(0.7)),
+        Material::default().named("rust").with_facets(Facets::new(0.9)).with_metallic_roughness_texture(TextureUse {
+            transform: Affine2::from_scale_angle_translation(Vec2::new(0.7, 1.1), 0.3, Vec2::new(0.3, 0.1)),
+            wrap: [Wrap::Clamp, Wrap::Repeat],
+            ..TextureUse::new(1)
+        }),
         Material::default().named("bricks").with_normal_texture(NormalMap::new(TextureUse {
             transform: Affine2::from_scale_angle_translation(Vec2::new(-0.3, 1.7), 0.4, Vec2::new(0.1, 0.2)),
             wrap: [Wrap::Mirror, Wrap::Clamp],

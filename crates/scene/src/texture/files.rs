@@ -4,13 +4,17 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::heights::{is_grey, normals_of_heights};
+use super::packed::{packed, size_of_packed};
 use super::{Texture, Undecodable, decode};
-use crate::LoadError;
 use crate::draft::Draft;
 use crate::error::Place;
+use crate::{LoadError, OpacityChannel};
 
 /// Number of textures that a warning names with their reasons; the others are counted.
 const NAMED: usize = 3;
+
+/// A texture, and what of it is a number.
+type Numbers = (u32, OpacityChannel);
 
 /// The texture files of a scene read so far.
 #[derive(Debug, Default)]
@@ -19,6 +23,8 @@ pub(crate) struct TextureFiles {
     read: HashMap<PathBuf, Option<u32>>,
     /// Images of normals made of those of heights, by the number of these and whether they end at their edges.
     normals: HashMap<(u32, bool), u32>,
+    /// Images of roughness and of how metallic surfaces are, packed into one.
+    packed: HashMap<[Option<Numbers>; 2], u32>,
     /// A clause about each one that is not available.
     missing: Vec<String>,
 }
@@ -87,6 +93,29 @@ impl Draft {
         };
         self.texture_files.normals.insert((heights, clamp), found);
         Some(found)
+    }
+
+    /// Index of a texture whose green is the roughness that the first image has, and whose blue says how metallic surfaces are by the
+    /// second, for `source`, which names them; `None` without any, and where memory is short, which ends the reading.
+    pub(crate) fn packed(&mut self, source: &Path, images: [Option<Numbers>; 2]) -> Option<u32> {
+        match images {
+            [None, None] => return None,
+            [Some((texture, OpacityChannel::Green)), Some((other, OpacityChannel::Blue))] if texture == other => {
+                return Some(texture);
+            }
+            _ => {}
+        }
+        if let Some(&known) = self.texture_files.packed.get(&images) {
+            return Some(known);
+        }
+        let found = images.map(|image| image.map(|(texture, channel)| (&self.textures[texture as usize], channel)));
+        let size @ [width, height] = size_of_packed(found);
+        let bytes = size_of::<[u8; 4]>() as u64 * u64::from(width) * u64::from(height);
+        let made = self.border.budget.check(bytes).map(|()| packed(found));
+        let made = made.map_err(|short| Undecodable::TooLarge { size, short });
+        let index = self.texture(source, &source.display().to_string(), made)?;
+        self.texture_files.packed.insert(images, index);
+        Some(index)
     }
 
     /// Keeps the texture of the file at `path`, called `place` in messages.

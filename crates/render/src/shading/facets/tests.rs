@@ -12,6 +12,8 @@ fn coefficients(base: Vec3, layer: Vec3) -> Coefficients {
         emission: none,
         transmittance: none,
         opacity: 1.0,
+        roughness: 0.0,
+        metallic: 0.0,
         all: none,
         mirrored: none,
     }

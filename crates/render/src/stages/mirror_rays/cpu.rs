@@ -69,7 +69,7 @@ fn onward(wave: &HostWave, range: Range<usize>) -> RayList {
             let cone = || {
                 let cone = surface.mirrored_cone(wave, hit, cone());
                 let facets = material_of(wave, index).and_then(Material::faceted);
-                facets.map_or(cone, |facets| blurred(cone, facets))
+                facets.map_or(cone, |_| blurred(cone, surface.coefficients.roughness))
             };
             add(index, onward, has_cones.then(cone), weight, list.sample(index));
         }

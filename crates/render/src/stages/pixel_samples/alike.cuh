@@ -66,7 +66,9 @@ DEVICE bool goes_on(const PixelSamples &args, const Hit &hit) {
     if (hit.triangle == Hit::NONE)
         return false;
     const Material &material = args.scene.materials[__ldg(args.scene.triangle_materials + hit.triangle)];
-    const bool mirrors = material.facets ? facets_mirrored_share(material.roughness) > 0.0f
+    // An image may make facets smooth anywhere.
+    const bool varies = material.metallic_roughness_texture != Material::NO_TEXTURE;
+    const bool mirrors = material.facets ? varies || facets_mirrored_share(material.roughness) > 0.0f
                                          : material.ks != splat(0.0f) || material.ks_tinted != splat(0.0f);
     return material.blends || (args.mirrors && mirrors);
 }

@@ -9,6 +9,7 @@ use crate::data::rays::RayList;
 use crate::prepared::PreparedScene;
 use crate::shading::facets::mirrored_share;
 use crate::surface::{SurfacePoint, shading_normal};
+use crate::textures::facets_of;
 
 /// A piece of a surface, about as large as a pixel.
 #[derive(Clone, Copy)]
@@ -145,7 +146,8 @@ pub(crate) fn goes_on(scene: &PreparedScene, all: &Antialiasing, hit: &Hit) -> b
     let geometry = &scene.scene.geometry;
     let material = &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize];
     let mirrors = match material.faceted() {
-        Some(facets) => mirrored_share(facets.roughness) > 0.0,
+        // An image may make them smooth anywhere.
+        Some(facets) => facets_of(geometry, material).is_some() || mirrored_share(facets.roughness) > 0.0,
         None => material.ks != Vec3::ZERO || material.ks_tinted != Vec3::ZERO,
     };
     material.lets_through() || all.mirrors && mirrors

@@ -299,7 +299,7 @@ pub(super) struct MetallicRoughness {
     pub(super) base_color_texture: Option<TextureInfo>,
     pub(super) metallic_factor: f32,
     pub(super) roughness_factor: f32,
-    pub(super) metallic_roughness_texture: Option<IgnoredAny>,
+    pub(super) metallic_roughness_texture: Option<TextureInfo>,
 }
 
 impl Default for MetallicRoughness {

@@ -35,6 +35,9 @@ pub(crate) struct MaterialExtras {
     /// The same for the image of normals.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) normal_transform: Option<[f32; 6]>,
+    /// The same for the image of how rough and metallic facets are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) metallic_roughness_transform: Option<[f32; 6]>,
     /// Where the surface is, and what it lets through, unless `alphaMode` says so.
     #[serde(default, alias = "cut_out", skip_serializing_if = "Option::is_none")]
     pub(crate) opacity: Option<OpacityExtras>,
@@ -126,6 +129,7 @@ impl MaterialExtras {
             texture: None,
             emission_texture: None,
             normal_texture: None,
+            metallic_roughness_texture: None,
             catcher: self.catcher,
             lamp: self.lamp,
             opacity: None,

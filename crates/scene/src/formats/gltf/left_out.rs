@@ -21,11 +21,13 @@ pub(super) struct LeftOut {
     pub(super) missing_materials: usize,
     /// Materials with an `alphaMode` that glTF does not define.
     pub(super) unknown_alpha_modes: usize,
-    pub(super) roughness_textures: usize,
     pub(super) occlusion_textures: usize,
     /// Those with other texture coordinates than the images before.
     pub(super) emissive_textures: usize,
     pub(super) normal_textures: usize,
+    pub(super) roughness_textures: usize,
+    /// Those of materials that transmit light.
+    pub(super) glass_textures: usize,
     pub(super) specular_textures: usize,
     pub(super) transmission_textures: usize,
     /// Materials whose roughness should blur what goes through them.
@@ -54,7 +56,6 @@ impl LeftOut {
             (self.morphed, "mesh", "shown without the morph targets that the file blends in"),
             (self.missing_materials, "primitive", "with a material that the file does not contain: shown white"),
             (self.unknown_alpha_modes, "material", "with an unknown alphaMode: shown opaque"),
-            (self.roughness_textures, "metallic-roughness texture", "not shown: the material's factors are used"),
             (self.occlusion_textures, "occlusion texture", "not shown"),
             (
                 self.emissive_textures,
@@ -62,6 +63,16 @@ impl LeftOut {
                 "that cannot be placed beside the base colour's: the surface emits no light",
             ),
             (self.normal_textures, "normal texture", "that cannot be placed beside the other images: not shown"),
+            (
+                self.roughness_textures,
+                "metallic-roughness texture",
+                "that cannot be placed beside the other images: the material's factors are used",
+            ),
+            (
+                self.glass_textures,
+                "metallic-roughness texture",
+                "of a material that transmits light: the material's factors are used",
+            ),
             (self.specular_textures, "specular texture", "not shown: the material's factors are used"),
             (self.transmission_textures, "transmission texture", "not shown: the material's factors are used"),
             (self.frosted, "material", "with rough transmission: what is behind is shown sharp"),

@@ -40,14 +40,16 @@ pub(super) fn read(path: &Path, index: usize, of: &document::Material, tinted: b
     Ok(Material { name, ..translated(of, tinted) })
 }
 
-/// How the material places its texture, and those of its emission and of its normals, if our own extras specify it.
+/// How the material places its texture, and those of its emission, of its normals and of its facets, if our own extras specify it.
 pub(super) fn texture_transforms(
     path: &Path,
     index: usize,
     of: &document::Material,
-) -> Result<[Option<Affine2>; 3], LoadError> {
+) -> Result<[Option<Affine2>; 4], LoadError> {
     let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
-    let columns = own.map_or([None; 3], |own| [own.texture_transform, own.emission_transform, own.normal_transform]);
+    let columns = own.map_or([None; 4], |own| {
+        [own.texture_transform, own.emission_transform, own.normal_transform, own.metallic_roughness_transform]
+    });
     Ok(columns.map(|columns| columns.map(|columns| Affine2::from_cols_array(&columns))))
 }
 
@@ -59,6 +61,12 @@ pub(super) fn emissive_texture<'a>(of: &'a document::Material) -> Option<&'a Tex
 /// The image of normals; where nothing is lit, they do not count.
 pub(super) fn normal_texture<'a>(of: &'a document::Material) -> Option<&'a NormalTexture> {
     of.normal_texture.as_ref().filter(|_| !is_unlit(of))
+}
+
+/// The image of how rough and metallic the facets are, which neither glass nor what is unlit has.
+pub(super) fn metallic_roughness_texture<'a>(of: &'a document::Material) -> Option<&'a TextureInfo> {
+    let pbr = of.pbr_metallic_roughness.as_deref()?;
+    pbr.metallic_roughness_texture.as_ref().filter(|_| !is_unlit(of) && transmission(of).is_none())
 }
 
 fn is_unlit(of: &document::Material) -> bool {
@@ -81,10 +89,10 @@ pub(super) fn count_left_out(of: &document::Material, left_out: &mut LeftOut) {
     let specular = of.extensions.as_deref().and_then(|extensions| extensions.specular.as_ref());
     let alpha_mode = of.alpha_mode.as_deref().unwrap_or("OPAQUE");
     left_out.unknown_alpha_modes += usize::from(!matches!(alpha_mode, "OPAQUE" | "MASK" | "BLEND"));
-    left_out.roughness_textures += usize::from(pbr.is_some_and(|pbr| pbr.metallic_roughness_texture.is_some()));
     left_out.occlusion_textures += usize::from(of.occlusion_texture.is_some());
     if let Some(transmission) = transmission(of) {
         left_out.transmission_textures += usize::from(transmission.transmission_texture.is_some());
+        left_out.glass_textures += usize::from(pbr.is_some_and(|pbr| pbr.metallic_roughness_texture.is_some()));
         left_out.frosted += usize::from(pbr.is_none_or(|pbr| pbr.roughness_factor > CLEAR));
     }
     left_out.specular_textures += usize::from(

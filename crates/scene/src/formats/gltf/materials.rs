@@ -121,9 +121,13 @@ impl Materials {
                 let uses = further(&normals.info, &mut set, misplaced, &mut pictures, draft)?;
                 Some(NormalMap { uses, scale: normals.scale })
             });
+            let misplaced = &mut left_out.roughness_textures;
+            let mut metallic_roughness_texture = material::metallic_roughness_texture(entry)
+                .and_then(|info| further(info, &mut set, misplaced, &mut pictures, draft));
             let exact = material::texture_transforms(path, index, entry)?;
             let normals = normal_texture.as_mut().map(|map| &mut map.uses);
-            for (texture, exact) in [texture.as_mut(), emission_texture.as_mut(), normals].into_iter().zip(exact) {
+            let textures = [texture.as_mut(), emission_texture.as_mut(), normals, metallic_roughness_texture.as_mut()];
+            for (texture, exact) in textures.into_iter().zip(exact) {
                 if let (Some(texture), Some(exact)) = (texture, exact) {
                     texture.transform = exact;
                 }
@@ -133,7 +137,15 @@ impl Materials {
                 None => material::opacity(entry, texture),
             };
             materials.read.push(Read { material: draft.materials.len() as u32, set, opacity: opacity.is_some() });
-            draft.materials.push(Material { texture, emission, emission_texture, normal_texture, opacity, ..material });
+            draft.materials.push(Material {
+                texture,
+                emission,
+                emission_texture,
+                normal_texture,
+                metallic_roughness_texture,
+                opacity,
+                ..material
+            });
         }
         left_out.missing_textures += pictures.missing;
         Ok(materials)

@@ -67,6 +67,16 @@ impl Map {
         Some(NormalMap { uses: TextureUse { texture, ..uses }, scale: self.multiplier })
     }
 
+    /// Whether it is placed, and continues beyond its edges, like another one.
+    pub(super) fn is_placed_like(&self, other: &Map) -> bool {
+        (self.scale, self.offset, self.clamp) == (other.scale, other.offset, other.clamp)
+    }
+
+    /// What counts of a texture where one number is wanted: the channel that the file names; else alpha if there is any, else luminance.
+    pub(super) fn channel_of(&self, texture: u32, draft: &Draft) -> OpacityChannel {
+        self.channel.unwrap_or_else(|| OpacityChannel::suggested_by(&draft.textures[texture as usize]))
+    }
+
     /// The texture, read for `library`, the file that names it. `None` if it is not available.
     pub(super) fn texture_use(&self, library: &Path, draft: &mut Draft) -> Option<TextureUse> {
         let texture = draft.texture_file(library, &self.file)?;

@@ -1,5 +1,5 @@
-//! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke, map_Kd and map_Ke to the coefficients of formula (1), Pr and Pm to facets, map_d to
-//! where the surface is, norm and bump to its normals.
+//! Material libraries of OBJ files: Ka, Kd, Ks, Ns, Ke, map_Kd and map_Ke to the coefficients of formula (1), Pr, Pm and
+//! their maps to facets, map_d to where the surface is, norm and bump to its normals.
 
 use std::{
     collections::HashSet,
@@ -36,6 +36,9 @@ pub(super) struct Entry {
     shininess: Option<f32>,
     roughness: Option<f64>,
     metallic: Option<f64>,
+    /// An image of numbers that the roughness is multiplied with, and one for how metallic it is.
+    roughness_map: Option<Map>,
+    metallic_map: Option<Map>,
     map: Option<Map>,
     opacity: Option<Map>,
     glow: Option<Map>,
@@ -54,6 +57,8 @@ pub(super) struct Entry {
 #[derive(Default)]
 struct LeftOut {
     maps: usize,
+    /// Images of how metallic a surface is that are not placed like those of its roughness.
+    apart: usize,
     spectral: usize,
 }
 
@@ -119,7 +124,7 @@ fn read_library(path: &Path, text: &[u8], entries: &mut Vec<Entry>, draft: &mut 
     let mut left_out = LeftOut::default();
     let mut notes = Notes::default();
     let mut lines = Lines::new(text);
-    let mut entry: Option<Entry> = None;
+    let (mut entry, first_entry): (Option<Entry>, _) = (None, entries.len());
     while let Some((number, line)) = lines.next() {
         let (word, rest) = split_word(line);
         if is_map(word)
@@ -144,11 +149,16 @@ fn read_library(path: &Path, text: &[u8], entries: &mut Vec<Entry>, draft: &mut 
         }
     }
     entries.extend(entry);
+    for entry in &mut entries[first_entry..] {
+        entry.keep_together(&mut left_out);
+    }
     draft.warnings.extend(notes.warnings(path));
-    let LeftOut { maps, spectral } = left_out;
-    for (count, what) in
-        [(maps, "textures other than map_Kd, map_d, map_Ke, norm and bump"), (spectral, "spectral or CIE-XYZ colours")]
-    {
+    let LeftOut { maps, apart, spectral } = left_out;
+    for (count, what) in [
+        (maps, "textures other than map_Kd, map_d, map_Ke, map_Pr, map_Pm, norm and bump"),
+        (apart, "map_Pm with other options than map_Pr of the same material"),
+        (spectral, "spectral or CIE-XYZ colours"),
+    ] {
         if count > 0 {
             draft.warnings.push(format!("{}: {count} {what} were ignored", path.display()));
         }
@@ -188,6 +198,8 @@ impl Entry {
             b"Tr" => self.transparency = words(rest).last().and_then(value),
             b"map_Kd" => self.map = Map::parse(&decoded(rest)),
             b"map_Ke" => self.glow = Map::parse(&decoded(rest)),
+            b"map_Pr" => self.roughness_map = Map::parse(&decoded(rest)),
+            b"map_Pm" => self.metallic_map = Map::parse(&decoded(rest)),
             b"map_d" => self.opacity = Map::parse(&decoded(rest)),
             b"norm" | b"map_Kn" => self.normals = Map::parse(&decoded(rest)),
             b"bump" | b"map_Bump" | b"map_bump" => self.bump = Map::parse(&decoded(rest)),
@@ -197,6 +209,15 @@ impl Entry {
             _ => {}
         }
         Ok(())
+    }
+
+    /// Leaves out an image of how metallic it is that is not placed like that of its roughness: both become one.
+    fn keep_together(&mut self, left_out: &mut LeftOut) {
+        let both = self.roughness_map.as_ref().zip(self.metallic_map.as_ref());
+        if both.is_some_and(|(roughness, metallic)| !metallic.is_placed_like(roughness)) {
+            self.metallic_map = None;
+            left_out.apart += 1;
+        }
     }
 
     /// The share of the surface that is there. Some exporters write `Tr 1` for opaque materials; then there is also `d 1`.
@@ -221,7 +242,8 @@ impl Entry {
             (Some(_), None) => Material::EMISSION_WITHOUT_IMAGE,
             (Some(_), Some(_)) => self.emissive.filter(|&emission| emission != Vec3::ZERO).unwrap_or(Vec3::ONE),
         };
-        let facets = self.facets();
+        let (metallic_roughness_texture, varied) = self.metallic_roughness_texture(used, draft);
+        let facets = self.facets(varied);
         Material {
             name: self.name.clone(),
             ka: self.ambient.filter(|ka| *ka != Vec3::ZERO).unwrap_or(kd),
@@ -234,18 +256,38 @@ impl Entry {
             texture,
             emission_texture,
             normal_texture: self.normal_texture(used, draft),
+            metallic_roughness_texture,
             opacity: self.opacity(used, texture, draft),
             dielectric: self.dielectric(),
             ..default
         }
     }
 
-    /// What the extension for physically based rendering says: `Pr` and `Pm`. Then `Kd` is the base colour, and `Ks`, which exporters write
-    /// for others, does not count.
-    fn facets(&self) -> Option<Facets> {
-        let share = |value: Option<f64>, unsaid: f32| value.map_or(unsaid, |value| value.clamp(0.0, 1.0) as f32);
-        (self.roughness.is_some() || self.metallic.is_some())
-            .then(|| Facets::new(share(self.roughness, 1.0)).with_metallic(share(self.metallic, 0.0)))
+    /// What the extension for physically based rendering says: `Pr`, `Pm` and their maps. Then `Kd` is the base colour, and `Ks`, which
+    /// exporters write for others, does not count. An image, where it is `varied`, is shown as it is without its number, or with 0.
+    fn facets(&self, varied: [bool; 2]) -> Option<Facets> {
+        let numbers = [self.roughness, self.metallic];
+        if numbers.iter().all(Option::is_none) && self.roughness_map.is_none() && self.metallic_map.is_none() {
+            return None;
+        }
+        let share = |index: usize, unsaid: f32| match (numbers[index], varied[index]) {
+            (None | Some(0.0), true) => 1.0,
+            (value, _) => value.map_or(unsaid, |value| value.clamp(0.0, 1.0) as f32),
+        };
+        Some(Facets::new(share(0, 1.0)).with_metallic(share(1, 0.0)))
+    }
+
+    /// The images of roughness and of how metallic it is as one, and whether each is available.
+    fn metallic_roughness_texture(&self, used: bool, draft: &mut Draft) -> (Option<TextureUse>, [bool; 2]) {
+        let found = [&self.roughness_map, &self.metallic_map].map(|map| {
+            let map = map.as_ref().filter(|_| used)?;
+            let uses = map.texture_use(&self.path, draft)?;
+            Some((uses, map.channel_of(uses.texture, draft)))
+        });
+        let images = found.map(|image| image.map(|(uses, channel)| (uses.texture, channel)));
+        let placed = found.into_iter().flatten().next();
+        let both = placed.zip(draft.packed(&self.path, images));
+        (both.map(|((uses, _), texture)| TextureUse { texture, ..uses }), found.map(|image| image.is_some()))
     }
 
     /// The image of normals; else that of `bump`, which may be one, too.
@@ -281,10 +323,10 @@ impl Entry {
     fn mask(&self, used: bool, color: Option<TextureUse>, draft: &mut Draft) -> Option<Opacity> {
         let map = self.opacity.as_ref().filter(|_| used)?;
         let texture = map.texture_use(&self.path, draft)?;
-        let channel = map.channel.unwrap_or_else(|| match color {
-            Some(color) if color.texture == texture.texture => OpacityChannel::Alpha,
-            _ => OpacityChannel::suggested_by(&draft.textures[texture.texture as usize]),
-        });
+        let channel = match (map.channel, color) {
+            (None, Some(color)) if color.texture == texture.texture => OpacityChannel::Alpha,
+            _ => map.channel_of(texture.texture, draft),
+        };
         Some(Opacity::by(texture, channel))
     }
 }

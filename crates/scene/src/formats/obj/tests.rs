@@ -4,7 +4,7 @@ use std::fs;
 
 use glam::Vec3;
 
-use crate::{Dielectric, Material, Opacity, OpacityMode, Scene};
+use crate::{Dielectric, Facets, Material, Opacity, OpacityMode, Scene};
 
 const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
 
@@ -247,6 +247,44 @@ fn normals_come_from_norm_and_heights_from_bump() {
     let red = scene.geometry.textures[maps[2].unwrap().uses.texture as usize].texels[1][0];
     assert!(red < 128, "what is higher is to the right");
     assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
+}
+
+#[test]
+fn roughness_and_metal_are_numbers_and_images_of_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let save = |name: &str, side: u32, texel: [u8; 3]| {
+        image::RgbImage::from_pixel(side, side, image::Rgb(texel)).save(folder.path().join(name)).unwrap();
+    };
+    save("rough.png", 2, [51; 3]);
+    save("metal.png", 1, [204; 3]);
+    save("both.png", 2, [9, 60, 70]);
+    let statements = [
+        "Pr 0.5\nPm 0.25",
+        "map_Pr rough.png\nmap_Pm metal.png",
+        "Pr 0.5\nPm 0.25\nmap_Pm metal.png\nmap_Pr rough.png",
+        "map_Pr -clamp on rough.png",
+        "Pr 0\nPm 0\nmap_Pm metal.png",
+        "map_Pr -imfchan g both.png\nmap_Pm -imfchan b both.png",
+        "map_Pr -s 2 2 1 rough.png\nmap_Pm metal.png",
+        "map_Pr gone.png\nmap_Pm gone.png",
+    ];
+    let scene = with_materials(&folder, &statements);
+    let material = |index: usize| &scene.geometry.materials[index];
+    let facets = |roughness: f32, metallic: f32| Some(Facets::new(roughness).with_metallic(metallic));
+    let expected = [(0.5, 0.25), (1.0, 1.0), (0.5, 0.25), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (1.0, 0.0)];
+    for (index, (roughness, metallic)) in expected.into_iter().enumerate() {
+        assert_eq!(material(index).facets, facets(roughness, metallic), "{}", statements[index]);
+        assert_eq!(material(index).ks, Vec3::splat(Facets::LAYER));
+    }
+    let uses = |index: usize| material(index).metallic_roughness_texture;
+    assert_eq!([0, 7].map(uses), [None; 2]);
+    assert_eq!(uses(1), uses(2), "packed once");
+    let texel = |index: usize| scene.geometry.textures[uses(index).unwrap().texture as usize].texels[0];
+    assert_eq!([1, 3, 4].map(texel), [[255, 51, 204, 255], [255, 51, 255, 255], [255, 255, 204, 255]]);
+    assert_eq!((texel(5), texel(6)), ([9, 60, 70, 255], texel(3)));
+    assert_eq!((uses(3).unwrap().wrap[0], uses(6).unwrap().transform.matrix2.x_axis.x), (crate::Wrap::Clamp, 2.0));
+    let warned = |part: &str| scene.warnings.iter().filter(|warning| warning.contains(part)).count();
+    assert_eq!(["1 map_Pm with other options than map_Pr", "gone.png", "textures other than"].map(warned), [1, 1, 0]);
 }
 
 /// A scene with a face of each material, whose statements are given.

@@ -33,7 +33,9 @@ pub(super) fn read(
         let texture = find(draft, &entry.texture);
         let opacity = opacity(source, entry, find(draft, &entry.opacity_texture), draft)?;
         let dielectric = dielectric(source, entry)?;
-        let mut material = Material { texture, opacity, dielectric, ..coefficients(source, entry)? };
+        let metallic_roughness_texture = find(draft, &entry.metallic_roughness_texture);
+        let coefficients = coefficients(source, entry, metallic_roughness_texture.is_some())?;
+        let mut material = Material { texture, metallic_roughness_texture, opacity, dielectric, ..coefficients };
         if entry.emission_texture.is_some() {
             material.emission_texture = find(draft, &entry.emission_texture);
             material.emission = match material.emission_texture {
@@ -49,14 +51,15 @@ pub(super) fn read(
     Ok(names)
 }
 
-fn coefficients(source: &Source, entry: &MaterialEntry) -> Result<Material, LoadError> {
+/// `varied`: whether an image says how rough and metallic it is.
+fn coefficients(source: &Source, entry: &MaterialEntry, varied: bool) -> Result<Material, LoadError> {
     let default = Material::default();
     let kd = entry.kd.as_ref().map_or(Ok(default.kd), |kd| source.color("kd", kd))?;
     let shininess = match &entry.shininess {
         Some(shininess) => source.positive("shininess", shininess)? as f32,
         None => default.shininess,
     };
-    let facets = facets(source, entry)?;
+    let facets = facets(source, entry, varied)?;
     let ks = if facets.is_some() { Vec3::splat(Facets::LAYER) } else { default.ks };
     Ok(Material {
         name: entry.name.get_ref().clone(),
@@ -71,23 +74,31 @@ fn coefficients(source: &Source, entry: &MaterialEntry) -> Result<Material, Load
     })
 }
 
-/// How rough and metallic the surface is, if that is said.
-fn facets(source: &Source, entry: &MaterialEntry) -> Result<Option<Facets>, LoadError> {
+/// How rough and metallic the surface is, if that is said. An image whose factor is not given counts as it is; one that is not available does
+/// not make a metal.
+fn facets(source: &Source, entry: &MaterialEntry, varied: bool) -> Result<Option<Facets>, LoadError> {
     let share =
         |key, value: &Option<Number>| value.as_ref().map(|value| source.between(key, value, 0.0, 1.0)).transpose();
     let (roughness, metallic) = (share("roughness", &entry.roughness)?, share("metallic", &entry.metallic)?);
-    if roughness.is_none() && metallic.is_none() {
+    if roughness.is_none() && metallic.is_none() && entry.metallic_roughness_texture.is_none() {
         return Ok(None);
     }
     if let Some(shininess) = &entry.shininess {
-        let remedy = "remove it, or `roughness` and `metallic`";
+        let remedy = match entry.metallic_roughness_texture {
+            None => "remove it, or `roughness` and `metallic`",
+            Some(_) => "remove it, or `roughness`, `metallic` and `metallic_roughness_texture`",
+        };
         return Err(source.refuse("shininess", shininess, "has no effect on facets", remedy));
     }
     if let Some(ior) = &entry.ior {
-        let remedy = "remove `roughness` and `metallic`, or write `ks` in place of `ior`";
+        let remedy = match entry.metallic_roughness_texture {
+            None => "remove `roughness` and `metallic`, or write `ks` in place of `ior`",
+            Some(_) => "remove it, or `roughness`, `metallic` and `metallic_roughness_texture`",
+        };
         return Err(source.refuse("ior", ior, "makes the surface glass, which has no facets", remedy));
     }
-    let [roughness, metallic] = [roughness.unwrap_or(1.0), metallic.unwrap_or(0.0)].map(|share| share as f32);
+    let unsaid = if varied { 1.0 } else { 0.0 };
+    let [roughness, metallic] = [roughness.unwrap_or(1.0), metallic.unwrap_or(unsaid)].map(|share| share as f32);
     Ok(Some(Facets::new(roughness).with_metallic(metallic)))
 }
 
@@ -98,8 +109,10 @@ fn placed(source: &Source, entry: &MaterialEntry) -> Result<TextureUse, LoadErro
         TextureWrap::Each(words) => words.map(Wrap::from),
     });
     let transform = transform(source, entry)?;
-    let images = [&entry.texture, &entry.emission_texture, &entry.normal_texture, &entry.opacity_texture];
-    if let (true, Some((key, line))) = (images.iter().all(|image| image.is_none()), without_texture(entry)) {
+    let colors = [&entry.texture, &entry.emission_texture];
+    let images = [&entry.normal_texture, &entry.metallic_roughness_texture, &entry.opacity_texture];
+    let mut images = colors.into_iter().chain(images);
+    if let (true, Some((key, line))) = (images.all(|image| image.is_none()), without_texture(entry)) {
         return Err(source.refuse(key, &line, "has no effect without a texture", "add `texture = \"FILE\"`"));
     }
     Ok(TextureUse { wrap, transform, ..TextureUse::new(0) })

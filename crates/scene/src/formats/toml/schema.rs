@@ -296,6 +296,10 @@ pub(crate) struct MaterialEntry {
     /// What the slopes of `normal_texture` are multiplied with. Default: 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) normal_scale: Option<Number>,
+    /// An image that `roughness`, by its green, and `metallic`, by its blue, are multiplied with, as in glTF; placed as `texture` is. Default
+    /// of both with it: 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) metallic_roughness_texture: Option<Text>,
     /// An image that says where the surface is, leaves on a few triangles for example: by its alpha if it has any, else by its luminance.
     /// Placed as `texture` is.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -7,7 +7,7 @@ use std::{fs, path::PathBuf};
 use glam::{DVec3, Vec2, Vec3};
 use tempfile::TempDir;
 
-use crate::{Falloff, Fov, LightKind, Projection, Scene, Weight, Wrap};
+use crate::{Facets, Falloff, Fov, LightKind, Projection, Scene, Weight, Wrap};
 
 /// A folder with a scene file and a mesh of one triangle in it.
 fn folder(text: &str) -> (TempDir, PathBuf) {
@@ -408,6 +408,34 @@ fn a_material_may_have_an_image_of_normals() {
     let (_folder, path) = textured_folder(&text("texture = \"oak.png\"\nnormal_scale = 2"));
     let error = Scene::open(path).unwrap_err().to_string();
     assert!(error.contains("normal_scale") && error.contains("has no effect without an image of normals"), "{error}");
+}
+
+#[test]
+fn a_material_may_have_an_image_of_how_rough_and_metallic_it_is() {
+    let text = |lines: &str| {
+        let shape = "[[box]]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nmaterial = \"wall\"";
+        format!("[[material]]\nname = \"wall\"\n{lines}\n{shape}")
+    };
+    let material = |lines: &str| {
+        let (_folder, path) = textured_folder(&text(lines));
+        let scene = Scene::open(path).unwrap();
+        assert_eq!(scene.geometry.mesh.uvs.is_empty(), scene.geometry.textures.is_empty());
+        scene.geometry.materials[0].clone()
+    };
+    let alone = material("metallic_roughness_texture = \"oak.png\"\ntexture_scale = 3");
+    assert_eq!(alone.facets, Some(Facets::new(1.0).with_metallic(1.0)), "as the image says");
+    assert_eq!(alone.ks, Vec3::splat(Facets::LAYER));
+    let uses = alone.metallic_roughness_texture.unwrap();
+    assert_eq!(uses.transform.matrix2.x_axis, Vec2::new(3.0, 0.0));
+    let factors = material("metallic_roughness_texture = \"oak.png\"\nroughness = 0.5\nmetallic = 0.25");
+    assert_eq!(factors.facets, Some(Facets::new(0.5).with_metallic(0.25)));
+    let gone = material("metallic_roughness_texture = \"gone.png\"");
+    assert_eq!((gone.metallic_roughness_texture, gone.facets), (None, Some(Facets::new(1.0))), "not a metal");
+    for line in ["shininess = 30", "ior = 1.5"] {
+        let (_folder, path) = textured_folder(&text(&format!("metallic_roughness_texture = \"oak.png\"\n{line}")));
+        let error = Scene::open(path).unwrap_err().to_string();
+        assert!(error.contains("facets") && error.contains("`metallic_roughness_texture`"), "{error}");
+    }
 }
 
 #[test]

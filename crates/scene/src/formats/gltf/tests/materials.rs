@@ -273,18 +273,44 @@ fn normals_that_cannot_be_shown_leave_the_surface_as_it_was() {
 }
 
 #[test]
+fn roughness_and_metal_have_an_image() {
+    let mut document = textured();
+    let found = |document: &Value| open(document).geometry.materials[0].metallic_roughness_texture;
+    assert_eq!(found(&document), None);
+    document["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({"index": 0,
+        "extensions": {"KHR_texture_transform": {"offset": [0.5, 0.25]}}});
+    for _ in 0..2 {
+        let uses = found(&document).unwrap();
+        assert_eq!((uses.texture, uses.transform.translation), (0, Vec2::new(0.5, 0.25)));
+        assert_eq!(open(&document).geometry.materials[0].facets, Some(Facets::new(0.5).with_metallic(0.5)));
+        assert_eq!(warnings(&document), "");
+        document["materials"][0]["pbrMetallicRoughness"].as_object_mut().unwrap().remove("baseColorTexture");
+    }
+    let uvs = |document: &Value| open(document).geometry.mesh.uvs.clone();
+    let first = uvs(&document);
+    document["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"]["texCoord"] = json!(1);
+    assert_ne!(uvs(&document), first);
+    document["materials"][0]["extensions"] = json!({"KHR_materials_transmission": {"transmissionFactor": 1}});
+    assert_eq!(found(&document), None, "glass has no facets");
+    let sentence = "1 metallic-roughness texture of a material that transmits light: the material's factors are used";
+    assert!(warnings(&document).contains(sentence), "{}", warnings(&document));
+    document["materials"][0]["extensions"] = json!({"KHR_materials_unlit": {}});
+    assert_eq!(found(&document), None, "nothing is lit");
+}
+
+#[test]
 fn what_of_materials_is_not_shown_is_one_sentence_a_kind() {
     let mut document = textured();
     let material = &mut document["materials"][0];
     material["occlusionTexture"] = json!({"index": 0});
-    material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({"index": 0});
+    material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({"index": 0, "texCoord": 1});
     material["alphaMode"] = json!("BLEND");
     let other = material.clone();
     document["materials"].as_array_mut().unwrap().push(other);
     document["materials"][1]["alphaMode"] = json!("CLOUDS");
     let warnings = warnings(&document);
     for sentence in [
-        "2 metallic-roughness textures not shown",
+        "2 metallic-roughness textures that cannot be placed beside the other images: the material's factors are used",
         "2 occlusion textures not shown",
         "1 material with an unknown alphaMode: shown opaque",
     ] {
