@@ -273,8 +273,13 @@ constants! {
     LARGEST_EXPONENT: f32 = 87.0;
     /// A ray goes through so many surfaces.
     MOST_THROUGHS: u32 = 64;
-    /// A ray goes on through a surface if at least this share of the radiance behind it reaches the pixel: less changes no code of an image.
-    LEAST_THROUGH: f32 = 1.0 / 4096.0;
+    /// A ray goes on at a surface, through it or mirrored, if at least this share of the radiance that it sees reaches the pixel: less changes
+    /// no code of an image.
+    LEAST_ONWARD: f32 = 1.0 / 4096.0;
+    /// Surfaces that mirror this share at most are faint mirrors: half of a pixel's samples show what is in them.
+    FAINT_MIRROR: f32 = 1.0 / 8.0;
+    /// Mirror rays of a pixel that meet one surface are one if at most this share of what it mirrors reaches the pixel.
+    MOST_MERGED: f32 = 1.0 / 32.0;
 
     // Lights.
 

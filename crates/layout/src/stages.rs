@@ -244,12 +244,12 @@ records! {
         owners: Out<u8>,
         /// Radiance by pixel, with what samples share.
         color: Out<Vec3>,
-        /// Number of shared fragments and of single samples of each block; after the scans, of all blocks before it.
-        counts: [Out<u32>; 2],
-        /// Shared fragments, and single samples.
-        fragments: [Out<ListedRay>; 2],
+        /// Number of shared fragments, of single samples and of mirror samples of each block; after the scans, of all blocks before it.
+        counts: [Out<u32>; 3],
+        /// Shared fragments, single samples and mirror samples.
+        fragments: [Out<ListedRay>; 3],
         /// What they see.
-        fragment_hits: [Out<Hit>; 2],
+        fragment_hits: [Out<Hit>; 3],
         /// Share of samples that see anything, by pixel; null if that is not kept.
         coverage: Out<f32>,
         /// How much light shadow catchers get, by pixel; null if that is not kept.
@@ -322,6 +322,28 @@ records! {
         onward: Out<ListedRay>,
         /// Their cones; null if textures are not filtered.
         cones: Out<Cone>,
+    }
+
+    /// `merge_mirrored`, `count_merged` and `emit_merged`: one thread per ray.
+    MergedRays {
+        /// The scene.
+        scene: Scene,
+        /// Mirrored rays.
+        rays: Rays,
+        /// Their hits.
+        hits: In<Hit>,
+        /// Of each ray, those that are merged with it: bit k stands for the k-th ray after it; 0 if it is merged with one before.
+        merged: Out<u32>,
+        /// Number of rays that are left of each block of 256 rays; after the scan, of all blocks before it.
+        counts: Out<u32>,
+        /// The rays that are left, in their order.
+        left: Out<ListedRay>,
+        /// Their hits.
+        left_hits: Out<Hit>,
+        /// Their cones; null if textures are not filtered.
+        cones: Out<Cone>,
+        /// The distance between the surface points of neighbouring pixels: a constant, and a multiple of their distance.
+        spacing: [f32; 2],
     }
 
     /// `group_points` and `gather_items`: one block per tile of 1024 rays.

@@ -25,6 +25,8 @@ use crate::view::View;
 
 /// A shared fragment takes this part of a pixel's samples of lights. Two or three of them make most of these pixels.
 const PARTS_OF_FRAGMENT: u32 = 4;
+/// A merged mirror ray takes this part. One or two of them make most of what is in a mirror.
+const PARTS_OF_MERGED: u32 = 2;
 
 /// Visibility at given points, to be computed.
 pub(crate) struct Baking<'a, B: Backend> {
@@ -101,6 +103,24 @@ impl<B: Backend> Light<'_, '_, B> {
     }
 }
 
+/// Which depths of a wave are rendered: how often its rays went on at surfaces.
+#[derive(Clone, Copy)]
+struct Depths {
+    first: u32,
+    /// Whether no others follow.
+    last: bool,
+    /// Whether rays of a pixel that meet one surface are merged.
+    merge: bool,
+}
+
+impl Depths {
+    const ALL: Depths = Depths { first: 0, last: false, merge: false };
+    /// What is in mirrors is rendered otherwise.
+    const FIRST: Depths = Depths { last: true, ..Depths::ALL };
+    /// What mirrors show of the samples of pixels.
+    const MIRRORED: Depths = Depths { first: 1, merge: true, ..Depths::ALL };
+}
+
 /// The passes over one image.
 pub(crate) struct Passes<'a, B: Backend> {
     pub(crate) run: Run<'a, B>,
@@ -148,7 +168,7 @@ impl<B: Backend> Passes<'_, B> {
         }
         let rays = run.stage(Stage::CameraRays, [pixels; 2], |backend| backend.camera_rays(view, all, plan.bounces))?;
         match &plan.antialiasing {
-            None => self.waves(rays, None, 1, &mut film)?,
+            None => self.waves(rays, None, Depths::ALL, 1, &mut film)?,
             Some(samples) => self.samples(rays, samples, &mut film)?,
         }
         run.backend.finish(run.job)?;
@@ -161,30 +181,45 @@ impl<B: Backend> Passes<'_, B> {
         &self,
         mut rays: B::Rays,
         mut known: Option<B::Hits>,
+        depths: Depths,
         parts: u32,
         film: &mut B::Film,
     ) -> Result<(), RenderError> {
         let Passes { run, scene, plan, .. } = self;
-        for depth in 0.. {
-            let n = run.backend.ray_count(&rays);
+        for depth in depths.first.. {
+            let mut n = run.backend.ray_count(&rays);
             if n == 0 {
                 break;
             }
-            if depth > 0 {
+            if depths.merge {
+                // The rest once they are merged.
+                run.job.work.expect(n as u64);
+            } else if depth > 0 {
                 run.job.work.expect(self.pieces_of_wave(depth, n as u64));
             }
-            let hits = match known.take() {
+            let mut hits = match known.take() {
                 Some(hits) => hits,
                 None => run.stage(Stage::PrimaryRays, [n; 2], |backend| backend.primary_rays(run.job, scene, &rays))?,
             };
-            let wave = WaveOf::<B> { job: run.job, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts };
+            if depths.merge {
+                let wave = self.wave(&rays, &hits, parts);
+                (rays, hits) = run.stage(Stage::MirrorRays, [0; 2], |backend| backend.merged_rays(&wave))?;
+                n = run.backend.ray_count(&rays);
+                run.job.work.expect(self.pieces_of_wave(depth, n as u64) - n as u64);
+            }
+            let wave = self.wave(&rays, &hits, parts);
             self.light(&wave, film)?;
-            if depth >= plan.bounces && !plan.lets_through {
+            if depths.last || depth >= plan.bounces && !plan.lets_through {
                 break;
             }
             rays = run.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
         }
         Ok(())
+    }
+
+    /// Rays with what they see, each of which takes one of `parts` parts of the samples of lights.
+    fn wave<'w>(&'w self, rays: &'w B::Rays, hits: &'w B::Hits, parts: u32) -> WaveOf<'w, B> {
+        WaveOf::<B> { job: self.run.job, scene: self.scene, rays, hits, lights: LightGroup::ALL, parts }
     }
 
     /// Adds the light that a wave's surface points reflect.
@@ -221,21 +256,38 @@ impl<B: Backend> Passes<'_, B> {
             let mut samples = run.stage(Stage::PrimaryRays, [pieces; 2], |backend| {
                 backend.pixel_samples(run.job, scene, &mut rays, &mut hits, film, &range)
             })?;
-            let wave = WaveOf::<B> { job: run.job, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
+            let wave = self.wave(&rays, &hits, 1);
             if !all.apart {
                 self.light(&wave, film)?;
             }
 
             // The others, by surface or sample by sample.
-            let lists =
+            let [shared, single, mirror] =
                 run.stage(Stage::CameraRays, [n; 2], |backend| backend.fragments(&wave, &mut samples, film, all))?;
-            for ((list, hits), parts) in lists.into_iter().zip([PARTS_OF_FRAGMENT, all.samples]) {
+            for ((list, hits), depths, parts) in
+                [(shared, Depths::FIRST, PARTS_OF_FRAGMENT), (single, Depths::ALL, all.samples)]
+            {
                 let fragments = run.backend.ray_count(&list) as u64;
                 run.job.work.expect(self.pieces_of_wave(0, fragments) - fragments);
-                self.waves(list, Some(hits), parts, film)?;
+                self.waves(list, Some(hits), depths, parts, film)?;
             }
+            self.mirrors(mirror, film)?;
         }
         Ok(())
+    }
+
+    /// Renders what samples that are not shaded themselves show in mirrors.
+    fn mirrors(&self, (rays, hits): (B::Rays, B::Hits), film: &mut B::Film) -> Result<(), RenderError> {
+        let run = &self.run;
+        let n = run.backend.ray_count(&rays);
+        if n == 0 {
+            return Ok(());
+        }
+        run.job.work.expect(n as u64);
+        let wave = self.wave(&rays, &hits, 1);
+        let mirrored = run.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
+        drop((rays, hits));
+        self.waves(mirrored, None, Depths::MIRRORED, PARTS_OF_MERGED, film)
     }
 
     /// Pieces of work of a wave of `rays` rays in all of its stages.

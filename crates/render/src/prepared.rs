@@ -290,6 +290,12 @@ impl PreparedScene {
         self.scene.geometry.materials.iter().any(|material| material.catcher)
     }
 
+    /// Whether it matters how wide the samples of pixels are: to images, and to what facets reflect.
+    pub(crate) fn has_cones(&self) -> bool {
+        let has_facets = || self.scene.geometry.materials.iter().any(|material| material.faceted().is_some());
+        !self.geometry.mip_levels.is_empty() || has_facets()
+    }
+
     /// Whether rays may go through surfaces.
     pub(crate) fn lets_through(&self) -> bool {
         self.scene.geometry.materials.iter().any(Material::lets_through)

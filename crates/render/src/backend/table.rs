@@ -16,14 +16,14 @@ macro_rules! stage_table {
                 film: &mut Self::Film,
                 range: &SampleRange
             ) -> Self::Samples;
-            /// Parts the samples of the pixels that are not shared, or should not be: shared fragments, and single samples, with what they
-            /// see.
+            /// Parts the samples of the pixels that are not shared, or should not be: shared fragments, single samples, and those that show what
+            /// is in mirrors, with what they see.
             fragments(
                 wave: &WaveOf<Self>,
                 samples: &mut Self::Samples,
                 film: &mut Self::Film,
                 all: &Antialiasing
-            ) -> [(Self::Rays, Self::Hits); 2];
+            ) -> [(Self::Rays, Self::Hits); 3];
             /// Groups surface points by cell of the light mesh.
             cells(wave: &WaveOf<Self>, mesh: &LightMesh) -> Self::Cells;
             /// Tests which light points each surface point sees. Formula (2).
@@ -61,6 +61,8 @@ macro_rules! stage_table {
             /// Generates the rays of the last term of formula (1), from every mirroring surface point along the mirrored view, unless they were
             /// mirrored often enough; and those that go straight on where a surface is not opaque.
             mirror_rays(wave: &WaveOf<Self>) -> Self::Rays;
+            /// Merges the mirrored rays of each pixel that meet one surface, with what they see.
+            merged_rays(wave: &WaveOf<Self>) -> (Self::Rays, Self::Hits);
         }
     };
 }

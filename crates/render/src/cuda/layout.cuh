@@ -180,8 +180,13 @@
 #define LARGEST_EXPONENT 0x1.5cp6f
 // A ray goes through so many surfaces.
 #define MOST_THROUGHS 64u
-// A ray goes on through a surface if at least this share of the radiance behind it reaches the pixel: less changes no code of an image.
-#define LEAST_THROUGH 0x1p-12f
+// A ray goes on at a surface, through it or mirrored, if at least this share of the radiance that it sees reaches the pixel: less changes
+// no code of an image.
+#define LEAST_ONWARD 0x1p-12f
+// Surfaces that mirror this share at most are faint mirrors: half of a pixel's samples show what is in them.
+#define FAINT_MIRROR 0x1p-3f
+// Mirror rays of a pixel that meet one surface are one if at most this share of what it mirrors reaches the pixel.
+#define MOST_MERGED 0x1p-5f
 // Sample points of a light that determine its share above the horizon.
 #define HORIZON_SAMPLES 64u
 // Points of an area light from which its unshadowed light is computed.
@@ -786,8 +791,9 @@ struct alignas(4) Material {
     float cosine;
     float unmirrored;
     float opacity;
+    unsigned metallic_roughness_texture;
 };
-static_assert(sizeof(Material) == 232, "size of Material");
+static_assert(sizeof(Material) == 236, "size of Material");
 static_assert(PLACE_OF(Material, ka) == 0, "place of Material::ka");
 static_assert(PLACE_OF(Material, shininess) == 12, "place of Material::shininess");
 static_assert(PLACE_OF(Material, kd) == 16, "place of Material::kd");
@@ -822,6 +828,7 @@ static_assert(PLACE_OF(Material, gain) == 208, "place of Material::gain");
 static_assert(PLACE_OF(Material, cosine) == 220, "place of Material::cosine");
 static_assert(PLACE_OF(Material, unmirrored) == 224, "place of Material::unmirrored");
 static_assert(PLACE_OF(Material, opacity) == 228, "place of Material::opacity");
+static_assert(PLACE_OF(Material, metallic_roughness_texture) == 232, "place of Material::metallic_roughness_texture");
 
 struct alignas(8) EnvironmentLevel {
     const Vec3 *texels;
@@ -1656,9 +1663,9 @@ struct alignas(8) PixelSamples {
     unsigned *state;
     unsigned char *owners;
     Vec3 *color;
-    unsigned *counts[2];
-    ListedRay *fragments[2];
-    Hit *fragment_hits[2];
+    unsigned *counts[3];
+    ListedRay *fragments[3];
+    Hit *fragment_hits[3];
     float *coverage;
     float *caught;
     float *depth;
@@ -1688,7 +1695,7 @@ struct alignas(8) PixelSamples {
     unsigned matte_slots;
     float quantiles[64];
 };
-static_assert(sizeof(PixelSamples) == 1232, "size of PixelSamples");
+static_assert(sizeof(PixelSamples) == 1256, "size of PixelSamples");
 static_assert(PLACE_OF(PixelSamples, scene) == 0, "place of PixelSamples::scene");
 static_assert(PLACE_OF(PixelSamples, rays) == 592, "place of PixelSamples::rays");
 static_assert(PLACE_OF(PixelSamples, hits) == 712, "place of PixelSamples::hits");
@@ -1697,36 +1704,36 @@ static_assert(PLACE_OF(PixelSamples, state) == 728, "place of PixelSamples::stat
 static_assert(PLACE_OF(PixelSamples, owners) == 736, "place of PixelSamples::owners");
 static_assert(PLACE_OF(PixelSamples, color) == 744, "place of PixelSamples::color");
 static_assert(PLACE_OF(PixelSamples, counts) == 752, "place of PixelSamples::counts");
-static_assert(PLACE_OF(PixelSamples, fragments) == 768, "place of PixelSamples::fragments");
-static_assert(PLACE_OF(PixelSamples, fragment_hits) == 784, "place of PixelSamples::fragment_hits");
-static_assert(PLACE_OF(PixelSamples, coverage) == 800, "place of PixelSamples::coverage");
-static_assert(PLACE_OF(PixelSamples, caught) == 808, "place of PixelSamples::caught");
-static_assert(PLACE_OF(PixelSamples, depth) == 816, "place of PixelSamples::depth");
-static_assert(PLACE_OF(PixelSamples, normal) == 824, "place of PixelSamples::normal");
-static_assert(PLACE_OF(PixelSamples, position) == 832, "place of PixelSamples::position");
-static_assert(PLACE_OF(PixelSamples, visibility) == 840, "place of PixelSamples::visibility");
-static_assert(PLACE_OF(PixelSamples, light_points) == 848, "place of PixelSamples::light_points");
-static_assert(PLACE_OF(PixelSamples, light_groups) == 856, "place of PixelSamples::light_groups");
-static_assert(PLACE_OF(PixelSamples, ids) == 864, "place of PixelSamples::ids");
-static_assert(PLACE_OF(PixelSamples, mattes) == 872, "place of PixelSamples::mattes");
-static_assert(PLACE_OF(PixelSamples, tally) == 880, "place of PixelSamples::tally");
-static_assert(PLACE_OF(PixelSamples, first_block) == 888, "place of PixelSamples::first_block");
-static_assert(PLACE_OF(PixelSamples, seed) == 896, "place of PixelSamples::seed");
-static_assert(PLACE_OF(PixelSamples, film_pixels) == 904, "place of PixelSamples::film_pixels");
-static_assert(PLACE_OF(PixelSamples, spacing) == 912, "place of PixelSamples::spacing");
-static_assert(PLACE_OF(PixelSamples, samples) == 920, "place of PixelSamples::samples");
-static_assert(PLACE_OF(PixelSamples, inner) == 928, "place of PixelSamples::inner");
-static_assert(PLACE_OF(PixelSamples, all_samples) == 936, "place of PixelSamples::all_samples");
-static_assert(PLACE_OF(PixelSamples, together) == 940, "place of PixelSamples::together");
-static_assert(PLACE_OF(PixelSamples, lanes) == 944, "place of PixelSamples::lanes");
-static_assert(PLACE_OF(PixelSamples, light_count) == 948, "place of PixelSamples::light_count");
-static_assert(PLACE_OF(PixelSamples, weight) == 952, "place of PixelSamples::weight");
-static_assert(PLACE_OF(PixelSamples, contrast) == 956, "place of PixelSamples::contrast");
-static_assert(PLACE_OF(PixelSamples, apart) == 960, "place of PixelSamples::apart");
-static_assert(PLACE_OF(PixelSamples, mirrors) == 964, "place of PixelSamples::mirrors");
-static_assert(PLACE_OF(PixelSamples, keeps) == 968, "place of PixelSamples::keeps");
-static_assert(PLACE_OF(PixelSamples, matte_slots) == 972, "place of PixelSamples::matte_slots");
-static_assert(PLACE_OF(PixelSamples, quantiles) == 976, "place of PixelSamples::quantiles");
+static_assert(PLACE_OF(PixelSamples, fragments) == 776, "place of PixelSamples::fragments");
+static_assert(PLACE_OF(PixelSamples, fragment_hits) == 800, "place of PixelSamples::fragment_hits");
+static_assert(PLACE_OF(PixelSamples, coverage) == 824, "place of PixelSamples::coverage");
+static_assert(PLACE_OF(PixelSamples, caught) == 832, "place of PixelSamples::caught");
+static_assert(PLACE_OF(PixelSamples, depth) == 840, "place of PixelSamples::depth");
+static_assert(PLACE_OF(PixelSamples, normal) == 848, "place of PixelSamples::normal");
+static_assert(PLACE_OF(PixelSamples, position) == 856, "place of PixelSamples::position");
+static_assert(PLACE_OF(PixelSamples, visibility) == 864, "place of PixelSamples::visibility");
+static_assert(PLACE_OF(PixelSamples, light_points) == 872, "place of PixelSamples::light_points");
+static_assert(PLACE_OF(PixelSamples, light_groups) == 880, "place of PixelSamples::light_groups");
+static_assert(PLACE_OF(PixelSamples, ids) == 888, "place of PixelSamples::ids");
+static_assert(PLACE_OF(PixelSamples, mattes) == 896, "place of PixelSamples::mattes");
+static_assert(PLACE_OF(PixelSamples, tally) == 904, "place of PixelSamples::tally");
+static_assert(PLACE_OF(PixelSamples, first_block) == 912, "place of PixelSamples::first_block");
+static_assert(PLACE_OF(PixelSamples, seed) == 920, "place of PixelSamples::seed");
+static_assert(PLACE_OF(PixelSamples, film_pixels) == 928, "place of PixelSamples::film_pixels");
+static_assert(PLACE_OF(PixelSamples, spacing) == 936, "place of PixelSamples::spacing");
+static_assert(PLACE_OF(PixelSamples, samples) == 944, "place of PixelSamples::samples");
+static_assert(PLACE_OF(PixelSamples, inner) == 952, "place of PixelSamples::inner");
+static_assert(PLACE_OF(PixelSamples, all_samples) == 960, "place of PixelSamples::all_samples");
+static_assert(PLACE_OF(PixelSamples, together) == 964, "place of PixelSamples::together");
+static_assert(PLACE_OF(PixelSamples, lanes) == 968, "place of PixelSamples::lanes");
+static_assert(PLACE_OF(PixelSamples, light_count) == 972, "place of PixelSamples::light_count");
+static_assert(PLACE_OF(PixelSamples, weight) == 976, "place of PixelSamples::weight");
+static_assert(PLACE_OF(PixelSamples, contrast) == 980, "place of PixelSamples::contrast");
+static_assert(PLACE_OF(PixelSamples, apart) == 984, "place of PixelSamples::apart");
+static_assert(PLACE_OF(PixelSamples, mirrors) == 988, "place of PixelSamples::mirrors");
+static_assert(PLACE_OF(PixelSamples, keeps) == 992, "place of PixelSamples::keeps");
+static_assert(PLACE_OF(PixelSamples, matte_slots) == 996, "place of PixelSamples::matte_slots");
+static_assert(PLACE_OF(PixelSamples, quantiles) == 1000, "place of PixelSamples::quantiles");
 
 struct alignas(8) MirrorRays {
     Scene scene;
@@ -1743,6 +1750,28 @@ static_assert(PLACE_OF(MirrorRays, hits) == 712, "place of MirrorRays::hits");
 static_assert(PLACE_OF(MirrorRays, counts) == 720, "place of MirrorRays::counts");
 static_assert(PLACE_OF(MirrorRays, onward) == 728, "place of MirrorRays::onward");
 static_assert(PLACE_OF(MirrorRays, cones) == 736, "place of MirrorRays::cones");
+
+struct alignas(8) MergedRays {
+    Scene scene;
+    Rays rays;
+    const Hit *hits;
+    unsigned *merged;
+    unsigned *counts;
+    ListedRay *left;
+    Hit *left_hits;
+    Cone *cones;
+    float spacing[2];
+};
+static_assert(sizeof(MergedRays) == 768, "size of MergedRays");
+static_assert(PLACE_OF(MergedRays, scene) == 0, "place of MergedRays::scene");
+static_assert(PLACE_OF(MergedRays, rays) == 592, "place of MergedRays::rays");
+static_assert(PLACE_OF(MergedRays, hits) == 712, "place of MergedRays::hits");
+static_assert(PLACE_OF(MergedRays, merged) == 720, "place of MergedRays::merged");
+static_assert(PLACE_OF(MergedRays, counts) == 728, "place of MergedRays::counts");
+static_assert(PLACE_OF(MergedRays, left) == 736, "place of MergedRays::left");
+static_assert(PLACE_OF(MergedRays, left_hits) == 744, "place of MergedRays::left_hits");
+static_assert(PLACE_OF(MergedRays, cones) == 752, "place of MergedRays::cones");
+static_assert(PLACE_OF(MergedRays, spacing) == 760, "place of MergedRays::spacing");
 
 struct alignas(8) GroupCells {
     Scene scene;

@@ -53,7 +53,7 @@ pub struct RayList {
     /// The share of a ray's radiance that reaches its pixel. Empty for camera rays, which contribute all of it.
     pub weights: Vec<Vec3>,
     /// The distance between the surface points of neighbouring pixels that face the camera: a constant, and a multiple of the
-    /// distance from the camera. Zero if the rays are not a camera's.
+    /// distance from the camera, or from the mirror. Zero if the rays do not come from a camera.
     pub spacing: [f32; 2],
     /// The cone around each ray, if they have none of their own.
     pub cone: Cone,

@@ -10,6 +10,7 @@ pub(crate) mod interpolate;
 pub(crate) mod items;
 pub(crate) mod light_points;
 pub(crate) mod long_tests;
+pub(crate) mod merged_rays;
 pub(crate) mod mirror_rays;
 pub(crate) mod occluder_lists;
 pub(crate) mod pixel_samples;

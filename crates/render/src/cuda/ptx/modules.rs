@@ -18,6 +18,7 @@
     ("light_points", include_str!("light_points.ptx")),
     ("long_tests", include_str!("long_tests.ptx")),
     ("long_tests_cut_out", include_str!("long_tests_cut_out.ptx")),
+    ("merged_rays", include_str!("merged_rays.ptx")),
     ("mirror_rays", include_str!("mirror_rays.ptx")),
     ("occluder_lists", include_str!("occluder_lists.ptx")),
     ("occluder_lists_cut_out", include_str!("occluder_lists_cut_out.ptx")),

@@ -14,18 +14,18 @@ use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
 use crate::data::wave::HostWave;
 use crate::sampling::Pattern;
-use crate::stages::pixel_samples::alike::{Facet, goes_on};
+use crate::stages::pixel_samples::alike::{Facet, lets_through, mirrored_samples};
 
 /// Number of pixels per task.
 const BATCH: usize = 1024;
 
-/// The shared fragments and the single samples of the pixels that count, with what they see.
+/// The shared fragments, the single samples and the mirror samples of the pixels that count, with what they see.
 pub(crate) fn fragments(
     wave: &HostWave,
     samples: &mut PixelSamples,
     film: &mut Picture,
     all: &Antialiasing,
-) -> [(RayList, Vec<Hit>); 2] {
+) -> [(RayList, Vec<Hit>); 3] {
     // 1. Which shared pixels are split?
     if !all.apart {
         let indices = 0..samples.state.len() as u32;
@@ -38,15 +38,15 @@ pub(crate) fn fragments(
     let width = film.size[0];
     let kept = film.kept.start * width..film.kept.end * width;
     let of_batch = |pixels: &[u32]| {
-        let mut lists = [(); 2].map(|()| (wave.rays.empty(), Vec::new()));
+        let mut lists = [(); 3].map(|()| (wave.rays.empty(), Vec::new()));
         for &pixel in pixels.iter().filter(|pixel| kept.contains(pixel)) {
             Pixel { wave, samples, all, pixel }.add_fragments(&mut lists);
         }
         wave.job.piece(pixels.len(), || ());
         lists
     };
-    let parts: Vec<[(RayList, Vec<Hit>); 2]> = wave.rays.pixels.par_chunks(BATCH).map(of_batch).collect();
-    let mut lists = [0, 1].map(|list| {
+    let parts: Vec<[(RayList, Vec<Hit>); 3]> = wave.rays.pixels.par_chunks(BATCH).map(of_batch).collect();
+    let mut lists = [0, 1, 2].map(|list| {
         let count = parts.iter().map(|part| part[list].1.len()).sum();
         let mut rays = wave.rays.empty();
         rays.reserve(count);
@@ -58,7 +58,7 @@ pub(crate) fn fragments(
             hits.append(&mut part_hits);
         }
     }
-    let found = lists.iter().flat_map(|(_, hits)| hits).filter(|hit| hit.is_some()).count();
+    let found = lists[..2].iter().flat_map(|(_, hits)| hits).filter(|hit| hit.is_some()).count();
     Tally::add(&wave.job.tally.surface_points, found as u64);
     if !all.apart {
         let sampled = Sampled { hits: samples.hits.clone(), first: samples.first, count: samples.numbers.len() };
@@ -125,18 +125,19 @@ struct Pixel<'a> {
 }
 
 impl Pixel<'_> {
-    /// Adds its shared fragments and its single samples.
-    fn add_fragments(&self, lists: &mut [(RayList, Vec<Hit>); 2]) {
+    /// Adds its shared fragments, its single samples and its mirror samples.
+    fn add_fragments(&self, lists: &mut [(RayList, Vec<Hit>); 3]) {
         let Pixel { wave, samples, all, pixel } = *self;
         let state = samples.state[(pixel - samples.first) as usize];
-        if state == PIXEL_SHARED {
-            return;
-        }
-        let count = samples.numbers.len() as u32;
         let pattern = all.pattern(self.wave.rays.window.number(pixel));
         let mut add =
             |list: usize, sample, shared, weight| self.add(&mut lists[list], &pattern, sample, shared, weight);
-        let single = 1.0 / all.samples as f32;
+        let (count, single) = (samples.numbers.len() as u32, 1.0 / all.samples as f32);
+        if state == PIXEL_SHARED {
+            let followed = mirrored_samples(wave.scene, all, samples.hit(pixel, 0), count);
+            (0..followed).for_each(|sample| add(2, sample, 0, count as f32 / (followed * all.samples) as f32));
+            return;
+        }
         if all.apart || state & PIXEL_SPLIT != 0 {
             (0..count).for_each(|sample| add(1, sample, 0, single));
             return;
@@ -146,12 +147,16 @@ impl Pixel<'_> {
         for first in (0..count).filter(|&sample| u32::from(owners[sample as usize]) == sample) {
             // What sees nothing costs nothing.
             let hit = samples.hit(pixel, first);
-            if goes_on(wave.scene, all, hit) {
+            if lets_through(wave.scene, hit) {
                 owned(first).for_each(|sample| add(1, sample, 0, single));
                 continue;
             }
             let part = owned(first).fold(0_u32, |part, sample| part | 1 << sample);
-            add(0, first, part, part.count_ones() as f32 / all.samples as f32);
+            let size = part.count_ones();
+            add(0, first, part, size as f32 / all.samples as f32);
+            let followed = mirrored_samples(wave.scene, all, hit, size);
+            let weight = size as f32 / (followed * all.samples) as f32;
+            owned(first).take(followed as usize).for_each(|sample| add(2, sample, 0, weight));
         }
     }
 

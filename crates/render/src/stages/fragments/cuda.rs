@@ -20,14 +20,14 @@ const FIRST: u64 = 256;
 /// Rays with what they see.
 type Fragments<R> = (DeviceRays<R>, DeviceHits<R>);
 
-/// The shared fragments and the single samples of the pixels that count, with what they see.
+/// The shared fragments, the single samples and the mirror samples of the pixels that count, with what they see.
 pub(crate) fn fragments<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
     samples: &mut DeviceSamples<R>,
     film: &mut DeviceFilm<R>,
     all: &Antialiasing,
-) -> Result<[Fragments<R>; 2], RenderError> {
+) -> Result<[Fragments<R>; 3], RenderError> {
     let (pool, rays) = (cuda.pool(), wave.rays);
     let blocks = rays.blocks(BLOCK_SIDE);
     let launch = |kernel: Kernel, progress: usize, record: PixelSamples| {
@@ -39,8 +39,9 @@ pub(crate) fn fragments<R: Runtime>(
     let counts = [
         pool.room("counts of shared fragments", blocks as usize + 1)?,
         pool.room("counts of single samples", blocks as usize + 1)?,
+        pool.room("counts of mirror samples", blocks as usize + 1)?,
     ];
-    let mut record = PixelSamples { counts: [counts[0].output(), counts[1].output()], ..samples.record };
+    let mut record = PixelSamples { counts: counts.each_ref().map(Buffer::output), ..samples.record };
     record.inner = film.kept_places().map(|place| place as u32);
 
     // 1. Which shared pixels are split?
@@ -49,13 +50,17 @@ pub(crate) fn fragments<R: Runtime>(
     }
     // 2. How many fragments does each block have, and where do they begin?
     launch(COUNT, rays.len(), record)?;
-    let totals = cuda.scan_totals([&counts[0], &counts[1]])?;
+    let totals = cuda.scan_totals(counts.each_ref())?;
     // 3. The fragments.
-    let lists =
-        [pool.room::<ListedRay>("shared fragments", totals[0])?, pool.room::<ListedRay>("single samples", totals[1])?];
-    let hits = [pool.room("hits of fragments", totals[0])?, pool.room("hits of fragments", totals[1])?];
-    record.fragments = [lists[0].output(), lists[1].output()];
-    record.fragment_hits = [hits[0].output(), hits[1].output()];
+    let lists = [
+        pool.room::<ListedRay>("shared fragments", totals[0])?,
+        pool.room::<ListedRay>("single samples", totals[1])?,
+        pool.room::<ListedRay>("mirror samples", totals[2])?,
+    ];
+    let room = |total: usize| pool.room("hits of fragments", total);
+    let hits = [room(totals[0])?, room(totals[1])?, room(totals[2])?];
+    record.fragments = lists.each_ref().map(Buffer::output);
+    record.fragment_hits = hits.each_ref().map(Buffer::output);
     launch(EMIT, 0, record)?;
     let sampled = || DeviceSampled {
         hits: samples.hits.clone(),
@@ -75,6 +80,6 @@ pub(crate) fn fragments<R: Runtime>(
         };
         (several, DeviceHits { hits })
     };
-    let ([shared, single], [shared_hits, single_hits]) = (lists, hits);
-    Ok([fragments(shared, shared_hits), fragments(single, single_hits)])
+    let ([shared, single, mirror], [shared_hits, single_hits, mirror_hits]) = (lists, hits);
+    Ok([fragments(shared, shared_hits), fragments(single, single_hits), fragments(mirror, mirror_hits)])
 }

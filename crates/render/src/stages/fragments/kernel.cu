@@ -71,14 +71,14 @@ DEVICE unsigned part_of(const PixelSamples &args, unsigned index, unsigned owner
 
 // The number of fragments in each list.
 struct Counted {
-    unsigned counts[2];
+    unsigned counts[3];
 };
 
 DEVICE void take(const PixelSamples &, unsigned, Counted &counted, unsigned list, unsigned, unsigned, float) { ++counted.counts[list]; }
 
 // Where the next fragment of each list is written, and how many see a surface so far.
 struct Written {
-    unsigned places[2], found;
+    unsigned places[3], found;
 };
 
 DEVICE void take(const PixelSamples &args, unsigned index, Written &written, unsigned list, unsigned sample, unsigned shared,
@@ -89,14 +89,23 @@ DEVICE void take(const PixelSamples &args, unsigned index, Written &written, uns
         ray.origin, args.rays.first_pixel + index, ray.direction, args.samples[0] + sample + 1, splat(weight), shared};
     const Hit hit = sample_hit(args, index, sample);
     store_hit(args.fragment_hits[list], place, hit);
-    written.found += hit.triangle != Hit::NONE;
+    written.found += list < 2 && hit.triangle != Hit::NONE;
 }
 
-// Hands the shared fragments and the single samples of a pixel to `taker`.
+// Hands the samples of `part`, which lie on one surface, to `taker` as far as their mirror rays are followed.
+template <class Taker>
+DEVICE void add_mirrored(const PixelSamples &args, unsigned index, const Hit &hit, unsigned part, Taker &taker) {
+    const unsigned size = __popc(part), followed = mirrored_samples(args, hit, size);
+    unsigned left = part;
+    for (unsigned sample = 0; sample < followed; ++sample, left &= left - 1)
+        take(args, index, taker, 2, __ffs(left) - 1, 0, (float)size / (float)(followed * args.all_samples));
+}
+
+// Hands the shared fragments, the single samples and the mirror samples of a pixel to `taker`.
 template <class Taker>
 DEVICE void add_fragments(const PixelSamples &args, unsigned index, Taker &taker) {
     const unsigned state = args.state[index], count = args.samples[1];
-    if (state == PIXEL_SHARED || index < args.inner[0] || index >= args.inner[1])
+    if (index < args.inner[0] || index >= args.inner[1])
         return;
     if (args.apart || (state & PIXEL_SPLIT)) {
         for (unsigned sample = 0; sample < count; ++sample)
@@ -104,17 +113,22 @@ DEVICE void add_fragments(const PixelSamples &args, unsigned index, Taker &taker
         return;
     }
     unsigned rest = count == WARP ? ALL_LANES : (1u << count) - 1;
+    if (state == PIXEL_SHARED) {
+        add_mirrored(args, index, sample_hit(args, index, 0), rest, taker);
+        return;
+    }
     while (rest != 0) {
         const unsigned first = __ffs(rest) - 1, part = part_of(args, index, first);
         rest &= ~part;
         // What sees nothing costs nothing.
         const Hit hit = sample_hit(args, index, first);
-        if (hit.triangle != Hit::NONE && goes_on(args, hit)) {
+        if (lets_through(args.scene, hit)) {
             for (unsigned left = part; left != 0; left &= left - 1)
                 take(args, index, taker, 1, __ffs(left) - 1, 0, args.weight);
             continue;
         }
         take(args, index, taker, 0, first, part, (float)__popc(part) / (float)args.all_samples);
+        add_mirrored(args, index, hit, part, taker);
     }
 }
 
@@ -148,7 +162,7 @@ KERNEL(count_fragments, PixelSamples, BLOCK, 4) {
     unsigned index = 0;
     const bool has = ray_of_thread(args.rays, (unsigned)block, threadIdx.x, index);
     const Counted counted = count_of(args, has, index);
-    for (unsigned list = 0; list < 2; ++list) {
+    for (unsigned list = 0; list < 3; ++list) {
         unsigned all;
         sum_before(counted.counts[list], all);
         if (threadIdx.x == 0)
@@ -162,7 +176,7 @@ KERNEL(emit_fragments, PixelSamples, BLOCK, 4) {
     const bool has = ray_of_thread(args.rays, (unsigned)block, threadIdx.x, index);
     const Counted counted = count_of(args, has, index);
     Written written = {};
-    for (unsigned list = 0; list < 2; ++list) {
+    for (unsigned list = 0; list < 3; ++list) {
         unsigned all;
         written.places[list] = args.counts[list][block] + sum_before(counted.counts[list], all);
     }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::Vec3;
-use lightmesh_layout::constants::{LEAST_THROUGH, MOST_THROUGHS, THROUGHS_SHIFT};
+use lightmesh_layout::constants::{LEAST_ONWARD, MOST_THROUGHS, THROUGHS_SHIFT};
 use lightmesh_scene::Material;
 use rayon::prelude::*;
 
@@ -29,7 +29,13 @@ pub(crate) fn mirror_rays(wave: &HostWave) -> RayList {
 
 /// No rays that go on from those of `list`.
 fn beyond(list: &RayList) -> RayList {
-    RayList { window: list.window, depth: list.depth + 1, bounces: list.bounces, ..RayList::default() }
+    RayList {
+        window: list.window,
+        depth: list.depth + 1,
+        bounces: list.bounces,
+        spacing: list.spacing,
+        ..RayList::default()
+    }
 }
 
 /// The rays that go on from those in `range`.
@@ -53,7 +59,7 @@ fn onward(wave: &HostWave, range: Range<usize>) -> RayList {
 
         // 1. Through the surface.
         let weight = list.weight(index) * surface.coefficients.transmittance;
-        if weight.max_element() >= LEAST_THROUGH && throughs < MOST_THROUGHS {
+        if weight.max_element() >= LEAST_ONWARD && throughs < MOST_THROUGHS {
             let (origin, direction) = surface.onward();
             let onward = Ray { origin, direction, t_max: f32::INFINITY };
             add(index, onward, has_cones.then(cone), weight, list.sample(index) + (1 << THROUGHS_SHIFT));
@@ -61,9 +67,7 @@ fn onward(wave: &HostWave, range: Range<usize>) -> RayList {
 
         // 2. Mirrored.
         let weight = list.weight(index) * surface.coefficients.mirrored;
-        // Of mirrors alone every ray counts; between the sides of glass there is no end of them.
-        let least = if throughs > 0 { LEAST_THROUGH } else { 0.0 };
-        if weight != Vec3::ZERO && weight.max_element() >= least && list.mirrors(index) {
+        if weight.max_element() >= LEAST_ONWARD && list.mirrors(index) {
             let direction = surface.mirrored().normalize();
             let onward = Ray { origin: surface.point.origin, direction, t_max: f32::INFINITY };
             let cone = || {

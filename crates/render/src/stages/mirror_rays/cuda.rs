@@ -47,5 +47,5 @@ pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> R
     let record = Rays { list: list.input(), depth: rays.record.depth + 1, ..own };
     // A surface may both let rays through and mirror them.
     let several = rays.several || wave.scene.host.lets_through();
-    Ok(DeviceRays { several, cones, ..DeviceRays::new(record, Some(list), [0.0; 2]) })
+    Ok(DeviceRays { several, cones, ..DeviceRays::new(record, Some(list), rays.spacing) })
 }

@@ -24,9 +24,8 @@ DEVICE Shares shares_of(const MirrorRays &args, unsigned ray) {
     const Vec3 weight = weight_of(args.rays, ray);
     const Vec3 through = weight * material->transmittance, mirrored = weight * material->mirrored;
     const unsigned throughs = throughs_of(args.rays, ray);
-    const bool goes = max_element(through) >= LEAST_THROUGH && throughs < MOST_THROUGHS;
-    // Of mirrors alone every ray counts; between the sides of glass there is no end of them.
-    const bool returns = max_element(mirrored) >= (throughs > 0 ? LEAST_THROUGH : 0.0f) && mirrors(args.rays, ray);
+    const bool goes = max_element(through) >= LEAST_ONWARD && throughs < MOST_THROUGHS;
+    const bool returns = max_element(mirrored) >= LEAST_ONWARD && mirrors(args.rays, ray);
     return Shares{goes ? through : none.through, returns ? mirrored : none.mirrored};
 }
 

@@ -38,11 +38,15 @@ struct Facet {
     float width;
 };
 
-// What a ray sees.
+// What a ray sees, where a pixel is about as wide as `width`.
+DEVICE Facet facet_of(const Scene &scene, const Ray &ray, const Hit &hit, float width) {
+    const SurfacePoint point = surface_point(ray, hit, load_corners(scene.triangles + hit.triangle));
+    return Facet{point, shading_normal(scene, hit, point.normal), __ldg(scene.triangle_materials + hit.triangle), width};
+}
+
+// What a ray of a camera sees.
 DEVICE Facet facet_of(const PixelSamples &args, const Ray &ray, const Hit &hit) {
-    const SurfacePoint point = surface_point(ray, hit, load_corners(args.scene.triangles + hit.triangle));
-    return Facet{point, shading_normal(args.scene, hit, point.normal), __ldg(args.scene.triangle_materials + hit.triangle),
-                 args.spacing[0] + args.spacing[1] * hit.t};
+    return facet_of(args.scene, ray, hit, args.spacing[0] + args.spacing[1] * hit.t);
 }
 
 // Whether both have the same material, and neither is farther from the other's tangent plane than `height` times the pixel's width.
@@ -61,14 +65,25 @@ DEVICE bool continues(const Facet &a, const Facet &b) {
 // Whether the surface of a neighbouring pixel may be compared.
 DEVICE bool is_near(const Facet &a, const Facet &b) { return dot(a.smooth, b.smooth) >= NEAR_COSINE && is_level(a, b, NEAR_HEIGHT); }
 
-// Whether rays that a surface mirrors or lets through are followed from here.
-DEVICE bool goes_on(const PixelSamples &args, const Hit &hit) {
-    if (hit.triangle == Hit::NONE)
-        return false;
-    const Material &material = args.scene.materials[__ldg(args.scene.triangle_materials + hit.triangle)];
-    // An image may make facets smooth anywhere.
+DEVICE const Material &material_of_hit(const Scene &scene, const Hit &hit) {
+    return scene.materials[__ldg(scene.triangle_materials + hit.triangle)];
+}
+
+// Whether the surface at `hit` lets rays through.
+DEVICE bool lets_through(const Scene &scene, const Hit &hit) { return hit.triangle != Hit::NONE && material_of_hit(scene, hit).blends; }
+
+// The largest share that the surface at `hit` may mirror.
+DEVICE float most_mirrored(const Scene &scene, const Hit &hit) {
+    const Material &material = material_of_hit(scene, hit);
+    if (!material.facets)
+        return max_element(material.ks + material.ks_tinted);
+    // At grazing incidence, all. An image may make facets smooth anywhere.
     const bool varies = material.metallic_roughness_texture != Material::NO_TEXTURE;
-    const bool mirrors = material.facets ? varies || facets_mirrored_share(material.roughness) > 0.0f
-                                         : material.ks != splat(0.0f) || material.ks_tinted != splat(0.0f);
-    return material.blends || (args.mirrors && mirrors);
+    return varies || facets_mirrored_share(material.roughness) > 0.0f ? 1.0f : 0.0f;
+}
+
+// The mirror rays of how many of `count` samples on the surface at `hit` are followed.
+DEVICE unsigned mirrored_samples(const PixelSamples &args, const Hit &hit, unsigned count) {
+    const float most = args.mirrors && hit.triangle != Hit::NONE ? most_mirrored(args.scene, hit) : 0.0f;
+    return most == 0.0f ? 0 : most <= FAINT_MIRROR ? (count + 1) / 2 : count;
 }

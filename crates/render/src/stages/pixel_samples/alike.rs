@@ -1,7 +1,8 @@
 //! Whether two samples lie on one surface, and whether it mirrors. Twin: `alike.cuh`.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{MOST_SHARED, NEAR_COSINE, NEAR_HEIGHT, SAME_COSINE, SAME_FACET_COSINE, SAME_HEIGHT};
+use lightmesh_layout::constants::{FAINT_MIRROR, MOST_SHARED, NEAR_COSINE, NEAR_HEIGHT, SAME_COSINE, SAME_FACET_COSINE, SAME_HEIGHT};
+use lightmesh_scene::Material;
 
 use crate::accel::{Hit, Ray};
 use crate::antialiasing::Antialiasing;
@@ -137,18 +138,37 @@ impl<'a> Surfaces<'a> {
     }
 }
 
-/// Whether rays that a surface mirrors or lets through are followed from here.
+/// Whether the surface at `hit` lets rays through.
 #[inline(always)]
-pub(crate) fn goes_on(scene: &PreparedScene, all: &Antialiasing, hit: &Hit) -> bool {
-    if !hit.is_some() {
-        return false;
+pub(crate) fn lets_through(scene: &PreparedScene, hit: &Hit) -> bool {
+    hit.is_some() && material_at(scene, hit).lets_through()
+}
+
+/// The largest share that the surface at `hit` may mirror.
+#[inline(always)]
+pub(crate) fn most_mirrored(scene: &PreparedScene, hit: &Hit) -> f32 {
+    let material = material_at(scene, hit);
+    match material.faceted() {
+        // At grazing incidence, all. An image may make them smooth anywhere.
+        Some(facets) => {
+            let varies = facets_of(&scene.scene.geometry, material).is_some();
+            if varies || mirrored_share(facets.roughness) > 0.0 { 1.0 } else { 0.0 }
+        }
+        None => (material.ks + material.ks_tinted).max_element(),
     }
+}
+
+/// The mirror rays of how many of `count` samples on the surface at `hit` are followed.
+pub(crate) fn mirrored_samples(scene: &PreparedScene, all: &Antialiasing, hit: &Hit, count: u32) -> u32 {
+    let most = if all.mirrors && hit.is_some() { most_mirrored(scene, hit) } else { 0.0 };
+    match most {
+        0.0 => 0,
+        _ if most <= FAINT_MIRROR => count.div_ceil(2),
+        _ => count,
+    }
+}
+
+fn material_at<'s>(scene: &'s PreparedScene, hit: &Hit) -> &'s Material {
     let geometry = &scene.scene.geometry;
-    let material = &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize];
-    let mirrors = match material.faceted() {
-        // An image may make them smooth anywhere.
-        Some(facets) => facets_of(geometry, material).is_some() || mirrored_share(facets.roughness) > 0.0,
-        None => material.ks != Vec3::ZERO || material.ks_tinted != Vec3::ZERO,
-    };
-    material.lets_through() || all.mirrors && mirrors
+    &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize]
 }

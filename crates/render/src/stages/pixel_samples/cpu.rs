@@ -8,7 +8,7 @@ use lightmesh_layout::constants::PIXEL_SHARED;
 use rayon::prelude::*;
 
 use super::SampleRange;
-use super::alike::{Facet, Surfaces, goes_on};
+use super::alike::{Facet, Surfaces, lets_through};
 use crate::accel::Hit;
 use crate::counters::Tally;
 use crate::data::mattes::count;
@@ -38,7 +38,7 @@ pub(crate) fn pixel_samples(
     let view = rays.view.expect("the rays are a camera's");
     let (pixels, first) = (rays.pixels.len(), film.rows.start * view.size()[0]);
 
-    if !scene.geometry.mip_levels.is_empty() {
+    if scene.has_cones() {
         rays.cone = Cone::of_sample(rays.spacing, all.samples, all.breadth);
     }
 
@@ -79,8 +79,8 @@ pub(crate) fn pixel_samples(
             let mut parted = Parted::default();
             for ((&pixel, hit), ray) in pixels.iter().zip(hits).zip(through) {
                 let others = samples.of(pixel);
-                // Each sample has a mirror ray of its own.
-                let may_share = !goes_on(scene, all, hit);
+                // Each sample has a ray of its own behind the surface.
+                let may_share = !lets_through(scene, hit);
                 // Most pixels need no surfaces.
                 if may_share && others.iter().all(|other| other.triangle == hit.triangle) {
                     parted.shared.push(pixel);

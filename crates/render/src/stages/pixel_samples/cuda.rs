@@ -36,7 +36,7 @@ pub(crate) fn pixel_samples<R: Runtime>(
     range: &SampleRange,
 ) -> Result<DeviceSamples<R>, RenderError> {
     let SampleRange { all, numbers } = range;
-    if !scene.host.geometry.mip_levels.is_empty() {
+    if scene.host.has_cones() {
         rays.record.cone = bytemuck::cast(Cone::of_sample(rays.spacing, all.samples, all.breadth));
     }
     let (pixels, count) = (rays.len(), numbers.len());

@@ -156,8 +156,8 @@ KERNEL(merge_samples, PixelSamples, BLOCK, 4) {
     Sampled own = {};
     own.hit = has ? sample_hit(args, place.ray, place.sample) : center;
     // Most pixels need no facets.
-    // Each sample has a mirror ray of its own.
-    const bool may_share = !goes_on(args, center);
+    // Each sample has a ray of its own behind the surface.
+    const bool may_share = !lets_through(args.scene, center);
     const unsigned others = __ballot_sync(ALL_LANES, own.hit.triangle != center.triangle || !may_share);
     bool shared = true;
     unsigned owner = 0;

@@ -1,0 +1,12 @@
+//! Mirrored rays of a pixel that meet one surface, as one ray: what a mirror shows is shaded once for a pixel, as what the camera sees is.
+//!
+//! In: mirrored rays and hits; the rays of a pixel follow each other. Out: the rays that are left, in their order, and their hits.
+//!
+//! 1. The first ray of a pixel that is left takes all that lie on one surface with it, as samples of a pixel do
+//!    ([`alike`](super::pixel_samples::alike)), unless too much of what this surface mirrors would reach the pixel by a single ray.
+//! 2. Its weight is the sum of theirs, and its cone covers what all of them see of a texture.
+//!
+//! Rays that went through a surface stay apart.
+
+pub(crate) mod cpu;
+pub(crate) mod cuda;
