@@ -268,7 +268,8 @@ impl<B: Backend> Passes<'_, B> {
                 [(shared, Depths::FIRST, PARTS_OF_FRAGMENT), (single, Depths::ALL, all.samples)]
             {
                 let fragments = run.backend.ray_count(&list) as u64;
-                run.job.work.expect(self.pieces_of_wave(0, fragments) - fragments);
+                let mirrors = if depths.last { 0 } else { self.pieces_of_mirrors(0, fragments) };
+                run.job.work.expect(self.pieces_of_light(fragments) + mirrors);
                 self.waves(list, Some(hits), depths, parts, film)?;
             }
             self.mirrors(mirror, film)?;
@@ -292,8 +293,13 @@ impl<B: Backend> Passes<'_, B> {
 
     /// Pieces of work of a wave of `rays` rays in all of its stages.
     fn pieces_of_wave(&self, depth: u32, rays: u64) -> u64 {
-        // Primary rays, mirror rays.
-        rays * (1 + u64::from(depth < self.plan.bounces || self.plan.lets_through)) + self.pieces_of_light(rays)
+        // Primary rays.
+        rays + self.pieces_of_light(rays) + self.pieces_of_mirrors(depth, rays)
+    }
+
+    /// Those of the stage that finds the rays that go on.
+    fn pieces_of_mirrors(&self, depth: u32, rays: u64) -> u64 {
+        rays * u64::from(depth < self.plan.bounces || self.plan.lets_through)
     }
 
     /// Those of the stages that find what its surface points reflect.

@@ -53,8 +53,10 @@ pub struct RayList {
     /// The share of a ray's radiance that reaches its pixel. Empty for camera rays, which contribute all of it.
     pub weights: Vec<Vec3>,
     /// The distance between the surface points of neighbouring pixels that face the camera: a constant, and a multiple of the
-    /// distance from the camera, or from the mirror. Zero if the rays do not come from a camera.
+    /// distance from the camera. Zero if the rays do not come from a camera.
     pub spacing: [f32; 2],
+    /// Where the camera is.
+    pub eye: Vec3,
     /// The cone around each ray, if they have none of their own.
     pub cone: Cone,
     /// The cone around each ray that a mirror reflected, where textures need them; else empty.
@@ -120,8 +122,26 @@ impl RayList {
 
     /// An empty list of rays from the same camera.
     pub(crate) fn empty(&self) -> RayList {
-        let (spacing, cone, window, bounces) = (self.spacing, self.cone, self.window, self.bounces);
-        RayList { spacing, cone, window, bounces, ..RayList::default() }
+        RayList { cone: self.cone, ..self.beyond() }
+    }
+
+    /// An empty list of rays that go on from these, as often as these.
+    pub(crate) fn beyond(&self) -> RayList {
+        RayList {
+            window: self.window,
+            depth: self.depth,
+            bounces: self.bounces,
+            spacing: self.spacing,
+            eye: self.eye,
+            ..RayList::default()
+        }
+    }
+
+    /// About how wide a pixel is at a surface point.
+    #[inline(always)]
+    pub(crate) fn width_at(&self, position: Vec3) -> f32 {
+        let [constant, factor] = self.spacing;
+        constant + factor * (position - self.eye).length()
     }
 
     /// The ray through a sample of a pixel. The rays must be a camera's.

@@ -86,7 +86,7 @@ fn is_split(wave: &HostWave, samples: &PixelSamples, film: &Picture, all: &Antia
     let hit = |index: u32| samples.hit(samples.first + index, 0);
     let facet = |index: u32| {
         let pixel = samples.first + index;
-        Facet::new(wave.scene, wave.rays.spacing, &wave.rays.through(all, pixel, 0), hit(index))
+        Facet::seen(wave.scene, wave.rays.spacing, &wave.rays.through(all, pixel, 0), hit(index))
     };
     if !is_shared(index) {
         return false;

@@ -46,14 +46,14 @@ fn items_of_tile(wave: &HostWave, first: usize, count: usize) -> Items {
 /// 16 bits of a hash of a surface point's cell, 6 bits of its place in the cell, 10 bits of its place in the tile. Cells with equal hashes
 /// share items.
 fn sort_word(wave: &HostWave, ray: usize, place: u32) -> u32 {
-    let [constant, factor] = wave.rays.spacing;
-    let width = CELL_PIXELS * (constant + factor * wave.hits[ray].t);
+    let point = wave.surface_point(ray).position;
+    let width = CELL_PIXELS * wave.rays.width_at(point);
     // A power of two, so that neighbours at different distances have the same cells.
     let step = f32::from_bits((width.to_bits() & F32_INFINITY_BITS) + F32_EXPONENT_STEP);
     if width < f32::MIN_POSITIVE || !step.is_finite() {
         return place;
     }
-    let position = wave.surface_point(ray).position / step;
+    let position = point / step;
     let cell = position.floor();
     let IVec3 { x, y, z } = cell.as_ivec3();
     let key = [x as u32, y as u32, z as u32, step.to_bits()]

@@ -24,8 +24,8 @@ DEVICE unsigned long long joined(unsigned long long key, unsigned part) {
 DEVICE unsigned spread(unsigned quarter) { return (quarter & 1) | (quarter & 2) << 2; }
 
 // 16 bits of a hash of a surface point's cell, 6 bits of its place in the cell, 10 bits of its thread.
-DEVICE unsigned sort_word(const GroupItems &args, unsigned ray, const SurfacePoint &point, unsigned thread) {
-    const float width = CELL_PIXELS * (args.spacing[0] + args.spacing[1] * load_hit(args.hits, ray).t);
+DEVICE unsigned sort_word(const GroupItems &args, const SurfacePoint &point, unsigned thread) {
+    const float width = CELL_PIXELS * (args.spacing[0] + args.spacing[1] * length(point.position - args.rays.view.origin));
     // A power of two, so that neighbours at different distances have the same cells.
     const float step = __uint_as_float((__float_as_uint(width) & F32_INFINITY_BITS) + F32_EXPONENT_STEP);
     if (!(width >= F32_MIN_POSITIVE && is_finite(step)))
@@ -81,7 +81,7 @@ KERNEL(group_items, GroupItems, TILE, 2) {
     if (has) {
         point = surface_point_of(args.scene, args.rays, args.hits, ray);
         rays[thread] = ray;
-        word = sort_word(args, ray, point, thread);
+        word = sort_word(args, point, thread);
         lifted = point.origin + largest_lift(args.scene, args.hits, ray, point);
     }
     box_tile(has, point.origin, lifted, corner, args.tiles[tile]);

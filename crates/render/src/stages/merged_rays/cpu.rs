@@ -24,7 +24,7 @@ pub(crate) fn merged_rays(wave: &HostWave) -> (RayList, Vec<Hit>) {
         (0..count).step_by(BATCH).map(|ray| (ray..count).find(begins).unwrap_or(count)).chain([count]).collect();
     let parts: Vec<(RayList, Vec<Hit>)> =
         starts.par_windows(2).map(|ends| merge(wave, ends[0]..ends[1])).collect();
-    let mut left = (empty(wave.rays), Vec::new());
+    let mut left = (wave.rays.beyond(), Vec::new());
     for (rays, mut hits) in parts {
         left.0.append(rays);
         left.1.append(&mut hits);
@@ -32,16 +32,10 @@ pub(crate) fn merged_rays(wave: &HostWave) -> (RayList, Vec<Hit>) {
     left
 }
 
-/// No rays in place of those of `list`.
-fn empty(list: &RayList) -> RayList {
-    let (window, spacing, depth, bounces) = (list.window, list.spacing, list.depth, list.bounces);
-    RayList { window, spacing, depth, bounces, ..RayList::default() }
-}
-
 /// Merges the rays of some pixels.
 fn merge(wave: &HostWave, rays: Range<usize>) -> (RayList, Vec<Hit>) {
     let list = wave.rays;
-    let (mut left, mut hits) = (empty(list), Vec::new());
+    let (mut left, mut hits) = (list.beyond(), Vec::new());
     let mut start = rays.start;
     while start < rays.end {
         let same = (start..rays.end).take(WARP as usize).take_while(|&ray| list.pixels[ray] == list.pixels[start]);
@@ -75,7 +69,10 @@ fn part_of(wave: &HostWave, first: usize, run: &Range<usize>, taken: u32) -> u32
     if !may_merge(first) || lets_through(scene, hit) {
         return 1;
     }
-    let facet = |ray: usize| Facet::new(scene, list.spacing, &list.rays[ray], &wave.hits[ray]);
+    let facet = |ray: usize| {
+        let width = list.width_at(wave.surface_point(ray).position);
+        Facet::new(scene, &list.rays[ray], &wave.hits[ray], width)
+    };
     let own = facet(first);
     let is_alike = |other: usize| {
         let is_taken = taken >> (other - run.start) & 1 != 0;
@@ -102,6 +99,7 @@ fn covering(cone: Cone, count: u32) -> Cone {
 
 #[cfg(test)]
 mod tests {
+    use lightmesh_layout::constants::THROUGHS_SHIFT;
     use lightmesh_scene::Material;
     use lightmesh_testkit::SceneDraft;
 
@@ -124,12 +122,13 @@ mod tests {
         let list = RayList {
             rays: rays.iter().map(|&(x, _)| down(x)).collect(),
             pixels: rays.iter().map(|&(_, pixel)| pixel).collect(),
-            samples: (0..rays.len() as u32).map(|ray| ray + 1 + (throughs << 16)).collect(),
+            samples: (0..rays.len() as u32).map(|ray| ray + 1 + (throughs << THROUGHS_SHIFT)).collect(),
             weights: (0..rays.len()).map(|ray| Vec3::splat(0.25 + ray as f32 / 64.0)).collect(),
             cones: vec![Cone { width: 0.5, spread: -0.25 }; rays.len()],
             depth: 1 + throughs,
             bounces: 2,
             spacing: [0.0, 0.01],
+            eye: Vec3::splat(2.0),
             ..RayList::default()
         };
         let mut hits = vec![Hit::MISS; rays.len()];

@@ -10,7 +10,9 @@
 
 // What ray number `ray` sees.
 DEVICE Facet facet_of_ray(const MergedRays &args, unsigned ray, const Hit &hit) {
-    return facet_of(args.scene, ray_at(args.rays, ray), hit, args.spacing[0] + args.spacing[1] * hit.t);
+    const Ray along = ray_at(args.rays, ray);
+    const Vec3 position = surface_point(along, hit, load_corners(args.scene.triangles + hit.triangle)).position;
+    return facet_of(args.scene, along, hit, args.spacing[0] + args.spacing[1] * length(position - args.rays.view.origin));
 }
 
 DEVICE bool may_merge(const MergedRays &args, unsigned ray, const Hit &hit) {

@@ -29,13 +29,7 @@ pub(crate) fn mirror_rays(wave: &HostWave) -> RayList {
 
 /// No rays that go on from those of `list`.
 fn beyond(list: &RayList) -> RayList {
-    RayList {
-        window: list.window,
-        depth: list.depth + 1,
-        bounces: list.bounces,
-        spacing: list.spacing,
-        ..RayList::default()
-    }
+    RayList { depth: list.depth + 1, ..list.beyond() }
 }
 
 /// The rays that go on from those in `range`.

@@ -25,17 +25,23 @@ pub(crate) struct Facet {
 }
 
 impl Facet {
-    /// What a ray sees. `spacing` is the distance between the surface points of neighbouring pixels: a constant, and a multiple of
-    /// their distance.
+    /// What a ray of a camera sees. `spacing` is the distance between the surface points of neighbouring pixels: a constant, and a multiple
+    /// of their distance.
     #[inline(always)]
-    pub(crate) fn new(scene: &PreparedScene, spacing: [f32; 2], ray: &Ray, hit: &Hit) -> Facet {
+    pub(crate) fn seen(scene: &PreparedScene, spacing: [f32; 2], ray: &Ray, hit: &Hit) -> Facet {
+        Facet::new(scene, ray, hit, spacing[0] + spacing[1] * hit.t)
+    }
+
+    /// What a ray sees, where a pixel is about as wide as `width`.
+    #[inline(always)]
+    pub(crate) fn new(scene: &PreparedScene, ray: &Ray, hit: &Hit, width: f32) -> Facet {
         let point = SurfacePoint::new(ray, hit, &scene.geometry.triangles[hit.triangle as usize]);
         let mesh = &scene.scene.geometry.mesh;
         Facet {
             smooth: shading_normal(mesh, hit, point.normal),
             point,
             material: mesh.materials[hit.triangle as usize],
-            width: spacing[0] + spacing[1] * hit.t,
+            width,
         }
     }
 
@@ -133,7 +139,7 @@ impl<'a> Surfaces<'a> {
         let hit = self.hit(sample);
         *self.facets[sample].get_or_insert_with(|| {
             let ray = if sample == CENTER { *center.0 } else { rays.through(all, pixel, sample as u32) };
-            Facet::new(scene, rays.spacing, &ray, &hit)
+            Facet::seen(scene, rays.spacing, &ray, &hit)
         })
     }
 }

@@ -179,7 +179,7 @@ fn nearest(scene: &PreparedScene, rays: &RayList, samples: &PixelSamples, film: 
             if hit.t < layers.depth[index] {
                 let ray = all.ray(&view, pixel, sample);
                 let point: (Vec3, Vec3) = {
-                    let facet = Facet::new(scene, rays.spacing, &ray, hit);
+                    let facet = Facet::seen(scene, rays.spacing, &ray, hit);
                     (facet.point.position, facet.point.normal)
                 };
                 layers.depth[index] = hit.t;

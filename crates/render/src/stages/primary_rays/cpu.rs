@@ -19,7 +19,7 @@ pub(crate) fn camera_rays(view: &View, rows: Range<u32>) -> RayList {
     let pixels = blocks_of_pixels(view.size()[0], rows);
     let rays: Vec<Ray> = pixels.par_iter().map(|&pixel| view.ray(pixel)).collect();
     let (spacing, window) = (view.spacing(), view.window());
-    RayList { rays, pixels, spacing, view: Some(*view), window, ..RayList::default() }
+    RayList { rays, pixels, spacing, eye: view.origin(), view: Some(*view), window, ..RayList::default() }
 }
 
 /// The pixels of some rows in blocks of 4×2 within 8×8 within 32×32, so that consecutive rays are coherent.
