@@ -83,11 +83,30 @@ DEVICE void cells_for_any(bool ask, const LightPlace &place, IVec3 middle, unsig
     }
 }
 
+// Asks for the cells in which sites may count for a place.
+DEVICE void ask_cells_of(const Lookup &args, const LightPlace &place, IVec3 middle) {
+    const float size = size_of_level(place.level);
+    for (unsigned index = 0; index < CELLS_AROUND; ++index)
+        if (may_use(place, size, cell_around(middle, index)))
+            add_name(args.table.cells, name_of_cell(place.level, cell_around(middle, index)));
+}
+
+// In how many cells the lanes' places are.
+DEVICE unsigned cells_of_warp(bool has, const LightPlace &place, IVec3 own) {
+    const unsigned same = __match_any_sync(ALL_LANES, has ? cell_key(place.level, own) : 0ull);
+    return __popc(__ballot_sync(ALL_LANES, has && (same & lanes_below(lane_of_thread())) == 0));
+}
+
 // Asks for the cells in which sites may count for the places of a warp. Places in one cell mostly want the same ones, so that these are asked for
-// once: a thousand threads that insert one name would wait for each other.
+// once: a thousand threads that insert one name would wait for each other. Where rays scattered the places, each asks for itself.
 DEVICE void ask_cells(const Lookup &args, bool has, const LightPlace &place) {
     const unsigned lane = lane_of_thread();
     const IVec3 own = has ? cell_at(place.level, place.position) : IVec3{0, 0, 0};
+    if (cells_of_warp(has, place, own) > MOST_CELLS_TOGETHER) {
+        if (has && !is_abandoned(args.table.cells))
+            ask_cells_of(args, place, own);
+        return;
+    }
     unsigned rest = __ballot_sync(ALL_LANES, has && !is_abandoned(args.table.cells));
     while (rest != 0) {
         const unsigned first = __ffs(rest) - 1;
