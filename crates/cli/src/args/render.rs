@@ -10,7 +10,7 @@ use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
 
 use super::{Progress, SceneArg, Switch, Up, words};
 use crate::value::{
-    Background, CameraView, Color, Dims, EnvironmentSpec, Exposure, LightSpec, Positive, Size, SkySpec, Smooth,
+    Background, CameraView, Color, Dims, EnvironmentSpec, Exposure, Frames, LightSpec, Positive, Size, SkySpec, Smooth,
 };
 
 /// Render an image of a scene
@@ -23,6 +23,24 @@ pub(crate) struct RenderArgs {
     /// nothing else, and needs --format
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
+
+    /// Render a film of N frames in which the camera goes once around the scene, at constant height; frame 1 is the image
+    /// without this. `####` or `%04d` in the names of output files stands for the number of the frame. Exposure and step
+    /// are those of the first frame that is rendered; light points and gathered light are kept from frame to frame
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), conflicts_with = "partial", help_heading = "Film")]
+    pub(crate) turntable: Option<u32>,
+
+    /// Frames of the film to render: from A to B, or every N-th of them [default: all]
+    #[arg(long, value_name = "A-B[xN]", requires = "turntable", help_heading = "Film")]
+    pub(crate) frames: Option<Frames>,
+
+    /// Leave frames whose image exists as they are, and render the others
+    #[arg(long, requires = "turntable", conflicts_with = "overwrite", help_heading = "Film")]
+    pub(crate) skip_existing: bool,
+
+    /// Replace frames whose image exists
+    #[arg(long, requires = "turntable", help_heading = "Film")]
+    pub(crate) overwrite: bool,
 
     /// Format of the output image [default: by the extension]
     #[arg(long, value_parser = words::image_format(), help_heading = "Image")]

@@ -9,7 +9,7 @@ use super::PlanError;
 use crate::args::{RenderArgs, Switch};
 use crate::destination::{Destination, check_one_on_stdout};
 use crate::output::{OutputError, Outputs, input};
-use crate::value::{Background, Exposure};
+use crate::value::{Background, Exposure, numbered};
 
 /// The output files.
 pub(crate) struct PictureFiles {
@@ -30,9 +30,24 @@ pub(crate) struct PictureFiles {
 impl PictureFiles {
     /// Checks that each file can be written, that its format can store the image, and that it overwrites none of the others.
     pub(super) fn new(args: &RenderArgs) -> Result<PictureFiles, PlanError> {
-        let picture = Destination::new(&args.output);
-        let layers = args.layers.as_deref().map(Destination::new);
-        let stats = args.stats.as_deref().map(Destination::new);
+        PictureFiles::named(args, |_, path| Ok(Destination::new(path)))
+    }
+
+    /// Those of a frame of a film.
+    pub(super) fn of_frame(args: &RenderArgs, number: u32) -> Result<PictureFiles, PlanError> {
+        PictureFiles::named(args, |flag, path| {
+            let file = numbered(path, number).map(Destination::File);
+            file.ok_or_else(|| PlanError::NoNumber { flag, path: path.to_owned() })
+        })
+    }
+
+    fn named(
+        args: &RenderArgs,
+        name: impl Fn(&'static str, &Path) -> Result<Destination, PlanError>,
+    ) -> Result<PictureFiles, PlanError> {
+        let picture = name("-o", &args.output)?;
+        let layers = args.layers.as_deref().map(|path| name("--layers", path)).transpose()?;
+        let stats = args.stats.as_deref().map(|path| name("--stats", path)).transpose()?;
         let options = options(args);
         check_picture(&picture, args, &options)?;
         if let Some(layers) = &layers {

@@ -1,10 +1,12 @@
 //! From arguments to a plan: everything that can be checked before the work begins is checked here.
 
 mod files;
+mod film;
 mod scene;
 mod settings;
 
 use std::num::NonZeroUsize;
+use std::path::PathBuf;
 
 use lightmesh::render::Crop;
 use lightmesh::scene::{CameraError, CreaseAngle};
@@ -12,8 +14,9 @@ use lightmesh::{Device, Lookup, Mode, SaveError, Settings};
 
 use crate::args::{RenderArgs, SceneArg};
 use crate::output::OutputError;
-use crate::value::Smooth;
+use crate::value::{Frames, Smooth};
 pub(crate) use files::PictureFiles;
+pub(crate) use film::Film;
 pub(crate) use scene::{ChoiceError, SceneChoices};
 
 /// Why a command line is invalid.
@@ -36,6 +39,30 @@ pub(crate) enum PlanError {
     /// The image goes to standard output, which has no extension.
     #[error("-o - needs the format of the image; add --format bmp, png, exr or jpg")]
     NoFormat,
+    /// A file of a film whose name has no place for the number of the frame.
+    #[error("{flag} {} is one file, but a film has one for each frame; write #### where the number goes, as in film.####.png", path.display())]
+    NoNumber {
+        /// The flag.
+        flag: &'static str,
+        /// The file.
+        path: PathBuf,
+    },
+    /// Frames that the film does not have.
+    #[error("--frames {frames}: the film ends with frame {last}; choose frames up to it (--frames, --turntable)")]
+    NoFrame {
+        /// The frames that were asked for.
+        frames: Frames,
+        /// The film's last one.
+        last: u32,
+    },
+    /// Frames that were rendered before.
+    #[error("{} exists{}; add --skip-existing to keep such frames, or --overwrite to replace them", first.display(), others(*count))]
+    FrameExists {
+        /// The first of their images.
+        first: PathBuf,
+        /// How many there are.
+        count: usize,
+    },
     /// A flag specifies a grid, but another structure is selected.
     #[error("{flag} specifies a grid, but --accel {chosen} selects another structure; remove one of them")]
     NoGrid {
@@ -60,15 +87,21 @@ pub(crate) struct RenderPlan {
     pub(crate) device: Device,
     /// CPU threads; `None`: all.
     pub(crate) threads: Option<NonZeroUsize>,
-    /// The output files.
+    /// The output files; of a film, those of its first frame.
     pub(crate) files: PictureFiles,
+    /// The frames, if it is a film.
+    pub(crate) film: Option<Film>,
 }
 
 impl RenderPlan {
     /// Checks that the flags are consistent and that every output can be written.
     pub(crate) fn new(args: &RenderArgs) -> Result<RenderPlan, PlanError> {
         let settings = settings::settings(args)?;
-        let files = PictureFiles::new(args)?;
+        let film = Film::new(args)?;
+        let files = match &film {
+            Some(film) => film.files(args, film.first())?,
+            None => PictureFiles::new(args)?,
+        };
         Ok(RenderPlan {
             scene: args.scene.clone(),
             smooth: args.smooth.unwrap_or_else(|| usual_smooth(&settings)).0,
@@ -77,7 +110,17 @@ impl RenderPlan {
             device: args.device,
             threads: args.threads.and_then(|threads| NonZeroUsize::new(threads as usize)),
             files,
+            film,
         })
+    }
+}
+
+/// Further files besides the first.
+fn others(count: usize) -> String {
+    match count - 1 {
+        0 => String::new(),
+        1 => " and one more".to_owned(),
+        more => format!(" and {more} more"),
     }
 }
 

@@ -54,6 +54,12 @@ impl Metering {
         Metering { exposure, has_ground, behind }
     }
 
+    /// The same with an exposure that is known.
+    pub(super) fn fixed(mut self, stops: f32) -> Metering {
+        self.exposure = Exposure::Stops(stops);
+        self
+    }
+
     pub(super) fn is_automatic(&self) -> bool {
         self.exposure == Exposure::Auto
     }

@@ -6,6 +6,7 @@ mod compare;
 mod completions;
 mod export;
 mod exposure;
+mod film;
 mod grid;
 mod info;
 mod man;

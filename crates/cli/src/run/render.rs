@@ -5,11 +5,12 @@ use std::time::Instant;
 use glam::{DMat4, Vec3};
 use lightmesh::image::{self, Description, Format, Ready, SaveOptions};
 use lightmesh::render::{Choice, PreparedScene, Stats, devices};
+use lightmesh::scene::Camera;
 use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene, Settings};
 use lightmesh_memory::Bytes;
 
 use super::exposure::Metering;
-use super::{BUILDING, open::open, range};
+use super::{BUILDING, film, open::open, range};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::plan::{PictureFiles, RenderPlan};
@@ -40,6 +41,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let behind = plan.choices.apply(&mut scene, &watcher)?;
     let metering = Metering::new(&mut scene, &plan, behind);
     let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;
+    if let Some(film) = &plan.film {
+        let studio =
+            Studio { renderer: &renderer, prepared: &prepared, scene: &scene, plan: &plan, load, watcher: &watcher };
+        return film::run(args, film, &studio, metering);
+    }
     let finish = || finish(&renderer, prepared, &scene, &plan, &metering, load, &watcher);
     let frame = if args.partial { interrupt::keeping(finish) } else { finish() }?;
     if interrupt::requested() {
@@ -71,6 +77,16 @@ fn explain_devices(args: &RenderArgs, watcher: &Watcher) {
     }
 }
 
+/// What an image is made with.
+pub(super) struct Studio<'a> {
+    pub(super) renderer: &'a Renderer,
+    pub(super) prepared: &'a PreparedScene,
+    pub(super) scene: &'a Scene,
+    pub(super) plan: &'a RenderPlan,
+    pub(super) load: f64,
+    pub(super) watcher: &'a Watcher,
+}
+
 /// Renders the image and writes all files.
 fn finish(
     renderer: &Renderer,
@@ -81,32 +97,63 @@ fn finish(
     load: f64,
     watcher: &Watcher,
 ) -> Result<Frame, Failure> {
-    // An automatic exposure is that of the whole image.
-    let mut settings = plan.settings.clone();
-    let crop = settings.crop.take_if(|_| metering.is_automatic());
-    settings.transparent |= metering.is_apart();
-    let render = |prepared: &PreparedScene, settings: &Settings| {
-        let render = || renderer.render_prepared(prepared, settings, watcher);
-        memory::during(memory::RENDERING, || interrupt::watched(render))
-    };
-    let mut frame = render(&prepared, &settings)?;
-    let stops = metering.stops(&frame, watcher);
-    if let Some(background) = metering.background(stops) {
-        if metering.is_reflected(&settings) && !watcher.cancelled() {
-            settings.transparent = false;
-            let lights = prepared.scene.lights.clone().with_background(background);
-            frame = render(&prepared.with_lights(lights), &settings)?;
-        } else {
-            frame = metering.put_behind(frame, background);
-        }
-    }
+    let studio = Studio { renderer, prepared: &prepared, scene, plan, load, watcher };
+    let render = |prepared: &PreparedScene, settings: &Settings| renderer.render_prepared(prepared, settings, watcher);
+    let (frame, stops) = studio.picture(&plan.settings, metering, render)?;
     drop(prepared); // frees memory for the encoders
-    if plan.settings.partial {
-        interrupt::remark(rows(&frame));
-    } else if watcher.cancelled() {
-        return Err(RenderError::Cancelled.into());
+    save(frame, stops, &plan.files, (renderer, scene, plan), scene.cameras.first(), metering, watcher)
+}
+
+impl Studio<'_> {
+    /// Renders an image by `render`; also returns its exposure in stops.
+    pub(super) fn picture(
+        &self,
+        settings: &Settings,
+        metering: &Metering,
+        mut render: impl FnMut(&PreparedScene, &Settings) -> Result<Frame, RenderError> + Send,
+    ) -> Result<(Frame, f32), Failure> {
+        let Studio { prepared, plan, load, watcher, .. } = *self;
+        // An automatic exposure is that of the whole image.
+        let mut settings = settings.clone();
+        let crop = settings.crop.take_if(|_| metering.is_automatic());
+        settings.transparent |= metering.is_apart();
+        let mut render = |prepared: &PreparedScene, settings: &Settings| {
+            memory::during(memory::RENDERING, || interrupt::watched(|| render(prepared, settings)))
+        };
+        let mut frame = render(prepared, &settings)?;
+        let stops = metering.stops(&frame, watcher);
+        if let Some(background) = metering.background(stops) {
+            if metering.is_reflected(&settings) && !watcher.cancelled() {
+                settings.transparent = false;
+                let lights = prepared.scene.lights.clone().with_background(background);
+                frame = render(&prepared.with_lights(lights), &settings)?;
+            } else {
+                frame = metering.put_behind(frame, background);
+            }
+        }
+        if plan.settings.partial {
+            interrupt::remark(rows(&frame));
+        } else if watcher.cancelled() {
+            return Err(RenderError::Cancelled.into());
+        }
+        frame.stats.seconds.load = load;
+        if let Some(crop) = crop {
+            frame = frame.cropped(crop).expect("the plan has checked that the crop is in the image");
+        }
+        Ok((frame, stops))
     }
-    frame.stats.seconds.load = load;
+}
+
+/// Writes all files of an image.
+pub(super) fn save(
+    mut frame: Frame,
+    stops: f32,
+    files: &PictureFiles,
+    (renderer, scene, plan): (&Renderer, &Scene, &RenderPlan),
+    camera: Option<&Camera>,
+    metering: &Metering,
+    watcher: &Watcher,
+) -> Result<Frame, Failure> {
     let odd = frame.stats.counts.non_finite_pixels;
     if odd > 0 {
         let of = frame.stats.counts.pixels;
@@ -114,16 +161,13 @@ fn finish(
             "{odd} of {of} pixels have infinite or undefined colours: lower the intensities of lights or the coefficients of materials"
         ));
     }
-    if plan.files.format() != Some(Format::Exr) {
-        let display = plan.files.options.display.with_exposure(stops);
+    if files.format() != Some(Format::Exr) {
+        let display = files.options.display.with_exposure(stops);
         range::warnings(&frame, &display, metering.has_ground()).iter().for_each(|warning| watcher.warning(warning));
     }
-    if let Some(crop) = crop {
-        frame = frame.cropped(crop).expect("the plan has checked that the crop is in the image");
-    }
-    let mut options = plan.files.options.clone().with_description(description(&frame, scene));
+    let mut options = files.options.clone().with_description(description(&frame, scene, camera));
     options.display.exposure = stops;
-    memory::during("writing the image", || write(renderer, &mut frame, scene, plan, &options))?;
+    memory::during("writing the image", || write(renderer, &mut frame, scene, (plan, files), &options))?;
     Ok(frame)
 }
 
@@ -155,10 +199,9 @@ fn write(
     renderer: &Renderer,
     frame: &mut Frame,
     scene: &Scene,
-    plan: &RenderPlan,
+    (plan, files): (&RenderPlan, &PictureFiles),
     options: &SaveOptions,
 ) -> Result<(), Failure> {
-    let files = &plan.files;
     let start = Instant::now();
     let mut outputs = renderer.install(|| encode(&frame.image, files, options))?;
     frame.stats.seconds.write = start.elapsed().as_secs_f64();
@@ -183,7 +226,7 @@ fn encode(image: &image::Frame, files: &PictureFiles, options: &SaveOptions) -> 
 const MACHINE: [&str; 6] = ["device", "threads", "memory_limit", "rows_per_band", "accel", "short_tests"];
 
 /// What exr files say about the image.
-fn description(frame: &Frame, scene: &Scene) -> Description {
+fn description(frame: &Frame, scene: &Scene, camera: Option<&Camera>) -> Description {
     let mut settings = serde_json::json!(frame.stats.settings);
     // The bytes of an image do not depend on the machine.
     if let Some(settings) = settings.as_object_mut() {
@@ -193,7 +236,7 @@ fn description(frame: &Frame, scene: &Scene) -> Description {
         .with_software(concat!("Lightmesh ", env!("CARGO_PKG_VERSION")))
         .with_scene(&*frame.stats.scene.name)
         .with_settings(settings.to_string());
-    let Some(camera) = scene.cameras.first() else { return description };
+    let Some(camera) = camera else { return description };
     let [width, height] = frame.stats.settings.size.map(f64::from);
     let origin = scene.to_world(Vec3::ZERO);
     // Columns of a matrix for column vectors are rows of one for row vectors.

@@ -4,6 +4,7 @@
 
 mod budget;
 mod camera;
+mod frames;
 mod light;
 mod memory;
 mod number;
@@ -13,6 +14,7 @@ mod smooth;
 
 pub(crate) use budget::Budget;
 pub(crate) use camera::CameraView;
+pub(crate) use frames::{Frames, numbered};
 pub(crate) use light::{Background, Color, LightSpec};
 pub(crate) use memory::ByteSize;
 pub(crate) use number::{Bound, Exposure, Positive};

@@ -6,6 +6,7 @@ mod color;
 mod compare;
 mod devices;
 mod display;
+mod film;
 mod help;
 mod memory;
 mod messages;

@@ -22,8 +22,7 @@ pub(crate) fn merged_rays(wave: &HostWave) -> (RayList, Vec<Hit>) {
     let count = pixels.len();
     let starts: Vec<usize> =
         (0..count).step_by(BATCH).map(|ray| (ray..count).find(begins).unwrap_or(count)).chain([count]).collect();
-    let parts: Vec<(RayList, Vec<Hit>)> =
-        starts.par_windows(2).map(|ends| merge(wave, ends[0]..ends[1])).collect();
+    let parts: Vec<(RayList, Vec<Hit>)> = starts.par_windows(2).map(|ends| merge(wave, ends[0]..ends[1])).collect();
     let mut left = (wave.rays.beyond(), Vec::new());
     for (rays, mut hits) in parts {
         left.0.append(rays);
@@ -76,9 +75,7 @@ fn part_of(wave: &HostWave, first: usize, run: &Range<usize>, taken: u32) -> u32
     let own = facet(first);
     let is_alike = |other: usize| {
         let is_taken = taken >> (other - run.start) & 1 != 0;
-        !is_taken
-            && may_merge(other)
-            && (wave.hits[other].triangle == hit.triangle || own.continues(&facet(other)))
+        !is_taken && may_merge(other) && (wave.hits[other].triangle == hit.triangle || own.continues(&facet(other)))
     };
     let part = (first + 1..run.end).filter(|&other| is_alike(other)).fold(1, |part, other| part | 1 << (other - first));
     let mirrored = if list.mirrors(first) { most_mirrored(scene, hit) } else { 0.0 };

@@ -1,7 +1,9 @@
 //! Whether two samples lie on one surface, and whether it mirrors. Twin: `alike.cuh`.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{FAINT_MIRROR, MOST_SHARED, NEAR_COSINE, NEAR_HEIGHT, SAME_COSINE, SAME_FACET_COSINE, SAME_HEIGHT};
+use lightmesh_layout::constants::{
+    FAINT_MIRROR, MOST_SHARED, NEAR_COSINE, NEAR_HEIGHT, SAME_COSINE, SAME_FACET_COSINE, SAME_HEIGHT,
+};
 use lightmesh_scene::Material;
 
 use crate::accel::{Hit, Ray};

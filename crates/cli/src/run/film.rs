@@ -1,0 +1,100 @@
+//! The frames of a film: one scene in the memory of one device, and what does not depend on the camera is kept from frame to frame.
+
+use std::time::{Duration, Instant};
+
+use glam::Quat;
+use lightmesh::render::PreparedScene;
+use lightmesh::scene::Camera;
+use lightmesh::{Frame, MeshCache, Observer, RenderError, Settings, Step};
+
+use super::exposure::Metering;
+use super::render::{Studio, save};
+use crate::args::RenderArgs;
+use crate::failure::Failure;
+use crate::interrupt;
+use crate::plan::Film;
+
+/// Renders the frames that are left, and writes the files of each as soon as it is finished.
+pub(super) fn run(args: &RenderArgs, film: &Film, studio: &Studio, mut metering: Metering) -> Result<(), Failure> {
+    let Studio { renderer, prepared, scene, plan, watcher, .. } = *studio;
+    let (begin, count) = (Instant::now(), film.numbers.len());
+    let (mut cache, mut settings) = (MeshCache::new(), plan.settings.clone());
+    for (index, &number) in film.numbers.iter().enumerate() {
+        let files = film.files(args, number)?;
+        let camera = camera(prepared, film, number);
+        let view = settings.clone().with_camera(camera.clone());
+        let render = |prepared: &PreparedScene, settings: &Settings| {
+            renderer.render_with(&mut cache, prepared, settings, watcher)
+        };
+        let (frame, stops) = studio.picture(&view, &metering, render)?;
+        if index == 0 {
+            // What is chosen by the first frame holds for all.
+            settings = kept(settings, &frame);
+            metering = metering.fixed(stops);
+        }
+        let frame = save(frame, stops, &files, (renderer, scene, plan), Some(&camera), &metering, watcher)?;
+        let seconds = frame.stats.seconds.render;
+        let left = begin.elapsed().mul_f64((count - index - 1) as f64 / (index + 1) as f64);
+        watcher.note(&format!(
+            "frame {number} of {}: {seconds:.3} s, {}{}",
+            film.turntable,
+            files.picture,
+            time_left(left)
+        ));
+        if interrupt::requested() {
+            return Err(RenderError::Cancelled.into());
+        }
+    }
+    watcher.summary(&summary(film, begin.elapsed(), studio));
+    Ok(())
+}
+
+/// The camera of a frame: that of the scene, turned about the vertical through the middle of the scene. All frames make one turn.
+fn camera(prepared: &PreparedScene, film: &Film, number: u32) -> Camera {
+    let mut camera = prepared.scene.cameras[0].clone();
+    if number == 1 {
+        return camera;
+    }
+    let share = f64::from(number - 1) / f64::from(film.turntable);
+    let turn = Quat::from_axis_angle(camera.up.normalize(), (std::f64::consts::TAU * share) as f32);
+    let bounds = prepared.geometry.bounds;
+    let middle = 0.5 * (bounds.min + bounds.max);
+    camera.direction = turn * camera.direction;
+    let position = middle + turn * (camera.position - middle);
+    camera.with_position(position)
+}
+
+/// Settings with the step that a frame was rendered with.
+fn kept(settings: Settings, frame: &Frame) -> Settings {
+    match frame.stats.settings.step {
+        Some(step) => settings.with_step(Step::Fixed(step)),
+        None => settings,
+    }
+}
+
+fn time_left(left: Duration) -> String {
+    match left.as_secs() {
+        0 => String::new(),
+        seconds if seconds < 60 => format!(", about {seconds} s left"),
+        seconds if seconds < 3600 => format!(", about {} min {} s left", seconds / 60, seconds % 60),
+        seconds => format!(", about {} h {} min left", seconds / 3600, seconds % 3600 / 60),
+    }
+}
+
+fn summary(film: &Film, elapsed: Duration, studio: &Studio) -> String {
+    let (count, seconds) = (film.numbers.len(), elapsed.as_secs_f64());
+    let skipped = match film.skipped {
+        0 => String::new(),
+        skipped => format!(", {skipped} left as they were"),
+    };
+    if count == 0 {
+        return format!("no frame is missing: {} left as they were", film.skipped);
+    }
+    let frames = if count == 1 { "frame" } else { "frames" };
+    format!(
+        "{}: {count} {frames}{skipped}: {seconds:.3} s, {:.2} per second (load {:.3} s)",
+        studio.scene.name,
+        count as f64 / seconds,
+        studio.load
+    )
+}
