@@ -25,6 +25,8 @@ use crate::{BenchError, Findings, LIGHT, Plan, Row};
 
 /// Pixels along a side, and in the short version.
 const SIDES: [u32; 2] = [512, 192];
+/// Pixels along a side of the first image of a variant.
+const WARM_UP: u32 = 32;
 /// Mirrors' share, and how often they are followed.
 const MIRRORS: f32 = 0.1;
 const BOUNCES: u32 = 5;
@@ -103,6 +105,10 @@ impl Cost {
                 Variant { renderer: &engine.renderer, scene, settings }
             };
             let variants: Vec<Variant> = pairs.map(variant).collect();
+            // A driver compiles kernels when they are first used: small images first, so that no budget is judged by that.
+            for Variant { renderer, scene, settings } in &variants {
+                renderer.render_prepared(scene, &settings.clone().with_size([WARM_UP; 2]), &Silent(observer))?;
+            }
             let turns = Turns::take(&variants, plan.repetitions, share, observer)?;
             findings.notes.extend(turns.notes(&format!("{} of {}", self.name, subject.name), plan.repetitions));
             let plain = turns.measured[0].median();
