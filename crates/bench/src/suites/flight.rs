@@ -247,9 +247,12 @@ fn fill_changes(row: &mut Row, changes: &[Change]) {
     insert("pairs", (!changes.is_empty()).then_some(changes.len() as f64));
 }
 
+/// A value of a change.
+type Figure = fn(&Change) -> f64;
+
 /// Adds the flicker of the flight in the same pairs.
 fn compare(row: &mut Row, own: &[Change], of_kept: &[Change]) {
-    let figures: [(&str, &str, fn(&Change) -> f64); 2] = [
+    let figures: [(&str, &str, Figure); 2] = [
         ("kept_flicker", "flicker_by_rays", |change| change.flicker),
         ("kept_gathered_flicker", "gathered_by_rays", |change| change.gathered_flicker),
     ];
