@@ -3,6 +3,7 @@
 #![no_main]
 
 use std::fmt::Debug;
+use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -14,8 +15,8 @@ use lightmesh::scene::SkyKind;
 mod value;
 
 use value::{
-    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, LightSpec, Positive, Size,
-    SkySpec, Smooth,
+    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, Frames, LightSpec,
+    Positive, Size, SkySpec, Smooth, numbered,
 };
 
 /// Messages quote a part of the text and explain the rest.
@@ -45,7 +46,19 @@ fuzz_target!(|text: &str| {
     });
     read_numbers(text);
     read_places(text);
+    read_frames(text);
 });
+
+fn read_frames(text: &str) {
+    read::<Frames>(text, |frames| {
+        assert!(frames.numbers().next().is_some_and(|first| first <= frames.last()));
+        frames.to_string()
+    });
+    assert!(Frames::up_to(3).numbers().eq(1..=3));
+    if let Some(file) = numbered(Path::new(text), 7) {
+        assert!(file.to_string_lossy().contains('7'), "{text:?} is written as {}", file.display());
+    }
+}
 
 fn read_numbers(text: &str) {
     read::<Positive>(text, |Positive(number)| {
