@@ -6,24 +6,45 @@ use super::{PictureFiles, PlanError};
 use crate::args::RenderArgs;
 use crate::value::Frames;
 
-/// A film: which frames of how many.
+/// A film: what moves in it, and which of its frames are wanted.
 pub(crate) struct Film {
-    /// Frames in which the camera goes once around the scene.
-    pub(crate) turntable: u32,
-    /// Those to render, in their order; at least one, unless all exist.
+    /// What moves.
+    pub(crate) motion: Motion,
+    frames: Option<Frames>,
+}
+
+/// What moves in a film.
+#[derive(Clone, Copy)]
+pub(crate) enum Motion {
+    /// The camera goes once around the scene in this many frames.
+    Turntable(u32),
+}
+
+/// The frames of a film that are to be rendered.
+pub(crate) struct Work {
+    /// Their numbers, in their order; none if all exist.
     pub(crate) numbers: Vec<u32>,
+    /// The film's last frame.
+    pub(crate) last: u32,
     /// How many exist and are left as they are.
     pub(crate) skipped: usize,
-    first: u32,
 }
 
 impl Film {
-    /// Checks that the frames exist in the film, that their files have names of their own, and that nothing is replaced unasked.
+    /// The film that is asked for, if it is one. Fails if what is known of it without the scene cannot be rendered.
     pub(super) fn new(args: &RenderArgs) -> Result<Option<Film>, PlanError> {
         let Some(turntable) = args.turntable else { return Ok(None) };
-        let frames = args.frames.unwrap_or(Frames::up_to(turntable));
-        if frames.last() > turntable || frames.numbers().next() == Some(0) {
-            return Err(PlanError::NoFrame { frames, last: turntable });
+        let film = Film { motion: Motion::Turntable(turntable), frames: args.frames };
+        film.work(args, turntable)?;
+        Ok(Some(film))
+    }
+
+    /// What is left to render of a film with `last` frames: checks that it has those that are wanted, that their files have names of their
+    /// own, and that nothing is replaced unasked.
+    pub(crate) fn work(&self, args: &RenderArgs, last: u32) -> Result<Work, PlanError> {
+        let frames = self.frames.unwrap_or(Frames::up_to(last));
+        if frames.last() > last || frames.first() == 0 {
+            return Err(PlanError::NoFrame { frames, last });
         }
         let (mut numbers, mut existing) = (Vec::new(), VecDeque::new());
         for number in frames.numbers() {
@@ -36,16 +57,8 @@ impl Film {
         let skipped = existing.len();
         match existing.pop_front() {
             Some(first) if !args.skip_existing => Err(PlanError::FrameExists { first, count: skipped }),
-            _ => {
-                let first = numbers.first().copied().unwrap_or(frames.last());
-                Ok(Some(Film { turntable, numbers, skipped, first }))
-            }
+            _ => Ok(Work { numbers, last, skipped }),
         }
-    }
-
-    /// The first frame to render.
-    pub(super) fn first(&self) -> u32 {
-        self.first
     }
 
     /// The files of a frame.
@@ -54,5 +67,10 @@ impl Film {
     /// Those of [`PictureFiles`].
     pub(crate) fn files(&self, args: &RenderArgs, number: u32) -> Result<PictureFiles, PlanError> {
         PictureFiles::of_frame(args, number)
+    }
+
+    /// A frame that stands for all in what is checked before the scene is open.
+    pub(super) fn first(&self) -> u32 {
+        self.frames.map_or(1, Frames::first)
     }
 }

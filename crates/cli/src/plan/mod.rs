@@ -16,7 +16,7 @@ use crate::args::{RenderArgs, SceneArg};
 use crate::output::OutputError;
 use crate::value::{Frames, Smooth};
 pub(crate) use files::PictureFiles;
-pub(crate) use film::Film;
+pub(crate) use film::{Film, Motion, Work};
 pub(crate) use scene::{ChoiceError, SceneChoices};
 
 /// Why a command line is invalid.

@@ -12,16 +12,18 @@ use super::render::{Studio, save};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::plan::Film;
+use crate::plan::{Film, Motion, Work};
 
 /// Renders the frames that are left, and writes the files of each as soon as it is finished.
 pub(super) fn run(args: &RenderArgs, film: &Film, studio: &Studio, mut metering: Metering) -> Result<(), Failure> {
     let Studio { renderer, prepared, scene, plan, watcher, .. } = *studio;
-    let (begin, count) = (Instant::now(), film.numbers.len());
+    let Motion::Turntable(last) = film.motion;
+    let work = film.work(args, last)?;
+    let (begin, count) = (Instant::now(), work.numbers.len());
     let (mut cache, mut settings) = (MeshCache::new(), plan.settings.clone());
-    for (index, &number) in film.numbers.iter().enumerate() {
+    for (index, &number) in work.numbers.iter().enumerate() {
         let files = film.files(args, number)?;
-        let camera = camera(prepared, film, number);
+        let camera = turned(prepared, number, last);
         let view = settings.clone().with_camera(camera.clone());
         let render = |prepared: &PreparedScene, settings: &Settings| {
             renderer.render_with(&mut cache, prepared, settings, watcher)
@@ -35,27 +37,23 @@ pub(super) fn run(args: &RenderArgs, film: &Film, studio: &Studio, mut metering:
         let frame = save(frame, stops, &files, (renderer, scene, plan), Some(&camera), &metering, watcher)?;
         let seconds = frame.stats.seconds.render;
         let left = begin.elapsed().mul_f64((count - index - 1) as f64 / (index + 1) as f64);
-        watcher.note(&format!(
-            "frame {number} of {}: {seconds:.3} s, {}{}",
-            film.turntable,
-            files.picture,
-            time_left(left)
-        ));
+        watcher.note(&format!("frame {number} of {}: {seconds:.3} s, {}{}", work.last, files.picture, time_left(left)));
         if interrupt::requested() {
             return Err(RenderError::Cancelled.into());
         }
     }
-    watcher.summary(&summary(film, begin.elapsed(), studio));
+    watcher.summary(&summary(&work, begin.elapsed(), studio));
     Ok(())
 }
 
-/// The camera of a frame: that of the scene, turned about the vertical through the middle of the scene. All frames make one turn.
-fn camera(prepared: &PreparedScene, film: &Film, number: u32) -> Camera {
+/// The camera of frame `number` of a turntable: that of the scene, turned about the vertical through the middle of the scene. All `last` frames
+/// make one turn.
+fn turned(prepared: &PreparedScene, number: u32, last: u32) -> Camera {
     let mut camera = prepared.scene.cameras[0].clone();
     if number == 1 {
         return camera;
     }
-    let share = f64::from(number - 1) / f64::from(film.turntable);
+    let share = f64::from(number - 1) / f64::from(last);
     let turn = Quat::from_axis_angle(camera.up.normalize(), (std::f64::consts::TAU * share) as f32);
     let bounds = prepared.geometry.bounds;
     let middle = 0.5 * (bounds.min + bounds.max);
@@ -81,14 +79,14 @@ fn time_left(left: Duration) -> String {
     }
 }
 
-fn summary(film: &Film, elapsed: Duration, studio: &Studio) -> String {
-    let (count, seconds) = (film.numbers.len(), elapsed.as_secs_f64());
-    let skipped = match film.skipped {
+fn summary(work: &Work, elapsed: Duration, studio: &Studio) -> String {
+    let (count, seconds) = (work.numbers.len(), elapsed.as_secs_f64());
+    let skipped = match work.skipped {
         0 => String::new(),
         skipped => format!(", {skipped} left as they were"),
     };
     if count == 0 {
-        return format!("no frame is missing: {} left as they were", film.skipped);
+        return format!("no frame is missing: {} left as they were", work.skipped);
     }
     let frames = if count == 1 { "frame" } else { "frames" };
     format!(

@@ -25,6 +25,11 @@ impl Frames {
         (self.first..=self.last).step_by(self.step as usize)
     }
 
+    /// The smallest number.
+    pub(crate) fn first(self) -> u32 {
+        self.first
+    }
+
     /// The largest number that may occur.
     pub(crate) fn last(self) -> u32 {
         self.last
