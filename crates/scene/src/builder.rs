@@ -211,7 +211,7 @@ pub(crate) fn reserve<T>(elements: &mut Vec<T>, more: usize) -> bool {
 
 /// Normals are transformed by the inverse transpose of the transform of positions. Those of unit length keep their bits if they are not
 /// turned: a scene that is written and read again stays the same.
-fn normal_placement(transform: &DMat4) -> impl Fn(Vec3) -> Vec3 + use<> {
+pub(crate) fn normal_placement(transform: &DMat4) -> impl Fn(Vec3) -> Vec3 + use<> {
     const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
     let stays = DMat3::from_mat4(*transform) == DMat3::IDENTITY;
     let matrix = transform.inverse().transpose();
@@ -224,7 +224,7 @@ fn normal_placement(transform: &DMat4) -> impl Fn(Vec3) -> Vec3 + use<> {
     }
 }
 
-fn mirrors(transform: &DMat4) -> bool {
+pub(crate) fn mirrors(transform: &DMat4) -> bool {
     transform.determinant() < 0.0
 }
 

@@ -47,6 +47,8 @@ pub struct Camera {
     pub up: Vec3,
     /// Perspective or orthographic.
     pub projection: Projection,
+    /// The number of its motion in the scene's animation.
+    pub(crate) motion: Option<u32>,
 }
 
 /// A camera with invalid parameters.
@@ -117,6 +119,7 @@ impl Camera {
             direction: forward.as_vec3(),
             up: upper_edge(forward, up).as_vec3(),
             projection: Projection::Perspective(Fov::Vertical(vfov)),
+            motion: None,
         })
     }
 

@@ -4,18 +4,21 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec3};
 use lightmesh_memory::Short;
 
 use crate::{
-    Camera, CreaseAngle, Geometry, Light, LightKind, LightMeshDefaults, Lights, LoadError, LoadOptions, Material,
-    MeshPart, Objects, Position, Scene, SceneBuilder, Surroundings, Texture,
+    Animation, Camera, CreaseAngle, Geometry, Light, LightKind, LightMeshDefaults, Lights, LoadError, LoadOptions,
+    Material, MeshPart, Objects, Position, Scene, SceneBuilder, Surroundings, Texture,
+    animation::parts::{Hold, MovingPart, Shape},
     border::{Border, beside},
+    builder::mirrors,
     lamps,
     loaded_mesh::LoadedMesh,
     mesh_part::Room,
-    quote::reference,
+    quote::{quote, reference},
     smooth::{Unsmooth, smooth},
     texture::{TextureFiles, untextured},
     usable::{is_place, keep_finite, keep_passive, keep_placed, unseen},
@@ -85,6 +88,12 @@ pub(crate) struct Draft {
     pub(crate) surroundings: Option<Surroundings>,
     pub(crate) light_mesh: LightMeshDefaults,
     pub(crate) warnings: Warnings,
+    /// How things move.
+    pub(crate) animation: Animation,
+    /// The animation of glTF files that is asked for.
+    pub(crate) animation_name: Option<String>,
+    /// The node of the rig that moves what is added.
+    pub(crate) mover: Option<u32>,
 }
 
 impl Draft {
@@ -113,6 +122,9 @@ impl Draft {
             surroundings: None,
             light_mesh: LightMeshDefaults::default(),
             warnings: Warnings::default(),
+            animation: Animation::default(),
+            animation_name: options.animation.clone(),
+            mover: None,
         }
     }
 
@@ -160,6 +172,8 @@ impl Draft {
         material: impl Fn(usize) -> u32,
     ) -> Result<(), LoadError> {
         self.check_room(&part)?;
+        let shape = self.mover.map(|_| shape_of(&part));
+        let before = self.size();
         let usable = usable_in(transform);
         if part.positions.iter().all(&usable) {
             self.begin_objects(&Objects::default(), part.triangles.len(), |triangle| triangle as usize);
@@ -168,7 +182,30 @@ impl Draft {
         } else {
             self.add_usable(part, &Objects::default(), transform, material, usable);
         }
+        self.move_added(shape, transform, before);
         Ok(())
+    }
+
+    /// Numbers of vertices and triangles so far.
+    pub(crate) fn size(&self) -> (usize, usize) {
+        (self.builder.vertex_count(), self.builder.triangle_count())
+    }
+
+    /// What was added since the draft had the size `before`, with this shape and placed by `transform`, goes with the mover.
+    fn move_added(&mut self, shape: Option<Shape>, transform: &DMat4, before: (usize, usize)) {
+        if let (Some(shape), Some(node)) = (shape, self.mover) {
+            self.hold(shape.into(), Hold::Node(node, *transform), mirrors(transform), before);
+        }
+    }
+
+    /// What was added since the draft had the size `before` moves.
+    pub(crate) fn hold(&mut self, shape: Arc<Shape>, hold: Hold, reversed: bool, before: (usize, usize)) {
+        let after = self.size();
+        // Parts without any usable vertex are not added.
+        if after.0 - before.0 == shape.positions.len() && after.1 > before.1 {
+            let (vertices, triangles) = (before.0..after.0, before.1..after.1);
+            self.animation.parts.push(MovingPart { vertices, triangles, shape, hold, reversed });
+        }
     }
 
     /// Triangles that are added from now on belong to the object `name`, unless their mesh names its own.
@@ -200,6 +237,8 @@ impl Draft {
         // The first mesh of a scene is not copied.
         let copied = if self.builder.vertex_count() > 0 { mesh.part() } else { MeshPart::default() };
         self.check_room(&copied)?;
+        let shape = self.mover.map(|_| shape_of(&mesh.part()));
+        let before = self.size();
         let usable = usable_in(transform);
         if mesh.positions.iter().all(&usable) {
             let (triangles, has_uvs) = (mesh.triangles.len(), !mesh.uvs.is_empty());
@@ -209,6 +248,7 @@ impl Draft {
         } else {
             self.add_usable(mesh.part(), &mesh.objects, transform, |index| mesh.materials[index], usable);
         }
+        self.move_added(shape, transform, before);
         Ok(())
     }
 
@@ -328,6 +368,10 @@ impl Draft {
         if let Some(error) = self.too_large {
             return Err(error);
         }
+        if let Some(name) = self.animation_name.filter(|name| !self.animation.names.contains(name)) {
+            let known = self.animation.others.iter().map(|other| quote(other)).collect();
+            return Err(LoadError::UnknownAnimation { path: self.path, name: quote(&name), known });
+        }
         if self.unusable_triangles > 0 {
             self.warnings.push(format!(
                 "{} triangles with infinite, undefined or far too large coordinates were ignored",
@@ -353,6 +397,8 @@ impl Draft {
             return Err(LoadError::Warnings { path: self.path, warnings });
         }
         let mut geometry = Geometry { origin, mesh, materials: self.materials, textures: self.textures };
+        let mut animation = self.animation;
+        animation.note_lamps(&geometry);
         let lamps = lamps::lamps(&mut geometry);
         let cameras = self.cameras.into_iter();
         let cameras = cameras.map(|(camera, world)| Camera { position: geometry.to_local(world), ..camera }).collect();
@@ -373,6 +419,7 @@ impl Draft {
             files: self.files.into_iter().collect(),
             warnings,
             smooth_normals: self.smooth_normals,
+            animation: (!animation.is_still()).then(|| animation.into()),
         })
     }
 }
@@ -382,8 +429,13 @@ fn usable_in<P: Position>(transform: &DMat4) -> impl Fn(&P) -> bool + use<'_, P>
     |position| is_place(transform.transform_point3(position.to_double()))
 }
 
+/// The vertices of a part, copied.
+fn shape_of<P: Position>(part: &MeshPart<P>) -> Shape {
+    Shape { positions: P::owned(part.positions.to_vec()), normals: part.normals.to_vec(), morph: None }
+}
+
 /// The light at another position.
-fn moved(mut light: Light, to: Vec3) -> Light {
+pub(crate) fn moved(mut light: Light, to: Vec3) -> Light {
     match &mut light.kind {
         LightKind::Point { position, .. }
         | LightKind::Spot { position, .. }

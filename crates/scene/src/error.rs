@@ -74,6 +74,19 @@ pub enum LoadError {
         /// Supported extensions.
         known: Vec<String>,
     },
+    /// No animation of the file has the requested name.
+    #[error("{} has no animation `{name}`; {}", path.display(), match known.is_empty() {
+        true => "it has none".to_owned(),
+        false => format!("available: {}", known.join(", ")),
+    })]
+    UnknownAnimation {
+        /// The file.
+        path: PathBuf,
+        /// The requested name.
+        name: String,
+        /// Names of its animations.
+        known: Vec<String>,
+    },
     /// No built-in scene has this name.
     #[error("there is no built-in scene `{name}`, builtin:{name}; available: {}", known.join(", "))]
     UnknownBuiltin {

@@ -127,6 +127,7 @@ impl Scene {
                 direction,
                 up: up.axis(),
                 projection: Projection::Perspective(Fov::Vertical(VFOV)),
+                motion: None,
             };
             camera.position = fitting(mesh, &bounds, &camera);
             camera

@@ -9,6 +9,7 @@
 //! scene a hundred kilometres from the world's origin keeps the precision that it would have at the origin.
 #![warn(missing_docs)]
 
+mod animation;
 mod border;
 mod builder;
 pub mod builtin;
@@ -50,6 +51,7 @@ mod warnings;
 /// The vector and matrix types of this crate's API.
 pub use glam;
 
+pub use animation::Animation;
 pub use builder::SceneBuilder;
 pub use camera::{Camera, CameraError, Fov, Projection};
 pub use dielectric::Dielectric;

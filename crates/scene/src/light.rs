@@ -115,6 +115,8 @@ pub struct Light {
     /// If it stands for an emissive surface: the unit normal on the side that shines. Its strength falls with the cosine (Lambert), and
     /// `intensity` is that along the normal. `None`: it shines evenly.
     pub surface: Option<Vec3>,
+    /// The number of its motion in the scene's animation.
+    pub(crate) motion: Option<u32>,
 }
 
 /// A light with an invalid shape.
@@ -218,7 +220,7 @@ impl Light {
 
     /// A light with a shape that is used unchecked.
     pub fn new(kind: LightKind) -> Light {
-        Light { name: String::new(), kind, intensity: Vec3::ONE, falloff: Falloff::None, surface: None }
+        Light { name: String::new(), kind, intensity: Vec3::ONE, falloff: Falloff::None, surface: None, motion: None }
     }
 
     /// The same light with this strength, see [`Light::intensity`].

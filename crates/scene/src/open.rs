@@ -31,6 +31,8 @@ pub struct LoadOptions {
     /// triangles and the positions of their corners stay. In an OBJ file with smoothing groups (`s`), triangles of different groups meet in
     /// creases, too, and those of no group stay flat.
     pub smooth: Option<CreaseAngle>,
+    /// The animation of glTF files that is played; `None`: all that do not move what one before them moves.
+    pub animation: Option<String>,
 }
 
 impl LoadOptions {
@@ -59,6 +61,11 @@ impl LoadOptions {
     /// ```
     pub fn with_smooth(self, smooth: impl Into<Option<CreaseAngle>>) -> LoadOptions {
         LoadOptions { smooth: smooth.into(), ..self }
+    }
+
+    /// The name of the animation of glTF files that is played.
+    pub fn with_animation(self, animation: impl Into<Option<String>>) -> LoadOptions {
+        LoadOptions { animation: animation.into(), ..self }
     }
 
     /// Whether warnings are errors.

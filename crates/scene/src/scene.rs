@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 
-use crate::{Camera, Geometry, Lights, parse_by_name};
+use crate::{Animation, Camera, Geometry, Lights, parse_by_name};
 
 /// The weight w of formula (3) as a function of q = distance / radius.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -79,6 +79,8 @@ pub struct Scene {
     pub warnings: Vec<String>,
     /// How many vertices got a normal while the scene was read, see [`LoadOptions::smooth`](crate::LoadOptions::smooth).
     pub smooth_normals: usize,
+    /// How it moves.
+    pub(crate) animation: Option<Arc<Animation>>,
 }
 
 impl Scene {
@@ -93,6 +95,7 @@ impl Scene {
             files: Vec::new(),
             warnings: Vec::new(),
             smooth_normals: 0,
+            animation: None,
         }
     }
 

@@ -37,6 +37,24 @@ pub enum OwnedPositions {
     Double(Vec<DVec3>),
 }
 
+impl OwnedPositions {
+    /// Number of vertices.
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            OwnedPositions::Single(positions) => positions.len(),
+            OwnedPositions::Double(positions) => positions.len(),
+        }
+    }
+
+    /// A vertex in double precision.
+    pub(crate) fn get(&self, vertex: usize) -> DVec3 {
+        match self {
+            OwnedPositions::Single(positions) => positions[vertex].as_dvec3(),
+            OwnedPositions::Double(positions) => positions[vertex],
+        }
+    }
+}
+
 impl Position for Vec3 {
     fn to_double(self) -> DVec3 {
         self.as_dvec3()

@@ -77,6 +77,7 @@ impl Composition {
             direction: (self.target - self.eye).normalize(),
             up: Vec3::Y,
             projection: Projection::Perspective(Fov::Vertical(self.vfov)),
+            motion: None,
         };
         let geometry = Geometry { mesh: self.mesh, materials: self.palette.0, ..Geometry::default() };
         let lights =

@@ -26,6 +26,7 @@ pub(super) fn encode(scene: &Scene, mesh_file: &str) -> Result<String, toml::ser
         translate: None,
         rotate: None,
         scale: None,
+        motion: None,
     };
     toml::to_string(&SceneFile {
         origin: (scene.geometry.origin != DVec3::ZERO).then(|| anywhere(scene.geometry.origin.to_array())),
@@ -79,6 +80,7 @@ fn camera_entry(scene: &Scene, camera: &Camera) -> CameraEntry {
         hfov: None,
         projection: None,
         height: None,
+        motion: None,
     };
     match camera.projection {
         Projection::Perspective(Fov::Vertical(degrees)) => entry.vfov = Some(number(degrees)),
@@ -113,6 +115,7 @@ fn light_entry(scene: &Scene, light: &Light) -> LightEntry {
             Falloff::None => FalloffName::None,
             Falloff::InverseSquare => FalloffName::InverseSquare,
         }),
+        motion: None,
     };
     match light.kind {
         LightKind::Point { spread, .. } => entry.spread = (spread > 0.0).then(|| number(spread)),

@@ -153,6 +153,7 @@ fn longest_view(sight: &Sight, bounds: &Bounds, up: Vec3, places: &[Place]) -> C
         direction: forward.normalize(),
         up,
         projection: Projection::Perspective(Fov::Vertical(VFOV)),
+        motion: None,
     }
 }
 

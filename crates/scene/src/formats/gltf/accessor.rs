@@ -212,13 +212,14 @@ impl<'a> Accessors<'a> {
     }
 }
 
-/// Number of components per element; `None` for matrices, which no mesh has.
+/// Number of components per element; `None` for the smaller matrices, which nothing has.
 fn dimensions(kind: &str) -> Option<usize> {
     Some(match kind {
         "SCALAR" => 1,
         "VEC2" => 2,
         "VEC3" => 3,
         "VEC4" => 4,
+        "MAT4" => 16,
         _ => return None,
     })
 }

@@ -18,7 +18,8 @@ use crate::{Camera, Fov, LoadError, Projection, formats::toml::upright};
 pub(super) fn placed(axes: &Axes, placed: &Placed, name: String, projection: Projection) -> Result<Camera, LoadError> {
     let direction = axes.forward(placed)?;
     let up = upright(direction, axes.up(placed)?).ok_or_else(|| axes.flat(placed))?;
-    Ok(Camera { name, position: Vec3::ZERO, direction: direction.as_vec3(), up: up.as_vec3(), projection })
+    let (direction, up) = (direction.as_vec3(), up.as_vec3());
+    Ok(Camera { name, position: Vec3::ZERO, direction, up, projection, motion: None })
 }
 
 /// The projection of camera number `index` of the document.

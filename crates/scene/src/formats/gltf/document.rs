@@ -46,6 +46,10 @@ pub(super) struct Document<'a> {
     pub(super) samplers: Vec<Sampler>,
     #[serde(borrow, default)]
     pub(super) cameras: Vec<Camera<'a>>,
+    #[serde(default)]
+    pub(super) skins: Vec<Skin>,
+    #[serde(borrow, default)]
+    pub(super) animations: Vec<Animation<'a>>,
     #[serde(borrow, default)]
     pub(super) extensions: DocumentExtensions<'a>,
 }
@@ -194,6 +198,9 @@ pub(super) struct Primitive {
     pub(super) material: Option<u32>,
     #[serde(default = "Primitive::triangles")]
     pub(super) mode: u32,
+    /// Morph targets.
+    #[serde(default)]
+    pub(super) targets: Box<[Target]>,
 }
 
 impl Primitive {
@@ -214,6 +221,65 @@ pub(super) struct Attributes {
     pub(super) texcoord_1: Option<u32>,
     #[serde(rename = "COLOR_0")]
     pub(super) color_0: Option<u32>,
+    #[serde(rename = "JOINTS_0")]
+    pub(super) joints_0: Option<u32>,
+    #[serde(rename = "WEIGHTS_0")]
+    pub(super) weights_0: Option<u32>,
+    #[serde(rename = "JOINTS_1")]
+    pub(super) joints_1: Option<u32>,
+    #[serde(rename = "WEIGHTS_1")]
+    pub(super) weights_1: Option<u32>,
+}
+
+/// What a morph target adds to attributes.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "SCREAMING_SNAKE_CASE")]
+pub(super) struct Target {
+    pub(super) position: Option<u32>,
+    pub(super) normal: Option<u32>,
+}
+
+/// A skeleton.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Skin {
+    pub(super) inverse_bind_matrices: Option<u32>,
+    /// Nodes.
+    #[serde(default)]
+    pub(super) joints: Box<[u32]>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Animation<'a> {
+    pub(super) name: Option<Box<str>>,
+    #[serde(borrow, default)]
+    pub(super) channels: Box<[Channel<'a>]>,
+    #[serde(borrow, default)]
+    pub(super) samplers: Box<[AnimationSampler<'a>]>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Channel<'a> {
+    pub(super) sampler: u32,
+    #[serde(borrow)]
+    pub(super) target: ChannelTarget<'a>,
+}
+
+/// What a channel moves: of a node, `translation`, `rotation`, `scale` or `weights`.
+#[derive(Debug, Deserialize)]
+pub(super) struct ChannelTarget<'a> {
+    pub(super) node: Option<u32>,
+    #[serde(borrow)]
+    pub(super) path: Cow<'a, str>,
+}
+
+/// Keys: accessors of their times and values.
+#[derive(Debug, Deserialize)]
+pub(super) struct AnimationSampler<'a> {
+    pub(super) input: u32,
+    pub(super) output: u32,
+    #[serde(borrow)]
+    pub(super) interpolation: Option<Cow<'a, str>>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -15,8 +15,8 @@ pub(super) struct LeftOut {
     pub(super) points_and_lines: usize,
     /// Primitives without positions.
     pub(super) placeless: usize,
-    pub(super) skinned: usize,
-    pub(super) morphed: usize,
+    /// Channels of animations that move nothing glTF itself defines.
+    pub(super) unknown_channels: usize,
     /// Primitives whose material does not exist.
     pub(super) missing_materials: usize,
     /// Materials with an `alphaMode` that glTF does not define.
@@ -52,8 +52,7 @@ impl LeftOut {
             (self.unknown_lights, "light", "of an unknown type: ignored"),
             (self.points_and_lines, "primitive", "of points or lines: ignored"),
             (self.placeless, "primitive", "without positions: ignored"),
-            (self.skinned, "skinned mesh", "shown in its rest pose, without its skeleton"),
-            (self.morphed, "mesh", "shown without the morph targets that the file blends in"),
+            (self.unknown_channels, "animation channel", "of an unknown kind: ignored"),
             (self.missing_materials, "primitive", "with a material that the file does not contain: shown white"),
             (self.unknown_alpha_modes, "material", "with an unknown alphaMode: shown opaque"),
             (self.occlusion_textures, "occlusion texture", "not shown"),

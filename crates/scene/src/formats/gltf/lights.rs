@@ -52,6 +52,7 @@ pub(super) fn placed(
         intensity,
         falloff: if own.no_falloff { Falloff::None } else { Falloff::InverseSquare },
         surface: None,
+        motion: None,
     }))
 }
 

@@ -3,19 +3,27 @@
 //! First a survey counts what is going to be added, and checks that its bytes exist; so a few small meshes in very many nodes are
 //! rejected before they fill the memory.
 
-use std::borrow::Cow;
+use std::{borrow::Cow, sync::Arc};
 
 use glam::{DMat4, Vec3};
 
 use super::{
-    accessor::Accessors,
+    accessor::{Accessors, Used},
+    bends::Bends,
     container::malformed,
     document::{Instancing, Mesh, Primitive},
     instances::Instances,
     left_out::LeftOut,
     materials::{Chosen, Materials},
+    rigged::Rigged,
 };
-use crate::{LoadError, MeshPart, draft::Draft, mesh_part::Room};
+use crate::{
+    LoadError, MeshPart, OwnedPositions,
+    animation::parts::{Hold, Shape},
+    builder::mirrors,
+    draft::Draft,
+    mesh_part::Room,
+};
 
 /// How a primitive's vertices form triangles, by its number in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,6 +72,7 @@ pub(super) struct Shown<'a> {
     pub(super) transform: DMat4,
     /// The number of instances and their transforms.
     pub(super) instances: Option<(usize, &'a Instancing)>,
+    pub(super) bends: Bends,
 }
 
 impl Shown<'_> {
@@ -89,6 +98,7 @@ impl<'a> Meshes<'a> {
     pub(super) fn add(
         &mut self,
         all: &[Shown],
+        rigged: &Rigged,
         materials: &mut Materials,
         left_out: &mut LeftOut,
         object: Option<&str>,
@@ -116,7 +126,7 @@ impl<'a> Meshes<'a> {
             draft.begin_object(named.map_or_else(|| format!("node {number}"), str::to_owned));
             for &(primitive, mode) in &survey.primitives {
                 let chosen = materials.choose(primitive, left_out, draft);
-                self.add_primitive(primitive, mode, &chosen, &shown.transform, instances.as_ref(), draft)?;
+                self.add_primitive(primitive, mode, &chosen, shown, instances.as_ref(), rigged, draft)?;
             }
         }
         Ok(())
@@ -134,13 +144,15 @@ impl<'a> Meshes<'a> {
         Ok(slot.as_ref().expect("just filled"))
     }
 
+    #[allow(clippy::too_many_arguments, reason = "what a primitive is, where it is shown, and where it goes")]
     fn add_primitive(
         &self,
         primitive: &Primitive,
         mode: Mode,
         chosen: &Chosen,
-        transform: &DMat4,
+        shown: &Shown,
         instances: Option<&Instances>,
+        rigged: &Rigged,
         draft: &mut Draft,
     ) -> Result<(), LoadError> {
         let accessors = &self.accessors;
@@ -167,11 +179,44 @@ impl<'a> Meshes<'a> {
             opacities: &opacities,
             triangles: &triangles(mode, &indices),
         };
-        let Some(instances) = instances else {
-            return draft.add(part, transform, |_| chosen.material);
+        if shown.bends.bend(primitive) {
+            let bent = self.bent(primitive, shown, vertices, used, &part, rigged)?;
+            return add_bent(part, bent, &shown.bends, chosen.material, rigged, draft);
+        }
+        let mover = rigged.mover(shown.node.0);
+        // All instances move the same vertices.
+        let shape = mover.map(|node| (node, Arc::new(shape_of(&part))));
+        let add = |draft: &mut Draft, instance: &DMat4| -> Result<(), LoadError> {
+            let (before, transform) = (draft.size(), shown.transform * *instance);
+            draft.add(part, &transform, |_| chosen.material)?;
+            if let Some((node, shape)) = &shape {
+                draft.hold(Arc::clone(shape), Hold::Node(*node, *instance), mirrors(&transform), before);
+            }
+            Ok(())
         };
-        let mut transforms = instances.transforms();
-        transforms.try_for_each(|instance| draft.add(part, &(transform * instance), |_| chosen.material))
+        match instances {
+            None => add(draft, &DMat4::IDENTITY),
+            Some(instances) => instances.transforms().try_for_each(|instance| add(draft, &instance)),
+        }
+    }
+
+    /// The shape of a primitive that is bent, and what bends it.
+    fn bent(
+        &self,
+        primitive: &Primitive,
+        shown: &Shown,
+        vertices: usize,
+        used: Used,
+        part: &MeshPart<Vec3>,
+        rigged: &Rigged,
+    ) -> Result<(Shape, Hold), LoadError> {
+        let morph = shown.bends.morph(&self.accessors, primitive, vertices, used)?;
+        let hold = match shown.bends.influences(&self.accessors, primitive, vertices, used)? {
+            Some((skin, influences)) => Hold::Skin(skin, influences.into()),
+            // What bends has a rig.
+            None => Hold::Node(rigged.number(shown.node.0).unwrap_or(0), DMat4::IDENTITY),
+        };
+        Ok((Shape { morph, ..shape_of(part) }, hold))
     }
 
     /// Attributes that are there have a value for each vertex.
@@ -196,6 +241,40 @@ impl<'a> Meshes<'a> {
         let problem = format!("a primitive refers to vertex {largest} of {vertices} (accessor {accessor})");
         Err(malformed(self.accessors.path, problem))
     }
+}
+
+/// The vertices of a primitive, copied.
+fn shape_of(part: &MeshPart<Vec3>) -> Shape {
+    Shape { positions: OwnedPositions::Single(part.positions.to_vec()), normals: part.normals.to_vec(), morph: None }
+}
+
+/// Adds a primitive that is bent, as it is at rest.
+fn add_bent(
+    part: MeshPart<Vec3>,
+    (shape, hold): (Shape, Hold),
+    bends: &Bends,
+    material: u32,
+    rigged: &Rigged,
+    draft: &mut Draft,
+) -> Result<(), LoadError> {
+    let (positions, normals) = shape.posed(&hold, &rigged.places, None);
+    let (reversed, moves) = match &hold {
+        Hold::Node(node, _) => (mirrors(&rigged.places[*node as usize]), rigged.moves(*node)),
+        Hold::Skin(skin, _) => (false, skin.joints.iter().any(|&joint| rigged.moves(joint))),
+    };
+    let mut triangles = Cow::Borrowed(part.triangles);
+    if reversed {
+        triangles.to_mut().iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    }
+    let MeshPart { uvs, colors, opacities, .. } = part;
+    let posed =
+        MeshPart { positions: &positions[..], normals: &normals, uvs, colors, opacities, triangles: &triangles };
+    let before = draft.size();
+    draft.add(posed, &DMat4::IDENTITY, |_| material)?;
+    if moves || bends.morph_moves() {
+        draft.hold(shape.into(), hold, reversed, before);
+    }
+    Ok(())
 }
 
 impl<'a> Survey<'a> {

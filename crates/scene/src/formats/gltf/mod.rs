@@ -12,11 +12,15 @@
 //!    form is borrowed.
 //! 6. [`views`]: [`cameras`], [`lights`], what surrounds all ([`environment`]), and our own [`extras`].
 //!
-//! Animations are ignored: the scene is shown as its nodes are placed. Other content that is not shown is counted in [`left_out`]
-//! and reported as a warning.
+//! 7. What moves: [`animations`] of the nodes as a rig ([`rigged`]); what [`bends`] a mesh. The scene itself is shown as its nodes are
+//!    placed.
+//!
+//! Content that is not shown is counted in [`left_out`] and reported as a warning.
 
 mod accessor;
+mod animations;
 mod axes;
+mod bends;
 mod buffers;
 mod cameras;
 mod container;
@@ -33,6 +37,7 @@ mod materials;
 mod meshes;
 mod nodes;
 mod picture;
+mod rigged;
 mod strided;
 #[cfg(test)]
 mod tests;
@@ -46,6 +51,7 @@ pub(crate) use picture::affine;
 
 use self::{
     accessor::Accessors,
+    bends::Bends,
     buffers::Buffers,
     container::{Container, malformed},
     document::{Document, Node},
@@ -55,6 +61,7 @@ use self::{
     meshes::{Meshes, Shown},
     nodes::Placed,
     picture::Pictures,
+    rigged::Rigged,
     uri::Uri,
     views::Views,
 };
@@ -79,16 +86,21 @@ pub(crate) fn read(path: &Path, bytes: Vec<u8>, placement: &Placement, draft: &m
     let pictures = Pictures::new(path, &document, &buffers);
     let mut materials = Materials::read(path, &document, pictures, placement, &mut left_out, draft)?;
     let placed = nodes::placed(path, &document, placement.transform, draft)?;
-    let shown = shown(&accessors, &placed, &mut left_out)?;
-    Meshes::new(accessors).add(&shown, &mut materials, &mut left_out, placement.object.as_deref(), draft)?;
+    // What this file adds goes with its own nodes.
+    let mover = draft.mover.take();
+    let bends = placed.iter().any(|placed| placed.node.skin.is_some() || is_morphed(&document, placed.node));
+    let mut rigged = Rigged::new(&accessors, &placed, placement, mover, bends, &mut left_out, draft)?;
+    let shown = shown(&accessors, &placed, &mut rigged)?;
+    Meshes::new(accessors).add(&shown, &rigged, &mut materials, &mut left_out, placement.object.as_deref(), draft)?;
     if placement.part {
         left_out.count_views(&placed);
     } else {
-        Views::new(path, &document).add(&placed, &mut left_out, draft)?;
+        Views::new(path, &document).add(&placed, &rigged, &mut left_out, draft)?;
         environment::read(path, &document, &buffers, draft)?;
         read_scene_extras(path, &document, draft)?;
     }
     left_out.warn(path, draft);
+    draft.mover = mover;
     Ok(())
 }
 
@@ -107,28 +119,33 @@ fn refer(path: &Path, document: &Document, draft: &mut Draft) {
 fn shown<'a>(
     accessors: &Accessors<'a>,
     placed: &[Placed<'a>],
-    left_out: &mut LeftOut,
+    rigged: &mut Rigged,
 ) -> Result<Vec<Shown<'a>>, LoadError> {
     let mut all = Vec::new();
-    for &Placed { index, node, transform } in placed {
+    for &Placed { index, node, transform, .. } in placed {
         let Some(mesh) = node.mesh else { continue };
         let instancing = node.extensions.as_ref().and_then(|extensions| extensions.instancing.as_ref());
         let instances = match instancing {
             Some(instancing) => Some((instances::count(accessors, index, instancing)?, instancing)),
             None => None,
         };
-        all.push(Shown { mesh, node: (index, node.name.as_deref()), transform, instances });
-        left_out.skinned += usize::from(node.skin.is_some());
-        left_out.morphed += usize::from(is_morphed(accessors.document, node, mesh));
+        let skin = node.skin.map(|skin| rigged.skin(accessors, skin)).transpose()?;
+        let bends = Bends::new(node, weights_of(accessors.document, mesh), skin, rigged.weights(index));
+        all.push(Shown { mesh, node: (index, node.name.as_deref()), transform, instances, bends });
     }
     Ok(all)
 }
 
 /// Whether morph targets change the mesh.
-fn is_morphed(document: &Document, node: &Node, mesh: u32) -> bool {
-    let of_mesh = document.meshes.get(mesh as usize).map_or(&[][..], |mesh| &mesh.weights);
+fn is_morphed(document: &Document, node: &Node) -> bool {
+    let of_mesh = node.mesh.map_or(&[][..], |mesh| weights_of(document, mesh));
     let weights = if node.weights.is_empty() { of_mesh } else { &node.weights };
     weights.iter().any(|&weight| weight != 0.0)
+}
+
+/// Weights of the morph targets of a mesh.
+fn weights_of<'a>(document: &'a Document, mesh: u32) -> &'a [f64] {
+    document.meshes.get(mesh as usize).map_or(&[], |mesh| &mesh.weights)
 }
 
 /// Ambient term, background and similar properties, from our own extras.

@@ -8,11 +8,13 @@ use super::{
     container::malformed,
     document::{Document, Node},
 };
-use crate::{LoadError, Place, draft::Draft};
+use crate::{LoadError, Place, animation::rig, draft::Draft};
 
 /// A node with its transform to world coordinates.
 pub(super) struct Placed<'a> {
     pub(super) index: usize,
+    /// The index of its parent.
+    pub(super) parent: Option<usize>,
     pub(super) node: &'a Node,
     pub(super) transform: DMat4,
 }
@@ -31,11 +33,11 @@ pub(super) fn placed<'a>(
     transform: DMat4,
     draft: &mut Draft,
 ) -> Result<Vec<Placed<'a>>, LoadError> {
-    let mut stack: Vec<(u32, DMat4)> =
-        roots(path, document, draft)?.into_iter().rev().map(|root| (root, transform)).collect();
+    let mut stack: Vec<(u32, Option<usize>, DMat4)> =
+        roots(path, document, draft)?.into_iter().rev().map(|root| (root, None, transform)).collect();
     let mut placed = Vec::new();
     let mut seen = vec![false; document.nodes.len()];
-    while let Some((index, parent)) = stack.pop() {
+    while let Some((index, parent, outer)) = stack.pop() {
         let node = document
             .nodes
             .get(index as usize)
@@ -43,9 +45,10 @@ pub(super) fn placed<'a>(
         if std::mem::replace(&mut seen[index as usize], true) {
             return Err(no_tree(path, format!("node {index} has two parents or is its own ancestor")));
         }
-        let transform = parent * local_transform(node);
-        stack.extend(node.children.iter().rev().map(|&child| (child, transform)));
-        placed.push(Placed { index: index as usize, node, transform });
+        let transform = outer * place(node).matrix();
+        let own = index as usize;
+        stack.extend(node.children.iter().rev().map(|&child| (child, Some(own), transform)));
+        placed.push(Placed { index: own, parent, node, transform });
     }
     Ok(placed)
 }
@@ -80,18 +83,18 @@ fn roots(path: &Path, document: &Document, draft: &mut Draft) -> Result<Vec<u32>
     Ok(roots)
 }
 
-/// From the node's coordinates to its parent's.
-fn local_transform(node: &Node) -> DMat4 {
+/// The node's place in its parent.
+pub(super) fn place(node: &Node) -> rig::Place {
     if let Some(matrix) = &node.matrix {
-        return DMat4::from_cols_array(matrix);
+        return rig::Place::Matrix(DMat4::from_cols_array(matrix));
     }
     let vector = |value: &Option<Box<[f64; 3]>>, none| value.as_deref().map_or(none, |&value| DVec3::from(value));
     let rotation = node.rotation.as_deref().map_or(DQuat::IDENTITY, |&xyzw| rotation(DQuat::from_array(xyzw)));
-    DMat4::from_scale_rotation_translation(
-        vector(&node.scale, DVec3::ONE),
+    rig::Place::Parts {
+        translation: vector(&node.translation, DVec3::ZERO),
         rotation,
-        vector(&node.translation, DVec3::ZERO),
-    )
+        scale: vector(&node.scale, DVec3::ONE),
+    }
 }
 
 /// A unit quaternion; one without a length means no rotation.

@@ -4,9 +4,11 @@ use std::path::Path;
 
 use super::{
     axes::Axes, cameras, container::malformed, document::Document, extras, extras::LightExtras, left_out::LeftOut,
-    lights, nodes::Placed,
+    lights, nodes::Placed, rigged::Rigged,
 };
-use crate::{LoadError, Projection, draft::Draft};
+use glam::DMat4;
+
+use crate::{LoadError, Projection, animation::views::Motion, draft::Draft};
 
 /// Maximum length of a name in characters; longer ones are cut.
 const LONGEST_NAME: usize = 200;
@@ -32,19 +34,31 @@ impl<'a> Views<'a> {
     }
 
     /// Adds those of all nodes.
-    pub(super) fn add(&mut self, all: &[Placed], left_out: &mut LeftOut, draft: &mut Draft) -> Result<(), LoadError> {
+    pub(super) fn add(
+        &mut self,
+        all: &[Placed],
+        rigged: &Rigged,
+        left_out: &mut LeftOut,
+        draft: &mut Draft,
+    ) -> Result<(), LoadError> {
         for placed in all {
             if let Some(camera) = placed.node.camera {
-                self.add_camera(placed, camera, draft)?;
+                self.add_camera(placed, camera, rigged.mover(placed.index), draft)?;
             }
             if let Some(light) = placed.light() {
-                self.add_light(placed, light, left_out, draft)?;
+                self.add_light(placed, light, rigged.mover(placed.index), left_out, draft)?;
             }
         }
         Ok(())
     }
 
-    fn add_camera(&mut self, placed: &Placed, index: u32, draft: &mut Draft) -> Result<(), LoadError> {
+    fn add_camera(
+        &mut self,
+        placed: &Placed,
+        index: u32,
+        mover: Option<u32>,
+        draft: &mut Draft,
+    ) -> Result<(), LoadError> {
         let camera = self.document.cameras.get(index as usize).ok_or_else(|| self.missing("camera", index))?;
         let slot = &mut self.projections[index as usize];
         let projection = match *slot {
@@ -52,9 +66,13 @@ impl<'a> Views<'a> {
             None => *slot.insert(cameras::projection(self.axes.path, index, camera)?),
         };
         let name = name(camera.name.as_deref(), placed);
-        draft
-            .cameras
-            .push((cameras::placed(&self.axes, placed, name, projection)?, placed.transform.w_axis.truncate()));
+        let mut camera = cameras::placed(&self.axes, placed, name, projection)?;
+        if let Some(node) = mover {
+            let own = cameras::placed(&self.axes, &unplaced(placed), String::new(), projection)?;
+            camera.motion = Some(draft.animation.cameras.len() as u32);
+            draft.animation.cameras.push(Motion::Node(node, own.into()));
+        }
+        draft.cameras.push((camera, placed.transform.w_axis.truncate()));
         Ok(())
     }
 
@@ -62,6 +80,7 @@ impl<'a> Views<'a> {
         &mut self,
         placed: &Placed,
         index: u32,
+        mover: Option<u32>,
         left_out: &mut LeftOut,
         draft: &mut Draft,
     ) -> Result<(), LoadError> {
@@ -75,7 +94,12 @@ impl<'a> Views<'a> {
         let own = slot.as_ref().expect("just filled");
         match lights::placed(&self.axes, placed, index, light, own)? {
             Some(found) => {
-                let named = crate::Light { name: name(light.name.as_deref(), placed), ..found };
+                let mut named = crate::Light { name: name(light.name.as_deref(), placed), ..found };
+                if let Some((node, own)) = mover.zip(lights::placed(&self.axes, &unplaced(placed), index, light, own)?)
+                {
+                    named.motion = Some(draft.animation.lights.len() as u32);
+                    draft.animation.lights.push(Motion::Node(node, own.into()));
+                }
                 draft.lights.push((named, placed.transform.w_axis.truncate()));
             }
             None => left_out.unknown_lights += 1,
@@ -86,6 +110,11 @@ impl<'a> Views<'a> {
     fn missing(&self, what: &str, index: u32) -> LoadError {
         malformed(self.axes.path, format!("there is no {what} {index}, but it is referenced"))
     }
+}
+
+/// A node in its own coordinates.
+fn unplaced<'a>(placed: &Placed<'a>) -> Placed<'a> {
+    Placed { transform: DMat4::IDENTITY, ..*placed }
 }
 
 /// The name of a camera or light, else that of its node.

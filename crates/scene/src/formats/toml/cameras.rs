@@ -34,6 +34,7 @@ pub(super) fn read(source: &Source, table: &Spanned<CameraEntry>) -> Result<(Cam
         direction: direction.as_vec3(),
         up: up.as_vec3(),
         projection: projection(source, table)?,
+        motion: None,
     };
     Ok((camera, position))
 }

@@ -30,6 +30,7 @@ pub(super) fn read(source: &Source, table: &Spanned<LightEntry>) -> Result<(Ligh
             Some(FalloffName::InverseSquare) => Falloff::InverseSquare,
         },
         surface: None,
+        motion: None,
     };
     Ok((light, position))
 }

@@ -6,6 +6,8 @@ mod cameras;
 mod check;
 mod lights;
 mod materials;
+mod motion;
+mod motion_schema;
 mod one_or_many;
 mod parts;
 mod publish;
@@ -45,11 +47,15 @@ fn convert(source: &Source, file: &SceneFile, draft: &mut Draft) -> Result<(), L
     let names = materials::read(source, &file.material, draft)?;
     parts::read(source, file, &names, draft)?;
     for camera in &file.camera {
-        draft.cameras.push(cameras::read(source, camera)?);
+        let found = cameras::read(source, camera)?;
+        let found = motion::camera(source, camera, found, draft)?;
+        draft.cameras.push(found);
     }
     cameras::warn_of_two_angles(source, &file.camera, &mut draft.warnings);
     for light in &file.light {
-        draft.lights.push(lights::read(source, light)?);
+        let found = lights::read(source, light)?;
+        let found = motion::light(source, light, found, draft)?;
+        draft.lights.push(found);
     }
     if let Some(ambient) = &file.ambient {
         read_ambient(source, ambient, draft)?;

@@ -6,6 +6,8 @@ use glam::{DMat4, DVec2, DVec3, Vec2};
 
 use super::{
     check::{Source, required},
+    motion,
+    motion_schema::ObjectMotionEntry,
     schema::{BoxEntry, CylinderEntry, MeshEntry, PlaneEntry, Scale, SceneFile, Text, TriangleEntry, Vector},
     spanned::Spanned,
 };
@@ -31,11 +33,17 @@ pub(super) fn read(
         Some(name) => source.index_of("material", name, names),
         None => Ok(draft.default_material()),
     };
-    let add = |draft: &mut Draft, shape: Shape, transform: &DMat4, name: &Option<Text>, object: String| {
-        let material = material(draft, name)?;
-        draft.begin_object(object);
+    let add = |draft: &mut Draft, shape: Shape, transform: &DMat4, solid: Solid| {
+        let material = material(draft, solid.material)?;
+        draft.begin_object(solid.object);
         let shape = if draft.materials[material as usize].needs_uvs() { shape.textured() } else { shape };
-        draft.add(shape.part(), transform, |_| material)
+        draft.mover = match solid.motion {
+            Some(motion) => Some(motion::object(source, motion, middle(&shape, transform), draft)?),
+            None => None,
+        };
+        draft.add(shape.part(), transform, |_| material)?;
+        draft.mover = None;
+        Ok(())
     };
     for entry in &file.mesh {
         read_mesh(source, entry.get_ref(), names, draft)?;
@@ -44,32 +52,75 @@ pub(super) fn read(
         let center = source.vector("center", &entry.center)?;
         let radius = source.positive("radius", &entry.radius)?;
         let shape = Shape::sphere(DVec3::ZERO, radius, source.segments(&entry.segments)?);
-        add(draft, shape, &DMat4::from_translation(center), &entry.material, object(&entry.name, "sphere", number))?;
+        add(
+            draft,
+            shape,
+            &DMat4::from_translation(center),
+            Solid::new(("sphere", number), &entry.name, &entry.material, &entry.motion),
+        )?;
     }
     for (number, entry) in (1..).zip(&file.boxes) {
         let (shape, transform) = cuboid(source, entry)?;
         let (entry, kind) = (entry.get_ref(), "box");
-        add(draft, shape, &transform, &entry.material, object(&entry.name, kind, number))?;
+        add(draft, shape, &transform, Solid::new((kind, number), &entry.name, &entry.material, &entry.motion))?;
     }
     for (number, entry) in (1..).zip(&file.cylinder) {
         let (shape, entry) = (cylinder(source, entry)?, entry.get_ref());
-        add(draft, shape, &DMat4::IDENTITY, &entry.material, object(&entry.name, "cylinder", number))?;
+        add(
+            draft,
+            shape,
+            &DMat4::IDENTITY,
+            Solid::new(("cylinder", number), &entry.name, &entry.material, &entry.motion),
+        )?;
     }
     for (number, entry) in (1..).zip(&file.triangle) {
         let (shape, entry) = (triangle(source, entry)?, entry.get_ref());
-        add(draft, shape, &DMat4::IDENTITY, &entry.material, object(&entry.name, "triangle", number))?;
+        add(
+            draft,
+            shape,
+            &DMat4::IDENTITY,
+            Solid::new(("triangle", number), &entry.name, &entry.material, &entry.motion),
+        )?;
     }
     let rest = draft.bounds();
     for (number, entry) in (1..).zip(&file.plane) {
         let (shape, entry) = (plane(source, entry, rest)?, entry.get_ref());
-        add(draft, shape, &DMat4::IDENTITY, &entry.material, object(&entry.name, "plane", number))?;
+        add(
+            draft,
+            shape,
+            &DMat4::IDENTITY,
+            Solid::new(("plane", number), &entry.name, &entry.material, &entry.motion),
+        )?;
     }
     Ok(())
 }
 
-/// The name of a solid's object: its own, or the kind with the number among those of this kind.
-fn object(name: &Option<Text>, kind: &str, number: usize) -> String {
-    name.as_ref().map_or_else(|| format!("{kind} {number}"), |name| name.get_ref().clone())
+/// What the tables of all solids have.
+struct Solid<'a> {
+    material: &'a Option<Text>,
+    object: String,
+    motion: Option<&'a ObjectMotionEntry>,
+}
+
+impl<'a> Solid<'a> {
+    /// A solid with or without a name of its own: else it is named by its kind and its number among those of this kind.
+    fn new(
+        (kind, number): (&str, usize),
+        name: &Option<Text>,
+        material: &'a Option<Text>,
+        motion: &'a Option<ObjectMotionEntry>,
+    ) -> Solid<'a> {
+        let object = name.as_ref().map_or_else(|| format!("{kind} {number}"), |name| name.get_ref().clone());
+        Solid { material, object, motion: motion.as_ref() }
+    }
+}
+
+/// The middle of the box around a shape.
+fn middle(shape: &Shape, transform: &DMat4) -> DVec3 {
+    let corners = shape.part().positions.iter().map(|&corner| transform.transform_point3(corner));
+    let (low, high) =
+        corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| (low.min(corner), high.max(corner)));
+    0.5 * (low + high)
 }
 
 fn read_mesh(
@@ -86,7 +137,14 @@ fn read_mesh(
         None => None,
     };
     let object = entry.name.as_ref().map(|name| name.get_ref().clone());
-    read_part(&path, bytes, mesh_transform(source, entry)?, material, object, draft).map_err(named)
+    let transform = mesh_transform(source, entry)?;
+    draft.mover = match &entry.motion {
+        Some(motion) => Some(motion::object(source, motion, transform.w_axis.truncate(), draft)?),
+        None => None,
+    };
+    read_part(&path, bytes, transform, material, object, draft).map_err(named)?;
+    draft.mover = None;
+    Ok(())
 }
 
 /// Scale, then rotation, then translation.
@@ -100,14 +158,19 @@ fn mesh_transform(source: &Source, entry: &MeshEntry) -> Result<DMat4, LoadError
 }
 
 fn scale(source: &Source, value: &Spanned<Scale>) -> Result<DVec3, LoadError> {
-    let factors = match *value.get_ref() {
-        Scale::Uniform(factor) => [factor; 3],
-        Scale::ByAxis(factors) => factors,
-    };
-    if factors.iter().all(|factor| factor.is_finite() && *factor as f32 != 0.0) {
-        Ok(DVec3::from(factors))
+    let factors = factors(value.get_ref());
+    if factors.to_array().iter().all(|factor| factor.is_finite() && *factor as f32 != 0.0) {
+        Ok(factors)
     } else {
         Err(source.refuse("scale", value, "is zero or not finite", "give a factor; a negative one mirrors"))
+    }
+}
+
+/// The factors by axis.
+pub(super) fn factors(scale: &Scale) -> DVec3 {
+    match *scale {
+        Scale::Uniform(factor) => DVec3::splat(factor),
+        Scale::ByAxis(factors) => factors.into(),
     }
 }
 

@@ -6,7 +6,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{one_or_many, one_or_many::OneOrMany, spanned::Spanned};
+use super::{
+    motion_schema::{CameraMotionEntry, LightMotionEntry, ObjectMotionEntry},
+    one_or_many,
+    one_or_many::OneOrMany,
+    spanned::Spanned,
+};
 
 pub(super) type Number = Spanned<f64>;
 pub(super) type Vector = Spanned<[f64; 3]>;
@@ -51,7 +56,7 @@ pub(crate) struct SceneFile {
 }
 
 /// `[camera]`.
-#[derive(Debug, Deserialize, JsonSchema, Serialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CameraEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -78,6 +83,9 @@ pub(crate) struct CameraEntry {
     /// Height of an orthographic image, scene units.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) height: Option<Number>,
+    /// How it moves in a film.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) motion: Option<CameraMotionEntry>,
 }
 
 /// How a camera maps space to the image.
@@ -183,7 +191,7 @@ pub(crate) struct EnvironmentEntry {
 }
 
 /// `[[light]]`: one table for all kinds; each kind uses some of the keys.
-#[derive(Debug, Deserialize, JsonSchema, Serialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LightEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -235,6 +243,9 @@ pub(crate) struct LightEntry {
     /// Default: none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) falloff: Option<FalloffName>,
+    /// How it moves in a film.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) motion: Option<LightMotionEntry>,
 }
 
 /// Shape of a light.
@@ -384,6 +395,9 @@ pub(crate) struct MeshEntry {
     /// One factor, or one per axis.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) scale: Option<Spanned<Scale>>,
+    /// How it moves in a film.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) motion: Option<ObjectMotionEntry>,
 }
 
 /// One factor, or one per axis.
@@ -406,6 +420,9 @@ pub(crate) struct SphereEntry {
     pub(crate) material: Option<Text>,
     /// Triangles around the equator. Default: 96.
     pub(crate) segments: Option<Spanned<i64>>,
+    /// How it moves in a film.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) motion: Option<ObjectMotionEntry>,
 }
 
 /// `[[box]]`: `min` and `max`, or `center` and `size`.
@@ -422,6 +439,9 @@ pub(crate) struct BoxEntry {
     /// About the box's centre, as in `[[mesh]]`.
     pub(crate) rotate: Option<Vector>,
     pub(crate) material: Option<Text>,
+    /// How it moves in a film.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) motion: Option<ObjectMotionEntry>,
 }
 
 /// `[[plane]]`: a rectangle of the plane through `point`.
@@ -436,6 +456,9 @@ pub(crate) struct PlaneEntry {
     /// Edge lengths. Default: a square of 20 diagonals of the rest of the scene.
     pub(crate) size: Option<Spanned<[f64; 2]>>,
     pub(crate) material: Option<Text>,
+    /// How it moves in a film.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) motion: Option<ObjectMotionEntry>,
 }
 
 /// `[[cylinder]]`: `base` and `top`, or `center`, `axis` and `height`.
@@ -456,6 +479,9 @@ pub(crate) struct CylinderEntry {
     pub(crate) material: Option<Text>,
     /// Edges around the axis. Default: 96.
     pub(crate) segments: Option<Spanned<i64>>,
+    /// How it moves in a film.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) motion: Option<ObjectMotionEntry>,
 }
 
 /// `[[triangle]]`: `a`, `b` and `c`, or `vertices`.
@@ -472,6 +498,9 @@ pub(crate) struct TriangleEntry {
     /// Positions of the corners in an image: (0, 0) is its upper left corner. Default: lower left, lower right, upper left.
     pub(crate) uvs: Option<Spanned<[[f64; 2]; 3]>>,
     pub(crate) material: Option<Text>,
+    /// How it moves in a film.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) motion: Option<ObjectMotionEntry>,
 }
 
 /// `[lightmesh]`: proposed settings of the method.

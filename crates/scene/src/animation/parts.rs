@@ -1,0 +1,271 @@
+//! Parts of a mesh that move: as a whole, by a skeleton, or between shapes.
+//!
+//! 1. A vertex is moved by its morph targets, each with a weight (glTF 2.0, 3.7.2.2).
+//! 2. It goes with a node, or with a mixture of the joints of a skin (3.7.3.3); normals by the inverse transpose.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use glam::{DMat3, DMat4, DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::track::Track;
+use crate::{
+    Mesh,
+    builder::{mirrors, normal_placement},
+    draft::LARGEST_COORDINATE,
+    vertices::OwnedPositions,
+};
+
+/// Vertices of a part before they are placed.
+#[derive(Debug)]
+pub(crate) struct Shape {
+    /// In the part's own coordinates.
+    pub(crate) positions: OwnedPositions,
+    /// One for each vertex, or none.
+    pub(crate) normals: Vec<Vec3>,
+    pub(crate) morph: Option<Morph>,
+}
+
+/// Shapes that are blended into a part.
+#[derive(Debug)]
+pub(crate) struct Morph {
+    pub(crate) targets: Vec<Target>,
+    /// One for each target.
+    pub(crate) rest: Vec<f64>,
+    pub(crate) weights: Option<Arc<Track>>,
+}
+
+/// What a shape adds, for each vertex, or nothing.
+#[derive(Debug)]
+pub(crate) struct Target {
+    pub(crate) positions: Vec<Vec3>,
+    pub(crate) normals: Vec<Vec3>,
+}
+
+/// What holds a part.
+#[derive(Clone, Debug)]
+pub(crate) enum Hold {
+    /// It goes with a node of the rig, in whose coordinates the transform places it.
+    Node(u32, DMat4),
+    /// It is bent by a skeleton.
+    Skin(Arc<Skin>, Arc<Influences>),
+}
+
+/// A skeleton.
+#[derive(Debug)]
+pub(crate) struct Skin {
+    /// Nodes of the rig; at least one.
+    pub(crate) joints: Vec<u32>,
+    /// From the mesh's coordinates to each joint's.
+    pub(crate) inverse_bind: Vec<DMat4>,
+}
+
+/// The joints of each vertex, as many for each.
+#[derive(Debug)]
+pub(crate) struct Influences {
+    pub(crate) per_vertex: usize,
+    /// Indices into the joints of the skin.
+    pub(crate) joints: Vec<u16>,
+    /// Not negative.
+    pub(crate) weights: Vec<f32>,
+}
+
+/// A part of a scene's mesh that moves.
+#[derive(Debug)]
+pub(crate) struct MovingPart {
+    /// Its vertices in the scene's mesh.
+    pub(crate) vertices: Range<usize>,
+    /// Its triangles.
+    pub(crate) triangles: Range<usize>,
+    pub(crate) shape: Arc<Shape>,
+    pub(crate) hold: Hold,
+    /// Whether the vertex order of its triangles was reversed, since the transform at rest mirrors.
+    pub(crate) reversed: bool,
+}
+
+/// A vertex's transforms: of its position, and of its normal.
+type Placing<'a> = Box<dyn Fn(usize) -> (DMat4, DMat3) + Sync + 'a>;
+
+impl Shape {
+    /// World positions and normals at `time`, or at rest; nodes are at `places`.
+    pub(crate) fn posed(&self, hold: &Hold, places: &[DMat4], time: Option<f64>) -> (Vec<DVec3>, Vec<Vec3>) {
+        let weights = self.morph.as_ref().map(|morph| morph.weights(time)).unwrap_or_default();
+        let place = hold.placing(places);
+        let count = self.positions.len();
+        let positions =
+            (0..count).into_par_iter().map(|vertex| place(vertex).0.transform_point3(self.position(vertex, &weights)));
+        let normals = (0..self.normals.len()).into_par_iter().map(|vertex| {
+            let normal = self.normal(vertex, &weights);
+            (place(vertex).1 * normal).normalize_or_zero().as_vec3()
+        });
+        (positions.collect(), normals.collect())
+    }
+
+    fn position(&self, vertex: usize, weights: &[f64]) -> DVec3 {
+        let added = self.targets(weights).map(|(weight, target)| weight * added(&target.positions, vertex));
+        added.fold(self.positions.get(vertex), |sum, added| sum + added)
+    }
+
+    fn normal(&self, vertex: usize, weights: &[f64]) -> DVec3 {
+        let added = self.targets(weights).map(|(weight, target)| weight * added(&target.normals, vertex));
+        added.fold(self.normals[vertex].as_dvec3(), |sum, added| sum + added)
+    }
+
+    /// The targets that count.
+    fn targets<'a>(&'a self, weights: &'a [f64]) -> impl Iterator<Item = (f64, &'a Target)> {
+        let targets = self.morph.iter().flat_map(|morph| &morph.targets);
+        weights.iter().copied().zip(targets).filter(|(weight, _)| *weight != 0.0)
+    }
+}
+
+fn added(values: &[Vec3], vertex: usize) -> DVec3 {
+    values.get(vertex).map_or(DVec3::ZERO, |value| value.as_dvec3())
+}
+
+impl Morph {
+    fn weights(&self, time: Option<f64>) -> Vec<f64> {
+        let mut weights = self.rest.clone();
+        if let (Some(track), Some(time)) = (&self.weights, time) {
+            track.sample(time, &mut weights);
+        }
+        weights
+    }
+}
+
+impl Hold {
+    fn placing(&self, places: &[DMat4]) -> Placing<'_> {
+        match self {
+            Hold::Node(node, local) => {
+                let transform = places[*node as usize] * *local;
+                let normals = cofactors(&DMat3::from_mat4(transform));
+                Box::new(move |_| (transform, normals))
+            }
+            Hold::Skin(skin, influences) => {
+                let joints: Vec<DMat4> = skin
+                    .joints
+                    .iter()
+                    .zip(&skin.inverse_bind)
+                    .map(|(&joint, inverse_bind)| places[joint as usize] * *inverse_bind)
+                    .collect();
+                Box::new(move |vertex| {
+                    let transform = influences.mixed(vertex, &joints);
+                    (transform, cofactors(&DMat3::from_mat4(transform)))
+                })
+            }
+        }
+    }
+}
+
+impl Influences {
+    /// The mean of the transforms of a vertex's joints by their weights, or that of the first joint if it has none.
+    fn mixed(&self, vertex: usize, joints: &[DMat4]) -> DMat4 {
+        let own = vertex * self.per_vertex..(vertex + 1) * self.per_vertex;
+        let (numbers, weights) = (&self.joints[own.clone()], &self.weights[own]);
+        let sum: f64 = weights.iter().map(|&weight| f64::from(weight)).sum();
+        let pairs = numbers.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
+        if sum > 0.0 {
+            pairs.fold(DMat4::ZERO, |mixed, (&joint, &weight)| {
+                mixed + joints[usize::from(joint)] * (f64::from(weight) / sum)
+            })
+        } else {
+            joints[0]
+        }
+    }
+}
+
+/// A multiple of the inverse transpose: the transform of normals, which exists even where a surface is flattened.
+fn cofactors(matrix: &DMat3) -> DMat3 {
+    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = *matrix;
+    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+    if matrix.determinant() < 0.0 { cofactors * -1.0 } else { cofactors }
+}
+
+impl MovingPart {
+    /// Moves the part of a mesh, whose coordinates are relative to `origin`, to where it is at `time`; nodes are at `places`.
+    pub(crate) fn pose(&self, places: &[DMat4], time: f64, origin: DVec3, mesh: &mut Mesh) {
+        let own = self.vertices.clone();
+        let to_local = |world: DVec3| {
+            let is_usable = world.abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all();
+            // Triangles with such a corner are not hit.
+            if is_usable { (world - origin).as_vec3() } else { Vec3::NAN }
+        };
+        match (&self.hold, &self.shape.morph) {
+            (Hold::Node(node, local), None) => {
+                let transform = places[*node as usize] * *local;
+                let positions = mesh.positions[own.clone()].par_iter_mut().enumerate();
+                positions.for_each(|(vertex, position)| {
+                    *position = to_local(transform.transform_point3(self.shape.positions.get(vertex)));
+                });
+                if !self.shape.normals.is_empty() {
+                    let place = normal_placement(&transform);
+                    let normals = mesh.normals[own].iter_mut().zip(&self.shape.normals);
+                    normals.for_each(|(normal, &own)| *normal = place(own));
+                }
+                self.face(mirrors(&transform), mesh);
+            }
+            _ => {
+                let (positions, normals) = self.shape.posed(&self.hold, places, Some(time));
+                let placed = mesh.positions[own.clone()].iter_mut().zip(positions);
+                placed.for_each(|(position, world)| *position = to_local(world));
+                if !normals.is_empty() {
+                    mesh.normals[own].copy_from_slice(&normals);
+                }
+            }
+        }
+    }
+
+    /// Reverses the triangles if they are mirrored and were not at rest, or the other way round.
+    fn face(&self, mirrored: bool, mesh: &mut Mesh) {
+        if mirrored != self.reversed {
+            mesh.triangles[self.triangles.clone()].iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+    use crate::animation::track::{Interpolation, Kind};
+
+    fn shape(morph: Option<Morph>) -> Shape {
+        Shape { positions: OwnedPositions::Single(vec![Vec3::X, Vec3::Y]), normals: vec![Vec3::X, Vec3::Z], morph }
+    }
+
+    #[test]
+    fn morph_targets_are_added_by_their_weights() {
+        let target = |by: Vec3| Target { positions: vec![by; 2], normals: Vec::new() };
+        let keys = Track::new(Kind::Numbers(2), vec![0.0, 1.0], vec![0.0, 1.0, 2.0, 0.0], Interpolation::Linear);
+        let morph = Morph {
+            targets: vec![target(Vec3::X), target(Vec3::Z)],
+            rest: vec![0.5, 0.0],
+            weights: Some(Arc::new(keys.unwrap())),
+        };
+        let (shape, hold) = (shape(Some(morph)), Hold::Node(0, DMat4::IDENTITY));
+        let first = |time| shape.posed(&hold, &[DMat4::IDENTITY], time).0[0];
+        assert_eq!(first(None), DVec3::new(1.5, 0.0, 0.0));
+        assert_eq!([first(Some(0.0)), first(Some(0.5))], [DVec3::new(1.0, 0.0, 1.0), DVec3::new(2.0, 0.0, 0.5)]);
+    }
+
+    #[test]
+    fn a_skin_bends_by_its_joints() {
+        let skin = Skin { joints: vec![0, 1], inverse_bind: vec![DMat4::IDENTITY; 2] };
+        let influences = Influences { per_vertex: 2, joints: vec![0, 1, 1, 0], weights: vec![1.0, 1.0, 3.0, 0.0] };
+        let hold = Hold::Skin(Arc::new(skin), Arc::new(influences));
+        let places = [DMat4::IDENTITY, DMat4::from_rotation_z(FRAC_PI_2)];
+        let (positions, normals) = shape(None).posed(&hold, &places, None);
+        // Half of each; a quarter turn alone, by weights that are normalised.
+        assert!((positions[0] - DVec3::new(0.5, 0.5, 0.0)).length() < 1e-12, "{positions:?}");
+        assert!((positions[1] + DVec3::X).length() < 1e-12 && (normals[1] - Vec3::Z).length() < 1e-6);
+    }
+
+    #[test]
+    fn normals_stay_at_right_angles_to_their_surface() {
+        let squeezed = DMat4::from_scale(DVec3::new(1.0, 0.25, -1.0));
+        let by_cofactors = cofactors(&DMat3::from_mat4(squeezed)) * DVec3::new(1.0, 1.0, 1.0);
+        let by_inverse = normal_placement(&squeezed)(Vec3::ONE.normalize());
+        assert!((by_cofactors.normalize().as_vec3() - by_inverse).length() < 1e-6, "{by_inverse}");
+    }
+}
