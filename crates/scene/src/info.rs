@@ -33,8 +33,24 @@ pub struct SceneInfo {
     pub textures: usize,
     /// The up axis; `None` if neither cameras nor shape indicate it.
     pub up: Option<UpInfo>,
+    /// How it moves; `None` if it does not.
+    pub animation: Option<AnimationInfo>,
     /// What was corrected, ignored or guessed.
     pub warnings: Vec<String>,
+}
+
+/// How a scene moves.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+#[non_exhaustive]
+pub struct AnimationInfo {
+    /// From the first frame to the last one.
+    pub seconds: f64,
+    /// Whether surfaces move: not only cameras and lights.
+    pub moves_surfaces: bool,
+    /// Names of the animations of files that are played.
+    pub played: Vec<String>,
+    /// Names of those that are not, since they move what another one moves.
+    pub others: Vec<String>,
 }
 
 /// A box in world coordinates.
@@ -124,6 +140,12 @@ impl Scene {
             see_through: opacities().filter(|opacity| opacity.filter().is_some()).count(),
             textures: self.geometry.textures.len(),
             up: self.suggested_up(),
+            animation: self.animation().map(|animation| AnimationInfo {
+                seconds: animation.duration(),
+                moves_surfaces: animation.moves_surfaces(),
+                played: animation.names().to_vec(),
+                others: animation.others().to_vec(),
+            }),
             warnings: self.warnings.clone(),
         }
     }
@@ -220,6 +242,14 @@ impl fmt::Display for SceneInfo {
         }
         if let Some(up) = &self.up {
             writeln!(f, "up      {}: {}", up.axis, visible(&up.reason))?;
+        }
+        if let Some(AnimationInfo { seconds, moves_surfaces, played, others }) = &self.animation {
+            let what = if *moves_surfaces { "objects move" } else { "the camera or lights move" };
+            write!(f, "moves   {seconds} s: {what}")?;
+            for (names, outcome) in [(played, ""), (others, " (not played)")] {
+                names.iter().try_for_each(|name| write!(f, ", `{}`{outcome}", visible(name)))?;
+            }
+            writeln!(f)?;
         }
         self.warnings.iter().try_for_each(|warning| writeln!(f, "warning {}", visible(warning)))
     }

@@ -65,7 +65,7 @@ pub use facets::Facets;
 pub use framing::{Added, UnknownCamera, Viewpoint};
 pub use geometry::Geometry;
 pub use geometry_check::GeometryError;
-pub use info::{BoundsInfo, CameraInfo, LightInfo, SceneInfo};
+pub use info::{AnimationInfo, BoundsInfo, CameraInfo, LightInfo, SceneInfo};
 pub use light::{Falloff, Light, LightError, LightKind};
 pub use lights::Lights;
 pub use material::Material;

@@ -10,7 +10,8 @@ use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
 
 use super::{Progress, SceneArg, Switch, Up, words};
 use crate::value::{
-    Background, CameraView, Color, Dims, EnvironmentSpec, Exposure, Frames, LightSpec, Positive, Size, SkySpec, Smooth,
+    Background, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames, LightSpec, Positive, Size,
+    SkySpec, Smooth,
 };
 
 /// Render an image of a scene
@@ -30,16 +31,25 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), conflicts_with = "partial", help_heading = "Film")]
     pub(crate) turntable: Option<u32>,
 
-    /// Frames of the film to render: from A to B, or every N-th of them [default: all]
-    #[arg(long, value_name = "A-B[xN]", requires = "turntable", help_heading = "Film")]
+    /// Frames of the film to render: from A to B, or every N-th of them. Without --turntable the film is the scene's own
+    /// animation, whose beginning is frame 1 [default: all, with --turntable or --fps]
+    #[arg(long, value_name = "A-B[xN]", conflicts_with = "partial", help_heading = "Film")]
     pub(crate) frames: Option<Frames>,
 
+    /// Frames per second of the film: how far the scene's own animation goes from one to the next [default: 24]
+    #[arg(long, value_name = "F", conflicts_with = "partial", help_heading = "Film")]
+    pub(crate) fps: Option<FrameRate>,
+
+    /// The animation of a glTF file that is played, by name [default: the first, and those after it that move other things]
+    #[arg(long, value_name = "NAME", help_heading = "Film")]
+    pub(crate) animation: Option<String>,
+
     /// Leave frames whose image exists as they are, and render the others
-    #[arg(long, requires = "turntable", conflicts_with = "overwrite", help_heading = "Film")]
+    #[arg(long, conflicts_with = "overwrite", help_heading = "Film")]
     pub(crate) skip_existing: bool,
 
     /// Replace frames whose image exists
-    #[arg(long, requires = "turntable", help_heading = "Film")]
+    #[arg(long, help_heading = "Film")]
     pub(crate) overwrite: bool,
 
     /// Format of the output image [default: by the extension]

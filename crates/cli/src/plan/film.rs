@@ -2,9 +2,11 @@
 
 use std::collections::VecDeque;
 
+use lightmesh::Scene;
+
 use super::{PictureFiles, PlanError};
 use crate::args::RenderArgs;
-use crate::value::Frames;
+use crate::value::{FrameRate, Frames};
 
 /// A film: what moves in it, and which of its frames are wanted.
 pub(crate) struct Film {
@@ -18,6 +20,8 @@ pub(crate) struct Film {
 pub(crate) enum Motion {
     /// The camera goes once around the scene in this many frames.
     Turntable(u32),
+    /// Things move as the scene says, at so many frames per second.
+    Scene(FrameRate),
 }
 
 /// The frames of a film that are to be rendered.
@@ -33,9 +37,18 @@ pub(crate) struct Work {
 impl Film {
     /// The film that is asked for, if it is one. Fails if what is known of it without the scene cannot be rendered.
     pub(super) fn new(args: &RenderArgs) -> Result<Option<Film>, PlanError> {
-        let Some(turntable) = args.turntable else { return Ok(None) };
-        let film = Film { motion: Motion::Turntable(turntable), frames: args.frames };
-        film.work(args, turntable)?;
+        let motion = match args.turntable {
+            Some(frames) => Motion::Turntable(frames),
+            None if args.frames.is_some() || args.fps.is_some() => Motion::Scene(args.fps.unwrap_or_default()),
+            None if args.skip_existing || args.overwrite => return Err(PlanError::NoFilm),
+            None => return Ok(None),
+        };
+        let film = Film { motion, frames: args.frames };
+        match (motion, args.frames) {
+            (Motion::Turntable(last), _) => film.work(args, last).map(drop)?,
+            (Motion::Scene(_), Some(frames)) => film.work(args, frames.last()).map(drop)?,
+            (Motion::Scene(_), None) => {}
+        }
         Ok(Some(film))
     }
 
@@ -58,6 +71,20 @@ impl Film {
         match existing.pop_front() {
             Some(first) if !args.skip_existing => Err(PlanError::FrameExists { first, count: skipped }),
             _ => Ok(Work { numbers, last, skipped }),
+        }
+    }
+
+    /// The last frame of the film of a scene.
+    ///
+    /// # Errors
+    /// [`PlanError::NotAnimated`] if nothing in the scene moves.
+    pub(crate) fn last(&self, scene: &Scene) -> Result<u32, PlanError> {
+        match self.motion {
+            Motion::Turntable(last) => Ok(last),
+            Motion::Scene(rate) => match scene.animation() {
+                Some(animation) => Ok(rate.last_frame(animation.duration())),
+                None => Err(PlanError::NotAnimated),
+            },
         }
     }
 

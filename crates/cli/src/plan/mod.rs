@@ -48,13 +48,23 @@ pub(crate) enum PlanError {
         path: PathBuf,
     },
     /// Frames that the film does not have.
-    #[error("--frames {frames}: the film ends with frame {last}; choose frames up to it (--frames, --turntable)")]
+    #[error(
+        "--frames {frames}: the film ends with frame {last}; choose frames up to it (--frames, --turntable, --fps)"
+    )]
     NoFrame {
         /// The frames that were asked for.
         frames: Frames,
         /// The film's last one.
         last: u32,
     },
+    /// Nothing in the scene moves.
+    #[error(
+        "nothing in the scene moves; add --turntable N for a film in which the camera goes around it, or render one image without --frames and --fps"
+    )]
+    NotAnimated,
+    /// What is said of frames where there are none.
+    #[error("--skip-existing and --overwrite are for films; add --frames, --fps or --turntable, or remove them")]
+    NoFilm,
     /// Frames that were rendered before.
     #[error("{} exists{}; add --skip-existing to keep such frames, or --overwrite to replace them", first.display(), others(*count))]
     FrameExists {

@@ -26,6 +26,9 @@ pub(super) fn run(args: &ExportArgs) -> Result<(), Failure> {
         0 => String::new(),
         made => format!(", {made} smooth normals"),
     };
+    if scene.animation().is_some() {
+        watcher.warning("animations are not exported: the scene is written as it is without them");
+    }
     if let Some(environment) = &scene.lights.environment {
         watcher.warning(&format!("{}: skies and panoramas are not exported, only the sun in them", environment.name));
     }
@@ -40,7 +43,7 @@ fn to_file(path: &Path, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, F
         output::check_writable(path)?;
     }
     let outputs = Outputs::new([("-o", Some(path)), ("the triangles of -o", mesh.as_deref())])?;
-    let scene = open(&args.scene, args.smooth.0, &outputs, watcher)?;
+    let scene = open(&args.scene, args.smooth.0, None, &outputs, watcher)?;
     memory::during(EXPORTING, || scene.export(path))?;
     Ok(scene)
 }
@@ -48,7 +51,7 @@ fn to_file(path: &Path, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, F
 /// As one GLB file, the only format that is one.
 fn to_stdout(destination: &Destination, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, Failure> {
     destination.check_binary("-o")?;
-    let scene = open(&args.scene, args.smooth.0, &Outputs::default(), watcher)?;
+    let scene = open(&args.scene, args.smooth.0, None, &Outputs::default(), watcher)?;
     let file = memory::during(EXPORTING, || Ok::<_, Failure>(destination.ready(&scene.to_glb()?)?))?;
     output::publish(vec![file])?;
     Ok(scene)

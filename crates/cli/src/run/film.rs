@@ -5,36 +5,42 @@ use std::time::{Duration, Instant};
 use glam::Quat;
 use lightmesh::render::PreparedScene;
 use lightmesh::scene::Camera;
-use lightmesh::{Frame, MeshCache, Observer, RenderError, Settings, Step};
+use lightmesh::{Frame, MeshCache, Observer, RenderError, Scene, Settings, Step};
 
+use super::BUILDING;
 use super::exposure::Metering;
 use super::render::{Studio, save};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::plan::{Film, Motion, Work};
+use crate::progress::Watcher;
+use crate::{interrupt, memory};
 
 /// Renders the frames that are left, and writes the files of each as soon as it is finished.
-pub(super) fn run(args: &RenderArgs, film: &Film, studio: &Studio, mut metering: Metering) -> Result<(), Failure> {
-    let Studio { renderer, prepared, scene, plan, watcher, .. } = *studio;
-    let Motion::Turntable(last) = film.motion;
-    let work = film.work(args, last)?;
+pub(super) fn run(
+    args: &RenderArgs,
+    film: &Film,
+    work: &Work,
+    studio: &Studio,
+    mut metering: Metering,
+) -> Result<(), Failure> {
+    let Studio { renderer, plan, watcher, .. } = *studio;
     let (begin, count) = (Instant::now(), work.numbers.len());
     let (mut cache, mut settings) = (MeshCache::new(), plan.settings.clone());
     for (index, &number) in work.numbers.iter().enumerate() {
         let files = film.files(args, number)?;
-        let camera = turned(prepared, number, last);
-        let view = settings.clone().with_camera(camera.clone());
+        let prepared = at(film, studio, number, work.last)?;
+        let scene = &prepared.scene;
         let render = |prepared: &PreparedScene, settings: &Settings| {
             renderer.render_with(&mut cache, prepared, settings, watcher)
         };
-        let (frame, stops) = studio.picture(&view, &metering, render)?;
+        let (frame, stops) = Studio { prepared: &prepared, scene, ..*studio }.picture(&settings, &metering, render)?;
         if index == 0 {
             // What is chosen by the first frame holds for all.
             settings = kept(settings, &frame);
             metering = metering.fixed(stops);
         }
-        let frame = save(frame, stops, &files, (renderer, scene, plan), Some(&camera), &metering, watcher)?;
+        let frame = save(frame, stops, &files, (renderer, scene, plan), scene.cameras.first(), &metering, watcher)?;
         let seconds = frame.stats.seconds.render;
         let left = begin.elapsed().mul_f64((count - index - 1) as f64 / (index + 1) as f64);
         watcher.note(&format!("frame {number} of {}: {seconds:.3} s, {}{}", work.last, files.picture, time_left(left)));
@@ -42,8 +48,37 @@ pub(super) fn run(args: &RenderArgs, film: &Film, studio: &Studio, mut metering:
             return Err(RenderError::Cancelled.into());
         }
     }
-    watcher.summary(&summary(&work, begin.elapsed(), studio));
+    watcher.summary(&summary(work, begin.elapsed(), studio));
     Ok(())
+}
+
+/// The scene at a frame. Its geometry is prepared anew if it moves.
+fn at(film: &Film, studio: &Studio, number: u32, last: u32) -> Result<PreparedScene, Failure> {
+    let Studio { renderer, prepared, plan, watcher, .. } = *studio;
+    match film.motion {
+        Motion::Turntable(_) => Ok(prepared.with_cameras(vec![turned(prepared, number, last)])),
+        Motion::Scene(rate) => {
+            let scene = prepared.scene.at(rate.time(number));
+            Ok(memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, watcher))?)
+        }
+    }
+}
+
+/// Says which animations are played, or that there are some.
+pub(super) fn explain(scene: &Scene, is_film: bool, watcher: &Watcher) {
+    let Some(animation) = scene.animation() else { return };
+    let seconds = animation.duration();
+    if !is_film {
+        watcher.note(&format!(
+            "the scene moves for {seconds:.2} s; this is how it is without (--fps 24 renders the film, --frames a part of it)"
+        ));
+    } else if !animation.others().is_empty() {
+        let quoted = |names: &[String]| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+        let (names, others) = (quoted(animation.names()), quoted(animation.others()));
+        watcher.note(&format!(
+            "animation {names}: {seconds:.2} s; the scene also has {others} (--animation plays another)"
+        ));
+    }
 }
 
 /// The camera of frame `number` of a turntable: that of the scene, turned about the vertical through the middle of the scene. All `last` frames

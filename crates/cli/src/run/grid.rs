@@ -18,7 +18,7 @@ pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
     let outputs = Outputs::new([("-o", Some(&*args.output))])?;
     let watcher = Watcher::plain(args.quiet);
     // Normals are no part of the grid.
-    let scene = open(&args.scene, None, &outputs, &watcher)?;
+    let scene = open(&args.scene, None, None, &outputs, &watcher)?;
 
     let start = Instant::now();
     let levels = if args.levels == 1 { Levels::One } else { Levels::Two };

@@ -18,7 +18,7 @@ struct Devices {
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let printed = match &args.scene {
         Some(path) => {
-            let scene = read(path, args.reading, args.smooth.0)?;
+            let scene = read(path, args.reading, args.smooth.0, None)?;
             let mut info = scene.info();
             info.up.get_or_insert_with(|| usual_up(args.reading.format_of(path)));
             if args.json {

@@ -20,23 +20,30 @@ const STANDARD_INPUT: &str = "standard input";
 pub(super) fn open(
     arg: &SceneArg,
     smooth: Option<CreaseAngle>,
+    animation: Option<&str>,
     outputs: &Outputs,
     watcher: &Watcher,
 ) -> Result<Scene, Failure> {
     outputs.keep("the scene", input(&arg.scene))?;
-    let scene = read(&arg.scene, arg.reading, smooth)?;
+    let scene = read(&arg.scene, arg.reading, smooth, animation)?;
     outputs.keep_scene(&scene)?;
     scene.warnings.iter().for_each(|warning| watcher.warning(warning));
     Ok(scene)
 }
 
 /// Reads the scene.
-pub(super) fn read(path: &Path, reading: ReadingArgs, smooth: Option<CreaseAngle>) -> Result<Scene, Failure> {
+pub(super) fn read(
+    path: &Path,
+    reading: ReadingArgs,
+    smooth: Option<CreaseAngle>,
+    animation: Option<&str>,
+) -> Result<Scene, Failure> {
     let options = LoadOptions::default()
         .with_format(reading.scene_format)
         .with_allow_outside(reading.allow_outside)
         .with_strict(reading.strict)
         .with_smooth(smooth)
+        .with_animation(animation.map(str::to_owned))
         .with_memory_limit(reading.memory_limit.map(|limit| limit.0));
     if !is_standard(path) {
         let open = || Scene::open_with(path, &options);

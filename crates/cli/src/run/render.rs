@@ -25,7 +25,9 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let using = using(&choice, args.verbose);
     let renderer = Renderer::on(choice, plan.threads.map(usize::from))?;
     let start = Instant::now();
-    let mut scene = open(&plan.scene, plan.smooth, &plan.files.outputs, &watcher)?;
+    let animation = args.animation.as_deref();
+    let mut scene = open(&plan.scene, plan.smooth, animation, &plan.files.outputs, &watcher)?;
+    let work = plan.film.as_ref().map(|film| film.work(args, film.last(&scene)?)).transpose()?;
     let load = start.elapsed().as_secs_f64();
     if matches!(plan.device, Device::Auto | Device::Cuda(None)) {
         watcher.note(&format!("device {}: using {using}", plan.device));
@@ -41,10 +43,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let behind = plan.choices.apply(&mut scene, &watcher)?;
     let metering = Metering::new(&mut scene, &plan, behind);
     let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;
-    if let Some(film) = &plan.film {
+    film::explain(&scene, plan.film.is_some(), &watcher);
+    if let (Some(film), Some(work)) = (&plan.film, &work) {
         let studio =
             Studio { renderer: &renderer, prepared: &prepared, scene: &scene, plan: &plan, load, watcher: &watcher };
-        return film::run(args, film, &studio, metering);
+        return film::run(args, film, work, &studio, metering);
     }
     let finish = || finish(&renderer, prepared, &scene, &plan, &metering, load, &watcher);
     let frame = if args.partial { interrupt::keeping(finish) } else { finish() }?;
