@@ -108,7 +108,8 @@ fn scene(offset: DVec3) -> Scene {
         Light::point(position).with_intensity(Vec3::ZERO),
     ];
     let up = direction.cross(Vec3::Y).cross(direction).normalize();
-    let camera = |projection| Camera { name: "c".into(), position: at(5.5, 4.4, 3.3), direction, up, projection };
+    let camera =
+        |projection| Camera { name: "c".into(), position: at(5.5, 4.4, 3.3), direction, up, projection, motion: None };
     scene.cameras = vec![
         camera(Projection::Perspective(Fov::Vertical(41.3))),
         camera(Projection::Perspective(Fov::Horizontal(73.1))),

@@ -17,6 +17,7 @@ fn scene() -> Scene {
         direction: Vec3::NEG_Z,
         up: Vec3::Y,
         projection: Projection::Perspective(Fov::Vertical(50.0)),
+        motion: None,
     };
     let plan = Projection::Orthographic { height: 4.0 };
     scene.cameras = vec![camera.clone(), Camera { projection: plan, ..camera }];

@@ -1,5 +1,6 @@
 //! Known answers for glTF features that the shared models do not show, and damaged files.
 
+mod animations;
 mod containers;
 mod damage;
 mod environment;

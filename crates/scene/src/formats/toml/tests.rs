@@ -1,5 +1,6 @@
 //! Known answers for every table of the scene file, and the message for every kind of mistake.
 
+mod motion;
 mod opacity;
 
 use std::{fs, path::PathBuf};

@@ -298,17 +298,6 @@ fn primitives_without_triangles_are_counted_or_nothing() {
     assert!(warnings.contains("1 primitive without positions: ignored"), "{warnings}");
 }
 
-#[test]
-fn skeletons_and_morph_targets_are_said_to_be_missing() {
-    let mut document = triangle();
-    document["nodes"][0]["skin"] = json!(0);
-    document["meshes"][0]["weights"] = json!([0.0, 0.5]);
-    let all = warnings(&document);
-    assert!(all.contains("1 skinned mesh shown") && all.contains("1 mesh shown without the morph targets"), "{all}");
-    document["nodes"][0]["weights"] = json!([0, 0]);
-    assert!(!warnings(&document).contains("morph"));
-}
-
 /// Each used to copy all vertices: memory grew with the square of the file.
 #[test]
 fn parts_of_shared_vertices_hold_only_their_own() {
