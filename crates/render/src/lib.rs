@@ -25,6 +25,7 @@ mod gpu;
 mod job;
 pub mod light_mesh;
 mod material_ids;
+mod moved;
 mod observer;
 mod passes;
 mod plan;

@@ -12,6 +12,7 @@ use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Material, Scene, Texture
 use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Coverage, Grid, GridOptions, Triangle, coverage};
 use crate::error::RenderError;
 use crate::material_ids::MaterialIds;
+use crate::moved::{Moved, boxes, differ_by_places};
 use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
 use crate::stage::Stage;
@@ -38,6 +39,8 @@ pub struct PreparedGeometry {
     pub(crate) mip_levels: Arc<AllLevels>,
     /// The same triangles for shadow rays, if some are not opaque.
     pub(crate) see_through: Option<SeeThrough<Arc<PreparedGeometry>>>,
+    /// What moved since it was prepared before.
+    pub(crate) moved: Option<Moved>,
     /// The setting that chose the structure.
     acceleration: Acceleration,
     /// Build time in seconds, until the first image reports it.
@@ -77,54 +80,57 @@ impl PreparedGeometry {
         observer: &dyn Observer,
     ) -> Result<PreparedGeometry, RenderError> {
         geometry.check()?;
-        let mesh = &geometry.mesh;
-        let triangles = mesh.triangles.len();
-        let cut_out = geometry.materials.iter().any(|material| material.opacity.is_some());
-        let parts = if geometry.materials.iter().any(Material::lets_through) { 3 } else { 1 };
-        let bytes = parts * BYTES_TO_BUILD + if cut_out { coverage::BYTES_TO_BUILD } else { 0 };
-        let needed = triangles as u64 * bytes;
-        budget.check(needed).map_err(|short| RenderError::BuildMemory { triangles, short })?;
-        observer.begin(Stage::Build, mesh.triangles.len() as u64);
+        observer.begin(Stage::Build, geometry.mesh.triangles.len() as u64);
         let start = std::time::Instant::now();
+        check_memory(geometry, budget)?;
         let (triangles, coverage) = triangles_of(geometry, budget)?;
-        let accelerator: Box<dyn Accelerator> = match acceleration {
-            Acceleration::GridFile(path) => Box::new(Grid::load(path, &triangles)?.with_coverage(&coverage)),
-            other => accelerator(&triangles, &coverage, other, budget)?,
-        };
         let mip_levels = Arc::new(mip_levels(geometry, budget)?);
-        // Triangles that cannot be hit do not count.
-        let usable = triangles.iter().filter(|triangle| triangle.is_usable());
-        let bounds = Bounds::around(usable.flat_map(Triangle::corners));
-        let (center, far) =
-            if bounds.is_empty() { (Vec3::ZERO, 1.0) } else { (bounds.center(), 1.25 * bounds.diagonal()) };
-        let mut prepared = PreparedGeometry {
-            triangles: triangles.into(),
-            accelerator,
-            bounds,
-            coverage,
-            materials: MaterialIds::new(geometry),
-            mip_levels,
-            see_through: None,
-            acceleration: acceleration.clone(),
-            unreported: Mutex::new(0.0),
-            center,
-            far,
-        };
-        if geometry.materials.iter().any(Material::lets_through) {
-            let lets_through = |triangle: &Triangle| {
-                let material = geometry.mesh.materials[triangle.index() as usize];
-                triangle.cut() != 0 && geometry.materials[material as usize].lets_through()
-            };
-            prepared.see_through = Some(SeeThrough {
-                blockers: Arc::new(prepared.part(|triangle| !lets_through(triangle), budget)?),
-                panes: Arc::new(prepared.part(lets_through, budget)?),
-                solid: Arc::new(prepared.solid()),
-            });
-        }
+        let prepared = Structures { geometry, acceleration, budget }.over(triangles, coverage, mip_levels)?;
         *locked(&prepared.unreported) = start.elapsed().as_secs_f64();
-        observer.advance(mesh.triangles.len() as u64);
+        observer.advance(geometry.mesh.triangles.len() as u64);
         observer.end(Stage::Build);
         Ok(prepared)
+    }
+
+    /// The same surfaces in other places, which `geometry` has: only structures are built. `None` if it is not the same surfaces as those
+    /// `before` that were prepared as this.
+    ///
+    /// # Errors
+    /// As [`PreparedGeometry::new`].
+    pub(crate) fn moved(
+        self: &Arc<PreparedGeometry>,
+        before: &Geometry,
+        geometry: &Geometry,
+        budget: Budget,
+        observer: &dyn Observer,
+    ) -> Result<Option<PreparedGeometry>, RenderError> {
+        let from_file = matches!(self.acceleration, Acceleration::GridFile(_));
+        if from_file || !differ_by_places(before, geometry) {
+            return Ok(None);
+        }
+        observer.begin(Stage::Build, geometry.mesh.triangles.len() as u64);
+        let start = std::time::Instant::now();
+        check_memory(geometry, budget)?;
+        let triangle = |(index, before): (usize, &Triangle)| {
+            Triangle::new(geometry.mesh.corners(index), index as u32).cut_out(before.cut())
+        };
+        let triangles: Vec<Triangle> = self.triangles.iter().enumerate().map(triangle).collect();
+        let boxes = boxes(geometry, &self.triangles, &triangles);
+        let structures = Structures { geometry, acceleration: &self.acceleration, budget };
+        let mut prepared = structures.over(triangles, self.coverage.clone(), Arc::clone(&self.mip_levels))?;
+        let moved =
+            |before: &Arc<PreparedGeometry>| Some(Moved { before: Arc::downgrade(before), boxes: Arc::clone(&boxes) });
+        prepared.moved = moved(self);
+        if let (Some(parts), Some(before)) = (&mut prepared.see_through, &self.see_through) {
+            let pairs = [(&mut parts.blockers, &before.blockers), (&mut parts.panes, &before.panes)];
+            for (part, before) in pairs {
+                Arc::get_mut(part).expect("nobody else has it yet").moved = moved(before);
+            }
+        }
+        *locked(&prepared.unreported) = start.elapsed().as_secs_f64();
+        observer.advance(geometry.mesh.triangles.len() as u64);
+        observer.end(Stage::Build);
+        Ok(Some(prepared))
     }
 
     /// The same with a structure over some of the triangles alone.
@@ -154,6 +160,7 @@ impl PreparedGeometry {
             materials: self.materials.clone(),
             mip_levels: Arc::clone(&self.mip_levels),
             see_through: None,
+            moved: None,
             acceleration: self.acceleration.clone(),
             unreported: Mutex::new(0.0),
             center: self.center,
@@ -198,6 +205,68 @@ impl PreparedGeometry {
     /// The build time in seconds at the first call; 0 at all later ones. So it counts for the first image alone.
     pub(crate) fn take_build_seconds(&self) -> f64 {
         std::mem::take(&mut *locked(&self.unreported))
+    }
+}
+
+/// Fails if there is not enough memory to build structures.
+fn check_memory(geometry: &Geometry, budget: Budget) -> Result<(), RenderError> {
+    let triangles = geometry.mesh.triangles.len();
+    let cut_out = geometry.materials.iter().any(|material| material.opacity.is_some());
+    let parts = if geometry.materials.iter().any(Material::lets_through) { 3 } else { 1 };
+    let bytes = parts * BYTES_TO_BUILD + if cut_out { coverage::BYTES_TO_BUILD } else { 0 };
+    budget.check(triangles as u64 * bytes).map_err(|short| RenderError::BuildMemory { triangles, short })
+}
+
+/// What is built over the triangles of a geometry.
+struct Structures<'a> {
+    geometry: &'a Geometry,
+    acceleration: &'a Acceleration,
+    budget: Budget,
+}
+
+impl Structures<'_> {
+    fn over(
+        &self,
+        triangles: Vec<Triangle>,
+        coverage: Coverage,
+        mip_levels: Arc<AllLevels>,
+    ) -> Result<PreparedGeometry, RenderError> {
+        let Structures { geometry, acceleration, budget } = *self;
+        let accelerator: Box<dyn Accelerator> = match acceleration {
+            Acceleration::GridFile(path) => Box::new(Grid::load(path, &triangles)?.with_coverage(&coverage)),
+            other => accelerator(&triangles, &coverage, other, budget)?,
+        };
+        // Triangles that cannot be hit do not count.
+        let usable = triangles.iter().filter(|triangle| triangle.is_usable());
+        let bounds = Bounds::around(usable.flat_map(Triangle::corners));
+        let (center, far) =
+            if bounds.is_empty() { (Vec3::ZERO, 1.0) } else { (bounds.center(), 1.25 * bounds.diagonal()) };
+        let mut prepared = PreparedGeometry {
+            triangles: triangles.into(),
+            accelerator,
+            bounds,
+            coverage,
+            materials: MaterialIds::new(geometry),
+            mip_levels,
+            see_through: None,
+            moved: None,
+            acceleration: acceleration.clone(),
+            unreported: Mutex::new(0.0),
+            center,
+            far,
+        };
+        if geometry.materials.iter().any(Material::lets_through) {
+            let lets_through = |triangle: &Triangle| {
+                let material = geometry.mesh.materials[triangle.index() as usize];
+                triangle.cut() != 0 && geometry.materials[material as usize].lets_through()
+            };
+            prepared.see_through = Some(SeeThrough {
+                blockers: Arc::new(prepared.part(|triangle| !lets_through(triangle), budget)?),
+                panes: Arc::new(prepared.part(lets_through, budget)?),
+                solid: Arc::new(prepared.solid()),
+            });
+        }
+        Ok(prepared)
     }
 }
 
@@ -273,6 +342,20 @@ impl PreparedScene {
     ) -> Result<PreparedScene, RenderError> {
         let geometry = Arc::new(PreparedGeometry::new(&scene.geometry, acceleration, budget, observer)?);
         Ok(PreparedScene { scene: scene.clone(), geometry })
+    }
+
+    /// Another moment of this scene, in which its surfaces are in other places: only structures are built. `None` if `scene` differs in more.
+    ///
+    /// # Errors
+    /// As [`PreparedGeometry::new`].
+    pub fn moved(
+        &self,
+        scene: &Scene,
+        budget: Budget,
+        observer: &dyn Observer,
+    ) -> Result<Option<PreparedScene>, RenderError> {
+        let prepared = self.geometry.moved(&self.scene.geometry, &scene.geometry, budget, observer)?;
+        Ok(prepared.map(|geometry| PreparedScene { scene: scene.clone(), geometry: geometry.into() }))
     }
 
     /// The scene taken apart for shadow rays, if some of its surfaces are not opaque.
@@ -363,6 +446,24 @@ impl Preparations {
         let geometry = Arc::downgrade(&scene.geometry);
         self.locked().push(Preparation { geometry, prepared: Arc::clone(&prepared.geometry) });
         Ok(prepared)
+    }
+
+    /// [`Preparations::prepare`] for the scene of `before` in which things have moved: what does not depend on their places is kept.
+    pub(crate) fn prepare_moved(
+        &self,
+        before: &PreparedScene,
+        scene: &Scene,
+        acceleration: &Acceleration,
+        budget: Budget,
+        observer: &dyn Observer,
+    ) -> Result<PreparedScene, RenderError> {
+        let is_other = before.geometry.acceleration == *acceleration && self.find(scene, acceleration).is_none();
+        if is_other && let Some(moved) = before.moved(scene, budget, observer)? {
+            let geometry = Arc::downgrade(&scene.geometry);
+            self.locked().push(Preparation { geometry, prepared: Arc::clone(&moved.geometry) });
+            return Ok(moved);
+        }
+        self.prepare(scene, acceleration, budget, observer)
     }
 
     fn find(&self, scene: &Scene, acceleration: &Acceleration) -> Option<Arc<PreparedGeometry>> {

@@ -396,7 +396,7 @@ impl Draft {
         if self.strict && !warnings.is_empty() {
             return Err(LoadError::Warnings { path: self.path, warnings });
         }
-        let mut geometry = Geometry { origin, mesh, materials: self.materials, textures: self.textures };
+        let mut geometry = Geometry { origin, mesh, materials: self.materials, textures: self.textures.into() };
         let mut animation = self.animation;
         animation.note_lamps(&geometry);
         let lamps = lamps::lamps(&mut geometry);

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::{Material, Mesh, Texture};
+use crate::{Material, Mesh, Textures};
 
 /// The surfaces of a scene, in one local frame. [`Scene`](crate::Scene) shares them behind an `Arc`: moving a light or a camera does
 /// not change them, and what a renderer has built over them stays valid.
@@ -15,7 +15,7 @@ pub struct Geometry {
     /// Materials, at least one if there are triangles.
     pub materials: Vec<Material>,
     /// Textures of the materials.
-    pub textures: Vec<Texture>,
+    pub textures: Textures,
 }
 
 impl Geometry {

@@ -78,6 +78,6 @@ pub use open::LoadOptions;
 pub use scene::{LightMeshDefaults, Scene, Weight};
 pub use scene_format::SceneFormat;
 pub use smooth::CreaseAngle;
-pub use texture::{NormalMap, Texture, TextureUse, Wrap};
+pub use texture::{NormalMap, Texture, TextureUse, Textures, Wrap};
 pub use up::{Up, UpInfo};
 pub use vertices::{OwnedPositions, Position, Positions};

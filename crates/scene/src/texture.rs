@@ -6,6 +6,9 @@ mod heights;
 mod missing_uvs;
 mod packed;
 
+use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
+
 use glam::Affine2;
 
 pub(crate) use decode::{Undecodable, checked_texels, decode};
@@ -24,6 +27,37 @@ pub struct Texture {
     pub size: [u32; 2],
     /// Red, green, blue and alpha, row by row. Alpha counts where a material is [cut out](crate::Opacity) by it.
     pub texels: Vec<[u8; 4]>,
+}
+
+/// The textures of a geometry: a list that clones share until one of them is changed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Textures(Arc<Vec<Texture>>);
+
+impl Textures {
+    /// Whether both are the same list in memory.
+    pub fn are_shared_with(&self, other: &Textures) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl Deref for Textures {
+    type Target = Vec<Texture>;
+
+    fn deref(&self) -> &Vec<Texture> {
+        &self.0
+    }
+}
+
+impl DerefMut for Textures {
+    fn deref_mut(&mut self) -> &mut Vec<Texture> {
+        Arc::make_mut(&mut self.0)
+    }
+}
+
+impl From<Vec<Texture>> for Textures {
+    fn from(textures: Vec<Texture>) -> Textures {
+        Textures(textures.into())
+    }
 }
 
 /// How a texture continues beyond its edge, along one axis.

@@ -34,15 +34,20 @@ fn same_pictures<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
     assert_eq!(!kept.is_empty(), saved > 0, "what is known is used");
 }
 
-/// The scene; and with its last light moved.
-fn scenes(subject: &'static Subject) -> [PreparedScene; 4] {
+/// The scene; with its last light moved; and with some of its triangles moved.
+fn scenes(subject: &'static Subject) -> [PreparedScene; 5] {
     let scene = subject.prepared(0);
     let mut lights = scene.scene.lights.clone();
     if let Some(light) = lights.last_mut() {
         move_light(light);
     }
     let moved = scene.with_lights(lights);
-    [scene.clone(), scene.clone(), moved.clone(), moved]
+    let mut elsewhere = moved.scene.clone();
+    let mesh = &mut elsewhere.geometry_mut().mesh;
+    let first = mesh.triangles[..mesh.triangles.len() / 8].iter().flatten().max().copied().unwrap_or(0);
+    mesh.positions[..=first as usize].iter_mut().for_each(|place| *place += Vec3::new(0.05, 0.02, -0.03));
+    let elsewhere = moved.moved(&elsewhere, Default::default(), &Unobserved).unwrap().expect("only places differ");
+    [scene.clone(), scene.clone(), moved.clone(), moved, elsewhere]
 }
 
 fn move_light(light: &mut Light) {

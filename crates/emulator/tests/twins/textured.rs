@@ -45,7 +45,7 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
 pub(crate) fn textured() -> Scene {
     let light = LightKind::Point { position: Vec3::new(2.0, 3.0, 3.0), spread: 0.0 };
     let mut scene = pile(DVec3::ZERO, &[light]);
-    scene.geometry_mut().textures = vec![checks("odd", [5, 3]), checks("wide", [64, 2])];
+    scene.geometry_mut().textures = vec![checks("odd", [5, 3]), checks("wide", [64, 2])].into();
     let matrix = Affine2::from_scale_angle_translation(Vec2::new(1.7, -0.6), 0.4, Vec2::new(0.3, -9.2));
     let material = |texture, ks_tinted: f32, emission_tinted: f32| {
         let plain = Material::default().with_ks([0.1, 0.0, 0.0]).with_ks_tinted([ks_tinted; 3]);
@@ -215,7 +215,7 @@ fn small_texels(wrap: Wrap, height: Option<f32>) -> Scene {
     };
     let mut scene = draft.finish("small texels");
     let geometry = scene.geometry_mut();
-    geometry.textures = vec![checks("large", [37, 64]), checks("narrow", [1, 50])];
+    geometry.textures = vec![checks("large", [37, 64]), checks("narrow", [1, 50])].into();
     let mesh = &mut geometry.mesh;
     // The quadrilateral is a concave mirror.
     mesh.normals.resize(mesh.positions.len(), Vec3::ZERO);

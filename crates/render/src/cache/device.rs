@@ -13,6 +13,7 @@ use crate::error::RenderError;
 use crate::gathered::cuda::DeviceSurfaceLight;
 use crate::gpu::points::DevicePoints;
 use crate::gpu::{BLOCK, Cuda, blocks_for};
+use crate::moved::Noticed;
 
 const ADMIT: Kernel = Kernel { module: "cache", name: "admit_bricks" };
 const FIND_UNKNOWN: Kernel = Kernel { module: "cache", name: "find_unknown" };
@@ -58,6 +59,7 @@ impl<R: Runtime> Default for DeviceTable<R> {
 
 impl<R: Runtime> Table for DeviceTable<R> {
     type Light = DeviceSurfaceLight<R>;
+    type Error = RenderError;
 
     fn memory_of(light: &DeviceSurfaceLight<R>) -> u64 {
         light.memory()
@@ -70,6 +72,35 @@ impl<R: Runtime> Table for DeviceTable<R> {
     fn memory(&self) -> u64 {
         let keys = self.bricks.as_ref().map_or(0, |bricks| bricks.keys.bytes() + bricks.count.bytes());
         keys + self.columns.iter().map(Column::memory).sum::<u64>()
+    }
+
+    /// On the host, by the same rule to the bit as its own table: a few bytes for each brick go back and forth.
+    fn forget(&mut self, noticed: &Noticed) -> Result<(), RenderError> {
+        let Some(bricks) = &self.bricks else { return Ok(()) };
+        let keys = bricks.keys.read()?;
+        for column in &mut self.columns {
+            let kind = column.seen.kind();
+            let mut known = column.known.read()?;
+            let mut forgotten = Vec::new();
+            for (slot, (known, &key)) in known.iter_mut().zip(&keys).enumerate() {
+                // Keys are stored increased by 1: 0 is an empty slot.
+                if *known != 0 && noticed.by(key - 1, kind) {
+                    column.count -= u64::from(known.count_ones());
+                    *known = 0;
+                    forgotten.push(slot);
+                }
+            }
+            if forgotten.is_empty() {
+                continue;
+            }
+            column.known.write(&known)?;
+            if let Answers::Bits(bits) = &column.answers {
+                let mut words = bits.read()?;
+                forgotten.iter().for_each(|&slot| words[slot] = 0);
+                bits.write(&words)?;
+            }
+        }
+        Ok(())
     }
 }
 

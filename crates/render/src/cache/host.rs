@@ -1,6 +1,7 @@
 //! Visibility of light points, cached on the host.
 
 use std::collections::HashMap;
+use std::convert::Infallible;
 
 use lightmesh_layout::constants::POINT_BITS;
 
@@ -8,6 +9,7 @@ use super::{Seen, Table};
 use crate::data::lit::LitBy;
 use crate::gathered::SurfaceLight;
 use crate::light_mesh::{BrickKey, bits};
+use crate::moved::Noticed;
 
 /// Number of light points in a brick.
 const POINTS: usize = 1 << POINT_BITS;
@@ -36,6 +38,7 @@ enum Answers {
 
 impl Table for HostTable {
     type Light = SurfaceLight;
+    type Error = Infallible;
 
     fn memory_of(light: &SurfaceLight) -> u64 {
         light.memory()
@@ -48,6 +51,20 @@ impl Table for HostTable {
     fn memory(&self) -> u64 {
         let columns: usize = self.columns.iter().map(Column::memory).sum();
         (self.rows.capacity() * size_of::<(BrickKey, usize)>() + columns) as u64
+    }
+
+    fn forget(&mut self, noticed: &Noticed) -> Result<(), Infallible> {
+        for column in &mut self.columns {
+            for (&brick, &row) in &self.rows {
+                if row < column.known.len() && column.known[row] != 0 && noticed.by(brick, column.seen.kind()) {
+                    column.known[row] = 0;
+                    if let Answers::Bits(words) = &mut column.answers {
+                        words[row] = 0;
+                    }
+                }
+            }
+        }
+        Ok(())
     }
 }
 

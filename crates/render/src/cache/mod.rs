@@ -21,6 +21,7 @@ use crate::cuda::Driver;
 use crate::gathered::Sources;
 use crate::job::Sampling;
 use crate::light_mesh::Lattice;
+use crate::moved::Noticed;
 use crate::prepared::{PreparedGeometry, PreparedScene};
 
 /// The visibility of light points, cached for later images, and light that surfaces gather: for a moving camera, or, of light points, for
@@ -84,6 +85,8 @@ impl MeshCache {
 pub trait Table: Default {
     /// What surfaces gather.
     type Light: Default;
+    /// What may fail.
+    type Error;
 
     /// Bytes that this uses.
     fn memory_of(light: &Self::Light) -> u64;
@@ -93,6 +96,9 @@ pub trait Table: Default {
 
     /// Bytes used in the backend's memory.
     fn memory(&self) -> u64;
+
+    /// Forgets the values that `noticed` may have changed. After an error the table must be dropped.
+    fn forget(&mut self, noticed: &Noticed) -> Result<(), Self::Error>;
 }
 
 /// The tables of a backend: one for each geometry that is alive, for the lattice that it was last used with.
@@ -166,19 +172,32 @@ impl<T: Table> Kept<T> {
         self.gathered.push(Gathered { geometry: Arc::downgrade(&scene.geometry), sources, light });
     }
 
-    /// The table of a scene's geometry, empty if it is new or its light points have moved. Removes tables of geometry that no longer
-    /// exists.
-    pub(crate) fn table(&mut self, scene: &PreparedScene, lattice: &Lattice) -> &mut T {
+    /// The table of a scene's geometry, empty if it is new or its light points have moved. If things have moved in it, the table is that of
+    /// before without what they may have changed. Removes tables of geometry that no longer exists.
+    pub(crate) fn table(&mut self, scene: &PreparedScene, lattice: &Lattice) -> Result<&mut T, T::Error> {
         let Lattice { anchor, step, number, .. } = *lattice;
         let places = Places { anchor, step, number };
         let same = |known: &Known<T>| known.geometry.as_ptr() == Arc::as_ptr(&scene.geometry);
         self.tables.retain(|known| known.geometry.strong_count() > 0 && (!same(known) || known.places == places));
-        let index = self.tables.iter().position(same).unwrap_or_else(|| {
-            let geometry = Arc::downgrade(&scene.geometry);
-            self.tables.push(Known { geometry, places, table: T::default() });
-            self.tables.len() - 1
-        });
-        &mut self.tables[index].table
+        let index = match self.tables.iter().position(same) {
+            Some(index) => index,
+            None => {
+                let table = self.moved(scene, lattice, &places)?.unwrap_or_default();
+                self.tables.push(Known { geometry: Arc::downgrade(&scene.geometry), places, table });
+                self.tables.len() - 1
+            }
+        };
+        Ok(&mut self.tables[index].table)
+    }
+
+    /// The table of geometry in which things have moved since, if its light points are at the same places.
+    fn moved(&mut self, scene: &PreparedScene, lattice: &Lattice, places: &Places) -> Result<Option<T>, T::Error> {
+        let Some(moved) = &scene.geometry.moved else { return Ok(None) };
+        let was = |known: &Known<T>| known.geometry.ptr_eq(&moved.before) && known.places == *places;
+        let Some(index) = self.tables.iter().position(was) else { return Ok(None) };
+        let mut table = self.tables.swap_remove(index).table;
+        table.forget(&Noticed::new(&moved.boxes, lattice, &scene.geometry))?;
+        Ok(Some(table))
     }
 }
 
@@ -194,6 +213,11 @@ impl Seen {
     pub(crate) fn of(light: &Light, sampling: &Sampling) -> Seen {
         let sampling = light.has_size().then_some((sampling.samples, sampling.seed));
         Seen { kind: light.kind.clone(), sampling }
+    }
+
+    /// The shape of the light.
+    pub(crate) fn kind(&self) -> &LightKind {
+        &self.kind
     }
 
     /// Number of rays from each light point.

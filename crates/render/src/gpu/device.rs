@@ -9,7 +9,7 @@ use lightmesh_layout::counters::Counters;
 use lightmesh_layout::geometry::Tally;
 use lightmesh_scene::Environment;
 
-use super::held::{DeviceEnvironment, DeviceGeometry, DeviceTemplate, Resident};
+use super::held::{DeviceEnvironment, DeviceGeometry, DeviceTemplate, DeviceTextures, Resident};
 use super::rates::Rates;
 use crate::cuda::{Buffer, Kernel, Launch, Pool, Runtime};
 use crate::error::RenderError;
@@ -17,6 +17,7 @@ use crate::job::Job;
 use crate::prepared::PreparedGeometry;
 use crate::stage::Stage;
 use crate::sync::locked;
+use crate::textures::AllLevels;
 
 /// A launch with one block of `threads` threads for each unit of a piece of work.
 pub(crate) fn blocks_for(piece: &Range<u64>, threads: u32) -> Launch {
@@ -41,6 +42,8 @@ pub struct Cuda<R: Runtime> {
     pub(super) template: Mutex<Option<DeviceTemplate<R>>>,
     /// The geometry that the device currently holds.
     pub(super) resident: Mutex<Resident<PreparedGeometry, DeviceGeometry<R>>>,
+    /// The textures that the device currently holds, by their smaller levels: geometries of which only places differ share these.
+    pub(super) textures: Mutex<Resident<AllLevels, DeviceTextures<R>>>,
     /// The environments that the device currently holds.
     pub(super) environments: Mutex<Resident<Environment, DeviceEnvironment<R>>>,
 }
@@ -58,6 +61,7 @@ impl<R: Runtime> Cuda<R> {
             counters: Mutex::default(),
             template: Mutex::default(),
             resident: Mutex::default(),
+            textures: Mutex::default(),
             environments: Mutex::default(),
         }
     }

@@ -1,9 +1,9 @@
-//! What a device keeps from image to image: geometry, environments, and the template of the light mesh.
+//! What a device keeps from image to image: geometry, textures, environments, and the template of the light mesh.
 
 use std::sync::{Arc, Weak};
 
 use lightmesh_layout::Structure;
-use lightmesh_layout::scene::{EnvironmentLevel, Scene};
+use lightmesh_layout::scene::{EnvironmentLevel, Scene, Texture};
 
 use crate::cuda::{Buffer, Runtime};
 use crate::prepared::SeeThrough;
@@ -26,6 +26,16 @@ pub(crate) struct DeviceGeometry<R: Runtime> {
     /// What the record points to.
     #[expect(dead_code, reason = "only kept")]
     pub(super) buffers: Buffers<R>,
+    #[expect(dead_code, reason = "only kept")]
+    pub(super) textures: Arc<DeviceTextures<R>>,
+}
+
+/// The images of a geometry's materials on a device.
+pub(super) struct DeviceTextures<R: Runtime> {
+    pub(super) records: Vec<Texture>,
+    /// What the records point to.
+    #[expect(dead_code, reason = "only kept")]
+    pub(super) texels: Buffers<R>,
 }
 
 /// An environment on a device: its levels.

@@ -26,18 +26,18 @@ impl<R: Runtime> Upload<'_, R> {
     pub(super) fn materials(
         &mut self,
         geometry: &Geometry,
-        (numbers, levels): (&[u32], &AllLevels),
+        numbers: &[u32],
+        textures: &[Texture],
         record: &mut Record,
     ) -> Result<(), RenderError> {
         record.triangle_materials = self.array("materials of triangles", &geometry.mesh.materials)?;
         record.colors = self.array::<Vec3>("colours", bytemuck::cast_slice(&geometry.mesh.colors))?;
-        let textures = self.textures(geometry, levels)?;
         if !textures.is_empty() {
             let codes = |encoding: Encoding| (0..=u8::MAX).map(move |code| encoding.decode(code));
             let codes: Vec<f32> = Encoding::ALL.into_iter().flat_map(codes).collect();
             record.codes = self.array("linear values of codes", &codes)?;
             record.uvs = self.array::<Uv>("texture coordinates", bytemuck::cast_slice(&geometry.mesh.uvs))?;
-            record.textures = self.array("textures", &textures)?;
+            record.textures = self.array("textures", textures)?;
         }
         let mut used = 0..;
         let materials: Vec<Material> = geometry
@@ -62,7 +62,7 @@ impl<R: Runtime> Upload<'_, R> {
     }
 
     /// The images of the materials, in their order. Each texture is uploaded once, and the levels for each of its encodings.
-    fn textures(&mut self, geometry: &Geometry, levels: &AllLevels) -> Result<Vec<Texture>, RenderError> {
+    pub(super) fn textures(&mut self, geometry: &Geometry, levels: &AllLevels) -> Result<Vec<Texture>, RenderError> {
         let mut texels: HashMap<u32, In<u32>> = HashMap::new();
         let mut lower: HashMap<(u32, Encoding), In<TextureLevel>> = HashMap::new();
         let mut records = Vec::new();

@@ -10,7 +10,7 @@ use lightmesh_layout::{DeviceType, In, Structure};
 use lightmesh_scene::{Environment, Falloff, LightKind};
 
 use super::device::Cuda;
-use super::held::{Buffers, DeviceEnvironment, DeviceGeometry};
+use super::held::{Buffers, DeviceEnvironment, DeviceGeometry, DeviceTextures};
 use crate::accel::{self, Form};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
@@ -137,7 +137,10 @@ impl<R: Runtime> Cuda<R> {
             return Ok(copy);
         }
         job.work.begin(job.observer, Stage::Upload, 1, 0);
-        let upload = || Upload { cuda: self, buffers: Vec::new() }.geometry(scene);
+        let upload = || {
+            let textures = self.device_textures(scene)?;
+            Upload { cuda: self, buffers: Vec::new() }.geometry(scene, textures)
+        };
         let uploaded = job.wall_time(Stage::Upload, upload);
         job.work.end(job.observer, Stage::Upload);
         let copy = Arc::new(uploaded?);
@@ -147,6 +150,20 @@ impl<R: Runtime> Cuda<R> {
 }
 
 impl<R: Runtime> Cuda<R> {
+    /// The images of a scene's materials on this device. They are uploaded if they are not there yet.
+    fn device_textures(&self, scene: &PreparedScene) -> Result<Arc<DeviceTextures<R>>, RenderError> {
+        let mut resident = locked(&self.textures);
+        let levels = &scene.geometry.mip_levels;
+        if let Some(copy) = resident.find(levels) {
+            return Ok(copy);
+        }
+        let mut upload = Upload { cuda: self, buffers: Vec::new() };
+        let records = upload.textures(&scene.scene.geometry, levels)?;
+        let copy = Arc::new(DeviceTextures { records, texels: upload.buffers });
+        resident.keep(levels, Arc::clone(&copy));
+        Ok(copy)
+    }
+
     /// The levels of an environment on this device. They are uploaded if they are not there yet.
     fn device_environment(
         &self,
@@ -223,7 +240,11 @@ impl<R: Runtime> Upload<'_, R> {
         Ok(address)
     }
 
-    fn geometry(mut self, scene: &PreparedScene) -> Result<DeviceGeometry<R>, RenderError> {
+    fn geometry(
+        mut self,
+        scene: &PreparedScene,
+        textures: Arc<DeviceTextures<R>>,
+    ) -> Result<DeviceGeometry<R>, RenderError> {
         let (geometry, prepared) = (&*scene.scene.geometry, &*scene.geometry);
         let mesh = &geometry.mesh;
         let tinted = geometry.materials.iter().any(|material| is_tinted(geometry, material));
@@ -237,7 +258,7 @@ impl<R: Runtime> Upload<'_, R> {
             far,
             ..Zeroable::zeroed()
         };
-        self.materials(geometry, (&prepared.materials.numbers, &prepared.mip_levels), &mut record)?;
+        self.materials(geometry, &prepared.materials.numbers, &textures.records, &mut record)?;
         let (starts, objects) = mesh.objects.runs();
         record.object_starts = self.array("runs of objects", starts)?;
         record.objects = self.array("objects", objects)?;
@@ -256,7 +277,7 @@ impl<R: Runtime> Upload<'_, R> {
             }
             None => None,
         };
-        Ok(DeviceGeometry { record, see_through, structure, buffers: self.buffers })
+        Ok(DeviceGeometry { record, see_through, structure, buffers: self.buffers, textures })
     }
 
     /// Adds the structure over a geometry to the record of a scene.

@@ -162,12 +162,34 @@ impl Renderer {
         settings: &Settings,
         observer: &dyn Observer,
     ) -> Result<PreparedScene, RenderError> {
-        let budget = match &self.engine {
+        let budget = self.building_budget(settings);
+        self.pool.install(|| self.preparations.prepare(scene, &settings.acceleration, budget, observer))
+    }
+
+    /// [`Renderer::prepare`] for a scene of which another moment was prepared `before`, see [`Scene::at`]: what does not depend on the places
+    /// of surfaces, such as textures, is kept, also on devices. While `before` is alive, a [`MeshCache`] keeps the light points between
+    /// which and their lights nothing has moved. A scene that differs in more is prepared as any other. The image is the same.
+    ///
+    /// # Errors
+    /// As [`Renderer::prepare`].
+    pub fn prepare_moved(
+        &self,
+        before: &PreparedScene,
+        scene: &Scene,
+        settings: &Settings,
+        observer: &dyn Observer,
+    ) -> Result<PreparedScene, RenderError> {
+        let (acceleration, budget) = (&settings.acceleration, self.building_budget(settings));
+        self.pool.install(|| self.preparations.prepare_moved(before, scene, acceleration, budget, observer))
+    }
+
+    /// Memory for what is built on the host.
+    fn building_budget(&self, settings: &Settings) -> Budget {
+        match &self.engine {
             Engine::Cpu => Budget::new(settings.memory_limit),
             // The limit is that of the device's own memory.
             Engine::Cuda(_) => Budget::default(),
-        };
-        self.pool.install(|| self.preparations.prepare(scene, &settings.acceleration, budget, observer))
+        }
     }
 
     /// Renders one image of a prepared scene.

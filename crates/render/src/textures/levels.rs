@@ -325,7 +325,7 @@ mod tests {
                 let texture = Texture { name: String::new(), size, texels: Vec::clone(&texels) };
                 let mesh = Mesh { uvs: vec![Vec2::ZERO], ..Mesh::default() };
                 let scene =
-                    Geometry { textures: vec![texture], materials: vec![material], mesh, ..Geometry::default() };
+                    Geometry { textures: vec![texture].into(), materials: vec![material], mesh, ..Geometry::default() };
                 let all = AllLevels::of(&scene, Budget::default()).unwrap().by_texture.remove(0);
                 let all = &all[Encoding::Color as usize].levels;
                 all.iter().flat_map(|level| &level.texels).map(|&texel| unpacked(texel)).collect::<Vec<_>>()
@@ -342,7 +342,7 @@ mod tests {
     fn levels_that_do_not_fit_are_refused() {
         let uses = TextureUse::new(0);
         let scene = Geometry {
-            textures: vec![texture([2048, 1024])],
+            textures: vec![texture([2048, 1024])].into(),
             materials: vec![Material::default().with_texture(uses)],
             mesh: Mesh { uvs: vec![Vec2::ZERO], ..Mesh::default() },
             ..Geometry::default()

@@ -41,7 +41,7 @@ fn sheet(light: LightKind, alpha: impl Fn(i32, i32) -> u8) -> Scene {
     let geometry = scene.geometry_mut();
     let texel = |index: i32| [0, 0, 0, alpha(index % SQUARES, index / SQUARES)];
     let texels = (0..SQUARES * SQUARES).map(texel).collect();
-    geometry.textures = vec![Texture { name: "checks".to_owned(), size: [SQUARES as u32; 2], texels }];
+    geometry.textures = vec![Texture { name: "checks".to_owned(), size: [SQUARES as u32; 2], texels }].into();
     let place = |at: f32| (at + HALF as f32) / (2.0 * HALF as f32);
     geometry.mesh.uvs = geometry.mesh.positions.iter().map(|p| Vec2::new(place(p.x), place(p.z))).collect();
     scene

@@ -55,6 +55,41 @@ fn a_camera_that_moves_finds_light_points_that_are_known() {
     assert!(cache.is_empty() && cache.memory() == 0);
 }
 
+/// The scene with what is above its floor moved, and prepared from what it was before.
+fn elsewhere(before: &PreparedScene, by: Vec3) -> PreparedScene {
+    let mut scene = before.scene.clone();
+    let mesh = &mut scene.geometry_mut().mesh;
+    let lifted = mesh.bounds().center();
+    mesh.positions.iter_mut().filter(|place| place.distance(lifted) < 1.5).for_each(|place| *place += by);
+    before.moved(&scene, Default::default(), &Unobserved).unwrap().expect("only places differ")
+}
+
+#[test]
+fn light_points_that_cannot_have_noticed_a_motion_are_known() {
+    for lights in [&[POINT][..], &[LAMP], &[POINT, LAMP]] {
+        let mut scene = prepared(&pile(DVec3::ZERO, lights));
+        let mut cache = MeshCache::new();
+        let settings = small(4);
+        let (all, _) = same(&mut cache, &scene, &settings);
+        for step in 0..4 {
+            let moved = elsewhere(&scene, Vec3::new(0.05, 0.02, 0.0));
+            let (made, saved) = same(&mut cache, &moved, &settings);
+            assert!(made > 0 && saved > all / 10, "step {step}: {made} made, {saved} saved of {all}");
+            let fresh = prepared(&moved.scene);
+            let [again, alone] = [&moved, &fresh].map(|scene| {
+                renderer().render_prepared(scene, &settings, &Unobserved).unwrap().stats.counts.long_tests
+            });
+            assert_eq!(again, alone);
+            scene = moved;
+        }
+    }
+    // What differs in more is another scene.
+    let scene = prepared(&pile(DVec3::ZERO, &[POINT]));
+    let mut other = scene.scene.clone();
+    other.geometry_mut().mesh.triangles.swap(0, 1);
+    assert!(scene.moved(&other, Default::default(), &Unobserved).unwrap().is_none());
+}
+
 /// A yard under a sky, whose light is gathered.
 #[test]
 fn a_camera_that_moves_finds_light_that_was_gathered() {

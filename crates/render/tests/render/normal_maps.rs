@@ -32,7 +32,7 @@ fn lit_floor(texels: &[[u8; 3]], change: impl FnOnce(Material) -> Material, sun:
     let mut scene = draft.finish("floor");
     let geometry = scene.geometry_mut();
     let texels: Vec<_> = texels.iter().map(|&[r, g, b]| [r, g, b, 255]).collect();
-    geometry.textures = vec![Texture { name: "normals".into(), size: [texels.len() as u32, 1], texels }];
+    geometry.textures = vec![Texture { name: "normals".into(), size: [texels.len() as u32, 1], texels }].into();
     geometry.mesh.uvs = geometry.mesh.positions.iter().map(|p| Vec2::new(p.x, p.z)).collect();
     scene
 }
@@ -231,7 +231,8 @@ fn gathered_light_comes_from_where_the_image_faces() {
         geometry.textures = texel
             .map(|[r, g, b]| Texture { name: String::new(), size: [1, 1], texels: vec![[r, g, b, 255]] })
             .into_iter()
-            .collect();
+            .collect::<Vec<Texture>>()
+            .into();
         geometry.materials[1].normal_texture = texel.map(|_| NormalMap::new(TextureUse::new(0)));
         geometry.mesh.uvs = geometry.mesh.positions.iter().map(|p| Vec2::new(p.x, p.z)).collect();
         if let Some(normal) = normal {

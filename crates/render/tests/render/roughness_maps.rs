@@ -28,7 +28,7 @@ fn floor(change: impl FnOnce(Material) -> Material) -> Scene {
     let panel = Light::rectangle(Vec3::new(0.3, 2.5, -1.0), 0.5 * Vec3::X, 0.25 * Vec3::Z).unwrap();
     scene.lights.list = vec![panel, Light::directional(Vec3::new(0.2, -1.0, 0.1)).unwrap()];
     let image = |texel: [u8; 4]| Texture { name: String::new(), size: [1, 1], texels: vec![texel] };
-    scene.geometry_mut().textures = vec![image([0, 0, 0, 255]), image([255; 4])];
+    scene.geometry_mut().textures = vec![image([0, 0, 0, 255]), image([255; 4])].into();
     let mesh = &mut scene.geometry_mut().mesh;
     mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(0.25 * p.x + 0.5, p.z)).collect();
     scene

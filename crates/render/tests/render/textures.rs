@@ -33,7 +33,7 @@ fn textured(draft: SceneDraft, texture: Texture, repeats: Vec2) -> Scene {
     let mut scene = draft.background(Vec3::splat(0.5)).finish("textured");
     let origin = scene.geometry.origin.as_vec3();
     let geometry = scene.geometry_mut();
-    geometry.textures = vec![texture];
+    geometry.textures = vec![texture].into();
     let mesh = &mut geometry.mesh;
     mesh.uvs = mesh.positions.iter().map(|p| repeats * (origin + *p - Vec3::splat(0.5 / CHECKS)).xz()).collect();
     scene

@@ -87,7 +87,7 @@ fn scene(offset: DVec3) -> Scene {
             Opacity::by(TextureUse::new(0), OpacityChannel::Red).with_filter([0.5, 1.0, 0.125]).with_factor(0.5),
         ),
     ];
-    scene.geometry_mut().textures = vec![texture("oak.png", [3, 2]), texture("tiles", [1, 7])];
+    scene.geometry_mut().textures = vec![texture("oak.png", [3, 2]), texture("tiles", [1, 7])].into();
     let origin = scene.geometry.origin;
     let at = |x, y, z| (offset + DVec3::new(x, y, z) - origin).as_vec3();
     let direction = Vec3::new(0.3, -0.8, 0.2).normalize();

@@ -22,7 +22,7 @@ fn geometry(alphas: [u8; 4], opacities: &[f32], opacity: impl Fn(Opacity) -> Opa
     let texture = Texture { name: "leaf".into(), size: [2; 2], texels: alphas.map(|alpha| [9, 9, 9, alpha]).to_vec() };
     let uses = TextureUse { wrap: [Wrap::Clamp; 2], ..TextureUse::new(0) };
     let material = Material::default().with_opacity(opacity(Opacity::by(uses, OpacityChannel::Alpha)));
-    Geometry { mesh, materials: vec![material], textures: vec![texture], ..Geometry::default() }
+    Geometry { mesh, materials: vec![material], textures: vec![texture].into(), ..Geometry::default() }
 }
 
 fn of(geometry: &Geometry) -> (Coverage, Vec<u32>) {

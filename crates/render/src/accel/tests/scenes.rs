@@ -75,7 +75,7 @@ pub(super) fn cut_out(triangles: Vec<Triangle>, cut: bool, random: &mut Random) 
     };
     let uses = TextureUse { wrap: [Wrap::Repeat, Wrap::Mirror], ..TextureUse::new(0) };
     let leaves = Material::default().with_opacity(Opacity::by(uses, OpacityChannel::Alpha).with_cutoff(0.4));
-    let textures = vec![Texture { name: String::new(), size: [16, 4], texels }];
+    let textures = vec![Texture { name: String::new(), size: [16, 4], texels }].into();
     let geometry = Geometry { mesh, materials: vec![Material::default(), leaves], textures, ..Geometry::default() };
     let (coverage, numbers) = Coverage::of(&geometry, Budget::default()).unwrap();
     assert_eq!(numbers.iter().any(|&number| number != 0), cut && count > 1);

@@ -28,7 +28,7 @@ pub(crate) fn long_tests(
     let Some(kept) = kept else {
         return Lit { lights: lights.map(|light| test(points, light)).collect() };
     };
-    let table = kept.table(wave.scene, &mesh.lattice);
+    let Ok(table) = kept.table(wave.scene, &mesh.lattice);
     let seen = wave.lights().iter().map(|light| Seen::of(light, &wave.job.sampling)).collect();
     let rows = table.admit(points.bricks().keys(), seen);
     let recall = |(index, light)| {

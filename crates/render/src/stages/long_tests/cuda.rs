@@ -26,7 +26,7 @@ pub(crate) fn long_tests<R: Runtime>(
 ) -> Result<DeviceLit<R>, RenderError> {
     let tests = LongTestsOf { cuda, wave, points, mesh };
     match kept {
-        Some(kept) => tests.unknown(kept.table(&wave.scene.host, &mesh.lattice)),
+        Some(kept) => tests.unknown(kept.table(&wave.scene.host, &mesh.lattice)?),
         None => tests.all(),
     }
 }
