@@ -230,7 +230,7 @@ fn textures_that_nobody_can_use_are_left_out() {
     scene.geometry_mut().textures[0].texels.pop();
     scene.geometry_mut().textures.push(texture("unused", [2, 2]));
     let read = reread(&scene, "scene.glb");
-    assert_eq!(read.geometry.textures, scene.geometry.textures[1..2]);
+    assert_eq!(read.geometry.textures[..], scene.geometry.textures[1..2]);
     assert_eq!(
         (read.geometry.materials[1].texture, read.geometry.materials[3].texture.map(|uses| uses.texture)),
         (None, Some(0))
