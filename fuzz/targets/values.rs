@@ -15,7 +15,7 @@ use lightmesh::scene::SkyKind;
 mod value;
 
 use value::{
-    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, Frames, LightSpec,
+    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames, LightSpec,
     Positive, Size, SkySpec, Smooth, numbered,
 };
 
@@ -54,6 +54,8 @@ fn read_frames(text: &str) {
         assert!(frames.numbers().next().is_some_and(|first| first <= frames.last()));
         frames.to_string()
     });
+    read::<FrameRate>(text, FrameRate::to_string);
+    assert_eq!(FrameRate::default().to_string(), "24");
     assert!(Frames::up_to(3).numbers().eq(1..=3));
     if let Some(file) = numbered(Path::new(text), 7) {
         assert!(file.to_string_lossy().contains('7'), "{text:?} is written as {}", file.display());

@@ -6,8 +6,10 @@ use lightmesh::{LoadError, RenderError, SaveError, image};
 use lightmesh_bench::BenchError;
 use lightmesh_bench::report::ReportError;
 
+use crate::manifest::ManifestError;
 use crate::output::OutputError;
 use crate::plan::{ChoiceError, PlanError};
+use crate::run::MovieError;
 
 /// A comparison exceeded its threshold.
 pub(crate) const EXCEEDED: u8 = 1;
@@ -15,6 +17,8 @@ pub(crate) const EXCEEDED: u8 = 1;
 pub(crate) const BAD_INPUT: u8 = 2;
 /// Device unusable or memory insufficient.
 pub(crate) const UNABLE: u8 = 3;
+/// A film ended early, after some of its frames.
+pub(crate) const PARTIAL: u8 = 4;
 /// Interrupted by Ctrl-C. Other signals have other codes: 128 more than their numbers.
 pub(crate) const INTERRUPTED: u8 = 130;
 
@@ -23,6 +27,22 @@ pub(crate) const INTERRUPTED: u8 = 130;
 pub(crate) enum Failure {
     #[error(transparent)]
     Plan(#[from] PlanError),
+    #[error(transparent)]
+    Manifest(#[from] ManifestError),
+    #[error(transparent)]
+    Movie(#[from] MovieError),
+    /// A film ended early.
+    #[error("frame {number} of {last}: {cause}{}", frames_that_are_there(*finished))]
+    Frame {
+        /// The frame that failed.
+        number: u32,
+        /// The film's last one.
+        last: u32,
+        /// How many frames that were asked for are there.
+        finished: usize,
+        /// Why.
+        cause: Box<Failure>,
+    },
     #[error(transparent)]
     Load(#[from] LoadError),
     #[error(transparent)]
@@ -78,6 +98,15 @@ fn scene_formats() -> String {
     names.join(", ")
 }
 
+/// What is there of a film, and how to go on.
+fn frames_that_are_there(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        1 => "; 1 frame is finished, and the same command with --resume goes on".to_owned(),
+        count => format!("; {count} frames are finished, and the same command with --resume goes on"),
+    }
+}
+
 impl From<BenchError> for Failure {
     fn from(error: BenchError) -> Failure {
         match error {
@@ -96,10 +125,20 @@ impl From<ReportError> for Failure {
 }
 
 impl Failure {
+    /// What happened to a frame of a film of which `finished` frames are there.
+    pub(crate) fn in_frame(self, number: u32, last: u32, finished: usize) -> Failure {
+        match self {
+            Failure::Render(RenderError::Cancelled) => self,
+            cause => Failure::Frame { number, last, finished, cause: Box::new(cause) },
+        }
+    }
+
     /// The exit code.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Failure::Exceeded(_) => EXCEEDED,
+            Failure::Frame { finished: 0, cause, .. } => cause.exit_code(),
+            Failure::Frame { .. } => PARTIAL,
             Failure::Signals(_) => UNABLE,
             Failure::Render(error) => match error {
                 RenderError::Cancelled => INTERRUPTED,
@@ -143,5 +182,10 @@ mod tests {
         let codes = errors.map(|error| Failure::from(error).exit_code());
         assert_eq!(codes, [UNABLE, UNABLE, UNABLE, UNABLE, BAD_INPUT, INTERRUPTED]);
         assert_eq!(Failure::Exceeded("RMSE".into()).exit_code(), EXCEEDED);
+        let frame = |finished| {
+            let cause = Box::new(RenderError::Device { device: "cuda".into(), reason: "none".into() }.into());
+            Failure::Frame { number: 3, last: 9, finished, cause }
+        };
+        assert_eq!([0, 2].map(|finished| frame(finished).exit_code()), [UNABLE, PARTIAL]);
     }
 }

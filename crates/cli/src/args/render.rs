@@ -10,7 +10,8 @@ use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
 
 use super::{Progress, SceneArg, Switch, Up, words};
 use crate::value::{
-    Background, CameraView, Color, Dims, EnvironmentSpec, Exposure, Frames, LightSpec, Positive, Size, SkySpec, Smooth,
+    Background, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames, LightSpec, Positive, Size,
+    SkySpec, Smooth,
 };
 
 /// Render an image of a scene
@@ -20,7 +21,8 @@ pub(crate) struct RenderArgs {
     pub(crate) scene: SceneArg,
 
     /// Output image; the extension determines the format: bmp, png, exr or jpg. `-` is standard output, which then has
-    /// nothing else, and needs --format
+    /// nothing else, and needs --format. A film can also go to a movie, mp4, mov, mkv or webm, which ffmpeg encodes: the
+    /// program of this name, or that of LIGHTMESH_FFMPEG
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
@@ -34,7 +36,17 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "A-B[xN]", requires = "turntable", help_heading = "Film")]
     pub(crate) frames: Option<Frames>,
 
-    /// Leave frames whose image exists as they are, and render the others
+    /// Frames per second of a movie, as a decimal or a ratio such as 30000/1001 [default: 24]
+    #[arg(long, value_name = "F", help_heading = "Film")]
+    pub(crate) fps: Option<FrameRate>,
+
+    /// Go on with a film that has ended early, as if it had not: frames whose files are as manifest.json beside them
+    /// records are kept, and all others rendered with the recorded exposure and step. Refused if scene or settings are
+    /// not those of the film; begins the film if there is no record of it
+    #[arg(long, requires = "turntable", conflicts_with_all = ["overwrite", "skip_existing"], help_heading = "Film")]
+    pub(crate) resume: bool,
+
+    /// Leave frames whose image exists as they are, whatever made them, and render the others
     #[arg(long, requires = "turntable", conflicts_with = "overwrite", help_heading = "Film")]
     pub(crate) skip_existing: bool,
 

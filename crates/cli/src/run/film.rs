@@ -5,45 +5,121 @@ use std::time::{Duration, Instant};
 use glam::Quat;
 use lightmesh::render::PreparedScene;
 use lightmesh::scene::Camera;
-use lightmesh::{Frame, MeshCache, Observer, RenderError, Settings, Step};
+use lightmesh::{Frame, MeshCache, RenderError, Settings, Step};
 
 use super::exposure::Metering;
+use super::movie::Movie;
 use super::render::{Studio, save};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::plan::{Film, Motion, Work};
+use crate::manifest::{Chosen, Ledger};
+use crate::plan::{Film, Motion, PictureFiles, Work};
+use crate::progress::FrameDone;
 
 /// Renders the frames that are left, and writes the files of each as soon as it is finished.
-pub(super) fn run(args: &RenderArgs, film: &Film, studio: &Studio, mut metering: Metering) -> Result<(), Failure> {
-    let Studio { renderer, prepared, scene, plan, watcher, .. } = *studio;
+pub(super) fn run(args: &RenderArgs, film: &Film, studio: &Studio, metering: Metering) -> Result<(), Failure> {
     let Motion::Turntable(last) = film.motion;
-    let work = film.work(args, last)?;
-    let (begin, count) = (Instant::now(), work.numbers.len());
-    let (mut cache, mut settings) = (MeshCache::new(), plan.settings.clone());
-    for (index, &number) in work.numbers.iter().enumerate() {
-        let files = film.files(args, number)?;
-        let camera = turned(prepared, number, last);
-        let view = settings.clone().with_camera(camera.clone());
-        let render = |prepared: &PreparedScene, settings: &Settings| {
-            renderer.render_with(&mut cache, prepared, settings, watcher)
-        };
-        let (frame, stops) = studio.picture(&view, &metering, render)?;
-        if index == 0 {
-            // What is chosen by the first frame holds for all.
-            settings = kept(settings, &frame);
-            metering = metering.fixed(stops);
-        }
-        let frame = save(frame, stops, &files, (renderer, scene, plan), Some(&camera), &metering, watcher)?;
-        let seconds = frame.stats.seconds.render;
-        let left = begin.elapsed().mul_f64((count - index - 1) as f64 / (index + 1) as f64);
-        watcher.note(&format!("frame {number} of {}: {seconds:.3} s, {}{}", work.last, files.picture, time_left(left)));
-        if interrupt::requested() {
-            return Err(RenderError::Cancelled.into());
-        }
-    }
+    let mut work = film.work(args, last)?;
+    let ledger = Ledger::begin(args, film, studio.scene, &mut work, studio.watcher)?;
+    let (display, watcher) = (studio.plan.files.options.display, studio.watcher);
+    let movie = studio.plan.files.movie.map(|container| Movie::begin(args, container, display, watcher)).transpose()?;
+    let begin = Instant::now();
+    let mut reel = Reel { args, film, studio, metering, work: &work, ledger, movie, cache: MeshCache::new(), begin };
+    // A request to end leaves time to record what is finished.
+    interrupt::watched(|| reel.render())?;
     watcher.summary(&summary(&work, begin.elapsed(), studio));
     Ok(())
+}
+
+/// A film while it is rendered.
+struct Reel<'a> {
+    args: &'a RenderArgs,
+    film: &'a Film,
+    studio: &'a Studio<'a>,
+    metering: Metering,
+    work: &'a Work,
+    ledger: Ledger,
+    movie: Option<Movie>,
+    cache: MeshCache,
+    begin: Instant,
+}
+
+impl Reel<'_> {
+    /// Renders all frames; whatever ends that, those that are finished are recorded.
+    fn render(&mut self) -> Result<(), Failure> {
+        let work = self.work;
+        for (index, &number) in work.numbers.iter().enumerate() {
+            let rendered = self.frame(index, number).and_then(|()| match interrupt::requested() {
+                true => Err(RenderError::Cancelled.into()),
+                false => Ok(()),
+            });
+            if let Err(cause) = rendered {
+                // The first error is the one to tell.
+                let _ = self.ledger.close();
+                let finished = if self.ledger.is_kept() { index + work.skipped } else { 0 };
+                return Err(cause.in_frame(number, work.last, finished));
+            }
+        }
+        self.ledger.close()?;
+        self.movie.take().map_or(Ok(()), Movie::finish)
+    }
+
+    /// Renders a frame and writes its files.
+    fn frame(&mut self, index: usize, number: u32) -> Result<(), Failure> {
+        let Studio { renderer, prepared, scene, plan, watcher, .. } = *self.studio;
+        let files = self.film.files(self.args, number)?;
+        let camera = turned(prepared, number, self.work.last);
+        let (settings, metering) = self.chosen_by_others(number);
+        let view = settings.with_camera(camera.clone());
+        let cache = &mut self.cache;
+        let render =
+            |prepared: &PreparedScene, settings: &Settings| renderer.render_with(cache, prepared, settings, watcher);
+        let (frame, stops) = self.studio.picture(&view, &metering, render)?;
+        if self.ledger.chosen().is_none() {
+            self.ledger.choose(Chosen { frame: number, exposure: stops, step: frame.stats.settings.step });
+        }
+        let frame = save(frame, stops, &files, (renderer, scene, plan), Some(&camera), &metering, watcher)?;
+        if let Some(movie) = &mut self.movie {
+            movie.push(&frame.image, stops)?;
+        }
+        self.ledger.finished(number, &files)?;
+        self.tell(index, number, &frame, &files);
+        Ok(())
+    }
+
+    /// The settings of a frame: with what another one has chosen.
+    fn chosen_by_others(&self, number: u32) -> (Settings, Metering) {
+        let (settings, metering) = (self.studio.plan.settings.clone(), self.metering.clone());
+        match self.ledger.chosen().filter(|chosen| chosen.frame != number) {
+            Some(Chosen { exposure, step: Some(step), .. }) => {
+                (settings.with_step(Step::Fixed(step)), metering.fixed(exposure))
+            }
+            Some(Chosen { exposure, step: None, .. }) => (settings, metering.fixed(exposure)),
+            None => (settings, metering),
+        }
+    }
+
+    fn tell(&self, index: usize, number: u32, frame: &Frame, files: &PictureFiles) {
+        let (count, kept, index) = (self.work.numbers.len(), self.work.skipped, index + 1);
+        if self.ledger.is_kept() {
+            let (finished, all) = (index + kept, count + kept);
+            interrupt::remark(format!(
+                "{finished} of {all} frames are finished, and the same command with --resume goes on"
+            ));
+        }
+        self.studio.watcher.frame(&FrameDone {
+            number,
+            last: self.work.last,
+            index,
+            count,
+            kept,
+            seconds: frame.stats.seconds.render,
+            left: self.begin.elapsed().mul_f64((count - index) as f64 / index as f64),
+            files: files.paths().map(|path| path.display().to_string()).collect(),
+            picture: files.picture.to_string(),
+        });
+    }
 }
 
 /// The camera of frame `number` of a turntable: that of the scene, turned about the vertical through the middle of the scene. All `last` frames
@@ -60,23 +136,6 @@ fn turned(prepared: &PreparedScene, number: u32, last: u32) -> Camera {
     camera.direction = turn * camera.direction;
     let position = middle + turn * (camera.position - middle);
     camera.with_position(position)
-}
-
-/// Settings with the step that a frame was rendered with.
-fn kept(settings: Settings, frame: &Frame) -> Settings {
-    match frame.stats.settings.step {
-        Some(step) => settings.with_step(Step::Fixed(step)),
-        None => settings,
-    }
-}
-
-fn time_left(left: Duration) -> String {
-    match left.as_secs() {
-        0 => String::new(),
-        seconds if seconds < 60 => format!(", about {seconds} s left"),
-        seconds if seconds < 3600 => format!(", about {} min {} s left", seconds / 60, seconds % 60),
-        seconds => format!(", about {} h {} min left", seconds / 3600, seconds % 3600 / 60),
-    }
 }
 
 fn summary(work: &Work, elapsed: Duration, studio: &Studio) -> String {

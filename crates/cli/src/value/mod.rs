@@ -4,6 +4,7 @@
 
 mod budget;
 mod camera;
+mod frame_rate;
 mod frames;
 mod light;
 mod memory;
@@ -14,6 +15,7 @@ mod smooth;
 
 pub(crate) use budget::Budget;
 pub(crate) use camera::CameraView;
+pub(crate) use frame_rate::FrameRate;
 pub(crate) use frames::{Frames, numbered};
 pub(crate) use light::{Background, Color, LightSpec};
 pub(crate) use memory::ByteSize;
