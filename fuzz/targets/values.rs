@@ -15,8 +15,8 @@ use lightmesh::scene::SkyKind;
 mod value;
 
 use value::{
-    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames, LightSpec,
-    Positive, Size, SkySpec, Smooth, numbered,
+    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames,
+    LightSpec, Positive, Size, SkySpec, Smooth, numbered,
 };
 
 /// Messages quote a part of the text and explain the rest.

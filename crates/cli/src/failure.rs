@@ -17,7 +17,7 @@ pub(crate) const EXCEEDED: u8 = 1;
 pub(crate) const BAD_INPUT: u8 = 2;
 /// Device unusable or memory insufficient.
 pub(crate) const UNABLE: u8 = 3;
-/// A film ended early, after some of its frames.
+/// A film failed after some of its frames.
 pub(crate) const PARTIAL: u8 = 4;
 /// Interrupted by Ctrl-C. Other signals have other codes: 128 more than their numbers.
 pub(crate) const INTERRUPTED: u8 = 130;
@@ -32,7 +32,7 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Movie(#[from] MovieError),
     /// A film ended early.
-    #[error("frame {number} of {last}: {cause}{}", frames_that_are_there(*finished))]
+    #[error("frame {number} of {last}: {cause}{}", what_is_there(*finished, flag))]
     Frame {
         /// The frame that failed.
         number: u32,
@@ -40,6 +40,8 @@ pub(crate) enum Failure {
         last: u32,
         /// How many frames that were asked for are there.
         finished: usize,
+        /// The flag that goes on with them.
+        flag: &'static str,
         /// Why.
         cause: Box<Failure>,
     },
@@ -99,11 +101,11 @@ fn scene_formats() -> String {
 }
 
 /// What is there of a film, and how to go on.
-fn frames_that_are_there(count: usize) -> String {
+fn what_is_there(count: usize, flag: &str) -> String {
     match count {
         0 => String::new(),
-        1 => "; 1 frame is finished, and the same command with --resume goes on".to_owned(),
-        count => format!("; {count} frames are finished, and the same command with --resume goes on"),
+        1 => format!("; 1 frame is finished ({flag} goes on)"),
+        count => format!("; {count} frames are finished ({flag} goes on)"),
     }
 }
 
@@ -125,11 +127,11 @@ impl From<ReportError> for Failure {
 }
 
 impl Failure {
-    /// What happened to a frame of a film of which `finished` frames are there.
-    pub(crate) fn in_frame(self, number: u32, last: u32, finished: usize) -> Failure {
+    /// What happened to frame `number` of a film up to `last`, of which some are `finished`: `flag` goes on with them.
+    pub(crate) fn in_frame(self, number: u32, last: u32, finished: usize, flag: &'static str) -> Failure {
         match self {
             Failure::Render(RenderError::Cancelled) => self,
-            cause => Failure::Frame { number, last, finished, cause: Box::new(cause) },
+            cause => Failure::Frame { number, last, finished, flag, cause: Box::new(cause) },
         }
     }
 
@@ -183,9 +185,12 @@ mod tests {
         assert_eq!(codes, [UNABLE, UNABLE, UNABLE, UNABLE, BAD_INPUT, INTERRUPTED]);
         assert_eq!(Failure::Exceeded("RMSE".into()).exit_code(), EXCEEDED);
         let frame = |finished| {
-            let cause = Box::new(RenderError::Device { device: "cuda".into(), reason: "none".into() }.into());
-            Failure::Frame { number: 3, last: 9, finished, cause }
+            let cause = Failure::from(RenderError::Device { device: "cuda".into(), reason: "none".into() });
+            cause.in_frame(3, 9, finished, "--resume")
         };
         assert_eq!([0, 2].map(|finished| frame(finished).exit_code()), [UNABLE, PARTIAL]);
+        assert!(frame(2).to_string().ends_with("; 2 frames are finished (--resume goes on)"));
+        let cancelled = Failure::from(RenderError::Cancelled).in_frame(3, 9, 2, "--resume");
+        assert_eq!(cancelled.exit_code(), INTERRUPTED);
     }
 }

@@ -1,6 +1,6 @@
 //! The checksum of a scene: that of all files that it is read from.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use lightmesh::Scene;
 use lightmesh_files::directory;
@@ -17,7 +17,7 @@ pub(super) fn checksum(args: &RenderArgs, scene: &Scene) -> Result<String, Manif
     if scene.files.is_empty() {
         hash.update(source.as_os_str().as_encoded_bytes());
     }
-    let panorama = args.environment.iter().map(|spec| &spec.file);
+    let panorama = args.environment.as_ref().map(|spec| &spec.file);
     for file in scene.files.iter().chain(panorama) {
         add(&mut hash, file, directory(source))?;
     }
@@ -25,7 +25,7 @@ pub(super) fn checksum(args: &RenderArgs, scene: &Scene) -> Result<String, Manif
 }
 
 /// Name, size and content, so that files cannot be confused with each other.
-fn add(hash: &mut Xxh3, file: &PathBuf, folder: &Path) -> Result<(), ManifestError> {
+fn add(hash: &mut Xxh3, file: &Path, folder: &Path) -> Result<(), ManifestError> {
     let name = file.strip_prefix(folder).unwrap_or(file).as_os_str().as_encoded_bytes();
     hash.update(&(name.len() as u64).to_le_bytes());
     hash.update(name);

@@ -57,8 +57,9 @@ impl Reel<'_> {
             if let Err(cause) = rendered {
                 // The first error is the one to tell.
                 let _ = self.ledger.close();
-                let finished = if self.ledger.is_kept() { index + work.skipped } else { 0 };
-                return Err(cause.in_frame(number, work.last, finished));
+                // A movie is there as a whole or not at all.
+                let finished = if self.film.is_movie() { 0 } else { index + work.skipped };
+                return Err(cause.in_frame(number, work.last, finished, self.flag_that_goes_on()));
             }
         }
         self.ledger.close()?;
@@ -100,13 +101,15 @@ impl Reel<'_> {
         }
     }
 
+    fn flag_that_goes_on(&self) -> &'static str {
+        if self.ledger.is_kept() { "--resume" } else { "--skip-existing" }
+    }
+
     fn tell(&self, index: usize, number: u32, frame: &Frame, files: &PictureFiles) {
         let (count, kept, index) = (self.work.numbers.len(), self.work.skipped, index + 1);
-        if self.ledger.is_kept() {
-            let (finished, all) = (index + kept, count + kept);
-            interrupt::remark(format!(
-                "{finished} of {all} frames are finished, and the same command with --resume goes on"
-            ));
+        if !self.film.is_movie() {
+            let (finished, all, flag) = (index + kept, count + kept, self.flag_that_goes_on());
+            interrupt::remark(format!("{finished} of {all} frames are finished ({flag} goes on)"));
         }
         self.studio.watcher.frame(&FrameDone {
             number,

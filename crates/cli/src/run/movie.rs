@@ -170,7 +170,7 @@ impl Movie {
         let row = codes.len() / frame.height() as usize;
         let codes = even(codes, row, row / frame.width() as usize);
         let sent = self.pipe.as_mut().map_or(Ok(()), |pipe| pipe.write_all(&codes));
-        sent.or_else(|reason| Err(self.failed(reason)))
+        sent.map_err(|reason| self.failed(reason))
     }
 
     /// Ends the movie, which is there then.

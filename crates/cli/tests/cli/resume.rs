@@ -217,7 +217,7 @@ fn a_film_that_fails_after_some_frames_says_so_by_its_exit_code() {
     assert_eq!(done.code, Some(4), "{done:?}");
     let message = done.stderr.lines().last().unwrap();
     assert!(message.starts_with("error: frame 3 of 3: cannot write a.3.png: it is a directory"), "{message}");
-    assert!(message.ends_with("; 2 frames are finished, and the same command with --resume goes on"), "{message}");
+    assert!(message.ends_with("; 2 frames are finished (--resume goes on)"), "{message}");
     assert_eq!(record(&place, "a.#.png")["frames"].as_object().unwrap().len(), 2);
 }
 
@@ -238,7 +238,7 @@ fn a_film_that_is_interrupted_leaves_whole_frames_and_says_how_to_go_on() {
     assert_eq!(done.code, Some(130), "{done:?}");
     let message = done.stderr.lines().last().unwrap();
     assert!(message.starts_with("interrupted: written: a.01.png, a.02.png"), "{message}");
-    assert!(message.ends_with(" of 99 frames are finished, and the same command with --resume goes on"), "{message}");
+    assert!(message.ends_with(" of 99 frames are finished (--resume goes on)"), "{message}");
     assert!(!message.contains(MANIFEST), "{message}");
 }
 
