@@ -15,8 +15,8 @@ use lightmesh::scene::SkyKind;
 mod value;
 
 use value::{
-    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, Frames, LightSpec,
-    Positive, Size, SkySpec, Smooth, numbered,
+    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames,
+    LightSpec, Positive, Size, SkySpec, Smooth, numbered,
 };
 
 /// Messages quote a part of the text and explain the rest.
@@ -54,6 +54,8 @@ fn read_frames(text: &str) {
         assert!(frames.numbers().next().is_some_and(|first| first <= frames.last()));
         frames.to_string()
     });
+    read::<FrameRate>(text, FrameRate::to_string);
+    assert_eq!(FrameRate::default().to_string(), "24");
     assert!(Frames::up_to(3).numbers().eq(1..=3));
     if let Some(file) = numbered(Path::new(text), 7) {
         assert!(file.to_string_lossy().contains('7'), "{text:?} is written as {}", file.display());

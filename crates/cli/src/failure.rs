@@ -6,8 +6,10 @@ use lightmesh::{LoadError, RenderError, SaveError, image};
 use lightmesh_bench::BenchError;
 use lightmesh_bench::report::ReportError;
 
+use crate::manifest::ManifestError;
 use crate::output::OutputError;
 use crate::plan::{ChoiceError, PlanError};
+use crate::run::MovieError;
 
 /// A comparison exceeded its threshold.
 pub(crate) const EXCEEDED: u8 = 1;
@@ -15,6 +17,8 @@ pub(crate) const EXCEEDED: u8 = 1;
 pub(crate) const BAD_INPUT: u8 = 2;
 /// Device unusable or memory insufficient.
 pub(crate) const UNABLE: u8 = 3;
+/// A film failed after some of its frames.
+pub(crate) const PARTIAL: u8 = 4;
 /// Interrupted by Ctrl-C. Other signals have other codes: 128 more than their numbers.
 pub(crate) const INTERRUPTED: u8 = 130;
 
@@ -23,6 +27,24 @@ pub(crate) const INTERRUPTED: u8 = 130;
 pub(crate) enum Failure {
     #[error(transparent)]
     Plan(#[from] PlanError),
+    #[error(transparent)]
+    Manifest(#[from] ManifestError),
+    #[error(transparent)]
+    Movie(#[from] MovieError),
+    /// A film ended early.
+    #[error("frame {number} of {last}: {cause}{}", what_is_there(*finished, flag))]
+    Frame {
+        /// The frame that failed.
+        number: u32,
+        /// The film's last one.
+        last: u32,
+        /// How many frames that were asked for are there.
+        finished: usize,
+        /// The flag that goes on with them.
+        flag: &'static str,
+        /// Why.
+        cause: Box<Failure>,
+    },
     #[error(transparent)]
     Load(#[from] LoadError),
     #[error(transparent)]
@@ -78,6 +100,15 @@ fn scene_formats() -> String {
     names.join(", ")
 }
 
+/// What is there of a film, and how to go on.
+fn what_is_there(count: usize, flag: &str) -> String {
+    match count {
+        0 => String::new(),
+        1 => format!("; 1 frame is finished ({flag} goes on)"),
+        count => format!("; {count} frames are finished ({flag} goes on)"),
+    }
+}
+
 impl From<BenchError> for Failure {
     fn from(error: BenchError) -> Failure {
         match error {
@@ -96,10 +127,20 @@ impl From<ReportError> for Failure {
 }
 
 impl Failure {
+    /// What happened to frame `number` of a film up to `last`, of which some are `finished`: `flag` goes on with them.
+    pub(crate) fn in_frame(self, number: u32, last: u32, finished: usize, flag: &'static str) -> Failure {
+        match self {
+            Failure::Render(RenderError::Cancelled) => self,
+            cause => Failure::Frame { number, last, finished, flag, cause: Box::new(cause) },
+        }
+    }
+
     /// The exit code.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Failure::Exceeded(_) => EXCEEDED,
+            Failure::Frame { finished: 0, cause, .. } => cause.exit_code(),
+            Failure::Frame { .. } => PARTIAL,
             Failure::Signals(_) => UNABLE,
             Failure::Render(error) => match error {
                 RenderError::Cancelled => INTERRUPTED,
@@ -143,5 +184,13 @@ mod tests {
         let codes = errors.map(|error| Failure::from(error).exit_code());
         assert_eq!(codes, [UNABLE, UNABLE, UNABLE, UNABLE, BAD_INPUT, INTERRUPTED]);
         assert_eq!(Failure::Exceeded("RMSE".into()).exit_code(), EXCEEDED);
+        let frame = |finished| {
+            let cause = Failure::from(RenderError::Device { device: "cuda".into(), reason: "none".into() });
+            cause.in_frame(3, 9, finished, "--resume")
+        };
+        assert_eq!([0, 2].map(|finished| frame(finished).exit_code()), [UNABLE, PARTIAL]);
+        assert!(frame(2).to_string().ends_with("; 2 frames are finished (--resume goes on)"));
+        let cancelled = Failure::from(RenderError::Cancelled).in_frame(3, 9, 2, "--resume");
+        assert_eq!(cancelled.exit_code(), INTERRUPTED);
     }
 }

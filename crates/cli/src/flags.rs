@@ -23,6 +23,7 @@ pub(crate) fn of(setting: Setting) -> String {
 pub(crate) fn that_mend(failure: &Failure) -> Vec<String> {
     const RESULTS: &str = "lightmesh bench SUITE --json FILE";
     let fixed: &[&str] = match failure {
+        Failure::Frame { cause, .. } => return that_mend(cause),
         Failure::Render(RenderError::Grid(GridError::Memory { .. })) | Failure::Grid(GridError::Memory { .. }) => {
             &["--grid", "--memory-limit"]
         }

@@ -23,6 +23,9 @@ use crate::output;
 /// How long work may take to end by itself.
 const GRACE: Duration = Duration::from_millis(100);
 
+/// Outputs that the last message lists one by one.
+const LISTED: usize = 8;
+
 /// The exit code of the request; 0: none so far.
 static REQUESTED: AtomicU8 = AtomicU8::new(0);
 /// The [`Manner`] in which the work in progress ends.
@@ -120,6 +123,7 @@ fn message(Abandoned { written, partial, .. }: &Abandoned) -> String {
     let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
     let whole = match &names[..] {
         [] => "nothing was written".to_owned(),
+        [first, .., last] if names.len() > LISTED => format!("written: {} files, {first} to {last}", names.len()),
         names => format!("written: {}", names.join(", ")),
     };
     let part = |path: &Path| format!("interrupted: {whole}, and part of an output to {}", path.display());
@@ -176,7 +180,10 @@ mod tests {
         assert_eq!(message(&state), "interrupted: nothing was written");
         state.written = ["a.png", "a.json"].map(PathBuf::from).into();
         assert_eq!(message(&state), "interrupted: written: a.png, a.json");
+        state.written = (1..=40).map(|number| format!("f.{number}.png").into()).collect();
+        assert_eq!(message(&state), "interrupted: written: 40 files, f.1.png to f.40.png");
+        state.written.truncate(2);
         state.partial = Some("/dev/stdout".into());
-        assert_eq!(message(&state), "interrupted: written: a.png, a.json, and part of an output to /dev/stdout");
+        assert_eq!(message(&state), "interrupted: written: f.1.png, f.2.png, and part of an output to /dev/stdout");
     }
 }

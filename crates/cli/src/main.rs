@@ -9,6 +9,7 @@ mod destination;
 mod failure;
 mod flags;
 mod interrupt;
+mod manifest;
 mod memory;
 mod output;
 mod plan;

@@ -37,7 +37,7 @@ mod tests;
 
 pub use ending::{Abandoned, abandon, record_written, stand_by};
 pub use output::{Output, Ready, WriteError};
-pub use publish::{PublishError, publish};
+pub use publish::{PublishError, publish, publish_record};
 pub use read::{Portion, ReadError, read, read_inside, read_stream};
 pub use stream::is_standard_output;
 pub use target::{Identity, TargetError, check_folder, check_writable, directory, identity};

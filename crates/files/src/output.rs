@@ -77,6 +77,14 @@ impl Output {
         &self.path
     }
 
+    /// The temporary file, for another program that writes it instead of this one, in place; `None` if this is no file.
+    pub fn temporary_path(&self) -> Option<&Path> {
+        match &self.sink {
+            Sink::File { file, .. } => Some(file.path()),
+            Sink::Stream { .. } => None,
+        }
+    }
+
     /// Fills an output that is ready then.
     ///
     /// # Errors

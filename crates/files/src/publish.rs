@@ -63,6 +63,22 @@ pub fn publish(outputs: impl IntoIterator<Item = Ready>) -> Result<(), PublishEr
     Ok(())
 }
 
+/// Lets a file appear that a program keeps for itself, such as a record of its outputs: [`abandon`](crate::abandon) does not name it.
+///
+/// # Errors
+/// [`PublishError`]; also if the target is no regular file.
+pub fn publish_record(record: Ready) -> Result<(), PublishError> {
+    let (path, step) = record.step();
+    let failed = |reason| PublishError { path, reason, written: Vec::new() };
+    let Step::Rename(file, target) = step else {
+        return Err(failed(io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file")));
+    };
+    let renamed = file.rename(&target, &mut registry());
+    renamed.map_err(failed)?;
+    sync_directory(directory(&target));
+    Ok(())
+}
+
 fn send(path: &Path, bytes: &mut impl io::Read, stream: &Stream) -> io::Result<()> {
     let mut output = stream.open()?;
     registry().begins(path.to_owned());

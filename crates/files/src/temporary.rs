@@ -63,6 +63,11 @@ impl Temporary {
         Ok(Temporary { file, name: Registered(path) })
     }
 
+    /// Where it is until it is renamed.
+    pub(crate) fn path(&self) -> &Path {
+        &self.name.0
+    }
+
     /// Writes a block to see whether the disk is full.
     pub(crate) fn check_space(mut self, path: &Path, target: &FileTarget) -> Result<(), TargetError> {
         self.file.write_all(&PROBE).map_err(|reason| unwritable(path, directory(&target.path), reason))

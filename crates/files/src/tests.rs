@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use crate::{Output, Ready, TargetError, check_folder, check_writable, identity, publish};
+use crate::{Output, Ready, TargetError, check_folder, check_writable, identity, publish, publish_record};
 
 fn ready(path: &Path, bytes: &[u8]) -> Ready {
     Ready::with(path, bytes).unwrap()
@@ -47,6 +47,27 @@ fn outputs_appear_together() {
     assert!(!a.exists() && !b.exists());
     publish(outputs).unwrap();
     assert!(a.exists() && b.exists() && count(folder.path()) == 2);
+}
+
+#[test]
+fn another_program_can_write_an_output_in_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a");
+    let output = Output::to(&path).unwrap();
+    fs::write(output.temporary_path().unwrap(), "by another").unwrap();
+    assert!(!path.exists());
+    output.commit().unwrap();
+    assert_eq!((fs::read_to_string(&path).unwrap(), count(folder.path())), ("by another".to_owned(), 1));
+}
+
+#[test]
+fn a_record_is_replaced_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("record");
+    for text in ["a", "ab"] {
+        publish_record(ready(&path, text.as_bytes())).unwrap();
+        assert_eq!((fs::read_to_string(&path).unwrap(), count(folder.path())), (text.to_owned(), 1));
+    }
 }
 
 #[test]

@@ -56,10 +56,10 @@ const NOT_FROM_VARIABLES: [&str; 5] = ["HELP", "OUTPUT", "LIGHT", "QUIET", "VERB
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 success, 1 a comparison exceeded its threshold, 2 bad input or usage, 3 device unusable or memory \
-insufficient, 130 interrupted (143 by SIGTERM, 129 by SIGHUP).
+insufficient, 4 a film failed after some of its frames (--resume goes on), 130 interrupted (143 by SIGTERM, 129 by SIGHUP).
 
 Environment: each flag of `lightmesh render` except -o, --light, -q and -v can be set by a variable, LIGHTMESH_DEVICE for \
---device or LIGHTMESH_MEMORY_LIMIT for --memory-limit; the flag wins. CUDA_VISIBLE_DEVICES hides GPUs. NO_COLOR, \
+--device or LIGHTMESH_MEMORY_LIMIT for --memory-limit; the flag wins. LIGHTMESH_FFMPEG names the program that encodes movies. CUDA_VISIBLE_DEVICES hides GPUs. NO_COLOR, \
 CLICOLOR_FORCE and CLICOLOR=0 decide about colours, unless --color does.
 
 Examples:

@@ -21,13 +21,14 @@ pub(crate) struct RenderArgs {
     pub(crate) scene: SceneArg,
 
     /// Output image; the extension determines the format: bmp, png, exr or jpg. `-` is standard output, which then has
-    /// nothing else, and needs --format
+    /// nothing else, and needs --format. A film can also go to a movie, mp4, mov, mkv or webm, which ffmpeg encodes: the
+    /// program of this name, or that of LIGHTMESH_FFMPEG
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
     /// Render a film of N frames in which the camera goes once around the scene, at constant height; frame 1 is the image
     /// without this. `####` or `%04d` in the names of output files stands for the number of the frame. Exposure and step
-    /// are those of the first frame that is rendered; light points and gathered light are kept from frame to frame
+    /// are chosen once, from frames across the film; light points and gathered light are kept from frame to frame
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), conflicts_with = "partial", help_heading = "Film")]
     pub(crate) turntable: Option<u32>,
 
@@ -36,7 +37,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "A-B[xN]", conflicts_with = "partial", help_heading = "Film")]
     pub(crate) frames: Option<Frames>,
 
-    /// Frames per second of the film: how far the scene's own animation goes from one to the next [default: 24]
+    /// Frames per second of the film, as a decimal or a ratio such as 30000/1001: how far the scene's own animation goes from
+    /// one to the next, and how fast a movie is shown [default: 24]
     #[arg(long, value_name = "F", conflicts_with = "partial", help_heading = "Film")]
     pub(crate) fps: Option<FrameRate>,
 
@@ -44,7 +46,13 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "NAME", help_heading = "Film")]
     pub(crate) animation: Option<String>,
 
-    /// Leave frames whose image exists as they are, and render the others
+    /// Go on with a film that has ended early, as if it had not: frames whose files are as manifest.json beside them
+    /// records are kept, and all others rendered with the recorded exposure and step. Refused if scene or settings are
+    /// not those of the film; begins the film if there is no record of it
+    #[arg(long, conflicts_with_all = ["overwrite", "skip_existing"], help_heading = "Film")]
+    pub(crate) resume: bool,
+
+    /// Leave frames whose image exists as they are, whatever made them, and render the others
     #[arg(long, conflicts_with = "overwrite", help_heading = "Film")]
     pub(crate) skip_existing: bool,
 

@@ -5,16 +5,21 @@ use std::path::Path;
 use lightmesh::SaveError;
 use lightmesh::image::{Display, ExrOptions, Format, SaveOptions, check_image};
 
-use super::PlanError;
+use super::{Container, MovieChoiceError, PlanError};
 use crate::args::{RenderArgs, Switch};
 use crate::destination::{Destination, check_one_on_stdout};
 use crate::output::{OutputError, Outputs, input};
 use crate::value::{Background, Exposure, numbered};
 
+/// The flag of the image.
+const OUTPUT: &str = "-o";
+
 /// The output files.
 pub(crate) struct PictureFiles {
-    /// The image.
+    /// The image, or the movie that it becomes a frame of.
     pub(crate) picture: Destination,
+    /// Whether it is a movie.
+    pub(crate) movie: Option<Container>,
     /// How it is stored, except for the exposure.
     pub(crate) options: SaveOptions,
     /// Exposure of 8-bit and 16-bit images; `None`: by the unit of the lights.
@@ -30,12 +35,19 @@ pub(crate) struct PictureFiles {
 impl PictureFiles {
     /// Checks that each file can be written, that its format can store the image, and that it overwrites none of the others.
     pub(super) fn new(args: &RenderArgs) -> Result<PictureFiles, PlanError> {
-        PictureFiles::named(args, |_, path| Ok(Destination::new(path)))
+        if args.format.is_none() && Container::from_path(&args.output).is_some() {
+            return Err(MovieChoiceError::Still { path: args.output.clone() }.into());
+        }
+        PictureFiles::named(args, None, |_, path| Ok(Destination::new(path)))
     }
 
     /// Those of a frame of a film.
     pub(super) fn of_frame(args: &RenderArgs, number: u32) -> Result<PictureFiles, PlanError> {
-        PictureFiles::named(args, |flag, path| {
+        let movie = Container::from_path(&args.output);
+        PictureFiles::named(args, movie, |flag, path| {
+            if movie.is_some() && flag == OUTPUT {
+                return Ok(Destination::File(path.to_owned()));
+            }
             let file = numbered(path, number).map(Destination::File);
             file.ok_or_else(|| PlanError::NoNumber { flag, path: path.to_owned() })
         })
@@ -43,25 +55,36 @@ impl PictureFiles {
 
     fn named(
         args: &RenderArgs,
+        movie: Option<Container>,
         name: impl Fn(&'static str, &Path) -> Result<Destination, PlanError>,
     ) -> Result<PictureFiles, PlanError> {
-        let picture = name("-o", &args.output)?;
+        let picture = name(OUTPUT, &args.output)?;
         let layers = args.layers.as_deref().map(|path| name("--layers", path)).transpose()?;
         let stats = args.stats.as_deref().map(|path| name("--stats", path)).transpose()?;
         let options = options(args);
-        check_picture(&picture, args, &options)?;
+        if movie.is_some() {
+            picture.check_writable().map_err(SaveError::from)?;
+        } else {
+            check_picture(&picture, args, &options)?;
+        }
         if let Some(layers) = &layers {
             check_layers(layers)?;
         }
         if let Some(stats) = &stats {
             stats.check_writable().map_err(OutputError::from)?;
         }
-        let all = [("-o", Some(&picture)), ("--layers", layers.as_ref()), ("--stats", stats.as_ref())];
+        let all = [(OUTPUT, Some(&picture)), ("--layers", layers.as_ref()), ("--stats", stats.as_ref())];
         check_one_on_stdout(all)?;
         let outputs = Outputs::new(all.map(|(flag, output)| (flag, output.and_then(Destination::file))))?;
         outputs.keep("the scene", input(&args.scene.scene))?;
         outputs.keep("--grid-file", args.grid_file.as_deref())?;
-        Ok(PictureFiles { picture, options, exposure: args.exposure, layers, stats, outputs })
+        Ok(PictureFiles { picture, movie, options, exposure: args.exposure, layers, stats, outputs })
+    }
+
+    /// The files that are written for the image alone.
+    pub(crate) fn paths(&self) -> impl Iterator<Item = &Path> {
+        let picture = Some(&self.picture).filter(|_| self.movie.is_none());
+        [picture, self.layers.as_ref(), self.stats.as_ref()].into_iter().flatten().filter_map(Destination::file)
     }
 
     /// The format of the image.
@@ -85,7 +108,7 @@ fn options(args: &RenderArgs) -> SaveOptions {
 
 /// Images that the format cannot store are rejected now rather than after the render.
 fn check_picture(picture: &Destination, args: &RenderArgs, options: &SaveOptions) -> Result<(), PlanError> {
-    picture.check_binary("-o")?;
+    picture.check_binary(OUTPUT)?;
     let path = match picture {
         Destination::Stdout if args.format.is_none() => return Err(PlanError::NoFormat),
         Destination::Stdout => Path::new("standard output"),

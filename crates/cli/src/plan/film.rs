@@ -4,14 +4,19 @@ use std::collections::VecDeque;
 
 use lightmesh::Scene;
 
-use super::{PictureFiles, PlanError};
+use super::{Container, PictureFiles, PlanError};
 use crate::args::RenderArgs;
+use crate::manifest::{self, Record};
 use crate::value::{FrameRate, Frames};
 
 /// A film: what moves in it, and which of its frames are wanted.
 pub(crate) struct Film {
     /// What moves.
     pub(crate) motion: Motion,
+    /// What is known of it if it is resumed and was begun before.
+    pub(crate) record: Option<Record>,
+    /// The movie that it goes to, unless each frame has a file.
+    movie: Option<Container>,
     frames: Option<Frames>,
 }
 
@@ -39,11 +44,15 @@ impl Film {
     pub(super) fn new(args: &RenderArgs) -> Result<Option<Film>, PlanError> {
         let motion = match args.turntable {
             Some(frames) => Motion::Turntable(frames),
-            None if args.frames.is_some() || args.fps.is_some() => Motion::Scene(args.fps.unwrap_or_default()),
-            None if args.skip_existing || args.overwrite => return Err(PlanError::NoFilm),
+            None if args.frames.is_some() || args.fps.is_some() || Container::from_path(&args.output).is_some() => {
+                Motion::Scene(args.fps.unwrap_or_default())
+            }
+            None if args.skip_existing || args.overwrite || args.resume => return Err(PlanError::NoFilm),
             None => return Ok(None),
         };
-        let film = Film { motion, frames: args.frames };
+        let movie = Container::of_film(args)?;
+        let record = if args.resume { manifest::known(args)? } else { None };
+        let film = Film { motion, record, movie, frames: args.frames };
         match (motion, args.frames) {
             (Motion::Turntable(last), _) => film.work(args, last).map(drop)?,
             (Motion::Scene(_), Some(frames)) => film.work(args, frames.last()).map(drop)?,
@@ -59,11 +68,13 @@ impl Film {
         if frames.last() > last || frames.first() == 0 {
             return Err(PlanError::NoFrame { frames, last });
         }
+        // Frames that the manifest does not name are those that were being finished when the film ended.
+        let replaces = args.overwrite || self.record.is_some() || self.is_movie();
         let (mut numbers, mut existing) = (Vec::new(), VecDeque::new());
         for number in frames.numbers() {
             let files = PictureFiles::of_frame(args, number)?;
             match files.picture.file().filter(|path| path.exists()) {
-                Some(path) if !args.overwrite => existing.push_back(path.to_owned()),
+                Some(path) if !replaces => existing.push_back(path.to_owned()),
                 _ => numbers.push(number),
             }
         }
@@ -94,6 +105,11 @@ impl Film {
     /// Those of [`PictureFiles`].
     pub(crate) fn files(&self, args: &RenderArgs, number: u32) -> Result<PictureFiles, PlanError> {
         PictureFiles::of_frame(args, number)
+    }
+
+    /// Whether all frames go to one file.
+    pub(crate) fn is_movie(&self) -> bool {
+        self.movie.is_some()
     }
 
     /// A frame that stands for all in what is checked before the scene is open.

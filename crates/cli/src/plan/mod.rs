@@ -2,6 +2,7 @@
 
 mod files;
 mod film;
+mod movie;
 mod scene;
 mod settings;
 
@@ -13,10 +14,12 @@ use lightmesh::scene::{CameraError, CreaseAngle};
 use lightmesh::{Device, Lookup, Mode, SaveError, Settings};
 
 use crate::args::{RenderArgs, SceneArg};
+use crate::manifest::ManifestError;
 use crate::output::OutputError;
 use crate::value::{Frames, Smooth};
 pub(crate) use files::PictureFiles;
 pub(crate) use film::{Film, Motion, Work};
+pub(crate) use movie::{Container, MovieChoiceError};
 pub(crate) use scene::{ChoiceError, SceneChoices};
 
 /// Why a command line is invalid.
@@ -28,6 +31,10 @@ pub(crate) enum PlanError {
     Output(#[from] OutputError),
     #[error(transparent)]
     Camera(#[from] CameraError),
+    #[error(transparent)]
+    Manifest(#[from] ManifestError),
+    #[error(transparent)]
+    Movie(#[from] MovieChoiceError),
     /// The part of the image is not in it.
     #[error("--crop {crop} is not a part of an image of {}x{} pixels; choose pixels of it (--crop, --size)", size[0], size[1])]
     Crop {

@@ -5,12 +5,17 @@
 //! {"event":"progress","stage":"short_tests","done":1024,"total":4096,"seconds":0.21}
 //! {"event":"end","stage":"short_tests","done":4096,"total":4096,"seconds":0.84}
 //! {"event":"image","done":0.41,"seconds":2.1,"left":3.0}
+//! {"event":"frame","number":7,"index":3,"count":120,"kept":4,"seconds":0.8,"left":93.2,"files":["film.0007.png"]}
 //! {"event":"note","text":"…"}
 //! ```
 //!
 //! `image` refers to the whole image: the part that is done, seconds since it was started, and seconds remaining (null at the very
 //! beginning). In the other events, seconds count from the start of the stage. A stage repeats for each band of an image that is split to
-//! fit into memory, and for each bounce. The texts of `note`, `warning` and `summary` are for humans.
+//! fit into memory, and for each bounce.
+//!
+//! `frame` says that a frame of a film is finished, and all of its files are there: its number in the film; which of the `count` frames of this
+//! run it is, from 1 on; how many frames were there before and are kept; seconds that it took to render, and about how many the others of the run
+//! will take; and its files, of which a movie is none. The texts of `note`, `warning` and `summary` are for humans.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -19,6 +24,7 @@ use std::time::{Duration, Instant};
 use lightmesh::Stage;
 use serde::Serialize;
 
+use super::FrameDone;
 use crate::output;
 
 /// Time between two progress events.
@@ -53,6 +59,18 @@ struct Whole {
     done: f64,
     seconds: f64,
     left: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Frame<'a> {
+    event: &'static str,
+    number: u32,
+    index: usize,
+    count: usize,
+    kept: usize,
+    seconds: f64,
+    left: f64,
+    files: &'a [String],
 }
 
 #[derive(Serialize)]
@@ -93,6 +111,12 @@ impl Json {
     pub(super) fn whole(&self, progress: lightmesh::render::Progress) {
         let lightmesh::render::Progress { done, seconds, left } = progress;
         output::complain_json(&Whole { event: "image", done, seconds, left });
+    }
+
+    pub(super) fn frame(&self, frame: &FrameDone) {
+        let &FrameDone { number, index, count, kept, seconds, left, ref files, .. } = frame;
+        let left = left.as_secs_f64();
+        output::complain_json(&Frame { event: "frame", number, index, count, kept, seconds, left, files });
     }
 
     pub(super) fn text(&self, event: &'static str, text: &str) {

@@ -4,7 +4,10 @@ mod bar;
 mod json;
 mod lines;
 
+use std::collections::BTreeSet;
 use std::io::{self, IsTerminal};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use lightmesh::render::Setting;
 use lightmesh::{Observer, Stage};
@@ -19,6 +22,32 @@ use lines::Lines;
 pub(crate) struct Watcher {
     quiet: bool,
     sink: Sink,
+    /// Notes of this command: each is said once, however many frames it holds for.
+    said: Mutex<BTreeSet<String>>,
+}
+
+/// A finished frame of a film.
+pub(crate) struct FrameDone {
+    /// Its number.
+    pub(crate) number: u32,
+    /// The film's last frame.
+    pub(crate) last: u32,
+    /// What it is called besides.
+    pub(crate) when: String,
+    /// Which of the frames of this run it is, from 1 on.
+    pub(crate) index: usize,
+    /// The frames of this run.
+    pub(crate) count: usize,
+    /// Frames that were there and are kept.
+    pub(crate) kept: usize,
+    /// How long it took to render.
+    pub(crate) seconds: f64,
+    /// About how long the others of this run will take.
+    pub(crate) left: Duration,
+    /// Its files.
+    pub(crate) files: Vec<String>,
+    /// Its image, or its movie.
+    pub(crate) picture: String,
 }
 
 enum Sink {
@@ -39,17 +68,30 @@ impl Watcher {
             Progress::Auto | Progress::Bar if terminal => Sink::Bar(Bar::new()),
             Progress::Auto | Progress::Bar => Sink::Lines(Lines::new()),
         };
-        Watcher { quiet, sink }
+        Watcher { quiet, sink, said: Mutex::default() }
     }
 
     /// Messages only.
     pub(crate) fn plain(quiet: bool) -> Watcher {
-        Watcher { quiet, sink: Sink::Plain }
+        Watcher { quiet, sink: Sink::Plain, said: Mutex::default() }
     }
 
     /// A warning.
     pub(crate) fn warning(&self, text: &str) {
         self.say("warning", &format!("warning: {text}"), text);
+    }
+
+    /// A frame of a film is finished.
+    pub(crate) fn frame(&self, frame: &FrameDone) {
+        let FrameDone { number, last, when, seconds, left, picture, .. } = frame;
+        match &self.sink {
+            Sink::Json(json) if !self.quiet => json.frame(frame),
+            _ => self.say(
+                "frame",
+                &format!("frame {number} of {last}{when}: {seconds:.3} s, {picture}{}", time_left(*left)),
+                "",
+            ),
+        }
     }
 
     /// A summary at the end.
@@ -69,6 +111,15 @@ impl Watcher {
             Sink::Bar(bar) => bar.aside(line),
             Sink::Json(json) => json.text(event, text),
         }
+    }
+}
+
+fn time_left(left: Duration) -> String {
+    match left.as_secs() {
+        0 => String::new(),
+        seconds if seconds < 60 => format!(", about {seconds} s left"),
+        seconds if seconds < 3600 => format!(", about {} min {} s left", seconds / 60, seconds % 60),
+        seconds => format!(", about {} h {} min left", seconds / 3600, seconds % 3600 / 60),
     }
 }
 
@@ -112,7 +163,9 @@ impl Observer for Watcher {
     }
 
     fn note(&self, text: &str) {
-        self.say("note", text, text);
+        if self.said.lock().unwrap_or_else(PoisonError::into_inner).insert(text.to_owned()) {
+            self.say("note", text, text);
+        }
     }
 
     fn cancelled(&self) -> bool {

@@ -15,6 +15,7 @@ use crate::progress::Watcher;
 use crate::value::Exposure;
 
 /// How the exposure is found.
+#[derive(Clone)]
 pub(super) struct Metering {
     exposure: Exposure,
     has_ground: bool,

@@ -1,67 +1,218 @@
-//! The frames of a film: one scene in the memory of one device, and what does not depend on the camera is kept from frame to frame.
+//! The frames of a film: one scene in the memory of one device, and what is the same in two frames is kept from one to the next.
 
 use std::time::{Duration, Instant};
 
 use glam::Quat;
-use lightmesh::render::PreparedScene;
+use lightmesh::render::{Crop, PreparedScene};
 use lightmesh::scene::Camera;
 use lightmesh::{Frame, MeshCache, Observer, RenderError, Scene, Settings, Step};
 
 use super::BUILDING;
 use super::exposure::Metering;
+use super::movie::Movie;
 use super::render::{Studio, save};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
-use crate::plan::{Film, Motion, Work};
-use crate::progress::Watcher;
+use crate::manifest::{Chosen, Ledger};
+use crate::plan::{Film, Motion, PictureFiles, Work};
+use crate::progress::{FrameDone, Watcher};
 use crate::{interrupt, memory};
+
+/// Frames across a film from which its exposure and step are chosen.
+const SAMPLES: u32 = 5;
+/// The longer side of the images that are made for the exposure, at most.
+const SAMPLE_SIDE: u32 = 256;
 
 /// Renders the frames that are left, and writes the files of each as soon as it is finished.
 pub(super) fn run(
     args: &RenderArgs,
     film: &Film,
-    work: &Work,
+    mut work: Work,
     studio: &Studio,
-    mut metering: Metering,
+    metering: Metering,
 ) -> Result<(), Failure> {
-    let Studio { renderer, plan, watcher, .. } = *studio;
-    let (begin, count) = (Instant::now(), work.numbers.len());
-    let (mut cache, mut settings) = (MeshCache::new(), plan.settings.clone());
-    for (index, &number) in work.numbers.iter().enumerate() {
-        let files = film.files(args, number)?;
-        let prepared = at(film, studio, number, work.last)?;
-        let scene = &prepared.scene;
-        let render = |prepared: &PreparedScene, settings: &Settings| {
-            renderer.render_with(&mut cache, prepared, settings, watcher)
-        };
-        let (frame, stops) = Studio { prepared: &prepared, scene, ..*studio }.picture(&settings, &metering, render)?;
-        if index == 0 {
-            // What is chosen by the first frame holds for all.
-            settings = kept(settings, &frame);
-            metering = metering.fixed(stops);
-        }
-        let frame = save(frame, stops, &files, (renderer, scene, plan), scene.cameras.first(), &metering, watcher)?;
-        let seconds = frame.stats.seconds.render;
-        let left = begin.elapsed().mul_f64((count - index - 1) as f64 / (index + 1) as f64);
-        watcher.note(&format!("frame {number} of {}: {seconds:.3} s, {}{}", work.last, files.picture, time_left(left)));
-        if interrupt::requested() {
-            return Err(RenderError::Cancelled.into());
-        }
-    }
-    watcher.summary(&summary(work, begin.elapsed(), studio));
+    let ledger = Ledger::begin(args, film, studio.scene, &mut work, studio.watcher)?;
+    let (display, watcher) = (studio.plan.files.options.display, studio.watcher);
+    let movie = studio.plan.files.movie.map(|container| Movie::begin(args, container, display, watcher)).transpose()?;
+    let (begin, prepared, cache) = (Instant::now(), studio.prepared.clone(), MeshCache::new());
+    let mut reel = Reel { args, film, studio, prepared, metering, work: &work, ledger, movie, cache, begin };
+    // A request to end leaves time to record what is finished.
+    interrupt::watched(|| reel.render())?;
+    watcher.summary(&summary(&work, begin.elapsed(), studio));
     Ok(())
 }
 
-/// The scene at a frame. Its geometry is prepared anew if it moves.
-fn at(film: &Film, studio: &Studio, number: u32, last: u32) -> Result<PreparedScene, Failure> {
-    let Studio { renderer, prepared, plan, watcher, .. } = *studio;
-    match film.motion {
-        Motion::Turntable(_) => Ok(prepared.with_cameras(vec![turned(prepared, number, last)])),
-        Motion::Scene(rate) => {
-            let scene = prepared.scene.at(rate.time(number));
-            Ok(memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, watcher))?)
+/// A film while it is rendered.
+struct Reel<'a> {
+    args: &'a RenderArgs,
+    film: &'a Film,
+    studio: &'a Studio<'a>,
+    /// The scene at the last frame.
+    prepared: PreparedScene,
+    metering: Metering,
+    work: &'a Work,
+    ledger: Ledger,
+    movie: Option<Movie>,
+    cache: MeshCache,
+    begin: Instant,
+}
+
+impl Reel<'_> {
+    /// Renders all frames; whatever ends that, those that are finished are recorded.
+    fn render(&mut self) -> Result<(), Failure> {
+        let work = self.work;
+        if self.ledger.chosen().is_none() && !work.numbers.is_empty() {
+            let chosen = self.chosen_across()?;
+            self.ledger.choose(chosen);
+        }
+        for (index, &number) in work.numbers.iter().enumerate() {
+            let rendered = self.frame(index, number).and_then(|()| match interrupt::requested() {
+                true => Err(RenderError::Cancelled.into()),
+                false => Ok(()),
+            });
+            if let Err(cause) = rendered {
+                // The first error is the one to tell.
+                let _ = self.ledger.close();
+                // A movie is there as a whole or not at all.
+                let finished = if self.film.is_movie() { 0 } else { index + work.skipped };
+                return Err(cause.in_frame(number, work.last, finished, self.flag_that_goes_on()));
+            }
+        }
+        self.ledger.close()?;
+        self.movie.take().map_or(Ok(()), Movie::finish)
+    }
+
+    /// Renders a frame and writes its files.
+    fn frame(&mut self, index: usize, number: u32) -> Result<(), Failure> {
+        let Studio { renderer, plan, watcher, .. } = *self.studio;
+        let files = self.film.files(self.args, number)?;
+        let (prepared, when) = self.at(number)?;
+        let scene = &prepared.scene;
+        let (settings, metering) = self.settings();
+        let cache = &mut self.cache;
+        let render =
+            |prepared: &PreparedScene, settings: &Settings| renderer.render_with(cache, prepared, settings, watcher);
+        let studio = Studio { prepared: &prepared, scene, ..*self.studio };
+        let (frame, stops) = studio.picture(&settings, &metering, render)?;
+        let frame = save(frame, stops, &files, (renderer, scene, plan), scene.cameras.first(), &metering, watcher)?;
+        if let Some(movie) = &mut self.movie {
+            movie.push(&frame.image, stops)?;
+        }
+        self.ledger.finished(number, &files)?;
+        self.tell(index, number, &when, &frame, &files);
+        // What the cache keeps of the frame before goes on to this one.
+        self.prepared = prepared;
+        Ok(())
+    }
+
+    /// The scene at a frame, and what the frame is called besides its number.
+    fn at(&self, number: u32) -> Result<(PreparedScene, String), Failure> {
+        let Studio { renderer, prepared, plan, watcher, .. } = *self.studio;
+        match self.film.motion {
+            Motion::Turntable(last) => Ok((prepared.with_cameras(vec![turned(prepared, number, last)]), String::new())),
+            Motion::Scene(rate) => {
+                let scene = prepared.scene.at(rate.time(number));
+                let prepare = || renderer.prepare_moved(&self.prepared, &scene, &plan.settings, watcher);
+                Ok((memory::during(BUILDING, prepare)?, String::new()))
+            }
         }
     }
+
+    /// Exposure and step for the whole film, from frames across it: whichever of them are rendered, and by however many runs.
+    fn chosen_across(&self) -> Result<Chosen, Failure> {
+        let Studio { renderer, plan, watcher, .. } = *self.studio;
+        let asks_step = matches!(plan.settings.step, None | Some(Step::Auto));
+        let (mut exposures, mut steps) = (Vec::new(), Vec::new());
+        let quiet = Watcher::plain(true);
+        let last = self.work.last;
+        let mut numbers: Vec<u32> = (0..SAMPLES)
+            .map(|sample| 1 + (u64::from(last - 1) * u64::from(sample) / u64::from(SAMPLES - 1)) as u32)
+            .collect();
+        numbers.dedup();
+        for &number in &numbers {
+            if !(self.metering.is_automatic() || asks_step) {
+                break;
+            }
+            let (prepared, _) = self.at(number)?;
+            let studio = Studio { prepared: &prepared, scene: &prepared.scene, watcher: &quiet, ..*self.studio };
+            let render =
+                |prepared: &PreparedScene, settings: &Settings| renderer.render_prepared(prepared, settings, &quiet);
+            if self.metering.is_automatic() {
+                let (_, stops) = studio.picture(&reduced(&plan.settings), &self.metering, render)?;
+                exposures.push(stops);
+            }
+            if asks_step {
+                // The step depends on the whole image, of which one pixel is rendered.
+                let pixel = plan.settings.clone().with_crop(Crop::new([0, 0], [1, 1]));
+                match render(&prepared, &pixel)?.stats.settings.step {
+                    Some(step) => steps.push(step),
+                    None => break,
+                }
+            }
+        }
+        let chosen = Chosen { exposure: median(exposures), step: median(steps) };
+        let count = numbers.len();
+        if let Some(stops) = chosen.exposure {
+            watcher.note(&format!("exposure auto: using {stops} stops, from {count} frames across the film"));
+        }
+        if let Some(step) = chosen.step {
+            watcher.note(&format!("step auto: using {step}, from {count} frames across the film"));
+        }
+        Ok(chosen)
+    }
+
+    /// The settings of all frames: with what was chosen for the film.
+    fn settings(&self) -> (Settings, Metering) {
+        let (mut settings, mut metering) = (self.studio.plan.settings.clone(), self.metering.clone());
+        let Chosen { exposure, step } = self.ledger.chosen().unwrap_or_default();
+        if let Some(step) = step {
+            settings = settings.with_step(Step::Fixed(step));
+        }
+        if let Some(exposure) = exposure {
+            metering = metering.fixed(exposure);
+        }
+        (settings, metering)
+    }
+
+    fn flag_that_goes_on(&self) -> &'static str {
+        if self.ledger.is_kept() { "--resume" } else { "--skip-existing" }
+    }
+
+    fn tell(&self, index: usize, number: u32, when: &str, frame: &Frame, files: &PictureFiles) {
+        let (count, kept, index) = (self.work.numbers.len(), self.work.skipped, index + 1);
+        if !self.film.is_movie() {
+            let (finished, all, flag) = (index + kept, count + kept, self.flag_that_goes_on());
+            interrupt::remark(format!("{finished} of {all} frames are finished ({flag} goes on)"));
+        }
+        self.studio.watcher.frame(&FrameDone {
+            number,
+            last: self.work.last,
+            when: when.to_owned(),
+            index,
+            count,
+            kept,
+            seconds: frame.stats.seconds.render,
+            left: self.begin.elapsed().mul_f64((count - index) as f64 / index as f64),
+            files: files.paths().map(|path| path.display().to_string()).collect(),
+            picture: files.picture.to_string(),
+        });
+    }
+}
+
+/// Settings for a small image of the whole.
+fn reduced(settings: &Settings) -> Settings {
+    let mut settings = settings.clone();
+    settings.crop = None;
+    let [width, height] = settings.size;
+    let longer = width.max(height).max(SAMPLE_SIDE);
+    let side = |side: u32| (u64::from(side) * u64::from(SAMPLE_SIDE) / u64::from(longer)).max(1) as u32;
+    settings.with_size([side(width), side(height)])
+}
+
+/// The middle one of some values, the lower of two.
+fn median(mut values: Vec<f32>) -> Option<f32> {
+    values.sort_by(f32::total_cmp);
+    values.get(values.len().saturating_sub(1) / 2).copied()
 }
 
 /// Says which animations are played, or that there are some.
@@ -95,23 +246,6 @@ fn turned(prepared: &PreparedScene, number: u32, last: u32) -> Camera {
     camera.direction = turn * camera.direction;
     let position = middle + turn * (camera.position - middle);
     camera.with_position(position)
-}
-
-/// Settings with the step that a frame was rendered with.
-fn kept(settings: Settings, frame: &Frame) -> Settings {
-    match frame.stats.settings.step {
-        Some(step) => settings.with_step(Step::Fixed(step)),
-        None => settings,
-    }
-}
-
-fn time_left(left: Duration) -> String {
-    match left.as_secs() {
-        0 => String::new(),
-        seconds if seconds < 60 => format!(", about {seconds} s left"),
-        seconds if seconds < 3600 => format!(", about {} min {} s left", seconds / 60, seconds % 60),
-        seconds => format!(", about {} h {} min left", seconds / 3600, seconds % 3600 / 60),
-    }
 }
 
 fn summary(work: &Work, elapsed: Duration, studio: &Studio) -> String {

@@ -10,12 +10,14 @@ mod film;
 mod grid;
 mod info;
 mod man;
+mod movie;
 mod open;
 mod range;
 mod render;
 mod report;
 
 use lightmesh::Scene;
+pub(crate) use movie::MovieError;
 
 use crate::args::Command;
 use crate::failure::Failure;

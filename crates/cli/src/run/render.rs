@@ -10,7 +10,7 @@ use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene
 use lightmesh_memory::Bytes;
 
 use super::exposure::Metering;
-use super::{BUILDING, film, open::open, range};
+use super::{BUILDING, film, movie, open::open, range};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::plan::{PictureFiles, RenderPlan};
@@ -20,6 +20,9 @@ use crate::{interrupt, memory, output};
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let plan = RenderPlan::new(args)?;
+    if let Some(container) = plan.files.movie {
+        movie::check(args, container)?;
+    }
     let watcher = Watcher::new(args.progress, args.quiet);
     let choice = Choice::of(plan.device).inspect_err(|_| explain_devices(args, &watcher))?;
     let using = using(&choice, args.verbose);
@@ -44,7 +47,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let metering = Metering::new(&mut scene, &plan, behind);
     let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;
     film::explain(&scene, plan.film.is_some(), &watcher);
-    if let (Some(film), Some(work)) = (&plan.film, &work) {
+    if let (Some(film), Some(work)) = (&plan.film, work) {
         let studio =
             Studio { renderer: &renderer, prepared: &prepared, scene: &scene, plan: &plan, load, watcher: &watcher };
         return film::run(args, film, work, &studio, metering);
@@ -218,11 +221,12 @@ fn write(
 
 /// The image and the layers, encoded at the same time: while one waits for the disk, the other is compressed.
 fn encode(image: &image::Frame, files: &PictureFiles, options: &SaveOptions) -> Result<Vec<Ready>, SaveError> {
+    let picture = Some(&files.picture).filter(|_| files.movie.is_none());
     let (picture, layers) = rayon::join(
-        || image.ready_to(files.picture.open()?, options),
+        || picture.map(|picture| image.ready_to(picture.open()?, options)).transpose(),
         || files.layers.as_ref().map(|layers| image.ready_layers_to(layers.open()?, options)).transpose(),
     );
-    Ok(layers?.into_iter().chain([picture?]).collect())
+    Ok(layers?.into_iter().chain(picture?).collect())
 }
 
 /// Settings that say nothing about an image: the machine, and ways to the same result.

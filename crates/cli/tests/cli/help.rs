@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::run::Place;
 
 /// The flags of `render` that other programs rely on.
-const FLAGS: [&str; 43] = [
+const FLAGS: [&str; 49] = [
     "--mode",
     "--bounces",
     "--size",
@@ -49,6 +49,12 @@ const FLAGS: [&str; 43] = [
     "--help",
     "--crop",
     "--ground",
+    "--turntable",
+    "--frames",
+    "--fps",
+    "--resume",
+    "--skip-existing",
+    "--overwrite",
 ];
 
 #[test]

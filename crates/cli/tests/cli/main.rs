@@ -12,6 +12,7 @@ mod memory;
 mod messages;
 mod render;
 mod report;
+mod resume;
 mod run;
 mod scenes;
 mod sky;
@@ -19,6 +20,8 @@ mod smooth;
 
 #[cfg(unix)]
 mod interrupt;
+#[cfg(unix)]
+mod movie;
 #[cfg(unix)]
 mod outputs;
 #[cfg(unix)]

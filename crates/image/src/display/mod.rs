@@ -85,6 +85,14 @@ impl Display {
         self.view.apply(color.map(|channel| channel * factor))
     }
 
+    /// The codes of all pixels, row by row from the top: red, green, blue, and alpha if the frame has it. 16 bits have the high byte first.
+    pub fn encode(&self, frame: &Frame) -> Vec<u8> {
+        let pixels = frame.width() as usize * frame.height() as usize;
+        let mut bytes = Vec::with_capacity(pixels * self.pixel_bytes(frame));
+        (0..frame.height() as usize).for_each(|y| self.encode_row(frame, y, &mut bytes));
+        bytes
+    }
+
     /// Bytes of a pixel of `frame`.
     pub(crate) fn pixel_bytes(&self, frame: &Frame) -> usize {
         let channels = 3 + usize::from(frame.alpha().is_some());
@@ -160,9 +168,7 @@ mod tests {
     use super::*;
 
     fn encoded(display: Display, frame: &Frame) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        (0..frame.height() as usize).for_each(|y| display.encode_row(frame, y, &mut bytes));
-        bytes
+        display.encode(frame)
     }
 
     fn grey(width: u32, height: u32, value: impl Fn(u32) -> f32) -> Frame {

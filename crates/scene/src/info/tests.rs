@@ -51,6 +51,7 @@ fn the_json_is_in_world_coordinates_and_degrees() {
         "see_through": 0,
         "textures": 0,
         "up": {"axis": "y", "reason": "its cameras are oriented that way"},
+        "animation": null,
         "warnings": [],
     });
     assert_eq!(json, expected);

@@ -244,23 +244,33 @@ where
         tracks.extend(track.ok().map(|track| (number, track)));
     }
     let keyed = KeyedTable { path: source.path.into(), text: source.text.into(), table: table.clone(), tracks };
-    for (key, &time) in keys.iter().zip(&times) {
-        check_at(source, &keyed, key.get_ref(), time)?;
-    }
+    check(source, &keyed, keys, &times)?;
     Ok(Arc::new(keyed))
 }
 
-/// Checks the table as it is at a key; errors name the place of what the key gives.
-fn check_at<T: Moving>(source: &Source, keyed: &KeyedTable<T>, key: &T::Key, time: f64) -> Result<(), LoadError> {
-    let mut table = keyed.table.get_ref().clone();
-    for (number, track) in &keyed.tracks {
-        let mut values = vec![0.0; track.width()];
-        track.sample(time, &mut values);
-        let property = &T::PROPERTIES[*number];
-        (property.set)(&mut table, keyed.table.span(), &values);
-        (property.copy)(&mut table, key);
-    }
-    T::read(source, &Spanned::new(keyed.table.span(), table)).map(drop)
+/// Checks the table as it is at each key. The error names the place of a value that is wrong by itself, if there is one.
+fn check<T: Moving>(
+    source: &Source,
+    keyed: &KeyedTable<T>,
+    keys: &[Spanned<T::Key>],
+    times: &[f64],
+) -> Result<(), LoadError> {
+    let at = |key: &Spanned<T::Key>, time: Option<f64>| {
+        let mut table = keyed.table.get_ref().clone();
+        for (number, track) in &keyed.tracks {
+            let property = &T::PROPERTIES[*number];
+            if let Some(time) = time {
+                let mut values = vec![0.0; track.width()];
+                track.sample(time, &mut values);
+                (property.set)(&mut table, keyed.table.span(), &values);
+            }
+            (property.copy)(&mut table, key.get_ref());
+        }
+        T::read(source, &Spanned::new(keyed.table.span(), table)).err()
+    };
+    let wrong = keys.iter().zip(times).find_map(|(key, &time)| at(key, Some(time)));
+    let Some(wrong) = wrong else { return Ok(()) };
+    Err(keys.iter().find_map(|key| at(key, None)).unwrap_or(wrong))
 }
 
 /// The times of keys, ascending.

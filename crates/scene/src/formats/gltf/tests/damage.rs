@@ -45,7 +45,7 @@ fn ranges_that_do_not_fit_are_refused() {
         ("/bufferViews/0/buffer", json!(3), "there is no buffer 3"),
         ("/bufferViews/0/byteOffset", json!(u64::MAX), "buffer view 0 reaches beyond its buffer of 39 bytes"),
         ("/accessors/1/componentType", json!(5124), "accessor 1 has the component type 5124"),
-        ("/accessors/0/type", json!("MAT4"), "accessor 0 has type MAT4, which is not valid here"),
+        ("/accessors/0/type", json!("MAT3"), "accessor 0 has type MAT3, which is not valid here"),
         ("/meshes/0/primitives/0/mode", json!(7), "a primitive of mesh 0 has the mode 7"),
         ("/nodes/0/mesh", json!(1), "there is no mesh 1"),
     ];
