@@ -29,19 +29,12 @@ const VARIABLE: &str = "LIGHTMESH_FFMPEG";
 const PROGRAM: &str = "ffmpeg";
 /// The last bytes of what it says, which are quoted if it fails.
 const QUOTED: usize = 500;
+/// Converts codes to the matrix and the range of [`COLOURS`], and marks each frame with these, which recent versions prefer to options.
+const FILTER: &str = "scale=out_color_matrix=bt709:out_range=tv,\
+                      setparams=colorspace=bt709:color_primaries=bt709:color_trc=bt709:range=tv";
 /// Colours are those of high-definition television, with its matrix: what players assume, and what the codes are converted by.
-const COLOURS: [&str; 10] = [
-    "-vf",
-    "scale=out_color_matrix=bt709:out_range=tv",
-    "-colorspace",
-    "bt709",
-    "-color_primaries",
-    "bt709",
-    "-color_trc",
-    "bt709",
-    "-color_range",
-    "tv",
-];
+const COLOURS: [&str; 10] =
+    ["-vf", FILTER, "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"];
 
 /// Why a movie cannot be encoded.
 #[derive(Debug, thiserror::Error)]

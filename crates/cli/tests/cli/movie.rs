@@ -45,6 +45,7 @@ fn frames_go_to_the_encoder_and_the_movie_appears_as_a_whole() {
     let arguments = arguments(&place);
     for part in [
         "-f rawvideo -pixel_format rgb24 -video_size 16x12 -framerate 30000/1001 -i pipe:0",
+        "-vf scale=out_color_matrix=bt709:out_range=tv,setparams=colorspace=bt709:color_primaries=bt709:color_trc=bt709:range=tv ",
         "-colorspace bt709 -color_primaries bt709 -color_trc bt709",
         "-c:v libx264 -pix_fmt yuv420p -preset medium -crf 18 -movflags +faststart -f mp4",
     ] {

@@ -204,7 +204,7 @@ fn a_full_disk_leaves_whole_frames_and_the_film_goes_on() {
 #[test]
 fn a_film_that_fails_after_some_frames_says_so_by_its_exit_code() {
     let place = Place::new();
-    let flags = ["--size", "400x300", "--mode", "area", "--light", "3,5,2;1;0.5", "-o", "a.#.png", "--turntable", "3"];
+    let flags = ["--size", "400x300", "--mode", "area", "--light", "3,5,2;1;0.5", "-o", "a.#.png", "--turntable", "9"];
     let mut command = place.command(&[&["render", "room.toml"], &flags[..]].concat());
     let child = command.stderr(Stdio::piped()).spawn().unwrap();
     let begin = Instant::now();
@@ -212,13 +212,13 @@ fn a_film_that_fails_after_some_frames_says_so_by_its_exit_code() {
         assert!(begin.elapsed() < Duration::from_secs(30));
         sleep(Duration::from_millis(1));
     }
-    std::fs::create_dir(place.path("a.3.png")).unwrap();
+    std::fs::create_dir(place.path("a.9.png")).unwrap();
     let done: Done = child.wait_with_output().unwrap().into();
     assert_eq!(done.code, Some(4), "{done:?}");
     let message = done.stderr.lines().last().unwrap();
-    assert!(message.starts_with("error: frame 3 of 3: cannot write a.3.png: it is a directory"), "{message}");
-    assert!(message.ends_with("; 2 frames are finished (--resume goes on)"), "{message}");
-    assert_eq!(record(&place, "a.#.png")["frames"].as_object().unwrap().len(), 2);
+    assert!(message.starts_with("error: frame 9 of 9: cannot write a.9.png: it is a directory"), "{message}");
+    assert!(message.ends_with("; 8 frames are finished (--resume goes on)"), "{message}");
+    assert_eq!(record(&place, "a.#.png")["frames"].as_object().unwrap().len(), 8);
 }
 
 #[cfg(unix)]
@@ -237,7 +237,7 @@ fn a_film_that_is_interrupted_leaves_whole_frames_and_says_how_to_go_on() {
     let done: Done = child.wait_with_output().unwrap().into();
     assert_eq!(done.code, Some(130), "{done:?}");
     let message = done.stderr.lines().last().unwrap();
-    assert!(message.starts_with("interrupted: written: a.01.png, a.02.png"), "{message}");
+    assert!(message.starts_with("interrupted: written: "), "{message}");
     assert!(message.ends_with(" of 99 frames are finished (--resume goes on)"), "{message}");
     assert!(!message.contains(MANIFEST), "{message}");
 }
