@@ -11,6 +11,7 @@ use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
 use super::{Progress, SceneArg, Switch, Up, words};
 use crate::value::{
     Background, CameraView, Color, Dims, EnvironmentSpec, Exposure, Frames, LightSpec, Positive, Size, SkySpec, Smooth,
+    SunSpec,
 };
 
 /// Render an image of a scene
@@ -20,26 +21,38 @@ pub(crate) struct RenderArgs {
     pub(crate) scene: SceneArg,
 
     /// Output image; the extension determines the format: bmp, png, exr or jpg. `-` is standard output, which then has
-    /// nothing else, and needs --format
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    /// nothing else, and needs --format. Without it, --sun-hours alone is computed
+    #[arg(short, long, value_name = "OUT", required_unless_present = "sun_hours")]
+    pub(crate) output: Option<PathBuf>,
 
     /// Render a film of N frames in which the camera goes once around the scene, at constant height; frame 1 is the image
     /// without this. `####` or `%04d` in the names of output files stands for the number of the frame. Exposure and step
     /// are those of the first frame that is rendered; light points and gathered light are kept from frame to frame
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), conflicts_with = "partial", help_heading = "Film")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), group = "motion", conflicts_with = "partial", help_heading = "Film")]
     pub(crate) turntable: Option<u32>,
 
+    /// Render a film of the hours of a day: the sun stands under a clear sky (--sky "clear;turbidity=…") as it does at this
+    /// place and date from one time to another, in steps of minutes (15m, the default) or hours (1h). The offset from
+    /// universal time, or Z, holds all day. Moments with the sun below the horizon have no frame; the exposure is that of the
+    /// first frame that is rendered. As in "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m"
+    #[arg(long, value_name = "LAT,LON,DATE,FROM-TO/STEP", allow_hyphen_values = true, group = "motion", conflicts_with_all = ["partial", "environment"], help_heading = "Film")]
+    pub(crate) sun: Option<SunSpec>,
+
+    /// Write the hours of direct sun of --sun, of the surface in the middle of each pixel: numbers (exr, channel `hours`),
+    /// colours with a legend (png), or a table by object (csv). Repeatable; without -o, no film is rendered
+    #[arg(long = "sun-hours", value_name = "F.exr|png|csv", requires = "sun", help_heading = "Film")]
+    pub(crate) sun_hours: Vec<PathBuf>,
+
     /// Frames of the film to render: from A to B, or every N-th of them [default: all]
-    #[arg(long, value_name = "A-B[xN]", requires = "turntable", help_heading = "Film")]
+    #[arg(long, value_name = "A-B[xN]", requires_all = ["motion", "output"], help_heading = "Film")]
     pub(crate) frames: Option<Frames>,
 
     /// Leave frames whose image exists as they are, and render the others
-    #[arg(long, requires = "turntable", conflicts_with = "overwrite", help_heading = "Film")]
+    #[arg(long, requires_all = ["motion", "output"], conflicts_with = "overwrite", help_heading = "Film")]
     pub(crate) skip_existing: bool,
 
     /// Replace frames whose image exists
-    #[arg(long, requires = "turntable", help_heading = "Film")]
+    #[arg(long, requires_all = ["motion", "output"], help_heading = "Film")]
     pub(crate) overwrite: bool,
 
     /// Format of the output image [default: by the extension]
@@ -155,7 +168,7 @@ pub(crate) struct RenderArgs {
 
     /// Write per-pixel data as a multilayer exr: colour, depth, normal, position, visibility and radiance of each light, number of light
     /// points used, ids and Cryptomattes of objects and materials; `-` is standard output [default: off]
-    #[arg(long, value_name = "F.exr", help_heading = "Image")]
+    #[arg(long, value_name = "F.exr", requires = "output", help_heading = "Image")]
     pub(crate) layers: Option<PathBuf>,
 
     /// Position, target and vertical field of view in degrees, as in "0,2,5;0,1,0;45" [default: the scene's first camera, else
@@ -234,7 +247,7 @@ pub(crate) struct RenderArgs {
 
     /// Write counts, timings and all resolved settings as JSON; `-` is standard output. The time of the render excludes
     /// file input and output [default: off]
-    #[arg(long, value_name = "F.json", help_heading = "Reports")]
+    #[arg(long, value_name = "F.json", requires = "output", help_heading = "Reports")]
     pub(crate) stats: Option<PathBuf>,
 
     /// How to show progress on stderr

@@ -45,7 +45,7 @@ impl PictureFiles {
         args: &RenderArgs,
         name: impl Fn(&'static str, &Path) -> Result<Destination, PlanError>,
     ) -> Result<PictureFiles, PlanError> {
-        let picture = name("-o", &args.output)?;
+        let picture = name("-o", args.output.as_deref().unwrap_or(Path::new("")))?;
         let layers = args.layers.as_deref().map(|path| name("--layers", path)).transpose()?;
         let stats = args.stats.as_deref().map(|path| name("--stats", path)).transpose()?;
         let options = options(args);
@@ -58,7 +58,8 @@ impl PictureFiles {
         }
         let all = [("-o", Some(&picture)), ("--layers", layers.as_ref()), ("--stats", stats.as_ref())];
         check_one_on_stdout(all)?;
-        let outputs = Outputs::new(all.map(|(flag, output)| (flag, output.and_then(Destination::file))))?;
+        let all = all.map(|(flag, output)| (flag, output.and_then(Destination::file)));
+        let outputs = Outputs::new(all.into_iter().chain(hours_of_sun(args)))?;
         outputs.keep("the scene", input(&args.scene.scene))?;
         outputs.keep("--grid-file", args.grid_file.as_deref())?;
         Ok(PictureFiles { picture, options, exposure: args.exposure, layers, stats, outputs })
@@ -70,7 +71,12 @@ impl PictureFiles {
     }
 }
 
-fn options(args: &RenderArgs) -> SaveOptions {
+/// Files of `--sun-hours`, which is not one of an image.
+pub(super) fn hours_of_sun(args: &RenderArgs) -> impl Iterator<Item = (&'static str, Option<&Path>)> {
+    args.sun_hours.iter().map(|path| ("--sun-hours", Some(&**path)))
+}
+
+pub(super) fn options(args: &RenderArgs) -> SaveOptions {
     let display = Display::default()
         .with_view(args.view)
         .with_transfer(args.transfer)

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::{PictureFiles, PlanError};
+use super::{PictureFiles, PlanError, SunStudy};
 use crate::args::RenderArgs;
 use crate::value::Frames;
 
@@ -18,6 +18,24 @@ pub(crate) struct Film {
 pub(crate) enum Motion {
     /// The camera goes once around the scene in this many frames.
     Turntable(u32),
+    /// The sun shines at the moments of a [`SunStudy`], of which there are so many.
+    Sun(u32),
+}
+
+impl Motion {
+    /// What moves, if anything does.
+    fn of(args: &RenderArgs, sun: Option<&SunStudy>) -> Option<Motion> {
+        // Hours of direct sun do not need a film of them.
+        let sun = sun.filter(|_| args.output.is_some()).map(|sun| Motion::Sun(sun.moments.len() as u32));
+        sun.or(args.turntable.map(Motion::Turntable))
+    }
+
+    /// The film's last frame.
+    pub(crate) fn last(self) -> u32 {
+        match self {
+            Motion::Turntable(last) | Motion::Sun(last) => last,
+        }
+    }
 }
 
 /// The frames of a film that are to be rendered.
@@ -32,10 +50,10 @@ pub(crate) struct Work {
 
 impl Film {
     /// The film that is asked for, if it is one. Fails if what is known of it without the scene cannot be rendered.
-    pub(super) fn new(args: &RenderArgs) -> Result<Option<Film>, PlanError> {
-        let Some(turntable) = args.turntable else { return Ok(None) };
-        let film = Film { motion: Motion::Turntable(turntable), frames: args.frames };
-        film.work(args, turntable)?;
+    pub(super) fn new(args: &RenderArgs, sun: Option<&SunStudy>) -> Result<Option<Film>, PlanError> {
+        let Some(motion) = Motion::of(args, sun) else { return Ok(None) };
+        let film = Film { motion, frames: args.frames };
+        film.work(args, motion.last())?;
         Ok(Some(film))
     }
 

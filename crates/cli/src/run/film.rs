@@ -9,6 +9,7 @@ use lightmesh::{Frame, MeshCache, Observer, RenderError, Settings, Step};
 
 use super::exposure::Metering;
 use super::render::{Studio, save};
+use super::sun;
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::interrupt;
@@ -16,28 +17,43 @@ use crate::plan::{Film, Motion, Work};
 
 /// Renders the frames that are left, and writes the files of each as soon as it is finished.
 pub(super) fn run(args: &RenderArgs, film: &Film, studio: &Studio, mut metering: Metering) -> Result<(), Failure> {
-    let Studio { renderer, prepared, scene, plan, watcher, .. } = *studio;
-    let Motion::Turntable(last) = film.motion;
-    let work = film.work(args, last)?;
+    let Studio { renderer, prepared, plan, watcher, .. } = *studio;
+    let work = film.work(args, film.motion.last())?;
     let (begin, count) = (Instant::now(), work.numbers.len());
     let (mut cache, mut settings) = (MeshCache::new(), plan.settings.clone());
     for (index, &number) in work.numbers.iter().enumerate() {
         let files = film.files(args, number)?;
-        let camera = turned(prepared, number, last);
+        let (moved, camera, when) = match film.motion {
+            Motion::Turntable(last) => (None, turned(prepared, number, last), String::new()),
+            Motion::Sun(_) => {
+                let (moved, when) = sun::frame(studio, number)?;
+                (Some(moved), prepared.scene.cameras[0].clone(), when)
+            }
+        };
+        if moved.is_some() {
+            // Nothing that is kept belongs to another sun.
+            cache = MeshCache::new();
+        }
+        let moved = moved.as_ref().unwrap_or(prepared);
         let view = settings.clone().with_camera(camera.clone());
         let render = |prepared: &PreparedScene, settings: &Settings| {
             renderer.render_with(&mut cache, prepared, settings, watcher)
         };
-        let (frame, stops) = studio.picture(&view, &metering, render)?;
+        let (frame, stops) = Studio { prepared: moved, ..*studio }.picture(&view, &metering, render)?;
         if index == 0 {
             // What is chosen by the first frame holds for all.
             settings = kept(settings, &frame);
             metering = metering.fixed(stops);
         }
-        let frame = save(frame, stops, &files, (renderer, scene, plan), Some(&camera), &metering, watcher)?;
+        let frame = save(frame, stops, &files, (renderer, &moved.scene, plan), Some(&camera), &metering, watcher)?;
         let seconds = frame.stats.seconds.render;
         let left = begin.elapsed().mul_f64((count - index - 1) as f64 / (index + 1) as f64);
-        watcher.note(&format!("frame {number} of {}: {seconds:.3} s, {}{}", work.last, files.picture, time_left(left)));
+        watcher.note(&format!(
+            "frame {number} of {}{when}: {seconds:.3} s, {}{}",
+            work.last,
+            files.picture,
+            time_left(left)
+        ));
         if interrupt::requested() {
             return Err(RenderError::Cancelled.into());
         }

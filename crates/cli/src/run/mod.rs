@@ -14,6 +14,8 @@ mod open;
 mod range;
 mod render;
 mod report;
+mod sun;
+mod sun_hours;
 
 use lightmesh::Scene;
 

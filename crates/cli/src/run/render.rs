@@ -10,7 +10,7 @@ use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene
 use lightmesh_memory::Bytes;
 
 use super::exposure::Metering;
-use super::{BUILDING, film, open::open, range};
+use super::{BUILDING, film, open::open, range, sun};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::plan::{PictureFiles, RenderPlan};
@@ -41,10 +41,15 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let behind = plan.choices.apply(&mut scene, &watcher)?;
     let metering = Metering::new(&mut scene, &plan, behind);
     let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;
-    if let Some(film) = &plan.film {
-        let studio =
-            Studio { renderer: &renderer, prepared: &prepared, scene: &scene, plan: &plan, load, watcher: &watcher };
-        return film::run(args, film, &studio, metering);
+    let studio =
+        Studio { renderer: &renderer, prepared: &prepared, scene: &scene, plan: &plan, load, watcher: &watcher };
+    if let Some(study) = &plan.sun {
+        sun::hours(&studio, study)?;
+    }
+    match &plan.film {
+        Some(film) => return film::run(args, film, &studio, metering),
+        None if plan.sun.is_some() => return Ok(()),
+        None => {}
     }
     let finish = || finish(&renderer, prepared, &scene, &plan, &metering, load, &watcher);
     let frame = if args.partial { interrupt::keeping(finish) } else { finish() }?;

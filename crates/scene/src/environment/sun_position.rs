@@ -1,9 +1,15 @@
 //! Where the sun stands: by place and time, through NREL's solar position algorithm.
 
+use std::f32::consts::PI;
 use std::str::FromStr;
 
+use glam::Vec3;
 use solar_positioning::time::JulianDate;
 use solar_positioning::{Location, RefractionCorrection, SolarPositions, delta_t};
+
+use super::sun::SUN_ANGLE;
+use super::{Environment, Sun, frame, from_angles};
+use crate::{Light, LightError, Up};
 
 /// Where the sun stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,6 +78,22 @@ impl SunPosition {
             .at_from_julian(universal, Location { latitude, longitude }, 0.0, refraction)
             .map_err(place)?;
         Ok(SunPosition { elevation: position.elevation_angle(), azimuth: position.azimuth() })
+    }
+
+    /// The unit vector to the sun in a scene in which `up` is up, and north where it usually is.
+    pub(super) fn direction(&self, up: Up) -> Vec3 {
+        from_angles(frame(up), self.azimuth.to_radians() as f32, self.elevation.to_radians() as f32)
+    }
+
+    /// The sun alone, without a sky: where and as wide as the light of a [`Sky`](super::Sky) with the same `north`, but of intensity 1.
+    ///
+    /// # Errors
+    /// If it has no direction.
+    pub fn light(&self, up: Up, north: f32) -> Result<Light, LightError> {
+        let sun = Sun::new(self.direction(up), SUN_ANGLE, Vec3::splat(PI));
+        // The same turn as that of a whole sky.
+        let turned = Environment::new("sun", [1; 2], vec![[0.0; 3]], up).with_sun(Some(sun)).turned(north);
+        turned.sun().unwrap_or(&sun).light()
     }
 }
 
