@@ -71,11 +71,16 @@ impl SunStudy {
             return Err(PlanError::SunWithoutSky);
         }
         let outputs = args.sun_hours.iter().map(|path| hours_file(path)).collect::<Result<_, _>>()?;
+        SunStudy::of(spec, sky, outputs).map(Some)
+    }
+
+    /// The study of these hours, if there is sun.
+    pub(crate) fn of(spec: SunSpec, sky: SkySpec, outputs: Vec<HoursFile>) -> Result<SunStudy, PlanError> {
         let (moments, dark) = moments(&spec);
         if moments.is_empty() {
             return Err(PlanError::NoSun { spec });
         }
-        Ok(Some(SunStudy { spec, moments, dark, sky, outputs }))
+        Ok(SunStudy { spec, moments, dark, sky, outputs })
     }
 
     /// The sky of moment number `index`: the same as of `--sky` with this place and time.
@@ -209,11 +214,13 @@ mod tests {
     }
 
     #[test]
-    fn days_of_the_almanac() {
-        // Sunrise and sunset of Greenwich, 2026-06-21: 04:43 and 21:22 of the clock there (HM Nautical Almanac Office, London). They are
-        // those of the upper limb, which appear 3 to 4 minutes before the middle at this latitude and season.
-        let found = hours("51.48,0,2026-06-21+01:00,00:00-24:00/15m");
-        assert!((found - 16.65 + 0.12).abs() < 0.05, "{found}");
+    fn a_published_day_is_found() {
+        // New York, 2015-01-01: sunrise 07:20:02, sunset 16:38:16 by the calculator of NOAA, which the Ruby gem `sun` documents. That is when
+        // the upper limb is seen, the true sun being 0.833 degrees below the horizon. The middle is seen when it is 0.57 degrees below, 1.6
+        // minutes later and earlier at this latitude and season.
+        let found = hours("40.75,-73.99,2015-01-01-05:00,00:00-24:00/15m");
+        let expected = (16.0 + 38.0 / 60.0 + 16.0 / 3600.0) - (7.0 + 20.0 / 60.0 + 2.0 / 3600.0) - 2.0 * 1.6 / 60.0;
+        assert!((found - expected).abs() < 0.015, "{found}, not {expected}");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::run::Place;
 
 /// The flags of `render` that other programs rely on.
-const FLAGS: [&str; 43] = [
+const FLAGS: [&str; 46] = [
     "--mode",
     "--bounces",
     "--size",
@@ -49,6 +49,9 @@ const FLAGS: [&str; 43] = [
     "--help",
     "--crop",
     "--ground",
+    "--turntable",
+    "--sun",
+    "--sun-hours",
 ];
 
 #[test]

@@ -16,6 +16,7 @@ mod run;
 mod scenes;
 mod sky;
 mod smooth;
+mod sun;
 
 #[cfg(unix)]
 mod interrupt;

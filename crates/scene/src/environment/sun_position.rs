@@ -142,6 +142,7 @@ fn numbers<const N: usize>(text: &str, between: char) -> Option<[u32; N]> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Sky;
     use super::*;
 
     #[test]
@@ -151,6 +152,39 @@ mod tests {
         let found = SunPosition::of(39.742476, -105.1786, &moment).unwrap();
         assert!((90.0 - found.elevation - 50.11162).abs() < 0.005, "{found:?}");
         assert!((found.azimuth - 194.34024).abs() < 0.001, "{found:?}");
+    }
+
+    #[test]
+    fn published_positions_are_found() {
+        let at =
+            |latitude, longitude, moment: &str| SunPosition::of(latitude, longitude, &moment.parse().unwrap()).unwrap();
+        // NOAA's spreadsheet of solar calculations, as its port `pysunnoaa` documents: 47.3618°, 98.3069°.
+        let morning = at(40.0, -105.0, "2010-06-21T09:54-06:00");
+        assert!((morning.elevation - 47.3618).abs() < 0.01 && (morning.azimuth - 98.3069).abs() < 0.02, "{morning:?}");
+        // New York: sunrise, noon and sunset by NOAA's calculator, as the Ruby gem `sun` documents. At sunrise and sunset the upper limb is
+        // seen at the horizon, and the middle a quarter of a degree below.
+        let [rise, noon, set] =
+            ["07:20:02", "11:59:09", "16:38:16"].map(|time| at(40.75, -73.99, &format!("2015-01-01T{time}-05:00")));
+        for horizon in [rise, set] {
+            assert!((-0.35..-0.15).contains(&horizon.elevation), "{horizon:?}");
+        }
+        assert!((noon.azimuth - 180.0).abs() < 0.1, "{noon:?}");
+        // The elevation at the pole is the declination: Meeus, Astronomical Algorithms, example 25.b, -7°47'01.7". The sun is seen from the
+        // Earth's surface, which lowers it by 8.8".
+        let pole = at(90.0, 0.0, "1992-10-12T23:59:01Z");
+        assert!((pole.elevation + 7.78382 + 0.0024).abs() < 0.001, "{pole:?}");
+    }
+
+    #[test]
+    fn the_sun_alone_is_that_of_a_sky() {
+        for up in [Up::Y, Up::Z] {
+            for (elevation, azimuth, north) in [(3.0, 71.0, 0.0), (58.46, 180.0, 30.0), (90.0, 0.0, -12.5)] {
+                let sun = SunPosition { elevation, azimuth };
+                let sky = Sky { north, ..Sky::clear(sun) };
+                let expected = sky.surroundings(up).unwrap().sun.unwrap();
+                assert_eq!(sun.light(up, north).unwrap().kind, expected.kind);
+            }
+        }
     }
 
     #[test]

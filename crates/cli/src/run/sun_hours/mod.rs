@@ -85,7 +85,9 @@ impl SunHours {
         for suns in suns.chunks(at_once) {
             let lights: Lights = suns.iter().map(|(light, _)| light.clone()).collect();
             let lit = prepared.with_lights(lights.with_ambient(Vec3::ZERO));
-            let frame = renderer.render_prepared(&lit, &settings, observer)?.image;
+            let lightmesh::Frame { image: frame, stats } = renderer.render_prepared(&lit, &settings, observer)?;
+            // What was chosen holds for all suns, and is told once.
+            settings.samples = Some(stats.settings.samples.max(1));
             let Some(layers) = frame.layers() else { continue };
             for (plane, &(_, time)) in layers.visibility.iter().zip(suns) {
                 let add = |(hours, &share): (&mut f64, &f32)| *hours += time * f64::from(share);
@@ -140,3 +142,6 @@ fn without_light(frame: Frame) -> Frame {
     let frame = frame.with_layers(parts.layers.map(kept).unwrap_or_default()).expect("its layers are those of a frame");
     frame.with_window(window.first, window.whole)
 }
+
+#[cfg(test)]
+mod tests;

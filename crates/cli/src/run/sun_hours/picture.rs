@@ -22,7 +22,7 @@ const CREASE: f32 = 0.866;
 const STEP: f32 = 4.0;
 /// Leaves have lines everywhere, which show nothing: there are none where more pixels than this share are on one.
 const CROWDED: f32 = 0.3;
-/// Pixels on each side that such a share is of.
+/// Pixels on each side that such a share is of. Fewer than one more are dots, and no line.
 const AROUND: usize = 3;
 
 /// The image with its legend.
@@ -85,14 +85,14 @@ fn edges(found: &SunHours) -> Vec<bool> {
             edges[nearer] |= apart;
         }
     }
-    let is_crowded = |pixel: usize| {
+    let is_line = |pixel: usize| {
         let (column, row) = (pixel % width, pixel / width);
         let rows = row.saturating_sub(AROUND)..(row + AROUND + 1).min(height);
         let columns = column.saturating_sub(AROUND)..(column + AROUND + 1).min(width);
         let all = (rows.len() * columns.len()) as f32;
         let on: usize =
             rows.map(|row| edges[row * width..][columns.clone()].iter().filter(|edge| **edge).count()).sum();
-        on as f32 > CROWDED * all
+        on > AROUND && on as f32 <= CROWDED * all
     };
-    (0..edges.len()).map(|pixel| edges[pixel] && !is_crowded(pixel)).collect()
+    (0..edges.len()).map(|pixel| edges[pixel] && is_line(pixel)).collect()
 }
