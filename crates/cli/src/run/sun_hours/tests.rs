@@ -7,7 +7,7 @@ use super::*;
 use crate::value::SkySpec;
 
 /// Seen from straight above, 12 units high; a unit is eight pixels.
-const PLAN: &str = "[camera]\nposition = [0, 50, 0]\ntarget = [0, 0, 0]\nprojection = \"orthographic\"\nheight = 12\n\
+const PLAN: &str = "[camera]\nposition = [0, 50, 0]\ntarget = [0, 0, 0]\nup = [0, 0, -1]\nprojection = \"orthographic\"\nheight = 12\n\
                     [[plane]]\nname = \"ground, flat\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nsize = [40, 40]\n";
 /// Two units wide and deep, three high.
 const BOX: &str = "[[box]]\nname = \"house\"\ncenter = [0, 1.5, 0]\nsize = [2, 3, 2]\n";
