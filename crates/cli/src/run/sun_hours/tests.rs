@@ -102,7 +102,7 @@ fn the_table_sums_what_is_seen() {
         })
         .collect();
     assert!(table.contains("\n\"ground, flat\",") && table.contains("\nhouse,"), "{table}");
-    let [(_, ground), (_, house)] = &rows[..] else { panic!("{table}") };
+    let [(_, house), (_, ground)] = &rows[..] else { panic!("{table}") };
     // A pixel is an eighth wide: the roof has 16 × 16 of them.
     assert_eq!([house[0], ground[0]], [256.0, 96.0 * 96.0 - 256.0]);
     assert!((house[1] - 4.0).abs() < 1e-4 && (ground[1] - 140.0).abs() < 1e-3, "{table}");
