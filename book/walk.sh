@@ -56,6 +56,11 @@ lightmesh render chair.obj --ground --camera "$VIEW" --light "-0.5,1.6,0.8;40,30
 lightmesh render chair.obj --ground --camera "1.5,0.5,2;0.15,0.38,-0.05;40" --sky "clear;sun=12,240" -o sky.png
 # ANCHOR_END: sky
 
+# ANCHOR: sun
+lightmesh render chair.obj --ground --camera "1.5,0.9,2;0.15,0.3,-0.05;40" --sun 55.03,82.92,2026-06-21+07:00,06:00-20:00/10m \
+    --sun-hours hours.png
+# ANCHOR_END: sun
+
 # ANCHOR: cutout
 lightmesh render chair.obj --ground --camera "$VIEW" --light "$KEY" --light "$FILL" --background transparent \
     --layers chair.exr -o cutout.png

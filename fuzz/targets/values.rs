@@ -15,8 +15,8 @@ use lightmesh::scene::SkyKind;
 mod value;
 
 use value::{
-    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames,
-    LightSpec, Positive, Size, SkySpec, Smooth, numbered,
+    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames, LightSpec,
+    Positive, Size, SkySpec, Smooth, SunSpec, clock, numbered,
 };
 
 /// Messages quote a part of the text and explain the rest.
@@ -106,6 +106,11 @@ fn read_places(text: &str) {
             }
         };
         format!("{kind};north={};strength={}{}", sky.north, sky.strength, if *alone { ";alone" } else { "" })
+    });
+    read::<SunSpec>(text, |spec| {
+        assert!(spec.from < spec.to && spec.to <= 1440 && spec.step > 0);
+        assert!(clock(spec.to).len() == 5 && spec.moment(f64::from(spec.to)).time[0] < 24);
+        spec.to_string()
     });
     read::<EnvironmentSpec>(text, |spec| {
         assert!(spec.rotation.is_finite() && spec.strength >= 0.0 && spec.strength.is_finite());

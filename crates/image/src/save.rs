@@ -275,6 +275,24 @@ impl Frame {
     }
 
     #[cfg(feature = "exr")]
+    /// Writes values of the pixels, instead of colours, as an exr of 32-bit floats: a channel of each name.
+    ///
+    /// # Errors
+    /// As [`Frame::save`].
+    ///
+    /// # Panics
+    /// If a channel has not as many values as there are pixels.
+    pub fn ready_values_to(
+        &self,
+        output: Output,
+        channels: &[(&str, &[f32])],
+        options: &SaveOptions,
+    ) -> Result<Ready, SaveError> {
+        assert!(channels.iter().all(|(_, values)| values.len() == self.color().len()), "a value for each pixel");
+        self.written(output, Format::Exr, |output| exr::write_values(self, channels, options, output))
+    }
+
+    #[cfg(feature = "exr")]
     /// The bytes that [`Frame::save_layers`] would write.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! The flags of `lightmesh render`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use lightmesh::image::{BitDepth, ExrCompression, ExrParts, ExrSamples, Format, View};
@@ -11,7 +11,7 @@ use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
 use super::{Progress, SceneArg, Switch, Up, words};
 use crate::value::{
     Background, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames, LightSpec, Positive, Size,
-    SkySpec, Smooth,
+    SkySpec, Smooth, SunSpec,
 };
 
 /// Render an image of a scene
@@ -22,24 +22,36 @@ pub(crate) struct RenderArgs {
 
     /// Output image; the extension determines the format: bmp, png, exr or jpg. `-` is standard output, which then has
     /// nothing else, and needs --format. A film can also go to a movie, mp4, mov, mkv or webm, which ffmpeg encodes: the
-    /// program of this name, or that of LIGHTMESH_FFMPEG
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    /// program of this name, or that of LIGHTMESH_FFMPEG. Without it, --sun-hours alone is computed
+    #[arg(short, long, value_name = "OUT", required_unless_present = "sun_hours")]
+    pub(crate) output: Option<PathBuf>,
 
     /// Render a film of N frames in which the camera goes once around the scene, at constant height; frame 1 is the image
     /// without this. `####` or `%04d` in the names of output files stands for the number of the frame. Exposure and step
     /// are chosen once, from frames across the film; light points and gathered light are kept from frame to frame
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), conflicts_with = "partial", help_heading = "Film")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), group = "motion", conflicts_with = "partial", help_heading = "Film")]
     pub(crate) turntable: Option<u32>,
 
-    /// Frames of the film to render: from A to B, or every N-th of them. Without --turntable the film is the scene's own
-    /// animation, whose beginning is frame 1 [default: all, with --turntable or --fps]
-    #[arg(long, value_name = "A-B[xN]", conflicts_with = "partial", help_heading = "Film")]
+    /// Render a film of the hours of a day: the sun stands under a clear sky (--sky "clear;turbidity=…") as it does at this
+    /// place and date from one time to another, in steps of minutes (15m, the default) or hours (1h). The offset from
+    /// universal time, or Z, holds all day. Moments with the sun below the horizon have no frame; the exposure is
+    /// chosen once. As in "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m"
+    #[arg(long, value_name = "LAT,LON,DATE,FROM-TO/STEP", allow_hyphen_values = true, group = "motion", conflicts_with_all = ["partial", "environment"], help_heading = "Film")]
+    pub(crate) sun: Option<SunSpec>,
+
+    /// Write the hours of direct sun of --sun, of the surface in the middle of each pixel: numbers (exr, channel `hours`),
+    /// colours with a legend (png), or a table by object (csv). Repeatable; without -o, no film is rendered
+    #[arg(long = "sun-hours", value_name = "F.exr|png|csv", requires = "sun", help_heading = "Film")]
+    pub(crate) sun_hours: Vec<PathBuf>,
+
+    /// Frames of the film to render: from A to B, or every N-th of them. Without --turntable and --sun the film is the
+    /// scene's own animation, whose beginning is frame 1 [default: all, with --turntable, --sun or --fps]
+    #[arg(long, value_name = "A-B[xN]", requires = "output", conflicts_with = "partial", help_heading = "Film")]
     pub(crate) frames: Option<Frames>,
 
     /// Frames per second of the film, as a decimal or a ratio such as 30000/1001: how far the scene's own animation goes from
     /// one to the next, and how fast a movie is shown [default: 24]
-    #[arg(long, value_name = "F", conflicts_with = "partial", help_heading = "Film")]
+    #[arg(long, value_name = "F", requires = "output", conflicts_with = "partial", help_heading = "Film")]
     pub(crate) fps: Option<FrameRate>,
 
     /// The animation of a glTF file that is played, by name [default: the first, and those after it that move other things]
@@ -49,15 +61,15 @@ pub(crate) struct RenderArgs {
     /// Go on with a film that has ended early, as if it had not: frames whose files are as manifest.json beside them
     /// records are kept, and all others rendered with the recorded exposure and step. Refused if scene or settings are
     /// not those of the film; begins the film if there is no record of it
-    #[arg(long, conflicts_with_all = ["overwrite", "skip_existing"], help_heading = "Film")]
+    #[arg(long, requires = "output", conflicts_with_all = ["overwrite", "skip_existing"], help_heading = "Film")]
     pub(crate) resume: bool,
 
     /// Leave frames whose image exists as they are, whatever made them, and render the others
-    #[arg(long, conflicts_with = "overwrite", help_heading = "Film")]
+    #[arg(long, requires = "output", conflicts_with = "overwrite", help_heading = "Film")]
     pub(crate) skip_existing: bool,
 
     /// Replace frames whose image exists
-    #[arg(long, help_heading = "Film")]
+    #[arg(long, requires = "output", help_heading = "Film")]
     pub(crate) overwrite: bool,
 
     /// Format of the output image [default: by the extension]
@@ -173,7 +185,7 @@ pub(crate) struct RenderArgs {
 
     /// Write per-pixel data as a multilayer exr: colour, depth, normal, position, visibility and radiance of each light, number of light
     /// points used, ids and Cryptomattes of objects and materials; `-` is standard output [default: off]
-    #[arg(long, value_name = "F.exr", help_heading = "Image")]
+    #[arg(long, value_name = "F.exr", requires = "output", help_heading = "Image")]
     pub(crate) layers: Option<PathBuf>,
 
     /// Position, target and vertical field of view in degrees, as in "0,2,5;0,1,0;45" [default: the scene's first camera, else
@@ -252,7 +264,7 @@ pub(crate) struct RenderArgs {
 
     /// Write counts, timings and all resolved settings as JSON; `-` is standard output. The time of the render excludes
     /// file input and output [default: off]
-    #[arg(long, value_name = "F.json", help_heading = "Reports")]
+    #[arg(long, value_name = "F.json", requires = "output", help_heading = "Reports")]
     pub(crate) stats: Option<PathBuf>,
 
     /// How to show progress on stderr
@@ -266,4 +278,11 @@ pub(crate) struct RenderArgs {
     /// Print more: why no CUDA device can be used; how many normals were made (--smooth); seconds of each stage, counts and memory
     #[arg(short, long, conflicts_with = "quiet", help_heading = "Reports")]
     pub(crate) verbose: bool,
+}
+
+impl RenderArgs {
+    /// The output image; an empty path if there is none.
+    pub(crate) fn picture(&self) -> &Path {
+        self.output.as_deref().unwrap_or(Path::new(""))
+    }
 }

@@ -165,8 +165,8 @@ impl Record {
 
 /// The manifest of the folder of `-o`, and the name of the film in it.
 fn place(args: &RenderArgs) -> (PathBuf, String) {
-    let name = args.output.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    (directory(&args.output).join(NAME), name)
+    let name = args.picture().file_name().unwrap_or_default().to_string_lossy().into_owned();
+    (directory(args.picture()).join(NAME), name)
 }
 
 /// What is known of the film that is to be resumed: its program and its settings are those of `args`, its scene is not yet known. `None` if it

@@ -21,7 +21,7 @@ macro_rules! values {
 
 pub(super) fn of(args: &RenderArgs) -> BTreeMap<String, String> {
     let image = values![args;
-        turntable, fps, format, mode, bounces, step, radius, weight, lookup, quality, aa, filter, samples, seed, size, crop, transfer, exposure,
+        turntable, fps, animation, sun, format, mode, bounces, step, radius, weight, lookup, quality, aa, filter, samples, seed, size, crop, transfer, exposure,
         view, bit_depth, dither, exr_type, exr_compression, exr_parts, background,
     ];
     let scene = values![args; ground, camera, camera_name, up, lights, falloff, ambient, ambient_light, sky, environment, smooth];
@@ -62,8 +62,9 @@ mod tests {
     use crate::args::{Cli, Command, command};
 
     /// Flags that do not decide the bytes of frames.
-    const OTHERS: [&str; 22] = [
+    const OTHERS: [&str; 23] = [
         "output",
+        "sun-hours",
         "frames",
         "skip-existing",
         "overwrite",

@@ -5,7 +5,7 @@ use std::path::Path;
 use lightmesh::SaveError;
 use lightmesh::image::{Display, ExrOptions, Format, SaveOptions, check_image};
 
-use super::{Container, MovieChoiceError, PlanError};
+use super::{Container, PlanError};
 use crate::args::{RenderArgs, Switch};
 use crate::destination::{Destination, check_one_on_stdout};
 use crate::output::{OutputError, Outputs, input};
@@ -35,15 +35,12 @@ pub(crate) struct PictureFiles {
 impl PictureFiles {
     /// Checks that each file can be written, that its format can store the image, and that it overwrites none of the others.
     pub(super) fn new(args: &RenderArgs) -> Result<PictureFiles, PlanError> {
-        if args.format.is_none() && Container::from_path(&args.output).is_some() {
-            return Err(MovieChoiceError::Still { path: args.output.clone() }.into());
-        }
         PictureFiles::named(args, None, |_, path| Ok(Destination::new(path)))
     }
 
     /// Those of a frame of a film.
     pub(super) fn of_frame(args: &RenderArgs, number: u32) -> Result<PictureFiles, PlanError> {
-        let movie = Container::from_path(&args.output);
+        let movie = Container::from_path(args.picture());
         PictureFiles::named(args, movie, |flag, path| {
             if movie.is_some() && flag == OUTPUT {
                 return Ok(Destination::File(path.to_owned()));
@@ -58,7 +55,7 @@ impl PictureFiles {
         movie: Option<Container>,
         name: impl Fn(&'static str, &Path) -> Result<Destination, PlanError>,
     ) -> Result<PictureFiles, PlanError> {
-        let picture = name(OUTPUT, &args.output)?;
+        let picture = name(OUTPUT, args.picture())?;
         let layers = args.layers.as_deref().map(|path| name("--layers", path)).transpose()?;
         let stats = args.stats.as_deref().map(|path| name("--stats", path)).transpose()?;
         let options = options(args);
@@ -75,7 +72,8 @@ impl PictureFiles {
         }
         let all = [(OUTPUT, Some(&picture)), ("--layers", layers.as_ref()), ("--stats", stats.as_ref())];
         check_one_on_stdout(all)?;
-        let outputs = Outputs::new(all.map(|(flag, output)| (flag, output.and_then(Destination::file))))?;
+        let all = all.map(|(flag, output)| (flag, output.and_then(Destination::file)));
+        let outputs = Outputs::new(all.into_iter().chain(hours_of_sun(args)))?;
         outputs.keep("the scene", input(&args.scene.scene))?;
         outputs.keep("--grid-file", args.grid_file.as_deref())?;
         Ok(PictureFiles { picture, movie, options, exposure: args.exposure, layers, stats, outputs })
@@ -93,7 +91,12 @@ impl PictureFiles {
     }
 }
 
-fn options(args: &RenderArgs) -> SaveOptions {
+/// Files of `--sun-hours`, which is not one of an image.
+pub(super) fn hours_of_sun(args: &RenderArgs) -> impl Iterator<Item = (&'static str, Option<&Path>)> {
+    args.sun_hours.iter().map(|path| ("--sun-hours", Some(&**path)))
+}
+
+pub(super) fn options(args: &RenderArgs) -> SaveOptions {
     let display = Display::default()
         .with_view(args.view)
         .with_transfer(args.transfer)

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use lightmesh::Scene;
 
-use super::{Container, PictureFiles, PlanError};
+use super::{Container, PictureFiles, PlanError, SunStudy};
 use crate::args::RenderArgs;
 use crate::manifest::{self, Record};
 use crate::value::{FrameRate, Frames};
@@ -27,6 +27,28 @@ pub(crate) enum Motion {
     Turntable(u32),
     /// Things move as the scene says, at so many frames per second.
     Scene(FrameRate),
+    /// The sun shines at the moments of a [`SunStudy`], of which there are so many.
+    Sun(u32),
+}
+
+impl Motion {
+    /// What moves, if anything does.
+    fn of(args: &RenderArgs, sun: Option<&SunStudy>) -> Option<Motion> {
+        // Hours of direct sun do not need a film of them.
+        let sun = sun.filter(|_| args.output.is_some()).map(|sun| Motion::Sun(sun.moments.len() as u32));
+        let is_movie = || Container::from_path(args.picture()).is_some();
+        let of_scene = args.sun.is_none() && (args.frames.is_some() || args.fps.is_some() || is_movie());
+        let scene = of_scene.then(|| Motion::Scene(args.fps.unwrap_or_default()));
+        sun.or(args.turntable.map(Motion::Turntable)).or(scene)
+    }
+
+    /// The film's last frame, if it is known without the scene.
+    fn known_last(self) -> Option<u32> {
+        match self {
+            Motion::Turntable(last) | Motion::Sun(last) => Some(last),
+            Motion::Scene(_) => None,
+        }
+    }
 }
 
 /// The frames of a film that are to be rendered.
@@ -41,22 +63,16 @@ pub(crate) struct Work {
 
 impl Film {
     /// The film that is asked for, if it is one. Fails if what is known of it without the scene cannot be rendered.
-    pub(super) fn new(args: &RenderArgs) -> Result<Option<Film>, PlanError> {
-        let motion = match args.turntable {
-            Some(frames) => Motion::Turntable(frames),
-            None if args.frames.is_some() || args.fps.is_some() || Container::from_path(&args.output).is_some() => {
-                Motion::Scene(args.fps.unwrap_or_default())
-            }
-            None if args.skip_existing || args.overwrite || args.resume => return Err(PlanError::NoFilm),
-            None => return Ok(None),
+    pub(super) fn new(args: &RenderArgs, sun: Option<&SunStudy>) -> Result<Option<Film>, PlanError> {
+        let Some(motion) = Motion::of(args, sun) else {
+            let is_film = args.skip_existing || args.overwrite || args.resume;
+            return if is_film { Err(PlanError::NoFilm) } else { Ok(None) };
         };
         let movie = Container::of_film(args)?;
         let record = if args.resume { manifest::known(args)? } else { None };
         let film = Film { motion, record, movie, frames: args.frames };
-        match (motion, args.frames) {
-            (Motion::Turntable(last), _) => film.work(args, last).map(drop)?,
-            (Motion::Scene(_), Some(frames)) => film.work(args, frames.last()).map(drop)?,
-            (Motion::Scene(_), None) => {}
+        if let Some(last) = motion.known_last().or(args.frames.map(Frames::last)) {
+            film.work(args, last)?;
         }
         Ok(Some(film))
     }
@@ -91,7 +107,7 @@ impl Film {
     /// [`PlanError::NotAnimated`] if nothing in the scene moves.
     pub(crate) fn last(&self, scene: &Scene) -> Result<u32, PlanError> {
         match self.motion {
-            Motion::Turntable(last) => Ok(last),
+            Motion::Turntable(last) | Motion::Sun(last) => Ok(last),
             Motion::Scene(rate) => match scene.animation() {
                 Some(animation) => Ok(rate.last_frame(animation.duration())),
                 None => Err(PlanError::NotAnimated),

@@ -5,6 +5,7 @@ mod film;
 mod movie;
 mod scene;
 mod settings;
+mod sun;
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -16,11 +17,12 @@ use lightmesh::{Device, Lookup, Mode, SaveError, Settings};
 use crate::args::{RenderArgs, SceneArg};
 use crate::manifest::ManifestError;
 use crate::output::OutputError;
-use crate::value::{Frames, Smooth};
+use crate::value::{Frames, Smooth, SunSpec};
 pub(crate) use files::PictureFiles;
 pub(crate) use film::{Film, Motion, Work};
 pub(crate) use movie::{Container, MovieChoiceError};
 pub(crate) use scene::{ChoiceError, SceneChoices};
+pub(crate) use sun::{HoursFile, HoursFormat, SunMoment, SunStudy};
 
 /// Why a command line is invalid.
 #[derive(Debug, thiserror::Error)]
@@ -56,7 +58,7 @@ pub(crate) enum PlanError {
     },
     /// Frames that the film does not have.
     #[error(
-        "--frames {frames}: the film ends with frame {last}; choose frames up to it (--frames, --turntable, --fps)"
+        "--frames {frames}: the film ends with frame {last}; choose frames up to it (--frames, --turntable, --fps, --sun)"
     )]
     NoFrame {
         /// The frames that were asked for.
@@ -66,7 +68,7 @@ pub(crate) enum PlanError {
     },
     /// Nothing in the scene moves.
     #[error(
-        "nothing in the scene moves; add --turntable N for a film in which the camera goes around it, or render one image without --frames and --fps"
+        "nothing in the scene moves; add --turntable N for a film in which the camera goes around it, or render one image such as image.png, without --frames and --fps"
     )]
     NotAnimated,
     /// What is said of frames where there are none.
@@ -79,6 +81,23 @@ pub(crate) enum PlanError {
         first: PathBuf,
         /// How many there are.
         count: usize,
+    },
+    /// The sun of a study shines from a clear sky.
+    #[error("--sun needs a clear sky, but --sky chooses another; write --sky clear with its options, or omit it")]
+    SunWithoutSky,
+    /// It is night all the time.
+    #[error(
+        "--sun {spec}: the sun is below the horizon at all of these moments; choose another date, other hours or a smaller step"
+    )]
+    NoSun {
+        /// The hours that were asked for.
+        spec: SunSpec,
+    },
+    /// A file for hours of direct sun of an unknown format.
+    #[error("--sun-hours {}: unknown format; use the extension exr, png or csv", path.display())]
+    HoursFormat {
+        /// The file.
+        path: PathBuf,
     },
     /// A flag specifies a grid, but another structure is selected.
     #[error("{flag} specifies a grid, but --accel {chosen} selects another structure; remove one of them")]
@@ -108,26 +127,31 @@ pub(crate) struct RenderPlan {
     pub(crate) files: PictureFiles,
     /// The frames, if it is a film.
     pub(crate) film: Option<Film>,
+    /// The hours of a day, if the sun of one is studied.
+    pub(crate) sun: Option<SunStudy>,
 }
 
 impl RenderPlan {
     /// Checks that the flags are consistent and that every output can be written.
     pub(crate) fn new(args: &RenderArgs) -> Result<RenderPlan, PlanError> {
         let settings = settings::settings(args)?;
-        let film = Film::new(args)?;
-        let files = match &film {
-            Some(film) => film.files(args, film.first())?,
-            None => PictureFiles::new(args)?,
+        let sun = SunStudy::new(args)?;
+        let film = Film::new(args, sun.as_ref())?;
+        let files = match (&film, &sun) {
+            (Some(film), _) => film.files(args, film.first())?,
+            (None, Some(sun)) => sun.files(args)?,
+            (None, None) => PictureFiles::new(args)?,
         };
         Ok(RenderPlan {
             scene: args.scene.clone(),
             smooth: args.smooth.unwrap_or_else(|| usual_smooth(&settings)).0,
-            choices: SceneChoices::new(args)?,
+            choices: SceneChoices::new(args, sun.as_ref())?,
             settings,
             device: args.device,
             threads: args.threads.and_then(|threads| NonZeroUsize::new(threads as usize)),
             files,
             film,
+            sun,
         })
     }
 }

@@ -8,12 +8,6 @@ use crate::value::Background;
 /// Why a movie cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum MovieChoiceError {
-    /// It has a single frame.
-    #[error("-o {} is a movie, but one image is rendered; add --turntable N, or name an image such as image.png", path.display())]
-    Still {
-        /// The movie.
-        path: PathBuf,
-    },
     /// It has no frames that could be kept.
     #[error("{flag} keeps frames, but -o {} is one file, which is written as a whole; write frames, as in -o film.####.png, and join \
              them with ffmpeg, or leave out {flag}", path.display())]
@@ -67,8 +61,8 @@ impl Container {
 
     /// The movie that a film goes to, if it is one.
     pub(super) fn of_film(args: &RenderArgs) -> Result<Option<Container>, MovieChoiceError> {
-        let Some(container) = Container::from_path(&args.output) else { return Ok(None) };
-        let path = args.output.clone();
+        let Some(container) = Container::from_path(args.picture()) else { return Ok(None) };
+        let path = args.picture().to_owned();
         if args.format.is_some() {
             return Err(MovieChoiceError::Format { path });
         }

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use glam::{DVec3, Vec3};
 use lightmesh::scene::{
-    Camera, CameraError, Environment, EnvironmentError, Light, LightKind, SceneFormat, SkyError, Surroundings,
+    Camera, CameraError, Environment, EnvironmentError, Light, LightKind, Lights, SceneFormat, SkyError, Surroundings,
     UnknownCamera, Up, Viewpoint,
 };
 use lightmesh::{Observer, Scene};
 use lightmesh_memory::Budget;
 
+use super::SunStudy;
 use crate::args::{self, RenderArgs};
 use crate::value::{Background, Color, EnvironmentSpec, LightSpec, SkySpec};
 
@@ -46,7 +47,7 @@ pub(crate) struct SceneChoices {
 const GROUND_BACKGROUND: f32 = 0.8;
 
 impl SceneChoices {
-    pub(super) fn new(args: &RenderArgs) -> Result<SceneChoices, CameraError> {
+    pub(super) fn new(args: &RenderArgs, sun: Option<&SunStudy>) -> Result<SceneChoices, CameraError> {
         let format = args.scene.format();
         let up = args.up.of(format);
         let is_open = |format| matches!(format, SceneFormat::Obj | SceneFormat::Ply | SceneFormat::Stl);
@@ -63,7 +64,7 @@ impl SceneChoices {
             falloff: args.falloff,
             ambient: args.ambient,
             background: args.background,
-            sky: args.sky,
+            sky: sun.map(|sun| sun.sky_at(0)).or(args.sky),
             environment: args.environment.clone(),
             ground: args.ground,
             budget: Budget::new(args.scene.reading.memory_limit.map(|limit| limit.0)),
@@ -141,6 +142,26 @@ impl SceneChoices {
         }
         let Some(spec) = &self.sky else { return Ok(None) };
         Ok(Some((spec.sky.surroundings(up)?, spec.alone)))
+    }
+
+    /// The scene's lights under another sky than the one that was [applied](SceneChoices::apply). What is behind a ground stays.
+    pub(crate) fn under(&self, sky: &SkySpec, lights: &Lights) -> Result<Lights, ChoiceError> {
+        let mut lights = lights.clone();
+        let background = lights.background;
+        lights.surround(sky.sky.surroundings(self.up_of(&lights))?);
+        lights.background = background;
+        if let Some(Color(ambient)) = self.ambient {
+            lights.ambient = Some(ambient);
+        }
+        Ok(lights)
+    }
+
+    /// What is up for the surroundings of lights.
+    pub(crate) fn up_of(&self, lights: &Lights) -> Up {
+        lights.environment.as_ref().map_or(self.up, |environment| match environment.frame()[1] {
+            up if up.y > up.z => Up::Y,
+            _ => Up::Z,
+        })
     }
 
     /// A file that is read besides the scene.

@@ -11,6 +11,7 @@ use super::BUILDING;
 use super::exposure::Metering;
 use super::movie::Movie;
 use super::render::{Studio, save};
+use super::sun;
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::manifest::{Chosen, Ledger};
@@ -110,6 +111,7 @@ impl Reel<'_> {
         let Studio { renderer, prepared, plan, watcher, .. } = *self.studio;
         match self.film.motion {
             Motion::Turntable(last) => Ok((prepared.with_cameras(vec![turned(prepared, number, last)]), String::new())),
+            Motion::Sun(_) => sun::frame(self.studio, number),
             Motion::Scene(rate) => {
                 let scene = prepared.scene.at(rate.time(number));
                 let prepare = || renderer.prepare_moved(&self.prepared, &scene, &plan.settings, watcher);

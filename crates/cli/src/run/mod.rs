@@ -15,6 +15,8 @@ mod open;
 mod range;
 mod render;
 mod report;
+mod sun;
+mod sun_hours;
 
 use lightmesh::Scene;
 pub(crate) use movie::MovieError;

@@ -99,7 +99,7 @@ pub(crate) enum MovieError {
 
 /// Checks that a movie can be encoded on this machine.
 pub(super) fn check(args: &RenderArgs, container: Container) -> Result<(), MovieError> {
-    let (path, program) = (args.output.clone(), program());
+    let (path, program) = (args.picture().to_owned(), program());
     let listing = Command::new(&program).args(["-hide_banner", "-encoders"]).stdin(Stdio::null()).output();
     let name = || name(&program);
     let listing = listing.map_err(|reason| MovieError::NoProgram { path: path.clone(), program: name(), reason })?;
@@ -136,7 +136,7 @@ impl Movie {
         display: Display,
         watcher: &Watcher,
     ) -> Result<Movie, MovieError> {
-        let (path, program) = (args.output.clone(), program());
+        let (path, program) = (args.picture().to_owned(), program());
         let output = Output::to(&path)?;
         let Some(file) = output.temporary_path() else { return Err(MovieError::NoFile { path }) };
         let [width, height] = args.crop.map_or(args.size.0, |crop| crop.size);

@@ -10,7 +10,7 @@ use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene
 use lightmesh_memory::Bytes;
 
 use super::exposure::Metering;
-use super::{BUILDING, film, movie, open::open, range};
+use super::{BUILDING, film, movie, open::open, range, sun};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::plan::{PictureFiles, RenderPlan};
@@ -47,10 +47,15 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let metering = Metering::new(&mut scene, &plan, behind);
     let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;
     film::explain(&scene, plan.film.is_some(), &watcher);
-    if let (Some(film), Some(work)) = (&plan.film, work) {
-        let studio =
-            Studio { renderer: &renderer, prepared: &prepared, scene: &scene, plan: &plan, load, watcher: &watcher };
-        return film::run(args, film, work, &studio, metering);
+    let studio =
+        Studio { renderer: &renderer, prepared: &prepared, scene: &scene, plan: &plan, load, watcher: &watcher };
+    if let Some(study) = &plan.sun {
+        sun::hours(&studio, study)?;
+    }
+    match (&plan.film, work) {
+        (Some(film), Some(work)) => return film::run(args, film, work, &studio, metering),
+        _ if plan.sun.is_some() => return Ok(()),
+        _ => {}
     }
     let finish = || finish(&renderer, prepared, &scene, &plan, &metering, load, &watcher);
     let frame = if args.partial { interrupt::keeping(finish) } else { finish() }?;

@@ -12,6 +12,7 @@ mod number;
 mod size;
 mod sky;
 mod smooth;
+mod sun;
 
 pub(crate) use budget::Budget;
 pub(crate) use camera::CameraView;
@@ -23,6 +24,7 @@ pub(crate) use number::{Bound, Exposure, Positive};
 pub(crate) use size::{Dims, Size};
 pub(crate) use sky::{EnvironmentSpec, SkySpec};
 pub(crate) use smooth::Smooth;
+pub(crate) use sun::{SunSpec, clock};
 
 /// Why a value is invalid. The command line parser prepends the flag and the text.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -38,6 +38,13 @@ const ENVIRONMENT: ValueError = ValueError::Form {
     example: "\"street.hdr;rotation=90\"",
 };
 
+impl SkySpec {
+    /// A clear one with the usual options.
+    pub(crate) fn clear() -> SkySpec {
+        SkySpec { sky: Sky::clear(Sky::SUN), alone: false }
+    }
+}
+
 impl FromStr for SkySpec {
     type Err = ValueError;
 
@@ -147,7 +154,7 @@ mod tests {
     #[test]
     fn a_sky_has_defaults_for_everything() {
         let sky = |text: &str| text.parse::<SkySpec>().unwrap();
-        assert_eq!(sky("clear"), SkySpec { sky: Sky::clear(Sky::SUN), alone: false });
+        assert_eq!(sky("clear"), SkySpec::clear());
         let clear = sky("clear; sun=35,200;turbidity=4;ground=.1,.2,.3;north=-20;strength=2;alone");
         let sun = SunPosition { elevation: 35.0, azimuth: 200.0 };
         let kind = SkyKind::Clear { sun, turbidity: 4.0, ground: Vec3::new(0.1, 0.2, 0.3) };

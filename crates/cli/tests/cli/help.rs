@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::run::Place;
 
 /// The flags of `render` that other programs rely on.
-const FLAGS: [&str; 49] = [
+const FLAGS: [&str; 52] = [
     "--mode",
     "--bounces",
     "--size",
@@ -50,6 +50,9 @@ const FLAGS: [&str; 49] = [
     "--crop",
     "--ground",
     "--turntable",
+    "--sun",
+    "--sun-hours",
+    "--animation",
     "--frames",
     "--fps",
     "--resume",

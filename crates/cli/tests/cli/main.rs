@@ -17,6 +17,7 @@ mod run;
 mod scenes;
 mod sky;
 mod smooth;
+mod sun;
 
 #[cfg(unix)]
 mod interrupt;

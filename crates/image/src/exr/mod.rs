@@ -12,7 +12,7 @@ mod read;
 mod write;
 
 pub(crate) use read::read;
-pub(crate) use write::{write, write_layers};
+pub(crate) use write::{write, write_layers, write_values};
 
 const COLOR: [&str; 3] = ["R", "G", "B"];
 const ALPHA: &str = "A";
@@ -245,6 +245,26 @@ mod tests {
         let back = read(&output.into_inner()).unwrap();
         assert_eq!(back.color()[0], [65504.0, -65504.0, f32::INFINITY]);
         assert!(back.color()[1][0].is_nan() && back.color()[1][1..] == [65504.0, 0.0]);
+    }
+
+    #[test]
+    fn values_have_channels_of_their_own() {
+        use ::exr::prelude::{ReadChannels, ReadLayers, read};
+
+        let (hours, seen) = ([0.0, 1.5, 2.25, 1e-3, 12.0, 7.0], [1.0f32; 6]);
+        let mut output = Cursor::new(Vec::new());
+        let channels = [("hours", &hours[..]), ("A", &seen)];
+        write_values(&layered(0), &channels, &SaveOptions::default(), &mut output).unwrap();
+        output.set_position(0);
+        let image =
+            read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes();
+        let image = image.from_buffered(output).unwrap();
+        let found = image.layer_data.channel_data.list.iter().map(|channel| {
+            let values: Vec<f32> = channel.sample_data.values_as_f32().collect();
+            (channel.name.to_string(), values)
+        });
+        let expected = [("A".to_owned(), seen.to_vec()), ("hours".to_owned(), hours.to_vec())];
+        assert_eq!(found.collect::<Vec<_>>(), expected);
     }
 
     #[test]

@@ -121,6 +121,17 @@ pub(crate) fn write_layers(
     write_parts(frame, parts, options, output)
 }
 
+/// Writes `channels` of floats by name, with as many values as `frame` has pixels.
+pub(crate) fn write_values(
+    frame: &Frame,
+    channels: &[(&str, &[f32])],
+    options: &SaveOptions,
+    output: impl Write + Seek,
+) -> Result<(), EncodeError> {
+    let channels = channels.iter().map(|&(name, values)| exact(name, Plane::Value(values)));
+    write_parts(frame, vec![Part::new("", channels)], options, output)
+}
+
 fn color<'a>(frame: &'a Frame, options: &SaveOptions) -> Part<'a> {
     let kind = sample_type(options);
     let alpha = frame.alpha().map(|alpha| Channel { name: Text::from(ALPHA), kind, plane: Plane::Value(alpha) });

@@ -6,7 +6,7 @@ use glam::Vec3;
 use hw_skymodel::rgb::{Channel, SkyParams, SkyState};
 
 use super::sun::SUN_ANGLE;
-use super::{Environment, Sun, SunPosition, frame, from_angles, luminance};
+use super::{Environment, Sun, SunPosition, frame, luminance};
 use crate::{Light, Up};
 
 /// Width and height of the panorama of a clear sky. Half of the rows are above the horizon.
@@ -160,7 +160,7 @@ fn clear(sun: SunPosition, turbidity: f32, ground: Vec3, up: Up) -> Result<Envir
 
     // 1. The sky, in candela per square metre: the model gives radiance, of which 683 lumens are a watt.
     let frame = frame(up);
-    let direction = from_angles(frame, sun.azimuth.to_radians() as f32, elevation);
+    let direction = sun.direction(up);
     let [_, zenith, _] = frame;
     let dome = Environment::seen("clear sky", SIZE, up, |way| {
         if zenith.dot(way) < 0.0 {

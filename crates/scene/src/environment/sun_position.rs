@@ -1,9 +1,15 @@
 //! Where the sun stands: by place and time, through NREL's solar position algorithm.
 
+use std::f32::consts::PI;
 use std::str::FromStr;
 
+use glam::Vec3;
 use solar_positioning::time::JulianDate;
 use solar_positioning::{Location, RefractionCorrection, SolarPositions, delta_t};
+
+use super::sun::SUN_ANGLE;
+use super::{Environment, Sun, frame, from_angles};
+use crate::{Light, LightError, Up};
 
 /// Where the sun stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +79,22 @@ impl SunPosition {
             .map_err(place)?;
         Ok(SunPosition { elevation: position.elevation_angle(), azimuth: position.azimuth() })
     }
+
+    /// The unit vector to the sun in a scene in which `up` is up, and north where it usually is.
+    pub(super) fn direction(&self, up: Up) -> Vec3 {
+        from_angles(frame(up), self.azimuth.to_radians() as f32, self.elevation.to_radians() as f32)
+    }
+
+    /// The sun alone, without a sky: where and as wide as the light of a [`Sky`](super::Sky) with the same `north`, but of intensity 1.
+    ///
+    /// # Errors
+    /// If it has no direction.
+    pub fn light(&self, up: Up, north: f32) -> Result<Light, LightError> {
+        let sun = Sun::new(self.direction(up), SUN_ANGLE, Vec3::splat(PI));
+        // The same turn as that of a whole sky.
+        let turned = Environment::new("sun", [1; 2], vec![[0.0; 3]], up).with_sun(Some(sun)).turned(north);
+        turned.sun().unwrap_or(&sun).light()
+    }
 }
 
 impl FromStr for Moment {
@@ -120,6 +142,7 @@ fn numbers<const N: usize>(text: &str, between: char) -> Option<[u32; N]> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Sky;
     use super::*;
 
     #[test]
@@ -129,6 +152,40 @@ mod tests {
         let found = SunPosition::of(39.742476, -105.1786, &moment).unwrap();
         assert!((90.0 - found.elevation - 50.11162).abs() < 0.005, "{found:?}");
         assert!((found.azimuth - 194.34024).abs() < 0.001, "{found:?}");
+    }
+
+    #[test]
+    fn published_positions_are_found() {
+        let at =
+            |latitude, longitude, moment: &str| SunPosition::of(latitude, longitude, &moment.parse().unwrap()).unwrap();
+        // NOAA's spreadsheet of solar calculations, as its port `pysunnoaa` documents: 47.3618°, 98.3069°.
+        let morning = at(40.0, -105.0, "2010-06-21T09:54-06:00");
+        assert!((morning.elevation - 47.3618).abs() < 0.01 && (morning.azimuth - 98.3069).abs() < 0.02, "{morning:?}");
+        // New York: sunrise 07:20:02, noon 11:59:09 and sunset 16:38:16 by NOAA's calculator, as the Ruby gem `sun` documents. The true sun is
+        // 0.833 degrees below the horizon then, and 0.327 more two minutes before and after, where nothing is refracted any more. All to the
+        // minute, in which it sinks by 0.17 degrees and turns by 0.26 at noon.
+        let [rise, noon, set] =
+            ["07:18:02", "11:59:09", "16:40:16"].map(|time| at(40.75, -73.99, &format!("2015-01-01T{time}-05:00")));
+        for horizon in [rise, set] {
+            assert!((horizon.elevation + 0.833 + 0.327).abs() < 0.17, "{horizon:?}");
+        }
+        assert!((noon.azimuth - 180.0).abs() < 0.26, "{noon:?}");
+        // The elevation at the pole is the declination: Meeus, Astronomical Algorithms, example 25.b, -7°47'01.7". The sun is seen from the
+        // Earth's surface, which lowers it by 8.8".
+        let pole = at(90.0, 0.0, "1992-10-12T23:59:01Z");
+        assert!((pole.elevation + 7.78382 + 0.0024).abs() < 0.001, "{pole:?}");
+    }
+
+    #[test]
+    fn the_sun_alone_is_that_of_a_sky() {
+        for up in [Up::Y, Up::Z] {
+            for (elevation, azimuth, north) in [(3.0, 71.0, 0.0), (58.46, 180.0, 30.0), (90.0, 0.0, -12.5)] {
+                let sun = SunPosition { elevation, azimuth };
+                let sky = Sky { north, ..Sky::clear(sun) };
+                let expected = sky.surroundings(up).unwrap().sun.unwrap();
+                assert_eq!(sun.light(up, north).unwrap().kind, expected.kind);
+            }
+        }
     }
 
     #[test]

@@ -1,0 +1,147 @@
+//! `--sun-hours`: the hours of direct sun of what each pixel sees.
+//!
+//! ```text
+//! hours(P) = Σ_k t_k V(S_k, P)
+//! ```
+//!
+//! S_k is the sun at moment k, t_k the time for which the moment stands, and V the visible share of the sun's disc from the surface point P in
+//! the middle of the pixel, 0 if the sun is behind the surface. Suns of many moments are the lights of one image: camera rays are cast once
+//! for all of them, and neither sky nor reflected light is computed. Light that passes surfaces, such as panes, is counted as far as V says.
+
+mod colors;
+mod legend;
+mod picture;
+mod pixel_area;
+mod table;
+
+use glam::Vec3;
+use lightmesh::image::{ExrOptions, Format, Frame, Layers, Output, Ready, SaveOptions};
+use lightmesh::render::{AmbientSource, PreparedScene};
+use lightmesh::scene::{Camera, Light, LightError, Lights, Up};
+use lightmesh::{Observer, RenderError, Renderer, Settings};
+use rayon::prelude::*;
+
+use super::render::Studio;
+use crate::failure::Failure;
+use crate::plan::{HoursFormat, SunStudy};
+use crate::{interrupt, memory, output};
+
+/// Bytes that layers of suns may take at a time.
+const BYTES_AT_ONCE: usize = 256 << 20;
+/// Bytes of the layers of a light in a pixel.
+const BYTES: usize = 16;
+/// More suns at a time hardly save anything.
+const MOST_AT_ONCE: usize = 64;
+
+/// The hours of direct sun of the pixels of an image.
+struct SunHours {
+    /// What the pixels see.
+    frame: Frame,
+    camera: Camera,
+    /// Hours by pixel; 0 where there is no surface.
+    hours: Vec<f32>,
+}
+
+/// Computes the hours of direct sun and writes their files; returns what was done.
+pub(super) fn run(studio: &Studio, study: &SunStudy) -> Result<String, Failure> {
+    let Studio { renderer, prepared, plan, watcher, .. } = *studio;
+    let start = std::time::Instant::now();
+    let up = plan.choices.up_of(&prepared.scene.lights);
+    let suns = suns(study, up).expect("the sun has a direction");
+    let found = memory::during(memory::RENDERING, || {
+        interrupt::watched(|| SunHours::of(renderer, prepared, &plan.settings, &suns, watcher))
+    })?;
+    let seconds = start.elapsed().as_secs_f64();
+    let files = memory::during("writing the hours of direct sun", || renderer.install(|| found.files(study, plan)))?;
+    output::publish(files)?;
+    let names: Vec<String> = study.outputs.iter().map(|output| output.path.display().to_string()).collect();
+    Ok(format!("hours of direct sun of {} moments: {seconds:.3} s, {}", suns.len(), names.join(", ")))
+}
+
+/// The suns of a study, each with the hours that it shines.
+fn suns(study: &SunStudy, up: Up) -> Result<Vec<(Light, f64)>, LightError> {
+    let sun = |moment: &crate::plan::SunMoment| Ok((moment.sun.light(up, study.sky.sky.north)?, moment.hours));
+    study.moments.iter().map(sun).collect()
+}
+
+impl SunHours {
+    /// The hours for which each of some `suns` shines on what each pixel of an image sees.
+    fn of(
+        renderer: &Renderer,
+        prepared: &PreparedScene,
+        settings: &Settings,
+        suns: &[(Light, f64)],
+        observer: &dyn Observer,
+    ) -> Result<SunHours, RenderError> {
+        let mut settings =
+            settings.clone().with_bounces(0).with_ambient_light(AmbientSource::Constant).with_layers(true);
+        (settings.aa, settings.transparent, settings.partial) = (Some(1), false, false);
+        let camera = settings.camera.clone().unwrap_or_else(|| prepared.scene.cameras[0].clone());
+        let [width, height] = settings.crop.map_or(settings.size, |crop| crop.size).map(|side| side as usize);
+        let at_once = (BYTES_AT_ONCE / (BYTES * width * height).max(1)).clamp(1, MOST_AT_ONCE);
+        // Parts of about the same size.
+        let at_once = suns.len().div_ceil(suns.len().div_ceil(at_once).max(1)).max(1);
+        let (mut seen, mut hours) = (None, vec![0.0_f64; width * height]);
+        for suns in suns.chunks(at_once) {
+            let lights: Lights = suns.iter().map(|(light, _)| light.clone()).collect();
+            let lit = prepared.with_lights(lights.with_ambient(Vec3::ZERO));
+            let lightmesh::Frame { image: frame, stats } = renderer.render_prepared(&lit, &settings, observer)?;
+            // What was chosen holds for all suns, and is told once.
+            settings.samples = Some(stats.settings.samples.max(1));
+            let Some(layers) = frame.layers() else { continue };
+            for (plane, &(_, time)) in layers.visibility.iter().zip(suns) {
+                let add = |(hours, &share): (&mut f64, &f32)| *hours += time * f64::from(share);
+                hours.par_iter_mut().zip(plane).for_each(add);
+            }
+            seen.get_or_insert_with(|| without_light(frame));
+        }
+        let frame = seen.expect("a study has a moment with sun");
+        Ok(SunHours { frame, camera, hours: hours.into_iter().map(|hours| hours as f32).collect() })
+    }
+
+    fn layers(&self) -> &Layers {
+        self.frame.layers().expect("they were kept")
+    }
+
+    /// Whether a pixel sees a surface.
+    fn sees(&self, pixel: usize) -> bool {
+        self.layers().depth[pixel].is_finite()
+    }
+
+    /// The complete files, which appear together.
+    fn files(&self, study: &SunStudy, plan: &crate::plan::RenderPlan) -> Result<Vec<Ready>, Failure> {
+        let file = |output: &crate::plan::HoursFile| match output.format {
+            HoursFormat::Exr => Ok(self.exr(&output.path, plan.files.options.exr)?),
+            HoursFormat::Png => {
+                let options = SaveOptions::default().with_format(Format::Png);
+                Ok(picture::picture(self, study).ready_with(&output.path, &options)?)
+            }
+            HoursFormat::Csv => Ok(output::ready(&output.path, table::table(self).as_bytes())?),
+        };
+        study.outputs.iter().map(file).collect()
+    }
+
+    /// Hours, and whether there is a surface as alpha.
+    fn exr(&self, path: &std::path::Path, exr: ExrOptions) -> Result<Ready, Failure> {
+        let seen: Vec<f32> = (0..self.hours.len()).map(|pixel| f32::from(u8::from(self.sees(pixel)))).collect();
+        let software = concat!("Lightmesh ", env!("CARGO_PKG_VERSION"));
+        let description = lightmesh::image::Description::default().with_software(software);
+        let options = SaveOptions::default().with_exr(exr).with_description(description);
+        let output = Output::to(path).map_err(output::OutputError::from)?;
+        Ok(self.frame.ready_values_to(output, &[("hours", &self.hours), ("A", &seen)], &options)?)
+    }
+}
+
+/// The frame without what belongs to single lights.
+fn without_light(frame: Frame) -> Frame {
+    let window = frame.window();
+    let parts = frame.into_parts();
+    let [width, height] = parts.size;
+    let kept = |layers: Layers| Layers { visibility: Vec::new(), lights: Vec::new(), rest: Vec::new(), ..layers };
+    let frame = Frame::new(width, height, parts.color).expect("its size is that of a frame");
+    let frame = frame.with_layers(parts.layers.map(kept).unwrap_or_default()).expect("its layers are those of a frame");
+    frame.with_window(window.first, window.whole)
+}
+
+#[cfg(test)]
+mod tests;
