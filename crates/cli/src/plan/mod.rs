@@ -72,7 +72,9 @@ pub(crate) enum PlanError {
     )]
     NotAnimated,
     /// What is said of frames where there are none.
-    #[error("--skip-existing and --overwrite are for films; add --frames, --fps or --turntable, or remove them")]
+    #[error(
+        "--resume, --skip-existing and --overwrite are for films; add --frames, --fps or --turntable, or remove them"
+    )]
     NoFilm,
     /// Frames that were rendered before.
     #[error("{} exists{}; add --skip-existing to keep such frames, or --overwrite to replace them", first.display(), others(*count))]

@@ -73,17 +73,115 @@ fn a_frame_does_not_depend_on_those_before() {
     assert!(!place.path("all.2.exr").exists() && place.path("all.4.exr").exists());
 }
 
+/// Exposure and step of a frame.
+fn chosen(place: &Place, name: &str) -> [serde_json::Value; 2] {
+    let stats: serde_json::Value = serde_json::from_slice(&place.read(name)).unwrap();
+    [stats["settings"]["exposure"].clone(), stats["settings"]["step"].clone()]
+}
+
 #[test]
-fn what_is_chosen_for_the_first_frame_holds_for_all() {
+fn exposure_and_step_are_those_of_the_whole_film() {
     let place = balls();
-    let film = ["render", "balls.toml", "--size", "16x12", "--turntable", "3", "-o", "f.#.png", "--exposure", "auto"];
-    let done = place.good(&[&film[..], &["--lookup", "half-ball", "--stats", "f.#.json"]].concat());
+    let film = ["render", "balls.toml", "--size", "16x12", "--turntable", "3", "--exposure", "auto"];
+    let film = [&film[..], &["--lookup", "half-ball"]].concat();
+    let done = place.good(&[&film[..], &["-o", "f.#.png", "--stats", "f.#.json"]].concat());
     assert_eq!(done.stderr.matches("exposure auto: using").count(), 1, "{done:?}");
-    let [first, last] = ["f.1.json", "f.3.json"].map(|name| {
-        let stats: serde_json::Value = serde_json::from_slice(&place.read(name)).unwrap();
-        [stats["settings"]["exposure"].clone(), stats["settings"]["step"].clone()]
-    });
-    assert_eq!(first, last);
+    assert!(done.stderr.contains("from 3 frames across the film"), "{done:?}");
+    place.good(&[&film[..], &["-o", "g.#.png", "--stats", "g.#.json", "--frames", "3"]].concat());
+    assert_eq!(chosen(&place, "f.1.json"), chosen(&place, "f.3.json"));
+    assert_eq!(chosen(&place, "f.1.json"), chosen(&place, "g.3.json"));
+    assert_eq!(place.read("f.3.png"), place.read("g.3.png"));
+}
+
+/// A red ball that goes up behind a blue one, a camera that goes aside, and a light that goes around.
+const MOVING: &str = "\
+[camera]
+position = [0, 1, 9]
+target = [0, 0, 0]
+vfov = 40
+motion = { key = [{ time = 0, position = [0, 1, 9] }, { time = 1, position = [3, 1, 9] }] }
+[ambient]
+intensity = 0.3
+[[light]]
+kind = \"sphere\"
+position = [4, 6, 4]
+radius = 0.5
+motion = { key = [{ time = 0, position = [4, 6, 4] }, { time = 1, position = [-4, 6, 4] }] }
+[[material]]
+name = \"red\"
+kd = [1, 0, 0]
+[[sphere]]
+center = [1.5, 0, -2]
+radius = 1
+material = \"red\"
+motion = { key = [{ time = 0, translate = [0, 0, 0] }, { time = 1, translate = [0, 2, 0] }] }
+[[box]]
+center = [-1.5, 0, 0]
+size = [1.5, 2, 1.5]
+motion = { interpolation = \"linear\", key = [{ time = 0, rotate = [0, 0, 0] }, { time = 1, rotate = [0, 90, 0] }] }
+[[plane]]
+point = [0, -1, 0]
+normal = [0, 1, 0]
+size = [12, 12]
+";
+
+#[test]
+fn frames_of_a_scene_that_moves_equal_those_of_runs_of_their_own() {
+    let place = Place::new();
+    place.write("moving.toml", MOVING);
+    for (name, mode) in [("lists", &["--lookup", "lists"][..]), ("ball", &["--lookup", "half-ball", "--step", "0.3"])] {
+        let render = [&["render", "moving.toml", "--size", "32x24", "--fps", "4"], mode].concat();
+        let [all, stats] = [format!("{name}.#.exr"), format!("{name}.#.json")];
+        let done = place.good(&[&render[..], &["-o", &all, "--stats", &stats]].concat());
+        assert!(done.stderr.contains("frame 5 of 5: "), "{done:?}");
+        let one = format!("{name}.one.#.exr");
+        for frame in ["1", "3", "5"] {
+            place.good(&[&render[..], &["-o", &one, "--frames", frame]].concat());
+            let file = |pattern: &str| place.read(&pattern.replace('#', frame));
+            assert!(file(&all) == file(&one), "{name} {frame}");
+        }
+        assert_ne!(place.read(&all.replace('#', "1")), place.read(&all.replace('#', "5")));
+    }
+}
+
+#[test]
+fn what_a_motion_cannot_change_is_kept() {
+    let place = Place::new();
+    // Only the ball moves.
+    let still: Vec<&str> = MOVING
+        .lines()
+        .filter(|line| !line.contains("position = [0, 1, 9] }") && !line.contains("[-4, 6, 4]"))
+        .collect();
+    place.write("ball.toml", &still.join("\n"));
+    let film = ["render", "ball.toml", "--size", "32x24", "--fps", "8", "--lookup", "half-ball", "--step", "0.3"];
+    place.good(&[&film[..], &["-o", "b.#.png", "--stats", "b.#.json"]].concat());
+    let tests = |frame: u32| -> [u64; 2] {
+        let stats: serde_json::Value = serde_json::from_slice(&place.read(&format!("b.{frame}.json"))).unwrap();
+        ["long_tests", "long_tests_saved"].map(|name| stats["counts"][name].as_u64().unwrap())
+    };
+    assert_eq!(tests(1)[1], 0);
+    for frame in 2..=9 {
+        let [made, saved] = tests(frame);
+        assert!(made > 0 && saved > made, "frame {frame}: {made} made, {saved} saved");
+    }
+}
+
+#[test]
+fn scenes_that_do_not_move_have_no_film_of_their_own() {
+    let place = balls();
+    for flags in [&["--frames", "1-3"][..], &["--fps", "12"]] {
+        let message = place.refused(&[&["render", "balls.toml", "-o", "f.#.png"], flags].concat());
+        assert!(message.contains("nothing in the scene moves; add --turntable N"), "{message}");
+    }
+    let message = place.refused(&["render", "balls.toml", "-o", "f.png", "--overwrite"]);
+    assert!(message.contains("are for films"), "{message}");
+    place.write("moving.toml", MOVING);
+    let message = place.refused(&["render", "moving.toml", "-o", "f.#.png", "--frames", "20-30"]);
+    assert!(message.contains("the film ends with frame 25"), "{message}");
+    let done = place.good(&["render", "moving.toml", "-o", "f.png", "--size", "8x6"]);
+    assert!(done.stderr.contains("the scene moves for 1.00 s"), "{done:?}");
+    let done = place.good(&["info", "moving.toml"]);
+    assert!(done.stdout.contains("moves   1 s: objects move"), "{done:?}");
 }
 
 #[test]
