@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use glam::Quat;
 use lightmesh::render::{Crop, PreparedScene};
 use lightmesh::scene::Camera;
-use lightmesh::{Frame, MeshCache, Observer, RenderError, Scene, Settings, Step};
+use lightmesh::{Frame, Lookup, MeshCache, Mode, Observer, RenderError, Scene, Settings, Step};
 
 use super::BUILDING;
 use super::exposure::Metering;
@@ -123,7 +123,11 @@ impl Reel<'_> {
     /// Exposure and step for the whole film, from frames across it: whichever of them are rendered, and by however many runs.
     fn chosen_across(&self) -> Result<Chosen, Failure> {
         let Studio { renderer, plan, watcher, .. } = *self.studio;
-        let asks_step = matches!(plan.settings.step, None | Some(Step::Auto));
+        let has_step = plan.settings.mode == Mode::LightMesh && plan.settings.resolved_lookup() != Lookup::Lists;
+        let asks_step = has_step && matches!(plan.settings.step, None | Some(Step::Auto));
+        if !(self.metering.is_automatic() || asks_step) {
+            return Ok(Chosen::default());
+        }
         let (mut exposures, mut steps) = (Vec::new(), Vec::new());
         let quiet = Watcher::plain(true);
         let last = self.work.last;
@@ -132,9 +136,6 @@ impl Reel<'_> {
             .collect();
         numbers.dedup();
         for &number in &numbers {
-            if !(self.metering.is_automatic() || asks_step) {
-                break;
-            }
             let (prepared, _) = self.at(number)?;
             let studio = Studio { prepared: &prepared, scene: &prepared.scene, watcher: &quiet, ..*self.studio };
             let render =
@@ -146,10 +147,7 @@ impl Reel<'_> {
             if asks_step {
                 // The step depends on the whole image, of which one pixel is rendered.
                 let pixel = plan.settings.clone().with_crop(Crop::new([0, 0], [1, 1]));
-                match render(&prepared, &pixel)?.stats.settings.step {
-                    Some(step) => steps.push(step),
-                    None => break,
-                }
+                steps.extend(render(&prepared, &pixel)?.stats.settings.step);
             }
         }
         let chosen = Chosen { exposure: median(exposures), step: median(steps) };

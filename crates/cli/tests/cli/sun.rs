@@ -117,5 +117,5 @@ fn studies_that_cannot_be_made_are_refused_at_once() {
     let alone = place.refused(&["render", "tower.toml", "--sun-hours", "h.csv"]);
     assert!(alone.contains("required"), "{alone}");
     let none = place.refused(&["render", "tower.toml", "-o", "d.#.png", "--frames", "1"]);
-    assert!(none.contains("required"), "{none}");
+    assert!(none.contains("nothing in the scene moves"), "{none}");
 }
