@@ -1,5 +1,7 @@
 //! The frames of a film: one scene in the memory of one device, and what is the same in two frames is kept from one to the next.
 
+use std::sync::mpsc::{self, SyncSender};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use glam::Quat;
@@ -24,7 +26,10 @@ const SAMPLES: u32 = 5;
 /// The longer side of the images that are made for the exposure, at most.
 const SAMPLE_SIDE: u32 = 256;
 
-/// Renders the frames that are left, and writes the files of each as soon as it is finished.
+/// Frames that are rendered and wait to be written, besides the one that is.
+const WAITING: usize = 1;
+
+/// Renders the frames that are left, and writes the files of each as soon as it is finished, while the next one is rendered.
 pub(super) fn run(
     args: &RenderArgs,
     film: &Film,
@@ -32,15 +37,57 @@ pub(super) fn run(
     studio: &Studio,
     metering: Metering,
 ) -> Result<(), Failure> {
-    let ledger = Ledger::begin(args, film, studio.scene, &mut work, studio.watcher)?;
+    let mut ledger = Ledger::begin(args, film, studio.scene, &mut work, studio.watcher)?;
     let (display, watcher) = (studio.plan.files.options.display, studio.watcher);
     let movie = studio.plan.files.movie.map(|container| Movie::begin(args, container, display, watcher)).transpose()?;
-    let (begin, prepared, cache) = (Instant::now(), studio.prepared.clone(), MeshCache::new());
-    let mut reel = Reel { args, film, studio, prepared, metering, work: &work, ledger, movie, cache, begin };
+    let (begin, settings) = (Instant::now(), studio.plan.settings.clone());
+    let (prepared, cache) = (studio.prepared.clone(), MeshCache::new());
+    let mut reel = Reel { args, film, studio, prepared, settings, metering, work: &work, cache };
     // A request to end leaves time to record what is finished.
-    interrupt::watched(|| reel.render())?;
+    interrupt::watched(|| {
+        if ledger.chosen().is_none() && !work.numbers.is_empty() {
+            ledger.choose(reel.chosen_across()?);
+        }
+        reel.keep(ledger.chosen().unwrap_or_default());
+        let shelf =
+            Shelf { film, studio, metering: reel.metering.clone(), work: &work, ledger, movie, begin, finished: 0 };
+        both(&mut reel, shelf)
+    })?;
     watcher.summary(&summary(&work, begin.elapsed(), studio));
     Ok(())
+}
+
+/// Renders frames on this thread, and writes them on another one.
+fn both(reel: &mut Reel, mut shelf: Shelf) -> Result<(), Failure> {
+    let last = reel.work.last;
+    let (queue, waiting) = mpsc::sync_channel(WAITING);
+    let (rendered, written, shelf) = thread::scope(|scope| {
+        let writer = scope.spawn(move || {
+            let written = waiting.into_iter().try_for_each(|frame| shelf.write(frame));
+            (written, shelf)
+        });
+        let rendered = reel.render(&queue);
+        drop(queue);
+        let (written, shelf) = writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        (rendered, written, shelf)
+    });
+    // What is written was rendered before.
+    shelf.close(written.and(rendered).map_err(|error| *error), last)
+}
+
+/// A failure in a frame.
+type InFrame = Box<(u32, Failure)>;
+
+/// A frame that is rendered.
+struct Rendered {
+    index: usize,
+    number: u32,
+    /// What it is called besides its number.
+    when: String,
+    files: PictureFiles,
+    scene: Scene,
+    frame: Frame,
+    stops: f32,
 }
 
 /// A film while it is rendered.
@@ -50,60 +97,41 @@ struct Reel<'a> {
     studio: &'a Studio<'a>,
     /// The scene at the last frame.
     prepared: PreparedScene,
+    settings: Settings,
     metering: Metering,
     work: &'a Work,
-    ledger: Ledger,
-    movie: Option<Movie>,
     cache: MeshCache,
-    begin: Instant,
 }
 
 impl Reel<'_> {
-    /// Renders all frames; whatever ends that, those that are finished are recorded.
-    fn render(&mut self) -> Result<(), Failure> {
-        let work = self.work;
-        if self.ledger.chosen().is_none() && !work.numbers.is_empty() {
-            let chosen = self.chosen_across()?;
-            self.ledger.choose(chosen);
-        }
-        for (index, &number) in work.numbers.iter().enumerate() {
-            let rendered = self.frame(index, number).and_then(|()| match interrupt::requested() {
-                true => Err(RenderError::Cancelled.into()),
-                false => Ok(()),
-            });
-            if let Err(cause) = rendered {
-                // The first error is the one to tell.
-                let _ = self.ledger.close();
-                // A movie is there as a whole or not at all.
-                let finished = if self.film.is_movie() { 0 } else { index + work.skipped };
-                return Err(cause.in_frame(number, work.last, finished, self.flag_that_goes_on()));
+    /// Renders all frames, until nobody takes them.
+    fn render(&mut self, queue: &SyncSender<Rendered>) -> Result<(), InFrame> {
+        for (index, &number) in self.work.numbers.iter().enumerate() {
+            let frame = self.frame(index, number).map_err(|cause| Box::new((number, cause)))?;
+            if queue.send(frame).is_err() {
+                break;
+            }
+            if interrupt::requested() {
+                return Err(Box::new((number, RenderError::Cancelled.into())));
             }
         }
-        self.ledger.close()?;
-        self.movie.take().map_or(Ok(()), Movie::finish)
+        Ok(())
     }
 
-    /// Renders a frame and writes its files.
-    fn frame(&mut self, index: usize, number: u32) -> Result<(), Failure> {
-        let Studio { renderer, plan, watcher, .. } = *self.studio;
+    /// Renders a frame.
+    fn frame(&mut self, index: usize, number: u32) -> Result<Rendered, Failure> {
+        let Studio { renderer, watcher, .. } = *self.studio;
         let files = self.film.files(self.args, number)?;
         let (prepared, when) = self.at(number)?;
-        let scene = &prepared.scene;
-        let (settings, metering) = self.settings();
         let cache = &mut self.cache;
         let render =
             |prepared: &PreparedScene, settings: &Settings| renderer.render_with(cache, prepared, settings, watcher);
-        let studio = Studio { prepared: &prepared, scene, ..*self.studio };
-        let (frame, stops) = studio.picture(&settings, &metering, render)?;
-        let frame = save(frame, stops, &files, (renderer, scene, plan), scene.cameras.first(), &metering, watcher)?;
-        if let Some(movie) = &mut self.movie {
-            movie.push(&frame.image, stops)?;
-        }
-        self.ledger.finished(number, &files)?;
-        self.tell(index, number, &when, &frame, &files);
+        let studio = Studio { prepared: &prepared, scene: &prepared.scene, ..*self.studio };
+        let (frame, stops) = studio.picture(&self.settings, &self.metering, render)?;
+        let scene = prepared.scene.clone();
         // What the cache keeps of the frame before goes on to this one.
         self.prepared = prepared;
-        Ok(())
+        Ok(Rendered { index, number, when, files, scene, frame, stops })
     }
 
     /// The scene at a frame, and what the frame is called besides its number.
@@ -161,17 +189,61 @@ impl Reel<'_> {
         Ok(chosen)
     }
 
-    /// The settings of all frames: with what was chosen for the film.
-    fn settings(&self) -> (Settings, Metering) {
-        let (mut settings, mut metering) = (self.studio.plan.settings.clone(), self.metering.clone());
-        let Chosen { exposure, step } = self.ledger.chosen().unwrap_or_default();
+    /// From now on, what was chosen for the film holds.
+    fn keep(&mut self, Chosen { exposure, step }: Chosen) {
         if let Some(step) = step {
-            settings = settings.with_step(Step::Fixed(step));
+            self.settings = self.settings.clone().with_step(Step::Fixed(step));
         }
         if let Some(exposure) = exposure {
-            metering = metering.fixed(exposure);
+            self.metering = self.metering.clone().fixed(exposure);
         }
-        (settings, metering)
+    }
+}
+
+/// Where finished frames go.
+struct Shelf<'a> {
+    film: &'a Film,
+    studio: &'a Studio<'a>,
+    metering: Metering,
+    work: &'a Work,
+    ledger: Ledger,
+    movie: Option<Movie>,
+    begin: Instant,
+    /// Frames that are written.
+    finished: usize,
+}
+
+impl Shelf<'_> {
+    /// Writes the files of a frame, and records that they are there.
+    fn write(&mut self, rendered: Rendered) -> Result<(), InFrame> {
+        let number = rendered.number;
+        self.put(rendered).map_err(|cause| Box::new((number, cause)))
+    }
+
+    fn put(&mut self, rendered: Rendered) -> Result<(), Failure> {
+        let Rendered { index, number, when, files, scene, frame, stops } = rendered;
+        let Studio { renderer, plan, watcher, .. } = *self.studio;
+        let picture = (renderer, &scene, plan);
+        let frame = save(frame, stops, &files, picture, scene.cameras.first(), &self.metering, watcher)?;
+        if let Some(movie) = &mut self.movie {
+            movie.push(&frame.image, stops)?;
+        }
+        self.ledger.finished(number, &files)?;
+        self.finished += 1;
+        self.tell(index, number, &when, &frame, &files);
+        Ok(())
+    }
+
+    /// Records which frames are finished, whatever ended the film.
+    fn close(mut self, ended: Result<(), (u32, Failure)>, last: u32) -> Result<(), Failure> {
+        let closed = self.ledger.close();
+        if let Err((number, cause)) = ended {
+            // A movie is there as a whole or not at all.
+            let finished = if self.film.is_movie() { 0 } else { self.finished + self.work.skipped };
+            return Err(cause.in_frame(number, last, finished, self.flag_that_goes_on()));
+        }
+        closed?;
+        self.movie.take().map_or(Ok(()), Movie::finish)
     }
 
     fn flag_that_goes_on(&self) -> &'static str {
