@@ -155,6 +155,18 @@ impl Draft {
         checked.map_err(|short| self.out_of_memory(vertices, triangles, short))
     }
 
+    /// Fails if there is not enough memory for what bends `vertices` vertices between so many morph targets.
+    pub(crate) fn check_bends(&self, vertices: usize, targets: usize) -> Result<(), LoadError> {
+        /// Of a vertex of a target, and of one with eight joints.
+        const BYTES: u64 = 24 + 48;
+        let bytes = (vertices as u64).saturating_mul(1 + targets as u64).saturating_mul(BYTES);
+        self.border.budget.check(bytes).map_err(|short| LoadError::Memory {
+            path: self.path.clone(),
+            what: format!("{targets} morph targets of {vertices} vertices"),
+            short,
+        })
+    }
+
     fn out_of_memory(&self, vertices: usize, triangles: usize, short: Short) -> LoadError {
         LoadError::Memory {
             path: self.path.clone(),

@@ -144,15 +144,16 @@ fn frames_of_a_scene_that_moves_equal_those_of_runs_of_their_own() {
     }
 }
 
+fn only_the_ball_moves() -> String {
+    let moves =
+        |line: &&str| line.contains("position = [0, 1, 9] }") || line.contains("[-4, 6, 4]") || line.contains("rotate");
+    MOVING.lines().filter(|line| !moves(line)).collect::<Vec<_>>().join("\n")
+}
+
 #[test]
 fn what_a_motion_cannot_change_is_kept() {
     let place = Place::new();
-    // Only the ball moves.
-    let still: Vec<&str> = MOVING
-        .lines()
-        .filter(|line| !line.contains("position = [0, 1, 9] }") && !line.contains("[-4, 6, 4]"))
-        .collect();
-    place.write("ball.toml", &still.join("\n"));
+    place.write("ball.toml", &only_the_ball_moves());
     let film = ["render", "ball.toml", "--size", "32x24", "--fps", "8", "--lookup", "half-ball", "--step", "0.3"];
     place.good(&[&film[..], &["-o", "b.#.png", "--stats", "b.#.json"]].concat());
     let tests = |frame: u32| -> [u64; 2] {
@@ -163,6 +164,24 @@ fn what_a_motion_cannot_change_is_kept() {
     for frame in 2..=9 {
         let [made, saved] = tests(frame);
         assert!(made > 0 && saved > made, "frame {frame}: {made} made, {saved} saved");
+    }
+}
+
+#[test]
+fn pixels_that_a_motion_does_not_reach_stay_as_they_are() {
+    let place = Place::new();
+    place.write("ball.toml", &only_the_ball_moves());
+    for lookup in ["lists", "half-ball"] {
+        let pattern = format!("{lookup}.#.exr");
+        place.good(&["render", "ball.toml", "--size", "48x36", "--fps", "2", "--lookup", lookup, "-o", &pattern]);
+        let [first, second, third] =
+            ["1", "2", "3"].map(|number| Frame::load(place.path(&pattern.replace('#', number))).unwrap());
+        // In front of the box on the left, where neither the ball nor its shadow comes.
+        let corner = |frame: &Frame| -> Vec<[f32; 3]> {
+            frame.color().chunks(48).skip(27).flat_map(|row| &row[..16]).copied().collect()
+        };
+        assert!(corner(&first) == corner(&second) && corner(&second) == corner(&third), "{lookup}");
+        assert!(first.color() != second.color(), "{lookup}");
     }
 }
 

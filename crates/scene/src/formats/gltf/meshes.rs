@@ -180,6 +180,7 @@ impl<'a> Meshes<'a> {
             triangles: &triangles(mode, &indices),
         };
         if shown.bends.bend(primitive) {
+            draft.check_bends(used.map_or(vertices, <[u32]>::len), primitive.targets.len())?;
             let bent = self.bent(primitive, shown, vertices, used, &part, rigged)?;
             return add_bent(part, bent, &shown.bends, chosen.material, rigged, draft);
         }
