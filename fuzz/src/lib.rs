@@ -92,11 +92,18 @@ pub fn check_message(message: &str) {
     assert!(message.len() <= LONGEST && !message.contains(SECRET), "{message}");
 }
 
+/// Cameras and lights are usable.
+fn check_views(scene: &Scene) {
+    assert!(scene.cameras.iter().all(|camera| camera.position.is_finite() && camera.direction.is_normalized()));
+    assert!(scene.lights.iter().all(|light| light.intensity.is_finite()));
+    assert!(scene.lights.iter().filter_map(|light| light.position()).all(|position| position.is_finite()));
+}
+
 fn check(scene: &Scene) {
     assert!(scene.warnings.len() <= MOST_WARNINGS, "{:?}", scene.warnings);
     scene.warnings.iter().for_each(|warning| check_message(warning));
     check_mesh(&scene.geometry.mesh, scene.geometry.materials.len());
-    for texture in &scene.geometry.textures {
+    for texture in scene.geometry.textures.iter() {
         let [width, height] = texture.size.map(u64::from);
         assert!(width > 0 && height > 0 && texture.texels.len() as u64 == width * height);
     }
@@ -118,9 +125,13 @@ fn check(scene: &Scene) {
             assert!(texture.is_none_or(|texture| texture < scene.geometry.textures.len()), "{material:?}");
         }
     }
-    assert!(scene.cameras.iter().all(|camera| camera.position.is_finite() && camera.direction.is_normalized()));
-    assert!(scene.lights.iter().all(|light| light.intensity.is_finite()));
-    assert!(scene.lights.iter().filter_map(|light| light.position()).all(|position| position.is_finite()));
+    check_views(scene);
+    for time in [-1.0, 0.0, 0.7, 1e9] {
+        let moved = scene.at(time);
+        check_views(&moved);
+        let sizes = |scene: &Scene| [scene.geometry.mesh.triangles.len(), scene.geometry.mesh.positions.len()];
+        assert_eq!(sizes(&moved), sizes(scene));
+    }
     let info = scene.info();
     assert_eq!(info.triangles, scene.geometry.mesh.triangles.len());
     assert!(!info.to_string().is_empty());

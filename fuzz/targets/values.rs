@@ -15,8 +15,8 @@ use lightmesh::scene::SkyKind;
 mod value;
 
 use value::{
-    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames, LightSpec,
-    Positive, Size, SkySpec, Smooth, SunSpec, clock, numbered,
+    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames,
+    LightSpec, Positive, Size, SkySpec, Smooth, SunSpec, clock, numbered,
 };
 
 /// Messages quote a part of the text and explain the rest.
@@ -51,10 +51,13 @@ fuzz_target!(|text: &str| {
 
 fn read_frames(text: &str) {
     read::<Frames>(text, |frames| {
-        assert!(frames.numbers().next().is_some_and(|first| first <= frames.last()));
+        assert!(frames.numbers().next() == Some(frames.first()) && frames.first() <= frames.last());
         frames.to_string()
     });
-    read::<FrameRate>(text, FrameRate::to_string);
+    read::<FrameRate>(text, |rate| {
+        assert!(rate.time(1) == 0.0 && rate.time(2) > 0.0 && rate.last_frame(rate.time(9)) == 9);
+        rate.to_string()
+    });
     assert_eq!(FrameRate::default().to_string(), "24");
     assert!(Frames::up_to(3).numbers().eq(1..=3));
     if let Some(file) = numbered(Path::new(text), 7) {
@@ -92,6 +95,7 @@ fn read_places(text: &str) {
         let [x, y, z] = light.position.to_array();
         format!("{x},{y},{z};{};{}", color(&Color(light.intensity)), light.radius)
     });
+    assert!(matches!(SkySpec::clear().sky.kind, SkyKind::Clear { .. }));
     read::<SkySpec>(text, |SkySpec { sky, alone }| {
         let kind = match sky.kind {
             SkyKind::Clear { sun, turbidity, ground } => {

@@ -1,7 +1,9 @@
 //! Scenes that move: what a file says of the places of its things over time.
 //!
-//! 1. [`track`]: values by keys. 2. [`rig`]: nodes that move each other. 3. [`parts`]: meshes that go with them, are bent by skeletons or
-//! change their shape. 4. [`views`]: cameras and lights.
+//! 1. [`track`]: values by keys.
+//! 2. [`rig`]: nodes that move each other.
+//! 3. [`parts`]: meshes that go with them, are bent by skeletons or change their shape.
+//! 4. [`views`]: cameras and lights.
 //!
 //! A scene stays what it is: [`Scene::at`] makes a new one in which only what moves differs.
 

@@ -182,9 +182,12 @@ fn cofactors(matrix: &DMat3) -> DMat3 {
 }
 
 impl MovingPart {
-    /// Moves the part of a mesh, whose coordinates are relative to `origin`, to where it is at `time`; nodes are at `places`.
+    /// Moves the part of a mesh, whose coordinates are relative to `origin`, to where it is at `time`; nodes are at `places`. What somebody has
+    /// taken out of the mesh is left alone.
     pub(crate) fn pose(&self, places: &[DMat4], time: f64, origin: DVec3, mesh: &mut Mesh) {
-        let own = self.vertices.clone();
+        let Mesh { positions, normals, triangles, .. } = mesh;
+        let Some(positions) = positions.get_mut(self.vertices.clone()) else { return };
+        let normals = normals.get_mut(self.vertices.clone()).unwrap_or_default();
         let to_local = |world: DVec3| {
             let is_usable = world.abs().cmple(DVec3::splat(LARGEST_COORDINATE)).all();
             // Triangles with such a corner are not hit.
@@ -193,32 +196,31 @@ impl MovingPart {
         match (&self.hold, &self.shape.morph) {
             (Hold::Node(node, local), None) => {
                 let transform = places[*node as usize] * *local;
-                let positions = mesh.positions[own.clone()].par_iter_mut().enumerate();
-                positions.for_each(|(vertex, position)| {
+                positions.par_iter_mut().enumerate().for_each(|(vertex, position)| {
                     *position = to_local(transform.transform_point3(self.shape.positions.get(vertex)));
                 });
                 if !self.shape.normals.is_empty() {
                     let place = normal_placement(&transform);
-                    let normals = mesh.normals[own].iter_mut().zip(&self.shape.normals);
-                    normals.for_each(|(normal, &own)| *normal = place(own));
+                    normals.iter_mut().zip(&self.shape.normals).for_each(|(normal, &own)| *normal = place(own));
                 }
-                self.face(mirrors(&transform), mesh);
+                self.face(mirrors(&transform), triangles);
             }
             _ => {
-                let (positions, normals) = self.shape.posed(&self.hold, places, Some(time));
-                let placed = mesh.positions[own.clone()].iter_mut().zip(positions);
-                placed.for_each(|(position, world)| *position = to_local(world));
-                if !normals.is_empty() {
-                    mesh.normals[own].copy_from_slice(&normals);
+                let (places_now, normals_now) = self.shape.posed(&self.hold, places, Some(time));
+                positions.iter_mut().zip(places_now).for_each(|(position, world)| *position = to_local(world));
+                normals.iter_mut().zip(normals_now).for_each(|(normal, now)| *normal = now);
+                if let Hold::Node(node, local) = &self.hold {
+                    self.face(mirrors(&(places[*node as usize] * *local)), triangles);
                 }
             }
         }
     }
 
     /// Reverses the triangles if they are mirrored and were not at rest, or the other way round.
-    fn face(&self, mirrored: bool, mesh: &mut Mesh) {
+    fn face(&self, mirrored: bool, triangles: &mut [[u32; 3]]) {
         if mirrored != self.reversed {
-            mesh.triangles[self.triangles.clone()].iter_mut().for_each(|triangle| triangle.swap(1, 2));
+            let own = triangles.get_mut(self.triangles.clone()).unwrap_or_default();
+            own.iter_mut().for_each(|triangle| triangle.swap(1, 2));
         }
     }
 }
