@@ -29,11 +29,13 @@ pub enum Suite {
     Flight,
     /// What cut-outs, mirrors, gathered light and lamps cost.
     Light,
+    /// A film: what is gained by keeping what frames have in common.
+    Film,
 }
 
 impl Suite {
     /// All of them.
-    pub const ALL: [Suite; 8] = [
+    pub const ALL: [Suite; 9] = [
         Suite::Thesis,
         Suite::Quality,
         Suite::Rays,
@@ -42,6 +44,7 @@ impl Suite {
         Suite::Antialiasing,
         Suite::Flight,
         Suite::Light,
+        Suite::Film,
     ];
 
     /// The name on the command line and in results.
@@ -55,6 +58,7 @@ impl Suite {
             Suite::Antialiasing => "antialiasing",
             Suite::Flight => "flight",
             Suite::Light => "light",
+            Suite::Film => "film",
         }
     }
 
@@ -75,6 +79,7 @@ impl Suite {
             }
             Suite::Flight => "flicker of a film with gathered light, and what it gains by keeping it, on any scene",
             Suite::Light => "what cut-outs, mirrors, gathered light and a thousand lamps cost, on any scene",
+            Suite::Film => "what films gain by keeping what frames have in common, on any scene",
         }
     }
 }

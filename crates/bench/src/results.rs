@@ -104,8 +104,11 @@ pub(crate) const SHADOWS: &str = "shadows";
 /// The experiment that compares defaults.
 pub(crate) const WHOLE_FRAMES: &str = "whole frames";
 
-/// The experiment on films.
+/// The experiment on flicker.
 pub(crate) const FLIGHT: &str = "flight";
+
+/// The experiment on what films keep.
+pub(crate) const FILM: &str = "film";
 
 /// The experiment on what light costs.
 pub(crate) const LIGHT: &str = "light";

@@ -1,6 +1,7 @@
 //! The suites. Each is a function that fills [`Findings`].
 
 mod antialiasing;
+mod film;
 mod flight;
 mod light;
 mod quality;
@@ -56,6 +57,7 @@ fn run_with(suite: Suite, plan: &Plan, observer: &dyn Observer, keep: Option<Kee
     }));
     let outcome = match suite {
         Suite::Antialiasing => antialiasing::run(plan, observer, &mut findings),
+        Suite::Film => film::run(plan, observer, &mut findings),
         Suite::Flight => flight::run(plan, observer, &mut findings),
         Suite::Light => light::run(plan, observer, &mut findings),
         Suite::Thesis => thesis::run(plan, observer, &mut findings),

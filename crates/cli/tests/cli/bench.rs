@@ -30,7 +30,7 @@ fn suites_are_listed() {
     let place = Place::new();
     let list = place.good(&["bench", "--list"]).stdout;
     let names: Vec<&str> = list.lines().filter_map(|line| line.split(' ').next()).collect();
-    assert_eq!(names, ["thesis", "quality", "rays", "shadows", "stages", "antialiasing", "flight", "light"]);
+    assert_eq!(names, ["thesis", "quality", "rays", "shadows", "stages", "antialiasing", "flight", "light", "film"]);
     assert!(
         place
             .refused(&["bench", "speed"])
