@@ -1,28 +1,13 @@
-//! Geometry in which things have moved: what of it stays, and which light points cannot have noticed.
-//!
-//! What a light point sees of a light depends only on triangles between them. So it is the same as before if no triangle that moved comes
-//! near the hull of the point and the light, where it was and where it is: the hull of two boxes is the union of all boxes between them,
-//! and whether one of these meets a third box is a matter of an interval on each axis.
+//! Geometry in which things have moved: what of it stays, and boxes around the rest.
 
-use std::sync::{Arc, Weak};
+use std::sync::Arc;
 
-use glam::Vec3;
-use lightmesh_layout::constants::{BRICK_BITS, POINT_BITS};
-use lightmesh_scene::{Bounds, Geometry, LightKind};
+use lightmesh_scene::{Bounds, Geometry};
 
 use crate::accel::Triangle;
-use crate::light_mesh::{BrickKey, Lattice, point_of};
-use crate::prepared::PreparedGeometry;
 
 /// Boxes around what moved, at most: more are put together.
 const MOST_BOXES: usize = 64;
-
-/// What moved since geometry was prepared before.
-pub(crate) struct Moved {
-    /// The geometry before.
-    pub(crate) before: Weak<PreparedGeometry>,
-    pub(crate) boxes: Arc<[Bounds]>,
-}
 
 /// Whether two geometries are the same but for the places of their vertices, and for normals.
 pub(crate) fn differ_by_places(before: &Geometry, now: &Geometry) -> bool {
@@ -64,130 +49,6 @@ fn places(triangle: &Triangle) -> [[u32; 3]; 3] {
     triangle.corners().map(|corner| corner.to_array().map(f32::to_bits))
 }
 
-fn around_both(a: Bounds, b: Bounds) -> Bounds {
+pub(crate) fn around_both(a: Bounds, b: Bounds) -> Bounds {
     Bounds { min: a.min.min(b.min), max: a.max.max(b.max) }
-}
-
-/// Tells which bricks of light points may see a light otherwise than before.
-pub struct Noticed<'a> {
-    boxes: &'a [Bounds],
-    lattice: &'a Lattice,
-    /// Beyond all triangles, before and now.
-    far: f32,
-    /// Around boxes, for rounding.
-    margin: f32,
-}
-
-impl<'a> Noticed<'a> {
-    /// By what moved in `geometry`, which has light points at `lattice`.
-    pub(crate) fn new(boxes: &'a [Bounds], lattice: &'a Lattice, geometry: &PreparedGeometry) -> Noticed<'a> {
-        let everything = boxes.iter().copied().fold(geometry.bounds, around_both);
-        let size = everything.farthest().max(everything.diagonal());
-        Noticed { boxes, lattice, far: 4.0 * (size + lattice.step), margin: 1e-3 * lattice.step + 1e-5 * size }
-    }
-
-    /// Whether light points of a brick may see a light of this kind otherwise.
-    pub(crate) fn by(&self, brick: BrickKey, light: &LightKind) -> bool {
-        let first = self.lattice.point(point_of(brick << POINT_BITS));
-        let last = first + self.lattice.step * ((1 << BRICK_BITS) - 1) as f32;
-        let points = Bounds { min: first, max: last };
-        let light = self.extent(light, &points);
-        self.boxes.iter().any(|moved| meets_between(&points, &light, &self.enlarged(moved)))
-    }
-
-    fn enlarged(&self, bounds: &Bounds) -> Bounds {
-        Bounds { min: bounds.min - self.margin, max: bounds.max + self.margin }
-    }
-
-    /// A box around a light; around where its rays leave the scene, if it is infinitely far away.
-    fn extent(&self, light: &LightKind, points: &Bounds) -> Bounds {
-        let around = |middle: Vec3, half: Vec3| Bounds { min: middle - half, max: middle + half };
-        match *light {
-            LightKind::Point { position, spread } => around(position, Vec3::splat(spread)),
-            LightKind::Spot { position, .. } => around(position, Vec3::ZERO),
-            LightKind::Sphere { position, radius } | LightKind::Disk { position, radius, .. } => {
-                around(position, Vec3::splat(radius))
-            }
-            LightKind::Rectangle { position, half_u, half_v } => around(position, half_u.abs() + half_v.abs()),
-            LightKind::Directional { direction, angle } => {
-                let length = self.far + points.center().length();
-                let aside = length * (0.5 * angle).tan();
-                let around_center = around(points.center() - length * direction, Vec3::splat(aside));
-                let half = 0.5 * points.extent();
-                Bounds { min: around_center.min - half, max: around_center.max + half }
-            }
-        }
-    }
-}
-
-/// Whether a box meets the hull of two others.
-fn meets_between(from: &Bounds, to: &Bounds, other: &Bounds) -> bool {
-    let (mut least, mut most) = (0.0f32, 1.0f32);
-    for axis in 0..3 {
-        // The boxes between begin below the other's end, and end above its beginning.
-        for (start, end) in [
-            (from.min[axis] - other.max[axis], to.min[axis] - other.max[axis]),
-            (other.min[axis] - from.max[axis], other.min[axis] - to.max[axis]),
-        ] {
-            // At the share s of the way: start + s (end - start) <= 0.
-            match (start <= 0.0, end <= 0.0) {
-                (true, true) => {}
-                (false, false) => return false,
-                (true, false) => most = most.min(start / (start - end)),
-                (false, true) => least = least.max(start / (start - end)),
-            }
-        }
-    }
-    least <= most + 1e-5
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn at(x: f32, y: f32, z: f32, half: f32) -> Bounds {
-        let middle = Vec3::new(x, y, z);
-        Bounds { min: middle - half, max: middle + half }
-    }
-
-    #[test]
-    fn only_what_is_between_is_met() {
-        let (points, light) = (at(0.0, 0.0, 0.0, 1.0), at(10.0, 10.0, 0.0, 0.1));
-        for (other, meets) in [
-            (at(5.0, 5.0, 0.0, 0.2), true),
-            (at(5.0, 5.0, 1.0, 0.6), true),
-            (at(5.0, 5.0, 1.5, 0.2), false),
-            (at(5.0, 2.0, 0.0, 0.2), false),
-            (at(0.0, 0.0, 0.0, 0.1), true),
-            (at(10.0, 10.0, 0.0, 0.01), true),
-            (at(11.0, 11.0, 0.0, 0.5), false),
-            (at(-2.0, -2.0, 0.0, 0.5), false),
-        ] {
-            assert_eq!(meets_between(&points, &light, &other), meets, "{other:?}");
-            assert_eq!(meets_between(&light, &points, &other), meets, "{other:?}");
-        }
-    }
-
-    #[test]
-    fn a_box_that_segments_go_through_is_always_met() {
-        let mut seed = 1u32;
-        let mut number = || {
-            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (seed >> 8) as f32 / (1 << 24) as f32
-        };
-        let mut met = 0;
-        for _ in 0..20_000 {
-            let mut place = |scale: f32| scale * Vec3::new(number() - 0.5, number() - 0.5, number() - 0.5);
-            let [a, b, c] = [place(4.0), place(4.0), place(4.0)];
-            let half = place(1.0).abs();
-            let (from, to) = (Bounds { min: a - half, max: a + half }, Bounds { min: b - half, max: b + half });
-            let other = Bounds { min: c - 0.3, max: c + 0.3 };
-            let (start, end) = (a + place(2.0).clamp(-half, half), b + place(2.0).clamp(-half, half));
-            let inside = (0..=64).map(|i| start.lerp(end, i as f32 / 64.0));
-            let goes_through = inside.into_iter().any(|p| p.cmpge(other.min).all() && p.cmple(other.max).all());
-            met += usize::from(goes_through);
-            assert!(!goes_through || meets_between(&from, &to, &other), "{from:?} {to:?} {other:?}");
-        }
-        assert!(met > 300, "{met}");
-    }
 }

@@ -12,7 +12,7 @@ use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Material, Scene, Texture
 use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Coverage, Grid, GridOptions, Triangle, coverage};
 use crate::error::RenderError;
 use crate::material_ids::MaterialIds;
-use crate::moved::{Moved, boxes, differ_by_places};
+use crate::moved::{boxes, differ_by_places};
 use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
 use crate::stage::Stage;
@@ -48,6 +48,13 @@ pub struct PreparedGeometry {
     center: Vec3,
     /// Slightly more than the diagonal of the bounds; 1 if they are empty.
     far: f32,
+}
+
+/// What moved since geometry was prepared before.
+pub(crate) struct Moved {
+    /// The geometry before.
+    pub(crate) before: Weak<PreparedGeometry>,
+    pub(crate) boxes: Arc<[Bounds]>,
 }
 
 /// A scene, or its geometry, taken apart for shadow rays: rays hit the same triangles as in the whole, but only some of these hide anything.

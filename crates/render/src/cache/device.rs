@@ -7,13 +7,12 @@ use lightmesh_layout::constants::POINT_BITS;
 use lightmesh_layout::mesh::{BrickTable, KeptBy, LitBy};
 use lightmesh_layout::stages::Cache;
 
-use super::{Seen, Table};
+use super::{Noticed, Seen, Table};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gathered::cuda::DeviceSurfaceLight;
 use crate::gpu::points::DevicePoints;
 use crate::gpu::{BLOCK, Cuda, blocks_for};
-use crate::moved::Noticed;
 
 const ADMIT: Kernel = Kernel { module: "cache", name: "admit_bricks" };
 const FIND_UNKNOWN: Kernel = Kernel { module: "cache", name: "find_unknown" };

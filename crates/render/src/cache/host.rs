@@ -5,11 +5,10 @@ use std::convert::Infallible;
 
 use lightmesh_layout::constants::POINT_BITS;
 
-use super::{Seen, Table};
+use super::{Noticed, Seen, Table};
 use crate::data::lit::LitBy;
 use crate::gathered::SurfaceLight;
 use crate::light_mesh::{BrickKey, bits};
-use crate::moved::Noticed;
 
 /// Number of light points in a brick.
 const POINTS: usize = 1 << POINT_BITS;

@@ -8,6 +8,7 @@
 
 mod device;
 mod host;
+mod noticed;
 
 use std::sync::{Arc, Weak};
 
@@ -16,12 +17,12 @@ use lightmesh_scene::{Light, LightKind};
 
 pub use device::DeviceTable;
 pub use host::HostTable;
+pub(crate) use noticed::Noticed;
 
 use crate::cuda::Driver;
 use crate::gathered::Sources;
 use crate::job::Sampling;
 use crate::light_mesh::Lattice;
-use crate::moved::Noticed;
 use crate::prepared::{PreparedGeometry, PreparedScene};
 
 /// The visibility of light points, cached for later images, and light that surfaces gather: for a moving camera, or, of light points, for
