@@ -26,6 +26,12 @@ pub(crate) enum Motion<T> {
     Keys(Arc<dyn Keyed<T>>),
 }
 
+/// Adds a motion to a list; returns its number.
+pub(crate) fn numbered<T>(motions: &mut Vec<Motion<T>>, motion: Motion<T>) -> u32 {
+    motions.push(motion);
+    motions.len() as u32 - 1
+}
+
 /// What a node can carry.
 pub(crate) trait Carried: Sized {
     /// It under a transform, at the local frame's origin; `None` if the transform leaves it no direction or size.

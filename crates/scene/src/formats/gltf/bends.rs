@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::{
     accessor::{Accessors, Used},
     container::malformed,
-    document::{Node, Primitive, Target},
+    document::{Primitive, Target},
 };
 use crate::{
     LoadError,
@@ -27,9 +27,8 @@ pub(super) struct Bends {
 }
 
 impl Bends {
-    /// Of node `node`, which shows a mesh whose own weights are `of_mesh`.
-    pub(super) fn new(node: &Node, of_mesh: &[f64], skin: Option<Arc<Skin>>, track: Option<&Arc<Track>>) -> Bends {
-        let weights = if node.weights.is_empty() { of_mesh } else { &node.weights };
+    /// By the weights at rest, the skin, and the weights over time.
+    pub(super) fn new(weights: &[f64], skin: Option<Arc<Skin>>, track: Option<&Arc<Track>>) -> Bends {
         Bends { skin, weights: weights.to_vec(), track: track.cloned() }
     }
 

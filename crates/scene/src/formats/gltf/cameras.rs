@@ -6,20 +6,15 @@ use std::{f64::consts::PI, path::Path};
 use glam::Vec3;
 
 use super::{
-    axes::Axes,
     container::malformed,
     document,
     extras::{self, CameraExtras},
-    nodes::Placed,
 };
-use crate::{Camera, Fov, LoadError, Projection, formats::toml::upright};
+use crate::{Camera, Fov, LoadError, Projection};
 
-/// A camera with this name in its node, at the local frame's origin.
-pub(super) fn placed(axes: &Axes, placed: &Placed, name: String, projection: Projection) -> Result<Camera, LoadError> {
-    let direction = axes.forward(placed)?;
-    let up = upright(direction, axes.up(placed)?).ok_or_else(|| axes.flat(placed))?;
-    let (direction, up) = (direction.as_vec3(), up.as_vec3());
-    Ok(Camera { name, position: Vec3::ZERO, direction, up, projection, motion: None })
+/// A camera in the coordinates of a node.
+pub(super) fn camera(name: String, projection: Projection) -> Camera {
+    Camera { name, position: Vec3::ZERO, direction: Vec3::NEG_Z, up: Vec3::Y, projection, motion: None }
 }
 
 /// The projection of camera number `index` of the document.

@@ -19,7 +19,6 @@
 
 mod accessor;
 mod animations;
-mod axes;
 mod bends;
 mod buffers;
 mod cameras;
@@ -130,7 +129,7 @@ fn shown<'a>(
             None => None,
         };
         let skin = node.skin.map(|skin| rigged.skin(accessors, skin)).transpose()?;
-        let bends = Bends::new(node, weights_of(accessors.document, mesh), skin, rigged.weights(index));
+        let bends = Bends::new(weights_of(accessors.document, node), skin, rigged.weights(index));
         all.push(Shown { mesh, node: (index, node.name.as_deref()), transform, instances, bends });
     }
     Ok(all)
@@ -138,14 +137,13 @@ fn shown<'a>(
 
 /// Whether morph targets change the mesh.
 fn is_morphed(document: &Document, node: &Node) -> bool {
-    let of_mesh = node.mesh.map_or(&[][..], |mesh| weights_of(document, mesh));
-    let weights = if node.weights.is_empty() { of_mesh } else { &node.weights };
-    weights.iter().any(|&weight| weight != 0.0)
+    weights_of(document, node).iter().any(|&weight| weight != 0.0)
 }
 
-/// Weights of the morph targets of a mesh.
-fn weights_of<'a>(document: &'a Document, mesh: u32) -> &'a [f64] {
-    document.meshes.get(mesh as usize).map_or(&[], |mesh| &mesh.weights)
+/// Weights of the morph targets of a node's mesh: the node's own, or else the mesh's.
+fn weights_of<'a>(document: &'a Document, node: &'a Node) -> &'a [f64] {
+    let mesh = node.mesh.and_then(|mesh| document.meshes.get(mesh as usize));
+    if node.weights.is_empty() { mesh.map_or(&[], |mesh| &mesh.weights) } else { &node.weights }
 }
 
 /// Ambient term, background and similar properties, from our own extras.

@@ -3,19 +3,21 @@
 use std::path::Path;
 
 use super::{
-    axes::Axes, cameras, container::malformed, document::Document, extras, extras::LightExtras, left_out::LeftOut,
-    lights, nodes::Placed, rigged::Rigged,
+    cameras, container::malformed, document::Document, extras, extras::LightExtras, left_out::LeftOut, lights,
+    nodes::Placed, rigged::Rigged,
 };
-use glam::DMat4;
-
-use crate::{LoadError, Projection, animation::views::Motion, draft::Draft};
+use crate::{
+    Camera, Light, LoadError, Projection,
+    animation::views::{Carried, Motion, numbered},
+    draft::Draft,
+};
 
 /// Maximum length of a name in characters; longer ones are cut.
 const LONGEST_NAME: usize = 200;
 
 /// The cameras and lights of a document.
 pub(super) struct Views<'a> {
-    axes: Axes<'a>,
+    path: &'a Path,
     document: &'a Document<'a>,
     /// By camera, once a node has used it.
     projections: Vec<Option<Projection>>,
@@ -26,7 +28,7 @@ pub(super) struct Views<'a> {
 impl<'a> Views<'a> {
     pub(super) fn new(path: &'a Path, document: &'a Document<'a>) -> Views<'a> {
         Views {
-            axes: Axes { path },
+            path,
             document,
             projections: vec![None; document.cameras.len()],
             extras: vec![None; document.extensions.lights_punctual.lights.len()],
@@ -63,15 +65,12 @@ impl<'a> Views<'a> {
         let slot = &mut self.projections[index as usize];
         let projection = match *slot {
             Some(known) => known,
-            None => *slot.insert(cameras::projection(self.axes.path, index, camera)?),
+            None => *slot.insert(cameras::projection(self.path, index, camera)?),
         };
-        let name = name(camera.name.as_deref(), placed);
-        let mut camera = cameras::placed(&self.axes, placed, name, projection)?;
-        if let Some(node) = mover {
-            let own = cameras::placed(&self.axes, &unplaced(placed), String::new(), projection)?;
-            camera.motion = Some(draft.animation.cameras.len() as u32);
-            draft.animation.cameras.push(Motion::Node(node, own.into()));
-        }
+        let own = cameras::camera(name(camera.name.as_deref(), placed), projection);
+        let camera = own.carried(&placed.transform).ok_or_else(|| flat(self.path, placed))?;
+        let motion = mover.map(|node| numbered(&mut draft.animation.cameras, Motion::Node(node, own.into())));
+        let camera = Camera { motion, ..camera };
         draft.cameras.push((camera, placed.transform.w_axis.truncate()));
         Ok(())
     }
@@ -88,37 +87,37 @@ impl<'a> Views<'a> {
         let light = lights.get(index as usize).ok_or_else(|| self.missing("light", index))?;
         let slot = &mut self.extras[index as usize];
         if slot.is_none() {
-            let own: Option<LightExtras> = extras::read(self.axes.path, &format!("light {index}"), light.extras)?;
+            let own: Option<LightExtras> = extras::read(self.path, &format!("light {index}"), light.extras)?;
             *slot = Some(own.unwrap_or_default());
         }
         let own = slot.as_ref().expect("just filled");
-        match lights::placed(&self.axes, placed, index, light, own)? {
-            Some(found) => {
-                let mut named = crate::Light { name: name(light.name.as_deref(), placed), ..found };
-                if let Some((node, own)) = mover.zip(lights::placed(&self.axes, &unplaced(placed), index, light, own)?)
-                {
-                    named.motion = Some(draft.animation.lights.len() as u32);
-                    draft.animation.lights.push(Motion::Node(node, own.into()));
-                }
-                draft.lights.push((named, placed.transform.w_axis.truncate()));
-            }
-            None => left_out.unknown_lights += 1,
-        }
+        let Some(found) = lights::read(self.path, index, light, own)? else {
+            left_out.unknown_lights += 1;
+            return Ok(());
+        };
+        let carried = found.carried(&placed.transform).ok_or_else(|| match own.shape {
+            Some(_) => malformed(self.path, format!("extras.lightmesh of light {index} does not give it a valid size")),
+            None => flat(self.path, placed),
+        })?;
+        let motion = mover.map(|node| numbered(&mut draft.animation.lights, Motion::Node(node, found.into())));
+        let named = Light { name: name(light.name.as_deref(), placed), motion, ..carried };
+        draft.lights.push((named, placed.transform.w_axis.truncate()));
         Ok(())
     }
 
     fn missing(&self, what: &str, index: u32) -> LoadError {
-        malformed(self.axes.path, format!("there is no {what} {index}, but it is referenced"))
+        malformed(self.path, format!("there is no {what} {index}, but it is referenced"))
     }
-}
-
-/// A node in its own coordinates.
-fn unplaced<'a>(placed: &Placed<'a>) -> Placed<'a> {
-    Placed { transform: DMat4::IDENTITY, ..*placed }
 }
 
 /// The name of a camera or light, else that of its node.
 fn name(own: Option<&str>, placed: &Placed) -> String {
     let name = own.filter(|name| !name.is_empty()).or(placed.node.name.as_deref());
     name.unwrap_or_default().chars().take(LONGEST_NAME).collect()
+}
+
+/// The error for a node without an orientation.
+fn flat(path: &Path, placed: &Placed) -> LoadError {
+    let node = placed.index;
+    malformed(path, format!("node {node} has a camera or light but no orientation (a scale of 0)"))
 }

@@ -22,7 +22,7 @@ use crate::{
     animation::{
         rig::{Node, Place},
         track::{Interpolation, Kind, Track},
-        views::{Keyed, Motion},
+        views::{Keyed, Motion, numbered},
     },
     draft::Draft,
 };
@@ -171,8 +171,7 @@ pub(super) fn camera(
 ) -> Result<(Camera, DVec3), LoadError> {
     let Some(motion) = &table.get_ref().motion else { return Ok((camera, world)) };
     let keyed = keyed(source, table, &motion.key, motion.interpolation, draft)?;
-    let number = draft.animation.cameras.len() as u32;
-    draft.animation.cameras.push(Motion::Keys(keyed));
+    let number = numbered(&mut draft.animation.cameras, Motion::Keys(keyed));
     Ok((Camera { motion: Some(number), ..camera }, world))
 }
 
@@ -185,8 +184,7 @@ pub(super) fn light(
 ) -> Result<(Light, DVec3), LoadError> {
     let Some(motion) = &table.get_ref().motion else { return Ok((light, world)) };
     let keyed = keyed(source, table, &motion.key, motion.interpolation, draft)?;
-    let number = draft.animation.lights.len() as u32;
-    draft.animation.lights.push(Motion::Keys(keyed));
+    let number = numbered(&mut draft.animation.lights, Motion::Keys(keyed));
     Ok((Light { motion: Some(number), ..light }, world))
 }
 
@@ -200,17 +198,22 @@ struct KeyedTable<T> {
     tracks: Vec<(usize, Track)>,
 }
 
+impl<T: Moving> KeyedTable<T> {
+    /// Sets a property to its value at `time`.
+    fn set(&self, table: &mut T, number: usize, track: &Track, time: f64) {
+        let mut values = vec![0.0; track.width()];
+        track.sample(time, &mut values);
+        (T::PROPERTIES[number].set)(table, self.table.span(), &values);
+    }
+}
+
 impl<T> Keyed<T::Made> for KeyedTable<T>
 where
     T: Moving + std::fmt::Debug + Send + Sync,
 {
     fn at(&self, time: f64) -> Option<(T::Made, DVec3)> {
         let mut table = self.table.get_ref().clone();
-        for (number, track) in &self.tracks {
-            let mut values = vec![0.0; track.width()];
-            track.sample(time, &mut values);
-            (T::PROPERTIES[*number].set)(&mut table, self.table.span(), &values);
-        }
+        self.tracks.iter().for_each(|(number, track)| self.set(&mut table, *number, track, time));
         let source = Source { path: &self.path, text: &self.text };
         T::read(&source, &Spanned::new(self.table.span(), table)).ok()
     }
@@ -258,13 +261,10 @@ fn check<T: Moving>(
     let at = |key: &Spanned<T::Key>, time: Option<f64>| {
         let mut table = keyed.table.get_ref().clone();
         for (number, track) in &keyed.tracks {
-            let property = &T::PROPERTIES[*number];
             if let Some(time) = time {
-                let mut values = vec![0.0; track.width()];
-                track.sample(time, &mut values);
-                (property.set)(&mut table, keyed.table.span(), &values);
+                keyed.set(&mut table, *number, track, time);
             }
-            (property.copy)(&mut table, key.get_ref());
+            (T::PROPERTIES[*number].copy)(&mut table, key.get_ref());
         }
         T::read(source, &Spanned::new(keyed.table.span(), table)).err()
     };
