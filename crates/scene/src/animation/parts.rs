@@ -84,22 +84,30 @@ pub(crate) struct MovingPart {
     pub(crate) reversed: bool,
 }
 
-/// A vertex's transforms: of its position, and of its normal.
-type Placing<'a> = Box<dyn Fn(usize) -> (DMat4, DMat3) + Sync + 'a>;
+/// The transforms of vertices.
+enum Placing<'a> {
+    /// All have the same.
+    Same(DMat4),
+    /// Each has a mixture of those of joints.
+    Mixed(&'a Influences, Vec<DMat4>),
+}
 
 impl Shape {
     /// World positions and normals at `time`, or at rest; nodes are at `places`.
     pub(crate) fn posed(&self, hold: &Hold, places: &[DMat4], time: Option<f64>) -> (Vec<DVec3>, Vec<Vec3>) {
         let weights = self.morph.as_ref().map(|morph| morph.weights(time)).unwrap_or_default();
-        let place = hold.placing(places);
-        let count = self.positions.len();
-        let positions =
-            (0..count).into_par_iter().map(|vertex| place(vertex).0.transform_point3(self.position(vertex, &weights)));
-        let normals = (0..self.normals.len()).into_par_iter().map(|vertex| {
-            let normal = self.normal(vertex, &weights);
-            (place(vertex).1 * normal).normalize_or_zero().as_vec3()
-        });
-        (positions.collect(), normals.collect())
+        let placing = hold.placing(places);
+        let (positions, mut normals): (Vec<DVec3>, Vec<Vec3>) = (0..self.positions.len())
+            .into_par_iter()
+            .map(|vertex| {
+                let transform = placing.of(vertex);
+                let normal = cofactors(&DMat3::from_mat4(transform)) * self.normal(vertex, &weights);
+                let position = transform.transform_point3(self.position(vertex, &weights));
+                (position, normal.normalize_or_zero().as_vec3())
+            })
+            .unzip();
+        normals.truncate(self.normals.len());
+        (positions, normals)
     }
 
     fn position(&self, vertex: usize, weights: &[f64]) -> DVec3 {
@@ -109,7 +117,8 @@ impl Shape {
 
     fn normal(&self, vertex: usize, weights: &[f64]) -> DVec3 {
         let added = self.targets(weights).map(|(weight, target)| weight * added(&target.normals, vertex));
-        added.fold(self.normals[vertex].as_dvec3(), |sum, added| sum + added)
+        let own = self.normals.get(vertex).map_or(DVec3::ZERO, |normal| normal.as_dvec3());
+        added.fold(own, |sum, added| sum + added)
     }
 
     /// The targets that count.
@@ -136,23 +145,21 @@ impl Morph {
 impl Hold {
     fn placing(&self, places: &[DMat4]) -> Placing<'_> {
         match self {
-            Hold::Node(node, local) => {
-                let transform = places[*node as usize] * *local;
-                let normals = cofactors(&DMat3::from_mat4(transform));
-                Box::new(move |_| (transform, normals))
-            }
+            Hold::Node(node, local) => Placing::Same(places[*node as usize] * *local),
             Hold::Skin(skin, influences) => {
-                let joints: Vec<DMat4> = skin
-                    .joints
-                    .iter()
-                    .zip(&skin.inverse_bind)
-                    .map(|(&joint, inverse_bind)| places[joint as usize] * *inverse_bind)
-                    .collect();
-                Box::new(move |vertex| {
-                    let transform = influences.mixed(vertex, &joints);
-                    (transform, cofactors(&DMat3::from_mat4(transform)))
-                })
+                let joints = skin.joints.iter().zip(&skin.inverse_bind);
+                let joints = joints.map(|(&joint, inverse_bind)| places[joint as usize] * *inverse_bind);
+                Placing::Mixed(influences, joints.collect())
             }
+        }
+    }
+}
+
+impl Placing<'_> {
+    fn of(&self, vertex: usize) -> DMat4 {
+        match self {
+            Placing::Same(transform) => *transform,
+            Placing::Mixed(influences, joints) => influences.mixed(vertex, joints),
         }
     }
 }
