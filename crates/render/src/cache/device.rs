@@ -6,6 +6,7 @@ use lightmesh_layout::Out;
 use lightmesh_layout::constants::POINT_BITS;
 use lightmesh_layout::mesh::{BrickTable, KeptBy, LitBy};
 use lightmesh_layout::stages::Cache;
+use rayon::prelude::*;
 
 use super::{Noticed, Seen, Table};
 use crate::cuda::{Buffer, Kernel, Runtime};
@@ -80,17 +81,15 @@ impl<R: Runtime> Table for DeviceTable<R> {
         for column in &mut self.columns {
             let kind = column.seen.kind();
             let mut known = column.known.read()?;
-            let mut forgotten = Vec::new();
-            for (slot, (known, &key)) in known.iter_mut().zip(&keys).enumerate() {
-                // Keys are stored increased by 1: 0 is an empty slot.
-                if *known != 0 && noticed.by(key - 1, kind) {
-                    column.count -= u64::from(known.count_ones());
-                    *known = 0;
-                    forgotten.push(slot);
-                }
-            }
+            // Keys are stored increased by 1: 0 is an empty slot.
+            let is_noticed = |&slot: &usize| known[slot] != 0 && noticed.by(keys[slot] - 1, kind);
+            let forgotten: Vec<usize> = (0..keys.len()).into_par_iter().filter(is_noticed).collect();
             if forgotten.is_empty() {
                 continue;
+            }
+            for &slot in &forgotten {
+                column.count -= u64::from(known[slot].count_ones());
+                known[slot] = 0;
             }
             column.known.write(&known)?;
             if let Answers::Bits(bits) = &column.answers {

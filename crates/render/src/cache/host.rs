@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::convert::Infallible;
 
 use lightmesh_layout::constants::POINT_BITS;
+use rayon::prelude::*;
 
 use super::{Noticed, Seen, Table};
 use crate::data::lit::LitBy;
@@ -53,13 +54,14 @@ impl Table for HostTable {
     }
 
     fn forget(&mut self, noticed: &Noticed) -> Result<(), Infallible> {
-        for column in &mut self.columns {
-            for (&brick, &row) in &self.rows {
-                if row < column.known.len() && column.known[row] != 0 && noticed.by(brick, column.seen.kind()) {
-                    column.known[row] = 0;
-                    if let Answers::Bits(words) = &mut column.answers {
-                        words[row] = 0;
-                    }
+        for Column { seen, known, answers } in &mut self.columns {
+            let is_known = |row: usize| known.get(row).is_some_and(|&points| points != 0);
+            let noticing =
+                self.rows.par_iter().filter(|&(&brick, &row)| is_known(row) && noticed.by(brick, seen.kind()));
+            for row in noticing.map(|(_, &row)| row).collect::<Vec<usize>>() {
+                known[row] = 0;
+                if let Answers::Bits(words) = answers {
+                    words[row] = 0;
                 }
             }
         }

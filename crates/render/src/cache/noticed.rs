@@ -14,20 +14,21 @@ use crate::prepared::PreparedGeometry;
 
 /// Tells which bricks of light points may see a light otherwise than before.
 pub struct Noticed<'a> {
-    boxes: &'a [Bounds],
+    /// Around what moved, and enlarged for rounding.
+    boxes: Vec<Bounds>,
     lattice: &'a Lattice,
     /// Beyond all triangles, before and now.
     far: f32,
-    /// Around boxes, for rounding.
-    margin: f32,
 }
 
 impl<'a> Noticed<'a> {
     /// By what moved in `geometry`, which has light points at `lattice`.
-    pub(crate) fn new(boxes: &'a [Bounds], lattice: &'a Lattice, geometry: &PreparedGeometry) -> Noticed<'a> {
+    pub(crate) fn new(boxes: &[Bounds], lattice: &'a Lattice, geometry: &PreparedGeometry) -> Noticed<'a> {
         let everything = boxes.iter().copied().fold(geometry.bounds, around_both);
         let size = everything.farthest().max(everything.diagonal());
-        Noticed { boxes, lattice, far: 4.0 * (size + lattice.step), margin: 1e-3 * lattice.step + 1e-5 * size }
+        let margin = 1e-3 * lattice.step + 1e-5 * size;
+        let enlarged = |bounds: &Bounds| Bounds { min: bounds.min - margin, max: bounds.max + margin };
+        Noticed { boxes: boxes.iter().map(enlarged).collect(), lattice, far: 4.0 * (size + lattice.step) }
     }
 
     /// Whether light points of a brick may see a light of this kind otherwise.
@@ -36,11 +37,7 @@ impl<'a> Noticed<'a> {
         let last = first + self.lattice.step * ((1 << BRICK_BITS) - 1) as f32;
         let points = Bounds { min: first, max: last };
         let light = self.extent(light, &points);
-        self.boxes.iter().any(|moved| meets_between(&points, &light, &self.enlarged(moved)))
-    }
-
-    fn enlarged(&self, bounds: &Bounds) -> Bounds {
-        Bounds { min: bounds.min - self.margin, max: bounds.max + self.margin }
+        self.boxes.iter().any(|moved| meets_between(&points, &light, moved))
     }
 
     /// A box around a light; around where its rays leave the scene, if it is infinitely far away.
