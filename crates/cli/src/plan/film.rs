@@ -18,6 +18,8 @@ pub(crate) struct Film {
     /// The movie that it goes to, unless each frame has a file.
     movie: Option<Container>,
     frames: Option<Frames>,
+    /// What is left, if the wanted frames are known without the scene.
+    left: Option<Work>,
 }
 
 /// What moves in a film.
@@ -52,6 +54,7 @@ impl Motion {
 }
 
 /// The frames of a film that are to be rendered.
+#[derive(Clone)]
 pub(crate) struct Work {
     /// Their numbers, in their order; none if all exist.
     pub(crate) numbers: Vec<u32>,
@@ -70,20 +73,31 @@ impl Film {
         };
         let movie = Container::of_film(args)?;
         let record = if args.resume { manifest::known(args)? } else { None };
-        let film = Film { motion, record, movie, frames: args.frames };
+        let mut film = Film { motion, record, movie, frames: args.frames, left: None };
         if let Some(last) = motion.known_last().or(args.frames.map(Frames::last)) {
-            film.work(args, last)?;
+            film.left = Some(film.left(args, film.wanted(last)?, last)?);
         }
         Ok(Some(film))
     }
 
-    /// What is left to render of a film with `last` frames: checks that it has those that are wanted, that their files have names of their
-    /// own, and that nothing is replaced unasked.
-    pub(crate) fn work(&self, args: &RenderArgs, last: u32) -> Result<Work, PlanError> {
-        let frames = self.frames.unwrap_or(Frames::up_to(last));
-        if frames.last() > last || frames.first() == 0 {
-            return Err(PlanError::NoFrame { frames, last });
+    /// What is left to render of the film of a scene: checks that it has the frames that are wanted, that their files have names of their own,
+    /// and that nothing is replaced unasked.
+    pub(crate) fn work(&self, args: &RenderArgs, scene: &Scene) -> Result<Work, PlanError> {
+        let last = self.last(scene)?;
+        let frames = self.wanted(last)?;
+        match &self.left {
+            Some(left) => Ok(Work { last, ..left.clone() }),
+            None => self.left(args, frames, last),
         }
+    }
+
+    /// The frames that are wanted of a film with `last` of them.
+    fn wanted(&self, last: u32) -> Result<Frames, PlanError> {
+        let frames = self.frames.unwrap_or(Frames::up_to(last));
+        if frames.last() > last || frames.first() == 0 { Err(PlanError::NoFrame { frames, last }) } else { Ok(frames) }
+    }
+
+    fn left(&self, args: &RenderArgs, frames: Frames, last: u32) -> Result<Work, PlanError> {
         // Frames that the manifest does not name are those that were being finished when the film ended.
         let replaces = args.overwrite || self.record.is_some() || self.is_movie();
         let (mut numbers, mut existing) = (Vec::new(), VecDeque::new());
@@ -105,7 +119,7 @@ impl Film {
     ///
     /// # Errors
     /// [`PlanError::NotAnimated`] if nothing in the scene moves.
-    pub(crate) fn last(&self, scene: &Scene) -> Result<u32, PlanError> {
+    fn last(&self, scene: &Scene) -> Result<u32, PlanError> {
         match self.motion {
             Motion::Turntable(last) | Motion::Sun(last) => Ok(last),
             Motion::Scene(rate) => match scene.animation() {

@@ -30,7 +30,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let animation = args.animation.as_deref();
     let mut scene = open(&plan.scene, plan.smooth, animation, &plan.files.outputs, &watcher)?;
-    let work = plan.film.as_ref().map(|film| film.work(args, film.last(&scene)?)).transpose()?;
+    let work = plan.film.as_ref().map(|film| film.work(args, &scene)).transpose()?;
     let load = start.elapsed().as_secs_f64();
     if matches!(plan.device, Device::Auto | Device::Cuda(None)) {
         watcher.note(&format!("device {}: using {using}", plan.device));
