@@ -1,6 +1,6 @@
 //! Cameras: the viewpoints of images.
 
-use glam::{DMat4, DVec3, DVec4, Vec3};
+use glam::{DMat4, DVec3, DVec4, Quat, Vec3};
 
 /// The field of view of a perspective camera. The other angle follows from the image's aspect ratio, because pixels are square.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,6 +136,13 @@ impl Camera {
     /// The same direction and projection from another position, in the local frame.
     pub fn with_position(self, position: Vec3) -> Camera {
         Camera { position, ..self }
+    }
+
+    /// The same camera turned about the vertical through `middle`, which is along its up vector, by `angle` in radians.
+    pub fn turned_about(self, middle: Vec3, angle: f32) -> Camera {
+        let turn = Quat::from_axis_angle(self.up.normalize(), angle);
+        let (position, direction) = (middle + turn * (self.position - middle), turn * self.direction);
+        Camera { position, direction, ..self }
     }
 
     /// From world coordinates to the camera's: x to the right, y up, −z into the image. `origin` is where the local frame lies.

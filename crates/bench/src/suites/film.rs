@@ -15,7 +15,6 @@
 
 use std::time::{Duration, Instant};
 
-use lightmesh::glam::Quat;
 use lightmesh::render::{AmbientSource, PreparedScene};
 use lightmesh::{Frame, Lookup, MeshCache, Observer, Scene, Settings, Step};
 
@@ -193,12 +192,8 @@ impl Film<'_> {
         if self.scene.animation().is_some() {
             return self.scene.at(f64::from(number) / RATE);
         }
-        let mut camera = self.scene.cameras[0].clone();
-        let turn = std::f32::consts::TAU * number as f32 / self.frames as f32;
-        let turn = Quat::from_axis_angle(camera.up.normalize(), turn);
-        let middle = self.scene.geometry.mesh.bounds().center();
-        camera.direction = turn * camera.direction;
-        let position = middle + turn * (camera.position - middle);
-        self.scene.clone().with_cameras(vec![camera.with_position(position)])
+        let angle = std::f32::consts::TAU * number as f32 / self.frames as f32;
+        let camera = self.scene.cameras[0].clone().turned_about(self.scene.geometry.mesh.bounds().center(), angle);
+        self.scene.clone().with_cameras(vec![camera])
     }
 }

@@ -4,7 +4,6 @@ use std::sync::mpsc::{self, SyncSender};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use glam::Quat;
 use lightmesh::render::{Crop, PreparedScene};
 use lightmesh::scene::Camera;
 use lightmesh::{Frame, Lookup, MeshCache, Mode, Observer, RenderError, Scene, Settings, Step};
@@ -307,17 +306,12 @@ pub(super) fn explain(scene: &Scene, is_film: bool, watcher: &Watcher) {
 /// The camera of frame `number` of a turntable: that of the scene, turned about the vertical through the middle of the scene. All `last` frames
 /// make one turn.
 fn turned(prepared: &PreparedScene, number: u32, last: u32) -> Camera {
-    let mut camera = prepared.scene.cameras[0].clone();
+    let camera = prepared.scene.cameras[0].clone();
     if number == 1 {
         return camera;
     }
     let share = f64::from(number - 1) / f64::from(last);
-    let turn = Quat::from_axis_angle(camera.up.normalize(), (std::f64::consts::TAU * share) as f32);
-    let bounds = prepared.geometry.bounds;
-    let middle = 0.5 * (bounds.min + bounds.max);
-    camera.direction = turn * camera.direction;
-    let position = middle + turn * (camera.position - middle);
-    camera.with_position(position)
+    camera.turned_about(prepared.geometry.bounds.center(), (std::f64::consts::TAU * share) as f32)
 }
 
 fn summary(work: &Work, elapsed: Duration, studio: &Studio) -> String {
