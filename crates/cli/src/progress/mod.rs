@@ -22,7 +22,7 @@ use lines::Lines;
 pub(crate) struct Watcher {
     quiet: bool,
     sink: Sink,
-    /// Notes of this command: each is said once, however many frames it holds for.
+    /// Notes of this command, and what warnings about images are about: each is said once, however many frames it holds for.
     said: Mutex<BTreeSet<String>>,
 }
 
@@ -79,6 +79,18 @@ impl Watcher {
     /// A warning.
     pub(crate) fn warning(&self, text: &str) {
         self.say("warning", &format!("warning: {text}"), text);
+    }
+
+    /// A warning about an image: the first one about each thing is said, however many frames it holds for.
+    pub(crate) fn warning_about(&self, what: &str, text: &str) {
+        if self.is_new(what) {
+            self.warning(text);
+        }
+    }
+
+    /// Whether a text has not been said before.
+    fn is_new(&self, text: &str) -> bool {
+        self.said.lock().unwrap_or_else(PoisonError::into_inner).insert(text.to_owned())
     }
 
     /// A frame of a film is finished.
@@ -163,7 +175,7 @@ impl Observer for Watcher {
     }
 
     fn note(&self, text: &str) {
-        if self.said.lock().unwrap_or_else(PoisonError::into_inner).insert(text.to_owned()) {
+        if self.is_new(text) {
             self.say("note", text, text);
         }
     }

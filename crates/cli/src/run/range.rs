@@ -18,8 +18,8 @@ fn is_black(color: &[f32; 3]) -> bool {
     color.iter().all(|channel| *channel < BLACK)
 }
 
-/// The warnings for an image that is shown by `display`; `has_ground` if the scene has a shadow catcher.
-pub(super) fn warnings(frame: &Frame, display: &Display, has_ground: bool) -> Vec<String> {
+/// The warnings for an image that is shown by `display`, and what each is about; `has_ground` if the scene has a shadow catcher.
+pub(super) fn warnings(frame: &Frame, display: &Display, has_ground: bool) -> Vec<(&'static str, String)> {
     let counts = &frame.stats.counts;
     let shown: Vec<[f32; 3]> = frame.color().iter().step_by(STRIDE).map(|color| display.show(*color)).collect();
     let seen = shown.len() as f64 * counts.hits as f64 / counts.pixels.max(1) as f64;
@@ -37,22 +37,24 @@ pub(super) fn warnings(frame: &Frame, display: &Display, has_ground: bool) -> Ve
     let (white, black) = (share(is_white), share(is_black));
     let mut warnings = Vec::new();
     if white > MANY {
-        warnings.push(format!(
+        let text = format!(
             "{:.0} % of what is seen of the scene is clipped to white: lower the exposure (--exposure auto, or a number of stops \
              below {}), or compress highlights (--view neutral)",
             100.0 * white,
             display.exposure
-        ));
+        );
+        warnings.push(("clipped", text));
     }
     // Shadows on a transparent ground are black, as they should be.
     let has_shadows = frame.image.alpha().is_some() && has_ground;
     if black > MANY && !has_shadows {
-        warnings.push(format!(
+        let text = format!(
             "{:.0} % of what is seen of the scene is black: add light (--light, --ambient), or raise the exposure (--exposure auto, \
              or a number of stops above {})",
             100.0 * black,
             display.exposure
-        ));
+        );
+        warnings.push(("black", text));
     }
     warnings
 }

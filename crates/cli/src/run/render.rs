@@ -168,13 +168,15 @@ pub(super) fn save(
     let odd = frame.stats.counts.non_finite_pixels;
     if odd > 0 {
         let of = frame.stats.counts.pixels;
-        watcher.warning(&format!(
+        let text = format!(
             "{odd} of {of} pixels have infinite or undefined colours: lower the intensities of lights or the coefficients of materials"
-        ));
+        );
+        watcher.warning_about("non-finite", &text);
     }
     if files.format() != Some(Format::Exr) {
         let display = files.options.display.with_exposure(stops);
-        range::warnings(&frame, &display, metering.has_ground()).iter().for_each(|warning| watcher.warning(warning));
+        let warnings = range::warnings(&frame, &display, metering.has_ground());
+        warnings.iter().for_each(|(what, text)| watcher.warning_about(what, text));
     }
     let mut options = files.options.clone().with_description(description(&frame, scene, camera));
     options.display.exposure = stops;

@@ -196,6 +196,9 @@ fn what_is_mostly_clipped_or_black_is_told_with_the_flag_that_helps() {
     );
     let said = render(&["--exposure", "-12", "--background", "0.5"]);
     assert!(said.contains("is black") && said.contains("--ambient"), "{said}");
+    // A film says it once.
+    let film = ["render", "ball.toml", "-o", "f.#.png", "--size", "32x24", "--turntable", "3", "--exposure", "6"];
+    assert_eq!(place.good(&film).stderr.matches("clipped to white").count(), 1);
     // The background does not count. (In so small an image, it is in many pixels with several samples.)
     let said = render(&["--exposure", "-3", "--background", "70", "--aa", "1"]);
     assert!(!said.contains("clipped"), "{said}");

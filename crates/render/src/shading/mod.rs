@@ -363,6 +363,10 @@ impl LightTargets {
     /// part of that share, nor of the [unshadowed light](Self::unshadowed), and must not be taken away twice.
     #[inline(always)]
     pub(crate) fn shown(&self, surface: &Surface, light: &Light, index: usize, reach: f32, seen: Vec3) -> Vec3 {
+        // Of lights without light, such as the suns whose hours are counted, only what sees them matters.
+        if light.intensity == Vec3::ZERO {
+            return Vec3::ZERO;
+        }
         let seen = (seen / self.above_horizon(surface, light, index, reach)).min(Vec3::ONE);
         seen * self.unshadowed(surface, light, index, reach)
     }

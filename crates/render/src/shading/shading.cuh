@@ -181,6 +181,10 @@ DEVICE float above_horizon_of_targets(const Surface &surface, const Scene &scene
 // The light of light number `index` that reaches the eye if `seen` is the share of the light that arrives. What is below the horizon is no part of
 // that share, nor of the unshadowed light, and must not be taken away twice.
 DEVICE Vec3 shown(const Surface &surface, const Scene &scene, unsigned index, float reach, Vec3 seen) {
+    // Of lights without light, such as the suns whose hours are counted, only what sees them matters.
+    const Vec3 intensity = scene.lights[index].intensity;
+    if (intensity.x == 0.0f && intensity.y == 0.0f && intensity.z == 0.0f)
+        return splat(0.0f);
     const Vec3 share = min(seen / above_horizon_of_targets(surface, scene, index, reach), splat(1.0f));
     return share * unshadowed(surface, scene, index, reach);
 }

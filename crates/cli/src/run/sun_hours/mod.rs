@@ -83,7 +83,8 @@ impl SunHours {
         let at_once = suns.len().div_ceil(suns.len().div_ceil(at_once).max(1)).max(1);
         let (mut seen, mut hours) = (None, vec![0.0_f64; width * height]);
         for suns in suns.chunks(at_once) {
-            let lights: Lights = suns.iter().map(|(light, _)| light.clone()).collect();
+            let dark = |(light, _): &(Light, f64)| light.clone().with_intensity(Vec3::ZERO);
+            let lights: Lights = suns.iter().map(dark).collect();
             let lit = prepared.with_lights(lights.with_ambient(Vec3::ZERO));
             let lightmesh::Frame { image: frame, stats } = renderer.render_prepared(&lit, &settings, observer)?;
             // What was chosen holds for all suns, and is told once.
