@@ -15,8 +15,7 @@ const HEADER: usize = 24;
 /// Where the hash of the geometry is in the content.
 const GEOMETRY: std::ops::Range<usize> = 4..12;
 
-static RENDERER: LazyLock<Renderer> =
-    LazyLock::new(|| Renderer::with_threads(Device::Cpu, Some(1)).expect("a thread"));
+static RENDERER: LazyLock<Renderer> = LazyLock::new(|| Renderer::with_threads(Device::Cpu, Some(1)).expect("a thread"));
 static SETTINGS: LazyLock<Settings> = LazyLock::new(|| {
     Settings::default().with_size([6, 4]).with_lookup(Lookup::HalfBall).with_step(Step::Fixed(0.5)).with_samples(4)
 });

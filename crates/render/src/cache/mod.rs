@@ -11,6 +11,7 @@ mod device;
 mod file;
 mod host;
 mod noticed;
+mod seen;
 mod stored;
 
 use std::path::{Path, PathBuf};
@@ -18,18 +19,17 @@ use std::sync::{Arc, Weak};
 
 use glam::{UVec3, Vec3};
 use lightmesh_memory::Budget;
-use lightmesh_scene::{Light, LightKind};
 
 pub use device::DeviceTable;
 pub use file::{MeshFault, MeshFileError, MeshSaveError, SavedMesh};
 pub use host::HostTable;
 pub(crate) use noticed::Noticed;
+pub(crate) use seen::Seen;
 use stored::Stored;
 
 use crate::cuda::Driver;
 use crate::error::RenderError;
 use crate::gathered::Sources;
-use crate::job::Sampling;
 use crate::light_mesh::Lattice;
 use crate::prepared::{PreparedGeometry, PreparedScene};
 
@@ -385,35 +385,5 @@ impl<T: Table> Kept<T> {
         let mut table = self.tables.swap_remove(index).table;
         table.forget(&Noticed::new(&moved.boxes, lattice, &scene.geometry))?;
         Ok(Some(table))
-    }
-}
-
-/// What determines the values of a column, apart from the light's index, which is the column's.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Seen {
-    kind: LightKind,
-    /// Samples and seed, for an area light.
-    sampling: Option<(u32, u64)>,
-}
-
-impl Seen {
-    pub(crate) fn of(light: &Light, sampling: &Sampling) -> Seen {
-        let sampling = light.has_size().then_some((sampling.samples, sampling.seed));
-        Seen { kind: light.kind.clone(), sampling }
-    }
-
-    /// The shape of the light.
-    pub(crate) fn kind(&self) -> &LightKind {
-        &self.kind
-    }
-
-    /// Number of rays from each light point.
-    pub(crate) fn samples(&self) -> u32 {
-        self.sampling.map_or(1, |(samples, _)| samples)
-    }
-
-    /// Whether values are shares rather than bits.
-    pub(crate) fn is_share(&self) -> bool {
-        self.sampling.is_some()
     }
 }

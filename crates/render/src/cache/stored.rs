@@ -3,7 +3,7 @@
 
 use lightmesh_layout::constants::POINT_BITS;
 
-use super::Seen;
+use super::seen::Seen;
 use crate::light_mesh::{BrickKey, bits};
 
 /// Number of light points in a brick.
