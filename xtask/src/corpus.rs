@@ -11,7 +11,7 @@ use crate::{Outcome, Verdict};
 const LONGEST: u64 = 16 << 10;
 
 /// Fuzz targets, and the extensions of the files that they accept.
-const TARGETS: [(&str, &[&str]); 12] = [
+const TARGETS: [(&str, &[&str]); 13] = [
     ("obj", &["obj"]),
     ("ply", &["ply"]),
     ("stl", &["stl"]),
@@ -20,6 +20,7 @@ const TARGETS: [(&str, &[&str]); 12] = [
     ("toml", &["toml"]),
     ("texture", &["png", "jpg", "jpeg", "bmp", "tga"]),
     ("grid", &["grid"]),
+    ("mesh", &["mesh"]),
     ("scene", &[]),
     ("picture", &["png", "exr", "bmp"]),
     ("values", &[]),

@@ -1,6 +1,7 @@
 //! Everything that can end a run, and its exit code.
 
 use lightmesh::render::accel::{GridError, GridSaveError};
+use lightmesh::render::{MeshFault, MeshFileError, MeshSaveError};
 use lightmesh::scene::{EnvironmentError, ExportError, SceneFormat};
 use lightmesh::{LoadError, RenderError, SaveError, image};
 use lightmesh_bench::BenchError;
@@ -59,6 +60,10 @@ pub(crate) enum Failure {
     Grid(#[from] GridError),
     #[error(transparent)]
     GridSave(#[from] GridSaveError),
+    #[error(transparent)]
+    Mesh(#[from] MeshFileError),
+    #[error(transparent)]
+    MeshSave(#[from] MeshSaveError),
     #[error(transparent)]
     Export(#[from] ExportError),
     #[error(transparent)]
@@ -160,7 +165,9 @@ impl Failure {
                 UNABLE
             }
             Failure::Choice(ChoiceError::Environment(EnvironmentError::Memory { .. })) => UNABLE,
-            Failure::Grid(GridError::Memory { .. }) => UNABLE,
+            Failure::Grid(GridError::Memory { .. })
+            | Failure::Mesh(MeshFileError { fault: MeshFault::Memory(_), .. })
+            | Failure::MeshSave(MeshSaveError::Device { .. }) => UNABLE,
             _ => BAD_INPUT,
         }
     }

@@ -291,6 +291,38 @@ fn a_cache_gives_way_to_a_limit() {
     }
 }
 
+/// A film of which everything cannot be kept: the bricks that were used last are.
+#[test]
+fn a_cache_under_a_limit_keeps_what_was_used_last() {
+    let scene = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
+    let film = |limit: Option<u64>| {
+        let cuda = Cuda::new(Arc::new(Emulator::new()));
+        let mut kept = Kept::default();
+        let (mut saved, mut most, mut peak, notes) = (0, 0, 0, Notes::default());
+        let base = scene.scene.default_camera(Up::Y);
+        let (right, ..) = base.basis();
+        for frame in 0..12 {
+            let camera = base.clone().with_position(base.position + 0.15 * frame as f32 * right);
+            let mut settings = settings().with_size([50, 40]).with_step(Step::Fixed(0.04)).with_camera(camera);
+            settings.memory_limit = limit;
+            let with = render_on_with(&cuda, &mut kept, &scene, &settings, &notes).unwrap();
+            settings.memory_limit = None;
+            let fresh = render_on(&Cuda::new(Arc::new(Emulator::new())), &scene, &settings, &Unobserved).unwrap();
+            assert!(bits(&with) == bits(&fresh), "{limit:?}, frame {frame}: another image");
+            saved += with.stats.counts.long_tests_saved;
+            most = most.max(kept.memory());
+            peak = with.stats.memory.device_peak_bytes;
+        }
+        assert!(!notes.heard("dropped"), "{limit:?}");
+        (saved, most, peak, kept.len())
+    };
+    let all = film(None);
+    let limit = 5 * all.1 / 2;
+    let some = film(Some(limit));
+    assert!(some.2 <= limit && some.1 <= limit / 4, "{limit}: {all:?} {some:?}");
+    assert!(some.0 > all.0 / 4 && some.3 < all.3, "{limit}: {all:?} {some:?}");
+}
+
 #[test]
 fn a_cache_grows_and_forgets_nothing() {
     let scene = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();

@@ -456,6 +456,8 @@ records! {
         table: BrickTable,
         /// Their number.
         bricks: Out<u32>,
+        /// The number of the last image that used each of them, by slot.
+        ages: Out<u32>,
         /// For each slot that a thread processes, the slot in the cached table.
         rows: Out<u32>,
         /// The cached values for the light.
@@ -466,8 +468,14 @@ records! {
         unknown: Out<u64>,
         /// The table that became too small.
         from_table: BrickTable,
+        /// Its ages.
+        from_ages: Out<u32>,
         /// Its values for the light.
         from: KeptBy,
+        /// The number of the image.
+        image: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
     }
 
     /// `interpolate`: one warp per item; `fallback`: one thread per ray.

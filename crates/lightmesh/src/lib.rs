@@ -24,7 +24,7 @@
 //!   call to [`Renderer::prepare`] serves any number of images, and a GPU keeps its copy of the scene for as long.
 //!   [`render::devices`] lists the devices.
 //! * [`Renderer::visibility`] finds the visible share of each light at points of your own, to bake vertex colours or lightmaps;
-//!   [`MeshCache`] keeps what light points see from image to image.
+//!   [`MeshCache`] keeps what light points see from image to image, and in files.
 //! * [`Frame`] is the image with its [`Stats`]; an [`Observer`] receives progress and can stop the work, and with
 //!   [`Settings::partial`] gets what is finished by then.
 //!
@@ -37,8 +37,8 @@ pub use lightmesh_scene as scene;
 
 pub use lightmesh_image::{SaveError, Transfer};
 pub use lightmesh_render::{
-    Acceleration, Device, Frame, Lookup, MeshCache, Mode, Observer, PointVisibility, RenderError, Renderer, Settings,
-    Stage, Stats, Step,
+    Acceleration, Device, Frame, Lookup, MeshCache, MeshFileError, MeshSaveError, Mode, Observer, PointVisibility,
+    RenderError, Renderer, Settings, Stage, Stats, Step,
 };
 /// The vectors and matrices of this library's types.
 pub use lightmesh_scene::glam;

@@ -33,7 +33,7 @@ pub(crate) fn rows_on_host(plan: &Plan) -> Result<u32, RenderError> {
     let pixel = plan.rays_per_pixel() * bytes_per_ray(plan) + plan.sample_bytes() + plan.film_bytes();
     let row = u64::from(plan.size[0]) * pixel;
     // The rows around a band are rendered with it.
-    let fixed = plan.image_bytes() + RESERVE + plan.margin_rows() * row;
+    let fixed = plan.image_bytes() + RESERVE + plan.reserved + plan.margin_rows() * row;
     fits(plan, "the image, and masks and visibility of one row", fixed + row)?;
     let fixed = fixed + plan.gathering.as_ref().map_or(0, Gathering::memory);
     fits(plan, "the image, one row of it, and what gathers light", fixed + row)?;

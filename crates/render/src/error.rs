@@ -1,5 +1,7 @@
 //! Errors of a render.
 
+use std::convert::Infallible;
+
 use lightmesh_memory::Short;
 use lightmesh_scene::GeometryError;
 
@@ -157,5 +159,11 @@ impl RenderError {
             | RenderError::Point { .. }
             | RenderError::Cancelled => Vec::new(),
         }
+    }
+}
+
+impl From<Infallible> for RenderError {
+    fn from(never: Infallible) -> RenderError {
+        match never {}
     }
 }

@@ -47,7 +47,7 @@ mod techniques;
 mod textures;
 mod view;
 
-pub use cache::{DeviceTable, HostTable, Kept, MeshCache, Table};
+pub use cache::{DeviceTable, HostTable, Kept, MeshCache, MeshFault, MeshFileError, MeshSaveError, SavedMesh, Table};
 pub use counters::{Counts, Tally};
 pub use data::cells::CellGroups;
 pub use data::lights::{LightGroup, LightGroups};

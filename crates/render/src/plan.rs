@@ -46,6 +46,8 @@ pub struct Plan {
     pub left: Option<u64>,
     /// Bytes that the caller keeps from image to image, in the backend's memory.
     pub kept: u64,
+    /// Bytes that may be added to these.
+    pub reserved: u64,
     /// The additional bytes that the technique needs per ray.
     pub footprint: Footprint,
 }
@@ -69,6 +71,7 @@ impl Plan {
             memory_limit: left,
             left,
             kept: 0,
+            reserved: 0,
             footprint: Footprint::default(),
         }
     }

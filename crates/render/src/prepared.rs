@@ -3,13 +3,16 @@
 //! What is built over the triangles ([`PreparedGeometry`]) lives as long as they do: lights, cameras, sizes and settings may change from
 //! image to image without rebuilding or uploading anything.
 
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use glam::Vec3;
 use lightmesh_memory::{Budget, Short};
 use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Material, Scene, Texture};
+use xxhash_rust::xxh3::Xxh3;
 
-use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Coverage, Grid, GridOptions, Triangle, coverage};
+use crate::accel::{
+    Accelerator, Beams, BruteForce, Bvh, Coverage, Grid, GridOptions, Triangle, coverage, geometry_hash,
+};
 use crate::error::RenderError;
 use crate::material_ids::MaterialIds;
 use crate::moved::{boxes, differ_by_places};
@@ -41,6 +44,10 @@ pub struct PreparedGeometry {
     pub(crate) see_through: Option<SeeThrough<Arc<PreparedGeometry>>>,
     /// What moved since it was prepared before.
     pub(crate) moved: Option<Moved>,
+    /// Hash of which triangles the structure holds; 0: all.
+    held: u64,
+    /// Hash of all that decides what hides what, once it is asked for.
+    hash: OnceLock<u64>,
     /// The setting that chose the structure.
     acceleration: Acceleration,
     /// Build time in seconds, until the first image reports it.
@@ -148,7 +155,8 @@ impl PreparedGeometry {
             false => Triangle::new([Vec3::NAN; 3], triangle.index()),
         };
         let held: Vec<Triangle> = self.triangles.iter().map(held).collect();
-        Ok(self.over(accelerator(&held, &self.coverage, &self.acceleration, budget)?, self.coverage.clone()))
+        let part = self.over(accelerator(&held, &self.coverage, &self.acceleration, budget)?, self.coverage.clone());
+        Ok(PreparedGeometry { held: geometry_hash(&held), ..part })
     }
 
     /// The same where what is at least half opaque is opaque, and the rest is none.
@@ -168,6 +176,8 @@ impl PreparedGeometry {
             mip_levels: Arc::clone(&self.mip_levels),
             see_through: None,
             moved: None,
+            held: 0,
+            hash: OnceLock::new(),
             acceleration: self.acceleration.clone(),
             unreported: Mutex::new(0.0),
             center: self.center,
@@ -207,6 +217,24 @@ impl PreparedGeometry {
         let parts = self.see_through.iter().flat_map(|parts| [&parts.blockers, &parts.panes]);
         let parts: usize = parts.map(|part| part.accelerator.memory()).sum();
         size_of_val(&*self.triangles) + self.accelerator.memory() + self.coverage.memory() + levels + parts
+    }
+
+    /// Hash of all that decides what hides what: triangles in their order, which of them there are, and where they are cut out. The same for
+    /// all structures. It is computed at the first call.
+    pub(crate) fn hash(&self) -> u64 {
+        *self.hash.get_or_init(|| {
+            let mut hash = Xxh3::new();
+            hash.update(&geometry_hash(&self.triangles).to_le_bytes());
+            hash.update(&self.held.to_le_bytes());
+            self.coverage.hash(&mut hash);
+            hash.digest()
+        })
+    }
+
+    /// This, and the parts that it is taken into for shadow rays.
+    pub(crate) fn all_parts(self: &Arc<PreparedGeometry>) -> Vec<&Arc<PreparedGeometry>> {
+        let parts = self.see_through.iter().flat_map(|parts| [&parts.blockers, &parts.panes, &parts.solid]);
+        std::iter::once(self).chain(parts).collect()
     }
 
     /// The build time in seconds at the first call; 0 at all later ones. So it counts for the first image alone.
@@ -257,6 +285,8 @@ impl Structures<'_> {
             mip_levels,
             see_through: None,
             moved: None,
+            held: 0,
+            hash: OnceLock::new(),
             acceleration: acceleration.clone(),
             unreported: Mutex::new(0.0),
             center,

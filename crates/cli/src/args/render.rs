@@ -262,6 +262,12 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "F", help_heading = "Machine")]
     pub(crate) grid_file: Option<PathBuf>,
 
+    /// Read what light points see from this file before the first image, if it exists, and write it there after the last: for later
+    /// runs, other cameras and other devices, with --lookup half-ball. Images are the same without it. A file of other surfaces
+    /// or another step, or one that is damaged, is replaced, with a warning; a light that has changed is computed anew
+    #[arg(long, value_name = "F", requires = "output", help_heading = "Machine")]
+    pub(crate) mesh_file: Option<PathBuf>,
+
     /// Write counts, timings and all resolved settings as JSON; `-` is standard output. The time of the render excludes
     /// file input and output [default: off]
     #[arg(long, value_name = "F.json", requires = "output", help_heading = "Reports")]

@@ -62,7 +62,7 @@ mod tests {
     use crate::args::{Cli, Command, command};
 
     /// Flags that do not decide the bytes of frames.
-    const OTHERS: [&str; 23] = [
+    const OTHERS: [&str; 24] = [
         "output",
         "sun-hours",
         "frames",
@@ -78,6 +78,7 @@ mod tests {
         "accel",
         "grid",
         "grid-file",
+        "mesh-file",
         "progress",
         "quiet",
         "verbose",

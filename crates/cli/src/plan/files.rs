@@ -7,8 +7,8 @@ use lightmesh::image::{Display, ExrOptions, Format, SaveOptions, check_image};
 
 use super::{Container, PlanError};
 use crate::args::{RenderArgs, Switch};
-use crate::destination::{Destination, check_one_on_stdout};
-use crate::output::{OutputError, Outputs, input};
+use crate::destination::{Destination, check_one_on_stdout, is_standard};
+use crate::output::{OutputError, Outputs, check_writable, input};
 use crate::value::{Background, Exposure, numbered};
 
 /// The flag of the image.
@@ -73,7 +73,9 @@ impl PictureFiles {
         let all = [(OUTPUT, Some(&picture)), ("--layers", layers.as_ref()), ("--stats", stats.as_ref())];
         check_one_on_stdout(all)?;
         let all = all.map(|(flag, output)| (flag, output.and_then(Destination::file)));
-        let outputs = Outputs::new(all.into_iter().chain(hours_of_sun(args)))?;
+        let mesh = args.mesh_file.as_deref();
+        mesh.map_or(Ok(()), check_mesh)?;
+        let outputs = Outputs::new(all.into_iter().chain([("--mesh-file", mesh)]).chain(hours_of_sun(args)))?;
         outputs.keep("the scene", input(&args.scene.scene))?;
         outputs.keep("--grid-file", args.grid_file.as_deref())?;
         Ok(PictureFiles { picture, movie, options, exposure: args.exposure, layers, stats, outputs })
@@ -120,6 +122,11 @@ fn check_picture(picture: &Destination, args: &RenderArgs, options: &SaveOptions
     let size = args.crop.map_or(args.size.0, |crop| crop.size);
     check_image(path, options, size, args.background == Some(Background::Transparent))?;
     Ok(picture.check_writable().map_err(SaveError::from)?)
+}
+
+/// A mesh is both read and written, which standard output cannot be.
+fn check_mesh(path: &Path) -> Result<(), PlanError> {
+    if is_standard(path) { Err(PlanError::MeshOnStdout) } else { Ok(check_writable(path)?) }
 }
 
 fn check_layers(layers: &Destination) -> Result<(), PlanError> {

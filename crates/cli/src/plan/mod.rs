@@ -48,6 +48,9 @@ pub(crate) enum PlanError {
     /// The image goes to standard output, which has no extension.
     #[error("-o - needs the format of the image; add --format bmp, png, exr or jpg")]
     NoFormat,
+    /// A mesh file that is no file.
+    #[error("--mesh-file - is both read and written, which standard output cannot be; name a file")]
+    MeshOnStdout,
     /// A file of a film whose name has no place for the number of the frame.
     #[error("{flag} {} is one file, but a film has one for each frame; write #### where the number goes, as in film.####.png", path.display())]
     NoNumber {
@@ -129,6 +132,8 @@ pub(crate) struct RenderPlan {
     pub(crate) files: PictureFiles,
     /// The frames, if it is a film.
     pub(crate) film: Option<Film>,
+    /// Where light points are kept from run to run.
+    pub(crate) mesh_file: Option<PathBuf>,
     /// The hours of a day, if the sun of one is studied.
     pub(crate) sun: Option<SunStudy>,
 }
@@ -153,6 +158,7 @@ impl RenderPlan {
             threads: args.threads.and_then(|threads| NonZeroUsize::new(threads as usize)),
             files,
             film,
+            mesh_file: args.mesh_file.clone(),
             sun,
         })
     }

@@ -5,11 +5,12 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use lightmesh::render::{Crop, PreparedScene};
-use lightmesh::scene::Camera;
-use lightmesh::{Frame, Lookup, MeshCache, Mode, Observer, RenderError, Scene, Settings, Step};
+use lightmesh::scene::{Animation, Camera};
+use lightmesh::{Frame, Lookup, Mode, Observer, RenderError, Scene, Settings, Step};
 
 use super::BUILDING;
 use super::exposure::Metering;
+use super::mesh_file::Mesh;
 use super::movie::Movie;
 use super::render::{Studio, save};
 use super::sun;
@@ -40,8 +41,11 @@ pub(super) fn run(
     let (display, watcher) = (studio.plan.files.options.display, studio.watcher);
     let movie = studio.plan.files.movie.map(|container| Movie::begin(args, container, display, watcher)).transpose()?;
     let (begin, settings) = (Instant::now(), studio.plan.settings.clone());
-    let (prepared, cache) = (studio.prepared.clone(), MeshCache::new());
-    let mut reel = Reel { args, film, studio, prepared, settings, metering, work: &work, cache };
+    let moves =
+        matches!(film.motion, Motion::Scene(_)) && studio.scene.animation().is_some_and(Animation::moves_surfaces);
+    let (prepared, mesh) =
+        (studio.prepared.clone(), Mesh::open(studio.plan, (studio.renderer, studio.prepared), moves, studio.watcher)?);
+    let mut reel = Reel { args, film, studio, prepared, settings, metering, work: &work, mesh };
     // A request to end leaves time to record what is finished.
     interrupt::watched(|| {
         if ledger.chosen().is_none() && !work.numbers.is_empty() {
@@ -50,7 +54,8 @@ pub(super) fn run(
         reel.keep(ledger.chosen().unwrap_or_default());
         let shelf =
             Shelf { film, studio, metering: reel.metering.clone(), work: &work, ledger, movie, begin, finished: 0 };
-        both(&mut reel, shelf)
+        both(&mut reel, shelf)?;
+        if work.numbers.is_empty() { Ok(()) } else { reel.mesh.save(&reel.prepared, watcher) }
     })?;
     watcher.summary(&summary(&work, begin.elapsed(), studio));
     Ok(())
@@ -99,7 +104,7 @@ struct Reel<'a> {
     settings: Settings,
     metering: Metering,
     work: &'a Work,
-    cache: MeshCache,
+    mesh: Mesh<'a>,
 }
 
 impl Reel<'_> {
@@ -122,11 +127,12 @@ impl Reel<'_> {
         let Studio { renderer, watcher, .. } = *self.studio;
         let files = self.film.files(self.args, number)?;
         let (prepared, when) = self.at(number)?;
-        let cache = &mut self.cache;
+        let cache = &mut self.mesh.cache;
         let render =
             |prepared: &PreparedScene, settings: &Settings| renderer.render_with(cache, prepared, settings, watcher);
         let studio = Studio { prepared: &prepared, scene: &prepared.scene, ..*self.studio };
         let (frame, stops) = studio.picture(&self.settings, &self.metering, render)?;
+        self.mesh.check(watcher);
         let scene = prepared.scene.clone();
         // What the cache keeps of the frame before goes on to this one.
         self.prepared = prepared;

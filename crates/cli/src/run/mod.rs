@@ -10,6 +10,7 @@ mod film;
 mod grid;
 mod info;
 mod man;
+mod mesh_file;
 mod movie;
 mod open;
 mod range;

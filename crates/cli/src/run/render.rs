@@ -10,6 +10,7 @@ use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene
 use lightmesh_memory::Bytes;
 
 use super::exposure::Metering;
+use super::mesh_file::Mesh;
 use super::{BUILDING, film, movie, open::open, range, sun};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
@@ -57,7 +58,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         _ if plan.sun.is_some() => return Ok(()),
         _ => {}
     }
-    let finish = || finish(&renderer, prepared, &scene, &plan, &metering, load, &watcher);
+    let mesh = Mesh::open(&plan, (&renderer, &prepared), false, &watcher)?;
+    let finish = || finish(&renderer, (prepared, mesh), &scene, &plan, &metering, load, &watcher);
     let frame = if args.partial { interrupt::keeping(finish) } else { finish() }?;
     if interrupt::requested() {
         // The last message says what is written.
@@ -101,7 +103,7 @@ pub(super) struct Studio<'a> {
 /// Renders the image and writes all files.
 fn finish(
     renderer: &Renderer,
-    prepared: PreparedScene,
+    (prepared, mut mesh): (PreparedScene, Mesh),
     scene: &Scene,
     plan: &RenderPlan,
     metering: &Metering,
@@ -109,9 +111,17 @@ fn finish(
     watcher: &Watcher,
 ) -> Result<Frame, Failure> {
     let studio = Studio { renderer, prepared: &prepared, scene, plan, load, watcher };
-    let render = |prepared: &PreparedScene, settings: &Settings| renderer.render_prepared(prepared, settings, watcher);
+    let has_file = mesh.has_file();
+    let render = |prepared: &PreparedScene, settings: &Settings| match has_file {
+        true => renderer.render_with(&mut mesh.cache, prepared, settings, watcher),
+        false => renderer.render_prepared(prepared, settings, watcher),
+    };
     let (frame, stops) = studio.picture(&plan.settings, metering, render)?;
-    drop(prepared); // frees memory for the encoders
+    mesh.check(watcher);
+    if !watcher.cancelled() {
+        mesh.save(&prepared, watcher)?;
+    }
+    drop((prepared, mesh)); // frees memory for the encoders
     save(frame, stops, &plan.files, (renderer, scene, plan), scene.cameras.first(), metering, watcher)
 }
 

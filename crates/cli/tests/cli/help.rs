@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::run::Place;
 
 /// The flags of `render` that other programs rely on.
-const FLAGS: [&str; 52] = [
+const FLAGS: [&str; 53] = [
     "--mode",
     "--bounces",
     "--size",
@@ -19,6 +19,7 @@ const FLAGS: [&str; 52] = [
     "--accel",
     "--grid",
     "--grid-file",
+    "--mesh-file",
     "--camera",
     "--camera-name",
     "--up",

@@ -9,6 +9,7 @@ mod display;
 mod film;
 mod help;
 mod memory;
+mod mesh_file;
 mod messages;
 mod render;
 mod report;

@@ -32,6 +32,36 @@ fn same_pictures<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
     }
     assert_eq!(kept.len(), on_host.len());
     assert_eq!(!kept.is_empty(), saved > 0, "what is known is used");
+    same_files(cuda, subject);
+}
+
+/// Both write the same file, and each reads that of the other.
+fn same_files<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
+    let folder = tempfile::tempdir().unwrap();
+    let [of_device, of_host] = ["device.mesh", "host.mesh"].map(|name| folder.path().join(name));
+    let (scene, settings) = (subject.prepared(0), settings(subject, 0));
+    let (mut kept, mut on_host) = (Kept::default(), Kept::default());
+    let whole = render_on_with(cuda, &mut kept, scene, &settings, &Unobserved).unwrap();
+    render_on_with(&Cpu, &mut on_host, scene, &settings, &Unobserved).unwrap();
+    let Some(saved) = kept.save(&of_device, scene).unwrap() else {
+        assert_eq!(on_host.save(&of_host, scene).unwrap(), None);
+        return;
+    };
+    assert_eq!(Some(saved), on_host.save(&of_host, scene).unwrap());
+    assert!(std::fs::read(&of_device).unwrap() == std::fs::read(&of_host).unwrap(), "the files differ");
+    let mut kept = Kept::load(&of_host, scene, Default::default()).unwrap();
+    assert_eq!(kept.len(), saved.values);
+    let again = render_on_with(cuda, &mut kept, scene, &settings, &Unobserved).unwrap();
+    assert!(bits(&again) == bits(&whole) && tests(&again)[0] == 0, "{:?}", tests(&again));
+    assert_eq!(kept.len(), saved.values);
+    let mut on_host = Kept::load(&of_device, scene, Default::default()).unwrap();
+    let again = render_on_with(&Cpu, &mut on_host, scene, &settings, &Unobserved).unwrap();
+    assert_eq!(tests(&again), [0, tests(&whole).iter().sum()]);
+    // Other light points than those of the file are added to it.
+    let elsewhere = self::settings(subject, 2);
+    let fresh = render_on(cuda, scene, &elsewhere, &Unobserved).unwrap();
+    let with = render_on_with(cuda, &mut kept, scene, &elsewhere, &Unobserved).unwrap();
+    assert!(bits(&with) == bits(&fresh) && tests(&with).iter().sum::<u64>() == tests(&fresh)[0]);
 }
 
 /// The scene; with its last light moved; and with some of its triangles moved.

@@ -39,6 +39,7 @@ pub(crate) use beam::Beams;
 pub use brute_force::BruteForce;
 pub use bvh::{Bvh, BvhCost};
 pub(crate) use coverage::Coverage;
+pub(crate) use grid::geometry_hash;
 pub use grid::{Grid, GridError, GridFault, GridFileError, GridOptions, GridSaveError, Levels};
 pub use region::{Region, TangentPlanes};
 pub use sieve::{PIECE, Take};

@@ -85,6 +85,10 @@ impl Backend for Cpu {
         bands::rows_on_host(plan).map(drop)
     }
 
+    fn left(&self, plan: &Plan) -> Option<u64> {
+        plan.left
+    }
+
     fn rows_at_once(&self, _: &PreparedScene, plan: &Plan) -> Result<u32, RenderError> {
         bands::rows_on_host(plan)
     }

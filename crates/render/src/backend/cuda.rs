@@ -84,6 +84,10 @@ impl<R: Runtime> Backend for Cuda<R> {
         bands::check_picture(&Plan { left, memory_limit: None, ..plan.clone() })
     }
 
+    fn left(&self, _: &Plan) -> Option<u64> {
+        self.memory_left()
+    }
+
     fn rows_at_once(&self, _: &DeviceScene<R>, plan: &Plan) -> Result<u32, RenderError> {
         self.rows_that_fit(plan)
     }

@@ -110,6 +110,9 @@ pub trait Backend: Sized {
     /// The scene taken apart for shadow rays, if some of its surfaces are not opaque.
     fn see_through(&self, scene: &Self::Scene) -> Option<SeeThrough<Self::Scene>>;
 
+    /// Bytes of its memory that an image, and what is kept for later ones, may take; `None`: unknown.
+    fn left(&self, plan: &Plan) -> Option<u64>;
+
     /// How many rows of the image can be rendered at once: an estimate from the sizes of all buffers, before any is allocated.
     fn rows_at_once(&self, scene: &Self::Scene, plan: &Plan) -> Result<u32, RenderError>;
 

@@ -59,6 +59,11 @@ impl<'a, B: Backend> Run<'a, B> {
         work(&mut self.gathered.borrow_mut())
     }
 
+    /// Lets what the caller keeps of light points take its part of `left` bytes. Returns by how much it may grow.
+    pub(crate) fn begin_kept(&self, left: Option<u64>) -> u64 {
+        self.with_kept(|kept| kept.map_or(0, |kept| kept.begin(left)))
+    }
+
     /// Begins with what surfaces gathered for earlier images.
     pub(crate) fn recall_gathered(&self, scene: &PreparedScene, sources: &Sources) {
         let known = self.with_kept(|kept| kept.map(|kept| kept.take_gathered(scene, sources)));

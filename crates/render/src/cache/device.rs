@@ -1,5 +1,5 @@
-//! Visibility of light points, cached on a CUDA device: a table of bricks that only grows and, for each light, the known values by
-//! slot.
+//! Visibility of light points, cached on a CUDA device: a table of bricks and, for each light, the known values by slot. The table grows
+//! until it takes its part of the memory. Then the bricks that were used last are taken to the host and make a new one.
 
 use bytemuck::Zeroable;
 use lightmesh_layout::Out;
@@ -8,12 +8,14 @@ use lightmesh_layout::mesh::{BrickTable, KeptBy, LitBy};
 use lightmesh_layout::stages::Cache;
 use rayon::prelude::*;
 
-use super::{Noticed, Seen, Table};
+use super::stored::{POINTS, Readable, ReadableAnswers, Stored, StoredAnswers, StoredColumn};
+use super::{Allowance, Noticed, Seen, Table};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gathered::cuda::DeviceSurfaceLight;
 use crate::gpu::points::DevicePoints;
 use crate::gpu::{BLOCK, Cuda, blocks_for};
+use crate::light_mesh::{BrickKey, brick_hash};
 
 const ADMIT: Kernel = Kernel { module: "cache", name: "admit_bricks" };
 const FIND_UNKNOWN: Kernel = Kernel { module: "cache", name: "find_unknown" };
@@ -26,6 +28,9 @@ const MOVE_ANSWERS: Kernel = Kernel { module: "cache", name: "move_answers" };
 pub struct DeviceTable<R: Runtime> {
     bricks: Option<Bricks<R>>,
     columns: Vec<Column<R>>,
+    /// What was read from a file, until the device is at hand; the rest is empty then.
+    stored: Option<Stored>,
+    allowance: Allowance,
 }
 
 /// The known bricks: at most half of the slots.
@@ -33,6 +38,8 @@ struct Bricks<R: Runtime> {
     keys: Buffer<R, u64>,
     /// Their number.
     count: Buffer<R, u32>,
+    /// The number of the last image that used each of them, by slot.
+    ages: Buffer<R, u32>,
 }
 
 /// The known values for one light, by slot.
@@ -53,7 +60,7 @@ enum Answers<R: Runtime> {
 
 impl<R: Runtime> Default for DeviceTable<R> {
     fn default() -> DeviceTable<R> {
-        DeviceTable { bricks: None, columns: Vec::new() }
+        DeviceTable { bricks: None, columns: Vec::new(), stored: None, allowance: Allowance::default() }
     }
 }
 
@@ -66,16 +73,17 @@ impl<R: Runtime> Table for DeviceTable<R> {
     }
 
     fn len(&self) -> u64 {
-        self.columns.iter().map(|column| column.count).sum()
+        self.columns.iter().map(|column| column.count).sum::<u64>() + self.stored.as_ref().map_or(0, Stored::len)
     }
 
     fn memory(&self) -> u64 {
-        let keys = self.bricks.as_ref().map_or(0, |bricks| bricks.keys.bytes() + bricks.count.bytes());
-        keys + self.columns.iter().map(Column::memory).sum::<u64>()
+        self.bricks.as_ref().map_or(0, Bricks::memory) + self.columns.iter().map(Column::memory).sum::<u64>()
     }
 
     /// On the host, by the same rule to the bit as its own table: a few bytes for each brick go back and forth.
     fn forget(&mut self, noticed: &Noticed) -> Result<(), RenderError> {
+        // What was never uploaded is of no image.
+        self.stored = None;
         let Some(bricks) = &self.bricks else { return Ok(()) };
         let keys = bricks.keys.read()?;
         for column in &mut self.columns {
@@ -100,33 +108,139 @@ impl<R: Runtime> Table for DeviceTable<R> {
         }
         Ok(())
     }
+
+    fn allow(&mut self, allowance: Allowance) {
+        self.allowance = allowance;
+    }
+
+    fn stored(&self) -> Result<Stored, RenderError> {
+        self.youngest(usize::MAX)
+    }
+
+    fn restored(stored: Stored) -> DeviceTable<R> {
+        DeviceTable { stored: Some(stored), ..DeviceTable::default() }
+    }
 }
 
 impl<R: Runtime> DeviceTable<R> {
+    /// What is known of the bricks that were used last, at most `count` of them.
+    fn youngest(&self, count: usize) -> Result<Stored, RenderError> {
+        let Some(bricks) = &self.bricks else { return Ok(self.stored.clone().unwrap_or_default()) };
+        // Keys are stored increased by 1: 0 is an empty slot.
+        let mut keys: Vec<_> = bricks.keys.read()?.into_iter().map(|key| key.checked_sub(1)).collect();
+        let mut places: Vec<usize> = (0..keys.len()).filter(|&slot| keys[slot].is_some()).collect();
+        let ages = bricks.ages.read()?;
+        if places.len() > count {
+            // Of the same age, those go that have the larger keys: slots may differ from run to run.
+            places.sort_unstable_by_key(|&slot| (u32::MAX - ages[slot], keys[slot]));
+            places[count..].iter().for_each(|&slot| keys[slot] = None);
+        }
+        let columns = self.columns.iter().map(Column::download).collect::<Result<Vec<_>, RenderError>>()?;
+        let columns: Vec<Readable> = columns.iter().map(Downloaded::readable).collect();
+        Ok(Stored::gather(&keys, &ages, &columns))
+    }
+
     /// The slots of an image's bricks, by slot of its own table, and a column for each light. Values for another light, or for other
-    /// samples, are discarded.
+    /// samples, are discarded. `None` if these bricks alone would take more memory than is allowed.
     pub(crate) fn admit(
         &mut self,
         cuda: &Cuda<R>,
         points: &DevicePoints<R>,
         lights: Vec<Seen>,
-    ) -> Result<Buffer<R, u32>, RenderError> {
+    ) -> Result<Option<Buffer<R, u32>>, RenderError> {
+        let allowance = self.allowance;
         let rows = cuda.pool().room("light points' places in the cache", points.capacity())?;
         let record = Cache { points: points.record(), rows: rows.output(), ..Cache::zeroed() };
+        if let Some(mut stored) = self.stored.take() {
+            let lights: Vec<Seen> = stored.columns.iter().map(|column| column.seen.clone()).collect();
+            let mut capacity = (2 * stored.bricks.len()).next_power_of_two();
+            while capacity > points.capacity() && !self.is_allowed(capacity, &lights) {
+                capacity /= 2;
+                stored.truncate(capacity / 4);
+            }
+            *self = DeviceTable { allowance, ..DeviceTable::uploaded(cuda, stored, points.capacity())? };
+        }
+        let mut capacity = self.capacity().max(points.capacity());
+        while capacity > points.capacity() && !self.is_allowed(capacity, &lights) {
+            capacity /= 2;
+        }
+        if !self.is_allowed(capacity, &lights) {
+            *self = DeviceTable { allowance, ..DeviceTable::default() };
+            return Ok(None);
+        }
+        if capacity < self.capacity() {
+            self.evict(cuda, capacity / 4, capacity)?;
+        }
+        let mut evicted = 0;
         loop {
             let bricks = match &self.bricks {
                 Some(bricks) => bricks,
                 None => self.bricks.insert(Bricks::new(cuda, points.capacity())?),
             };
-            cuda.launch(ADMIT, slots(points.capacity()), &bricks.write(record))?;
+            cuda.launch(ADMIT, slots(points.capacity()), &bricks.write(Cache { image: allowance.image, ..record }))?;
             let mut count = [0];
             bricks.count.read_into(0, &mut count)?;
-            if count[0] as usize <= bricks.keys.len() / 2 {
+            let capacity = self.capacity();
+            if count[0] as usize <= capacity / 2 {
                 self.hold(cuda, lights)?;
-                return Ok(rows);
+                return Ok(Some(rows));
             }
-            self.grow(cuda)?;
+            // While it grows, the smaller table is still there.
+            if self.is_allowed(capacity + 2 * capacity, &lights) {
+                self.grow(cuda)?;
+                continue;
+            }
+            evicted += 1;
+            match evicted {
+                1 => self.evict(cuda, capacity / 4, capacity)?,
+                // Bricks of this image alone.
+                2 => self.evict(cuda, 0, capacity)?,
+                _ => {
+                    *self = DeviceTable { allowance, ..DeviceTable::default() };
+                    return Ok(None);
+                }
+            }
         }
+    }
+
+    /// Whether a table of this many slots may be held.
+    fn is_allowed(&self, capacity: usize, lights: &[Seen]) -> bool {
+        let bytes = || {
+            let answers = |seen: &Seen| if seen.is_share() { POINTS * size_of::<u16>() } else { size_of::<u64>() };
+            let columns: usize = lights.iter().map(|seen| size_of::<u64>() + answers(seen)).sum();
+            (capacity * (size_of::<u64>() + size_of::<u32>() + columns)) as u64
+        };
+        self.allowance.most.is_none_or(|most| bytes() <= most)
+    }
+
+    /// Leaves `count` bricks, those that were used last, in a table of `capacity` slots.
+    fn evict(&mut self, cuda: &Cuda<R>, count: usize, capacity: usize) -> Result<(), RenderError> {
+        let (stored, allowance) = (self.youngest(count)?, self.allowance);
+        *self = DeviceTable::default();
+        *self = DeviceTable { allowance, ..DeviceTable::uploaded(cuda, stored, capacity)? };
+        Ok(())
+    }
+
+    /// A table of at least `capacity` slots with stored values. Slots are assigned as `admit_bricks` does.
+    fn uploaded(cuda: &Cuda<R>, stored: Stored, capacity: usize) -> Result<DeviceTable<R>, RenderError> {
+        let capacity = capacity.max((2 * stored.bricks.len()).next_power_of_two());
+        let mut keys = vec![0; capacity];
+        let slot_for = |&brick: &BrickKey| {
+            let mut slot = brick_hash(brick) & (capacity - 1);
+            while keys[slot] != 0 {
+                slot = (slot + 1) & (capacity - 1);
+            }
+            keys[slot] = brick + 1;
+            slot
+        };
+        let slots: Vec<usize> = stored.bricks.iter().map(slot_for).collect();
+        let bricks = Bricks::new(cuda, capacity)?;
+        bricks.keys.write(&keys)?;
+        bricks.count.write(&[slots.len() as u32])?;
+        bricks.ages.write(&by_slot(&stored.ages, &slots, capacity))?;
+        let column = |column: &StoredColumn| Column::uploaded(cuda, column, &slots, capacity);
+        let columns = stored.columns.iter().map(column).collect::<Result<_, _>>()?;
+        Ok(DeviceTable { bricks: Some(bricks), columns, ..DeviceTable::default() })
     }
 
     /// Provides a column for each light.
@@ -152,7 +266,8 @@ impl<R: Runtime> DeviceTable<R> {
         let Some(old) = &self.bricks else { return Ok(()) };
         let new = Bricks::new(cuda, 2 * old.keys.len())?;
         let rows = cuda.pool().room("new places in the cache", old.keys.len())?;
-        let record = new.write(Cache { from_table: old.record(), rows: rows.output(), ..Cache::zeroed() });
+        let from_ages = old.ages.output();
+        let record = new.write(Cache { from_table: old.record(), from_ages, rows: rows.output(), ..Cache::zeroed() });
         cuda.launch(MOVE_BRICKS, slots(old.keys.len()), &record)?;
         for column in &mut self.columns {
             let larger = Column { count: column.count, ..Column::new(cuda, column.seen.clone(), new.keys.len())? };
@@ -223,7 +338,12 @@ fn slots(capacity: usize) -> crate::cuda::Launch {
 impl<R: Runtime> Bricks<R> {
     fn new(cuda: &Cuda<R>, capacity: usize) -> Result<Bricks<R>, RenderError> {
         let keys = cuda.pool().zeros("bricks of the cache", capacity)?;
-        Ok(Bricks { keys, count: cuda.pool().zeros("number of bricks of the cache", 1)? })
+        let count = cuda.pool().zeros("number of bricks of the cache", 1)?;
+        Ok(Bricks { keys, count, ages: cuda.pool().zeros("ages of bricks of the cache", capacity)? })
+    }
+
+    fn memory(&self) -> u64 {
+        self.keys.bytes() + self.count.bytes() + self.ages.bytes()
     }
 
     fn record(&self) -> BrickTable {
@@ -232,7 +352,7 @@ impl<R: Runtime> Bricks<R> {
 
     /// Writes the addresses of the bricks into a kernel's arguments.
     fn write(&self, record: Cache) -> Cache {
-        Cache { table: self.record(), bricks: self.count.output(), ..record }
+        Cache { table: self.record(), bricks: self.count.output(), ages: self.ages.output(), ..record }
     }
 }
 
@@ -245,6 +365,38 @@ impl<R: Runtime> Column<R> {
             Answers::Bits(cuda.pool().zeros("known light points that see a light", capacity)?)
         };
         Ok(Column { seen, known, answers, count: 0 })
+    }
+
+    /// Stored values, by the slots of their bricks.
+    fn uploaded(
+        cuda: &Cuda<R>,
+        stored: &StoredColumn,
+        slots: &[usize],
+        capacity: usize,
+    ) -> Result<Column<R>, RenderError> {
+        let mut column = Column::new(cuda, stored.seen.clone(), capacity)?;
+        column.known.write(&by_slot(&stored.known, slots, capacity))?;
+        match (&column.answers, &stored.answers) {
+            (Answers::Bits(bits), StoredAnswers::Bits(words)) => bits.write(&by_slot(words, slots, capacity))?,
+            (Answers::Shares(seen), StoredAnswers::Shares(shares)) => {
+                let mut by_point = vec![0; capacity * POINTS];
+                stored.spread(shares, |row, bit, share| by_point[slots[row] * POINTS + bit as usize] = share);
+                seen.write(&by_point)?;
+            }
+            // A column has the same form as its light.
+            _ => return Ok(column),
+        }
+        column.count = stored.known.iter().map(|known| u64::from(known.count_ones())).sum();
+        Ok(column)
+    }
+
+    /// All values, by slot.
+    fn download(&self) -> Result<Downloaded<'_>, RenderError> {
+        let answers = match &self.answers {
+            Answers::Bits(bits) => DownloadedAnswers::Bits(bits.read()?),
+            Answers::Shares(seen) => DownloadedAnswers::Shares(seen.read()?),
+        };
+        Ok(Downloaded { seen: &self.seen, known: self.known.read()?, answers })
     }
 
     fn record(&self) -> KeptBy {
@@ -266,5 +418,34 @@ impl<R: Runtime> Column<R> {
             Answers::Shares(seen) => seen.bytes(),
         };
         self.known.bytes() + answers
+    }
+}
+
+/// Values of bricks, by their slots.
+fn by_slot<T: Copy + Default>(values: &[T], slots: &[usize], capacity: usize) -> Vec<T> {
+    let mut by_slot = vec![T::default(); capacity];
+    slots.iter().zip(values).for_each(|(&slot, &value)| by_slot[slot] = value);
+    by_slot
+}
+
+/// The values of a column on the host, by slot.
+struct Downloaded<'a> {
+    seen: &'a Seen,
+    known: Vec<u64>,
+    answers: DownloadedAnswers,
+}
+
+enum DownloadedAnswers {
+    Bits(Vec<u64>),
+    Shares(Vec<u16>),
+}
+
+impl Downloaded<'_> {
+    fn readable(&self) -> Readable<'_> {
+        let answers = match &self.answers {
+            DownloadedAnswers::Bits(words) => ReadableAnswers::Bits(words),
+            DownloadedAnswers::Shares(shares) => ReadableAnswers::Shares(shares),
+        };
+        Readable { seen: self.seen, known: &self.known, answers }
     }
 }

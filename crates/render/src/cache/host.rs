@@ -3,22 +3,22 @@
 use std::collections::HashMap;
 use std::convert::Infallible;
 
-use lightmesh_layout::constants::POINT_BITS;
 use rayon::prelude::*;
 
-use super::{Noticed, Seen, Table};
+use super::stored::{POINTS, Readable, ReadableAnswers, SLACK, Stored, StoredAnswers, StoredColumn, bytes_of_rows};
+use super::{Allowance, Noticed, Seen, Table};
 use crate::data::lit::LitBy;
 use crate::gathered::SurfaceLight;
 use crate::light_mesh::{BrickKey, bits};
-
-/// Number of light points in a brick.
-const POINTS: usize = 1 << POINT_BITS;
 
 /// Rows of bricks, columns of lights. Known values do not move when bricks are added or lights change.
 #[derive(Default)]
 pub struct HostTable {
     rows: HashMap<BrickKey, usize>,
+    /// The number of the last image that used each row.
+    ages: Vec<u32>,
     columns: Vec<Column>,
+    allowance: Allowance,
 }
 
 /// The known values for one light, by row.
@@ -50,7 +50,8 @@ impl Table for HostTable {
 
     fn memory(&self) -> u64 {
         let columns: usize = self.columns.iter().map(Column::memory).sum();
-        (self.rows.capacity() * size_of::<(BrickKey, usize)>() + columns) as u64
+        let rows = self.rows.capacity() * size_of::<(BrickKey, usize)>() + self.ages.capacity() * size_of::<u32>();
+        (rows + columns) as u64
     }
 
     fn forget(&mut self, noticed: &Noticed) -> Result<(), Infallible> {
@@ -67,17 +68,30 @@ impl Table for HostTable {
         }
         Ok(())
     }
+
+    fn allow(&mut self, allowance: Allowance) {
+        self.allowance = allowance;
+    }
+
+    fn stored(&self) -> Result<Stored, Infallible> {
+        let mut keys = vec![None; self.rows.len()];
+        self.rows.iter().for_each(|(&brick, &row)| keys[row] = Some(brick));
+        let columns: Vec<Readable> = self.columns.iter().map(Column::readable).collect();
+        Ok(Stored::gather(&keys, &self.ages, &columns))
+    }
+
+    fn restored(stored: Stored) -> HostTable {
+        let ages = stored.ages;
+        let rows = stored.bricks.into_iter().enumerate().map(|(row, brick)| (brick, row)).collect();
+        let columns = stored.columns.into_iter().map(Column::restored).collect();
+        HostTable { rows, ages, columns, allowance: Allowance::default() }
+    }
 }
 
 impl HostTable {
     /// The rows of some bricks, which are added where they are new, and a column for each light. Values for another light, or for
-    /// other samples, are discarded.
-    pub(crate) fn admit(&mut self, bricks: &[BrickKey], lights: Vec<Seen>) -> Vec<usize> {
-        let mut rows = Vec::with_capacity(bricks.len());
-        for &brick in bricks {
-            let next = self.rows.len();
-            rows.push(*self.rows.entry(brick).or_insert(next));
-        }
+    /// other samples, are discarded. `None` if these bricks alone would take more memory than is allowed.
+    pub(crate) fn admit(&mut self, bricks: &[BrickKey], lights: Vec<Seen>) -> Option<Vec<usize>> {
         self.columns.truncate(lights.len());
         for (index, seen) in lights.into_iter().enumerate() {
             match self.columns.get_mut(index) {
@@ -86,10 +100,56 @@ impl HostTable {
                 None => self.columns.push(Column::new(seen)),
             }
         }
+        if !self.make_room(bricks) {
+            *self = HostTable { allowance: self.allowance, ..HostTable::default() };
+            return None;
+        }
+        let mut rows = Vec::with_capacity(bricks.len());
+        for &brick in bricks {
+            let next = self.rows.len();
+            rows.push(*self.rows.entry(brick).or_insert(next));
+        }
+        self.ages.resize(self.rows.len(), 0);
+        rows.iter().for_each(|&row| self.ages[row] = self.allowance.image);
         for column in &mut self.columns {
             column.grow(self.rows.len());
         }
-        rows
+        Some(rows)
+    }
+
+    /// Evicts bricks until there is room for those of `bricks` that are new: those that were not used for the longest go first. `false` if
+    /// there is no room for them alone.
+    fn make_room(&mut self, bricks: &[BrickKey]) -> bool {
+        let Some(most) = self.allowance.most else { return true };
+        let of_one = bytes_of_rows(1, self.columns.iter().map(|column| &column.seen));
+        let most = (most / of_one) as usize;
+        let known: Vec<usize> = bricks.iter().filter_map(|brick| self.rows.get(brick).copied()).collect();
+        let new = bricks.len() - known.len();
+        if self.rows.len() + new <= most {
+            return true;
+        }
+        if bricks.len() > most {
+            return false;
+        }
+        known.into_iter().for_each(|row| self.ages[row] = u32::MAX);
+        // With a quarter more, not every image evicts some.
+        let left = bricks.len().max(most - most / 4) - new;
+        let mut order: Vec<usize> = (0..self.ages.len()).collect();
+        order.sort_unstable_by_key(|&row| (u32::MAX - self.ages[row], row));
+        order.truncate(left);
+        self.keep(order);
+        true
+    }
+
+    /// Moves some rows to the beginning, and removes the others.
+    fn keep(&mut self, mut kept: Vec<usize>) {
+        kept.sort_unstable();
+        let mut moved = vec![None; self.ages.len()];
+        kept.iter().enumerate().for_each(|(to, &from)| moved[from] = Some(to));
+        let rows = std::mem::take(&mut self.rows);
+        self.rows = rows.into_iter().filter_map(|(brick, row)| Some((brick, moved[row]?))).collect();
+        self.ages = kept.iter().map(|&row| self.ages[row]).collect();
+        self.columns.iter_mut().for_each(|column| column.keep(&kept));
     }
 
     /// Number of rays from each light point to a light.
@@ -140,11 +200,41 @@ impl Column {
         Column { seen, known: Vec::new(), answers }
     }
 
-    fn grow(&mut self, rows: usize) {
-        self.known.resize(rows, 0);
+    fn restored(column: StoredColumn) -> Column {
+        let answers = match &column.answers {
+            StoredAnswers::Bits(words) => Answers::Bits(words.clone()),
+            StoredAnswers::Shares(found) => {
+                let mut shares = vec![[0; POINTS]; column.known.len()];
+                column.spread(found, |row, bit, share| shares[row][bit as usize] = share);
+                Answers::Shares(shares)
+            }
+        };
+        Column { seen: column.seen, known: column.known, answers }
+    }
+
+    fn readable(&self) -> Readable<'_> {
+        let answers = match &self.answers {
+            Answers::Bits(words) => ReadableAnswers::Bits(words),
+            Answers::Shares(shares) => ReadableAnswers::Shares(shares.as_flattened()),
+        };
+        Readable { seen: &self.seen, known: &self.known, answers }
+    }
+
+    fn keep(&mut self, kept: &[usize]) {
+        // A new column has no rows yet.
+        let kept = kept.iter().copied().take_while(|&row| row < self.known.len());
         match &mut self.answers {
-            Answers::Bits(words) => words.resize(rows, 0),
-            Answers::Shares(shares) => shares.resize(rows, [0; POINTS]),
+            Answers::Bits(words) => *words = kept.clone().map(|row| words[row]).collect(),
+            Answers::Shares(shares) => *shares = kept.clone().map(|row| shares[row]).collect(),
+        }
+        self.known = kept.map(|row| self.known[row]).collect();
+    }
+
+    fn grow(&mut self, rows: usize) {
+        resize(&mut self.known, rows, 0);
+        match &mut self.answers {
+            Answers::Bits(words) => resize(words, rows, 0),
+            Answers::Shares(shares) => resize(shares, rows, [0; POINTS]),
         }
     }
 
@@ -154,5 +244,94 @@ impl Column {
             Answers::Shares(shares) => shares.capacity() * size_of::<[u16; POINTS]>(),
         };
         self.known.capacity() * size_of::<u64>() + answers
+    }
+}
+
+/// Makes a vector longer, with little room to spare.
+fn resize<T: Clone>(values: &mut Vec<T>, len: usize, value: T) {
+    if len > values.capacity() {
+        values.reserve_exact(len + len / SLACK - values.len());
+    }
+    values.resize(len, value);
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use lightmesh_scene::LightKind;
+
+    use super::*;
+
+    const BRICKS: usize = 100;
+
+    fn lights() -> Vec<Seen> {
+        let kind = |x: f32| LightKind::Sphere { position: Vec3::new(x, 4.0, 0.0), radius: 0.5 };
+        vec![Seen { kind: kind(0.0), sampling: None }, Seen { kind: kind(1.0), sampling: Some((9, 0)) }]
+    }
+
+    fn bits_of(brick: BrickKey) -> u64 {
+        brick.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    }
+
+    fn share_of(brick: BrickKey, bit: u32) -> u16 {
+        ((bits_of(brick) >> (bit % 32)) % 10) as u16
+    }
+
+    /// Uses bricks in an image. Returns how many light points of the first light were unknown; `None` if there is no room for them.
+    fn image(table: &mut HostTable, number: u32, most: u64, bricks: &[BrickKey]) -> Option<u64> {
+        table.allow(Allowance { image: number, most: Some(most) });
+        let rows = table.admit(bricks, lights())?;
+        let used = vec![u64::MAX; bricks.len()];
+        let asked = [0, 1].map(|light| table.unknown(light, &rows, &used));
+        let found = bricks.iter().zip(&asked[0]).map(|(&brick, asked)| bits_of(brick) & asked).collect();
+        table.learn(0, &rows, &asked[0], &LitBy::Bits(found));
+        let points = bricks.iter().zip(&asked[1]).flat_map(|(&brick, &asked)| bits(asked).map(move |bit| (brick, bit)));
+        let seen = points.map(|(brick, bit)| share_of(brick, bit)).collect();
+        table.learn(1, &rows, &asked[1], &LitBy::Share { seen, samples: 9 });
+        let LitBy::Bits(words) = table.recall(0, &rows, &used) else { panic!("bits") };
+        assert!(words.iter().zip(bricks).all(|(&word, &brick)| word == bits_of(brick)));
+        let LitBy::Share { seen, .. } = table.recall(1, &rows, &used) else { panic!("shares") };
+        let expected = bricks.iter().flat_map(|&brick| (0..64).map(move |bit| share_of(brick, bit)));
+        assert!(seen.into_iter().eq(expected));
+        Some(asked[0].iter().map(|asked| u64::from(asked.count_ones())).sum())
+    }
+
+    #[test]
+    fn bricks_that_were_not_used_for_the_longest_give_way() {
+        let most = bytes_of_rows(BRICKS, lights().iter());
+        let mut table = HostTable::default();
+        let always: Vec<BrickKey> = (1_000_000..1_000_020).collect();
+        for number in 1..50 {
+            let first = 30 * u64::from(number);
+            let bricks: Vec<BrickKey> = (first..first + 40).chain(always.iter().copied()).collect();
+            let unknown = image(&mut table, number, most, &bricks).unwrap();
+            // Of the image before, ten are used again, and those that always are.
+            assert_eq!(unknown, 64 * if number == 1 { 60 } else { 30 }, "image {number}");
+            assert!(table.memory() <= most && table.rows.len() <= BRICKS, "image {number}: {}", table.memory());
+            assert_eq!(image(&mut table, number, most, &bricks), Some(0));
+        }
+        assert!(table.rows.len() >= 60);
+        assert_eq!(image(&mut table, 50, most, &[30, 31]), Some(128), "the first ones are gone");
+        // What is stored is what is known.
+        let Ok(stored) = table.stored();
+        let mut again = HostTable::restored(stored.clone());
+        assert_eq!((again.len(), again.stored()), (table.len(), Ok(stored)));
+        assert_eq!(image(&mut again, 51, most, &always), Some(0));
+    }
+
+    #[test]
+    fn bricks_for_which_there_is_no_room_are_not_kept() {
+        let most = bytes_of_rows(BRICKS, lights().iter());
+        let mut table = HostTable::default();
+        let bricks: Vec<BrickKey> = (0..BRICKS as u64 + 1).collect();
+        assert_eq!(image(&mut table, 1, most, &bricks[1..]), Some(64 * BRICKS as u64));
+        assert_eq!(image(&mut table, 2, most, &bricks), None);
+        assert_eq!((table.len(), table.memory()), (0, 0));
+        assert!(image(&mut table, 3, most, &bricks[..50]).is_some());
+        let Ok(mut stored) = table.stored();
+        stored.limit(Some(bytes_of_rows(20, lights().iter())));
+        let mut again = HostTable::restored(stored);
+        assert_eq!(again.len(), 2 * 64 * 20);
+        assert_eq!(image(&mut again, 4, most, &bricks[..20]), Some(0));
     }
 }

@@ -1,6 +1,6 @@
 // Visibility of light points, cached on a CUDA device from image to image: twin of host.rs.
 //
-// 1. `admit_bricks`: finds the image's bricks in the cached table, and inserts new ones.
+// 1. `admit_bricks`: finds the image's bricks in the cached table, inserts new ones, and makes them the youngest.
 // 2. `find_unknown`: the points whose value for one light is unknown; they are listed and tested as all points are without a cache.
 // 3. `learn`: stores the results for these points.
 // 4. `recall`: what all points of the image see.
@@ -36,8 +36,12 @@ DEVICE bool slot_of_thread(const Cache &args, unsigned &slot) {
 KERNEL(admit_bricks, Cache, BLOCK, 4) {
     unsigned slot;
     // A table that is more than half full is abandoned: the host allocates a larger one.
-    if (slot_of_thread(args, slot) && *(volatile unsigned *)args.bricks <= args.table.capacity / 2)
-        args.rows[slot] = slot_for(args, args.points.table.keys[slot]);
+    if (!slot_of_thread(args, slot) || *(volatile unsigned *)args.bricks > args.table.capacity / 2)
+        return;
+    const unsigned row = slot_for(args, args.points.table.keys[slot]);
+    args.rows[slot] = row;
+    if (row != NO_SLOT)
+        args.ages[row] = args.image;
 }
 
 KERNEL(find_unknown, Cache, BLOCK, 4) {
@@ -78,8 +82,11 @@ KERNEL(recall, Cache, BLOCK, 4) {
 
 KERNEL(move_bricks, Cache, BLOCK, 4) {
     const unsigned slot = blockIdx.x * blockDim.x + threadIdx.x;
-    if (slot < args.from_table.capacity && args.from_table.keys[slot] != 0)
-        args.rows[slot] = slot_for(args, args.from_table.keys[slot]);
+    if (slot >= args.from_table.capacity || args.from_table.keys[slot] == 0)
+        return;
+    const unsigned row = slot_for(args, args.from_table.keys[slot]);
+    args.rows[slot] = row;
+    args.ages[row] = args.from_ages[slot];
 }
 
 KERNEL(move_answers, Cache, BLOCK, 4) {

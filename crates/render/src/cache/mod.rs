@@ -4,24 +4,32 @@
 //! for an area light, the sampling. As long as these stay the same, no long test has to be repeated. A [`MeshCache`] belongs to the
 //! caller; an image is bit-identical with and without it.
 //!
-//! A backend keeps a [`Table`] for each geometry: a row for each brick, a column for each light.
+//! A backend keeps a [`Table`] for each geometry: a row for each brick, a column for each light. Tables of all backends go to the same
+//! [files](file), and come from there, by way of one [form](stored).
 
 mod device;
+mod file;
 mod host;
 mod noticed;
+mod seen;
+mod stored;
 
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
 
 use glam::{UVec3, Vec3};
-use lightmesh_scene::{Light, LightKind};
+use lightmesh_memory::Budget;
 
 pub use device::DeviceTable;
+pub use file::{MeshFault, MeshFileError, MeshSaveError, SavedMesh};
 pub use host::HostTable;
 pub(crate) use noticed::Noticed;
+pub(crate) use seen::Seen;
+use stored::Stored;
 
 use crate::cuda::Driver;
+use crate::error::RenderError;
 use crate::gathered::Sources;
-use crate::job::Sampling;
 use crate::light_mesh::Lattice;
 use crate::prepared::{PreparedGeometry, PreparedScene};
 
@@ -36,6 +44,19 @@ pub struct MeshCache {
     host: Kept<HostTable>,
     /// What is kept in the memory of CUDA devices, by the device's id.
     devices: Vec<(u64, Kept<DeviceTable<Driver>>)>,
+    /// What was read from a file, until it is asked for where images are rendered.
+    read: Vec<Section>,
+    /// The file.
+    file: PathBuf,
+}
+
+/// What a file holds of one geometry.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Section {
+    /// Hash of the geometry.
+    geometry: u64,
+    places: Places,
+    stored: Stored,
 }
 
 impl MeshCache {
@@ -44,29 +65,71 @@ impl MeshCache {
         MeshCache::default()
     }
 
+    /// A cache with what was [saved](MeshCache::save) for the geometry of `scene`, on any device. Values for a light that has changed since
+    /// are computed anew, and replaced. If light points of an image are at other places, nothing of the file is used:
+    /// [`MeshCache::refused`]. At most as much memory is taken as `budget` allows.
+    ///
+    /// # Errors
+    /// [`MeshFileError`] if the file cannot be read, is of another kind or version, belongs to other geometry, is damaged, or does not fit into
+    /// memory. [`MeshFault::is_replaceable`] tells files that a new one may replace from those that are something else.
+    pub fn load(path: impl AsRef<Path>, scene: &PreparedScene, budget: Budget) -> Result<MeshCache, MeshFileError> {
+        let path = path.as_ref();
+        Ok(MeshCache { read: file::load(path, scene, budget)?, file: path.into(), ..MeshCache::default() })
+    }
+
+    /// Writes what light points of a scene's geometry see, whole or not at all, in the form that is the same for all devices. `None` if nothing
+    /// is known of it, and no file is written then. Light that surfaces gathered is not saved.
+    ///
+    /// # Errors
+    /// [`MeshSaveError`] if the file cannot be written, or a device fails.
+    pub fn save(&self, path: impl AsRef<Path>, scene: &PreparedScene) -> Result<Option<SavedMesh>, MeshSaveError> {
+        let path = path.as_ref();
+        let mut sections = self.host.sections(path, scene)?;
+        for (_, kept) in &self.devices {
+            sections.append(&mut kept.sections(path, scene)?);
+        }
+        sections.extend_from_slice(&self.read);
+        save(path, scene, sections)
+    }
+
+    /// Why nothing was used of the file that the cache was loaded from, if that turned out with an image. Says so once.
+    pub fn refused(&mut self) -> Option<MeshFileError> {
+        let on_devices = self.devices.iter_mut().find_map(|(_, kept)| kept.refused.take());
+        let fault = self.host.refused.take().or(on_devices)?;
+        Some(MeshFileError { path: self.file.clone(), fault })
+    }
+
+    /// Number of values that were read from a file and not yet asked for.
+    fn unused(&self) -> u64 {
+        self.read.iter().map(Section::len).sum()
+    }
+
     /// Number of cached values: light points times lights.
     pub fn len(&self) -> u64 {
-        self.host.len() + self.devices.iter().map(|(_, kept)| kept.len()).sum::<u64>()
+        self.unused() + self.host.len() + self.devices.iter().map(|(_, kept)| kept.len()).sum::<u64>()
     }
 
     /// Whether the cache is empty.
     pub fn is_empty(&self) -> bool {
-        self.host.is_empty() && self.devices.iter().all(|(_, kept)| kept.is_empty())
+        self.read.is_empty() && self.host.is_empty() && self.devices.iter().all(|(_, kept)| kept.is_empty())
     }
 
     /// Bytes used, on the host and on devices.
     pub fn memory(&self) -> u64 {
-        self.host.memory() + self.devices.iter().map(|(_, kept)| kept.memory()).sum::<u64>()
+        let read: u64 = self.read.iter().map(|section| section.stored.memory()).sum();
+        read + self.host.memory() + self.devices.iter().map(|(_, kept)| kept.memory()).sum::<u64>()
     }
 
     /// Empties the cache and frees its memory.
     pub fn clear(&mut self) {
+        self.read.clear();
         self.host.clear();
         self.devices.clear();
     }
 
     /// The part that is kept on the host.
     pub(crate) fn host(&mut self) -> &mut Kept<HostTable> {
+        self.host.read.append(&mut self.read);
         &mut self.host
     }
 
@@ -77,8 +140,31 @@ impl MeshCache {
             self.devices.push((id, Kept::default()));
             self.devices.len() - 1
         });
-        &mut self.devices[index].1
+        let kept = &mut self.devices[index].1;
+        kept.read.append(&mut self.read);
+        kept
     }
+}
+
+impl Section {
+    /// Number of values.
+    fn len(&self) -> u64 {
+        self.stored.len()
+    }
+}
+
+/// Writes the largest section of each geometry of a scene.
+fn save(path: &Path, scene: &PreparedScene, mut sections: Vec<Section>) -> Result<Option<SavedMesh>, MeshSaveError> {
+    let order: Vec<u64> = scene.geometry.all_parts().iter().map(|geometry| geometry.hash()).collect();
+    let place = |section: &Section| order.iter().position(|&hash| hash == section.geometry);
+    sections.retain(|section| section.len() > 0 && place(section).is_some());
+    sections.sort_by_key(|section| (place(section), u64::MAX - section.len()));
+    sections.dedup_by_key(|section| section.geometry);
+    if sections.is_empty() {
+        return Ok(None);
+    }
+    let values = sections.iter().map(Section::len).sum();
+    Ok(Some(SavedMesh { values, bytes: file::write(path, scene, &sections)? }))
 }
 
 /// What a backend knows about the light points of one geometry.
@@ -87,7 +173,7 @@ pub trait Table: Default {
     /// What surfaces gather.
     type Light: Default;
     /// What may fail.
-    type Error;
+    type Error: Into<RenderError>;
 
     /// Bytes that this uses.
     fn memory_of(light: &Self::Light) -> u64;
@@ -100,12 +186,38 @@ pub trait Table: Default {
 
     /// Forgets the values that `noticed` may have changed. After an error the table must be dropped.
     fn forget(&mut self, noticed: &Noticed) -> Result<(), Self::Error>;
+
+    /// Sets what holds until the next image.
+    fn allow(&mut self, allowance: Allowance);
+
+    /// All values, in the form that is the same for all backends.
+    fn stored(&self) -> Result<Stored, Self::Error>;
+
+    /// A table with these values.
+    fn restored(stored: Stored) -> Self;
 }
+
+/// What a table may take for an image.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Allowance {
+    /// The number of the image, which becomes the age of what it uses.
+    image: u32,
+    /// Bytes; `None`: as many as there are.
+    most: Option<u64>,
+}
+
+/// Light points may take one part in this many of the memory that is left.
+const PART_KEPT: u64 = 4;
 
 /// The tables of a backend: one for each geometry that is alive, for the lattice that it was last used with.
 pub struct Kept<T: Table> {
     tables: Vec<Known<T>>,
     gathered: Vec<Gathered<T::Light>>,
+    /// What was read from a file, until its geometry is asked for.
+    read: Vec<Section>,
+    /// Why some of it could not be used.
+    refused: Option<MeshFault>,
+    allowance: Allowance,
 }
 
 struct Known<T> {
@@ -116,7 +228,7 @@ struct Known<T> {
 }
 
 /// What determines the positions of light points.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Places {
     anchor: Vec3,
     step: f32,
@@ -132,14 +244,21 @@ struct Gathered<L> {
 
 impl<T: Table> Default for Kept<T> {
     fn default() -> Kept<T> {
-        Kept { tables: Vec::new(), gathered: Vec::new() }
+        Kept {
+            tables: Vec::new(),
+            gathered: Vec::new(),
+            read: Vec::new(),
+            refused: None,
+            allowance: Allowance::default(),
+        }
     }
 }
 
 impl<T: Table> Kept<T> {
     /// Number of cached values: light points times lights.
     pub fn len(&self) -> u64 {
-        self.tables.iter().map(|known| known.table.len()).sum()
+        let read: u64 = self.read.iter().map(Section::len).sum();
+        self.tables.iter().map(|known| known.table.len()).sum::<u64>() + read
     }
 
     /// Whether nothing is kept: no values, and no gathered light.
@@ -150,13 +269,60 @@ impl<T: Table> Kept<T> {
     /// Bytes used.
     pub fn memory(&self) -> u64 {
         let gathered: u64 = self.gathered.iter().map(|gathered| T::memory_of(&gathered.light)).sum();
-        self.tables.iter().map(|known| known.table.memory()).sum::<u64>() + gathered
+        self.memory_of_tables() + gathered
     }
 
     /// Removes everything.
     pub(crate) fn clear(&mut self) {
         self.tables.clear();
         self.gathered.clear();
+        self.read.clear();
+    }
+
+    /// Begins an image that has light points, if `left` bytes are left for it: bricks that were not used for the longest give way if what is
+    /// known takes more than its part. Returns the bytes that tables may still take.
+    pub(crate) fn begin(&mut self, left: Option<u64>) -> u64 {
+        let held = self.memory_of_tables();
+        let most = left.map(|left| (left + held) / PART_KEPT);
+        self.allowance = Allowance { image: self.allowance.image + 1, most };
+        most.map_or(0, |most| most.saturating_sub(held))
+    }
+
+    /// Bytes that light points take.
+    fn memory_of_tables(&self) -> u64 {
+        let read: u64 = self.read.iter().map(|section| section.stored.memory()).sum();
+        self.tables.iter().map(|known| known.table.memory()).sum::<u64>() + read
+    }
+
+    /// [`MeshCache::load`] for one backend.
+    ///
+    /// # Errors
+    /// As [`MeshCache::load`].
+    pub fn load(path: impl AsRef<Path>, scene: &PreparedScene, budget: Budget) -> Result<Kept<T>, MeshFileError> {
+        Ok(Kept { read: file::load(path.as_ref(), scene, budget)?, ..Kept::default() })
+    }
+
+    /// [`MeshCache::save`] for one backend.
+    ///
+    /// # Errors
+    /// As [`MeshCache::save`].
+    pub fn save(&self, path: impl AsRef<Path>, scene: &PreparedScene) -> Result<Option<SavedMesh>, MeshSaveError> {
+        let path = path.as_ref();
+        save(path, scene, self.sections(path, scene)?)
+    }
+
+    /// All that is known of the light points of a scene's geometry, in the form of files; `path` is for messages.
+    fn sections(&self, path: &Path, scene: &PreparedScene) -> Result<Vec<Section>, MeshSaveError> {
+        let mut sections = self.read.clone();
+        for geometry in scene.geometry.all_parts() {
+            for known in self.tables.iter().filter(|known| known.geometry.as_ptr() == Arc::as_ptr(geometry)) {
+                let failed =
+                    |reason: T::Error| MeshSaveError::Device { path: path.into(), reason: Box::new(reason.into()) };
+                let stored = known.table.stored().map_err(failed)?;
+                sections.push(Section { geometry: geometry.hash(), places: known.places, stored });
+            }
+        }
+        Ok(sections)
     }
 
     /// Takes out what surfaces gathered from the same sources; nothing if there are others. Removes that of geometry that no longer exists.
@@ -183,12 +349,32 @@ impl<T: Table> Kept<T> {
         let index = match self.tables.iter().position(same) {
             Some(index) => index,
             None => {
-                let table = self.moved(scene, lattice, &places)?.unwrap_or_default();
+                let table =
+                    self.moved(scene, lattice, &places)?.or_else(|| self.restored(scene, &places)).unwrap_or_default();
                 self.tables.push(Known { geometry: Arc::downgrade(&scene.geometry), places, table });
                 self.tables.len() - 1
             }
         };
-        Ok(&mut self.tables[index].table)
+        let most = self.allowance.most.map(|most| most / self.tables.len() as u64);
+        let table = &mut self.tables[index].table;
+        table.allow(Allowance { most, ..self.allowance });
+        Ok(table)
+    }
+
+    /// The table of geometry of which a file was read, if its light points are at the same places.
+    fn restored(&mut self, scene: &PreparedScene, places: &Places) -> Option<T> {
+        if self.read.is_empty() {
+            return None;
+        }
+        let hash = scene.geometry.hash();
+        let index = self.read.iter().position(|section| section.geometry == hash)?;
+        let mut section = self.read.swap_remove(index);
+        if section.places != *places {
+            self.refused = Some(MeshFault::OtherStep { found: section.places.step, expected: places.step });
+            return None;
+        }
+        section.stored.limit(self.allowance.most);
+        Some(T::restored(section.stored))
     }
 
     /// The table of geometry in which things have moved since, if its light points are at the same places.
@@ -199,35 +385,5 @@ impl<T: Table> Kept<T> {
         let mut table = self.tables.swap_remove(index).table;
         table.forget(&Noticed::new(&moved.boxes, lattice, &scene.geometry))?;
         Ok(Some(table))
-    }
-}
-
-/// What determines the values of a column, apart from the light's index, which is the column's.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Seen {
-    kind: LightKind,
-    /// Samples and seed, for an area light.
-    sampling: Option<(u32, u64)>,
-}
-
-impl Seen {
-    pub(crate) fn of(light: &Light, sampling: &Sampling) -> Seen {
-        let sampling = light.has_size().then_some((sampling.samples, sampling.seed));
-        Seen { kind: light.kind.clone(), sampling }
-    }
-
-    /// The shape of the light.
-    pub(crate) fn kind(&self) -> &LightKind {
-        &self.kind
-    }
-
-    /// Number of rays from each light point.
-    pub(crate) fn samples(&self) -> u32 {
-        self.sampling.map_or(1, |(samples, _)| samples)
-    }
-
-    /// Whether values are shares rather than bits.
-    pub(crate) fn is_share(&self) -> bool {
-        self.sampling.is_some()
     }
 }

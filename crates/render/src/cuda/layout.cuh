@@ -1879,23 +1879,31 @@ struct alignas(8) Cache {
     UsedPoints points;
     BrickTable table;
     unsigned *bricks;
+    unsigned *ages;
     unsigned *rows;
     KeptBy kept;
     LitBy lit;
     unsigned long long *unknown;
     BrickTable from_table;
+    unsigned *from_ages;
     KeptBy from;
+    unsigned image;
+    unsigned spare;
 };
-static_assert(sizeof(Cache) == 160, "size of Cache");
+static_assert(sizeof(Cache) == 184, "size of Cache");
 static_assert(PLACE_OF(Cache, points) == 0, "place of Cache::points");
 static_assert(PLACE_OF(Cache, table) == 40, "place of Cache::table");
 static_assert(PLACE_OF(Cache, bricks) == 56, "place of Cache::bricks");
-static_assert(PLACE_OF(Cache, rows) == 64, "place of Cache::rows");
-static_assert(PLACE_OF(Cache, kept) == 72, "place of Cache::kept");
-static_assert(PLACE_OF(Cache, lit) == 96, "place of Cache::lit");
-static_assert(PLACE_OF(Cache, unknown) == 112, "place of Cache::unknown");
-static_assert(PLACE_OF(Cache, from_table) == 120, "place of Cache::from_table");
-static_assert(PLACE_OF(Cache, from) == 136, "place of Cache::from");
+static_assert(PLACE_OF(Cache, ages) == 64, "place of Cache::ages");
+static_assert(PLACE_OF(Cache, rows) == 72, "place of Cache::rows");
+static_assert(PLACE_OF(Cache, kept) == 80, "place of Cache::kept");
+static_assert(PLACE_OF(Cache, lit) == 104, "place of Cache::lit");
+static_assert(PLACE_OF(Cache, unknown) == 120, "place of Cache::unknown");
+static_assert(PLACE_OF(Cache, from_table) == 128, "place of Cache::from_table");
+static_assert(PLACE_OF(Cache, from_ages) == 144, "place of Cache::from_ages");
+static_assert(PLACE_OF(Cache, from) == 152, "place of Cache::from");
+static_assert(PLACE_OF(Cache, image) == 176, "place of Cache::image");
+static_assert(PLACE_OF(Cache, spare) == 180, "place of Cache::spare");
 
 struct alignas(8) Interpolate {
     Scene scene;

@@ -20,7 +20,7 @@ impl<R: Runtime> Cuda<R> {
     /// The estimate of light points and items is an expectation. If an image has more, allocation fails and the band is
     /// restarted with half of its rows.
     pub(crate) fn rows_that_fit(&self, plan: &Plan) -> Result<u32, RenderError> {
-        let fixed = if plan.gathering.is_some() { cuda::memory_at_once() } else { 0 };
+        let fixed = plan.reserved + if plan.gathering.is_some() { cuda::memory_at_once() } else { 0 };
         let free = self.memory_left().map(|free| free.saturating_sub(fixed));
         let Some(free) = free else { return Ok(plan.size[1]) };
         let row = u64::from(plan.size[0]) * bytes_per_pixel(plan);

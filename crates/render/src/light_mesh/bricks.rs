@@ -69,7 +69,7 @@ impl BrickMap {
         let mut table = vec![NO_SLOT; (2 * keys.len()).next_power_of_two()];
         let mask = table.len() - 1;
         for (index, &key) in keys.iter().enumerate() {
-            let mut slot = hash(key) & mask;
+            let mut slot = brick_hash(key) & mask;
             while table[slot] != NO_SLOT {
                 slot = (slot + 1) & mask;
             }
@@ -87,7 +87,7 @@ impl BrickMap {
     #[inline(always)]
     pub fn find(&self, key: BrickKey) -> Option<usize> {
         let mask = self.table.len() - 1;
-        let mut slot = hash(key) & mask;
+        let mut slot = brick_hash(key) & mask;
         loop {
             let index = self.table[slot] as usize;
             if index == NO_SLOT as usize {
@@ -103,7 +103,7 @@ impl BrickMap {
 
 /// Fibonacci hashing: the golden ratio spreads neighbouring keys.
 #[inline(always)]
-fn hash(key: BrickKey) -> usize {
+pub(crate) fn brick_hash(key: BrickKey) -> usize {
     (key.wrapping_mul(GOLDEN_RATIO) >> 32) as usize
 }
 

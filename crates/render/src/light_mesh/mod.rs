@@ -13,8 +13,8 @@ mod template;
 mod window;
 
 pub(crate) use auto_step::auto_step;
-pub(crate) use bricks::bits;
 pub use bricks::{BrickKey, BrickMap, PointKey, UsedPoints, brick_of, point_bit, point_key, point_of};
+pub(crate) use bricks::{bits, brick_hash};
 pub(crate) use cell_points::{CellPoints, sum_in_both, sum_of_products};
 pub use lattice::Lattice;
 pub use lattice_error::LatticeError;

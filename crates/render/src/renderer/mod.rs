@@ -18,7 +18,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::backend::run::Run;
 use crate::backend::{Backend, Cpu, Cuda};
-use crate::cache::{Kept, MeshCache};
+use crate::cache::{Kept, MeshCache, MeshFileError};
 use crate::cuda::{Driver, Runtime};
 use crate::data::picture::Picture;
 use crate::device::{Choice, Chosen, Device};
@@ -183,6 +183,19 @@ impl Renderer {
         self.pool.install(|| self.preparations.prepare_moved(before, scene, acceleration, budget, observer))
     }
 
+    /// [`MeshCache::load`] with the memory that the settings leave to the host.
+    ///
+    /// # Errors
+    /// As [`MeshCache::load`].
+    pub fn load_cache(
+        &self,
+        path: impl AsRef<Path>,
+        scene: &PreparedScene,
+        settings: &Settings,
+    ) -> Result<MeshCache, MeshFileError> {
+        MeshCache::load(path, scene, self.building_budget(settings))
+    }
+
     /// Memory for what is built on the host.
     fn building_budget(&self, settings: &Settings) -> Budget {
         match &self.engine {
@@ -317,7 +330,7 @@ pub fn render_on_with<B: Backend>(
 
 fn picture_on<B: Backend>(
     backend: &B,
-    kept: Option<&mut Kept<B::Table>>,
+    mut kept: Option<&mut Kept<B::Table>>,
     scene: &PreparedScene,
     settings: &Settings,
     observer: &dyn Observer,
@@ -330,12 +343,30 @@ fn picture_on<B: Backend>(
     let mut resolved = Resolved::new(scene, settings, observer)?;
     resolved.plan.kept = kept.as_ref().map_or(0, |kept| kept.memory());
     let Resolved { technique, view, plan, .. } = &resolved;
-    backend.check_host_memory(plan)?;
+    let mut plan = plan.clone();
+    if let Err(short) = backend.check_host_memory(&plan) {
+        // What is kept gives way to what is needed.
+        match &mut kept {
+            Some(kept) if !kept.is_empty() => kept.clear(),
+            _ => return Err(short),
+        }
+        plan.left = Budget::new(plan.memory_limit).left();
+        backend.check_host_memory(&plan)?;
+    }
     let job = resolved.job(observer);
     let rows = 0..plan.size[1];
-    let mut picture = Picture::planned(plan, [rows.clone(), rows]);
+    let mut picture = Picture::planned(&plan, [rows.clone(), rows]);
     let run = Run::new(backend, &job, kept);
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
+    if technique.template() > 0 {
+        plan.reserved = run.begin_kept(backend.left(&plan));
+        if backend.rows_at_once(&on_device, &plan).is_err() {
+            // All of it is needed for the image.
+            run.begin_kept(Some(0));
+            plan.reserved = 0;
+        }
+    }
+    let plan = &plan;
     let sources = plan.gathering.as_ref().map(|how| Sources::new(scene, settings.seed, how));
     if let Some(sources) = &sources {
         run.recall_gathered(scene, sources);

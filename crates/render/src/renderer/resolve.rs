@@ -120,6 +120,7 @@ impl<'a> Resolved<'a> {
             memory_limit: settings.memory_limit,
             left,
             kept: 0,
+            reserved: 0,
             footprint: footprint(scene, &technique, lights),
         };
         let sampling = Sampling { samples, seed: settings.seed, spread: technique.spreads_points() };

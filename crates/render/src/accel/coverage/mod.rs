@@ -22,6 +22,7 @@ use glam::{Affine2, Vec2, Vec3};
 use lightmesh_layout::constants::OPAQUE;
 use lightmesh_layout::geometry::CutTriangle;
 use lightmesh_scene::Wrap;
+use xxhash_rust::xxh3::Xxh3;
 
 use super::triangle::RayShear;
 use super::{Hit, Triangle};
@@ -80,6 +81,17 @@ impl Coverage {
             planes: table.planes.clone(),
         });
         Coverage { table: table.map(Arc::new) }
+    }
+
+    /// Adds all that decides where surfaces are to a hash.
+    pub(crate) fn hash(&self, hash: &mut Xxh3) {
+        let Some(table) = self.table() else { return };
+        hash.update(bytemuck::cast_slice(&table.triangles));
+        for mask in &table.masks {
+            // Numbers are shown with all digits that tell them apart.
+            hash.update(format!("{mask:?}").as_bytes());
+        }
+        table.planes.iter().for_each(|plane| hash.update(plane));
     }
 
     /// Bytes on the heap.

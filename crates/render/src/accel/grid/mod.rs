@@ -36,6 +36,7 @@ use super::visit::{Any, Closest};
 use super::{Accelerator, Coverage, Form, Hit, Ray, Region, ShortSegments, Take, Triangle};
 use crate::simd::dispatch;
 pub use file::{GridFault, GridFileError, GridSaveError};
+pub(crate) use hash::geometry_hash;
 use lattice::Lattice;
 
 /// How a grid is laid out.

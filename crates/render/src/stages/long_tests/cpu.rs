@@ -25,12 +25,15 @@ pub(crate) fn long_tests(
     let lights = wave.lights().iter().enumerate();
     let aim = Aim::Extent(wave.job.sampling.of_light_points());
     let test = |points: &UsedPoints, (index, light)| LongTests { wave, points, mesh, aim, index, light }.run();
-    let Some(kept) = kept else {
+    let table = kept.map(|kept| {
+        let Ok(table) = kept.table(wave.scene, &mesh.lattice);
+        let seen = wave.lights().iter().map(|light| Seen::of(light, &wave.job.sampling)).collect();
+        let rows = table.admit(points.bricks().keys(), seen)?;
+        Some((table, rows))
+    });
+    let Some((table, rows)) = table.flatten() else {
         return Lit { lights: lights.map(|light| test(points, light)).collect() };
     };
-    let Ok(table) = kept.table(wave.scene, &mesh.lattice);
-    let seen = wave.lights().iter().map(|light| Seen::of(light, &wave.job.sampling)).collect();
-    let rows = table.admit(points.bricks().keys(), seen);
     let recall = |(index, light)| {
         let unknown = points.only(table.unknown(index, &rows, points.used()));
         let found = test(&unknown, (index, light));

@@ -55,7 +55,7 @@ impl<R: Runtime> LongTestsOf<'_, R> {
         let LongTestsOf { cuda, wave, points, .. } = *self;
         let lights = &wave.scene.host.scene.lights;
         let seen = lights.iter().map(|light| Seen::of(light, &wave.job.sampling)).collect();
-        let rows = table.admit(cuda, points, seen)?;
+        let Some(rows) = table.admit(cuda, points, seen)? else { return self.all() };
         let lit = DeviceLit::new(cuda, lights, points)?;
         for (index, light) in lights.iter().enumerate() {
             let unknown = only(cuda, points, table.unknown(cuda, index, &rows, points)?)?;

@@ -1,0 +1,295 @@
+//! The content of a mesh file: a section for each geometry that light points were tested against. That is one, or, if light goes through
+//! surfaces, one for each part that the scene is taken into.
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 4 | number of sections |
+//! | | for each of them: |
+//! | 8 | hash of the geometry |
+//! | 4 × 3, 4, 4 × 3 | anchor, step and number of the lattice |
+//! | 4 | number of lights |
+//! | 8 | number of bricks |
+//! | 1 to 9 each | the bricks' keys, each as the difference from the one before, 7 bits in a byte |
+//! | | for each light: |
+//! | 1, 4 each | its kind, and the numbers that describe it |
+//! | 4, 8 | if it has a size: samples and seed; 0 samples otherwise |
+//! | 8 each | the light points whose value is known, by brick |
+//! | 8 each | without a size: those that see the light, by brick |
+//! | 1 or 2 each | with a size: the rays that reached the light, of each known light point; one byte up to 255 samples |
+
+use std::io::{self, BufReader, Read, Write};
+
+use glam::{UVec3, Vec3};
+use lightmesh_layout::constants::AXIS_BITS;
+use lightmesh_memory::Budget;
+use lightmesh_scene::LightKind;
+
+use super::super::stored::{Stored, StoredAnswers, StoredColumn};
+use super::super::{Places, Section, Seen};
+use super::{MeshFault, pack, short};
+
+/// Bits of a brick's key.
+const KEY_BITS: u32 = 3 * AXIS_BITS;
+/// Numbers that are read at once: memory is taken as they appear.
+const AT_ONCE: usize = 1 << 16;
+/// More lights than this are no scene's.
+const MOST_LIGHTS: u32 = 1 << 20;
+/// Samples up to this have shares of one byte.
+const SMALL: u32 = 255;
+
+pub(super) fn write(output: &mut impl Write, sections: &[Section]) -> io::Result<()> {
+    output.write_all(&(sections.len() as u32).to_le_bytes())?;
+    for Section { geometry, places: Places { anchor, step, number }, stored } in sections {
+        output.write_all(&geometry.to_le_bytes())?;
+        floats(output, &[anchor.x, anchor.y, anchor.z, *step])?;
+        for number in number.to_array() {
+            output.write_all(&number.to_le_bytes())?;
+        }
+        output.write_all(&(stored.columns.len() as u32).to_le_bytes())?;
+        output.write_all(&(stored.bricks.len() as u64).to_le_bytes())?;
+        let mut before = 0;
+        for &brick in &stored.bricks {
+            write_difference(output, brick - before)?;
+            before = brick;
+        }
+        stored.columns.iter().try_for_each(|column| write_column(output, column))?;
+    }
+    Ok(())
+}
+
+fn write_column(output: &mut impl Write, column: &StoredColumn) -> io::Result<()> {
+    write_seen(output, &column.seen)?;
+    longs(output, &column.known)?;
+    match &column.answers {
+        StoredAnswers::Bits(words) => longs(output, words),
+        StoredAnswers::Shares(shares) if column.seen.samples() <= SMALL => {
+            shares.chunks(AT_ONCE).try_for_each(|shares| {
+                let bytes: Vec<u8> = shares.iter().map(|&share| share as u8).collect();
+                output.write_all(&bytes)
+            })
+        }
+        StoredAnswers::Shares(shares) => shares.chunks(AT_ONCE).try_for_each(|shares| {
+            let bytes: Vec<u8> = shares.iter().flat_map(|share| share.to_le_bytes()).collect();
+            output.write_all(&bytes)
+        }),
+    }
+}
+
+fn write_seen(output: &mut impl Write, Seen { kind, sampling }: &Seen) -> io::Result<()> {
+    let (name, numbers): (u8, Vec<f32>) = match *kind {
+        LightKind::Point { position, spread } => (0, [&position.to_array()[..], &[spread]].concat()),
+        LightKind::Directional { direction, angle } => (1, [&direction.to_array()[..], &[angle]].concat()),
+        LightKind::Spot { position, direction, inner, outer } => {
+            (2, [&position.to_array()[..], &direction.to_array(), &[inner, outer]].concat())
+        }
+        LightKind::Sphere { position, radius } => (3, [&position.to_array()[..], &[radius]].concat()),
+        LightKind::Disk { position, normal, radius } => {
+            (4, [&position.to_array()[..], &normal.to_array(), &[radius]].concat())
+        }
+        LightKind::Rectangle { position, half_u, half_v } => {
+            (5, [position.to_array(), half_u.to_array(), half_v.to_array()].concat())
+        }
+    };
+    output.write_all(&[name])?;
+    floats(output, &numbers)?;
+    let (samples, seed) = sampling.unwrap_or_default();
+    output.write_all(&samples.to_le_bytes())?;
+    output.write_all(&seed.to_le_bytes())
+}
+
+fn write_difference(output: &mut impl Write, mut value: u64) -> io::Result<()> {
+    let mut bytes = [0; 10];
+    let mut count = 0;
+    loop {
+        let rest = value >> 7;
+        bytes[count] = (value & 0x7f) as u8 | if rest == 0 { 0 } else { 0x80 };
+        count += 1;
+        value = rest;
+        if rest == 0 {
+            return output.write_all(&bytes[..count]);
+        }
+    }
+}
+
+fn floats(output: &mut impl Write, numbers: &[f32]) -> io::Result<()> {
+    numbers.iter().try_for_each(|number| output.write_all(&number.to_le_bytes()))
+}
+
+fn longs(output: &mut impl Write, numbers: &[u64]) -> io::Result<()> {
+    numbers.chunks(AT_ONCE).try_for_each(|numbers| {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+        output.write_all(&bytes)
+    })
+}
+
+/// Decodes the sections, each of which belongs to one of the `geometries`, from `packed`, whose content has `length` bytes.
+pub(super) fn read(packed: &[u8], length: u64, budget: Budget, geometries: &[u64]) -> Result<Vec<Section>, MeshFault> {
+    let packed = pack::decoder(packed).map_err(|reason| MeshFault::Read(reason.into()))?;
+    let mut input = Input { inner: BufReader::with_capacity(AT_ONCE, packed.take(length)), budget };
+    let count = input.int()?;
+    if count as usize > geometries.len() {
+        return Err(MeshFault::Damaged("it has more geometry than its scene"));
+    }
+    let mut sections = Vec::new();
+    for _ in 0..count {
+        let section = input.section()?;
+        if !geometries.contains(&section.geometry) {
+            return Err(MeshFault::Damaged("it has geometry that is not its scene's"));
+        }
+        sections.push(section);
+    }
+    // Nothing may follow, neither in the content nor beyond its length.
+    let is_read = input.inner.buffer().is_empty() && input.inner.get_ref().limit() == 0;
+    let packed = input.inner.get_mut();
+    packed.set_limit(1);
+    match packed.read(&mut [0]) {
+        Ok(0) if is_read => Ok(sections),
+        _ => Err(MeshFault::Damaged("it holds more than its light points")),
+    }
+}
+
+/// What is not compressed as it should be.
+const UNPACKED: MeshFault = MeshFault::Damaged("it cannot be decompressed");
+
+/// Content that is read, and the memory for it.
+struct Input<R> {
+    inner: R,
+    budget: Budget,
+}
+
+impl<R: Read> Input<R> {
+    fn bytes<const N: usize>(&mut self) -> Result<[u8; N], MeshFault> {
+        let mut bytes = [0; N];
+        self.inner.read_exact(&mut bytes).map_err(|_| UNPACKED)?;
+        Ok(bytes)
+    }
+
+    fn int(&mut self) -> Result<u32, MeshFault> {
+        self.bytes().map(u32::from_le_bytes)
+    }
+
+    fn long(&mut self) -> Result<u64, MeshFault> {
+        self.bytes().map(u64::from_le_bytes)
+    }
+
+    fn float(&mut self) -> Result<f32, MeshFault> {
+        self.bytes().map(f32::from_le_bytes)
+    }
+
+    fn vector(&mut self) -> Result<Vec3, MeshFault> {
+        Ok(Vec3::new(self.float()?, self.float()?, self.float()?))
+    }
+
+    /// `count` numbers of `N` bytes each.
+    fn numbers<const N: usize, T>(&mut self, count: u64, number: impl Fn([u8; N]) -> T) -> Result<Vec<T>, MeshFault> {
+        let mut numbers = Vec::new();
+        let mut bytes = vec![0; N * AT_ONCE.min(count as usize)];
+        let mut left = count;
+        while left > 0 {
+            let some = left.min(AT_ONCE as u64) as usize;
+            let bytes = &mut bytes[..N * some];
+            self.inner.read_exact(bytes).map_err(|_| UNPACKED)?;
+            self.hold(&numbers, some)?;
+            numbers.extend(bytes.as_chunks::<N>().0.iter().map(|&bytes| number(bytes)));
+            left -= some as u64;
+        }
+        Ok(numbers)
+    }
+
+    /// Asks for memory for `more` values: growing takes twice as much as there is, while it is moved.
+    fn hold<T>(&mut self, values: &Vec<T>, more: usize) -> Result<(), MeshFault> {
+        if values.len() + more > values.capacity() {
+            short((2 * (values.len() + more) * size_of::<T>()) as u64, self.budget)?;
+        }
+        Ok(())
+    }
+
+    fn section(&mut self) -> Result<Section, MeshFault> {
+        let geometry = self.long()?;
+        let (anchor, step) = (self.vector()?, self.float()?);
+        let number = UVec3::new(self.int()?, self.int()?, self.int()?);
+        let (lights, bricks) = (self.int()?, self.long()?);
+        if lights > MOST_LIGHTS {
+            return Err(MeshFault::Damaged("it has more lights than a scene"));
+        }
+        let bricks = self.bricks(bricks)?;
+        let columns = (0..lights).map(|_| self.column(bricks.len())).collect::<Result<_, _>>()?;
+        let stored = Stored { ages: vec![0; bricks.len()], bricks, columns };
+        Ok(Section { geometry, places: Places { anchor, step, number }, stored })
+    }
+
+    /// Keys that ascend.
+    fn bricks(&mut self, count: u64) -> Result<Vec<u64>, MeshFault> {
+        let mut bricks: Vec<u64> = Vec::new();
+        for _ in 0..count {
+            let difference = self.difference()?;
+            let key = match bricks.last() {
+                Some(_) if difference == 0 => None,
+                before => before.copied().unwrap_or(0).checked_add(difference).filter(|key| key >> KEY_BITS == 0),
+            };
+            let key = key.ok_or(MeshFault::Damaged("its bricks are not in order"))?;
+            self.hold(&bricks, 1)?;
+            bricks.push(key);
+        }
+        Ok(bricks)
+    }
+
+    fn difference(&mut self) -> Result<u64, MeshFault> {
+        let mut value = 0;
+        for shift in (0..KEY_BITS.next_multiple_of(7)).step_by(7) {
+            let [byte] = self.bytes()?;
+            value |= u64::from(byte & 0x7f) << shift;
+            if byte & 0x80 == 0 {
+                return Ok(value);
+            }
+        }
+        Err(MeshFault::Damaged("its bricks are not in order"))
+    }
+
+    fn column(&mut self, bricks: usize) -> Result<StoredColumn, MeshFault> {
+        let seen = self.seen()?;
+        let known = self.numbers(bricks as u64, u64::from_le_bytes)?;
+        let answers = if seen.is_share() {
+            let count = known.iter().map(|known| u64::from(known.count_ones())).sum();
+            let samples = seen.samples();
+            let shares = match samples {
+                0..=SMALL => self.numbers(count, |[share]| u16::from(share))?,
+                _ => self.numbers(count, u16::from_le_bytes)?,
+            };
+            if shares.iter().any(|&share| u32::from(share) > samples) {
+                return Err(MeshFault::Damaged("more rays reach a light than there are"));
+            }
+            StoredAnswers::Shares(shares)
+        } else {
+            let words = self.numbers(bricks as u64, u64::from_le_bytes)?;
+            if words.iter().zip(&known).any(|(word, known)| word & !known != 0) {
+                return Err(MeshFault::Damaged("it has values that are not known"));
+            }
+            StoredAnswers::Bits(words)
+        };
+        Ok(StoredColumn { seen, known, answers })
+    }
+
+    fn seen(&mut self) -> Result<Seen, MeshFault> {
+        let [name] = self.bytes()?;
+        let kind = match name {
+            0 => LightKind::Point { position: self.vector()?, spread: self.float()? },
+            1 => LightKind::Directional { direction: self.vector()?, angle: self.float()? },
+            2 => LightKind::Spot {
+                position: self.vector()?,
+                direction: self.vector()?,
+                inner: self.float()?,
+                outer: self.float()?,
+            },
+            3 => LightKind::Sphere { position: self.vector()?, radius: self.float()? },
+            4 => LightKind::Disk { position: self.vector()?, normal: self.vector()?, radius: self.float()? },
+            5 => LightKind::Rectangle { position: self.vector()?, half_u: self.vector()?, half_v: self.vector()? },
+            _ => return Err(MeshFault::Damaged("it has a light of no kind")),
+        };
+        let (samples, seed) = (self.int()?, self.long()?);
+        if samples > u32::from(u16::MAX) {
+            return Err(MeshFault::Damaged("a light has too many samples"));
+        }
+        Ok(Seen { kind, sampling: (samples > 0).then_some((samples, seed)) })
+    }
+}

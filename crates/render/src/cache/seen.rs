@@ -1,0 +1,35 @@
+//! What determines what light points see of a light.
+
+use lightmesh_scene::{Light, LightKind};
+
+use crate::job::Sampling;
+
+/// What determines the values of a column, apart from the light's index, which is the column's.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Seen {
+    pub(super) kind: LightKind,
+    /// Samples and seed, for an area light.
+    pub(super) sampling: Option<(u32, u64)>,
+}
+
+impl Seen {
+    pub(crate) fn of(light: &Light, sampling: &Sampling) -> Seen {
+        let sampling = light.has_size().then_some((sampling.samples, sampling.seed));
+        Seen { kind: light.kind.clone(), sampling }
+    }
+
+    /// The shape of the light.
+    pub(crate) fn kind(&self) -> &LightKind {
+        &self.kind
+    }
+
+    /// Number of rays from each light point.
+    pub(crate) fn samples(&self) -> u32 {
+        self.sampling.map_or(1, |(samples, _)| samples)
+    }
+
+    /// Whether values are shares rather than bits.
+    pub(crate) fn is_share(&self) -> bool {
+        self.sampling.is_some()
+    }
+}
