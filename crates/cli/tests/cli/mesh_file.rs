@@ -138,6 +138,17 @@ fn where_nothing_is_kept_the_file_is_not_touched() {
     }
 }
 
+/// Renders the frames of a film, `NAME.1.exr` and so on, without the mesh file and twice with it: they are the same.
+fn same_frames(place: &Place, count: u32, film: impl Fn(&str, &[&str]) -> Done) {
+    film("without", &[]);
+    film("first", &MESH);
+    film("second", &MESH);
+    for number in 1..=count {
+        let image = |name: &str| place.read(&format!("{name}.{number}.exr"));
+        assert!(image("without") == image("first") && image("without") == image("second"), "frame {number}");
+    }
+}
+
 #[test]
 fn a_film_begins_with_what_another_has_found() {
     let place = Place::new();
@@ -152,12 +163,8 @@ fn a_film_begins_with_what_another_has_found() {
             .concat(),
         )
     };
-    film("without", &[]);
-    film("first", &MESH);
-    film("second", &MESH);
+    same_frames(&place, 4, film);
     for number in 1..=4 {
-        let image = |name: &str| place.read(&format!("{name}.{number}.exr"));
-        assert!(image("without") == image("first") && image("without") == image("second"), "frame {number}");
         assert_eq!(tests(&place.json(&format!("second.{number}.json")))[0], 0, "frame {number}");
     }
     assert!(tests(&place.json("first.1.json"))[0] > 0);
@@ -172,13 +179,7 @@ fn a_day_begins_with_a_file() {
             ["--step", "0.2", "--sun", "48,0,2026-06-21Z,08:00-12:00/2h", "--ambient-light", "constant", "-o", &images];
         place.good(&[&RENDER[..], &sun, flags].concat())
     };
-    film("without", &[]);
-    film("first", &MESH);
-    film("second", &MESH);
-    for number in 1..=3 {
-        let image = |name: &str| place.read(&format!("{name}.{number}.exr"));
-        assert!(image("without") == image("first") && image("without") == image("second"), "frame {number}");
-    }
+    same_frames(&place, 3, film);
 }
 
 /// As on a full disk: files cannot be larger than 4 or 8 KiB.

@@ -8,7 +8,7 @@ use lightmesh_layout::mesh::{BrickTable, KeptBy, LitBy};
 use lightmesh_layout::stages::Cache;
 use rayon::prelude::*;
 
-use super::stored::{POINTS, Readable, ReadableAnswers, Stored, StoredAnswers, StoredColumn};
+use super::stored::{POINTS, Readable, ReadableAnswers, Stored, StoredAnswers, StoredColumn, bytes_of_brick};
 use super::{Allowance, Noticed, Seen, Table};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
@@ -206,8 +206,7 @@ impl<R: Runtime> DeviceTable<R> {
     /// Whether a table of this many slots may be held.
     fn is_allowed(&self, capacity: usize, lights: &[Seen]) -> bool {
         let bytes = || {
-            let answers = |seen: &Seen| if seen.is_share() { POINTS * size_of::<u16>() } else { size_of::<u64>() };
-            let columns: usize = lights.iter().map(|seen| size_of::<u64>() + answers(seen)).sum();
+            let columns: usize = lights.iter().map(bytes_of_brick).sum();
             (capacity * (size_of::<u64>() + size_of::<u32>() + columns)) as u64
         };
         self.allowance.most.is_none_or(|most| bytes() <= most)

@@ -12,11 +12,15 @@ pub(super) const POINTS: usize = 1 << POINT_BITS;
 /// Bytes that a table takes at most for so many bricks and these lights. Its keys grow to twice of what they hold, while the old ones are
 /// still there; columns, one after the other, by a [`SLACK`]th.
 pub(super) fn bytes_of_rows<'a>(bricks: usize, lights: impl Iterator<Item = &'a Seen>) -> u64 {
-    let answers = |seen: &Seen| if seen.is_share() { POINTS * size_of::<u16>() } else { size_of::<u64>() };
-    let columns = lights.map(|seen| size_of::<u64>() + answers(seen));
-    let (sum, largest) = columns.fold((0, 0), |(sum, largest), column| (sum + column, column.max(largest)));
+    let (sum, largest) =
+        lights.map(bytes_of_brick).fold((0, 0), |(sum, largest), column| (sum + column, column.max(largest)));
     let keys = 3 * (size_of::<(BrickKey, usize)>() + size_of::<u32>());
     (bricks * (keys + sum + sum / SLACK + largest)) as u64
+}
+
+/// Bytes of a brick in the column of a light: which of its light points are known, and what they see.
+pub(super) fn bytes_of_brick(seen: &Seen) -> usize {
+    size_of::<u64>() + if seen.is_share() { POINTS * size_of::<u16>() } else { size_of::<u64>() }
 }
 
 /// Columns have room for one part in this many more than they hold.
