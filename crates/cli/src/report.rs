@@ -29,6 +29,8 @@ struct AllSettings<'a> {
     transfer: &'static str,
     /// The crease angle of files without normals, degrees; none if off.
     smooth: Option<f64>,
+    /// Whether meshes in many places are stored once.
+    instances: &'static str,
     /// Stops, 0 for an exr.
     exposure: f32,
     /// None for an exr, as the next two.
@@ -59,6 +61,7 @@ impl<'a> Report<'a> {
         let dither = display.dither && display.bit_depth == BitDepth::Eight;
         let settings = AllSettings {
             render: &stats.settings,
+            instances: plan.instancing.name(),
             smooth: plan.smooth.map(CreaseAngle::degrees),
             transfer: display.transfer.name(),
             exposure: display.exposure,

@@ -1,4 +1,5 @@
-// Searches by region, one warp each: tests accel/search.cuh and accel/region.cuh.
+// Searches by region, one warp each: tests accel/search.cuh and accel/region.cuh. Instances are in modules with CUT_OUTS alone.
+#define CUT_OUTS 1
 #include "cuda/prelude.cuh"
 
 #include "accel/search.cuh"
@@ -39,7 +40,7 @@ DEVICE void search_region(const Search &args, const Structure &structure, const 
         for (unsigned i = WARP - 1 + lane; i < count; i += WARP) {
             const unsigned place = total + i - (WARP - 1);
             if (place < args.room)
-                args.found[blockIdx.x * args.room + place] = triangle_index(structure.triangles + list[i]);
+                args.found[blockIdx.x * args.room + place] = triangle_index(triangle_at(structure, list[i]));
         }
         total += count - (WARP - 1);
         __syncwarp();

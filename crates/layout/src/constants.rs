@@ -148,6 +148,10 @@ constants! {
     LEAST_COMPONENT: f32 = 1.0 / (1u32 << 30) as f32;
     /// Relative margin of tests against the boxes of a BVH, 2^-19; derived in bvh/walk.rs.
     BVH_MARGIN: f32 = 1.0 / (1u32 << 19) as f32;
+    /// Relative margin by which boxes of shapes in many places are enlarged, 2^-18; derived in accel/instanced.rs.
+    INSTANCE_MARGIN: f32 = 1.0 / (1u32 << 18) as f32;
+    /// The index of the first triangle of the first instance: those below are stored.
+    FIRST_INSTANCED: u32 = 1 << 31;
     /// Rounding margin of tests of a box against a region, 2^-20 or 16 units of roundoff; derived in accel/region/.
     REGION_ROUNDING: f32 = 16.0 * UNIT_ROUNDOFF;
     /// Stack entries of a traversal of the BVH: the maximum number of its levels.
@@ -376,6 +380,10 @@ constants! {
     STACK_OF_ROUNDS: u32 = 64;
     /// Additional stack entries per level of the tree.
     STACK_PER_LEVEL: u32 = 7;
+    /// The same as `STACK_OF_ROUNDS` for a search that enters instances.
+    STACK_OF_INSTANCES: u32 = 128;
+    /// Number of instances that a node's leaves hold at most.
+    MOST_HELD: u32 = 24;
     /// Maximum number of boxes from which the searches of a tile's items start.
     MOST_STARTS: u32 = 48;
     /// Marks a box that is a leaf.

@@ -24,10 +24,48 @@ records! {
     }
 
     /// Three corners as `float4`; the bits of the first `w` are the index in the mesh, those of the second the number of its
-    /// [`CutTriangle`], from 1, or 0 if it is opaque.
+    /// [`CutTriangle`], from 1, or 0 if it is opaque, those of the third the number of the [`Instanced`] shape that is held in its place, from
+    /// 1, or 0 if this is a triangle.
     Triangle {
         /// Corners.
         corners: [[f32; 4]; 3],
+    }
+
+    /// A shape at one of its places.
+    Instanced {
+        /// From the shape's coordinates to the local frame: three rows, each with its translation.
+        place: [[f32; 4]; 3],
+        /// The inverse.
+        back: [[f32; 4]; 3],
+        /// The index of its first triangle in the scene.
+        first: u32,
+        /// The index of the shape's first triangle where it is stored.
+        stored: u32,
+        /// The position of the shape's first triangle in the structure.
+        leaves: u32,
+        /// The root of the shape's tree.
+        root: u32,
+        /// The largest sum of absolute values in a row of `back`.
+        norm: f32,
+        /// The largest sum of absolute values that are added where a corner of its shape is placed.
+        reach: f32,
+        /// The largest coordinate of the local frame's origin in the shape's.
+        shift: f32,
+        /// The number of its object, from 0.
+        object: u32,
+    }
+
+    /// Triangles by index: those that are stored, and from [`FIRST_INSTANCED`](crate::constants::FIRST_INSTANCED) on those of instances, which
+    /// are computed.
+    Triangles {
+        /// Those that are stored; those of shapes in the shapes' coordinates.
+        stored: In<Triangle>,
+        /// In the order of their triangles.
+        instances: In<Instanced>,
+        /// Their number.
+        instance_count: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
     }
 
     /// How a triangle is cut out.
@@ -119,6 +157,28 @@ records! {
         node_count: u32,
         /// Number of levels.
         depth: u32,
+    }
+
+    /// A wide BVH of two levels: one over triangles and the boxes around instances, and for each shape a tree in its own coordinates.
+    InstancedBvh {
+        /// Those of the scene, root first, then those of shapes.
+        nodes: In<BvhNode>,
+        /// In leaf order; triangles with the number of an instance are the boxes around it.
+        triangles: In<Triangle>,
+        /// Where they are cut out.
+        coverage: Coverage,
+        /// By number, in the order of their triangles.
+        instances: In<Instanced>,
+        /// The sphere around all.
+        approach: Approach,
+        /// Number of nodes; 0 if there are no triangles.
+        node_count: u32,
+        /// Number of levels, of the scene's tree and the deepest shape's together.
+        depth: u32,
+        /// Number of instances.
+        instance_count: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
     }
 
     /// A regular grid with one or two levels, in the flat form of the thesis.

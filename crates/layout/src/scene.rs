@@ -2,7 +2,7 @@
 
 use crate::In;
 use crate::constants::{MOST_ROWS, MOST_WORDS};
-use crate::geometry::{BruteForce, Bvh, Coverage, Grid, Triangle, Vec3};
+use crate::geometry::{BruteForce, Bvh, Coverage, Grid, InstancedBvh, Triangles, Vec3};
 use crate::record::records;
 
 records! {
@@ -203,7 +203,7 @@ records! {
     /// short tests go by cell.
     Scene {
         /// By index in the mesh.
-        triangles: In<Triangle>,
+        triangles: Triangles,
         /// Three vertices per triangle; null if vertices have no attributes.
         indices: In<Indices>,
         /// By vertex; null if there are none.
@@ -242,6 +242,8 @@ records! {
         bvh: Bvh,
         /// The test of all triangles, for reference.
         brute_force: BruteForce,
+        /// The wide BVH over instances.
+        instanced: InstancedBvh,
         /// Number of lights.
         light_count: u32,
         /// I_a of formula (1).

@@ -1,7 +1,7 @@
 //! The arguments of kernels: one record for those of a stage.
 
 use crate::constants::FIRST_TARGETS;
-use crate::geometry::{Cone, Hit, ListedRay, Rays, Tally, Triangle, Vec3};
+use crate::geometry::{Cone, Hit, ListedRay, Rays, Tally, Triangles, Vec3};
 use crate::mesh::{BrickTable, Item, KeptBy, LightMesh, LitBy, UsedPoints};
 use crate::record::records;
 use crate::scene::{SampleRows, Sampling, Scene};
@@ -89,7 +89,7 @@ records! {
         /// What kernels that test samples need; of its scene only what lets light through is hit.
         shadows: Shadows,
         /// What is hit, by index in the mesh: given points have other triangles in a scene.
-        triangles: In<Triangle>,
+        triangles: Triangles,
         /// Normals of the mesh's vertices; null without any.
         normals: In<Vec3>,
         /// What is left of each light by light, then ray; what is lost until the last set.

@@ -37,14 +37,20 @@ structures! { $
     Grid = grid;
     /// A test of every triangle, always.
     BruteForce = brute_force;
+    /// A wide BVH over instances: only in modules for scenes in which triangles are cut out, so that others are not compiled for it.
+    InstancedBvh = instanced;
 }
 
 /// Prints the macro that expands to something for each structure.
 pub(crate) fn print(text: &mut String) {
-    text.push_str("\n// DO(structure, …) for each acceleration structure, by the name of its field in `Scene`.\n");
     let each: Vec<String> = FIELDS.iter().map(|field| format!("DO({field}, __VA_ARGS__)")).collect();
+    let [all, others] = [FIELDS.len(), Structure::InstancedBvh as usize].map(|count| each[..count].join(" "));
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "#define PER_STRUCTURE(DO, ...) {}", each.join(" "));
+    let _ = writeln!(
+        text,
+        "\n// DO(structure, …) for each acceleration structure, by the name of its field in `Scene`. Instances are in modules with CUT_OUTS alone.\n\
+         #if CUT_OUTS\n#define PER_STRUCTURE(DO, ...) {all}\n#else\n#define PER_STRUCTURE(DO, ...) {others}\n#endif"
+    );
 }
 
 #[cfg(test)]
@@ -62,6 +68,8 @@ mod tests {
     fn the_header_has_them_in_one_line() {
         let mut text = String::new();
         print(&mut text);
-        assert!(text.ends_with("DO(bvh, __VA_ARGS__) DO(grid, __VA_ARGS__) DO(brute_force, __VA_ARGS__)\n"), "{text}");
+        let others = "DO(bvh, __VA_ARGS__) DO(grid, __VA_ARGS__) DO(brute_force, __VA_ARGS__)";
+        assert!(text.ends_with(&format!("{others}\n#endif\n")), "{text}");
+        assert!(text.contains(&format!("{others} DO(instanced, __VA_ARGS__)\n#else")), "{text}");
     }
 }

@@ -83,10 +83,11 @@ DEVICE Vec3 direction_to(Vec3 position, const Ray &ray, Cone cone) {
 }
 
 // The mean curvature of the normals that shading uses, at a hit; `facing` is the geometric normal on the viewer's side.
-DEVICE float curvature(const Vec3 *all, const Indices *indices, const Hit &hit, const Corners &corners, Vec3 facing) {
+DEVICE float curvature(const Triangles &triangles, const Vec3 *all, const Indices *indices, const Hit &hit, const Corners &corners,
+                       Vec3 facing) {
     if (all == nullptr)
         return 0.0f;
-    const Normals normals = load_normals(all, indices, hit.triangle);
+    const Normals normals = load_normals(triangles, all, indices, hit.triangle);
     Vec3 smooth;
     float square;
     if (!smooth_at(hit, normals, smooth, square))
@@ -100,5 +101,5 @@ DEVICE float curvature(const Vec3 *all, const Indices *indices, const Hit &hit, 
 }
 
 DEVICE float curvature(const Scene &scene, const Hit &hit, const Corners &corners, Vec3 facing) {
-    return curvature(scene.normals, scene.indices, hit, corners, facing);
+    return curvature(scene.triangles, scene.normals, scene.indices, hit, corners, facing);
 }

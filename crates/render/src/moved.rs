@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lightmesh_scene::{Bounds, Geometry};
+use lightmesh_scene::{Bounds, Geometry, Instance};
 
 use crate::accel::Triangle;
 
@@ -23,15 +23,24 @@ pub(crate) fn differ_by_places(before: &Geometry, now: &Geometry) -> bool {
         && a.colors == b.colors
         && a.opacities == b.opacities
         && a.objects == b.objects
+        && a.instances.shapes() == b.instances.shapes()
+        && a.instances.list().len() == b.instances.list().len()
+        && a.instances.list().iter().zip(b.instances.list()).all(|(a, b)| is_same_shape(a, b))
+}
+
+fn is_same_shape(a: &Instance, b: &Instance) -> bool {
+    a.triangles == b.triangles && a.first == b.first && a.object == b.object
 }
 
 /// Boxes around the triangles that moved, object by object, each around where it was and where it is.
-pub(crate) fn boxes(geometry: &Geometry, before: &[Triangle], now: &[Triangle]) -> Arc<[Bounds]> {
-    let (starts, _) = geometry.mesh.objects.runs();
-    let ends = starts.iter().skip(1).map(|&start| start as usize).chain([now.len()]);
+pub(crate) fn boxes([old, new]: [&Geometry; 2], before: &[Triangle], now: &[Triangle]) -> Arc<[Bounds]> {
+    let (starts, _) = new.mesh.objects.runs();
+    let shapes = new.mesh.instances.shapes();
+    let own = if shapes.is_empty() { now.len() } else { shapes.start };
+    let ends = starts.iter().skip(1).map(|&start| own.min(start as usize)).chain([own]);
     let first = starts.first().map_or(0, |&start| start as usize);
     let mut boxes: Vec<Bounds> = Vec::new();
-    let mut from = first.min(now.len());
+    let mut from = first.min(own);
     for end in ends {
         let pairs = before[from..end].iter().zip(&now[from..end]);
         let moved = pairs.filter(|(before, now)| places(before) != places(now));
@@ -40,8 +49,27 @@ pub(crate) fn boxes(geometry: &Geometry, before: &[Triangle], now: &[Triangle]) 
         boxes.extend((!bounds.is_empty()).then_some(bounds));
         from = end;
     }
+    boxes.extend(boxes_of_instances([old, new], before, now));
     let together = boxes.len().div_ceil(MOST_BOXES).max(1);
     boxes.chunks(together).map(|some| some.iter().copied().reduce(around_both).unwrap_or(Bounds::EMPTY)).collect()
+}
+
+/// The same of instances: those that are elsewhere, and those of shapes that have changed.
+fn boxes_of_instances<'a>(
+    [old, new]: [&'a Geometry; 2],
+    before: &'a [Triangle],
+    now: &'a [Triangle],
+) -> impl Iterator<Item = Bounds> + 'a {
+    let shapes = new.mesh.instances.shapes();
+    let has_changed = |shape: &Instance| {
+        let stored = shape.triangles.start as usize..shape.triangles.end as usize;
+        before[stored.clone()].iter().zip(&now[stored]).any(|(before, now)| places(before) != places(now))
+    };
+    let any_changed =
+        before[shapes.clone()].iter().zip(&now[shapes]).any(|(before, now)| places(before) != places(now));
+    let pairs = old.mesh.instances.list().iter().zip(new.mesh.instances.list());
+    let moved = pairs.filter(move |(old, new)| old.place != new.place || (any_changed && has_changed(new)));
+    moved.map(|(old, new)| around_both(old.bounds, new.bounds))
 }
 
 /// The corners of a triangle, to be compared bit by bit.

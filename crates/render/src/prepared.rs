@@ -7,15 +7,16 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use glam::Vec3;
 use lightmesh_memory::{Budget, Short};
-use lightmesh_scene::{Bounds, Camera, Geometry, Lights, Material, Scene, Texture};
+use lightmesh_scene::{Bounds, Camera, Geometry, Instance, Lights, Material, Mesh, Scene, Texture};
 use xxhash_rust::xxh3::Xxh3;
 
 use crate::accel::{
-    Accelerator, Beams, BruteForce, Bvh, Coverage, Grid, GridOptions, Triangle, coverage, geometry_hash,
+    Accelerator, Beams, BruteForce, Bvh, Coverage, Form, Grid, GridOptions, Triangle, Triangles, coverage,
+    geometry_hash,
 };
 use crate::error::RenderError;
 use crate::material_ids::MaterialIds;
-use crate::moved::{boxes, differ_by_places};
+use crate::moved::{around_both, boxes, differ_by_places};
 use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
 use crate::stage::Stage;
@@ -25,11 +26,14 @@ use crate::textures::AllLevels;
 /// Bytes that a triangle takes at most while a BVH is built, with what is kept of it.
 const BYTES_TO_BUILD: u64 = 400;
 
+/// Bytes of a triangle and its share of vertices in a copy of a shape, about.
+const BYTES_OF_COPY: u64 = 80;
+
 /// Triangles with the acceleration structure over them. Shared behind an [`Arc`] by all images of a geometry, and the key of the copies
 /// that devices keep.
 pub struct PreparedGeometry {
     /// The triangles by index.
-    pub triangles: Arc<[Triangle]>,
+    pub triangles: Triangles,
     /// The acceleration structure.
     pub accelerator: Box<dyn Accelerator>,
     /// The box around all triangles that can be hit.
@@ -99,7 +103,8 @@ impl PreparedGeometry {
         check_memory(geometry, budget)?;
         let (triangles, coverage) = triangles_of(geometry, budget)?;
         let mip_levels = Arc::new(mip_levels(geometry, budget)?);
-        let prepared = Structures { geometry, acceleration, budget }.over(triangles, coverage, mip_levels)?;
+        let prepared =
+            Structures { geometry, acceleration, budget, known: None }.over(triangles, coverage, mip_levels)?;
         *locked(&prepared.unreported) = start.elapsed().as_secs_f64();
         observer.advance(geometry.mesh.triangles.len() as u64);
         observer.end(Stage::Build);
@@ -128,9 +133,14 @@ impl PreparedGeometry {
         let triangle = |(index, before): (usize, &Triangle)| {
             Triangle::new(geometry.mesh.corners(index), index as u32).cut_out(before.cut())
         };
-        let triangles: Vec<Triangle> = self.triangles.iter().enumerate().map(triangle).collect();
-        let boxes = boxes(geometry, &self.triangles, &triangles);
-        let structures = Structures { geometry, acceleration: &self.acceleration, budget };
+        let triangles: Vec<Triangle> = self.triangles.stored().iter().enumerate().map(triangle).collect();
+        let boxes = boxes([before, geometry], self.triangles.stored(), &triangles);
+        let shapes = geometry.mesh.instances.shapes();
+        let known = match self.accelerator.form() {
+            Form::Bvh(bvh) if self.triangles.stored()[shapes.clone()] == triangles[shapes] => Some(bvh),
+            _ => None,
+        };
+        let structures = Structures { geometry, acceleration: &self.acceleration, budget, known };
         let mut prepared = structures.over(triangles, self.coverage.clone(), Arc::clone(&self.mip_levels))?;
         let moved =
             |before: &Arc<PreparedGeometry>| Some(Moved { before: Arc::downgrade(before), boxes: Arc::clone(&boxes) });
@@ -148,15 +158,20 @@ impl PreparedGeometry {
     }
 
     /// The same with a structure over some of the triangles alone.
-    fn part(&self, holds: impl Fn(&Triangle) -> bool, budget: Budget) -> Result<PreparedGeometry, RenderError> {
+    fn part(
+        &self,
+        mesh: &Mesh,
+        holds: impl Fn(&Triangle) -> bool,
+        budget: Budget,
+    ) -> Result<PreparedGeometry, RenderError> {
         // Structures leave out what cannot be hit.
         let held = |triangle: &Triangle| match holds(triangle) {
             true => *triangle,
             false => Triangle::new([Vec3::NAN; 3], triangle.index()),
         };
-        let held: Vec<Triangle> = self.triangles.iter().map(held).collect();
-        let part = self.over(accelerator(&held, &self.coverage, &self.acceleration, budget)?, self.coverage.clone());
-        Ok(PreparedGeometry { held: geometry_hash(&held), ..part })
+        let held: Vec<Triangle> = self.triangles.stored().iter().map(held).collect();
+        let structure = accelerator(mesh, &held, &self.coverage, &self.acceleration, (budget, None))?;
+        Ok(PreparedGeometry { held: geometry_hash(&held), ..self.over(structure, self.coverage.clone()) })
     }
 
     /// The same where what is at least half opaque is opaque, and the rest is none.
@@ -168,7 +183,7 @@ impl PreparedGeometry {
     /// The same with another structure, cut out by `coverage`.
     fn over(&self, accelerator: Box<dyn Accelerator>, coverage: Coverage) -> PreparedGeometry {
         PreparedGeometry {
-            triangles: Arc::clone(&self.triangles),
+            triangles: self.triangles.clone(),
             accelerator,
             bounds: self.bounds,
             coverage,
@@ -216,7 +231,7 @@ impl PreparedGeometry {
         let levels = self.mip_levels.memory();
         let parts = self.see_through.iter().flat_map(|parts| [&parts.blockers, &parts.panes]);
         let parts: usize = parts.map(|part| part.accelerator.memory()).sum();
-        size_of_val(&*self.triangles) + self.accelerator.memory() + self.coverage.memory() + levels + parts
+        size_of_val(self.triangles.stored()) + self.accelerator.memory() + self.coverage.memory() + levels + parts
     }
 
     /// Hash of all that decides what hides what: triangles in their order, which of them there are, and where they are cut out. The same for
@@ -224,7 +239,8 @@ impl PreparedGeometry {
     pub(crate) fn hash(&self) -> u64 {
         *self.hash.get_or_init(|| {
             let mut hash = Xxh3::new();
-            hash.update(&geometry_hash(&self.triangles).to_le_bytes());
+            hash.update(&geometry_hash(self.triangles.stored()).to_le_bytes());
+            self.triangles.instances().iter().for_each(|instance| hash.update(&instance.key()));
             hash.update(&self.held.to_le_bytes());
             self.coverage.hash(&mut hash);
             hash.digest()
@@ -257,6 +273,8 @@ struct Structures<'a> {
     geometry: &'a Geometry,
     acceleration: &'a Acceleration,
     budget: Budget,
+    /// A structure over the same shapes at other places.
+    known: Option<&'a Bvh>,
 }
 
 impl Structures<'_> {
@@ -266,18 +284,23 @@ impl Structures<'_> {
         coverage: Coverage,
         mip_levels: Arc<AllLevels>,
     ) -> Result<PreparedGeometry, RenderError> {
-        let Structures { geometry, acceleration, budget } = *self;
+        let Structures { geometry, acceleration, budget, known } = *self;
         let accelerator: Box<dyn Accelerator> = match acceleration {
             Acceleration::GridFile(path) => Box::new(Grid::load(path, &triangles)?.with_coverage(&coverage)),
-            other => accelerator(&triangles, &coverage, other, budget)?,
+            other => accelerator(&geometry.mesh, &triangles, &coverage, other, (budget, known))?,
         };
         // Triangles that cannot be hit do not count.
-        let usable = triangles.iter().filter(|triangle| triangle.is_usable());
-        let bounds = Bounds::around(usable.flat_map(Triangle::corners));
+        let own = geometry.mesh.own_triangles().map(|stored| &triangles[stored]);
+        let bounds = Bounds::around(own.filter(|triangle| triangle.is_usable()).flat_map(Triangle::corners));
+        let instances = geometry.mesh.instances.list();
+        let bounds = instances.iter().fold(bounds, |all, Instance { bounds, .. }| around_both(all, *bounds));
         let (center, far) =
             if bounds.is_empty() { (Vec3::ZERO, 1.0) } else { (bounds.center(), 1.25 * bounds.diagonal()) };
         let mut prepared = PreparedGeometry {
-            triangles: triangles.into(),
+            triangles: match accelerator.form() {
+                Form::Bvh(bvh) => Triangles::new(triangles.into(), Arc::clone(bvh.instances())),
+                Form::Grid(_) | Form::BruteForce(_) => triangles.into(),
+            },
             accelerator,
             bounds,
             coverage,
@@ -298,8 +321,8 @@ impl Structures<'_> {
                 triangle.cut() != 0 && geometry.materials[material as usize].lets_through()
             };
             prepared.see_through = Some(SeeThrough {
-                blockers: Arc::new(prepared.part(|triangle| !lets_through(triangle), budget)?),
-                panes: Arc::new(prepared.part(lets_through, budget)?),
+                blockers: Arc::new(prepared.part(&geometry.mesh, |triangle| !lets_through(triangle), budget)?),
+                panes: Arc::new(prepared.part(&geometry.mesh, lets_through, budget)?),
                 solid: Arc::new(prepared.solid()),
             });
         }
@@ -307,16 +330,24 @@ impl Structures<'_> {
     }
 }
 
-/// The structure that a setting chooses; a grid from a file is built, as it has all triangles.
+/// The structure that a setting chooses over the stored triangles of a mesh, or parts of them; a grid from a file is built, as it has all
+/// triangles. Grids and lists hold no instances.
 fn accelerator(
+    mesh: &Mesh,
     triangles: &[Triangle],
     coverage: &Coverage,
     acceleration: &Acceleration,
-    budget: Budget,
+    (budget, known): (Budget, Option<&Bvh>),
 ) -> Result<Box<dyn Accelerator>, RenderError> {
     let dims = if let Acceleration::Grid(dims) = acceleration { *dims } else { None };
     Ok(match acceleration {
-        Acceleration::Auto | Acceleration::Bvh => Box::new(Bvh::new(triangles).with_coverage(coverage)),
+        Acceleration::Auto | Acceleration::Bvh if mesh.instances.is_empty() => {
+            Box::new(Bvh::new(triangles).with_coverage(coverage))
+        }
+        Acceleration::Auto | Acceleration::Bvh => {
+            let own: Vec<Triangle> = mesh.own_triangles().map(|stored| triangles[stored]).collect();
+            Box::new(Bvh::with_instances(&own, triangles, mesh.instances.list(), known).with_coverage(coverage))
+        }
         Acceleration::Grid(_) | Acceleration::GridFile(_) => {
             let options = GridOptions { dims, budget, ..GridOptions::default() };
             Box::new(Grid::new(triangles, &options)?.with_coverage(coverage))
@@ -354,8 +385,17 @@ pub struct PreparedScene {
     pub geometry: Arc<PreparedGeometry>,
 }
 
+/// The geometry with copies of shapes in many places.
+fn flattened(geometry: &Geometry, budget: Budget) -> Result<Arc<Geometry>, RenderError> {
+    let triangles = geometry.mesh.triangle_count();
+    let short = budget.check(triangles as u64 * (BYTES_TO_BUILD + BYTES_OF_COPY));
+    short.map_err(|short| RenderError::BuildMemory { triangles, short })?;
+    Ok(Geometry { mesh: geometry.mesh.flattened()?, ..geometry.clone() }.into())
+}
+
 impl PreparedScene {
-    /// Builds the acceleration structure over the geometry of `scene`.
+    /// Builds the acceleration structure over the geometry of `scene`. Grids and lists hold no instances: for these, shapes in many places are
+    /// copied.
     ///
     /// # Errors
     /// As [`PreparedGeometry::new`].
@@ -377,8 +417,13 @@ impl PreparedScene {
         budget: Budget,
         observer: &dyn Observer,
     ) -> Result<PreparedScene, RenderError> {
+        let is_bvh = matches!(acceleration, Acceleration::Auto | Acceleration::Bvh);
+        let scene = match scene.geometry.mesh.instances.is_empty() || is_bvh {
+            true => scene.clone(),
+            false => scene.clone().with_geometry(flattened(&scene.geometry, budget)?),
+        };
         let geometry = Arc::new(PreparedGeometry::new(&scene.geometry, acceleration, budget, observer)?);
-        Ok(PreparedScene { scene: scene.clone(), geometry })
+        Ok(PreparedScene { scene, geometry })
     }
 
     /// Another moment of this scene, in which its surfaces are in other places: only structures are built. `None` if `scene` differs in more.
@@ -463,6 +508,8 @@ pub(crate) struct Preparations {
 struct Preparation {
     /// The geometry itself is not kept alive. While this exists, no other geometry can have its address, and nobody can change it in place.
     geometry: Weak<Geometry>,
+    /// The same with copies of shapes in many places, if it has such and is prepared so.
+    flat: Option<Arc<Geometry>>,
     prepared: Arc<PreparedGeometry>,
 }
 
@@ -475,17 +522,16 @@ impl Preparations {
         budget: Budget,
         observer: &dyn Observer,
     ) -> Result<PreparedScene, RenderError> {
-        if let Some(geometry) = self.find(scene, acceleration) {
-            return Ok(PreparedScene { scene: scene.clone(), geometry });
+        if let Some(known) = self.find(scene, acceleration) {
+            return Ok(known);
         }
         // Not under the lock: others may prepare other geometry in the meantime.
         let prepared = PreparedScene::within(scene, acceleration, budget, observer)?;
-        let geometry = Arc::downgrade(&scene.geometry);
-        self.locked().push(Preparation { geometry, prepared: Arc::clone(&prepared.geometry) });
+        self.keep(scene, &prepared);
         Ok(prepared)
     }
 
-    /// [`Preparations::prepare`] for the scene of `before` in which things have moved: what does not depend on their places is kept.
+    /// The same for another moment of a prepared scene.
     pub(crate) fn prepare_moved(
         &self,
         before: &PreparedScene,
@@ -496,20 +542,33 @@ impl Preparations {
     ) -> Result<PreparedScene, RenderError> {
         let is_other = before.geometry.acceleration == *acceleration && self.find(scene, acceleration).is_none();
         if is_other && let Some(moved) = before.moved(scene, budget, observer)? {
-            let geometry = Arc::downgrade(&scene.geometry);
-            self.locked().push(Preparation { geometry, prepared: Arc::clone(&moved.geometry) });
+            self.keep(scene, &moved);
             return Ok(moved);
         }
         self.prepare(scene, acceleration, budget, observer)
     }
 
-    fn find(&self, scene: &Scene, acceleration: &Acceleration) -> Option<Arc<PreparedGeometry>> {
+    fn keep(&self, scene: &Scene, prepared: &PreparedScene) {
+        let flat = &prepared.scene.geometry;
+        self.locked().push(Preparation {
+            geometry: Arc::downgrade(&scene.geometry),
+            flat: (!Arc::ptr_eq(flat, &scene.geometry)).then(|| Arc::clone(flat)),
+            prepared: Arc::clone(&prepared.geometry),
+        });
+    }
+
+    fn find(&self, scene: &Scene, acceleration: &Acceleration) -> Option<PreparedScene> {
         let mut known = self.locked();
         known.retain(|known| known.geometry.strong_count() > 0);
         let same = |known: &&Preparation| {
             known.geometry.as_ptr() == Arc::as_ptr(&scene.geometry) && known.prepared.acceleration == *acceleration
         };
-        known.iter().find(same).map(|known| Arc::clone(&known.prepared))
+        let found = known.iter().find(same)?;
+        let scene = match &found.flat {
+            Some(flat) => scene.clone().with_geometry(Arc::clone(flat)),
+            None => scene.clone(),
+        };
+        Some(PreparedScene { scene, geometry: Arc::clone(&found.prepared) })
     }
 
     fn locked(&self) -> std::sync::MutexGuard<'_, Vec<Preparation>> {

@@ -1,7 +1,7 @@
 // From a hit to the surface point that all further steps start from: twin of surface.rs.
 #pragma once
 
-#include "accel/triangle.cuh"
+#include "accel/instanced.cuh"
 #include "cuda/rays.cuh"
 
 // A surface point P.
@@ -34,7 +34,7 @@ DEVICE Vec3 behind(const SurfacePoint &point) { return 2.0f * point.position - p
 // The surface point that ray number `ray` sees; the ray must have hit something.
 DEVICE SurfacePoint surface_point_of(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray) {
     const Hit hit = load_hit(hits, ray);
-    return surface_point(ray_at(rays, ray), hit, load_corners(scene.triangles + hit.triangle));
+    return surface_point(ray_at(rays, ray), hit, corners_at(scene.triangles, hit.triangle));
 }
 
 DEVICE Vec3 load_normal(const Vec3 *normals, unsigned vertex) {
@@ -47,14 +47,26 @@ struct Normals {
     Vec3 a, b, c;
 };
 
-DEVICE Normals load_normals(const Vec3 *normals, const Indices *indices, unsigned triangle) {
-    const unsigned *vertices = indices[triangle].vertices;
+DEVICE Normals stored_normals(const Vec3 *normals, const Indices &triangle) {
+    const unsigned *vertices = triangle.vertices;
     return Normals{load_normal(normals, __ldg(vertices)), load_normal(normals, __ldg(vertices + 1)),
                    load_normal(normals, __ldg(vertices + 2))};
 }
 
+COLD Normals instanced_normals(const Instanced *instances, unsigned count, const Vec3 *normals, const Indices *indices, unsigned triangle) {
+    const Instanced *instance = instance_of(instances, count, triangle);
+    const Normals own = stored_normals(normals, indices[__ldg(&instance->stored) + (triangle - __ldg(&instance->first))]);
+    return Normals{placed_normal(instance->back, own.a), placed_normal(instance->back, own.b), placed_normal(instance->back, own.c)};
+}
+
+DEVICE Normals load_normals(const Triangles &triangles, const Vec3 *normals, const Indices *indices, unsigned triangle) {
+    if (triangle < FIRST_INSTANCED)
+        return stored_normals(normals, indices[triangle]);
+    return instanced_normals(triangles.instances, triangles.instance_count, normals, indices, triangle);
+}
+
 DEVICE Normals load_normals(const Scene &scene, unsigned triangle) {
-    return load_normals(scene.normals, scene.indices, triangle);
+    return load_normals(scene.triangles, scene.normals, scene.indices, triangle);
 }
 
 // What the normals of a triangle's corners are between them: interpolated, not of unit length, and the square of its length. False on flat
@@ -67,17 +79,17 @@ DEVICE bool smooth_at(const Hit &hit, const Normals &corners, Vec3 &normal, floa
 }
 
 // The unit normal that shading uses, on the side of the geometric normal `facing`.
-DEVICE Vec3 shading_normal(const Vec3 *normals, const Indices *indices, const Hit &hit, Vec3 facing) {
+DEVICE Vec3 shading_normal(const Triangles &triangles, const Vec3 *normals, const Indices *indices, const Hit &hit, Vec3 facing) {
     Vec3 smooth;
     float square;
-    if (normals == nullptr || !smooth_at(hit, load_normals(normals, indices, hit.triangle), smooth, square))
+    if (normals == nullptr || !smooth_at(hit, load_normals(triangles, normals, indices, hit.triangle), smooth, square))
         return facing;
     const Vec3 normal = smooth / sqrtf(square);
     return dot(normal, facing) < 0.0f ? -normal : normal;
 }
 
 DEVICE Vec3 shading_normal(const Scene &scene, const Hit &hit, Vec3 facing) {
-    return shading_normal(scene.normals, scene.indices, hit, facing);
+    return shading_normal(scene.triangles, scene.normals, scene.indices, hit, facing);
 }
 
 // The segment from `origin` to `target` for a long test, shortened at its far end.

@@ -69,7 +69,7 @@ pub(crate) fn smooth_at(mesh: &Mesh, hit: &Hit) -> Option<Smooth> {
     if mesh.normals.is_empty() {
         return None;
     }
-    let corners = mesh.triangles[hit.triangle as usize].map(|vertex| mesh.normals[vertex as usize]);
+    let corners = mesh.corner_normals(hit.triangle);
     let [a, b, c] = corners;
     let normal = (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
     let square = normal.length_squared();

@@ -1,10 +1,13 @@
 //! Collects the parts of a scene and chooses the local frame once all are known.
 
+use std::ops::Range;
+
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 
 use crate::{
-    Geometry, GeometryError, Material, Mesh, MeshPart, Objects, Position, Scene,
+    Affine, Geometry, GeometryError, Instances, Material, Mesh, MeshPart, Objects, Position, Scene, UNNAMED,
     geometry_check::check_room,
+    instances::MOST_INSTANCED,
     loaded_mesh::LoadedMesh,
     mesh_part::Room,
     usable::{keep_finite, keep_passive, unseen},
@@ -36,6 +39,26 @@ pub struct SceneBuilder {
     objects: Objects,
     palette: Vec<Material>,
     origin: Option<DVec3>,
+    shapes: Shapes,
+}
+
+/// Shapes that are placed many times.
+#[derive(Debug, Default)]
+struct Shapes {
+    /// Their triangles, as they are without a place; none in the builder of shapes itself.
+    builder: Option<Box<SceneBuilder>>,
+    placed: Vec<PlacedShape>,
+    /// Number of triangles in all places.
+    triangles: usize,
+}
+
+/// A shape at a place.
+#[derive(Debug)]
+struct PlacedShape {
+    /// Its triangles in the builder of shapes.
+    triangles: Range<usize>,
+    transform: DMat4,
+    object: Option<String>,
 }
 
 impl SceneBuilder {
@@ -48,6 +71,60 @@ impl SceneBuilder {
     pub fn add_material(&mut self, material: Material) -> u32 {
         self.palette.push(material);
         self.palette.len() as u32 - 1
+    }
+
+    /// Exchanges this with the builder of shapes, which are stored once, however often they are [placed](SceneBuilder::place): what is added to it
+    /// is nowhere yet. The second call goes back.
+    pub(crate) fn exchange_shapes(&mut self, kept: &mut Option<Box<SceneBuilder>>) {
+        match kept.take() {
+            None => {
+                let shapes = self.shapes.builder.take().unwrap_or_default();
+                *kept = Some(Box::new(std::mem::replace(self, *shapes)));
+            }
+            Some(own) => {
+                let shapes = std::mem::replace(self, *own);
+                self.shapes.builder = Some(Box::new(shapes));
+            }
+        }
+    }
+
+    /// Reverses the order of corners, for places that mirror.
+    pub(crate) fn reverse(&mut self, triangles: Range<usize>) {
+        self.triangles[triangles].iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    }
+
+    /// The object of some triangles, if they have one.
+    pub(crate) fn object_of(&self, triangles: &Range<usize>) -> Option<&str> {
+        let (first, last) = (self.objects.of(triangles.start as u32), self.objects.of(triangles.end as u32 - 1));
+        let (starts, _) = self.objects.runs();
+        let begins = starts.partition_point(|&start| start as usize <= triangles.start);
+        let is_one = starts.get(begins).is_none_or(|&next| next as usize >= triangles.end);
+        (is_one && first == last && !starts.is_empty()).then(|| self.objects.name(first))
+    }
+
+    /// The materials of some triangles.
+    pub(crate) fn materials_of(&self, triangles: Range<usize>) -> &[u32] {
+        &self.materials[triangles]
+    }
+
+    /// Number of places of shapes so far.
+    pub(crate) fn place_count(&self) -> usize {
+        self.shapes.placed.len()
+    }
+
+    /// Whether there is nothing to be seen.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.triangles.is_empty() && self.shapes.placed.is_empty()
+    }
+
+    /// Places a shape, as the object `object`. Returns whether it can be placed so; else nothing has changed.
+    pub(crate) fn place(&mut self, triangles: Range<usize>, transform: &DMat4, object: Option<&str>) -> bool {
+        if !Affine::holds(transform) || self.shapes.triangles + triangles.len() >= MOST_INSTANCED {
+            return false;
+        }
+        self.shapes.triangles += triangles.len();
+        self.shapes.placed.push(PlacedShape { triangles, transform: *transform, object: object.map(str::to_owned) });
+        true
     }
 
     /// Triangles that are added from now on belong to the object `name`. Those before the first call are [`UNNAMED`](crate::UNNAMED).
@@ -143,7 +220,7 @@ impl SceneBuilder {
         self.triangles.capacity() - self.triangles.len()
     }
 
-    /// Number of triangles so far.
+    /// Number of triangles so far, without those of shapes.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
@@ -155,7 +232,21 @@ impl SceneBuilder {
 
     /// Lowest and highest corner of the bounding box of all finite vertices so far; `None` if there are none.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        self.vertices.bounds()
+        let own = self.vertices.bounds();
+        let Some((low, high)) = self.shapes.builder.as_ref().and_then(|shapes| shapes.vertices.bounds()) else {
+            return own;
+        };
+        // Those of boxes around shapes are a little larger.
+        let corner = |k: u32| {
+            let axis = |axis: usize| if k >> axis & 1 == 0 { low[axis] } else { high[axis] };
+            DVec3::new(axis(0), axis(1), axis(2))
+        };
+        let corners =
+            |placed: &PlacedShape| (0..8).map(|k| placed.transform.transform_point3(corner(k))).collect::<Vec<_>>();
+        self.shapes.placed.iter().flat_map(corners).fold(own, |bounds, corner| match bounds {
+            Some((low, high)) => Some((low.min(corner), high.max(corner))),
+            None => Some((corner, corner)),
+        })
     }
 
     /// Uses this origin instead of choosing one. For scenes that were written with an origin: they are read back to the same
@@ -170,12 +261,9 @@ impl SceneBuilder {
     /// near the centre, rounded to a power of two of the scene's size so that the subtraction is exact.
     pub fn finish(mut self) -> (DVec3, Mesh) {
         let origin = self.origin.unwrap_or_else(|| self.bounds().map_or(DVec3::ZERO, local_origin));
-        let vertices = self.vertices.len() as u32;
-        fill_to(&mut self.normals, vertices, Vec3::ZERO, false);
-        fill_to(&mut self.uvs, vertices, Vec2::ZERO, false);
-        fill_to(&mut self.colors, vertices, Vec3::ONE, false);
-        fill_to(&mut self.opacities, vertices, 1.0, false);
-        let mesh = Mesh {
+        let Shapes { builder: shapes, placed, .. } = std::mem::take(&mut self.shapes);
+        self.fill();
+        let mut mesh = Mesh {
             positions: self.vertices.finish(origin),
             normals: self.normals,
             uvs: self.uvs,
@@ -184,8 +272,21 @@ impl SceneBuilder {
             triangles: self.triangles,
             materials: self.materials,
             objects: self.objects,
+            instances: Instances::default(),
         };
+        if let Some(shapes) = shapes {
+            add_shapes(&mut mesh, *shapes, &placed, origin);
+        }
         (origin, mesh)
+    }
+
+    /// Attributes of some vertices are those of all.
+    fn fill(&mut self) {
+        let vertices = self.vertices.len() as u32;
+        fill_to(&mut self.normals, vertices, Vec3::ZERO, false);
+        fill_to(&mut self.uvs, vertices, Vec2::ZERO, false);
+        fill_to(&mut self.colors, vertices, Vec3::ONE, false);
+        fill_to(&mut self.opacities, vertices, 1.0, false);
     }
 
     /// A scene with only the meshes and materials, in its local frame: place cameras and lights with [`Scene::to_local`]. If no
@@ -201,6 +302,45 @@ impl SceneBuilder {
         let warnings = changed.into_iter().chain([unseen(&materials, &mesh.materials)]).flatten().collect();
         Scene { warnings, ..Scene::new(name, Geometry { origin, mesh, materials, ..Geometry::default() }) }
     }
+}
+
+/// Adds shapes behind all other triangles of a mesh, and their places.
+fn add_shapes(mesh: &mut Mesh, mut shapes: SceneBuilder, placed: &[PlacedShape], origin: DVec3) {
+    fn append<T: Clone>(to: &mut Vec<T>, from: Vec<T>, (first, count): (u32, u32), none: T) {
+        fill_to(to, first, none.clone(), !from.is_empty());
+        let used = !to.is_empty() || !from.is_empty();
+        to.extend(from);
+        fill_to(to, first + count, none, used);
+    }
+    shapes.fill();
+    let (first, first_triangle) = (mesh.positions.len() as u32, mesh.triangles.len() as u32);
+    let (center, positions) = {
+        let center = shapes.vertices.bounds().map_or(DVec3::ZERO, local_origin);
+        (center, shapes.vertices.finish(center))
+    };
+    let count = positions.len() as u32;
+    mesh.positions.extend(positions);
+    append(&mut mesh.normals, shapes.normals, (first, count), Vec3::ZERO);
+    append(&mut mesh.uvs, shapes.uvs, (first, count), Vec2::ZERO);
+    append(&mut mesh.colors, shapes.colors, (first, count), Vec3::ONE);
+    append(&mut mesh.opacities, shapes.opacities, (first, count), 1.0);
+    mesh.triangles.extend(shapes.triangles.iter().map(|triangle| triangle.map(|vertex| first + vertex)));
+    mesh.materials.extend(shapes.materials);
+    mesh.instances.shapes = first_triangle..mesh.triangles.len() as u32;
+    mesh.instances.vertices = first..first + count;
+    mesh.instances.center = center;
+    let (to_shapes, to_local) = (DMat4::from_translation(center), DMat4::from_translation(-origin));
+    for PlacedShape { triangles, transform, object } in placed {
+        let name = object.as_deref().unwrap_or(UNNAMED);
+        if mesh.objects.runs().0.is_empty() {
+            // What nobody named has the first number.
+            mesh.objects.begin(0, if first_triangle == 0 { name } else { UNNAMED });
+        }
+        let object = mesh.objects.number(name);
+        let range = first_triangle + triangles.start as u32..first_triangle + triangles.end as u32;
+        mesh.instances.place(range, &(to_local * *transform * to_shapes), object);
+    }
+    mesh.find_instance_bounds();
 }
 
 /// Reserves memory for exactly `more` elements in the first file of a scene, which may be the only one.

@@ -10,9 +10,9 @@ use glam::{DMat4, DVec3, Vec3};
 use lightmesh_memory::Short;
 
 use crate::{
-    Animation, Camera, CreaseAngle, Geometry, Light, LightKind, LightMeshDefaults, Lights, LoadError, LoadOptions,
-    Material, MeshPart, Objects, Position, Scene, SceneBuilder, Surroundings, Texture,
-    animation::parts::{Hold, MovingPart, Shape},
+    Animation, Camera, CreaseAngle, Geometry, Instancing, Light, LightKind, LightMeshDefaults, Lights, LoadError,
+    LoadOptions, Material, MeshPart, Objects, Position, Scene, SceneBuilder, Surroundings, Texture,
+    animation::parts::{Hold, MovingInstance, MovingPart, Shape},
     border::{Border, beside},
     builder::mirrors,
     lamps,
@@ -70,6 +70,13 @@ pub(crate) struct Draft {
     unusable_triangles: usize,
     /// Triangles of parts without texture coordinates.
     without_uvs: Vec<Range<usize>>,
+    /// The same of shapes.
+    shapes_without_uvs: Vec<Range<usize>>,
+    instancing: Instancing,
+    /// What a shape is not added to, while it is added.
+    beside_shape: Option<Box<SceneBuilder>>,
+    /// Whether parts of the shape that is added move.
+    shape_moves: bool,
     /// Each camera with its world position; the camera's own position is not used.
     pub(crate) cameras: Vec<(Camera, DVec3)>,
     /// Each light with its world position; the light's own position is not used.
@@ -109,6 +116,10 @@ impl Draft {
             builder: SceneBuilder::new(),
             unusable_triangles: 0,
             without_uvs: Vec::new(),
+            shapes_without_uvs: Vec::new(),
+            instancing: options.instancing,
+            beside_shape: None,
+            shape_moves: false,
             cameras: Vec::new(),
             lights: Vec::new(),
             materials: Vec::new(),
@@ -212,12 +223,81 @@ impl Draft {
 
     /// What was added since the draft had the size `before` moves.
     pub(crate) fn hold(&mut self, shape: Arc<Shape>, hold: Hold, reversed: bool, before: (usize, usize)) {
+        if self.beside_shape.is_some() {
+            self.shape_moves = true;
+            return;
+        }
         let after = self.size();
         // Parts without any usable vertex are not added.
         if after.0 - before.0 == shape.positions.len() && after.1 > before.1 {
             let (vertices, triangles) = (before.0..after.0, before.1..after.1);
             self.animation.parts.push(MovingPart { vertices, triangles, shape, hold, reversed });
         }
+    }
+
+    /// Whether a shape of so many triangles is stored once for all of its places.
+    pub(crate) fn shares(&self, places: usize, triangles: usize) -> bool {
+        self.beside_shape.is_none() && places > 1 && triangles > 0 && self.instancing.shares(places, triangles)
+    }
+
+    /// Adds a shape that is nowhere until it is [placed](Draft::place): `add` adds its parts as they are without a place, in reverse order of
+    /// corners for places that mirror. `None` if it cannot be in many places, for it shines, has cameras or lights, or parts of
+    /// it move.
+    pub(crate) fn shape(
+        &mut self,
+        mirrored: bool,
+        add: impl FnOnce(&mut Draft) -> Result<(), LoadError>,
+    ) -> Result<Option<Range<usize>>, LoadError> {
+        self.builder.exchange_shapes(&mut self.beside_shape);
+        let (own, mover) = (std::mem::take(&mut self.without_uvs), self.mover.take());
+        let views = (self.cameras.len(), self.lights.len());
+        self.shape_moves = false;
+        let first = self.builder.triangle_count();
+        let added = add(self);
+        let shape = first..self.builder.triangle_count();
+        if mirrored {
+            self.builder.reverse(shape.clone());
+        }
+        let shines = |&material: &u32| self.materials.get(material as usize).is_some_and(lamps::may_be_lamp);
+        let is_dark = !self.builder.materials_of(shape.clone()).iter().any(shines);
+        let without_uvs = std::mem::replace(&mut self.without_uvs, own);
+        self.shapes_without_uvs.extend(without_uvs);
+        self.mover = mover;
+        let has_views = views != (self.cameras.len(), self.lights.len());
+        self.cameras.truncate(views.0);
+        self.lights.truncate(views.1);
+        self.builder.exchange_shapes(&mut self.beside_shape);
+        let can_be_placed = is_dark && !has_views && !self.shape_moves && !shape.is_empty();
+        added.map(|()| can_be_placed.then_some(shape))
+    }
+
+    /// Places a shape; `false` if it cannot be placed so. `held` is the node that moves it, in whose coordinates the transform places it.
+    pub(crate) fn place(
+        &mut self,
+        shape: Range<usize>,
+        transform: &DMat4,
+        object: Option<&str>,
+        held: Option<(u32, DMat4)>,
+    ) -> bool {
+        if !self.builder.place(shape, transform, object) {
+            return false;
+        }
+        let instance = self.builder.place_count() - 1;
+        self.animation.instances.extend(held.map(|(node, place)| MovingInstance { instance, node, place }));
+        true
+    }
+
+    /// Whether what is fastened to this node may be stored once for all of its places.
+    pub(crate) fn may_hold_shapes(&self, node: u32) -> bool {
+        !self.animation.rig.scaling()[node as usize]
+    }
+
+    /// The object of a shape, if all of it belongs to one.
+    pub(crate) fn object_of(&mut self, shape: &Range<usize>) -> Option<String> {
+        self.builder.exchange_shapes(&mut self.beside_shape);
+        let object = self.builder.object_of(shape).map(str::to_owned);
+        self.builder.exchange_shapes(&mut self.beside_shape);
+        object
     }
 
     /// Triangles that are added from now on belong to the object `name`, unless their mesh names its own.
@@ -396,10 +476,12 @@ impl Draft {
         let adding = keep_passive(&mut self.materials);
         self.warnings.extend(adding.map(|warning| format!("{}: {warning}", self.path.display())));
         self.warnings.extend(self.texture_files.warning(&self.path));
-        if self.builder.triangle_count() == 0 {
+        if self.builder.is_empty() {
             self.warnings.push("the scene has no triangles".to_owned());
         }
         let name = self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let own = self.builder.triangle_count();
+        self.without_uvs.extend(self.shapes_without_uvs.iter().map(|shape| own + shape.start..own + shape.end));
         let (origin, mut mesh) = self.builder.finish();
         let nowhere = unseen(&self.materials, &mesh.materials);
         self.warnings.extend(nowhere.map(|warning| format!("{}: {warning}", self.path.display())));

@@ -38,6 +38,8 @@ pub struct UnknownCamera {
 
 /// Vertical field of view of the camera that frames a scene, degrees.
 const VFOV: f32 = 40.0;
+/// With more triangles than this, instances count as boxes where a view is chosen.
+const OUTLINE: usize = 1 << 21;
 
 /// Share of the image's half height that the framed scene fills.
 const FILL: f32 = 0.92;
@@ -92,7 +94,8 @@ impl Scene {
         };
         // Needed for what is missing alone, and once for both.
         let geometry = Arc::clone(&self.geometry);
-        let sight = LazyCell::new(|| Sight::new(&geometry.mesh));
+        let outline = LazyCell::new(|| geometry.mesh.outline(OUTLINE));
+        let sight = LazyCell::new(|| Sight::new(&outline));
         if added.camera {
             let (camera, viewpoint) = self.view(&sight, up);
             self.cameras.push(camera);
@@ -113,11 +116,11 @@ impl Scene {
     /// ground plan is in rooms, and from there it shows backs of walls or hardly anything) is instead seen through its open side if it has
     /// one, else from inside: at eye height, along the longest view, with a field of view of 60°.
     pub fn default_camera(&self, up: Up) -> Camera {
-        self.view(&Sight::new(&self.geometry.mesh), up).0
+        self.view(&Sight::new(&self.geometry.mesh.outline(OUTLINE)), up).0
     }
 
     fn view(&self, sight: &Sight, up: Up) -> (Camera, Viewpoint) {
-        let mesh = &self.geometry.mesh;
+        let mesh = sight.mesh();
         let bounds = framed(mesh.bounds());
         let (right, front) = sides(up);
         let from = |direction: Vec3| {
@@ -145,7 +148,7 @@ impl Scene {
     /// reaches less than a fifth of what the camera sees, they are in the space that it sees: the key light high above the middle of the
     /// way ahead, the fill light above the eye; then they are weaker, since an ambient term of 0.2 goes with them.
     pub fn default_lights(&self, camera: &Camera) -> [Light; 2] {
-        self.lighting(&Sight::new(&self.geometry.mesh), camera).0
+        self.lighting(&Sight::new(&self.geometry.mesh.outline(OUTLINE)), camera).0
     }
 
     /// The lights, and whether they are inside.

@@ -61,6 +61,18 @@ pub enum GeometryError {
         /// The largest channel of `ks` + `ks_tinted`.
         value: String,
     },
+    /// A shape cannot be at a place.
+    #[error(
+        "place {place} of a shape squeezes, shears, enlarges or lessens it too much, or has no inverse: change the shape itself so, and place it by \
+         a map that turns, moves, and scales it by factors from 1e-6 to 1e6"
+    )]
+    Place {
+        /// Number of the place.
+        place: usize,
+    },
+    /// Shapes that are placed many times are not the last of all triangles, or not there.
+    #[error("shapes in many places have to be the last triangles of a mesh: add them behind all others")]
+    ShapesNotLast,
     /// More vertices or triangles than 32-bit indices can address.
     #[error("{vertices} vertices and {triangles} triangles are too many for 32-bit indices: split the scene")]
     TooLarge {
@@ -85,6 +97,7 @@ impl Geometry {
         let attributes = [mesh.normals.len(), mesh.uvs.len(), mesh.colors.len(), mesh.opacities.len()];
         check_attributes(vertices, attributes)?;
         check_triangles(&mesh.triangles, vertices)?;
+        mesh.instances.check(mesh)?;
         if mesh.materials.len() != triangles {
             return Err(GeometryError::MaterialCount { found: mesh.materials.len(), triangles });
         }

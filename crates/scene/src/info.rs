@@ -11,8 +11,10 @@ use crate::{Camera, Fov, Light, LightKind, Projection, Scene, UpInfo};
 #[derive(Clone, Debug, Serialize, PartialEq)]
 #[non_exhaustive]
 pub struct SceneInfo {
-    /// Number of triangles.
+    /// Number of triangles, those of instances in all their places.
     pub triangles: usize,
+    /// Number of places of shapes that are stored once.
+    pub instances: usize,
     /// Number of vertices with a normal; triangles of others are flat.
     pub normals: usize,
     /// How many of these normals were made while the scene was read.
@@ -129,7 +131,8 @@ impl Scene {
         let world = |local| self.to_world(local).to_array();
         let opacities = || self.geometry.materials.iter().filter_map(|material| material.opacity);
         SceneInfo {
-            triangles: self.geometry.mesh.triangles.len(),
+            triangles: self.geometry.mesh.triangle_count(),
+            instances: self.geometry.mesh.instances.list().len(),
             normals: self.geometry.mesh.normal_count(),
             smooth_normals: self.smooth_normals,
             bounds: (!bounds.is_empty()).then(|| BoundsInfo { min: world(bounds.min), max: world(bounds.max) }),
@@ -225,6 +228,9 @@ impl fmt::Display for SceneInfo {
         match self.textures {
             0 => writeln!(f)?,
             textures => writeln!(f, ", {textures} textures")?,
+        }
+        if self.instances > 0 {
+            writeln!(f, "shared  {} places of shapes that are stored once", self.instances)?;
         }
         match self.smooth_normals {
             0 if self.normals == 0 => {}

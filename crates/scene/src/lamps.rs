@@ -11,7 +11,7 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3, Vec3};
 
-use crate::{Falloff, Geometry, Light, LightKind, Scene};
+use crate::{Falloff, Geometry, Light, LightKind, Material, Scene};
 
 /// A lamp is smaller than this share of its scene's diagonal.
 const LARGEST: f64 = 0.25;
@@ -45,9 +45,7 @@ pub(crate) fn lamps(geometry: &mut Geometry) -> Vec<Light> {
     let mut found: Vec<(usize, Vec<Lamp>)> = Vec::new();
     for number in 0..geometry.materials.len() {
         let material = &mut geometry.materials[number];
-        // What an image emits is not a lamp's.
-        let plain = material.emission_tinted == Vec3::ZERO && material.emission_texture.is_none();
-        material.lamp &= material.emission != Vec3::ZERO && plain;
+        material.lamp = may_be_lamp(material);
         if !material.lamp {
             continue;
         }
@@ -75,6 +73,12 @@ pub(crate) fn lamps(geometry: &mut Geometry) -> Vec<Light> {
         }
     }
     merged(lights)
+}
+
+/// Whether lights may stand for what surfaces of a material emit; what an image emits is not a lamp's.
+pub(crate) fn may_be_lamp(material: &Material) -> bool {
+    let plain = material.emission_tinted == Vec3::ZERO && material.emission_texture.is_none();
+    material.lamp && material.emission != Vec3::ZERO && plain
 }
 
 /// Whether a light has a size and a strength in single precision.
@@ -121,7 +125,8 @@ type Place = [i64; 3];
 /// The lamps of a material.
 fn lamps_of(geometry: &Geometry, material: u32, scene: &Extent) -> Vec<Lamp> {
     let mesh = &geometry.mesh;
-    let own = (0..mesh.triangles.len()).filter(|&index| mesh.materials[index] == material);
+    // Shapes in many places have no lamps.
+    let own = mesh.own_triangles().filter(|&index| mesh.materials[index] == material);
     let triangles: Vec<[DVec3; 3]> = own.map(|index| mesh.corners(index).map(|corner| corner.as_dvec3())).collect();
     let place = |corner: DVec3| (corner / (WELDED * scene.diagonal)).round().to_array().map(|axis| axis as i64);
     let places: Vec<[Place; 3]> = triangles.iter().map(|corners| corners.map(place)).collect();

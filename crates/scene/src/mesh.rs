@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::Objects;
+use crate::{Instances, Objects};
 
 /// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +60,7 @@ impl Bounds {
     }
 }
 
-/// All triangles of a scene in its local frame, instances resolved.
+/// All triangles of a scene in its local frame. Those of shapes that are placed many times are stored once, see [`Instances`].
 ///
 /// `normals`, `uvs`, `colors` and `opacities` are empty or as long as `positions`. A zero normal means that the vertex has none: its triangles are
 /// shaded flat.
@@ -80,24 +80,29 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Material index by triangle.
     pub materials: Vec<u32>,
-    /// The object of each triangle.
+    /// The object of each stored triangle.
     pub objects: Objects,
+    /// Shapes in many places. When their vertices have moved, [`Mesh::find_instance_bounds`] must be called.
+    pub instances: Instances,
 }
 
 impl Mesh {
-    /// The three corners of triangle `index`.
+    /// The three corners of the stored triangle `index`; of a shape's, in its own coordinates.
     #[inline]
     pub fn corners(&self, index: usize) -> [Vec3; 3] {
         self.triangles[index].map(|vertex| self.positions[vertex as usize])
     }
 
-    /// Number of vertices with a normal.
+    /// Number of stored vertices with a normal.
     pub fn normal_count(&self) -> usize {
         self.normals.iter().filter(|&&normal| normal != Vec3::ZERO).count()
     }
 
     /// The box around all vertices that a triangle uses.
     pub fn bounds(&self) -> Bounds {
-        Bounds::around(self.triangles.iter().flatten().map(|&vertex| self.positions[vertex as usize]))
+        let used = self.own_triangles().flat_map(|triangle| self.triangles[triangle]);
+        let own = Bounds::around(used.map(|vertex| self.positions[vertex as usize]));
+        let instances = self.instances.list().iter().map(|instance| instance.bounds);
+        instances.fold(own, |all, one| all.including(one.min).including(one.max))
     }
 }

@@ -1,6 +1,7 @@
 //! Which object each triangle belongs to.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The object of triangles that nobody named.
@@ -48,7 +49,8 @@ impl Objects {
         }
     }
 
-    fn number(&mut self, name: &str) -> u32 {
+    /// The number of an object; a new one if the name is new.
+    pub(crate) fn number(&mut self, name: &str) -> u32 {
         if let Some(&known) = self.numbers.get(name) {
             return known;
         }
@@ -91,6 +93,16 @@ impl Objects {
         for (&start, &object) in other.starts.iter().zip(&other.objects) {
             self.begin(first + place(start), other.name(object));
         }
+    }
+
+    /// Without some triangles: those after them move up.
+    pub(crate) fn without(&self, triangles: Range<u32>) -> Objects {
+        let mut rest = Objects::default();
+        let place = |start: u32| start.min(triangles.start) + start.saturating_sub(triangles.end.max(triangles.start));
+        for (&start, &object) in self.starts.iter().zip(&self.objects) {
+            rest.begin(place(start) as usize, self.name(object));
+        }
+        rest
     }
 }
 

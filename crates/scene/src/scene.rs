@@ -104,6 +104,11 @@ impl Scene {
         Scene { lights: lights.into(), ..self }
     }
 
+    /// The same lights and cameras with other geometry in the same local frame.
+    pub fn with_geometry(self, geometry: impl Into<Arc<Geometry>>) -> Scene {
+        Scene { geometry: geometry.into(), ..self }
+    }
+
     /// The same geometry and lights with other cameras; images are rendered from the first.
     pub fn with_cameras(self, cameras: Vec<Camera>) -> Scene {
         Scene { cameras, ..self }

@@ -113,7 +113,10 @@ impl Scene {
         }
         let low = |corners: &[Vec3; 3]| corners.iter().all(|corner| corner.dot(axis) <= top);
         let area = |[a, b, c]: [Vec3; 3]| 0.5 * (b - a).cross(c - a).length();
-        (0..self.geometry.mesh.triangles.len())
+        // Shapes in many places are no ground.
+        self.geometry
+            .mesh
+            .own_triangles()
             .map(|index| self.geometry.mesh.corners(index))
             .filter(low)
             .map(area)

@@ -1,7 +1,11 @@
 //! Analytic scenes: what is lit and what is in shadow is known without rendering.
 
-use glam::{DVec3, Vec2, Vec3};
-use lightmesh_scene::{Dielectric, LightKind, Material, Opacity, OpacityChannel, Scene, Texture, TextureUse, Wrap};
+use std::f32::consts::TAU;
+
+use glam::{DMat4, DQuat, DVec3, EulerRot, Vec2, Vec3};
+use lightmesh_scene::{
+    Dielectric, LightKind, Material, Mesh, Opacity, OpacityChannel, Scene, Texture, TextureUse, Wrap,
+};
 
 use crate::{Random, SceneDraft};
 
@@ -135,4 +139,48 @@ pub fn soup(seed: u64, count: usize) -> Scene {
         draft = draft.triangles(&corners, &[[0, 1, 2]]);
     }
     draft.point_light([0.3, 0.2, -0.1]).camera([5.0, 4.0, 6.0], [0.0; 3]).finish("soup")
+}
+
+/// A knobbly ball with normals, which is stored once for many places: turned, mirrored, squeezed and inside each other; on a floor with a box,
+/// under lights of two kinds.
+pub fn many_balls() -> Scene {
+    let lights = [BALL_LIGHT, LightKind::Point { position: Vec3::new(2.0, 4.0, 1.0), spread: 0.0 }];
+    let draft = SceneDraft::new().floor(0.0, 4.0).cuboid([-0.3, -0.1, -2.5], [0.4, 1.7, -2.1]);
+    let draft = lights.into_iter().fold(draft, SceneDraft::light);
+    let mut scene = draft.camera([0.3, 2.6, 6.5], [0.0, 0.6, 0.0]).finish("many balls");
+    let mut random = Random::new(5);
+    let places: Vec<DMat4> = (0..23).map(|number| place(number, &mut random)).collect();
+    let added = scene.geometry_mut().mesh.add_instances(&knobbly_ball(), &places, "ball");
+    added.expect("each place can be held");
+    scene
+}
+
+/// A place of a ball on a floor, in rows of five; each fourth mirrors.
+fn place(number: u32, random: &mut Random) -> DMat4 {
+    let [x, z] = [number % 5, number / 5].map(|k| f64::from(k) - 2.0);
+    let [a, b, c, d] = std::array::from_fn(|_| random.unit());
+    let side = if number % 4 == 1 { -1.0 } else { 1.0 };
+    let turn = DQuat::from_euler(EulerRot::XYZ, 6.0 * a, 6.0 * b, 6.0 * c);
+    let scale = DVec3::new(side * (0.5 + d), 0.5 + a, 0.5 + b);
+    DMat4::from_scale_rotation_translation(scale, turn, DVec3::new(x, 0.5 + 0.3 * c, z))
+}
+
+/// A ball of 108 triangles with three ridges.
+fn knobbly_ball() -> Mesh {
+    const COLUMNS: u32 = 9;
+    const ROWS: u32 = 6;
+    let mut ball = Mesh::default();
+    for (row, column) in (0..=ROWS).flat_map(|row| (0..COLUMNS).map(move |column| (row, column))) {
+        let (a, b) = (TAU * column as f32 / COLUMNS as f32, 0.5 * TAU * row as f32 / ROWS as f32);
+        let normal = Vec3::new(b.sin() * a.cos(), b.cos(), b.sin() * a.sin());
+        ball.positions.push((0.4 + 0.1 * (3.0 * a).sin() * b.sin()) * normal);
+        ball.normals.push(normal);
+    }
+    for (row, column) in (0..ROWS).flat_map(|row| (0..COLUMNS).map(move |column| (row, column))) {
+        let at = |row: u32, column: u32| row * COLUMNS + column % COLUMNS;
+        let [a, b, c, d] = [at(row, column), at(row, column + 1), at(row + 1, column + 1), at(row + 1, column)];
+        ball.triangles.extend([[a, b, c], [a, c, d]]);
+    }
+    ball.materials = vec![0; ball.triangles.len()];
+    ball
 }

@@ -9,7 +9,7 @@ mod words;
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, Args, CommandFactory, Parser, Subcommand};
-use lightmesh::scene::SceneFormat;
+use lightmesh::scene::{Instancing, SceneFormat};
 
 pub(crate) use bench::{BenchArgs, BenchCommand, BenchCompareArgs, SuiteArgs};
 pub(crate) use render::RenderArgs;
@@ -171,6 +171,10 @@ pub(crate) struct InfoArgs {
     /// Crease angle of OBJ, PLY and STL files without normals, in degrees, or off, as for `lightmesh render`
     #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, default_value_t, help_heading = "Reading")]
     pub(crate) smooth: Smooth,
+
+    /// Whether meshes in many places are stored once, as for `lightmesh render`
+    #[arg(long, value_name = "WHEN", value_parser = words::instances(), default_value_t = Instancing::Auto, help_heading = "Reading")]
+    pub(crate) instances: Instancing,
 
     /// List devices, and why some cannot be used
     #[arg(long)]

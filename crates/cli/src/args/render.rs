@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use lightmesh::image::{BitDepth, ExrCompression, ExrParts, ExrSamples, Format, View};
 use lightmesh::render::{AmbientSource, Crop, Filter, Quality, ShortTests};
-use lightmesh::scene::{Falloff, Weight};
+use lightmesh::scene::{Falloff, Instancing, Weight};
 use lightmesh::{Acceleration, Device, Lookup, Mode, Step, Transfer};
 
 use super::{Progress, SceneArg, Switch, Up, words};
@@ -240,6 +240,11 @@ pub(crate) struct RenderArgs {
     /// [default: 30; off with --lookup half-ball]
     #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, help_heading = "Scene")]
     pub(crate) smooth: Option<Smooth>,
+
+    /// Whether meshes that a scene shows in many places are stored once: what takes too long or too much memory as copies becomes possible.
+    /// Rays take longer. Grids and brute force need copies
+    #[arg(long, value_name = "WHEN", value_parser = words::instances(), default_value_t = Instancing::Auto, help_heading = "Scene")]
+    pub(crate) instances: Instancing,
 
     /// Device: auto, cpu, cuda (the first CUDA device that works) or cuda:N; auto uses the fastest that works, cuda before cpu,
     /// and reports which and why. `lightmesh info --devices` lists devices; CUDA_VISIBLE_DEVICES hides and renumbers them

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use lightmesh::scene::{Falloff, SceneFormat, Weight};
+use lightmesh::scene::{Falloff, Instancing, SceneFormat, Weight};
 use lightmesh::{
     Acceleration, Lookup, Mode, Transfer,
     image::{BitDepth, ExrCompression, ExrParts, ExrSamples, Format, View},
@@ -52,6 +52,10 @@ pub(super) fn short_tests() -> impl TypedValueParser<Value = ShortTests> {
 /// See `plan::settings` for how it is resolved.
 pub(super) fn acceleration() -> impl TypedValueParser<Value = Acceleration> {
     one_of(Acceleration::ALL.iter().map(|structure| (structure.name(), structure.help())))
+}
+
+pub(super) fn instances() -> impl TypedValueParser<Value = Instancing> {
+    one_of(Instancing::ALL.iter().map(|instancing| (instancing.name(), instancing.help())))
 }
 
 pub(super) fn falloff() -> impl TypedValueParser<Value = Falloff> {

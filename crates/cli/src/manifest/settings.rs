@@ -24,7 +24,7 @@ pub(super) fn of(args: &RenderArgs) -> BTreeMap<String, String> {
         turntable, fps, animation, sun, format, mode, bounces, step, radius, weight, lookup, quality, aa, filter, samples, seed, size, crop, transfer, exposure,
         view, bit_depth, dither, exr_type, exr_compression, exr_parts, background,
     ];
-    let scene = values![args; ground, camera, camera_name, up, lights, falloff, ambient, ambient_light, sky, environment, smooth];
+    let scene = values![args; ground, camera, camera_name, up, lights, falloff, ambient, ambient_light, sky, environment, smooth, instances];
     let reading = values![args.scene.reading; scene_format];
     image.into_iter().chain(scene).chain(reading).collect()
 }

@@ -11,8 +11,8 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use lightmesh::render::Crop;
-use lightmesh::scene::{CameraError, CreaseAngle};
-use lightmesh::{Device, Lookup, Mode, SaveError, Settings};
+use lightmesh::scene::{CameraError, CreaseAngle, Instancing};
+use lightmesh::{Acceleration, Device, Lookup, Mode, SaveError, Settings};
 
 use crate::args::{RenderArgs, SceneArg};
 use crate::manifest::ManifestError;
@@ -114,12 +114,28 @@ pub(crate) enum PlanError {
     },
 }
 
+/// How meshes are read.
+#[derive(Clone, Copy)]
+pub(crate) struct MeshForm {
+    pub(crate) smooth: Option<CreaseAngle>,
+    pub(crate) instancing: Instancing,
+}
+
+impl MeshForm {
+    /// Each place of a mesh has a copy.
+    pub(crate) fn copied(smooth: Option<CreaseAngle>) -> MeshForm {
+        MeshForm { smooth, instancing: Instancing::Never }
+    }
+}
+
 /// A render, validated as far as possible without the scene.
 pub(crate) struct RenderPlan {
     /// The scene to open.
     pub(crate) scene: SceneArg,
     /// The crease angle of files without normals, if they are to be smooth.
     pub(crate) smooth: Option<CreaseAngle>,
+    /// Whether meshes in many places are stored once.
+    pub(crate) instancing: Instancing,
     /// Overrides for parts of it.
     pub(crate) choices: SceneChoices,
     /// Everything else about the image.
@@ -139,6 +155,11 @@ pub(crate) struct RenderPlan {
 }
 
 impl RenderPlan {
+    /// How meshes are read.
+    pub(crate) fn meshes(&self) -> MeshForm {
+        MeshForm { smooth: self.smooth, instancing: self.instancing }
+    }
+
     /// Checks that the flags are consistent and that every output can be written.
     pub(crate) fn new(args: &RenderArgs) -> Result<RenderPlan, PlanError> {
         let settings = settings::settings(args)?;
@@ -152,6 +173,7 @@ impl RenderPlan {
         Ok(RenderPlan {
             scene: args.scene.clone(),
             smooth: args.smooth.unwrap_or_else(|| usual_smooth(&settings)).0,
+            instancing: instancing(args, &settings),
             choices: SceneChoices::new(args, sun.as_ref())?,
             settings,
             device: args.device,
@@ -174,6 +196,14 @@ fn others(count: usize) -> String {
 }
 
 /// The half-ball stands for the thesis, whose surfaces are facets.
+/// Grids and brute force hold no instances.
+fn instancing(args: &RenderArgs, settings: &Settings) -> Instancing {
+    match settings.acceleration {
+        Acceleration::Auto | Acceleration::Bvh => args.instances,
+        _ => Instancing::Never,
+    }
+}
+
 fn usual_smooth(settings: &Settings) -> Smooth {
     let is_thesis = settings.mode == Mode::LightMesh && settings.resolved_lookup() == Lookup::HalfBall;
     if is_thesis { Smooth::OFF } else { Smooth::default() }

@@ -6,11 +6,13 @@ use lightmesh::render::PreparedGeometry;
 use lightmesh::render::accel::{Grid, GridOptions, Levels};
 use lightmesh_memory::Budget;
 
-use super::{BUILDING, open::open};
+use super::BUILDING;
+use super::open::open;
 use crate::args::GridArgs;
 use crate::failure::Failure;
 use crate::memory;
 use crate::output::{self, Outputs};
+use crate::plan::MeshForm;
 use crate::progress::Watcher;
 
 pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
@@ -18,7 +20,7 @@ pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
     let outputs = Outputs::new([("-o", Some(&*args.output))])?;
     let watcher = Watcher::plain(args.quiet);
     // Normals are no part of the grid.
-    let scene = open(&args.scene, None, None, &outputs, &watcher)?;
+    let scene = open(&args.scene, MeshForm::copied(None), None, &outputs, &watcher)?;
 
     let start = Instant::now();
     let levels = if args.levels == 1 { Levels::One } else { Levels::Two };

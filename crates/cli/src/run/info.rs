@@ -9,6 +9,7 @@ use super::open::read;
 use crate::args::InfoArgs;
 use crate::failure::Failure;
 use crate::output;
+use crate::plan::MeshForm;
 
 #[derive(Serialize)]
 struct Devices {
@@ -18,7 +19,8 @@ struct Devices {
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let printed = match &args.scene {
         Some(path) => {
-            let scene = read(path, args.reading, args.smooth.0, None)?;
+            let form = MeshForm { smooth: args.smooth.0, instancing: args.instances };
+            let scene = read(path, args.reading, form, None)?;
             let mut info = scene.info();
             info.up.get_or_insert_with(|| usual_up(args.reading.format_of(path)));
             if args.json {

@@ -4,13 +4,14 @@ use std::io::{self, IsTerminal};
 use std::path::Path;
 
 use lightmesh::Scene;
-use lightmesh::scene::{CreaseAngle, LoadOptions};
+use lightmesh::scene::LoadOptions;
 
 use crate::args::{ReadingArgs, SceneArg};
 use crate::destination::is_standard;
 use crate::failure::Failure;
 use crate::memory;
 use crate::output::{Outputs, input};
+use crate::plan::MeshForm;
 use crate::progress::Watcher;
 
 /// What messages call the scene that is read from standard input.
@@ -19,13 +20,13 @@ const STANDARD_INPUT: &str = "standard input";
 /// Reads the scene, of which outputs must not overwrite any file, and prints its warnings.
 pub(super) fn open(
     arg: &SceneArg,
-    smooth: Option<CreaseAngle>,
+    form: MeshForm,
     animation: Option<&str>,
     outputs: &Outputs,
     watcher: &Watcher,
 ) -> Result<Scene, Failure> {
     outputs.keep("the scene", input(&arg.scene))?;
-    let scene = read(&arg.scene, arg.reading, smooth, animation)?;
+    let scene = read(&arg.scene, arg.reading, form, animation)?;
     outputs.keep_scene(&scene)?;
     scene.warnings.iter().for_each(|warning| watcher.warning(warning));
     Ok(scene)
@@ -35,14 +36,15 @@ pub(super) fn open(
 pub(super) fn read(
     path: &Path,
     reading: ReadingArgs,
-    smooth: Option<CreaseAngle>,
+    form: MeshForm,
     animation: Option<&str>,
 ) -> Result<Scene, Failure> {
     let options = LoadOptions::default()
         .with_format(reading.scene_format)
         .with_allow_outside(reading.allow_outside)
         .with_strict(reading.strict)
-        .with_smooth(smooth)
+        .with_smooth(form.smooth)
+        .with_instancing(form.instancing)
         .with_animation(animation.map(str::to_owned))
         .with_memory_limit(reading.memory_limit.map(|limit| limit.0));
     if !is_standard(path) {

@@ -30,7 +30,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let renderer = Renderer::on(choice, plan.threads.map(usize::from))?;
     let start = Instant::now();
     let animation = args.animation.as_deref();
-    let mut scene = open(&plan.scene, plan.smooth, animation, &plan.files.outputs, &watcher)?;
+    let mut scene = open(&plan.scene, plan.meshes(), animation, &plan.files.outputs, &watcher)?;
     let work = plan.film.as_ref().map(|film| film.work(args, &scene)).transpose()?;
     let load = start.elapsed().as_secs_f64();
     if matches!(plan.device, Device::Auto | Device::Cuda(None)) {

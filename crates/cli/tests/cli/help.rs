@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::run::Place;
 
 /// The flags of `render` that other programs rely on.
-const FLAGS: [&str; 53] = [
+const FLAGS: [&str; 54] = [
     "--mode",
     "--bounces",
     "--size",
@@ -26,6 +26,7 @@ const FLAGS: [&str; 53] = [
     "--light",
     "--falloff",
     "--smooth",
+    "--instances",
     "--ambient",
     "--layers",
     "--transfer",

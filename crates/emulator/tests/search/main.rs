@@ -17,8 +17,8 @@ use lightmesh_render::accel::{Region, TangentPlanes, Triangle};
 use lightmesh_render::backend::{Backend, Cuda};
 use lightmesh_render::cuda::{Kernel, Launch, Pool, Runtime};
 use lightmesh_render::{Acceleration, Job, PreparedScene, Sampling, Unobserved};
-use lightmesh_scene::{Bounds, Geometry, Material, Mesh, Scene};
-use lightmesh_testkit::Random;
+use lightmesh_scene::{Bounds, FIRST_INSTANCED, Geometry, Material, Mesh, Scene};
+use lightmesh_testkit::{Random, many_balls};
 
 use regions::{Asked, Form, asked};
 
@@ -101,7 +101,7 @@ fn search(prepared: &PreparedScene, regions: &[Asked]) -> Vec<Vec<u32>> {
     let (cuda, pool) = (Cuda::new(Arc::clone(&emulator)), Pool::new(Arc::clone(&emulator)));
     let job = Job::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
     let scene = cuda.scene(&job, prepared, None).unwrap();
-    let room = 1024 * prepared.geometry.triangles.len().max(1);
+    let room = 1024 * prepared.geometry.triangles.stored().len().max(1);
     let records: Vec<AskedRecord> = regions.iter().map(Asked::record).collect();
     let asked = pool.upload("regions", &records).unwrap();
     let found = pool.zeros::<u32>("found", room * regions.len()).unwrap();
@@ -166,7 +166,7 @@ fn check(what: &str, corners: &[[Vec3; 3]], regions: &[Asked], random: &mut Rand
             let other = found.iter().find(|index| listed.binary_search(index).is_err());
             assert_eq!(other, None, "not in the list: {}", case());
             for &index in listed.iter().filter(|index| found.binary_search(index).is_err()) {
-                let triangle = &prepared.geometry.triangles[index as usize];
+                let triangle = &prepared.geometry.triangles.at(index);
                 assert!(!asked.holds_a_point_of(triangle, random), "lacks {index}: {}", case());
             }
         }
@@ -201,6 +201,37 @@ fn a_search_finds_more_than_one_round_holds() {
     let region = |form| Asked { form, origins: around, points: Vec::new(), slack: 0.0, cut: false };
     let regions = [region(Form::Box), region(Form::Near(1.0)), region(Form::Shaft(around))];
     assert_eq!(check("all", &corners, &regions, random), regions.len() * corners.len());
+}
+
+/// Where shapes are stored once, the same is found as among copies of them.
+#[test]
+fn instances_are_found_like_copies() {
+    let scene = many_balls();
+    let flat = scene.geometry.mesh.flattened().unwrap();
+    let [shared, copied] = [Acceleration::Bvh, Acceleration::BruteForce]
+        .map(|acceleration| PreparedScene::new(&scene, &acceleration, &Unobserved).unwrap());
+    // The first triangle of a copy follows those of the floor; those of instances have numbers of their own.
+    let own = scene.geometry.mesh.own_triangles().count() as u32;
+    let places = shared.geometry.triangles.clone();
+    let random = &mut Random::new(9);
+    let mut found = 0;
+    for _ in 0..20 {
+        let regions: Vec<Asked> = (0..REGIONS)
+            .map(|_| asked(flat.positions[(random.unit() * flat.positions.len() as f64) as usize], random))
+            .collect();
+        for ((asked, shared), copied) in regions.iter().zip(search(&shared, &regions)).zip(search(&copied, &regions)) {
+            // A triangle that becomes a line where it is placed is in no copy, and nothing hits it.
+            let shared: Vec<u32> = shared.into_iter().filter(|&index| places.at(index).is_usable()).collect();
+            let like_copies =
+                |index: u32| if index < FIRST_INSTANCED { index } else { own + (index - FIRST_INSTANCED) };
+            let count = shared.len();
+            let shared = set(shared.into_iter().map(like_copies).collect());
+            assert_eq!(shared.len(), count, "each once: {asked:?}");
+            assert_eq!(shared, set(copied), "{asked:?}");
+            found += count;
+        }
+    }
+    assert!(found > 1000, "too little is found: {found}");
 }
 
 #[test]

@@ -46,7 +46,7 @@ fn same_light<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure: u
     let scene = subject.prepared(structure);
     let settings = settings(subject, 0.0).with_acceleration(ACCELERATIONS[structure].clone());
     let [host, device] = same_frame(cuda, scene, settings);
-    let is_lit = !scene.geometry.triangles.is_empty() && !scene.scene.lights.list.is_empty();
+    let is_lit = !scene.geometry.triangles.stored().is_empty() && !scene.scene.lights.list.is_empty();
     assert_eq!(host.stats.counts.gather_rays > 0, is_lit, "{}", host.stats.counts.gather_rays);
     let differ = gathered(&host).iter().zip(gathered(&device)).filter(|(a, b)| **a != *b).count();
     // Where one ray to a light passes an edge, all that take light from its site differ.

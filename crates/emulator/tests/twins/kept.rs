@@ -77,6 +77,7 @@ fn scenes(subject: &'static Subject) -> [PreparedScene; 5] {
     let last = mesh.triangles[..mesh.triangles.len() / 8].iter().flatten().max();
     let moved_ones = last.map_or(0, |&last| last as usize + 1);
     mesh.positions[..moved_ones].iter_mut().for_each(|place| *place += Vec3::new(0.05, 0.02, -0.03));
+    mesh.find_instance_bounds();
     let elsewhere = moved.moved(&elsewhere, Default::default(), &Unobserved).unwrap().expect("only places differ");
     [scene.clone(), scene.clone(), moved.clone(), moved, elsewhere]
 }

@@ -10,7 +10,7 @@ use lightmesh_render::{
 use lightmesh_scene::{Bounds, Up};
 use lightmesh_testkit::{Picture, Random};
 
-use crate::scenes::{GLAZED, MIRRORS, SUBJECTS, SURROUNDED, Subject, TEXTURED};
+use crate::scenes::{GLAZED, GLAZED_INSTANCES, MIRRORS, SUBJECTS, SURROUNDED, Subject, TEXTURED};
 use crate::stages::{SHARE_TOLERANCE, alike};
 use crate::trials::{Case, Target};
 
@@ -29,7 +29,7 @@ const WAYS: [Way; 5] = [
 
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     let mut cases = Vec::new();
-    for subject in SUBJECTS.iter().chain([&TEXTURED, &SURROUNDED, &GLAZED]) {
+    for subject in SUBJECTS.iter().chain([&TEXTURED, &SURROUNDED, &GLAZED, &GLAZED_INSTANCES]) {
         for way in WAYS {
             let (name, ..) = way;
             let picture = format!("{}::picture::{name}", subject.name);

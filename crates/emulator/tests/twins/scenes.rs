@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Acceleration, PreparedScene, Unobserved, View};
 use lightmesh_scene::{Falloff, LightKind, Material, Scene, Sky, SunPosition, Up};
-use lightmesh_testkit::{SceneDraft, glazed, half_plane, mirror_room, perforated, pile, soup};
+use lightmesh_testkit::{SceneDraft, glazed, half_plane, many_balls, mirror_room, perforated, pile, soup};
 
 /// The structures, in the order of [`Subject::prepared`].
 pub(crate) const ACCELERATIONS: [Acceleration; 3] =
@@ -29,13 +29,14 @@ const fn subject(name: &'static str, step: f32, small: bool, build: fn() -> Scen
 }
 
 /// All scenes.
-pub(crate) static SUBJECTS: [Subject; 9] = [
+pub(crate) static SUBJECTS: [Subject; 10] = [
     subject("gazebo", 2.0, false, || builtin("gazebo")),
     subject("childpark", 1.0, false, || builtin("childpark")),
     subject("garden", 0.1, false, || builtin("garden")),
     subject("still_life", 0.2, false, still_life),
     subject("all_lights", 0.25, true, all_lights),
     subject("cut_outs", 0.25, true, || perforated(all_lights())),
+    subject("instances", 0.4, true, many_balls),
     subject("half_plane", 0.2, true, half_plane),
     subject("soup", 0.3, true, || soup(7, 200)),
     subject("empty", 1.0, true, || SceneDraft::new().point_light([0.0; 3]).camera([1.0; 3], [0.0; 3]).finish("empty")),
@@ -49,6 +50,9 @@ pub(crate) static SURROUNDED: Subject = subject("surrounded", 0.25, true, surrou
 
 /// For images with rays that surfaces let through.
 pub(crate) static GLAZED: Subject = subject("glazed", 0.25, true, || rounded(glazed(all_lights())));
+
+/// The same with shapes in many places.
+pub(crate) static GLAZED_INSTANCES: Subject = subject("glazed_instances", 0.4, true, || glazed(many_balls()));
 
 /// For rays that are mirrored several times.
 pub(crate) static MIRRORS: Subject = subject("mirrors", 0.25, true, || mirror_room(0.9));

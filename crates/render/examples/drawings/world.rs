@@ -94,7 +94,7 @@ impl World {
     /// The half-ball of the surface point below eye number `eye`.
     pub(crate) fn half_ball(&self, eye: usize) -> HalfBall {
         let hit = &self.hits[eye];
-        let point = SurfacePoint::new(&self.list.rays[eye], hit, &self.scene.geometry.triangles[hit.triangle as usize]);
+        let point = SurfacePoint::new(&self.list.rays[eye], hit, &self.scene.geometry.triangles.at(hit.triangle));
         let slot = self.cells.members().iter().position(|&ray| ray as usize == eye);
         let mask = slot.map_or(&[][..], |slot| self.masks.mask(slot));
         let cell = self.mesh.lattice.cell(point.position);

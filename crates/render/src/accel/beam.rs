@@ -19,7 +19,7 @@ use lightmesh_scene::Bounds;
 use super::approach::Approach;
 use super::packet::{ClosestPacket, LANES, PacketShear, PacketVisitor};
 use super::triangle::largest_axis;
-use super::{Accelerator, Coverage, Form, Hit, Ray, Region, Triangle};
+use super::{Accelerator, Coverage, Form, Hit, Ray, Region, Triangles};
 use crate::simd::dispatch;
 
 /// Triangles of a beam; with more, packets take less time.
@@ -32,8 +32,7 @@ const LONGER: f32 = 1.0 / (1 << 16) as f32;
 /// Searches beams in a structure.
 pub(crate) struct Beams<'a> {
     accelerator: &'a dyn Accelerator,
-    /// By index.
-    triangles: &'a [Triangle],
+    triangles: &'a Triangles,
     coverage: &'a Coverage,
     approach: Approach,
     level: Level,
@@ -45,7 +44,7 @@ impl<'a> Beams<'a> {
     /// Beams in `accelerator`, which holds `triangles` in `bounds`.
     pub(crate) fn new(
         accelerator: &'a dyn Accelerator,
-        triangles: &'a [Triangle],
+        triangles: &'a Triangles,
         coverage: &'a Coverage,
         bounds: &Bounds,
     ) -> Beams<'a> {
@@ -117,7 +116,7 @@ impl<'a> Beams<'a> {
 fn test<S: Simd>(
     simd: S,
     rays: &[Ray],
-    (triangles, found, coverage): (&[Triangle], &[u32], &Coverage),
+    (triangles, found, coverage): (&Triangles, &[u32], &Coverage),
     far: f32,
     (first, hits): (usize, &mut [Hit]),
     left: &mut Vec<(usize, Ray)>,
@@ -130,7 +129,7 @@ fn test<S: Simd>(
         };
         let lanes = u32::MAX >> (u32::BITS - rays.len() as u32);
         for &index in found {
-            closest.triangle(simd, &triangles[index as usize], lanes);
+            closest.triangle(simd, &triangles.at(index), lanes);
         }
         let closest = closest.hits();
         for (lane, ray) in rays.iter().enumerate() {

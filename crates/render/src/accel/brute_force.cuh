@@ -39,7 +39,7 @@ DEVICE void next_triangles(const BruteForce &all, const Region<Form> &region, Li
                            unsigned &count) {
     for (unsigned i = 0; i < 3 && search.next < all.count; i++) {
         const unsigned place = search.next + lane_of_thread();
-        sieve<SIEVED>(region, all.triangles, place < all.count, place, found, count);
+        sieve<SIEVED>(region, all.triangles + place, place < all.count, place, found, count);
         search.next += WARP;
     }
     __syncwarp();

@@ -4,7 +4,7 @@
 // triangles are in two modules, without and with CUT_OUTS: `<module>_cut_out.cu` includes `kernel.cu`.
 #pragma once
 
-#include "accel/triangle.cuh"
+#include "accel/instanced.cuh"
 #include "textures/neighbours.cuh"
 
 // From `a` to `b`.
@@ -63,7 +63,8 @@ COLD bool covers_hit(Coverage coverage, unsigned cut, Weights weights) {
 }
 
 // Whether there is a surface where a triangle is hit.
-DEVICE bool has_surface(const Coverage &coverage, const Triangle *triangle, const Weights &weights) {
+template <class Handle>
+DEVICE bool has_surface(const Coverage &coverage, const Handle &triangle, const Weights &weights) {
     if (!CUT_OUTS)
         return true;
     const unsigned cut = triangle_cut(triangle);
@@ -85,7 +86,8 @@ COLD bool stops_cut(Coverage coverage, unsigned cut, Corners corners, Vec3 origi
 }
 
 // The same for any triangle.
-DEVICE bool stops(const Coverage &coverage, const Triangle *triangle, const Corners &corners, Vec3 origin, Vec3 direction) {
+template <class Handle>
+DEVICE bool stops(const Coverage &coverage, const Handle &triangle, const Corners &corners, Vec3 origin, Vec3 direction) {
     if (!CUT_OUTS)
         return true;
     const unsigned cut = triangle_cut(triangle);

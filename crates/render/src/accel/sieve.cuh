@@ -2,7 +2,7 @@
 #pragma once
 
 #include "accel/region.cuh"
-#include "accel/triangle.cuh"
+#include "accel/instanced.cuh"
 
 DEVICE Bounds bounds_of(const Corners &corners) {
     return Bounds{min(min(corners.a, corners.b), corners.c), max(max(corners.a, corners.b), corners.c)};
@@ -15,10 +15,9 @@ DEVICE bool meets_triangle(const Region<Form> &region, const Corners &corners) {
     return meets(region, bounds.low, bounds.high, REGION_ROUNDING * element_sum(bounds.high - bounds.low));
 }
 
-// Lists the positions of those of the lanes' triangles whose bounding boxes the region may meet, or of all unless SIEVED. Not every
+// Lists the places of those of the lanes' triangles whose bounding boxes the region may meet, or of all unless SIEVED. Not every
 // lane has a triangle.
-template <bool SIEVED, class Form>
-DEVICE void sieve(const Region<Form> &region, const Triangle *triangles, bool has, unsigned place, unsigned *list,
-                  unsigned &count) {
-    warp_append(has && (!SIEVED || meets_triangle(region, load_corners(triangles + place))), place, list, count);
+template <bool SIEVED, class Form, class Handle>
+DEVICE void sieve(const Region<Form> &region, const Handle &triangle, bool has, unsigned place, unsigned *list, unsigned &count) {
+    warp_append(has && (!SIEVED || meets_triangle(region, load_corners(triangle))), place, list, count);
 }

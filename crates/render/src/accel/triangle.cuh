@@ -11,7 +11,9 @@ DEVICE float4 load_corner(const Triangle *triangle, unsigned corner) {
     return __ldg(reinterpret_cast<const float4 *>(triangle) + corner);
 }
 
-DEVICE Corners load_corners(const Triangle *triangle) {
+// Here and below, a `Handle` is a pointer to a triangle or what tells that of an instance: see accel/instanced.cuh.
+template <class Handle>
+DEVICE Corners load_corners(const Handle &triangle) {
     const float4 a = load_corner(triangle, 0), b = load_corner(triangle, 1), c = load_corner(triangle, 2);
     return Corners{Vec3{a.x, a.y, a.z}, Vec3{b.x, b.y, b.z}, Vec3{c.x, c.y, c.z}};
 }
@@ -21,8 +23,14 @@ DEVICE unsigned triangle_index(const Triangle *triangle) {
     return __float_as_uint(__ldg(&triangle->corners[0][3]));
 }
 
+// Where the number of its opacities is.
+DEVICE const unsigned *cut_of(const Triangle *triangle) { return reinterpret_cast<const unsigned *>(&triangle->corners[1][3]); }
+
 // The number of its opacities; 0 if it is opaque.
-DEVICE unsigned triangle_cut(const Triangle *triangle) { return __float_as_uint(__ldg(&triangle->corners[1][3])); }
+template <class Handle>
+DEVICE unsigned triangle_cut(const Handle &triangle) {
+    return __ldg(cut_of(triangle));
+}
 
 // A ray prepared for the watertight test: the axes permuted so that `axis` comes last, and the shear that turns the ray into the
 // last axis.
@@ -91,8 +99,8 @@ DEVICE bool may_meet_corners(const RayShear &ray, const float4 &a, const float4 
     return !(below && above);
 }
 
-template <unsigned AXIS>
-DEVICE bool may_meet(const RayShear &ray, const Triangle *triangle, Sheared &corners) {
+template <unsigned AXIS, class Handle>
+DEVICE bool may_meet(const RayShear &ray, const Handle &triangle, Sheared &corners) {
     return may_meet_corners<AXIS>(ray, load_corner(triangle, 0), load_corner(triangle, 1), load_corner(triangle, 2), corners);
 }
 
@@ -119,7 +127,8 @@ DEVICE float hit_distance(const RayShear &ray, const Sheared &s, const Weights &
 }
 
 // Steps 1 and 2 for whichever axis the ray has.
-DEVICE bool may_meet(const RayShear &ray, const Triangle *triangle, Sheared &corners) {
+template <class Handle>
+DEVICE bool may_meet(const RayShear &ray, const Handle &triangle, Sheared &corners) {
     if (ray.axis & 1)
         return may_meet<1>(ray, triangle, corners);
     return ray.axis & 2 ? may_meet<2>(ray, triangle, corners) : may_meet<0>(ray, triangle, corners);

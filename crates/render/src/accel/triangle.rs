@@ -12,7 +12,7 @@ use lightmesh_scene::Bounds;
 use super::Hit;
 
 /// The corners of a triangle as the structures store them: three `float4`, the index in the mesh as bits of the first `w`, those of the second
-/// the number of a triangle that is cut out (`coverage`).
+/// the number of a triangle that is cut out (`coverage`), and those of the third the number of an instance that a structure holds in its place.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(16))]
 pub struct Triangle {
@@ -38,6 +38,19 @@ impl Triangle {
     #[inline(always)]
     pub(crate) fn cut(&self) -> u32 {
         self.corners[1][3].to_bits()
+    }
+
+    /// What a structure holds in place of the triangles of an instance: the box around it.
+    pub(super) fn holder(bounds: &Bounds, instance: u32) -> Triangle {
+        let mut holder = Triangle::new([bounds.min, bounds.max, bounds.min], u32::MAX);
+        holder.corners[2][3] = f32::from_bits(instance + 1);
+        holder
+    }
+
+    /// The number of the instance that this stands for.
+    #[inline(always)]
+    pub(super) fn instance(&self) -> Option<usize> {
+        (self.corners[2][3].to_bits() as usize).checked_sub(1)
     }
 
     /// Index in the scene's mesh.

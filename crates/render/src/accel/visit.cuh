@@ -30,24 +30,24 @@ DEVICE bool take(Chosen &chosen, unsigned &triangle) {
     return any;
 }
 
-template <unsigned AXIS, class Set>
-DEVICE bool next_candidate_along(const RayShear &ray, const Triangle *triangles, Set &set, unsigned &triangle, Sheared &corners) {
+template <unsigned AXIS, class Structure, class Set>
+DEVICE bool next_candidate_along(const RayShear &ray, const Structure &structure, Set &set, unsigned &triangle, Sheared &corners) {
     while (take(set, triangle))
-        if (may_meet<AXIS>(ray, triangles + triangle, corners))
+        if (may_meet<AXIS>(ray, triangle_at(structure, triangle), corners))
             return true;
     return false;
 }
 
 // The next triangle of the set that single precision cannot rule out. The loop is short, and most triangles go no further; those
 // that do are decided outside of it, by all lanes of a warp that have one at once.
-template <class Set>
-DEVICE bool next_candidate(const RayShear &ray, const Triangle *triangles, Set &set, unsigned &triangle, Sheared &corners) {
+template <class Structure, class Set>
+DEVICE bool next_candidate(const RayShear &ray, const Structure &structure, Set &set, unsigned &triangle, Sheared &corners) {
     // Tested bit by bit, this becomes two branches instead of a jump table.
     if (ray.axis & 1)
-        return next_candidate_along<1>(ray, triangles, set, triangle, corners);
+        return next_candidate_along<1>(ray, structure, set, triangle, corners);
     if (ray.axis & 2)
-        return next_candidate_along<2>(ray, triangles, set, triangle, corners);
-    return next_candidate_along<0>(ray, triangles, set, triangle, corners);
+        return next_candidate_along<2>(ray, structure, set, triangle, corners);
+    return next_candidate_along<0>(ray, structure, set, triangle, corners);
 }
 
 // Searches for the closest hit.
@@ -55,7 +55,7 @@ struct Closest {
     RayShear ray;
     // Ray parameter of the best hit, or where the ray ends.
     float limit;
-    // Position of the triangle that was hit in the structure's array.
+    // Place of the triangle that was hit in the structure.
     unsigned best;
 };
 
@@ -65,30 +65,31 @@ DEVICE float limit(const Closest &closest) { return closest.limit; }
 
 template <class Structure, class Set>
 DEVICE bool ask(Closest &closest, const Structure &structure, Set set) {
-    const Triangle *triangles = structure.triangles;
     unsigned triangle;
     Sheared corners;
-    while (next_candidate(closest.ray, triangles, set, triangle, corners)) {
+    while (next_candidate(closest.ray, structure, set, triangle, corners)) {
         Weights weights;
         if (!weigh(corners, weights))
             continue;
         const float t = hit_distance(closest.ray, corners, weights);
         // Equally near: the smaller index wins.
         const bool wins = t < closest.limit || (t == closest.limit && closest.best != Hit::NONE &&
-                                                triangle_index(triangles + triangle) < triangle_index(triangles + closest.best));
-        if (t > 0.0f && wins && has_surface(structure.coverage, triangles + triangle, weights)) {
+                                                triangle_index(triangle_at(structure, triangle)) <
+                                                    triangle_index(triangle_at(whole_of(structure), closest.best)));
+        if (t > 0.0f && wins && has_surface(structure.coverage, triangle_at(structure, triangle), weights)) {
             closest.limit = t;
-            closest.best = triangle;
+            closest.best = noted_place(structure, triangle);
         }
     }
     return true;
 }
 
 // The hit that was found. Its barycentric weights are computed only now, once.
-DEVICE Hit found_hit(const Closest &closest, const Triangle *triangles) {
+template <class Structure>
+DEVICE Hit found_hit(const Closest &closest, const Structure &structure) {
     if (closest.best == Hit::NONE)
         return hit_nothing();
-    const Triangle *triangle = triangles + closest.best;
+    const auto triangle = triangle_at(structure, closest.best);
     Sheared corners;
     may_meet(closest.ray, triangle, corners);
     Weights weights;
@@ -101,7 +102,7 @@ DEVICE Hit found_hit(const Closest &closest, const Triangle *triangles) {
 struct Any {
     RayShear ray;
     float t_max;
-    // Position of a triangle that was hit in the structure's array.
+    // Place of a triangle that was hit in the structure.
     unsigned hit;
 };
 
@@ -111,16 +112,15 @@ DEVICE float limit(const Any &any) { return any.t_max; }
 
 template <class Structure, class Set>
 DEVICE bool ask(Any &any, const Structure &structure, Set set) {
-    const Triangle *triangles = structure.triangles;
     unsigned triangle;
     Sheared corners;
-    while (next_candidate(any.ray, triangles, set, triangle, corners)) {
+    while (next_candidate(any.ray, structure, set, triangle, corners)) {
         Weights weights;
         if (!weigh(corners, weights))
             continue;
         const float t = hit_distance(any.ray, corners, weights);
-        if (t > 0.0f && t < any.t_max && has_surface(structure.coverage, triangles + triangle, weights)) {
-            any.hit = triangle;
+        if (t > 0.0f && t < any.t_max && has_surface(structure.coverage, triangle_at(structure, triangle), weights)) {
+            any.hit = noted_place(structure, triangle);
             return false;
         }
     }
@@ -138,12 +138,11 @@ DEVICE float limit(const Short &) { return 1.0f; }
 
 template <class Structure, class Set>
 DEVICE bool ask(Short &segment, const Structure &structure, Set set) {
-    const Triangle *triangles = structure.triangles;
     unsigned triangle;
     while (take(set, triangle)) {
-        const Corners corners = load_corners(triangles + triangle);
+        const Corners corners = load_corners(triangle_at(structure, triangle));
         if (blocks_segment(segment.test, corners, segment.direction) &&
-            stops(structure.coverage, triangles + triangle, corners, segment.test.origin, segment.direction)) {
+            stops(structure.coverage, triangle_at(structure, triangle), corners, segment.test.origin, segment.direction)) {
             segment.blocked = true;
             return false;
         }

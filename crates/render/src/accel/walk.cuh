@@ -1,6 +1,6 @@
 // The acceleration structures as kernels query them, one ray or segment per thread: twin of the trait in mod.rs.
 //
-// Every function exists for each of the three structures. All three give the same bits.
+// Every function exists for each of the structures. All give the same bits.
 #pragma once
 
 #include "accel/approach.cuh"
@@ -17,12 +17,12 @@ DEVICE Hit closest_hit(const Structure &structure, const Tally &tally, const Ray
         return hit_nothing();
     Closest closest = find_closest(near.ray);
     walk(structure, tally, near.ray, closest);
-    Hit hit = found_hit(closest, structure.triangles);
+    Hit hit = found_hit(closest, structure);
     hit.t = asked_parameter(near, hit.t);
     return hit;
 }
 
-// Whether anything blocks a segment. `last` is the position of a triangle that blocked a similar one and is tested first, or Hit::NONE.
+// Whether anything blocks a segment. `last` is the place of a triangle that blocked a similar one and is tested first, or Hit::NONE.
 template <class Structure>
 DEVICE bool occluded(const Structure &structure, const Tally &tally, const Ray &segment, unsigned &last) {
     const NearRay near = near_ray(structure.approach, segment);

@@ -64,6 +64,10 @@
 #define LEAST_COMPONENT 0x1p-30f
 // Relative margin of tests against the boxes of a BVH, 2^-19; derived in bvh/walk.rs.
 #define BVH_MARGIN 0x1p-19f
+// Relative margin by which boxes of shapes in many places are enlarged, 2^-18; derived in accel/instanced.rs.
+#define INSTANCE_MARGIN 0x1p-18f
+// The index of the first triangle of the first instance: those below are stored.
+#define FIRST_INSTANCED 0x80000000u
 // Rounding margin of tests of a box against a region, 2^-20 or 16 units of roundoff; derived in accel/region/.
 #define REGION_ROUNDING 0x1p-20f
 // Stack entries of a traversal of the BVH: the maximum number of its levels.
@@ -271,6 +275,10 @@
 #define STACK_OF_ROUNDS 64u
 // Additional stack entries per level of the tree.
 #define STACK_PER_LEVEL 7u
+// The same as `STACK_OF_ROUNDS` for a search that enters instances.
+#define STACK_OF_INSTANCES 128u
+// Number of instances that a node's leaves hold at most.
+#define MOST_HELD 24u
 // Maximum number of boxes from which the searches of a tile's items start.
 #define MOST_STARTS 48u
 // Marks a box that is a leaf.
@@ -444,6 +452,42 @@ struct alignas(4) Triangle {
 static_assert(sizeof(Triangle) == 48, "size of Triangle");
 static_assert(PLACE_OF(Triangle, corners) == 0, "place of Triangle::corners");
 
+struct alignas(4) Instanced {
+    float place[3][4];
+    float back[3][4];
+    unsigned first;
+    unsigned stored;
+    unsigned leaves;
+    unsigned root;
+    float norm;
+    float reach;
+    float shift;
+    unsigned object;
+};
+static_assert(sizeof(Instanced) == 128, "size of Instanced");
+static_assert(PLACE_OF(Instanced, place) == 0, "place of Instanced::place");
+static_assert(PLACE_OF(Instanced, back) == 48, "place of Instanced::back");
+static_assert(PLACE_OF(Instanced, first) == 96, "place of Instanced::first");
+static_assert(PLACE_OF(Instanced, stored) == 100, "place of Instanced::stored");
+static_assert(PLACE_OF(Instanced, leaves) == 104, "place of Instanced::leaves");
+static_assert(PLACE_OF(Instanced, root) == 108, "place of Instanced::root");
+static_assert(PLACE_OF(Instanced, norm) == 112, "place of Instanced::norm");
+static_assert(PLACE_OF(Instanced, reach) == 116, "place of Instanced::reach");
+static_assert(PLACE_OF(Instanced, shift) == 120, "place of Instanced::shift");
+static_assert(PLACE_OF(Instanced, object) == 124, "place of Instanced::object");
+
+struct alignas(8) Triangles {
+    const Triangle *stored;
+    const Instanced *instances;
+    unsigned instance_count;
+    unsigned spare;
+};
+static_assert(sizeof(Triangles) == 24, "size of Triangles");
+static_assert(PLACE_OF(Triangles, stored) == 0, "place of Triangles::stored");
+static_assert(PLACE_OF(Triangles, instances) == 8, "place of Triangles::instances");
+static_assert(PLACE_OF(Triangles, instance_count) == 16, "place of Triangles::instance_count");
+static_assert(PLACE_OF(Triangles, spare) == 20, "place of Triangles::spare");
+
 struct alignas(4) CutTriangle {
     float uvs[3][2];
     float opacities[3];
@@ -533,6 +577,28 @@ static_assert(PLACE_OF(Bvh, coverage) == 16, "place of Bvh::coverage");
 static_assert(PLACE_OF(Bvh, approach) == 32, "place of Bvh::approach");
 static_assert(PLACE_OF(Bvh, node_count) == 48, "place of Bvh::node_count");
 static_assert(PLACE_OF(Bvh, depth) == 52, "place of Bvh::depth");
+
+struct alignas(8) InstancedBvh {
+    const BvhNode *nodes;
+    const Triangle *triangles;
+    Coverage coverage;
+    const Instanced *instances;
+    Approach approach;
+    unsigned node_count;
+    unsigned depth;
+    unsigned instance_count;
+    unsigned spare;
+};
+static_assert(sizeof(InstancedBvh) == 72, "size of InstancedBvh");
+static_assert(PLACE_OF(InstancedBvh, nodes) == 0, "place of InstancedBvh::nodes");
+static_assert(PLACE_OF(InstancedBvh, triangles) == 8, "place of InstancedBvh::triangles");
+static_assert(PLACE_OF(InstancedBvh, coverage) == 16, "place of InstancedBvh::coverage");
+static_assert(PLACE_OF(InstancedBvh, instances) == 32, "place of InstancedBvh::instances");
+static_assert(PLACE_OF(InstancedBvh, approach) == 40, "place of InstancedBvh::approach");
+static_assert(PLACE_OF(InstancedBvh, node_count) == 56, "place of InstancedBvh::node_count");
+static_assert(PLACE_OF(InstancedBvh, depth) == 60, "place of InstancedBvh::depth");
+static_assert(PLACE_OF(InstancedBvh, instance_count) == 64, "place of InstancedBvh::instance_count");
+static_assert(PLACE_OF(InstancedBvh, spare) == 68, "place of InstancedBvh::spare");
 
 struct alignas(8) Grid {
     const int *cells;
@@ -871,7 +937,7 @@ static_assert(PLACE_OF(Environment, terms) == 88, "place of Environment::terms")
 static_assert(PLACE_OF(Environment, spare_b) == 196, "place of Environment::spare_b");
 
 struct alignas(8) Scene {
-    const Triangle *triangles;
+    Triangles triangles;
     const Indices *indices;
     const Vec3 *normals;
     const Uv *uvs;
@@ -890,6 +956,7 @@ struct alignas(8) Scene {
     Grid grid;
     Bvh bvh;
     BruteForce brute_force;
+    InstancedBvh instanced;
     unsigned light_count;
     Vec3 ambient;
     Vec3 background;
@@ -897,32 +964,33 @@ struct alignas(8) Scene {
     float far;
     unsigned object_runs;
 };
-static_assert(sizeof(Scene) == 592, "size of Scene");
+static_assert(sizeof(Scene) == 680, "size of Scene");
 static_assert(PLACE_OF(Scene, triangles) == 0, "place of Scene::triangles");
-static_assert(PLACE_OF(Scene, indices) == 8, "place of Scene::indices");
-static_assert(PLACE_OF(Scene, normals) == 16, "place of Scene::normals");
-static_assert(PLACE_OF(Scene, uvs) == 24, "place of Scene::uvs");
-static_assert(PLACE_OF(Scene, colors) == 32, "place of Scene::colors");
-static_assert(PLACE_OF(Scene, textures) == 40, "place of Scene::textures");
-static_assert(PLACE_OF(Scene, codes) == 48, "place of Scene::codes");
-static_assert(PLACE_OF(Scene, triangle_materials) == 56, "place of Scene::triangle_materials");
-static_assert(PLACE_OF(Scene, materials) == 64, "place of Scene::materials");
-static_assert(PLACE_OF(Scene, facet_table) == 72, "place of Scene::facet_table");
-static_assert(PLACE_OF(Scene, object_starts) == 80, "place of Scene::object_starts");
-static_assert(PLACE_OF(Scene, objects) == 88, "place of Scene::objects");
-static_assert(PLACE_OF(Scene, lights) == 96, "place of Scene::lights");
-static_assert(PLACE_OF(Scene, light_targets) == 104, "place of Scene::light_targets");
-static_assert(PLACE_OF(Scene, coverage) == 112, "place of Scene::coverage");
-static_assert(PLACE_OF(Scene, environment) == 128, "place of Scene::environment");
-static_assert(PLACE_OF(Scene, grid) == 328, "place of Scene::grid");
-static_assert(PLACE_OF(Scene, bvh) == 440, "place of Scene::bvh");
-static_assert(PLACE_OF(Scene, brute_force) == 496, "place of Scene::brute_force");
-static_assert(PLACE_OF(Scene, light_count) == 544, "place of Scene::light_count");
-static_assert(PLACE_OF(Scene, ambient) == 548, "place of Scene::ambient");
-static_assert(PLACE_OF(Scene, background) == 560, "place of Scene::background");
-static_assert(PLACE_OF(Scene, center) == 572, "place of Scene::center");
-static_assert(PLACE_OF(Scene, far) == 584, "place of Scene::far");
-static_assert(PLACE_OF(Scene, object_runs) == 588, "place of Scene::object_runs");
+static_assert(PLACE_OF(Scene, indices) == 24, "place of Scene::indices");
+static_assert(PLACE_OF(Scene, normals) == 32, "place of Scene::normals");
+static_assert(PLACE_OF(Scene, uvs) == 40, "place of Scene::uvs");
+static_assert(PLACE_OF(Scene, colors) == 48, "place of Scene::colors");
+static_assert(PLACE_OF(Scene, textures) == 56, "place of Scene::textures");
+static_assert(PLACE_OF(Scene, codes) == 64, "place of Scene::codes");
+static_assert(PLACE_OF(Scene, triangle_materials) == 72, "place of Scene::triangle_materials");
+static_assert(PLACE_OF(Scene, materials) == 80, "place of Scene::materials");
+static_assert(PLACE_OF(Scene, facet_table) == 88, "place of Scene::facet_table");
+static_assert(PLACE_OF(Scene, object_starts) == 96, "place of Scene::object_starts");
+static_assert(PLACE_OF(Scene, objects) == 104, "place of Scene::objects");
+static_assert(PLACE_OF(Scene, lights) == 112, "place of Scene::lights");
+static_assert(PLACE_OF(Scene, light_targets) == 120, "place of Scene::light_targets");
+static_assert(PLACE_OF(Scene, coverage) == 128, "place of Scene::coverage");
+static_assert(PLACE_OF(Scene, environment) == 144, "place of Scene::environment");
+static_assert(PLACE_OF(Scene, grid) == 344, "place of Scene::grid");
+static_assert(PLACE_OF(Scene, bvh) == 456, "place of Scene::bvh");
+static_assert(PLACE_OF(Scene, brute_force) == 512, "place of Scene::brute_force");
+static_assert(PLACE_OF(Scene, instanced) == 560, "place of Scene::instanced");
+static_assert(PLACE_OF(Scene, light_count) == 632, "place of Scene::light_count");
+static_assert(PLACE_OF(Scene, ambient) == 636, "place of Scene::ambient");
+static_assert(PLACE_OF(Scene, background) == 648, "place of Scene::background");
+static_assert(PLACE_OF(Scene, center) == 660, "place of Scene::center");
+static_assert(PLACE_OF(Scene, far) == 672, "place of Scene::far");
+static_assert(PLACE_OF(Scene, object_runs) == 676, "place of Scene::object_runs");
 
 struct alignas(8) Sampling {
     unsigned long long seed;
@@ -968,8 +1036,12 @@ static_assert(PLACE_OF(SampleRows, surplus) == 652, "place of SampleRows::surplu
 static_assert(PLACE_OF(SampleRows, entering) == 656, "place of SampleRows::entering");
 static_assert(PLACE_OF(SampleRows, leaving) == 660, "place of SampleRows::leaving");
 
-// DO(structure, …) for each acceleration structure, by the name of its field in `Scene`.
+// DO(structure, …) for each acceleration structure, by the name of its field in `Scene`. Instances are in modules with CUT_OUTS alone.
+#if CUT_OUTS
+#define PER_STRUCTURE(DO, ...) DO(bvh, __VA_ARGS__) DO(grid, __VA_ARGS__) DO(brute_force, __VA_ARGS__) DO(instanced, __VA_ARGS__)
+#else
 #define PER_STRUCTURE(DO, ...) DO(bvh, __VA_ARGS__) DO(grid, __VA_ARGS__) DO(brute_force, __VA_ARGS__)
+#endif
 
 struct alignas(8) LightMesh {
     enum : unsigned {
@@ -1263,17 +1335,17 @@ struct alignas(8) Lookup {
     unsigned count;
     unsigned first;
 };
-static_assert(sizeof(Lookup) == 736, "size of Lookup");
+static_assert(sizeof(Lookup) == 824, "size of Lookup");
 static_assert(PLACE_OF(Lookup, scene) == 0, "place of Lookup::scene");
-static_assert(PLACE_OF(Lookup, tally) == 592, "place of Lookup::tally");
-static_assert(PLACE_OF(Lookup, table) == 600, "place of Lookup::table");
-static_assert(PLACE_OF(Lookup, places) == 688, "place of Lookup::places");
-static_assert(PLACE_OF(Lookup, offsets) == 696, "place of Lookup::offsets");
-static_assert(PLACE_OF(Lookup, links) == 704, "place of Lookup::links");
-static_assert(PLACE_OF(Lookup, nearest) == 712, "place of Lookup::nearest");
-static_assert(PLACE_OF(Lookup, fine) == 720, "place of Lookup::fine");
-static_assert(PLACE_OF(Lookup, count) == 728, "place of Lookup::count");
-static_assert(PLACE_OF(Lookup, first) == 732, "place of Lookup::first");
+static_assert(PLACE_OF(Lookup, tally) == 680, "place of Lookup::tally");
+static_assert(PLACE_OF(Lookup, table) == 688, "place of Lookup::table");
+static_assert(PLACE_OF(Lookup, places) == 776, "place of Lookup::places");
+static_assert(PLACE_OF(Lookup, offsets) == 784, "place of Lookup::offsets");
+static_assert(PLACE_OF(Lookup, links) == 792, "place of Lookup::links");
+static_assert(PLACE_OF(Lookup, nearest) == 800, "place of Lookup::nearest");
+static_assert(PLACE_OF(Lookup, fine) == 808, "place of Lookup::fine");
+static_assert(PLACE_OF(Lookup, count) == 816, "place of Lookup::count");
+static_assert(PLACE_OF(Lookup, first) == 820, "place of Lookup::first");
 
 struct alignas(8) Fans {
     Scene scene;
@@ -1295,25 +1367,25 @@ struct alignas(8) Fans {
     unsigned lamps;
     unsigned spare;
 };
-static_assert(sizeof(Fans) == 824, "size of Fans");
+static_assert(sizeof(Fans) == 912, "size of Fans");
 static_assert(PLACE_OF(Fans, scene) == 0, "place of Fans::scene");
-static_assert(PLACE_OF(Fans, rays) == 592, "place of Fans::rays");
-static_assert(PLACE_OF(Fans, sampling) == 712, "place of Fans::sampling");
-static_assert(PLACE_OF(Fans, tally) == 728, "place of Fans::tally");
-static_assert(PLACE_OF(Fans, sites) == 736, "place of Fans::sites");
-static_assert(PLACE_OF(Fans, owners) == 744, "place of Fans::owners");
-static_assert(PLACE_OF(Fans, nodes) == 752, "place of Fans::nodes");
-static_assert(PLACE_OF(Fans, list) == 760, "place of Fans::list");
-static_assert(PLACE_OF(Fans, weights) == 768, "place of Fans::weights");
-static_assert(PLACE_OF(Fans, hits) == 776, "place of Fans::hits");
-static_assert(PLACE_OF(Fans, seen) == 784, "place of Fans::seen");
-static_assert(PLACE_OF(Fans, nearest) == 792, "place of Fans::nearest");
-static_assert(PLACE_OF(Fans, count) == 800, "place of Fans::count");
-static_assert(PLACE_OF(Fans, side) == 804, "place of Fans::side");
-static_assert(PLACE_OF(Fans, reach) == 808, "place of Fans::reach");
-static_assert(PLACE_OF(Fans, is_near) == 812, "place of Fans::is_near");
-static_assert(PLACE_OF(Fans, lamps) == 816, "place of Fans::lamps");
-static_assert(PLACE_OF(Fans, spare) == 820, "place of Fans::spare");
+static_assert(PLACE_OF(Fans, rays) == 680, "place of Fans::rays");
+static_assert(PLACE_OF(Fans, sampling) == 800, "place of Fans::sampling");
+static_assert(PLACE_OF(Fans, tally) == 816, "place of Fans::tally");
+static_assert(PLACE_OF(Fans, sites) == 824, "place of Fans::sites");
+static_assert(PLACE_OF(Fans, owners) == 832, "place of Fans::owners");
+static_assert(PLACE_OF(Fans, nodes) == 840, "place of Fans::nodes");
+static_assert(PLACE_OF(Fans, list) == 848, "place of Fans::list");
+static_assert(PLACE_OF(Fans, weights) == 856, "place of Fans::weights");
+static_assert(PLACE_OF(Fans, hits) == 864, "place of Fans::hits");
+static_assert(PLACE_OF(Fans, seen) == 872, "place of Fans::seen");
+static_assert(PLACE_OF(Fans, nearest) == 880, "place of Fans::nearest");
+static_assert(PLACE_OF(Fans, count) == 888, "place of Fans::count");
+static_assert(PLACE_OF(Fans, side) == 892, "place of Fans::side");
+static_assert(PLACE_OF(Fans, reach) == 896, "place of Fans::reach");
+static_assert(PLACE_OF(Fans, is_near) == 900, "place of Fans::is_near");
+static_assert(PLACE_OF(Fans, lamps) == 904, "place of Fans::lamps");
+static_assert(PLACE_OF(Fans, spare) == 908, "place of Fans::spare");
 
 struct alignas(8) Bounce {
     Scene scene;
@@ -1329,19 +1401,19 @@ struct alignas(8) Bounce {
     unsigned first;
     unsigned count;
 };
-static_assert(sizeof(Bounce) == 1512, "size of Bounce");
+static_assert(sizeof(Bounce) == 1688, "size of Bounce");
 static_assert(PLACE_OF(Bounce, scene) == 0, "place of Bounce::scene");
-static_assert(PLACE_OF(Bounce, fans) == 592, "place of Bounce::fans");
-static_assert(PLACE_OF(Bounce, names) == 1416, "place of Bounce::names");
-static_assert(PLACE_OF(Bounce, nodes) == 1456, "place of Bounce::nodes");
-static_assert(PLACE_OF(Bounce, sites) == 1464, "place of Bounce::sites");
-static_assert(PLACE_OF(Bounce, stamps) == 1472, "place of Bounce::stamps");
-static_assert(PLACE_OF(Bounce, listed) == 1480, "place of Bounce::listed");
-static_assert(PLACE_OF(Bounce, listed_count) == 1488, "place of Bounce::listed_count");
-static_assert(PLACE_OF(Bounce, order) == 1496, "place of Bounce::order");
-static_assert(PLACE_OF(Bounce, stamp) == 1500, "place of Bounce::stamp");
-static_assert(PLACE_OF(Bounce, first) == 1504, "place of Bounce::first");
-static_assert(PLACE_OF(Bounce, count) == 1508, "place of Bounce::count");
+static_assert(PLACE_OF(Bounce, fans) == 680, "place of Bounce::fans");
+static_assert(PLACE_OF(Bounce, names) == 1592, "place of Bounce::names");
+static_assert(PLACE_OF(Bounce, nodes) == 1632, "place of Bounce::nodes");
+static_assert(PLACE_OF(Bounce, sites) == 1640, "place of Bounce::sites");
+static_assert(PLACE_OF(Bounce, stamps) == 1648, "place of Bounce::stamps");
+static_assert(PLACE_OF(Bounce, listed) == 1656, "place of Bounce::listed");
+static_assert(PLACE_OF(Bounce, listed_count) == 1664, "place of Bounce::listed_count");
+static_assert(PLACE_OF(Bounce, order) == 1672, "place of Bounce::order");
+static_assert(PLACE_OF(Bounce, stamp) == 1676, "place of Bounce::stamp");
+static_assert(PLACE_OF(Bounce, first) == 1680, "place of Bounce::first");
+static_assert(PLACE_OF(Bounce, count) == 1684, "place of Bounce::count");
 
 struct alignas(8) GatherFar {
     Fans fans;
@@ -1352,14 +1424,14 @@ struct alignas(8) GatherFar {
     unsigned first;
     unsigned before;
 };
-static_assert(sizeof(GatherFar) == 864, "size of GatherFar");
+static_assert(sizeof(GatherFar) == 952, "size of GatherFar");
 static_assert(PLACE_OF(GatherFar, fans) == 0, "place of GatherFar::fans");
-static_assert(PLACE_OF(GatherFar, far) == 824, "place of GatherFar::far");
-static_assert(PLACE_OF(GatherFar, owners) == 832, "place of GatherFar::owners");
-static_assert(PLACE_OF(GatherFar, uneven) == 840, "place of GatherFar::uneven");
-static_assert(PLACE_OF(GatherFar, uneven_count) == 848, "place of GatherFar::uneven_count");
-static_assert(PLACE_OF(GatherFar, first) == 856, "place of GatherFar::first");
-static_assert(PLACE_OF(GatherFar, before) == 860, "place of GatherFar::before");
+static_assert(PLACE_OF(GatherFar, far) == 912, "place of GatherFar::far");
+static_assert(PLACE_OF(GatherFar, owners) == 920, "place of GatherFar::owners");
+static_assert(PLACE_OF(GatherFar, uneven) == 928, "place of GatherFar::uneven");
+static_assert(PLACE_OF(GatherFar, uneven_count) == 936, "place of GatherFar::uneven_count");
+static_assert(PLACE_OF(GatherFar, first) == 944, "place of GatherFar::first");
+static_assert(PLACE_OF(GatherFar, before) == 948, "place of GatherFar::before");
 
 struct alignas(8) GatherFine {
     Fans fans;
@@ -1373,17 +1445,17 @@ struct alignas(8) GatherFine {
     unsigned count;
     unsigned spare;
 };
-static_assert(sizeof(GatherFine) == 1608, "size of GatherFine");
+static_assert(sizeof(GatherFine) == 1784, "size of GatherFine");
 static_assert(PLACE_OF(GatherFine, fans) == 0, "place of GatherFine::fans");
-static_assert(PLACE_OF(GatherFine, lookup) == 824, "place of GatherFine::lookup");
-static_assert(PLACE_OF(GatherFine, far) == 1560, "place of GatherFine::far");
-static_assert(PLACE_OF(GatherFine, fine) == 1568, "place of GatherFine::fine");
-static_assert(PLACE_OF(GatherFine, alone) == 1576, "place of GatherFine::alone");
-static_assert(PLACE_OF(GatherFine, alone_count) == 1584, "place of GatherFine::alone_count");
-static_assert(PLACE_OF(GatherFine, first) == 1592, "place of GatherFine::first");
-static_assert(PLACE_OF(GatherFine, first_alone) == 1596, "place of GatherFine::first_alone");
-static_assert(PLACE_OF(GatherFine, count) == 1600, "place of GatherFine::count");
-static_assert(PLACE_OF(GatherFine, spare) == 1604, "place of GatherFine::spare");
+static_assert(PLACE_OF(GatherFine, lookup) == 912, "place of GatherFine::lookup");
+static_assert(PLACE_OF(GatherFine, far) == 1736, "place of GatherFine::far");
+static_assert(PLACE_OF(GatherFine, fine) == 1744, "place of GatherFine::fine");
+static_assert(PLACE_OF(GatherFine, alone) == 1752, "place of GatherFine::alone");
+static_assert(PLACE_OF(GatherFine, alone_count) == 1760, "place of GatherFine::alone_count");
+static_assert(PLACE_OF(GatherFine, first) == 1768, "place of GatherFine::first");
+static_assert(PLACE_OF(GatherFine, first_alone) == 1772, "place of GatherFine::first_alone");
+static_assert(PLACE_OF(GatherFine, count) == 1776, "place of GatherFine::count");
+static_assert(PLACE_OF(GatherFine, spare) == 1780, "place of GatherFine::spare");
 
 struct alignas(8) GatherPoints {
     Scene scene;
@@ -1413,33 +1485,33 @@ struct alignas(8) GatherPoints {
     unsigned all_alone;
     unsigned spare;
 };
-static_assert(sizeof(GatherPoints) == 1600, "size of GatherPoints");
+static_assert(sizeof(GatherPoints) == 1776, "size of GatherPoints");
 static_assert(PLACE_OF(GatherPoints, scene) == 0, "place of GatherPoints::scene");
-static_assert(PLACE_OF(GatherPoints, rays) == 592, "place of GatherPoints::rays");
-static_assert(PLACE_OF(GatherPoints, hits) == 712, "place of GatherPoints::hits");
-static_assert(PLACE_OF(GatherPoints, lookup) == 720, "place of GatherPoints::lookup");
-static_assert(PLACE_OF(GatherPoints, fine) == 1456, "place of GatherPoints::fine");
-static_assert(PLACE_OF(GatherPoints, places) == 1464, "place of GatherPoints::places");
-static_assert(PLACE_OF(GatherPoints, means) == 1472, "place of GatherPoints::means");
-static_assert(PLACE_OF(GatherPoints, alone) == 1480, "place of GatherPoints::alone");
-static_assert(PLACE_OF(GatherPoints, alone_count) == 1488, "place of GatherPoints::alone_count");
-static_assert(PLACE_OF(GatherPoints, sites) == 1496, "place of GatherPoints::sites");
-static_assert(PLACE_OF(GatherPoints, far) == 1504, "place of GatherPoints::far");
-static_assert(PLACE_OF(GatherPoints, light) == 1512, "place of GatherPoints::light");
-static_assert(PLACE_OF(GatherPoints, normals) == 1520, "place of GatherPoints::normals");
-static_assert(PLACE_OF(GatherPoints, samples) == 1528, "place of GatherPoints::samples");
-static_assert(PLACE_OF(GatherPoints, sampled_pixels) == 1536, "place of GatherPoints::sampled_pixels");
-static_assert(PLACE_OF(GatherPoints, sample_count) == 1544, "place of GatherPoints::sample_count");
-static_assert(PLACE_OF(GatherPoints, first_sampled) == 1548, "place of GatherPoints::first_sampled");
-static_assert(PLACE_OF(GatherPoints, eye) == 1552, "place of GatherPoints::eye");
-static_assert(PLACE_OF(GatherPoints, spacing) == 1564, "place of GatherPoints::spacing");
-static_assert(PLACE_OF(GatherPoints, pixels) == 1572, "place of GatherPoints::pixels");
-static_assert(PLACE_OF(GatherPoints, least_level) == 1576, "place of GatherPoints::least_level");
-static_assert(PLACE_OF(GatherPoints, first) == 1580, "place of GatherPoints::first");
-static_assert(PLACE_OF(GatherPoints, count) == 1584, "place of GatherPoints::count");
-static_assert(PLACE_OF(GatherPoints, first_alone) == 1588, "place of GatherPoints::first_alone");
-static_assert(PLACE_OF(GatherPoints, all_alone) == 1592, "place of GatherPoints::all_alone");
-static_assert(PLACE_OF(GatherPoints, spare) == 1596, "place of GatherPoints::spare");
+static_assert(PLACE_OF(GatherPoints, rays) == 680, "place of GatherPoints::rays");
+static_assert(PLACE_OF(GatherPoints, hits) == 800, "place of GatherPoints::hits");
+static_assert(PLACE_OF(GatherPoints, lookup) == 808, "place of GatherPoints::lookup");
+static_assert(PLACE_OF(GatherPoints, fine) == 1632, "place of GatherPoints::fine");
+static_assert(PLACE_OF(GatherPoints, places) == 1640, "place of GatherPoints::places");
+static_assert(PLACE_OF(GatherPoints, means) == 1648, "place of GatherPoints::means");
+static_assert(PLACE_OF(GatherPoints, alone) == 1656, "place of GatherPoints::alone");
+static_assert(PLACE_OF(GatherPoints, alone_count) == 1664, "place of GatherPoints::alone_count");
+static_assert(PLACE_OF(GatherPoints, sites) == 1672, "place of GatherPoints::sites");
+static_assert(PLACE_OF(GatherPoints, far) == 1680, "place of GatherPoints::far");
+static_assert(PLACE_OF(GatherPoints, light) == 1688, "place of GatherPoints::light");
+static_assert(PLACE_OF(GatherPoints, normals) == 1696, "place of GatherPoints::normals");
+static_assert(PLACE_OF(GatherPoints, samples) == 1704, "place of GatherPoints::samples");
+static_assert(PLACE_OF(GatherPoints, sampled_pixels) == 1712, "place of GatherPoints::sampled_pixels");
+static_assert(PLACE_OF(GatherPoints, sample_count) == 1720, "place of GatherPoints::sample_count");
+static_assert(PLACE_OF(GatherPoints, first_sampled) == 1724, "place of GatherPoints::first_sampled");
+static_assert(PLACE_OF(GatherPoints, eye) == 1728, "place of GatherPoints::eye");
+static_assert(PLACE_OF(GatherPoints, spacing) == 1740, "place of GatherPoints::spacing");
+static_assert(PLACE_OF(GatherPoints, pixels) == 1748, "place of GatherPoints::pixels");
+static_assert(PLACE_OF(GatherPoints, least_level) == 1752, "place of GatherPoints::least_level");
+static_assert(PLACE_OF(GatherPoints, first) == 1756, "place of GatherPoints::first");
+static_assert(PLACE_OF(GatherPoints, count) == 1760, "place of GatherPoints::count");
+static_assert(PLACE_OF(GatherPoints, first_alone) == 1764, "place of GatherPoints::first_alone");
+static_assert(PLACE_OF(GatherPoints, all_alone) == 1768, "place of GatherPoints::all_alone");
+static_assert(PLACE_OF(GatherPoints, spare) == 1772, "place of GatherPoints::spare");
 
 struct alignas(4) TileBox {
     Vec3 low;
@@ -1461,17 +1533,17 @@ struct alignas(8) GroupItems {
     unsigned long long first_block;
     float spacing[2];
 };
-static_assert(sizeof(GroupItems) == 776, "size of GroupItems");
+static_assert(sizeof(GroupItems) == 864, "size of GroupItems");
 static_assert(PLACE_OF(GroupItems, scene) == 0, "place of GroupItems::scene");
-static_assert(PLACE_OF(GroupItems, rays) == 592, "place of GroupItems::rays");
-static_assert(PLACE_OF(GroupItems, hits) == 712, "place of GroupItems::hits");
-static_assert(PLACE_OF(GroupItems, members) == 720, "place of GroupItems::members");
-static_assert(PLACE_OF(GroupItems, ends) == 728, "place of GroupItems::ends");
-static_assert(PLACE_OF(GroupItems, counts) == 736, "place of GroupItems::counts");
-static_assert(PLACE_OF(GroupItems, items) == 744, "place of GroupItems::items");
-static_assert(PLACE_OF(GroupItems, tiles) == 752, "place of GroupItems::tiles");
-static_assert(PLACE_OF(GroupItems, first_block) == 760, "place of GroupItems::first_block");
-static_assert(PLACE_OF(GroupItems, spacing) == 768, "place of GroupItems::spacing");
+static_assert(PLACE_OF(GroupItems, rays) == 680, "place of GroupItems::rays");
+static_assert(PLACE_OF(GroupItems, hits) == 800, "place of GroupItems::hits");
+static_assert(PLACE_OF(GroupItems, members) == 808, "place of GroupItems::members");
+static_assert(PLACE_OF(GroupItems, ends) == 816, "place of GroupItems::ends");
+static_assert(PLACE_OF(GroupItems, counts) == 824, "place of GroupItems::counts");
+static_assert(PLACE_OF(GroupItems, items) == 832, "place of GroupItems::items");
+static_assert(PLACE_OF(GroupItems, tiles) == 840, "place of GroupItems::tiles");
+static_assert(PLACE_OF(GroupItems, first_block) == 848, "place of GroupItems::first_block");
+static_assert(PLACE_OF(GroupItems, spacing) == 856, "place of GroupItems::spacing");
 
 struct alignas(8) Shadows {
     Scene scene;
@@ -1493,43 +1565,43 @@ struct alignas(8) Shadows {
     unsigned first_light;
     unsigned end_light;
 };
-static_assert(sizeof(Shadows) == 2152, "size of Shadows");
+static_assert(sizeof(Shadows) == 2240, "size of Shadows");
 static_assert(PLACE_OF(Shadows, scene) == 0, "place of Shadows::scene");
-static_assert(PLACE_OF(Shadows, rays) == 592, "place of Shadows::rays");
-static_assert(PLACE_OF(Shadows, hits) == 712, "place of Shadows::hits");
-static_assert(PLACE_OF(Shadows, members) == 720, "place of Shadows::members");
-static_assert(PLACE_OF(Shadows, items) == 728, "place of Shadows::items");
-static_assert(PLACE_OF(Shadows, tiles) == 736, "place of Shadows::tiles");
-static_assert(PLACE_OF(Shadows, starts) == 744, "place of Shadows::starts");
-static_assert(PLACE_OF(Shadows, taken) == 752, "place of Shadows::taken");
-static_assert(PLACE_OF(Shadows, share) == 760, "place of Shadows::share");
-static_assert(PLACE_OF(Shadows, sampling) == 768, "place of Shadows::sampling");
-static_assert(PLACE_OF(Shadows, tally) == 784, "place of Shadows::tally");
-static_assert(PLACE_OF(Shadows, first) == 792, "place of Shadows::first");
-static_assert(PLACE_OF(Shadows, count) == 800, "place of Shadows::count");
-static_assert(PLACE_OF(Shadows, sets) == 808, "place of Shadows::sets");
-static_assert(PLACE_OF(Shadows, set) == 2136, "place of Shadows::set");
-static_assert(PLACE_OF(Shadows, set_count) == 2140, "place of Shadows::set_count");
-static_assert(PLACE_OF(Shadows, first_light) == 2144, "place of Shadows::first_light");
-static_assert(PLACE_OF(Shadows, end_light) == 2148, "place of Shadows::end_light");
+static_assert(PLACE_OF(Shadows, rays) == 680, "place of Shadows::rays");
+static_assert(PLACE_OF(Shadows, hits) == 800, "place of Shadows::hits");
+static_assert(PLACE_OF(Shadows, members) == 808, "place of Shadows::members");
+static_assert(PLACE_OF(Shadows, items) == 816, "place of Shadows::items");
+static_assert(PLACE_OF(Shadows, tiles) == 824, "place of Shadows::tiles");
+static_assert(PLACE_OF(Shadows, starts) == 832, "place of Shadows::starts");
+static_assert(PLACE_OF(Shadows, taken) == 840, "place of Shadows::taken");
+static_assert(PLACE_OF(Shadows, share) == 848, "place of Shadows::share");
+static_assert(PLACE_OF(Shadows, sampling) == 856, "place of Shadows::sampling");
+static_assert(PLACE_OF(Shadows, tally) == 872, "place of Shadows::tally");
+static_assert(PLACE_OF(Shadows, first) == 880, "place of Shadows::first");
+static_assert(PLACE_OF(Shadows, count) == 888, "place of Shadows::count");
+static_assert(PLACE_OF(Shadows, sets) == 896, "place of Shadows::sets");
+static_assert(PLACE_OF(Shadows, set) == 2224, "place of Shadows::set");
+static_assert(PLACE_OF(Shadows, set_count) == 2228, "place of Shadows::set_count");
+static_assert(PLACE_OF(Shadows, first_light) == 2232, "place of Shadows::first_light");
+static_assert(PLACE_OF(Shadows, end_light) == 2236, "place of Shadows::end_light");
 
 struct alignas(8) Filters {
     Scene scene;
     Shadows shadows;
-    const Triangle *triangles;
+    Triangles triangles;
     const Vec3 *normals;
     Vec3 *passed;
     unsigned middle;
     unsigned spare;
 };
-static_assert(sizeof(Filters) == 2776, "size of Filters");
+static_assert(sizeof(Filters) == 2968, "size of Filters");
 static_assert(PLACE_OF(Filters, scene) == 0, "place of Filters::scene");
-static_assert(PLACE_OF(Filters, shadows) == 592, "place of Filters::shadows");
-static_assert(PLACE_OF(Filters, triangles) == 2744, "place of Filters::triangles");
-static_assert(PLACE_OF(Filters, normals) == 2752, "place of Filters::normals");
-static_assert(PLACE_OF(Filters, passed) == 2760, "place of Filters::passed");
-static_assert(PLACE_OF(Filters, middle) == 2768, "place of Filters::middle");
-static_assert(PLACE_OF(Filters, spare) == 2772, "place of Filters::spare");
+static_assert(PLACE_OF(Filters, shadows) == 680, "place of Filters::shadows");
+static_assert(PLACE_OF(Filters, triangles) == 2920, "place of Filters::triangles");
+static_assert(PLACE_OF(Filters, normals) == 2944, "place of Filters::normals");
+static_assert(PLACE_OF(Filters, passed) == 2952, "place of Filters::passed");
+static_assert(PLACE_OF(Filters, middle) == 2960, "place of Filters::middle");
+static_assert(PLACE_OF(Filters, spare) == 2964, "place of Filters::spare");
 
 struct alignas(8) AdaptiveShadows {
     Scene scene;
@@ -1544,18 +1616,18 @@ struct alignas(8) AdaptiveShadows {
     unsigned tiles;
     unsigned spare;
 };
-static_assert(sizeof(AdaptiveShadows) == 3200, "size of AdaptiveShadows");
+static_assert(sizeof(AdaptiveShadows) == 3376, "size of AdaptiveShadows");
 static_assert(PLACE_OF(AdaptiveShadows, scene) == 0, "place of AdaptiveShadows::scene");
-static_assert(PLACE_OF(AdaptiveShadows, shadows) == 592, "place of AdaptiveShadows::shadows");
-static_assert(PLACE_OF(AdaptiveShadows, answers) == 2744, "place of AdaptiveShadows::answers");
-static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2752, "place of AdaptiveShadows::answer_count");
-static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2760, "place of AdaptiveShadows::first_answer");
-static_assert(PLACE_OF(AdaptiveShadows, counts) == 2768, "place of AdaptiveShadows::counts");
-static_assert(PLACE_OF(AdaptiveShadows, entries) == 2776, "place of AdaptiveShadows::entries");
-static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2784, "place of AdaptiveShadows::entry_count");
-static_assert(PLACE_OF(AdaptiveShadows, places) == 2792, "place of AdaptiveShadows::places");
-static_assert(PLACE_OF(AdaptiveShadows, tiles) == 3192, "place of AdaptiveShadows::tiles");
-static_assert(PLACE_OF(AdaptiveShadows, spare) == 3196, "place of AdaptiveShadows::spare");
+static_assert(PLACE_OF(AdaptiveShadows, shadows) == 680, "place of AdaptiveShadows::shadows");
+static_assert(PLACE_OF(AdaptiveShadows, answers) == 2920, "place of AdaptiveShadows::answers");
+static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2928, "place of AdaptiveShadows::answer_count");
+static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2936, "place of AdaptiveShadows::first_answer");
+static_assert(PLACE_OF(AdaptiveShadows, counts) == 2944, "place of AdaptiveShadows::counts");
+static_assert(PLACE_OF(AdaptiveShadows, entries) == 2952, "place of AdaptiveShadows::entries");
+static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2960, "place of AdaptiveShadows::entry_count");
+static_assert(PLACE_OF(AdaptiveShadows, places) == 2968, "place of AdaptiveShadows::places");
+static_assert(PLACE_OF(AdaptiveShadows, tiles) == 3368, "place of AdaptiveShadows::tiles");
+static_assert(PLACE_OF(AdaptiveShadows, spare) == 3372, "place of AdaptiveShadows::spare");
 
 struct alignas(8) PrimaryRays {
     Scene scene;
@@ -1564,12 +1636,12 @@ struct alignas(8) PrimaryRays {
     Tally tally;
     unsigned long long first_block;
 };
-static_assert(sizeof(PrimaryRays) == 736, "size of PrimaryRays");
+static_assert(sizeof(PrimaryRays) == 824, "size of PrimaryRays");
 static_assert(PLACE_OF(PrimaryRays, scene) == 0, "place of PrimaryRays::scene");
-static_assert(PLACE_OF(PrimaryRays, rays) == 592, "place of PrimaryRays::rays");
-static_assert(PLACE_OF(PrimaryRays, hits) == 712, "place of PrimaryRays::hits");
-static_assert(PLACE_OF(PrimaryRays, tally) == 720, "place of PrimaryRays::tally");
-static_assert(PLACE_OF(PrimaryRays, first_block) == 728, "place of PrimaryRays::first_block");
+static_assert(PLACE_OF(PrimaryRays, rays) == 680, "place of PrimaryRays::rays");
+static_assert(PLACE_OF(PrimaryRays, hits) == 800, "place of PrimaryRays::hits");
+static_assert(PLACE_OF(PrimaryRays, tally) == 808, "place of PrimaryRays::tally");
+static_assert(PLACE_OF(PrimaryRays, first_block) == 816, "place of PrimaryRays::first_block");
 
 struct alignas(8) ShadowRays {
     Scene scene;
@@ -1581,15 +1653,15 @@ struct alignas(8) ShadowRays {
     unsigned first_light;
     unsigned light_count;
 };
-static_assert(sizeof(ShadowRays) == 752, "size of ShadowRays");
+static_assert(sizeof(ShadowRays) == 840, "size of ShadowRays");
 static_assert(PLACE_OF(ShadowRays, scene) == 0, "place of ShadowRays::scene");
-static_assert(PLACE_OF(ShadowRays, rays) == 592, "place of ShadowRays::rays");
-static_assert(PLACE_OF(ShadowRays, hits) == 712, "place of ShadowRays::hits");
-static_assert(PLACE_OF(ShadowRays, share) == 720, "place of ShadowRays::share");
-static_assert(PLACE_OF(ShadowRays, tally) == 728, "place of ShadowRays::tally");
-static_assert(PLACE_OF(ShadowRays, first_block) == 736, "place of ShadowRays::first_block");
-static_assert(PLACE_OF(ShadowRays, first_light) == 744, "place of ShadowRays::first_light");
-static_assert(PLACE_OF(ShadowRays, light_count) == 748, "place of ShadowRays::light_count");
+static_assert(PLACE_OF(ShadowRays, rays) == 680, "place of ShadowRays::rays");
+static_assert(PLACE_OF(ShadowRays, hits) == 800, "place of ShadowRays::hits");
+static_assert(PLACE_OF(ShadowRays, share) == 808, "place of ShadowRays::share");
+static_assert(PLACE_OF(ShadowRays, tally) == 816, "place of ShadowRays::tally");
+static_assert(PLACE_OF(ShadowRays, first_block) == 824, "place of ShadowRays::first_block");
+static_assert(PLACE_OF(ShadowRays, first_light) == 832, "place of ShadowRays::first_light");
+static_assert(PLACE_OF(ShadowRays, light_count) == 836, "place of ShadowRays::light_count");
 
 struct alignas(8) Shade {
     Scene scene;
@@ -1624,38 +1696,38 @@ struct alignas(8) Shade {
     unsigned catches;
     unsigned spare;
 };
-static_assert(sizeof(Shade) == 912, "size of Shade");
+static_assert(sizeof(Shade) == 1000, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
-static_assert(PLACE_OF(Shade, rays) == 592, "place of Shade::rays");
-static_assert(PLACE_OF(Shade, hits) == 712, "place of Shade::hits");
-static_assert(PLACE_OF(Shade, share) == 720, "place of Shade::share");
-static_assert(PLACE_OF(Shade, passed) == 728, "place of Shade::passed");
-static_assert(PLACE_OF(Shade, used) == 736, "place of Shade::used");
-static_assert(PLACE_OF(Shade, gathered) == 744, "place of Shade::gathered");
-static_assert(PLACE_OF(Shade, film_pixel) == 752, "place of Shade::film_pixel");
-static_assert(PLACE_OF(Shade, color) == 760, "place of Shade::color");
-static_assert(PLACE_OF(Shade, sums) == 768, "place of Shade::sums");
-static_assert(PLACE_OF(Shade, caught) == 776, "place of Shade::caught");
-static_assert(PLACE_OF(Shade, ray_caught) == 784, "place of Shade::ray_caught");
-static_assert(PLACE_OF(Shade, samples) == 792, "place of Shade::samples");
-static_assert(PLACE_OF(Shade, depth) == 800, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 808, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 816, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 824, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 832, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, light_groups) == 840, "place of Shade::light_groups");
-static_assert(PLACE_OF(Shade, ids) == 848, "place of Shade::ids");
-static_assert(PLACE_OF(Shade, film_pixels) == 856, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 864, "place of Shade::first_block");
-static_assert(PLACE_OF(Shade, first_light) == 872, "place of Shade::first_light");
-static_assert(PLACE_OF(Shade, end_light) == 876, "place of Shade::end_light");
-static_assert(PLACE_OF(Shade, several) == 880, "place of Shade::several");
-static_assert(PLACE_OF(Shade, sampled) == 884, "place of Shade::sampled");
-static_assert(PLACE_OF(Shade, sample_count) == 888, "place of Shade::sample_count");
-static_assert(PLACE_OF(Shade, first_sampled) == 892, "place of Shade::first_sampled");
-static_assert(PLACE_OF(Shade, sampled_pixels) == 896, "place of Shade::sampled_pixels");
-static_assert(PLACE_OF(Shade, catches) == 904, "place of Shade::catches");
-static_assert(PLACE_OF(Shade, spare) == 908, "place of Shade::spare");
+static_assert(PLACE_OF(Shade, rays) == 680, "place of Shade::rays");
+static_assert(PLACE_OF(Shade, hits) == 800, "place of Shade::hits");
+static_assert(PLACE_OF(Shade, share) == 808, "place of Shade::share");
+static_assert(PLACE_OF(Shade, passed) == 816, "place of Shade::passed");
+static_assert(PLACE_OF(Shade, used) == 824, "place of Shade::used");
+static_assert(PLACE_OF(Shade, gathered) == 832, "place of Shade::gathered");
+static_assert(PLACE_OF(Shade, film_pixel) == 840, "place of Shade::film_pixel");
+static_assert(PLACE_OF(Shade, color) == 848, "place of Shade::color");
+static_assert(PLACE_OF(Shade, sums) == 856, "place of Shade::sums");
+static_assert(PLACE_OF(Shade, caught) == 864, "place of Shade::caught");
+static_assert(PLACE_OF(Shade, ray_caught) == 872, "place of Shade::ray_caught");
+static_assert(PLACE_OF(Shade, samples) == 880, "place of Shade::samples");
+static_assert(PLACE_OF(Shade, depth) == 888, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 896, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 904, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 912, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 920, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, light_groups) == 928, "place of Shade::light_groups");
+static_assert(PLACE_OF(Shade, ids) == 936, "place of Shade::ids");
+static_assert(PLACE_OF(Shade, film_pixels) == 944, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 952, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, first_light) == 960, "place of Shade::first_light");
+static_assert(PLACE_OF(Shade, end_light) == 964, "place of Shade::end_light");
+static_assert(PLACE_OF(Shade, several) == 968, "place of Shade::several");
+static_assert(PLACE_OF(Shade, sampled) == 972, "place of Shade::sampled");
+static_assert(PLACE_OF(Shade, sample_count) == 976, "place of Shade::sample_count");
+static_assert(PLACE_OF(Shade, first_sampled) == 980, "place of Shade::first_sampled");
+static_assert(PLACE_OF(Shade, sampled_pixels) == 984, "place of Shade::sampled_pixels");
+static_assert(PLACE_OF(Shade, catches) == 992, "place of Shade::catches");
+static_assert(PLACE_OF(Shade, spare) == 996, "place of Shade::spare");
 
 struct alignas(8) PixelSamples {
     Scene scene;
@@ -1697,45 +1769,45 @@ struct alignas(8) PixelSamples {
     unsigned matte_slots;
     float quantiles[64];
 };
-static_assert(sizeof(PixelSamples) == 1256, "size of PixelSamples");
+static_assert(sizeof(PixelSamples) == 1344, "size of PixelSamples");
 static_assert(PLACE_OF(PixelSamples, scene) == 0, "place of PixelSamples::scene");
-static_assert(PLACE_OF(PixelSamples, rays) == 592, "place of PixelSamples::rays");
-static_assert(PLACE_OF(PixelSamples, hits) == 712, "place of PixelSamples::hits");
-static_assert(PLACE_OF(PixelSamples, centers) == 720, "place of PixelSamples::centers");
-static_assert(PLACE_OF(PixelSamples, state) == 728, "place of PixelSamples::state");
-static_assert(PLACE_OF(PixelSamples, owners) == 736, "place of PixelSamples::owners");
-static_assert(PLACE_OF(PixelSamples, color) == 744, "place of PixelSamples::color");
-static_assert(PLACE_OF(PixelSamples, counts) == 752, "place of PixelSamples::counts");
-static_assert(PLACE_OF(PixelSamples, fragments) == 776, "place of PixelSamples::fragments");
-static_assert(PLACE_OF(PixelSamples, fragment_hits) == 800, "place of PixelSamples::fragment_hits");
-static_assert(PLACE_OF(PixelSamples, coverage) == 824, "place of PixelSamples::coverage");
-static_assert(PLACE_OF(PixelSamples, caught) == 832, "place of PixelSamples::caught");
-static_assert(PLACE_OF(PixelSamples, depth) == 840, "place of PixelSamples::depth");
-static_assert(PLACE_OF(PixelSamples, normal) == 848, "place of PixelSamples::normal");
-static_assert(PLACE_OF(PixelSamples, position) == 856, "place of PixelSamples::position");
-static_assert(PLACE_OF(PixelSamples, visibility) == 864, "place of PixelSamples::visibility");
-static_assert(PLACE_OF(PixelSamples, light_points) == 872, "place of PixelSamples::light_points");
-static_assert(PLACE_OF(PixelSamples, light_groups) == 880, "place of PixelSamples::light_groups");
-static_assert(PLACE_OF(PixelSamples, ids) == 888, "place of PixelSamples::ids");
-static_assert(PLACE_OF(PixelSamples, mattes) == 896, "place of PixelSamples::mattes");
-static_assert(PLACE_OF(PixelSamples, tally) == 904, "place of PixelSamples::tally");
-static_assert(PLACE_OF(PixelSamples, first_block) == 912, "place of PixelSamples::first_block");
-static_assert(PLACE_OF(PixelSamples, seed) == 920, "place of PixelSamples::seed");
-static_assert(PLACE_OF(PixelSamples, film_pixels) == 928, "place of PixelSamples::film_pixels");
-static_assert(PLACE_OF(PixelSamples, spacing) == 936, "place of PixelSamples::spacing");
-static_assert(PLACE_OF(PixelSamples, samples) == 944, "place of PixelSamples::samples");
-static_assert(PLACE_OF(PixelSamples, inner) == 952, "place of PixelSamples::inner");
-static_assert(PLACE_OF(PixelSamples, all_samples) == 960, "place of PixelSamples::all_samples");
-static_assert(PLACE_OF(PixelSamples, together) == 964, "place of PixelSamples::together");
-static_assert(PLACE_OF(PixelSamples, lanes) == 968, "place of PixelSamples::lanes");
-static_assert(PLACE_OF(PixelSamples, light_count) == 972, "place of PixelSamples::light_count");
-static_assert(PLACE_OF(PixelSamples, weight) == 976, "place of PixelSamples::weight");
-static_assert(PLACE_OF(PixelSamples, contrast) == 980, "place of PixelSamples::contrast");
-static_assert(PLACE_OF(PixelSamples, apart) == 984, "place of PixelSamples::apart");
-static_assert(PLACE_OF(PixelSamples, mirrors) == 988, "place of PixelSamples::mirrors");
-static_assert(PLACE_OF(PixelSamples, keeps) == 992, "place of PixelSamples::keeps");
-static_assert(PLACE_OF(PixelSamples, matte_slots) == 996, "place of PixelSamples::matte_slots");
-static_assert(PLACE_OF(PixelSamples, quantiles) == 1000, "place of PixelSamples::quantiles");
+static_assert(PLACE_OF(PixelSamples, rays) == 680, "place of PixelSamples::rays");
+static_assert(PLACE_OF(PixelSamples, hits) == 800, "place of PixelSamples::hits");
+static_assert(PLACE_OF(PixelSamples, centers) == 808, "place of PixelSamples::centers");
+static_assert(PLACE_OF(PixelSamples, state) == 816, "place of PixelSamples::state");
+static_assert(PLACE_OF(PixelSamples, owners) == 824, "place of PixelSamples::owners");
+static_assert(PLACE_OF(PixelSamples, color) == 832, "place of PixelSamples::color");
+static_assert(PLACE_OF(PixelSamples, counts) == 840, "place of PixelSamples::counts");
+static_assert(PLACE_OF(PixelSamples, fragments) == 864, "place of PixelSamples::fragments");
+static_assert(PLACE_OF(PixelSamples, fragment_hits) == 888, "place of PixelSamples::fragment_hits");
+static_assert(PLACE_OF(PixelSamples, coverage) == 912, "place of PixelSamples::coverage");
+static_assert(PLACE_OF(PixelSamples, caught) == 920, "place of PixelSamples::caught");
+static_assert(PLACE_OF(PixelSamples, depth) == 928, "place of PixelSamples::depth");
+static_assert(PLACE_OF(PixelSamples, normal) == 936, "place of PixelSamples::normal");
+static_assert(PLACE_OF(PixelSamples, position) == 944, "place of PixelSamples::position");
+static_assert(PLACE_OF(PixelSamples, visibility) == 952, "place of PixelSamples::visibility");
+static_assert(PLACE_OF(PixelSamples, light_points) == 960, "place of PixelSamples::light_points");
+static_assert(PLACE_OF(PixelSamples, light_groups) == 968, "place of PixelSamples::light_groups");
+static_assert(PLACE_OF(PixelSamples, ids) == 976, "place of PixelSamples::ids");
+static_assert(PLACE_OF(PixelSamples, mattes) == 984, "place of PixelSamples::mattes");
+static_assert(PLACE_OF(PixelSamples, tally) == 992, "place of PixelSamples::tally");
+static_assert(PLACE_OF(PixelSamples, first_block) == 1000, "place of PixelSamples::first_block");
+static_assert(PLACE_OF(PixelSamples, seed) == 1008, "place of PixelSamples::seed");
+static_assert(PLACE_OF(PixelSamples, film_pixels) == 1016, "place of PixelSamples::film_pixels");
+static_assert(PLACE_OF(PixelSamples, spacing) == 1024, "place of PixelSamples::spacing");
+static_assert(PLACE_OF(PixelSamples, samples) == 1032, "place of PixelSamples::samples");
+static_assert(PLACE_OF(PixelSamples, inner) == 1040, "place of PixelSamples::inner");
+static_assert(PLACE_OF(PixelSamples, all_samples) == 1048, "place of PixelSamples::all_samples");
+static_assert(PLACE_OF(PixelSamples, together) == 1052, "place of PixelSamples::together");
+static_assert(PLACE_OF(PixelSamples, lanes) == 1056, "place of PixelSamples::lanes");
+static_assert(PLACE_OF(PixelSamples, light_count) == 1060, "place of PixelSamples::light_count");
+static_assert(PLACE_OF(PixelSamples, weight) == 1064, "place of PixelSamples::weight");
+static_assert(PLACE_OF(PixelSamples, contrast) == 1068, "place of PixelSamples::contrast");
+static_assert(PLACE_OF(PixelSamples, apart) == 1072, "place of PixelSamples::apart");
+static_assert(PLACE_OF(PixelSamples, mirrors) == 1076, "place of PixelSamples::mirrors");
+static_assert(PLACE_OF(PixelSamples, keeps) == 1080, "place of PixelSamples::keeps");
+static_assert(PLACE_OF(PixelSamples, matte_slots) == 1084, "place of PixelSamples::matte_slots");
+static_assert(PLACE_OF(PixelSamples, quantiles) == 1088, "place of PixelSamples::quantiles");
 
 struct alignas(8) MirrorRays {
     Scene scene;
@@ -1745,13 +1817,13 @@ struct alignas(8) MirrorRays {
     ListedRay *onward;
     Cone *cones;
 };
-static_assert(sizeof(MirrorRays) == 744, "size of MirrorRays");
+static_assert(sizeof(MirrorRays) == 832, "size of MirrorRays");
 static_assert(PLACE_OF(MirrorRays, scene) == 0, "place of MirrorRays::scene");
-static_assert(PLACE_OF(MirrorRays, rays) == 592, "place of MirrorRays::rays");
-static_assert(PLACE_OF(MirrorRays, hits) == 712, "place of MirrorRays::hits");
-static_assert(PLACE_OF(MirrorRays, counts) == 720, "place of MirrorRays::counts");
-static_assert(PLACE_OF(MirrorRays, onward) == 728, "place of MirrorRays::onward");
-static_assert(PLACE_OF(MirrorRays, cones) == 736, "place of MirrorRays::cones");
+static_assert(PLACE_OF(MirrorRays, rays) == 680, "place of MirrorRays::rays");
+static_assert(PLACE_OF(MirrorRays, hits) == 800, "place of MirrorRays::hits");
+static_assert(PLACE_OF(MirrorRays, counts) == 808, "place of MirrorRays::counts");
+static_assert(PLACE_OF(MirrorRays, onward) == 816, "place of MirrorRays::onward");
+static_assert(PLACE_OF(MirrorRays, cones) == 824, "place of MirrorRays::cones");
 
 struct alignas(8) MergedRays {
     Scene scene;
@@ -1764,16 +1836,16 @@ struct alignas(8) MergedRays {
     Cone *cones;
     float spacing[2];
 };
-static_assert(sizeof(MergedRays) == 768, "size of MergedRays");
+static_assert(sizeof(MergedRays) == 856, "size of MergedRays");
 static_assert(PLACE_OF(MergedRays, scene) == 0, "place of MergedRays::scene");
-static_assert(PLACE_OF(MergedRays, rays) == 592, "place of MergedRays::rays");
-static_assert(PLACE_OF(MergedRays, hits) == 712, "place of MergedRays::hits");
-static_assert(PLACE_OF(MergedRays, merged) == 720, "place of MergedRays::merged");
-static_assert(PLACE_OF(MergedRays, counts) == 728, "place of MergedRays::counts");
-static_assert(PLACE_OF(MergedRays, left) == 736, "place of MergedRays::left");
-static_assert(PLACE_OF(MergedRays, left_hits) == 744, "place of MergedRays::left_hits");
-static_assert(PLACE_OF(MergedRays, cones) == 752, "place of MergedRays::cones");
-static_assert(PLACE_OF(MergedRays, spacing) == 760, "place of MergedRays::spacing");
+static_assert(PLACE_OF(MergedRays, rays) == 680, "place of MergedRays::rays");
+static_assert(PLACE_OF(MergedRays, hits) == 800, "place of MergedRays::hits");
+static_assert(PLACE_OF(MergedRays, merged) == 808, "place of MergedRays::merged");
+static_assert(PLACE_OF(MergedRays, counts) == 816, "place of MergedRays::counts");
+static_assert(PLACE_OF(MergedRays, left) == 824, "place of MergedRays::left");
+static_assert(PLACE_OF(MergedRays, left_hits) == 832, "place of MergedRays::left_hits");
+static_assert(PLACE_OF(MergedRays, cones) == 840, "place of MergedRays::cones");
+static_assert(PLACE_OF(MergedRays, spacing) == 848, "place of MergedRays::spacing");
 
 struct alignas(8) GroupCells {
     Scene scene;
@@ -1786,16 +1858,16 @@ struct alignas(8) GroupCells {
     Item *items;
     unsigned long long first_block;
 };
-static_assert(sizeof(GroupCells) == 840, "size of GroupCells");
+static_assert(sizeof(GroupCells) == 928, "size of GroupCells");
 static_assert(PLACE_OF(GroupCells, scene) == 0, "place of GroupCells::scene");
-static_assert(PLACE_OF(GroupCells, rays) == 592, "place of GroupCells::rays");
-static_assert(PLACE_OF(GroupCells, hits) == 712, "place of GroupCells::hits");
-static_assert(PLACE_OF(GroupCells, mesh) == 720, "place of GroupCells::mesh");
-static_assert(PLACE_OF(GroupCells, members) == 800, "place of GroupCells::members");
-static_assert(PLACE_OF(GroupCells, tile_items) == 808, "place of GroupCells::tile_items");
-static_assert(PLACE_OF(GroupCells, counts) == 816, "place of GroupCells::counts");
-static_assert(PLACE_OF(GroupCells, items) == 824, "place of GroupCells::items");
-static_assert(PLACE_OF(GroupCells, first_block) == 832, "place of GroupCells::first_block");
+static_assert(PLACE_OF(GroupCells, rays) == 680, "place of GroupCells::rays");
+static_assert(PLACE_OF(GroupCells, hits) == 800, "place of GroupCells::hits");
+static_assert(PLACE_OF(GroupCells, mesh) == 808, "place of GroupCells::mesh");
+static_assert(PLACE_OF(GroupCells, members) == 888, "place of GroupCells::members");
+static_assert(PLACE_OF(GroupCells, tile_items) == 896, "place of GroupCells::tile_items");
+static_assert(PLACE_OF(GroupCells, counts) == 904, "place of GroupCells::counts");
+static_assert(PLACE_OF(GroupCells, items) == 912, "place of GroupCells::items");
+static_assert(PLACE_OF(GroupCells, first_block) == 920, "place of GroupCells::first_block");
 
 struct alignas(8) ShortTests {
     Scene scene;
@@ -1809,17 +1881,17 @@ struct alignas(8) ShortTests {
     unsigned long long first_item;
     unsigned long long item_count;
 };
-static_assert(sizeof(ShortTests) == 848, "size of ShortTests");
+static_assert(sizeof(ShortTests) == 936, "size of ShortTests");
 static_assert(PLACE_OF(ShortTests, scene) == 0, "place of ShortTests::scene");
-static_assert(PLACE_OF(ShortTests, rays) == 592, "place of ShortTests::rays");
-static_assert(PLACE_OF(ShortTests, hits) == 712, "place of ShortTests::hits");
-static_assert(PLACE_OF(ShortTests, mesh) == 720, "place of ShortTests::mesh");
-static_assert(PLACE_OF(ShortTests, members) == 800, "place of ShortTests::members");
-static_assert(PLACE_OF(ShortTests, items) == 808, "place of ShortTests::items");
-static_assert(PLACE_OF(ShortTests, masks) == 816, "place of ShortTests::masks");
-static_assert(PLACE_OF(ShortTests, tally) == 824, "place of ShortTests::tally");
-static_assert(PLACE_OF(ShortTests, first_item) == 832, "place of ShortTests::first_item");
-static_assert(PLACE_OF(ShortTests, item_count) == 840, "place of ShortTests::item_count");
+static_assert(PLACE_OF(ShortTests, rays) == 680, "place of ShortTests::rays");
+static_assert(PLACE_OF(ShortTests, hits) == 800, "place of ShortTests::hits");
+static_assert(PLACE_OF(ShortTests, mesh) == 808, "place of ShortTests::mesh");
+static_assert(PLACE_OF(ShortTests, members) == 888, "place of ShortTests::members");
+static_assert(PLACE_OF(ShortTests, items) == 896, "place of ShortTests::items");
+static_assert(PLACE_OF(ShortTests, masks) == 904, "place of ShortTests::masks");
+static_assert(PLACE_OF(ShortTests, tally) == 912, "place of ShortTests::tally");
+static_assert(PLACE_OF(ShortTests, first_item) == 920, "place of ShortTests::first_item");
+static_assert(PLACE_OF(ShortTests, item_count) == 928, "place of ShortTests::item_count");
 
 struct alignas(8) LightPoints {
     LightMesh mesh;
@@ -1862,18 +1934,18 @@ struct alignas(8) LongTests {
     unsigned first_sample;
     unsigned sample_count;
 };
-static_assert(sizeof(LongTests) == 776, "size of LongTests");
+static_assert(sizeof(LongTests) == 864, "size of LongTests");
 static_assert(PLACE_OF(LongTests, scene) == 0, "place of LongTests::scene");
-static_assert(PLACE_OF(LongTests, mesh) == 592, "place of LongTests::mesh");
-static_assert(PLACE_OF(LongTests, points) == 672, "place of LongTests::points");
-static_assert(PLACE_OF(LongTests, lit) == 712, "place of LongTests::lit");
-static_assert(PLACE_OF(LongTests, sampling) == 728, "place of LongTests::sampling");
-static_assert(PLACE_OF(LongTests, tally) == 744, "place of LongTests::tally");
-static_assert(PLACE_OF(LongTests, light) == 752, "place of LongTests::light");
-static_assert(PLACE_OF(LongTests, point_count) == 756, "place of LongTests::point_count");
-static_assert(PLACE_OF(LongTests, first_point) == 760, "place of LongTests::first_point");
-static_assert(PLACE_OF(LongTests, first_sample) == 768, "place of LongTests::first_sample");
-static_assert(PLACE_OF(LongTests, sample_count) == 772, "place of LongTests::sample_count");
+static_assert(PLACE_OF(LongTests, mesh) == 680, "place of LongTests::mesh");
+static_assert(PLACE_OF(LongTests, points) == 760, "place of LongTests::points");
+static_assert(PLACE_OF(LongTests, lit) == 800, "place of LongTests::lit");
+static_assert(PLACE_OF(LongTests, sampling) == 816, "place of LongTests::sampling");
+static_assert(PLACE_OF(LongTests, tally) == 832, "place of LongTests::tally");
+static_assert(PLACE_OF(LongTests, light) == 840, "place of LongTests::light");
+static_assert(PLACE_OF(LongTests, point_count) == 844, "place of LongTests::point_count");
+static_assert(PLACE_OF(LongTests, first_point) == 848, "place of LongTests::first_point");
+static_assert(PLACE_OF(LongTests, first_sample) == 856, "place of LongTests::first_sample");
+static_assert(PLACE_OF(LongTests, sample_count) == 860, "place of LongTests::sample_count");
 
 struct alignas(8) Cache {
     UsedPoints points;
@@ -1925,25 +1997,25 @@ struct alignas(8) Interpolate {
     unsigned long long first;
     unsigned long long count;
 };
-static_assert(sizeof(Interpolate) == 952, "size of Interpolate");
+static_assert(sizeof(Interpolate) == 1040, "size of Interpolate");
 static_assert(PLACE_OF(Interpolate, scene) == 0, "place of Interpolate::scene");
-static_assert(PLACE_OF(Interpolate, rays) == 592, "place of Interpolate::rays");
-static_assert(PLACE_OF(Interpolate, hits) == 712, "place of Interpolate::hits");
-static_assert(PLACE_OF(Interpolate, mesh) == 720, "place of Interpolate::mesh");
-static_assert(PLACE_OF(Interpolate, members) == 800, "place of Interpolate::members");
-static_assert(PLACE_OF(Interpolate, items) == 808, "place of Interpolate::items");
-static_assert(PLACE_OF(Interpolate, masks) == 816, "place of Interpolate::masks");
-static_assert(PLACE_OF(Interpolate, points) == 824, "place of Interpolate::points");
-static_assert(PLACE_OF(Interpolate, slots) == 864, "place of Interpolate::slots");
-static_assert(PLACE_OF(Interpolate, lit) == 872, "place of Interpolate::lit");
-static_assert(PLACE_OF(Interpolate, share) == 880, "place of Interpolate::share");
-static_assert(PLACE_OF(Interpolate, used) == 888, "place of Interpolate::used");
-static_assert(PLACE_OF(Interpolate, fallback_rays) == 896, "place of Interpolate::fallback_rays");
-static_assert(PLACE_OF(Interpolate, fallback_count) == 904, "place of Interpolate::fallback_count");
-static_assert(PLACE_OF(Interpolate, sampling) == 912, "place of Interpolate::sampling");
-static_assert(PLACE_OF(Interpolate, tally) == 928, "place of Interpolate::tally");
-static_assert(PLACE_OF(Interpolate, first) == 936, "place of Interpolate::first");
-static_assert(PLACE_OF(Interpolate, count) == 944, "place of Interpolate::count");
+static_assert(PLACE_OF(Interpolate, rays) == 680, "place of Interpolate::rays");
+static_assert(PLACE_OF(Interpolate, hits) == 800, "place of Interpolate::hits");
+static_assert(PLACE_OF(Interpolate, mesh) == 808, "place of Interpolate::mesh");
+static_assert(PLACE_OF(Interpolate, members) == 888, "place of Interpolate::members");
+static_assert(PLACE_OF(Interpolate, items) == 896, "place of Interpolate::items");
+static_assert(PLACE_OF(Interpolate, masks) == 904, "place of Interpolate::masks");
+static_assert(PLACE_OF(Interpolate, points) == 912, "place of Interpolate::points");
+static_assert(PLACE_OF(Interpolate, slots) == 952, "place of Interpolate::slots");
+static_assert(PLACE_OF(Interpolate, lit) == 960, "place of Interpolate::lit");
+static_assert(PLACE_OF(Interpolate, share) == 968, "place of Interpolate::share");
+static_assert(PLACE_OF(Interpolate, used) == 976, "place of Interpolate::used");
+static_assert(PLACE_OF(Interpolate, fallback_rays) == 984, "place of Interpolate::fallback_rays");
+static_assert(PLACE_OF(Interpolate, fallback_count) == 992, "place of Interpolate::fallback_count");
+static_assert(PLACE_OF(Interpolate, sampling) == 1000, "place of Interpolate::sampling");
+static_assert(PLACE_OF(Interpolate, tally) == 1016, "place of Interpolate::tally");
+static_assert(PLACE_OF(Interpolate, first) == 1024, "place of Interpolate::first");
+static_assert(PLACE_OF(Interpolate, count) == 1032, "place of Interpolate::count");
 
 struct alignas(8) Scan {
     unsigned *values;

@@ -190,6 +190,10 @@ impl RayList {
 /// The surface point that ray number `ray` sees; the ray must have hit something.
 #[inline(always)]
 pub(crate) fn surface_point_of(scene: &PreparedScene, list: &RayList, hits: &[Hit], ray: usize) -> SurfacePoint {
-    let triangles = if list.probes.is_empty() { &*scene.geometry.triangles } else { &list.probes };
-    SurfacePoint::new(&list.rays[ray], &hits[ray], &triangles[hits[ray].triangle as usize])
+    let index = hits[ray].triangle;
+    let triangle = match list.probes.get(index as usize) {
+        Some(probe) => *probe,
+        None => scene.geometry.triangles.at(index),
+    };
+    SurfacePoint::new(&list.rays[ray], &hits[ray], &triangle)
 }

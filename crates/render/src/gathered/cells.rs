@@ -158,7 +158,7 @@ fn sites_of(scene: &PreparedScene, asked: &Asked, triangles: &mut Vec<u32>) -> V
     scene.geometry.accelerator.triangles_in(&Region::within(bounds), triangles);
     let mut candidates: [Candidates; SURFACE_KINDS as usize] = Default::default();
     for &index in &*triangles {
-        let triangle = &scene.geometry.triangles[index as usize];
+        let triangle = &scene.geometry.triangles.at(index);
         let Some(kinds) = kinds_of(triangle) else { continue };
         let near = Near::new(bounds.center(), index, triangle);
         if near.point.cmpge(bounds.min).all() && near.point.cmple(bounds.max).all() {
@@ -188,7 +188,7 @@ pub(super) fn nearest_of_kind(
         let around = Region::near(Bounds { min: middle, max: middle }, reach);
         scene.geometry.accelerator.triangles_in(&around, triangles);
         for &index in &*triangles {
-            let triangle = &scene.geometry.triangles[index as usize];
+            let triangle = &scene.geometry.triangles.at(index);
             if kinds_of(triangle).is_some_and(|kinds| kinds.contains(&kind)) {
                 let near = Near::new(middle, index, triangle);
                 if near.square <= reach * reach {
@@ -223,7 +223,7 @@ impl Near {
 
     /// The surface point on its side. From edges it moves inwards: at corners of rooms, rays from an edge would begin in the other wall.
     fn surface_point(&self, scene: &PreparedScene, kind: Kind, size: f32) -> SurfacePoint {
-        let triangle = &scene.geometry.triangles[self.triangle as usize];
+        let triangle = &scene.geometry.triangles.at(self.triangle);
         let [a, b, c] = triangle.corners();
         let inwards = (a + b + c) / 3.0 - self.point;
         let share = (SITE_INWARDS * size / inwards.length()).min(0.5);

@@ -30,7 +30,7 @@ DEVICE void find_normal(const GatherPoints &args, unsigned index) {
         return;
     const Vec3 smooth = shading_normal(args.scene, hit, surface_point_of(args.scene, args.rays, args.hits, ray).normal);
     args.normals[index] = smooth;
-    const Material *material = args.scene.materials + __ldg(args.scene.triangle_materials + hit.triangle);
+    const Material *material = args.scene.materials + material_index(args.scene, hit.triangle);
     if (material->normal_texture == Material::NO_TEXTURE)
         return;
     const TintSources sources = tint_sources(args.scene);

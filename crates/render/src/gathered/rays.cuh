@@ -100,7 +100,7 @@ DEVICE SeenRay seen_by(const Fans &fans, const Structure &structure, unsigned ra
     const Hit hit = load_hit(fans.hits, ray);
     const Vec3 direction = ray_at(fans.rays, ray).direction;
     // A shadow catcher shows what is behind it.
-    if (hit.triangle == Hit::NONE || fans.scene.materials[__ldg(fans.scene.triangle_materials + hit.triangle)].catcher) {
+    if (hit.triangle == Hit::NONE || fans.scene.materials[material_index(fans.scene, hit.triangle)].catcher) {
         if (!fans.is_near || hit.triangle != Hit::NONE)
             seen.radiance = surroundings(fans.scene.environment, direction, SKY_CONE * fans.rays.cone.spread);
         return seen;
@@ -115,7 +115,7 @@ DEVICE SeenRay seen_by(const Fans &fans, const Structure &structure, unsigned ra
     const Site &site = fans.sites[number];
     if (is_new(fans, number))
         cast = add_lights(fans, structure, surface, site.seed + (rays_of_fan(fans) + index), seen.radiance);
-    const bool front = dot(outward_of(load_corners(fans.scene.triangles + hit.triangle)), direction) < 0.0f;
+    const bool front = dot(outward_of(corners_at(fans.scene.triangles, hit.triangle)), direction) < 0.0f;
     float rest;
     seen.position = surface.point.position;
     seen.normal = surface.point.normal;

@@ -191,7 +191,7 @@ fn seen_by(wave: &HostWave, cast: &Cast, lights: &Lights, [ray, place]: [usize; 
     let (least_level, seed) = cast.origin(ray);
     segments.note(wave, lights, seed, place, &surface);
     let point = &surface.point;
-    let is_front = outward(&wave.scene.geometry.triangles[hit.triangle as usize]).dot(direction) < 0.0;
+    let is_front = outward(&wave.scene.geometry.triangles.at(hit.triangle)).dot(direction) < 0.0;
     let level = level_of(BOUNCE_SIZE * hit.t).0.max(least_level + BOUNCE_COARSER);
     let spot = Spot { place: Place::new(point, level), kind: kind_of(point.normal, is_front) };
     Seen { radiance, kd, spot: Some(spot) }

@@ -82,12 +82,13 @@ struct FoundTriangle {
     Corners corners;
 };
 
-DEVICE FoundTriangle found_triangle(const Triangle *triangles, const unsigned *list, unsigned place, unsigned count) {
+template <class Structure>
+DEVICE FoundTriangle found_triangle(const Structure &structure, const unsigned *list, unsigned place, unsigned count) {
     FoundTriangle found = {};
     found.has = place < count;
     if (found.has) {
-        found.index = triangle_index(triangles + list[place]);
-        found.corners = load_corners(triangles + list[place]);
+        found.index = triangle_index(triangle_at(structure, list[place]));
+        found.corners = load_corners(triangle_at(structure, list[place]));
     }
     return found;
 }
@@ -126,7 +127,7 @@ DEVICE bool site_of_candidates(const Scene &scene, const Tally &tally, const Str
     const bool single = candidates.nearest[1] == NO_CANDIDATE;
     SurfacePoint chosen = {};
     for (unsigned place = 0; place < SITE_CANDIDATES && candidates.nearest[place] != NO_CANDIDATE; ++place) {
-        const Corners corners = load_corners(scene.triangles + (unsigned)candidates.nearest[place]);
+        const Corners corners = corners_at(scene.triangles, (unsigned)candidates.nearest[place]);
         const SurfacePoint point = near_surface_point(near_of(middle, corners), corners, kind, size);
         const bool open = single || is_free(tally, structure, point.origin, point.normal, SITE_OPEN * size);
         if (place == 0 || open)
@@ -163,7 +164,7 @@ DEVICE void place_sites(const Lookup &args, const Structure &structure) {
         unsigned count = 0;
         next_triangles<true>(structure, region, search, list, count);
         for (unsigned first = 0; first < count; first += WARP) {
-            const FoundTriangle found = found_triangle(structure.triangles, list, first + lane, count);
+            const FoundTriangle found = found_triangle(structure, list, first + lane, count);
             const Near near = near_of(middle, found.corners);
             unsigned front, back;
             const bool has = kinds_of(found.corners, front, back) && found.has && is_inside(bounds, near.point);
@@ -210,7 +211,7 @@ DEVICE void place_nodes(const Bounce &args, const Structure &structure) {
             unsigned count = 0;
             next_triangles<true>(structure, region, search, list, count);
             for (unsigned first = 0; first < count; first += WARP) {
-                const FoundTriangle found = found_triangle(structure.triangles, list, first + lane, count);
+                const FoundTriangle found = found_triangle(structure, list, first + lane, count);
                 const Near near = near_of(middle, found.corners);
                 unsigned front, back;
                 const bool has = kinds_of(found.corners, front, back) && found.has && (front == name.kind || back == name.kind);

@@ -10,10 +10,10 @@ use crate::cuda::{Kernel, Runtime};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PerStructure {
     pub(crate) module: &'static str,
-    /// The same for scenes in which triangles are cut out.
+    /// The same for scenes in which triangles are cut out, or that have instances.
     pub(crate) cut_out_module: &'static str,
     /// In the order of [`Structure`].
-    pub(crate) names: [&'static str; 3],
+    pub(crate) names: [&'static str; 4],
 }
 
 impl PerStructure {

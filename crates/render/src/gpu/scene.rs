@@ -3,8 +3,12 @@
 use std::sync::Arc;
 
 use bytemuck::Zeroable;
-use lightmesh_layout::constants::{BVH_STACK, GRID_FRAME_WORDS, RECENT_TRIANGLES, STACK_OF_ROUNDS, STACK_PER_LEVEL};
-use lightmesh_layout::geometry::{Approach, BruteForce, Bvh, BvhNode, Coverage, DVec3, Grid, Triangle, Vec3};
+use lightmesh_layout::constants::{
+    BVH_STACK, GRID_FRAME_WORDS, MOST_HELD, RECENT_TRIANGLES, STACK_OF_INSTANCES, STACK_OF_ROUNDS, STACK_PER_LEVEL,
+};
+use lightmesh_layout::geometry::{
+    Approach, BruteForce, Bvh, BvhNode, Coverage, DVec3, Grid, Instanced, InstancedBvh, Triangle, Triangles, Vec3,
+};
 use lightmesh_layout::scene::{self as layout, EnvironmentLevel, Indices, Light, Scene};
 use lightmesh_layout::{DeviceType, In, Structure};
 use lightmesh_scene::{Environment, Falloff, LightKind};
@@ -27,7 +31,7 @@ use crate::sync::locked;
 pub struct DeviceScene<R: Runtime> {
     pub(crate) record: Scene,
     pub(crate) structure: Structure,
-    /// Whether any triangle is cut out.
+    /// Whether its kernels are in the modules with CUT_OUTS: any triangle is cut out, or there are instances.
     pub(crate) cut_out: bool,
     /// The scene on the host.
     pub(crate) host: PreparedScene,
@@ -42,12 +46,13 @@ impl<R: Runtime> DeviceScene<R> {
     /// The same scene with other triangles for rays to see; the triangles that hide lights stay.
     pub(super) fn with_triangles(&self, triangles: Arc<Buffer<R, Triangle>>) -> DeviceScene<R> {
         // Given points have no vertex normals.
-        let record = Scene { triangles: triangles.input(), normals: In::NULL, ..self.record };
+        let given = Triangles { stored: triangles.input(), ..Zeroable::zeroed() };
+        let record = Scene { triangles: given, normals: In::NULL, ..self.record };
         DeviceScene { record, _probes: Some(triangles), ..self.clone() }
     }
 
     /// Its triangles by index in the mesh, whatever rays see.
-    pub(crate) fn triangles(&self) -> In<Triangle> {
+    pub(crate) fn triangles(&self) -> Triangles {
         self._geometry.record.triangles
     }
 
@@ -60,8 +65,12 @@ impl<R: Runtime> DeviceScene<R> {
     pub(crate) fn see_through(&self) -> Option<SeeThrough<DeviceScene<R>>> {
         let (on_host, parts) = (self.host.see_through()?, self._geometry.see_through.as_ref()?);
         let part = |part: &Scene, host: PreparedScene| {
-            let Scene { bvh, grid, brute_force, coverage, .. } = *part;
-            DeviceScene { record: Scene { bvh, grid, brute_force, coverage, ..self.record }, host, ..self.clone() }
+            let Scene { bvh, grid, brute_force, instanced, coverage, .. } = *part;
+            DeviceScene {
+                record: Scene { bvh, grid, brute_force, instanced, coverage, ..self.record },
+                host,
+                ..self.clone()
+            }
         };
         Some(SeeThrough {
             blockers: part(&parts.blockers, on_host.blockers),
@@ -103,6 +112,10 @@ impl<R: Runtime> DeviceScene<R> {
             Structure::Bvh => (STACK_OF_ROUNDS + STACK_PER_LEVEL * self.record.bvh.depth).next_multiple_of(4),
             Structure::Grid => GRID_FRAME_WORDS + RECENT_TRIANGLES,
             Structure::BruteForce => 0,
+            Structure::InstancedBvh => {
+                let per_level = (STACK_PER_LEVEL * self.record.instanced.depth).next_multiple_of(4);
+                2 * (STACK_OF_INSTANCES + MOST_HELD + per_level)
+            }
         }
     }
 }
@@ -122,7 +135,7 @@ impl<R: Runtime> Cuda<R> {
         Ok(DeviceScene {
             record,
             structure: geometry.structure,
-            cut_out: scene.geometry.coverage.table().is_some(),
+            cut_out: scene.geometry.coverage.table().is_some() || geometry.structure == Structure::InstancedBvh,
             host: scene.clone(),
             _geometry: geometry,
             _lights: Arc::new(upload.buffers),
@@ -251,7 +264,7 @@ impl<R: Runtime> Upload<'_, R> {
         let indices: &[[u32; 3]] = if tinted || !mesh.normals.is_empty() { &mesh.triangles } else { &[] };
         let (center, far) = prepared.reach_parameters();
         let mut record = Scene {
-            triangles: self.triangles(&prepared.triangles)?,
+            triangles: self.all_triangles(&prepared.triangles)?,
             indices: self.array::<Indices>("indices", bytemuck::cast_slice(indices))?,
             normals: self.array::<Vec3>("normals", bytemuck::cast_slice(&mesh.normals))?,
             center: vec3(center),
@@ -288,6 +301,10 @@ impl<R: Runtime> Upload<'_, R> {
         record: &mut Scene,
     ) -> Result<Structure, RenderError> {
         Ok(match prepared.accelerator.form() {
+            Form::Bvh(bvh) if !bvh.instances().is_empty() => {
+                record.instanced = InstancedBvh { coverage, ..self.instanced_bvh(bvh)? };
+                Structure::InstancedBvh
+            }
             Form::Bvh(bvh) => {
                 record.bvh = Bvh { coverage, ..self.bvh(bvh)? };
                 Structure::Bvh
@@ -325,8 +342,48 @@ impl<R: Runtime> Upload<'_, R> {
         self.array("triangles", bytemuck::cast_slice(triangles))
     }
 
+    fn all_triangles(&mut self, all: &accel::Triangles) -> Result<Triangles, RenderError> {
+        Ok(Triangles {
+            stored: self.triangles(all.stored())?,
+            instances: self.instances(all.instances())?,
+            instance_count: all.instances().len() as u32,
+            spare: 0,
+        })
+    }
+
+    fn instances(&mut self, instances: &[accel::Instanced]) -> Result<In<Instanced>, RenderError> {
+        let record = |instance: &accel::Instanced| Instanced {
+            place: instance.place.rows,
+            back: instance.back.rows,
+            first: instance.first,
+            stored: instance.stored,
+            leaves: instance.tree.leaves,
+            root: instance.tree.root,
+            norm: instance.norm,
+            reach: instance.reach,
+            shift: instance.shift,
+            object: instance.object,
+        };
+        self.array("instances", &instances.iter().map(record).collect::<Vec<_>>())
+    }
+
+    fn instanced_bvh(&mut self, bvh: &accel::Bvh) -> Result<InstancedBvh, RenderError> {
+        let Bvh { nodes, triangles, coverage, approach, node_count, depth } = self.bvh(bvh)?;
+        Ok(InstancedBvh {
+            nodes,
+            triangles,
+            coverage,
+            instances: self.instances(bvh.instances())?,
+            approach,
+            node_count,
+            depth,
+            instance_count: bvh.instances().len() as u32,
+            spare: 0,
+        })
+    }
+
     fn bvh(&mut self, bvh: &accel::Bvh) -> Result<Bvh, RenderError> {
-        debug_assert!(bvh.depth() <= BVH_STACK as usize, "builds keep to this many levels");
+        debug_assert!(bvh.depth() <= 2 * BVH_STACK as usize, "builds keep to this many levels");
         let nodes = bvh.nodes();
         Ok(Bvh {
             nodes: self.array::<BvhNode>("BVH", bytemuck::cast_slice(nodes))?,
@@ -371,6 +428,7 @@ fn covered_by(coverage: Coverage, scene: Scene) -> Scene {
         bvh: Bvh { coverage, ..scene.bvh },
         grid: Grid { coverage, ..scene.grid },
         brute_force: BruteForce { coverage, ..scene.brute_force },
+        instanced: InstancedBvh { coverage, ..scene.instanced },
         coverage,
         ..scene
     }

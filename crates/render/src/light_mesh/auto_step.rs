@@ -97,7 +97,7 @@ fn look(scene: &PreparedScene, rays: &[Ray], hits: &[Hit]) -> Option<Probe> {
     if !hits.iter().all(Hit::is_some) {
         return None;
     }
-    let point = |i: usize| SurfacePoint::new(&rays[i], &hits[i], &scene.geometry.triangles[hits[i].triangle as usize]);
+    let point = |i: usize| SurfacePoint::new(&rays[i], &hits[i], &scene.geometry.triangles.at(hits[i].triangle));
     let (here, there) = (point(0), point(1));
     let spacing = (there.position - here.position).length();
     // Neighbouring rays, followed to this pixel's distance, are one pixel apart.

@@ -37,7 +37,7 @@ pub(super) fn stats(job: &Job, resolved: &Resolved, device: DeviceFacts, rows: u
         finished_rows: None,
         scene: SceneStats {
             name: scene.scene.name.clone(),
-            triangles: scene.geometry.triangles.len(),
+            triangles: scene.scene.geometry.mesh.triangle_count(),
             lights: scene.scene.lights.len(),
         },
         settings: settings(resolved, device.kind, rows),

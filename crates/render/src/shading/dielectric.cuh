@@ -40,10 +40,11 @@ DEVICE Boundary boundary_about(Vec3 normal, const Corners &corners, const Materi
 }
 
 // The same, whatever images of normals say.
-DEVICE Boundary boundary_met(const Vec3 *normals, const Indices *indices, const Corners &corners, const Material &glass, const Ray &ray,
+DEVICE Boundary boundary_met(const Triangles &triangles, const Vec3 *normals, const Indices *indices, const Material &glass, const Ray &ray,
                              const Hit &hit) {
+    const Corners corners = corners_at(triangles, hit.triangle);
     const Vec3 facing = surface_point(ray, hit, corners).normal;
-    return boundary_about(shading_normal(normals, indices, hit, facing), corners, glass, ray, hit);
+    return boundary_about(shading_normal(triangles, normals, indices, hit, facing), corners, glass, ray, hit);
 }
 
 // The cosine of the angle beyond the boundary; 0 if all light is reflected.

@@ -32,13 +32,13 @@ pub(crate) struct Boundary {
 impl Boundary {
     /// Where `ray` meets a dielectric at `hit`, whatever images of normals say.
     pub(crate) fn met(scene: &PreparedScene, glass: &Dielectric, ray: &Ray, hit: &Hit) -> Boundary {
-        let point = SurfacePoint::new(ray, hit, &scene.geometry.triangles[hit.triangle as usize]);
+        let point = SurfacePoint::new(ray, hit, &scene.geometry.triangles.at(hit.triangle));
         Boundary::about(shading_normal(&scene.scene.geometry.mesh, hit, point.normal), scene, glass, ray, hit)
     }
 
     /// The same with this normal.
     pub(super) fn about(normal: Vec3, scene: &PreparedScene, glass: &Dielectric, ray: &Ray, hit: &Hit) -> Boundary {
-        let triangle = &scene.geometry.triangles[hit.triangle as usize];
+        let triangle = &scene.geometry.triangles.at(hit.triangle);
         let length = ray.direction.length();
         let inside = is_inside(glass, ray, triangle);
         Boundary {

@@ -1,10 +1,13 @@
 // Numbers of the objects and materials that rays see, from 1: twin of ids.rs.
 #pragma once
 
+#include "accel/instanced.cuh"
 #include "cuda/rays.cuh"
 
-// The number of a triangle's object: that of the last run that begins at it or before.
+// The number of a triangle's object: that of its instance, or of the last run that begins at it or before.
 DEVICE unsigned object_of(const Scene &scene, unsigned triangle) {
+    if (triangle >= FIRST_INSTANCED)
+        return __ldg(&instance_of(scene.triangles.instances, scene.triangles.instance_count, triangle)->object) + 1;
     unsigned low = 0, high = scene.object_runs;
     while (low < high) {
         const unsigned middle = low + (high - low) / 2;
@@ -18,5 +21,5 @@ DEVICE unsigned object_of(const Scene &scene, unsigned triangle) {
 
 // The number of a triangle's material.
 DEVICE unsigned material_of(const Scene &scene, unsigned triangle) {
-    return scene.materials[__ldg(scene.triangle_materials + triangle)].number;
+    return scene.materials[material_index(scene, triangle)].number;
 }

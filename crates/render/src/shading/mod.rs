@@ -67,7 +67,7 @@ impl Surface {
         let (ray, cone, hit) = (&wave.rays.rays[index], wave.rays.cone_of(index), &wave.hits[index]);
         let geometry = &wave.scene.scene.geometry;
         let mesh = &geometry.mesh;
-        let material = &geometry.materials[mesh.materials[hit.triangle as usize] as usize];
+        let material = &geometry.materials[mesh.materials[mesh.stored(hit.triangle)] as usize];
         let (normal, relief) = normal_at(wave.scene, material, (ray, cone), hit, &point);
         let surface = Surface {
             normal,
@@ -79,7 +79,7 @@ impl Surface {
             lobe: None,
             eta: material
                 .boundary()
-                .and_then(|glass| eta_seen(glass, ray, &wave.scene.geometry.triangles[hit.triangle as usize])),
+                .and_then(|glass| eta_seen(glass, ray, &wave.scene.geometry.triangles.at(hit.triangle))),
         };
         surface.faceted(wave, index, material)
     }
@@ -101,7 +101,7 @@ impl Surface {
 
     /// The cone that the surface mirrors, if it is smooth, of one that meets it at `hit`.
     pub(crate) fn mirrored_cone(&self, wave: &HostWave, hit: &Hit, cone: Cone) -> Cone {
-        let corners = wave.scene.geometry.triangles[hit.triangle as usize].corners();
+        let corners = wave.scene.geometry.triangles.at(hit.triangle).corners();
         cone.reflected(curvature(&wave.scene.scene.geometry.mesh, hit, corners, self.point.normal))
     }
 
@@ -126,7 +126,8 @@ impl Surface {
     pub(crate) fn shared(wave: &HostWave, ray: usize) -> Surface {
         let mut surface = Surface::new(wave, ray);
         let geometry = &wave.scene.scene.geometry;
-        let material = &geometry.materials[geometry.mesh.materials[wave.hits[ray].triangle as usize] as usize];
+        let material =
+            &geometry.materials[geometry.mesh.materials[geometry.mesh.stored(wave.hits[ray].triangle)] as usize];
         if wave.rays.sampled.is_none() || !is_tinted(geometry, material) {
             return surface;
         }
@@ -252,7 +253,8 @@ impl Surface {
 /// The material of what a ray sees, if it sees anything.
 pub(crate) fn material_of<'a>(wave: &HostWave<'a>, ray: usize) -> Option<&'a Material> {
     let geometry = &wave.scene.scene.geometry;
-    let material = || &geometry.materials[geometry.mesh.materials[wave.hits[ray].triangle as usize] as usize];
+    let material =
+        || &geometry.materials[geometry.mesh.materials[geometry.mesh.stored(wave.hits[ray].triangle)] as usize];
     wave.sees(ray).then(material)
 }
 

@@ -6,7 +6,7 @@
 // Unit vectors along the surface to the right of the image and to its top, across `smooth`. False where the image has no area.
 DEVICE bool image_frame(const TintSources &sources, const Texture &texture, const Corners &corners, const Hit &hit, Vec3 smooth, Vec3 &right,
                         Vec3 &top) {
-    const unsigned *vertices = sources.indices[hit.triangle].vertices;
+    const unsigned *vertices = vertices_at(sources, hit);
     const Uv a = sources.uvs[vertices[0]], b = sources.uvs[vertices[1]], c = sources.uvs[vertices[2]];
     const Uv p = in_image(texture, Uv{b.u - a.u, b.v - a.v}), q = in_image(texture, Uv{c.u - a.u, c.v - a.v});
     const Vec3 ab = corners.b - corners.a, ac = corners.c - corners.a;
@@ -30,7 +30,7 @@ DEVICE bool image_frame(const TintSources &sources, const Texture &texture, cons
 DEVICE bool shows_back(const TintSources &sources, const Corners &corners, const Hit &hit, Vec3 facing) {
     Vec3 smooth;
     float square;
-    if (sources.normals != nullptr && smooth_at(hit, load_normals(sources.normals, sources.indices, hit.triangle), smooth, square))
+    if (sources.normals != nullptr && smooth_at(hit, load_normals(sources.triangles, sources.normals, sources.indices, hit.triangle), smooth, square))
         return dot(smooth, facing) < 0.0f;
     return dot(cross(corners.b - corners.a, corners.c - corners.a), facing) < 0.0f;
 }
@@ -48,7 +48,7 @@ COLD Vec3 mapped_normal(TintSources sources, const Material *material, Sighting 
         return smooth;
 
     // 2. In the frame of the image on the surface.
-    const Corners corners = load_corners(sources.triangles + hit.triangle);
+    const Corners corners = corners_at(sources.triangles, hit.triangle);
     Vec3 right, top;
     if (!image_frame(sources, texture, corners, hit, smooth, right, top))
         return smooth;
@@ -77,8 +77,8 @@ COLD Vec3 mean_normal(TintSources sources, const Material *material, Sighting fr
         if ((all.shared >> sample & 1) == 0 || hit.triangle == Hit::NONE)
             continue;
         const Ray ray = {from.origin, from.direction, INFINITE};
-        const Vec3 facing = surface_point(ray, hit, load_corners(sources.triangles + hit.triangle)).normal;
-        const Vec3 smooth = shading_normal(sources.normals, sources.indices, hit, facing);
+        const Vec3 facing = surface_point(ray, hit, corners_at(sources.triangles, hit.triangle)).normal;
+        const Vec3 smooth = shading_normal(sources.triangles, sources.normals, sources.indices, hit, facing);
         sum = sum + mapped_normal(sources, material, from, hit, smooth);
     }
     const float square = length_squared(sum);

@@ -82,7 +82,7 @@ pub(super) fn mean_normal<'h>(
     let mesh = &scene.scene.geometry.mesh;
     let mut sum = Vec3::ZERO;
     for hit in hits {
-        let point = SurfacePoint::new(ray, hit, &scene.geometry.triangles[hit.triangle as usize]);
+        let point = SurfacePoint::new(ray, hit, &scene.geometry.triangles.at(hit.triangle));
         sum += mapped_normal(scene, material, (ray, cone), hit, shading_normal(mesh, hit, point.normal));
     }
     let square = sum.length_squared();
@@ -132,7 +132,7 @@ pub(super) fn mapped_normal(
 
 /// Unit vectors along the surface to the right of the image and to its top, across `smooth`. `None` where the image has no area.
 fn frame(scene: &PreparedScene, image: &Image, hit: &Hit, smooth: Vec3) -> Option<[Vec3; 2]> {
-    let [a, b, c] = scene.geometry.triangles[hit.triangle as usize].corners();
+    let [a, b, c] = scene.geometry.triangles.at(hit.triangle).corners();
     let uvs = uvs_of(scene, hit);
     let [p, q]: [Vec2; 2] = [uvs[1] - uvs[0], uvs[2] - uvs[0]].map(|step| image.uses.transform.matrix2 * step);
     let (ab, ac) = (b - a, c - a);
@@ -153,7 +153,7 @@ fn frame(scene: &PreparedScene, image: &Image, hit: &Hit, smooth: Vec3) -> Optio
 
 /// Whether `ray` sees the back of a surface: vertex normals say which side it is, without them the order of the corners.
 fn shows_back(scene: &PreparedScene, ray: &Ray, hit: &Hit) -> bool {
-    let triangle = &scene.geometry.triangles[hit.triangle as usize];
+    let triangle = &scene.geometry.triangles.at(hit.triangle);
     let facing = SurfacePoint::new(ray, hit, triangle).normal;
     let [a, b, c] = triangle.corners();
     let outward = smooth_at(&scene.scene.geometry.mesh, hit).map_or((b - a).cross(c - a), |smooth| smooth.normal);

@@ -21,7 +21,7 @@ DEVICE bool has_relief(const Surface &surface) { return surface.material->normal
 DEVICE Surface surface_at(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray, Material &own) {
     const Hit hit = load_hit(hits, ray);
     const Ray seen_along = ray_at(rays, ray);
-    const SurfacePoint point = surface_point(seen_along, hit, load_corners(scene.triangles + hit.triangle));
+    const SurfacePoint point = surface_point(seen_along, hit, corners_at(scene.triangles, hit.triangle));
     const Material *material = material_at(scene, rays, ray, hit, own);
     Surface surface = {point, shading_normal(scene, hit, point.normal), -seen_along.direction, material};
     if (has_relief(surface)) {

@@ -8,7 +8,7 @@
 
 // The inputs of images and tints. By value: taking the address of a kernel's argument would make all its loads slow.
 struct TintSources {
-    const Triangle *triangles;
+    Triangles triangles;
     const Indices *indices;
     const Vec3 *normals;
     const Uv *uvs;
@@ -26,10 +26,10 @@ struct Sighting {
 };
 
 // The axes of the footprint at `hit`, in texture coordinates.
-DEVICE Axes axes_at(const Triangle *triangles, const Sighting &from, const Hit &hit, Uv a, Uv b, Uv c) {
+DEVICE Axes axes_at(const Triangles &triangles, const Sighting &from, const Hit &hit, Uv a, Uv b, Uv c) {
     if (is_point(from.cone))
         return Axes{};
-    const Corners corners = load_corners(triangles + hit.triangle);
+    const Corners corners = corners_at(triangles, hit.triangle);
     const Vec3 position = (1.0f - hit.u - hit.v) * corners.a + hit.u * corners.b + hit.v * corners.c;
     const Vec3 direction = direction_to(position, Ray{from.origin, from.direction, INFINITE}, from.cone);
     return footprint_axes(direction, cone_after(from.cone, hit.t).width, corners, a, b, c);
@@ -43,9 +43,14 @@ DEVICE Uv in_image(const Texture &texture, Uv at) {
 // The interpolated value of the vertices of the triangle at `hit`.
 DEVICE float interpolated(const Hit &hit, float a, float b, float c) { return (1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c; }
 
+// The vertices of the triangle at `hit`.
+DEVICE const unsigned *vertices_at(const TintSources &sources, const Hit &hit) {
+    return sources.indices[stored_index(sources.triangles, hit.triangle)].vertices;
+}
+
 // The value of texture number `number` at `hit`.
 DEVICE Vec3 texel_at(const TintSources &sources, unsigned number, const Sighting &from, const Hit &hit) {
-    const unsigned *vertices = sources.indices[hit.triangle].vertices;
+    const unsigned *vertices = vertices_at(sources, hit);
     const Texture &texture = sources.textures[number];
     const Uv a = sources.uvs[vertices[0]], b = sources.uvs[vertices[1]], c = sources.uvs[vertices[2]];
     const Uv uv = in_image(texture, Uv{interpolated(hit, a.u, b.u, c.u), interpolated(hit, a.v, b.v, c.v)});

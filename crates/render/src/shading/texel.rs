@@ -18,7 +18,7 @@ pub(super) fn texel_at(scene: &PreparedScene, image: &Image, ray: &Ray, cone: Co
 /// The texture coordinates of the corners of the triangle at `hit`.
 pub(super) fn uvs_of(scene: &PreparedScene, hit: &Hit) -> [Vec2; 3] {
     let mesh = &scene.scene.geometry.mesh;
-    mesh.triangles[hit.triangle as usize].map(|vertex| mesh.uvs[vertex as usize])
+    mesh.triangles[mesh.stored(hit.triangle)].map(|vertex| mesh.uvs[vertex as usize])
 }
 
 /// The axes of the footprint at `hit`, in texture coordinates.
@@ -26,7 +26,7 @@ fn axes_of(scene: &PreparedScene, ray: &Ray, cone: Cone, hit: &Hit, uvs: [Vec2; 
     if cone.is_point() {
         return [Vec2::ZERO; 2];
     }
-    let [a, b, c] = scene.geometry.triangles[hit.triangle as usize].corners();
+    let [a, b, c] = scene.geometry.triangles.at(hit.triangle).corners();
     let position = (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
     let direction = footprint::direction_to(position, ray, cone);
     footprint::axes(direction, cone.after(hit.t).width, [a, b, c], uvs)

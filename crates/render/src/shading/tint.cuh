@@ -16,7 +16,7 @@ struct Colors {
 
 // The product of texture and vertex colour at `hit`.
 DEVICE Vec3 tint_at(const TintSources &sources, const Material &material, const Sighting &from, const Hit &hit) {
-    const unsigned *vertices = sources.indices[hit.triangle].vertices;
+    const unsigned *vertices = vertices_at(sources, hit);
     Vec3 tint = splat(1.0f);
     if (material.texture != Material::NO_TEXTURE)
         tint = texel_at(sources, material.texture, from, hit);
@@ -37,7 +37,7 @@ DEVICE Colors colors_at(const TintSources &sources, const Material &material, co
 
 // How opaque a surface of this material is at `hit`.
 DEVICE float opacity_at(const TintSources &sources, const Material &material, const Hit &hit) {
-    return material.blends ? opacity_at(sources.coverage, sources.triangles + hit.triangle, hit.u, hit.v) : 1.0f;
+    return material.blends ? opacity_at(sources.coverage, stored_triangle(sources.triangles, hit.triangle), hit.u, hit.v) : 1.0f;
 }
 
 // Sets `own` to the material with the coefficients that colours and an opacity give it.
@@ -82,13 +82,13 @@ DEVICE void set_boundary(const Boundary &met, Material *own) {
 
 // Turns the coefficients of a material with facets into what these make of them at `hit`; `followed` says whether its mirror ray is.
 DEVICE void face(const TintSources &sources, const Sighting &from, const Hit &hit, bool followed, Material *own) {
-    const Corners corners = load_corners(sources.triangles + hit.triangle);
+    const Corners corners = corners_at(sources.triangles, hit.triangle);
     const SurfacePoint point = surface_point(Ray{from.origin, from.direction, INFINITE}, hit, corners);
-    Vec3 normal = shading_normal(sources.normals, sources.indices, hit, point.normal);
+    Vec3 normal = shading_normal(sources.triangles, sources.normals, sources.indices, hit, point.normal);
     if (own->normal_texture != Material::NO_TEXTURE)
         normal = mapped_normal(sources, own, from, hit, normal);
     const Cone cone = cone_after(from.cone, hit.t);
-    const float turn = is_point(cone) ? 0.0f : curvature(sources.normals, sources.indices, hit, corners, point.normal);
+    const float turn = is_point(cone) ? 0.0f : curvature(sources.triangles, sources.normals, sources.indices, hit, corners, point.normal);
     const float spread = is_point(cone) ? 0.0f : fabsf(cone_reflected(cone, turn).spread);
     set_facets(sources.facet_table, FacetSight{dot(normal, -from.direction), spread, followed}, own);
 }
@@ -98,9 +98,9 @@ COLD void tint_material(TintSources sources, const Material *material, Sighting 
     set_tint(material, colors_at(sources, *material, from, hit), opacity_at(sources, *material, hit), own);
     if (material->ior != 0.0f) {
         const Ray ray = {from.origin, from.direction, INFINITE};
-        const Corners corners = load_corners(sources.triangles + hit.triangle);
+        const Corners corners = corners_at(sources.triangles, hit.triangle);
         const Vec3 facing = surface_point(ray, hit, corners).normal;
-        Vec3 normal = shading_normal(sources.normals, sources.indices, hit, facing);
+        Vec3 normal = shading_normal(sources.triangles, sources.normals, sources.indices, hit, facing);
         if (material->normal_texture != Material::NO_TEXTURE)
             normal = mirroring(mapped_normal(sources, material, from, hit, normal), facing, -from.direction);
         set_boundary(boundary_about(normal, corners, *material, ray, hit), own);
@@ -136,7 +136,7 @@ DEVICE bool mirrors(const Rays &rays, unsigned ray) { return rays.depth - throug
 // The material at `hit`: that of its triangle, or `own` if it has a tint. So a material without one takes no registers for
 // coefficients.
 DEVICE const Material *material_at(const Scene &scene, const Rays &rays, unsigned ray, const Hit &hit, Material &own) {
-    const Material *material = scene.materials + __ldg(scene.triangle_materials + hit.triangle);
+    const Material *material = scene.materials + material_index(scene, hit.triangle);
     if (!material->tinted)
         return material;
     tint_material(tint_sources(scene), material, sighting_of(rays, ray), hit, mirrors(rays, ray), &own);

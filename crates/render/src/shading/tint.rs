@@ -148,7 +148,7 @@ fn boundary(
     (ray, cone): (&Ray, Cone),
     hit: &Hit,
 ) -> Boundary {
-    let point = SurfacePoint::new(ray, hit, &scene.geometry.triangles[hit.triangle as usize]);
+    let point = SurfacePoint::new(ray, hit, &scene.geometry.triangles.at(hit.triangle));
     let (normal, relief) = normal_at(scene, material, (ray, cone), hit, &point);
     let turned = relief.map_or(normal, |_| mirroring(normal, point.normal, -ray.direction));
     Boundary::about(turned, scene, glass, ray, hit)
@@ -165,7 +165,7 @@ pub(crate) fn is_tinted(geometry: &Geometry, material: &Material) -> bool {
 /// What is left of light that goes straight on along `ray` at `hit`.
 pub(crate) fn transmittance(scene: &PreparedScene, ray: &Ray, hit: &Hit) -> Vec3 {
     let geometry = &scene.scene.geometry;
-    let material = &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize];
+    let material = &geometry.materials[geometry.mesh.materials[geometry.mesh.stored(hit.triangle)] as usize];
     let filter = material.opacity.and_then(|opacity| opacity.filter()).unwrap_or(Vec3::ZERO);
     let through = (1.0 - opacity(scene, hit)) * filter;
     match material.boundary() {
@@ -176,7 +176,7 @@ pub(crate) fn transmittance(scene: &PreparedScene, ray: &Ray, hit: &Hit) -> Vec3
 
 /// How opaque the surface is at `hit`.
 fn opacity(scene: &PreparedScene, hit: &Hit) -> f32 {
-    scene.geometry.coverage.opacity(&scene.geometry.triangles[hit.triangle as usize], hit)
+    scene.geometry.coverage.opacity(&scene.geometry.triangles.at(hit.triangle), hit)
 }
 
 /// The values of images at a surface point.
@@ -201,7 +201,7 @@ fn colors(scene: &PreparedScene, material: &Material, ray: &Ray, cone: Cone, hit
 }
 
 fn color_at(mesh: &Mesh, hit: &Hit) -> Vec3 {
-    let [a, b, c] = mesh.triangles[hit.triangle as usize].map(|vertex| mesh.colors[vertex as usize]);
+    let [a, b, c] = mesh.triangles[mesh.stored(hit.triangle)].map(|vertex| mesh.colors[vertex as usize]);
     (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c
 }
 

@@ -10,7 +10,7 @@ use lightmesh_layout::constants::{MOST_ROWS, MOST_WORDS};
 use lightmesh_layout::scene::SampleRows;
 
 use super::sight::Sight;
-use crate::accel::{Coverage, Triangle};
+use crate::accel::{Coverage, Triangle, Triangles};
 use crate::simd::{Axes, LANES};
 
 /// What is cut out of the triangles of eight lanes.
@@ -30,8 +30,8 @@ impl<'a> Cuts<'a> {
 
     /// Those of [gathered](super::occlusion::gathered) triangles; `None` if all are opaque.
     #[inline(always)]
-    pub(crate) fn gathered(coverage: &'a Coverage, triangles: &[Triangle], indices: &[u32]) -> Option<Cuts<'a>> {
-        let number = |lane: usize| triangles[indices[lane.min(indices.len() - 1)] as usize].cut();
+    pub(crate) fn gathered(coverage: &'a Coverage, triangles: &Triangles, indices: &[u32]) -> Option<Cuts<'a>> {
+        let number = |lane: usize| triangles.at(indices[lane.min(indices.len() - 1)]).cut();
         let numbers = std::array::from_fn(number);
         (numbers != [0; LANES]).then_some(Cuts { coverage, numbers })
     }

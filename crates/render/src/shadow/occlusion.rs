@@ -29,7 +29,7 @@ use lightmesh_layout::scene::SampleRows;
 
 use super::cuts::{Cuts, Lines, by_lane, keep_stopped, stopped_centers};
 use super::sight::Sight;
-use crate::accel::Triangle;
+use crate::accel::Triangles;
 use crate::simd::{Axes, LANES, difference, fused_cross, fused_dot, splat, sum};
 use crate::surface::SurfacePoint;
 
@@ -344,11 +344,11 @@ fn power_of_two<S: Simd>(simd: S, k: f32x8<S>) -> u32x8<S> {
 
 /// Up to eight triangles, one in each lane; the last is repeated.
 #[inline(always)]
-pub(crate) fn gathered<S: Simd>(simd: S, triangles: &[Triangle], indices: &[u32]) -> [Axes<S>; 3] {
+pub(crate) fn gathered<S: Simd>(simd: S, triangles: &Triangles, indices: &[u32]) -> [Axes<S>; 3] {
     let mut corners = [[[0.0; LANES]; 3]; 3];
     for lane in 0..LANES {
         let index = indices[lane.min(indices.len() - 1)];
-        for (axes, Vec3 { x, y, z }) in corners.iter_mut().zip(triangles[index as usize].corners()) {
+        for (axes, Vec3 { x, y, z }) in corners.iter_mut().zip(triangles.at(index).corners()) {
             (axes[0][lane], axes[1][lane], axes[2][lane]) = (x, y, z);
         }
     }

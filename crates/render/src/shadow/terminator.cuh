@@ -42,7 +42,7 @@ DEVICE Vec3 largest_lift(const Scene &scene, const Hit *hits, unsigned ray, cons
     if (scene.normals == nullptr)
         return splat(0.0f);
     const Hit hit = load_hit(hits, ray);
-    const ShadowPoint casting = shadow_point(scene, hit, load_corners(scene.triangles + hit.triangle), point);
+    const ShadowPoint casting = shadow_point(scene, hit, corners_at(scene.triangles, hit.triangle), point);
     return casting.is_curved ? casting.lift : splat(0.0f);
 }
 
@@ -72,9 +72,9 @@ DEVICE SurfacePoint toward(const Scene &scene, const Light &light, const ShadowP
 COLD float bend_of(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray) {
     const Hit hit = load_hit(hits, ray);
     // Flat parts of a scene have none.
-    if (load_normal(scene.normals, __ldg(scene.indices[hit.triangle].vertices)) == splat(0.0f))
+    if (load_normal(scene.normals, __ldg(scene.indices[stored_index(scene.triangles, hit.triangle)].vertices)) == splat(0.0f))
         return FLAT;
-    const Corners corners = load_corners(scene.triangles + hit.triangle);
+    const Corners corners = corners_at(scene.triangles, hit.triangle);
     const ShadowPoint point = shadow_point(scene, hit, corners, surface_point(ray_at(rays, ray), hit, corners));
     return point.is_curved ? length(cross(point.flat.normal, point.normal)) : FLAT;
 }
@@ -96,7 +96,7 @@ COLD SurfacePoint flat_point_of(const Scene &scene, const Rays &rays, const Hit 
 // The point from which ray number `ray`, which must have hit something, looks for a light.
 COLD SurfacePoint curved_point_of(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray, const Light &light) {
     const Hit hit = load_hit(hits, ray);
-    const Corners corners = load_corners(scene.triangles + hit.triangle);
+    const Corners corners = corners_at(scene.triangles, hit.triangle);
     return toward(scene, light, shadow_point(scene, hit, corners, surface_point(ray_at(rays, ray), hit, corners)));
 }
 

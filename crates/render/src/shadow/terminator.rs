@@ -26,7 +26,7 @@ impl HostWave<'_> {
             return ShadowPoint::flat(point);
         }
         let (hit, scene) = (&self.hits[ray], self.scene);
-        let triangle = &scene.geometry.triangles[hit.triangle as usize];
+        let triangle = &scene.geometry.triangles.at(hit.triangle);
         ShadowPoint::new(point, &scene.scene.geometry.mesh, hit, triangle)
     }
 }
@@ -52,7 +52,7 @@ impl ShadowPoint {
         if mesh.normals.is_empty() {
             return ShadowPoint::flat(point);
         }
-        let normals = mesh.triangles[hit.triangle as usize].map(|vertex| mesh.normals[vertex as usize]);
+        let normals = mesh.corner_normals(hit.triangle);
         let normal = shading_normal(mesh, hit, point.normal);
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         ShadowPoint { flat: point, curved: curved(&point, normal, triangle.corners(), normals, weights) }

@@ -13,6 +13,7 @@ mod figures;
 mod gathered;
 mod glass;
 mod ground;
+mod instances;
 mod kept;
 mod lamps;
 mod light_groups;

@@ -15,7 +15,7 @@ pub(crate) mod views;
 use std::sync::Arc;
 
 use self::{
-    parts::MovingPart,
+    parts::{MovingInstance, MovingPart},
     rig::Rig,
     views::{Carried, Motion},
 };
@@ -26,6 +26,7 @@ use crate::{Camera, Geometry, Light, Scene, draft::moved};
 pub struct Animation {
     pub(crate) rig: Rig,
     pub(crate) parts: Vec<MovingPart>,
+    pub(crate) instances: Vec<MovingInstance>,
     pub(crate) cameras: Vec<Motion<Camera>>,
     pub(crate) lights: Vec<Motion<Light>>,
     pub(crate) duration: f64,
@@ -56,7 +57,7 @@ impl Animation {
 
     /// Whether surfaces move: not only cameras and lights.
     pub fn moves_surfaces(&self) -> bool {
-        !self.parts.is_empty()
+        !self.parts.is_empty() || !self.instances.is_empty()
     }
 
     /// Records which materials may be those of lamps, if a part that moves has one.
@@ -69,7 +70,7 @@ impl Animation {
 
     /// Whether nothing moves.
     pub(crate) fn is_still(&self) -> bool {
-        self.parts.is_empty() && self.cameras.is_empty() && self.lights.is_empty()
+        !self.moves_surfaces() && self.cameras.is_empty() && self.lights.is_empty()
     }
 }
 
@@ -103,6 +104,9 @@ impl Scene {
             for part in &animation.parts {
                 part.pose(&places, time, geometry.origin, &mut geometry.mesh);
             }
+            let instances = animation.instances.iter();
+            let moved = instances.map(|moving| (moving.instance, places[moving.node as usize] * moving.place));
+            geometry.mesh.move_instances(moved, geometry.origin);
             if let Some(marks) = &animation.lamps {
                 scene.move_lamps(marks);
             }

@@ -84,6 +84,16 @@ pub(crate) struct MovingPart {
     pub(crate) reversed: bool,
 }
 
+/// An instance that goes with a node of the rig, which is never enlarged or lessened: so there always is an inverse of its place.
+#[derive(Debug)]
+pub(crate) struct MovingInstance {
+    /// Its number.
+    pub(crate) instance: usize,
+    pub(crate) node: u32,
+    /// From the shape's coordinates to the node's.
+    pub(crate) place: DMat4,
+}
+
 /// The transforms of vertices.
 enum Placing<'a> {
     /// All have the same.

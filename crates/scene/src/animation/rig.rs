@@ -71,6 +71,12 @@ impl Node {
         tracks.into_iter().flatten().any(|track| !track.is_constant()) || self.local(0.0) != self.rest.matrix()
     }
 
+    /// Whether it is ever larger or smaller than at rest.
+    fn scales(&self) -> bool {
+        let Place::Parts { scale: rest, .. } = self.rest else { return false };
+        self.scale.as_ref().is_some_and(|track| !track.is_constant() || DVec3::from(track.vector(0.0)) != rest)
+    }
+
     /// From its coordinates to its parent's at `time`.
     fn local(&self, time: f64) -> DMat4 {
         let Place::Parts { translation, rotation, scale } = self.rest else { return self.rest.matrix() };
@@ -109,6 +115,15 @@ impl Rig {
         moving
     }
 
+    /// Whether each node is enlarged or lessened over time, by itself or with its parent.
+    pub(crate) fn scaling(&self) -> Vec<bool> {
+        let mut scaling: Vec<bool> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            scaling.push(node.scales() || node.parent.is_some_and(|parent| scaling[parent as usize]));
+        }
+        scaling
+    }
+
     /// From the coordinates of each node to the world's, at `time` or at rest.
     pub(crate) fn places(&self, time: Option<f64>) -> Vec<DMat4> {
         let mut places: Vec<DMat4> = Vec::with_capacity(self.nodes.len());
@@ -134,6 +149,7 @@ mod tests {
         let child = rig.add(Node::fixed(Some(parent), Place::Matrix(DMat4::from_translation(DVec3::Y))));
         let other = rig.add(Node::fixed(None, Place::at(DVec3::ZERO)));
         assert_eq!(rig.moving(), [true, true, false]);
+        assert_eq!(rig.scaling(), [false; 3]);
         let at = |time| rig.places(time)[child as usize].transform_point3(DVec3::ZERO);
         assert_eq!([at(None), at(Some(0.0)), at(Some(1.0))].map(|place| place.x), [0.0, 1.0, 2.0]);
         assert_eq!((at(Some(1.0)).y, rig.places(Some(1.0))[other as usize]), (1.0, DMat4::IDENTITY));

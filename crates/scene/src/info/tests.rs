@@ -48,6 +48,7 @@ fn the_json_is_in_world_coordinates_and_degrees() {
         ],
         "materials": 0,
         "cut_outs": 0,
+        "instances": 0,
         "see_through": 0,
         "textures": 0,
         "up": {"axis": "y", "reason": "its cameras are oriented that way"},

@@ -12,18 +12,22 @@ mod reinsert;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use fearless_simd::Level;
-use glam::{DVec3, Vec3A};
+use glam::{DVec3, Vec3, Vec3A};
 use lightmesh_layout::constants::BVH_STACK;
-use lightmesh_scene::Bounds;
+use lightmesh_scene::{Bounds, Instance};
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
+use rayon::prelude::*;
 
 use super::{Bvh, Node};
 use crate::accel::approach::{self, Approach};
 use crate::accel::distinct::distinct;
-use crate::accel::{Coverage, Triangle};
+use crate::accel::{Coverage, Instanced, ShapeTree, Triangle};
 
 /// Most levels: of the binary tree without its leaves, and so of the wide one.
 const LEVELS: usize = BVH_STACK as usize;
@@ -38,20 +42,94 @@ struct Work {
 }
 
 pub(super) fn build(triangles: &[Triangle]) -> Bvh {
-    let triangles: Vec<_> = distinct(triangles).into_iter().map(|at| triangles[at as usize]).collect();
-    let approach = Approach::around(&triangles);
-    let tree = tree(&triangles, &mut Work::default());
-    let triangles: Vec<_> = tree.primitive_indices.iter().map(|&index| triangles[index as usize]).collect();
-    let mut nodes = tree.nodes;
-    enclose(&mut nodes, &triangles);
+    let (nodes, triangles) = level(&usable(triangles));
     Bvh {
         depth: depth(&nodes),
+        approach: Approach::around(&triangles),
         nodes: nodes.into(),
         triangles: triangles.into(),
-        approach,
+        shapes: Arc::default(),
+        instances: Arc::default(),
+        shape_depth: 0,
         coverage: Coverage::default(),
         level: Level::new(),
     }
+}
+
+/// A tree over the scene's own triangles and the boxes around instances, and after it one for each shape.
+pub(super) fn build_levels(own: &[Triangle], stored: &[Triangle], instances: &[Instance], known: Option<&Bvh>) -> Bvh {
+    // 1. The shapes that are anywhere.
+    let mut shapes: Vec<Range<u32>> = instances.iter().map(|instance| instance.triangles.clone()).collect();
+    shapes.sort_unstable_by_key(|shape| (shape.start, shape.end));
+    shapes.dedup();
+    let of_shape = |shape: &Range<u32>| level(&usable(&stored[shape.start as usize..shape.end as usize]));
+    let known = known.filter(|known| known.shapes.iter().map(|(shape, _)| shape).eq(&shapes));
+    let levels: Vec<(Vec<Node>, Vec<Triangle>)> = match known {
+        Some(known) => (0..shapes.len()).map(|shape| known.shape_level(shape)).collect(),
+        None => shapes.par_iter().map(of_shape).collect(),
+    };
+    let far = |shape: &Range<u32>| {
+        let usable = stored[shape.start as usize..shape.end as usize].iter().filter(|triangle| triangle.is_usable());
+        usable.flat_map(Triangle::corners).fold(Vec3::ZERO, |far, corner| far.max(corner.abs()))
+    };
+    let far: Vec<Vec3> = shapes.par_iter().map(far).collect();
+    let shape_of = |instance: &Instance| {
+        let key = (instance.triangles.start, instance.triangles.end);
+        shapes.partition_point(|shape| (shape.start, shape.end) < key)
+    };
+
+    // 2. The scene, in which instances of which nothing can be hit are not held.
+    let is_held = |(_, instance): &(u32, &Instance)| !levels[shape_of(instance)].0.is_empty();
+    let holders =
+        (0..).zip(instances).filter(is_held).map(|(number, instance)| Triangle::holder(&instance.bounds, number));
+    let mut held = usable(own);
+    held.extend(holders);
+    let (mut nodes, mut triangles) = level(&held);
+    let (depth_of_scene, approach) = (depth(&nodes), Approach::around(&triangles));
+
+    // 3. All in one sequence.
+    let (mut trees, mut shape_depth) = (Vec::with_capacity(shapes.len()), 0);
+    for (mut own_nodes, own_triangles) in levels {
+        shape_depth = shape_depth.max(depth(&own_nodes));
+        let (first_node, first_triangle) = (nodes.len() as u32, triangles.len() as u32);
+        trees.push(ShapeTree { root: first_node, leaves: first_triangle });
+        for node in &mut own_nodes {
+            node.child_base_idx += first_node;
+            node.primitive_base_idx += first_triangle;
+        }
+        nodes.append(&mut own_nodes);
+        triangles.extend(own_triangles);
+    }
+    let place = |instance: &Instance| {
+        let shape = shape_of(instance);
+        Instanced::new(instance, trees[shape], far[shape])
+    };
+    let instances: Vec<Instanced> = instances.iter().map(place).collect();
+    Bvh {
+        depth: depth_of_scene,
+        approach,
+        nodes: nodes.into(),
+        triangles: triangles.into(),
+        shapes: shapes.into_iter().zip(trees).collect(),
+        instances: instances.into(),
+        shape_depth,
+        coverage: Coverage::default(),
+        level: Level::new(),
+    }
+}
+
+/// What a tree is built over.
+fn usable(triangles: &[Triangle]) -> Vec<Triangle> {
+    distinct(triangles).into_iter().map(|at| triangles[at as usize]).collect()
+}
+
+/// The nodes of a tree and its triangles in the order of leaves.
+fn level(triangles: &[Triangle]) -> (Vec<Node>, Vec<Triangle>) {
+    let tree = tree(triangles, &mut Work::default());
+    let triangles: Vec<_> = tree.primitive_indices.iter().map(|&index| triangles[index as usize]).collect();
+    let mut nodes = tree.nodes;
+    enclose(&mut nodes, &triangles);
+    (nodes, triangles)
 }
 
 fn tree(triangles: &[Triangle], work: &mut Work) -> CwBvh {

@@ -12,16 +12,20 @@ mod packet;
 mod search;
 mod walk;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use fearless_simd::{Level, Simd};
 use glam::Vec3;
+use lightmesh_scene::Instance;
 use obvhs::cwbvh::node::CwBvhNode as Node;
 
 pub use cost::BvhCost;
 
 use super::approach::Approach;
-use super::{Accelerator, Coverage, Form, Hit, Ray, Region, ShortSegments, Take, Triangle, Visitor};
+use super::{
+    Accelerator, Coverage, Form, Hit, Instanced, Ray, Region, ShapeTree, ShortSegments, Take, Triangle, Visitor,
+};
 use crate::simd::dispatch;
 
 /// A compressed wide bounding volume hierarchy; clones share it.
@@ -33,6 +37,12 @@ pub struct Bvh {
     triangles: Arc<[Triangle]>,
     /// Number of levels: the largest stack that a walk needs.
     depth: usize,
+    /// The stored triangles of each shape, and its tree: these come after that of the scene, in this order.
+    shapes: Arc<[(Range<u32>, ShapeTree)]>,
+    /// Shapes at their places. Holders among the triangles name them.
+    instances: Arc<[Instanced]>,
+    /// The most levels of a shape's tree.
+    shape_depth: usize,
     approach: Approach,
     coverage: Coverage,
     level: Level,
@@ -42,6 +52,37 @@ impl Bvh {
     /// Builds the tree over the usable triangles, one of identical ones.
     pub fn new(triangles: &[Triangle]) -> Bvh {
         build::build(triangles)
+    }
+
+    /// The same over instances, too: `stored` are all triangles that are stored, of which those of shapes are in coordinates of their own. If
+    /// `known` holds the same shapes, their trees are taken from there.
+    pub(crate) fn with_instances(
+        own: &[Triangle],
+        stored: &[Triangle],
+        instances: &[Instance],
+        known: Option<&Bvh>,
+    ) -> Bvh {
+        build::build_levels(own, stored, instances, known)
+    }
+
+    /// The tree of a shape as if it were alone.
+    fn shape_level(&self, shape: usize) -> (Vec<Node>, Vec<Triangle>) {
+        let ShapeTree { root, leaves } = self.shapes[shape].1;
+        let (next_root, next_leaves) = match self.shapes.get(shape + 1) {
+            Some((_, next)) => (next.root as usize, next.leaves as usize),
+            None => (self.nodes.len(), self.triangles.len()),
+        };
+        let mut nodes = self.nodes[root as usize..next_root].to_vec();
+        for node in &mut nodes {
+            node.child_base_idx -= root;
+            node.primitive_base_idx -= leaves;
+        }
+        (nodes, self.triangles[leaves as usize..next_leaves].to_vec())
+    }
+
+    /// Its instances.
+    pub(crate) fn instances(&self) -> &Arc<[Instanced]> {
+        &self.instances
     }
 
     /// The opacities of triangles that are cut out.
@@ -64,9 +105,9 @@ impl Bvh {
         &self.triangles
     }
 
-    /// Number of levels.
+    /// Number of levels, of the scene's tree and those of shapes together.
     pub(crate) fn depth(&self) -> usize {
-        self.depth
+        self.depth + self.shape_depth
     }
 
     /// Centre and radius of the sphere of interest.
@@ -84,8 +125,8 @@ impl Bvh {
         slack: f32,
         visitor: &mut impl Visitor,
     ) {
-        let slabs = walk::Slabs::new(origin, direction, slack);
-        walk::walk(simd, self, 0, &slabs, walk::Stack::new(self.depth).entries(), visitor);
+        let ray = walk::Walked::new(origin, direction, slack);
+        walk::walk(simd, self, 0, &ray, walk::Stack::new(self.depth).entries(), visitor);
     }
 
     /// The same tree traversed at another SIMD level; every level gives the same bits.
@@ -134,6 +175,6 @@ impl Accelerator for Bvh {
     }
 
     fn memory(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.triangles)
+        size_of_val(&*self.nodes) + size_of_val(&*self.triangles) + size_of_val(&*self.instances)
     }
 }

@@ -107,14 +107,116 @@ DEVICE void next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch
     __syncwarp();
     warp_append(inner, child, search.stack, search.height);
     for (unsigned i = 0; i < 3; i++)
-        sieve<SIEVED>(region, bvh.triangles, triangles > i, first + i, found, count);
+        sieve<SIEVED>(region, bvh.triangles + (first + i), triangles > i, first + i, found, count);
+    __syncwarp();
+}
+
+// A search in the scene's tree and in those of shapes: with each node, whose tree it is of.
+struct InstancedSearch {
+    unsigned *stack;
+    // By entry of the stack: the number of an instance, from 1, or 0 for the scene's tree.
+    unsigned *owners;
+    unsigned height;
+    const unsigned *starts;
+    unsigned start_count;
+};
+
+// A node adds at most as many instances as its leaves hold. They are taken off the stack before other nodes of the scene's tree.
+DEVICE unsigned entries_of_search(const InstancedBvh &bvh) {
+    return STACK_OF_INSTANCES + MOST_HELD + (STACK_PER_LEVEL * bvh.depth + 3) / 4 * 4;
+}
+
+DEVICE unsigned search_words(const InstancedBvh &bvh) { return 2 * entries_of_search(bvh); }
+
+template <class Form>
+DEVICE InstancedSearch begin_search(const InstancedBvh &bvh, const Region<Form> &, unsigned *memory) {
+    unsigned *owners = memory + entries_of_search(bvh);
+    if (lane_of_thread() == 0)
+        memory[0] = owners[0] = 0;
+    __syncwarp();
+    return InstancedSearch{memory, owners, bvh.node_count != 0 ? 1u : 0u, memory, 0};
+}
+
+template <class Form>
+DEVICE InstancedSearch begin_search_at(const InstancedBvh &bvh, const Region<Form> &region, unsigned *memory, const unsigned *starts,
+                                       unsigned count) {
+    if (count == FROM_ROOT)
+        return begin_search(bvh, region, memory);
+    return InstancedSearch{memory, memory + entries_of_search(bvh), 0, starts, count};
+}
+
+DEVICE bool goes_on(const InstancedBvh &, const InstancedSearch &search) { return (search.height | search.start_count) != 0; }
+
+// Takes the box of a slot to where a shape is: twin of `placed` in search.rs.
+DEVICE void place_slot(const Instanced *instance, Slot &slot) {
+    const Vec3 half = 0.5f * (slot.high - slot.low), middle = 0.5f * (slot.high + slot.low), far = abs(middle) + half;
+    const float4 x = load_row(instance->place, 0), y = load_row(instance->place, 1), z = load_row(instance->place, 2);
+    const Vec3 rows[3] = {Vec3{x.x, x.y, x.z}, Vec3{y.x, y.y, y.z}, Vec3{z.x, z.y, z.z}}, shift = {x.w, y.w, z.w};
+    const Vec3 center = Vec3{dot(rows[0], middle), dot(rows[1], middle), dot(rows[2], middle)} + shift;
+    const Vec3 terms = Vec3{dot(abs(rows[0]), far), dot(abs(rows[1]), far), dot(abs(rows[2]), far)} + abs(shift);
+    const Vec3 reach = Vec3{dot(abs(rows[0]), half), dot(abs(rows[1]), half), dot(abs(rows[2]), half)} + INSTANCE_MARGIN * terms;
+    slot.low = center - reach;
+    slot.high = center + reach;
+}
+
+// The same round; what is held in the scene's leaves goes onto the stack, the nodes of shapes with the numbers of their places.
+template <bool SIEVED, class Form>
+DEVICE void next_triangles(const InstancedBvh &bvh, const Region<Form> &region, InstancedSearch &search, unsigned *found, unsigned &count) {
+    const unsigned lane = lane_of_thread();
+    unsigned number = 0, slot = lane % 8, owner = 0;
+    bool active;
+    if (search.start_count != 0 && search.height < 4) {
+        const unsigned taken = min(search.start_count, WARP);
+        search.start_count -= taken;
+        active = lane < taken;
+        const unsigned start = search.starts[search.start_count + (active ? lane : 0)] & ~LEAF_START;
+        number = start / 8;
+        slot = start % 8;
+    } else {
+        const unsigned taken = search.height + 4 * MOST_HELD <= STACK_OF_INSTANCES ? min(search.height, 4u) : 1;
+        search.height -= taken;
+        active = lane / 8 < taken;
+        if (active) {
+            number = search.stack[search.height + lane / 8];
+            owner = search.owners[search.height + lane / 8];
+        }
+    }
+    const Instanced *instance = owner != 0 ? bvh.instances + (owner - 1) : nullptr;
+    bool inner = false;
+    unsigned child = 0, first = 0, triangles = 0;
+    if (active) {
+        Slot box = load_slot(bvh.nodes + number, slot);
+        if (instance != nullptr)
+            place_slot(instance, box);
+        if (meets_slot(region, box)) {
+            inner = box.inner;
+            child = box.child;
+            first = box.first;
+            triangles = inner ? 0 : __popc(box.meta >> 5);
+        }
+    }
+    __syncwarp();
+    unsigned owned = search.height;
+    warp_append(inner, owner, search.owners, owned);
+    warp_append(inner, child, search.stack, search.height);
+    for (unsigned i = 0; i < 3; i++) {
+        const bool has = triangles > i;
+        const Triangle *stored = bvh.triangles + (first + i);
+        const unsigned held = has && instance == nullptr ? held_by(stored) : 0;
+        const bool enters = held != 0 && meets_triangle(region, load_corners(stored));
+        owned = search.height;
+        warp_append(enters, held, search.owners, owned);
+        warp_append(enters, enters ? __ldg(&bvh.instances[held - 1].root) : 0, search.stack, search.height);
+        const unsigned place = has ? noted_place(Part{bvh, bvh.coverage, instance}, first + i) : 0;
+        sieve<SIEVED>(region, Placed{stored, instance}, has && held == 0, place, found, count);
+    }
     __syncwarp();
 }
 
 // Finds up to MOST_STARTS boxes that hold all triangles that a region may meet: the root's children, then, as long as there is room,
 // children in place of their parents. Returns their number. `list` has twice WARP words.
-template <class Form>
-DEVICE unsigned find_starts(const Bvh &bvh, const Region<Form> &region, unsigned *list) {
+template <class Tree, class Form>
+DEVICE unsigned find_starts_in(const Tree &bvh, const Region<Form> &region, unsigned *list) {
     const unsigned lane = lane_of_thread(), slot = lane % 8;
     // A start holds a node's number in 28 bits.
     if (bvh.node_count >> 28 != 0)
@@ -155,4 +257,15 @@ DEVICE unsigned find_starts(const Bvh &bvh, const Region<Form> &region, unsigned
         }
     }
     return count;
+}
+
+template <class Form>
+DEVICE unsigned find_starts(const Bvh &bvh, const Region<Form> &region, unsigned *list) {
+    return find_starts_in(bvh, region, list);
+}
+
+// In the scene's tree.
+template <class Form>
+DEVICE unsigned find_starts(const InstancedBvh &bvh, const Region<Form> &region, unsigned *list) {
+    return find_starts_in(bvh, region, list);
 }

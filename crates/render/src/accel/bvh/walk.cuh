@@ -148,6 +148,89 @@ DEVICE void walk_nodes(const Bvh &bvh, const Slabs &slabs, Visitor &visitor) {
     }
 }
 
+// Of the triangles chosen, those that are instances.
+DEVICE unsigned held_among(const InstancedBvh &bvh, const Chosen &triangles) {
+    unsigned held = 0;
+    for (unsigned rest = triangles.bits; rest != 0; rest &= rest - 1)
+        held |= held_by(bvh.triangles + (triangles.base + __ffs(rest) - 1)) != 0 ? rest & -rest : 0;
+    return held;
+}
+
+// The ray in the coordinates of a shape. Its slack also covers what rounding moves: see instanced.rs.
+DEVICE Slabs slabs_in(const Instanced *instance, Vec3 origin, Vec3 direction, float slack) {
+    const float norm = __ldg(&instance->norm), far = norm * (max_element(abs(origin)) + __ldg(&instance->reach));
+    const float within = norm * slack + INSTANCE_MARGIN * (far + __ldg(&instance->shift));
+    return slabs_of(placed_point(instance->back, origin), placed_vector(instance->back, direction), within);
+}
+
+// The same in the scene's tree and in those of shapes. A thread is in one tree at a time, so that those of a warp walk on together.
+template <class Visitor>
+DEVICE void walk_instances(const InstancedBvh &bvh, Vec3 origin, Vec3 direction, float slack, Visitor &visitor) {
+    if (bvh.node_count == 0)
+        return;
+    // The groups of the scene's tree lie below those of the shape, which begin at `floor`.
+    uint2 stack[2 * BVH_STACK];
+    unsigned height = 0, floor = 0;
+    Slabs slabs = slabs_of(origin, direction, slack);
+    // The place of the shape that the thread is in, and the instances of the same node that come after it.
+    const Instanced *instance = nullptr;
+    Chosen held = {0, 0};
+    uint2 nodes = {0, ROOT_HIT};
+    while (true) {
+        // 2. Take the nearest node out of its group; keep the rest for later.
+        const unsigned bit = 31 - __clz(nodes.y), siblings = nodes.y;
+        nodes.y &= ~(1u << bit);
+        if (nodes.y > TRIANGLE_HITS)
+            stack[height++] = nodes;
+        const unsigned slot = (bit - FIRST_INNER) ^ slabs.octant;
+        const unsigned node = nodes.x + __popc(siblings & ((1u << slot) - 1));
+
+        // 3, 4. Which of its children does the ray meet? Test the triangles of those that are leaves; set aside what has to wait for instances.
+        Chosen triangles;
+        meet_node(bvh.nodes + node, slabs, limit(visitor), nodes, triangles);
+        if (instance == nullptr) {
+            held = Chosen{triangles.base, held_among(bvh, triangles)};
+            triangles.bits &= ~held.bits;
+            if (held.bits != 0) {
+                if (nodes.y > TRIANGLE_HITS)
+                    stack[height++] = nodes;
+                nodes.y = 0;
+                floor = height;
+            }
+        }
+        if (triangles.bits != 0 && !ask(visitor, Part{bvh, bvh.coverage, instance}, triangles))
+            return;
+
+        // 5. No child left to enter: continue with the group most recently set aside, the next instance, or the scene.
+        if (nodes.y > TRIANGLE_HITS)
+            continue;
+        unsigned next;
+        if (height > floor) {
+            nodes = stack[--height];
+        } else if (take(held, next)) {
+            instance = bvh.instances + (held_by(bvh.triangles + next) - 1);
+            slabs = slabs_in(instance, origin, direction, slack);
+            nodes = uint2{__ldg(&instance->root), ROOT_HIT};
+        } else {
+            if (height == 0)
+                return;
+            instance = nullptr;
+            floor = 0;
+            slabs = slabs_of(origin, direction, slack);
+            nodes = stack[--height];
+        }
+    }
+}
+
+template <class Visitor>
+DEVICE void walk(const InstancedBvh &bvh, const Tally &, const Ray &ray, Visitor &visitor) {
+    walk_instances(bvh, ray.origin, ray.direction, 0.0f, visitor);
+}
+
+DEVICE void walk_short(const InstancedBvh &bvh, Short &segment, float slack) {
+    walk_instances(bvh, segment.test.origin, segment.direction, slack, segment);
+}
+
 template <class Visitor>
 DEVICE void walk(const Bvh &bvh, const Tally &, const Ray &ray, Visitor &visitor) {
     walk_nodes(bvh, slabs_of(ray.origin, ray.direction, 0.0f), visitor);

@@ -27,7 +27,7 @@ use lightmesh_layout::constants::{BVH_MARGIN, FIRST_INNER, INNER_HITS, LEAST_COM
 
 use super::{Bvh, Node};
 use crate::accel::visit::{Any, Closest, Short, Visitor};
-use crate::accel::{Hit, Ray, ShortSegments, Triangle};
+use crate::accel::{Hit, Instanced, Ray, ShortSegments, Triangle};
 
 /// Entries of the stack that lies in registers and cache; deeper trees, which only hostile input produces, get one from the heap.
 const STACK: usize = 32;
@@ -76,7 +76,7 @@ pub(super) fn closest_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut
     for (hit, ray) in hits.iter_mut().zip(rays) {
         *hit = bvh.approach.ray(ray).map_or(Hit::MISS, |near| {
             let mut closest = Closest::new(&near, &bvh.coverage);
-            walk(simd, bvh, 0, &Slabs::new(near.origin, near.direction, 0.0), stack.entries(), &mut closest);
+            walk(simd, bvh, 0, &Walked::new(near.origin, near.direction, 0.0), stack.entries(), &mut closest);
             near.finish(closest.best)
         });
     }
@@ -88,7 +88,7 @@ pub(super) fn occluded<S: Simd>(simd: S, bvh: &Bvh, segments: &[Ray], occluded: 
     for (occluded, segment) in occluded.iter_mut().zip(segments) {
         *occluded = bvh.approach.ray(segment).is_some_and(|near| {
             let mut any = Any::new(&near, &bvh.coverage);
-            walk(simd, bvh, 0, &Slabs::new(near.origin, near.direction, 0.0), stack.entries(), &mut any);
+            walk(simd, bvh, 0, &Walked::new(near.origin, near.direction, 0.0), stack.entries(), &mut any);
             any.hit
         });
     }
@@ -99,9 +99,24 @@ pub(super) fn short_segments<S: Simd>(simd: S, bvh: &Bvh, segments: &ShortSegmen
     let mut stack = Stack::new(bvh.depth);
     for (blocked, &direction) in blocked.iter_mut().zip(segments.directions) {
         let mut short = Short::new(segments, direction);
-        let slabs = Slabs::new(segments.test.origin, direction, segments.slack);
-        walk(simd, bvh, 0, &slabs, stack.entries(), &mut short);
+        let ray = Walked::new(segments.test.origin, direction, segments.slack);
+        walk(simd, bvh, 0, &ray, stack.entries(), &mut short);
         *blocked = short.blocked;
+    }
+}
+
+/// A ray that walks, and which instances it is taken to.
+pub(super) struct Walked {
+    ray: (Vec3, Vec3),
+    /// How far outside of a box it may pass and still count.
+    slack: f32,
+    slabs: Slabs,
+}
+
+impl Walked {
+    #[inline(always)]
+    pub(super) fn new(origin: Vec3, direction: Vec3, slack: f32) -> Walked {
+        Walked { ray: (origin, direction), slack, slabs: Slabs::new(origin, direction, slack) }
     }
 }
 
@@ -111,11 +126,21 @@ pub(super) fn walk<S: Simd>(
     simd: S,
     bvh: &Bvh,
     root: u32,
-    slabs: &Slabs,
+    ray: &Walked,
     stack: &mut [Group],
     visitor: &mut impl Visitor,
 ) {
-    descend(bvh, root, slabs.octant, stack, &mut RayGuide { simd, slabs, visitor });
+    descend(bvh, root, ray.slabs.octant, stack, &mut RayGuide { simd, bvh, ray, visitor });
+}
+
+/// Visits the triangles of an instance in the same way, where they are in the scene. False ends the walk.
+#[inline(never)]
+pub(super) fn enter<S: Simd>(simd: S, bvh: &Bvh, number: usize, ray: &Walked, visitor: &mut impl Visitor) -> bool {
+    let instance = &bvh.instances[number];
+    let (origin, direction) = instance.ray(ray.ray);
+    let slabs = &Slabs::new(origin, direction, instance.slack(ray.ray.0, ray.slack));
+    let mut guide = ShapeGuide { simd, slabs, instance, visitor };
+    descend(bvh, instance.tree.root, slabs.octant, Stack::new(bvh.shape_depth).entries(), &mut guide)
 }
 
 /// Decides where a descent through the tree goes.
@@ -130,11 +155,20 @@ pub(super) trait Guide {
 /// A ray that looks for triangles.
 struct RayGuide<'a, S: Simd, V: Visitor> {
     simd: S,
-    slabs: &'a Slabs,
+    bvh: &'a Bvh,
+    ray: &'a Walked,
     visitor: &'a mut V,
 }
 
-impl<S: Simd, V: Visitor> Guide for RayGuide<'_, S, V> {
+/// The same within a shape.
+struct ShapeGuide<'a, S: Simd, V: Visitor> {
+    simd: S,
+    slabs: &'a Slabs,
+    instance: &'a Instanced,
+    visitor: &'a mut V,
+}
+
+impl<S: Simd, V: Visitor> Guide for ShapeGuide<'_, S, V> {
     #[inline(always)]
     fn met(&self, node: &Node) -> u32 {
         met_slots(self.simd, node, self.slabs, self.visitor.limit())
@@ -142,7 +176,22 @@ impl<S: Simd, V: Visitor> Guide for RayGuide<'_, S, V> {
 
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle) -> bool {
-        self.visitor.triangle(triangle)
+        self.visitor.triangle(&self.instance.triangle(triangle))
+    }
+}
+
+impl<S: Simd, V: Visitor> Guide for RayGuide<'_, S, V> {
+    #[inline(always)]
+    fn met(&self, node: &Node) -> u32 {
+        met_slots(self.simd, node, &self.ray.slabs, self.visitor.limit())
+    }
+
+    #[inline(always)]
+    fn triangle(&mut self, triangle: &Triangle) -> bool {
+        match triangle.instance() {
+            None => self.visitor.triangle(triangle),
+            Some(number) => enter(self.simd, self.bvh, number, self.ray, self.visitor),
+        }
     }
 }
 

@@ -7,28 +7,30 @@ use proptest::prelude::*;
 use super::rays::Targets;
 use super::scenes::{self, Scene, cut_out};
 use super::{Random, grids, structures, structures_over};
-use crate::accel::{Accelerator, Beams, BruteForce, Bvh, Coverage, Hit, Ray, ShortSegments, ShortTest, Triangle};
+use crate::accel::{
+    Accelerator, Beams, BruteForce, Bvh, Coverage, Hit, Ray, ShortSegments, ShortTest, Triangle, Triangles,
+};
 
-fn closest(accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<Hit> {
+pub(super) fn closest(accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<Hit> {
     // Previous content must not matter.
     let mut hits = vec![Hit { t: 0.5, u: 0.5, v: 0.5, triangle: 0 }; rays.len()];
     accelerator.closest_hits(rays, &mut hits);
     hits
 }
 
-fn occluded(accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<bool> {
+pub(super) fn occluded(accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<bool> {
     let mut occluded = vec![true; rays.len()];
     accelerator.occluded(rays, &mut occluded);
     occluded
 }
 
-fn blocked(accelerator: &dyn Accelerator, segments: &ShortSegments) -> Vec<bool> {
+pub(super) fn blocked(accelerator: &dyn Accelerator, segments: &ShortSegments) -> Vec<bool> {
     let mut blocked = vec![true; segments.directions.len()];
     accelerator.short_segments(segments, &mut blocked);
     blocked
 }
 
-fn bits(hit: &Hit) -> [u32; 4] {
+pub(super) fn bits(hit: &Hit) -> [u32; 4] {
     bytemuck::cast(*hit)
 }
 
@@ -122,7 +124,8 @@ proptest! {
         let targets = Targets { triangles: &triangles, grids: &grids };
         let bvh = Bvh::new(&triangles).with_coverage(&coverage);
         let usable = triangles.iter().filter(|triangle| triangle.is_usable());
-        let mut beams = Beams::new(&bvh, &triangles, &coverage, &Bounds::around(usable.flat_map(Triangle::corners)));
+        let (bounds, held) = (Bounds::around(usable.flat_map(Triangle::corners)), Triangles::from(triangles.clone()));
+        let mut beams = Beams::new(&bvh, &held, &coverage, &bounds);
         for _ in 0..20 {
             let unit = |ray: Ray| Ray { direction: ray.direction.try_normalize().unwrap_or(ray.direction), ..ray };
             let rays: Vec<Ray> = targets.bundle(random).into_iter().map(unit).collect();

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod closed;
+mod instances;
 mod rays;
 mod regions;
 mod scenes;

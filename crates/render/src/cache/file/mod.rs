@@ -58,7 +58,7 @@ fn write_to(mut file: Output, scene: &PreparedScene, sections: &[Section]) -> io
     let mut output = Hashed { inner: BufWriter::new(&mut file), hash: Xxh3::new(), bytes: 0 };
     output.write_all(&MAGIC)?;
     output.write_all(&VERSION.to_le_bytes())?;
-    output.write_all(&(scene.geometry.triangles.len() as u32).to_le_bytes())?;
+    output.write_all(&(scene.geometry.triangles.stored().len() as u32).to_le_bytes())?;
     output.write_all(&scene.geometry.hash().to_le_bytes())?;
     let mut counted = Hashed { inner: pack::encoder(&mut output)?, hash: Xxh3::new(), bytes: 0 };
     content::write(&mut counted, sections)?;
@@ -121,7 +121,7 @@ fn decode(bytes: &[u8], scene: &PreparedScene, budget: Budget) -> Result<Vec<Sec
     if xxh3_64(content).to_le_bytes() != *hash {
         return Err(MeshFault::Damaged("its hash is wrong, or it is cut off"));
     }
-    let triangles = scene.geometry.triangles.len();
+    let triangles = scene.geometry.triangles.stored().len();
     if header.triangles as usize != triangles || header.geometry != scene.geometry.hash() {
         return Err(MeshFault::OtherGeometry { found: header.triangles, expected: triangles });
     }

@@ -124,7 +124,7 @@ fn each_fault_has_its_name() {
     std::fs::write(&path, &bytes).unwrap();
     let moved = self::scene(0.5);
     let error = load(&path, &moved, Budget::default()).unwrap_err();
-    let triangles = scene.geometry.triangles.len();
+    let triangles = scene.geometry.triangles.stored().len();
     match error.fault {
         MeshFault::OtherGeometry { found, expected } => assert_eq!((found as usize, expected), (triangles, triangles)),
         ref other => panic!("{other}"),

@@ -36,7 +36,7 @@ fn darkest(light: impl Fn(Vec3) -> Light) -> [f32; 2] {
     let mut worst = [0.0_f32; 2];
     for _ in 0..20_000 {
         let Some((ray, hit)) = seen(&scene, &mut random) else { continue };
-        let triangle = &geometry.triangles[hit.triangle as usize];
+        let triangle = &geometry.triangles.at(hit.triangle);
         let flat = SurfacePoint::new(&ray, &hit, triangle);
         let normal = shading_normal(mesh, &hit, flat.normal);
         let way = random.in_cube().as_vec3().normalize();
@@ -80,7 +80,7 @@ fn what_is_high_over_a_triangle_is_looked_for_from_there() {
     let mut lifted = 0;
     for _ in 0..1000 {
         let Some((ray, hit)) = seen(&scene, &mut random) else { continue };
-        let triangle = &geometry.triangles[hit.triangle as usize];
+        let triangle = &geometry.triangles.at(hit.triangle);
         let flat = SurfacePoint::new(&ray, &hit, triangle);
         let point = ShadowPoint::new(flat, mesh, &hit, triangle);
         let from = |direction: Vec3, angle: f32| {
@@ -105,7 +105,7 @@ fn surfaces_that_are_flat_bent_inwards_or_creased_stay() {
     let mut checked = 0;
     while checked < 100 {
         let Some((ray, hit)) = seen(&scene, &mut random) else { continue };
-        let triangle = &scene.geometry.triangles[hit.triangle as usize];
+        let triangle = &scene.geometry.triangles.at(hit.triangle);
         let flat = SurfacePoint::new(&ray, &hit, triangle);
         let curved = |normals: &dyn Fn(Vec3) -> Vec3, viewer: f32| {
             let mut mesh = mesh.clone();

@@ -19,11 +19,11 @@ DEVICE Sight broadcast(const Sight &sight, unsigned lane) {
 }
 
 // What a lane's triangle, if it has one, leaves of the samples.
-template <unsigned WORDS>
+template <unsigned WORDS, class Handle>
 DEVICE void test_triangle(const SurfacePoint &point, const Sight &sight, Shape shape, const RowTable &table, const Coverage &coverage,
-                          const Triangle *triangle, bool has, Seen<WORDS> &seen) {
+                          const Handle &triangle, bool has, Seen<WORDS> &seen) {
     const Occluding own = occluding(load_corners(triangle));
-    const Hiding hiding = {own.parts, coverage, reinterpret_cast<const unsigned *>(&triangle->corners[1][3])};
+    const Hiding hiding = {own.parts, coverage, cut_of(triangle)};
     if (shape == SHAPE_POINT)
         seen.bits[0] &= has && hides_center(point, sight, hiding) ? 0 : 1;
     else
@@ -48,8 +48,7 @@ DEVICE void test_point(const Shadows &args, const Structure &structure, const Li
         count -= taken;
         if (taken != 0) {
             const unsigned place = found[count + (lane < taken ? lane : 0)];
-            const Triangle *triangle = structure.triangles + place;
-            test_triangle<WORDS>(point, sight, shape, table, structure.coverage, triangle, lane < taken, seen);
+            test_triangle<WORDS>(point, sight, shape, table, structure.coverage, triangle_at(structure, place), lane < taken, seen);
         }
         __syncwarp();
     }

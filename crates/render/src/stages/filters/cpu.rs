@@ -135,7 +135,7 @@ impl<'a> Batch<'a> {
             let mut next = Vec::new();
             for (&(index, ref ray), hit) in self.going.iter().zip(&hits).filter(|(_, hit)| hit.is_some()) {
                 self.left[index] *= transmittance(self.panes, ray, hit);
-                let point = SurfacePoint::new(ray, hit, &geometry.triangles[hit.triangle as usize]);
+                let point = SurfacePoint::new(ray, hit, &geometry.triangles.at(hit.triangle));
                 next.push((index, long_segment(point.behind(), self.targets[index])));
             }
             self.going = next;

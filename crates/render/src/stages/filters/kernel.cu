@@ -13,21 +13,22 @@
 DEVICE const Bvh &structure_of(const Scene &scene, const Bvh &) { return scene.bvh; }
 DEVICE const Grid &structure_of(const Scene &scene, const Grid &) { return scene.grid; }
 DEVICE const BruteForce &structure_of(const Scene &scene, const BruteForce &) { return scene.brute_force; }
+DEVICE const InstancedBvh &structure_of(const Scene &scene, const InstancedBvh &) { return scene.instanced; }
 
 // What a dielectric leaves of light. A function of its own, so that its callers keep their registers.
-COLD Vec3 left_by_glass(const Vec3 *normals, const Indices *indices, const Triangle *triangle, const Material *material, Ray ray, Hit hit) {
-    return left_straight_on(boundary_met(normals, indices, load_corners(triangle), *material, ray, hit), *material);
+COLD Vec3 left_by_glass(Triangles triangles, const Vec3 *normals, const Indices *indices, const Material *material, Ray ray, Hit hit) {
+    return left_straight_on(boundary_met(triangles, normals, indices, *material, ray, hit), *material);
 }
 
 // What is left of light that goes through a surface.
 DEVICE Vec3 transmittance_at(const Filters &args, const Ray &ray, const Hit &hit) {
     const Scene &scene = args.shadows.scene;
-    const Triangle *triangle = args.triangles + hit.triangle;
-    const Material &material = scene.materials[__ldg(scene.triangle_materials + hit.triangle)];
+    const Triangle *triangle = stored_triangle(args.triangles, hit.triangle);
+    const Material &material = scene.materials[material_index(scene, args.triangles, hit.triangle)];
     const Vec3 through = (1.0f - opacity_at(scene.coverage, triangle, hit.u, hit.v)) * material.transmittance;
     if (material.ior == 0.0f)
         return through;
-    return left_by_glass(args.normals, scene.indices, triangle, &material, ray, hit) * through;
+    return left_by_glass(args.triangles, args.normals, scene.indices, &material, ray, hit) * through;
 }
 
 // Follows a ray through all surfaces that it meets: what is left of the light.
@@ -40,7 +41,7 @@ DEVICE Vec3 pass(const Filters &args, const Structure &panes, Vec3 from, Vec3 ta
         if (hit.triangle == Hit::NONE)
             break;
         left = left * transmittance_at(args, ray, hit);
-        from = behind(surface_point(ray, hit, load_corners(args.triangles + hit.triangle)));
+        from = behind(surface_point(ray, hit, corners_at(args.triangles, hit.triangle)));
     }
     return left;
 }

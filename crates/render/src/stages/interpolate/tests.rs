@@ -55,7 +55,7 @@ fn visibility_is_the_weighted_mean_of_the_light_points() {
             for slot in cells.slots(group) {
                 let ray = cells.members()[slot] as usize;
                 let hit = &hits[ray];
-                let point = SurfacePoint::new(&rays.rays[ray], hit, &scene.geometry.triangles[hit.triangle as usize]);
+                let point = SurfacePoint::new(&rays.rays[ray], hit, &scene.geometry.triangles.at(hit.triangle));
                 let used = mesh.template.offsets().iter().enumerate();
                 let used = used.filter(|(bit, _)| masks.mask(slot)[bit / 32] >> (bit % 32) & 1 != 0);
                 let used: Vec<_> = used.map(|(_, &offset)| cell + offset).collect();

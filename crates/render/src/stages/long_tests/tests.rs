@@ -50,7 +50,7 @@ fn with_light_points(radius: f32, judge: impl Fn(&PreparedScene, &LightMesh, &Us
 #[test]
 fn bits_are_what_a_ray_through_all_triangles_finds() {
     with_light_points(0.4, |scene, mesh, points, lit, _| {
-        let oracle = BruteForce::new(&scene.geometry.triangles);
+        let oracle = BruteForce::new(scene.geometry.triangles.stored());
         let far = scene.geometry.reach(Vec3::ZERO) * 4.0;
         for (light, direction) in [(0, None), (1, Some(Vec3::new(-0.6, 0.8, 0.0)))] {
             let LitBy::Bits(words) = &lit.lights[light] else { panic!("seen or not") };

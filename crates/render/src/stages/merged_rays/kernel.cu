@@ -11,7 +11,7 @@
 // What ray number `ray` sees.
 DEVICE Facet facet_of_ray(const MergedRays &args, unsigned ray, const Hit &hit) {
     const Ray along = ray_at(args.rays, ray);
-    const Vec3 position = surface_point(along, hit, load_corners(args.scene.triangles + hit.triangle)).position;
+    const Vec3 position = surface_point(along, hit, corners_at(args.scene.triangles, hit.triangle)).position;
     return facet_of(args.scene, along, hit, args.spacing[0] + args.spacing[1] * length(position - args.rays.view.origin));
 }
 

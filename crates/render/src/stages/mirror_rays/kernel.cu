@@ -32,7 +32,7 @@ DEVICE Shares shares_of(const MirrorRays &args, unsigned ray) {
 // The cone that the mirror at a surface point reflects.
 DEVICE Cone reflected_cone(const MirrorRays &args, unsigned ray, const Surface &surface) {
     const Hit hit = load_hit(args.hits, ray);
-    const Corners corners = load_corners(args.scene.triangles + hit.triangle);
+    const Corners corners = corners_at(args.scene.triangles, hit.triangle);
     const Cone seen = cone_after(cone_of(args.rays, ray), hit.t);
     const Cone cone = cone_reflected(seen, curvature(args.scene, hit, corners, surface.point.normal));
     return surface.material->facets ? facets_blurred(cone, surface.material->roughness) : cone;

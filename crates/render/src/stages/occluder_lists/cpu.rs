@@ -322,7 +322,7 @@ impl<'a, S: Simd> Item<'a, S> {
             let corners = gathered(simd, triangles, indices);
             let mut above = above_planes(simd, &self.around.planes, extent, corners) & ((1 << indices.len()) - 1);
             while above != 0 {
-                candidates.push(&triangles[indices[above.trailing_zeros() as usize & (LANES - 1)] as usize]);
+                candidates.push(&triangles.at(indices[above.trailing_zeros() as usize & (LANES - 1)]));
                 above &= above - 1;
             }
         }

@@ -136,12 +136,11 @@ template <unsigned WORDS, class Structure>
 DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set, const RowTable &table,
                        const Region<ShaftForm> &region, const Structure &structure, const ListMemory &memory, unsigned first,
                        unsigned count, Seen<WORDS> &seen) {
-    const Triangle *triangles = structure.triangles;
     const unsigned lane = lane_of_thread();
     Occluding own;
     Choice choice = DROPPED;
     if (lane < count) {
-        const Corners corners = load_corners(triangles + memory.found[first + lane]);
+        const Corners corners = load_corners(triangle_at(structure, memory.found[first + lane]));
         if (in_shaft(region.form, corners) && above_planes(region.planes, 2.0f * memory.shaft->half, corners)) {
             own = occluding(corners);
             choice = choose(*memory.shaft, own);
@@ -160,7 +159,7 @@ DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, con
     unsigned cut = 0;
     if (CUT_OUTS) {
         if (choice != DROPPED)
-            cut = triangle_cut(triangles + memory.found[first + lane]);
+            cut = triangle_cut(triangle_at(structure, memory.found[first + lane]));
         __syncwarp();
     }
     if (choice != DROPPED) {

@@ -40,8 +40,8 @@ struct Facet {
 
 // What a ray sees, where a pixel is about as wide as `width`.
 DEVICE Facet facet_of(const Scene &scene, const Ray &ray, const Hit &hit, float width) {
-    const SurfacePoint point = surface_point(ray, hit, load_corners(scene.triangles + hit.triangle));
-    return Facet{point, shading_normal(scene, hit, point.normal), __ldg(scene.triangle_materials + hit.triangle), width};
+    const SurfacePoint point = surface_point(ray, hit, corners_at(scene.triangles, hit.triangle));
+    return Facet{point, shading_normal(scene, hit, point.normal), material_index(scene, hit.triangle), width};
 }
 
 // What a ray of a camera sees.
@@ -66,7 +66,7 @@ DEVICE bool continues(const Facet &a, const Facet &b) {
 DEVICE bool is_near(const Facet &a, const Facet &b) { return dot(a.smooth, b.smooth) >= NEAR_COSINE && is_level(a, b, NEAR_HEIGHT); }
 
 DEVICE const Material &material_of_hit(const Scene &scene, const Hit &hit) {
-    return scene.materials[__ldg(scene.triangle_materials + hit.triangle)];
+    return scene.materials[material_index(scene, hit.triangle)];
 }
 
 // Whether the surface at `hit` lets rays through.

@@ -37,12 +37,12 @@ impl Facet {
     /// What a ray sees, where a pixel is about as wide as `width`.
     #[inline(always)]
     pub(crate) fn new(scene: &PreparedScene, ray: &Ray, hit: &Hit, width: f32) -> Facet {
-        let point = SurfacePoint::new(ray, hit, &scene.geometry.triangles[hit.triangle as usize]);
+        let point = SurfacePoint::new(ray, hit, &scene.geometry.triangles.at(hit.triangle));
         let mesh = &scene.scene.geometry.mesh;
         Facet {
             smooth: shading_normal(mesh, hit, point.normal),
             point,
-            material: mesh.materials[hit.triangle as usize],
+            material: mesh.materials[mesh.stored(hit.triangle)],
             width,
         }
     }
@@ -178,5 +178,5 @@ pub(crate) fn mirrored_samples(scene: &PreparedScene, all: &Antialiasing, hit: &
 
 fn material_at<'s>(scene: &'s PreparedScene, hit: &Hit) -> &'s Material {
     let geometry = &scene.scene.geometry;
-    &geometry.materials[geometry.mesh.materials[hit.triangle as usize] as usize]
+    &geometry.materials[geometry.mesh.materials[geometry.mesh.stored(hit.triangle)] as usize]
 }

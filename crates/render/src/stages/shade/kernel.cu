@@ -39,7 +39,7 @@ DEVICE Vec3 weight_in_film(const Shade &args, unsigned ray) {
         return weight;
     const unsigned triangle = load_hit(args.hits, ray).triangle;
     const bool sees = triangle != Hit::NONE;
-    const bool catches = sees && args.scene.materials[__ldg(args.scene.triangle_materials + triangle)].catcher;
+    const bool catches = sees && args.scene.materials[material_index(args.scene, triangle)].catcher;
     return !sees || catches ? splat(mean(weight)) : weight;
 }
 
@@ -104,7 +104,7 @@ DEVICE Samples samples_of(const Shade &args) { return Samples{args.samples, args
 DEVICE void share_tint(const Shade &args, unsigned ray, Material &own) {
     const SharedHits shared = shared_hits(args.rays, ray, samples_of(args));
     const Hit hit = load_hit(args.hits, ray);
-    const Material *material = args.scene.materials + __ldg(args.scene.triangle_materials + hit.triangle);
+    const Material *material = args.scene.materials + material_index(args.scene, hit.triangle);
     if (shared.shared != 0 && material->tinted)
         tint_by_all(tint_sources(args.scene), material, sighting_of(args.rays, ray), shared, hit, mirrors(args.rays, ray), &own);
 }

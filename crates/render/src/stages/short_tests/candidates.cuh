@@ -101,7 +101,6 @@ DEVICE int box_bound(unsigned box, int index) {
 template <class Structure>
 DEVICE unsigned choose_candidates(const LightMesh &mesh, const CellItem &item, const Structure &structure, const CellMemory &memory,
                                   unsigned first, unsigned &count) {
-    const Triangle *triangles = structure.triangles;
     const unsigned lane = lane_of_thread();
     bool kept = false;
     unsigned box = 0;
@@ -109,7 +108,7 @@ DEVICE unsigned choose_candidates(const LightMesh &mesh, const CellItem &item, c
     Span x, y, z;
     float most = 0.0f;
     if (lane < count) {
-        corners = load_corners(triangles + memory.found[first + lane]);
+        corners = load_corners(triangle_at(structure, memory.found[first + lane]));
         const Vec3 a = corners.a, b = corners.b, c = corners.c;
         kept = !is_behind(item, a, b, c) && plane_is_near(item, a, b, c, mesh.radius + mesh.slack) &&
                shadow_box(mesh, item, a, b, c, box, x, y, z, most);
@@ -123,7 +122,7 @@ DEVICE unsigned choose_candidates(const LightMesh &mesh, const CellItem &item, c
         candidate.corners[2] = float4{c.x, c.y, c.z, x.high};
         candidate.span_yz = float4{y.low, y.high, z.low, z.high};
         candidate.inverse_yz = float4{1.0f / y.low, 1.0f / y.high, 1.0f / z.low, 1.0f / z.high};
-        const unsigned cut = CUT_OUTS ? triangle_cut(triangles + memory.found[first + lane]) : 0;
+        const unsigned cut = CUT_OUTS ? triangle_cut(triangle_at(structure, memory.found[first + lane])) : 0;
         candidate.most =
             float4{most, 1.0f / (float)(box_bound(box, 3) - box_bound(box, 2) + 1), __uint_as_float(cut), 0.0f};
     }

@@ -42,7 +42,7 @@ impl CellOccluders {
         self.candidates.clear();
         self.rows.clear();
         for &index in &self.found {
-            let triangle = scene.geometry.triangles[index as usize];
+            let triangle = scene.geometry.triangles.at(index);
             let corners = triangle.corners();
             if plane_is_near(&corners, origins, reach)
                 && let Some((low, high)) = shadow_box(mesh, cell, origins, &corners)

@@ -148,7 +148,7 @@ impl Direct<'_> {
     }
 
     fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        self.scene.geometry.triangles[triangle].corners().map(|corner| corner.as_dvec3())
+        self.scene.geometry.triangles.at(triangle as u32).corners().map(|corner| corner.as_dvec3())
     }
 
     /// Whether lattice point `index` belongs to D(P, r).
@@ -163,7 +163,7 @@ impl Direct<'_> {
         }
         let mut verdict =
             if inside < self.border || height < least + self.border { Verdict::Border } else { Verdict::Yes };
-        for triangle in 0..self.scene.geometry.triangles.len() {
+        for triangle in 0..self.scene.geometry.triangles.stored().len() {
             match self.blocks(self.corners(triangle), position, normal, target) {
                 Verdict::Yes => return Verdict::No,
                 Verdict::Border => verdict = Verdict::Border,

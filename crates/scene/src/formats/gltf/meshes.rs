@@ -3,7 +3,12 @@
 //! First a survey counts what is going to be added, and checks that its bytes exist; so a few small meshes in very many nodes are
 //! rejected before they fill the memory.
 
-use std::{borrow::Cow, sync::Arc};
+use std::{
+    borrow::Cow,
+    collections::{HashMap, HashSet},
+    ops::Range,
+    sync::Arc,
+};
 
 use glam::{DMat4, Vec3};
 
@@ -18,10 +23,11 @@ use super::{
     rigged::Rigged,
 };
 use crate::{
-    LoadError, MeshPart, OwnedPositions,
+    Affine, LoadError, MeshPart, OwnedPositions,
     animation::parts::{Hold, Shape},
     builder::mirrors,
     draft::Draft,
+    instances::MOST_INSTANCED,
     mesh_part::Room,
 };
 
@@ -73,6 +79,8 @@ pub(super) struct Shown<'a> {
     /// The number of instances and their transforms.
     pub(super) instances: Option<(usize, &'a Instancing)>,
     pub(super) bends: Bends,
+    /// Whether it goes with its node.
+    pub(super) moves: bool,
 }
 
 impl Shown<'_> {
@@ -104,14 +112,17 @@ impl<'a> Meshes<'a> {
         object: Option<&str>,
         draft: &mut Draft,
     ) -> Result<(), LoadError> {
+        let shared = self.shared(all, rigged, draft)?;
         let mut room = Room::default();
         for shown in all {
             let survey = self.survey(shown.mesh)?;
-            room = room.and(&survey.room, shown.count());
+            let is_shared = shared.contains(&shown.mesh) && may_be_shared(shown, survey, rigged);
+            room = room.and(&survey.room, if is_shared { 0 } else { shown.count() });
             left_out.points_and_lines = left_out.points_and_lines.saturating_add(survey.points_and_lines);
             left_out.placeless = left_out.placeless.saturating_add(survey.placeless);
         }
         draft.reserve(&room)?;
+        let mut shapes = Shapes::new();
         for shown in all {
             let survey = self.surveys[shown.mesh as usize].as_ref().expect("surveyed above");
             // Read only here: the attributes of all nodes together might not fit into memory.
@@ -123,13 +134,61 @@ impl<'a> Meshes<'a> {
             };
             let (number, name) = shown.node;
             let named = object.or(name).or(self.meshes[shown.mesh as usize].name.as_deref());
-            draft.begin_object(named.map_or_else(|| format!("node {number}"), str::to_owned));
-            for &(primitive, mode) in &survey.primitives {
-                let chosen = materials.choose(primitive, left_out, draft);
-                self.add_primitive(primitive, mode, &chosen, shown, instances.as_ref(), rigged, draft)?;
+            let name = named.map_or_else(|| format!("node {number}"), str::to_owned);
+            draft.begin_object(&name);
+            let mut add = |shown: &Shown, instances: Option<&Instances>, draft: &mut Draft| -> Result<(), LoadError> {
+                for &(primitive, mode) in &survey.primitives {
+                    let chosen = materials.choose(primitive, left_out, draft);
+                    self.add_primitive(primitive, mode, &chosen, shown, instances, rigged, draft)?;
+                }
+                Ok(())
+            };
+            let places: Vec<DMat4> = match &instances {
+                Some(instances) => instances.transforms().collect(),
+                None => vec![DMat4::IDENTITY],
+            };
+            let mover = rigged.mover(shown.node.0);
+            let can_move = mover.is_none() || places.iter().all(|place| Affine::holds(&(shown.transform * *place)));
+            if !(can_move && shared.contains(&shown.mesh) && may_be_shared(shown, survey, rigged)) {
+                add(shown, instances.as_ref(), draft)?;
+                continue;
+            }
+            let one = |transform: DMat4| Shown { transform, instances: None, bends: Bends::default(), ..*shown };
+            for place in places {
+                let (transform, held) = (shown.transform * place, mover.map(|node| (node, place)));
+                let mirrored = mirrors(&transform);
+                let shape = match shapes.get(&(shown.mesh, mirrored)) {
+                    Some(known) => known.clone(),
+                    None => {
+                        // It moves with its places.
+                        let still = Shown { moves: false, ..one(DMat4::IDENTITY) };
+                        let shape = draft.shape(mirrored, |draft| add(&still, None, draft))?;
+                        shapes.entry((shown.mesh, mirrored)).or_insert(shape).clone()
+                    }
+                };
+                if !shape.is_some_and(|shape| draft.place(shape, &transform, Some(&name), held)) {
+                    add(&one(transform), None, draft)?;
+                }
             }
         }
         Ok(())
+    }
+
+    /// The meshes that are stored once for all their places.
+    fn shared(&mut self, all: &[Shown], rigged: &Rigged, draft: &Draft) -> Result<HashSet<u32>, LoadError> {
+        let mut places: HashMap<u32, usize> = HashMap::new();
+        for shown in all {
+            if may_be_shared(shown, self.survey(shown.mesh)?, rigged) {
+                let count = places.entry(shown.mesh).or_default();
+                *count = count.saturating_add(shown.count());
+            }
+        }
+        let triangles = |mesh: u32| self.surveys[mesh as usize].as_ref().map_or(0, |survey| survey.room.triangles);
+        places.retain(|&mesh, &mut places| draft.shares(places, triangles(mesh)));
+        // If there are too many to be numbered, there is no room for copies either.
+        let all = places.iter().map(|(&mesh, &places)| places.saturating_mul(triangles(mesh)));
+        let can_be_numbered = all.fold(0, usize::saturating_add) < MOST_INSTANCED;
+        Ok(if can_be_numbered { places.into_keys().collect() } else { HashSet::new() })
     }
 
     fn survey(&mut self, index: u32) -> Result<&Survey<'a>, LoadError> {
@@ -184,7 +243,7 @@ impl<'a> Meshes<'a> {
             let bent = self.bent(primitive, shown, vertices, used, &part, rigged)?;
             return add_bent(part, bent, &shown.bends, chosen.material, rigged, draft);
         }
-        let mover = rigged.mover(shown.node.0);
+        let mover = if shown.moves { rigged.mover(shown.node.0) } else { None };
         // All instances move the same vertices.
         let shape = mover.map(|node| (node, Arc::new(shape_of(&part))));
         let add = |draft: &mut Draft, instance: &DMat4| -> Result<(), LoadError> {
@@ -242,6 +301,15 @@ impl<'a> Meshes<'a> {
         let problem = format!("a primitive refers to vertex {largest} of {vertices} (accessor {accessor})");
         Err(malformed(self.accessors.path, problem))
     }
+}
+
+/// The triangles of meshes that are stored once, also in reverse order, for places that mirror; nothing of those that cannot be shared.
+type Shapes = HashMap<(u32, bool), Option<Range<usize>>>;
+
+/// Whether a mesh may be stored once for all its places: it is not bent, nor enlarged or lessened over time.
+fn may_be_shared(shown: &Shown, survey: &Survey, rigged: &Rigged) -> bool {
+    let bends = || survey.primitives.iter().any(|(primitive, _)| shown.bends.bend(primitive));
+    rigged.may_hold_shapes(shown.node.0) && !bends()
 }
 
 /// The vertices of a primitive, copied.

@@ -130,7 +130,7 @@ fn shown<'a>(
         };
         let skin = node.skin.map(|skin| rigged.skin(accessors, skin)).transpose()?;
         let bends = Bends::new(weights_of(accessors.document, node), skin, rigged.weights(index));
-        all.push(Shown { mesh, node: (index, node.name.as_deref()), transform, instances, bends });
+        all.push(Shown { mesh, node: (index, node.name.as_deref()), transform, instances, bends, moves: true });
     }
     Ok(all)
 }

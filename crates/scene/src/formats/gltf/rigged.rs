@@ -28,6 +28,7 @@ pub(super) struct Rigged {
     numbers: Vec<Option<u32>>,
     /// By number in the rig.
     moving: Vec<bool>,
+    scaling: Vec<bool>,
     /// Where they are at rest.
     pub(super) places: Vec<DMat4>,
     /// By node of the document.
@@ -76,8 +77,8 @@ impl Rigged {
             numbers[placed.index] = Some(animation.rig.add(node));
             weights[placed.index] = own;
         }
-        let (moving, places) = (animation.rig.moving(), animation.rig.places(None));
-        Ok(Rigged { numbers, moving, places, weights, skins: vec![None; document.skins.len()] })
+        let (moving, scaling, places) = (animation.rig.moving(), animation.rig.scaling(), animation.rig.places(None));
+        Ok(Rigged { numbers, moving, scaling, places, weights, skins: vec![None; document.skins.len()] })
     }
 
     /// The number of a node in the rig, if there is one.
@@ -93,6 +94,11 @@ impl Rigged {
     /// Whether a node of the rig moves.
     pub(super) fn moves(&self, number: u32) -> bool {
         self.moving[number as usize]
+    }
+
+    /// Whether what is fastened to a node is stored once for all its places: it stays, or is never enlarged or lessened.
+    pub(super) fn may_hold_shapes(&self, node: usize) -> bool {
+        self.mover(node).is_none_or(|number| !self.scaling[number as usize])
     }
 
     /// How the weights of morph targets of a node's mesh change.

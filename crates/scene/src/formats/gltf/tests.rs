@@ -8,6 +8,7 @@ mod extensions;
 mod geometry;
 mod materials;
 mod numbers;
+mod shared;
 mod views;
 
 use std::{f64::consts::FRAC_PI_2, fs};

@@ -1,6 +1,8 @@
 //! `[[mesh]]` and the solids to triangles.
 
 use std::collections::HashMap;
+use std::ops::Range;
+use std::path::Path;
 
 use glam::{DMat4, DVec2, DVec3, Vec2};
 
@@ -13,6 +15,7 @@ use super::{
 };
 use crate::{
     LoadError,
+    builder::mirrors,
     draft::Draft,
     open::read_part,
     shapes::{Shape, tangents},
@@ -45,8 +48,9 @@ pub(super) fn read(
         draft.mover = None;
         Ok(())
     };
+    let mut repeats = Repeats::of(file);
     for entry in &file.mesh {
-        read_mesh(source, entry.get_ref(), names, draft)?;
+        read_mesh(source, entry.get_ref(), names, &mut repeats, draft)?;
     }
     for (number, entry) in (1..).zip(file.sphere.iter().map(Spanned::get_ref)) {
         let center = source.vector("center", &entry.center)?;
@@ -123,15 +127,83 @@ fn middle(shape: &Shape, transform: &DMat4) -> DVec3 {
     0.5 * (low + high)
 }
 
+/// What makes tables place the same shape: the file, the material, and whether they mirror.
+type ShapeKey = (String, Option<String>, bool);
+
+/// What is known of a shape that several tables place.
+enum Known {
+    /// The first one was copied: so many triangles.
+    Copied(usize),
+    /// It is stored once; nothing if it cannot be.
+    Stored(Option<Range<usize>>),
+}
+
+/// Tables that place the same shape.
+struct Repeats {
+    /// How often.
+    places: HashMap<(String, Option<String>), usize>,
+    known: HashMap<ShapeKey, Known>,
+}
+
+impl Repeats {
+    fn of(file: &SceneFile) -> Repeats {
+        let mut places = HashMap::new();
+        for entry in file.mesh.iter().map(Spanned::get_ref) {
+            *places.entry(what_is_placed(entry)).or_insert(0) += 1;
+        }
+        Repeats { places, known: HashMap::new() }
+    }
+
+    /// Places the shape of a table that others place, too; `false` if it has to be copied.
+    fn place(
+        &mut self,
+        entry: &MeshEntry,
+        transform: &DMat4,
+        draft: &mut Draft,
+        read: impl FnOnce(DMat4, Option<String>, &mut Draft) -> Result<(), LoadError>,
+    ) -> Result<bool, LoadError> {
+        let (file, material) = what_is_placed(entry);
+        let places = self.places.get(&(file.clone(), material.clone())).copied().unwrap_or(0);
+        let (key, mirrored) = ((file, material, mirrors(transform)), mirrors(transform));
+        let shape = match self.known.get(&key) {
+            Some(Known::Stored(shape)) => shape.clone(),
+            Some(&Known::Copied(triangles)) if draft.shares(places, triangles) => {
+                let shape = draft.shape(mirrored, |draft| read(DMat4::IDENTITY, None, draft))?;
+                self.known.insert(key, Known::Stored(shape.clone()));
+                shape
+            }
+            _ => None,
+        };
+        let Some(shape) = shape else { return Ok(false) };
+        let stem = || Path::new(entry.file.get_ref()).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let object = match &entry.name {
+            Some(name) => name.get_ref().clone(),
+            None => draft.object_of(&shape).unwrap_or_else(stem),
+        };
+        let held = draft.mover.map(|node| (node, *transform));
+        Ok(draft.place(shape, transform, Some(&object), held))
+    }
+
+    /// Notes how many triangles a copy has added.
+    fn copied(&mut self, entry: &MeshEntry, transform: &DMat4, triangles: usize) {
+        let (file, material) = what_is_placed(entry);
+        self.known.entry((file, material, mirrors(transform))).or_insert(Known::Copied(triangles));
+    }
+}
+
+fn what_is_placed(entry: &MeshEntry) -> (String, Option<String>) {
+    (entry.file.get_ref().clone(), entry.material.as_ref().map(|name| name.get_ref().clone()))
+}
+
 fn read_mesh(
     source: &Source,
     entry: &MeshEntry,
     names: &HashMap<String, u32>,
+    repeats: &mut Repeats,
     draft: &mut Draft,
 ) -> Result<(), LoadError> {
     draft.refer(source.path, entry.file.get_ref());
     let named = |error: LoadError| error.named_by(source.place(entry.file.span()));
-    let (path, bytes) = draft.border.read_beside(source.path, entry.file.get_ref()).map_err(named)?;
     let material = match &entry.material {
         Some(name) => Some(source.index_of("material", name, names)?),
         None => None,
@@ -142,7 +214,18 @@ fn read_mesh(
         Some(motion) => Some(motion::object(source, motion, transform.w_axis.truncate(), draft)?),
         None => None,
     };
-    read_part(&path, bytes, transform, material, object, draft).map_err(named)?;
+    let read = |transform: DMat4, object: Option<String>, draft: &mut Draft| {
+        let (path, bytes) = draft.border.read_beside(source.path, entry.file.get_ref())?;
+        read_part(&path, bytes, transform, material, object, draft)
+    };
+    let may_be_shared = draft.mover.is_none_or(|node| draft.may_hold_shapes(node));
+    if may_be_shared && repeats.place(entry, &transform, draft, read).map_err(named)? {
+        draft.mover = None;
+        return Ok(());
+    }
+    let (_, before) = draft.size();
+    read(transform, object, draft).map_err(named)?;
+    repeats.copied(entry, &transform, draft.size().1 - before);
     draft.mover = None;
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 mod motion;
 mod opacity;
+mod shared;
 
 use std::{fs, path::PathBuf};
 

@@ -27,7 +27,7 @@ use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
 use super::Bvh;
-use super::walk::{Slabs, Stack, walk};
+use super::walk::{Stack, Walked, enter, walk};
 use crate::accel::packet::{AnyPacket, ClosestPacket, LANES, PacketVisitor};
 use crate::accel::visit::Visitor;
 use crate::accel::{Hit, Ray};
@@ -152,8 +152,8 @@ fn walk_packet<S: Simd, V: PacketVisitor<S>>(
                     near,
                     #[inline(always)]
                     |single| {
-                        let slabs = Slabs::new(near.origin, near.direction, 0.0);
-                        walk(simd, bvh, index, &slabs, stacks.single.entries(), single);
+                        let ray = Walked::new(near.origin, near.direction, 0.0);
+                        walk(simd, bvh, index, &ray, stacks.single.entries(), single);
                     },
                 );
             }
@@ -185,7 +185,10 @@ fn walk_packet<S: Simd, V: PacketVisitor<S>>(
                 let met = own & planes.meet(simd, &frames[group], slot, visitors[group].limit());
                 if met != 0 {
                     for triangle in triangles {
-                        visitors[group].triangle(simd, triangle, met);
+                        match triangle.instance() {
+                            None => visitors[group].triangle(simd, triangle, met),
+                            Some(number) => each_alone(simd, bvh, number, packet, group, met, &mut visitors[group]),
+                        }
                     }
                 }
             }
@@ -211,6 +214,36 @@ fn walk_packet<S: Simd, V: PacketVisitor<S>>(
                 height += 1;
             }
         }
+    }
+}
+
+/// The rays `met` of a group visit an instance, each alone.
+#[inline(never)]
+fn each_alone<S: Simd, V: PacketVisitor<S>>(
+    simd: S,
+    bvh: &Bvh,
+    instance: usize,
+    packet: &Packet<S>,
+    group: usize,
+    mut met: u32,
+    visitor: &mut V,
+) where
+    V::Single: Visitor,
+{
+    met &= !visitor.done();
+    while met != 0 {
+        let lane = met.trailing_zeros() as usize;
+        met &= met - 1;
+        let near = packet.ray(group * LANES + lane);
+        visitor.alone(
+            simd,
+            lane,
+            near,
+            #[inline(always)]
+            |single| {
+                enter(simd, bvh, instance, &Walked::new(near.origin, near.direction, 0.0), single);
+            },
+        );
     }
 }
 

@@ -6,7 +6,7 @@ use super::*;
 use crate::{LightKind, LoadError};
 
 /// Adds keys of node `node` at 0 s and 2 s.
-fn animate(document: &mut Value, name: &str, node: usize, path: &str, values: &[f32], interpolation: &str) {
+pub(super) fn animate(document: &mut Value, name: &str, node: usize, path: &str, values: &[f32], interpolation: &str) {
     let times = add_accessor(document, &bytes_of(&[0.0, 2.0]), 5126, "SCALAR", 2);
     let parts = if interpolation == "CUBICSPLINE" { 6 } else { 2 };
     let (kind, count) = match path {

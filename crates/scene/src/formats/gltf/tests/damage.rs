@@ -254,8 +254,8 @@ fn a_few_triangles_in_very_many_places_are_refused() {
     let mut document = triangle();
     let many = add_floats(&mut document, &[0.0; 3 * 3000], "VEC3", 3000);
     document["meshes"][0]["primitives"] = json!(vec![json!({"attributes": {"POSITION": many}}); 2000]);
-    document["nodes"] = json!(vec![json!({"mesh": 0}); 1000]);
-    document["scenes"][0]["nodes"] = json!((0..1000).collect::<Vec<_>>());
+    document["nodes"] = json!(vec![json!({"mesh": 0}); 2000]);
+    document["scenes"][0]["nodes"] = json!((0..2000).collect::<Vec<_>>());
     assert!(error(&document).contains("more than 4294967295 vertices or triangles"));
 }
 
@@ -264,8 +264,8 @@ fn a_mesh_with_very_many_instances_is_refused() {
     let mut document = triangle();
     let many = add_floats(&mut document, &[0.0; 3 * 3000], "VEC3", 3000);
     document["meshes"][0]["primitives"] = json!(vec![json!({"attributes": {"POSITION": many}}); 1000]);
-    let bytes = vec![0u8; 3 * 2000];
-    let places = add_accessor(&mut document, &bytes, UNSIGNED_BYTE, "VEC3", 2000);
+    let bytes = vec![0u8; 3 * 4000];
+    let places = add_accessor(&mut document, &bytes, UNSIGNED_BYTE, "VEC3", 4000);
     document["nodes"][0]["extensions"] = json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": places}}});
     assert!(error(&document).contains("more than 4294967295 vertices or triangles"));
 }

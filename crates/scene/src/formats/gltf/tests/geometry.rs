@@ -196,7 +196,7 @@ fn a_matrix_is_read_by_columns() {
 }
 
 /// The triangle in a node with instances.
-fn instanced() -> serde_json::Value {
+pub(super) fn instanced() -> serde_json::Value {
     let mut document = triangle();
     document["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
     document["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
