@@ -241,7 +241,7 @@ impl Mesh {
             return Err(GeometryError::ShapesNotLast);
         }
         let flat = shape.flattened()?;
-        if flat.triangles.is_empty() {
+        if flat.triangles.is_empty() || places.is_empty() {
             return Ok(());
         }
         let mirrors = |place: &DMat4| place.determinant() < 0.0;
