@@ -35,8 +35,7 @@ fn is_same_shape(a: &Instance, b: &Instance) -> bool {
 /// Boxes around the triangles that moved, object by object, each around where it was and where it is.
 pub(crate) fn boxes([old, new]: [&Geometry; 2], before: &[Triangle], now: &[Triangle]) -> Arc<[Bounds]> {
     let (starts, _) = new.mesh.objects.runs();
-    let shapes = new.mesh.instances.shapes();
-    let own = if shapes.is_empty() { now.len() } else { shapes.start };
+    let own = new.mesh.own_triangles().end;
     let ends = starts.iter().skip(1).map(|&start| own.min(start as usize)).chain([own]);
     let first = starts.first().map_or(0, |&start| start as usize);
     let mut boxes: Vec<Bounds> = Vec::new();

@@ -306,39 +306,27 @@ impl SceneBuilder {
 
 /// Adds shapes behind all other triangles of a mesh, and their places.
 fn add_shapes(mesh: &mut Mesh, mut shapes: SceneBuilder, placed: &[PlacedShape], origin: DVec3) {
-    fn append<T: Clone>(to: &mut Vec<T>, from: Vec<T>, (first, count): (u32, u32), none: T) {
-        fill_to(to, first, none.clone(), !from.is_empty());
-        let used = !to.is_empty() || !from.is_empty();
-        to.extend(from);
-        fill_to(to, first + count, none, used);
-    }
     shapes.fill();
     let (first, first_triangle) = (mesh.positions.len() as u32, mesh.triangles.len() as u32);
-    let (center, positions) = {
-        let center = shapes.vertices.bounds().map_or(DVec3::ZERO, local_origin);
-        (center, shapes.vertices.finish(center))
-    };
-    let count = positions.len() as u32;
-    mesh.positions.extend(positions);
-    append(&mut mesh.normals, shapes.normals, (first, count), Vec3::ZERO);
-    append(&mut mesh.uvs, shapes.uvs, (first, count), Vec2::ZERO);
-    append(&mut mesh.colors, shapes.colors, (first, count), Vec3::ONE);
-    append(&mut mesh.opacities, shapes.opacities, (first, count), 1.0);
-    mesh.triangles.extend(shapes.triangles.iter().map(|triangle| triangle.map(|vertex| first + vertex)));
-    mesh.materials.extend(shapes.materials);
+    let center = shapes.vertices.bounds().map_or(DVec3::ZERO, local_origin);
+    let SceneBuilder { vertices, normals, uvs, colors, opacities, triangles, materials, .. } = shapes;
+    mesh.append_vertices(&Mesh {
+        positions: vertices.finish(center),
+        normals,
+        uvs,
+        colors,
+        opacities,
+        ..Mesh::default()
+    });
+    mesh.triangles.extend(triangles.iter().map(|triangle| triangle.map(|vertex| first + vertex)));
+    mesh.materials.extend(materials);
     mesh.instances.shapes = first_triangle..mesh.triangles.len() as u32;
-    mesh.instances.vertices = first..first + count;
+    mesh.instances.vertices = first..mesh.positions.len() as u32;
     mesh.instances.center = center;
     let (to_shapes, to_local) = (DMat4::from_translation(center), DMat4::from_translation(-origin));
     for PlacedShape { triangles, transform, object } in placed {
-        let name = object.as_deref().unwrap_or(UNNAMED);
-        if mesh.objects.runs().0.is_empty() {
-            // What nobody named has the first number.
-            mesh.objects.begin(0, if first_triangle == 0 { name } else { UNNAMED });
-        }
-        let object = mesh.objects.number(name);
         let range = first_triangle + triangles.start as u32..first_triangle + triangles.end as u32;
-        mesh.instances.place(range, &(to_local * *transform * to_shapes), object);
+        mesh.place(range, &(to_local * *transform * to_shapes), object.as_deref().unwrap_or(UNNAMED));
     }
     mesh.find_instance_bounds();
 }

@@ -289,7 +289,7 @@ impl Draft {
 
     /// Whether what is fastened to this node may be stored once for all of its places.
     pub(crate) fn may_hold_shapes(&self, node: u32) -> bool {
-        !self.animation.rig.scaling()[node as usize]
+        !self.animation.rig.scales(node)
     }
 
     /// The object of a shape, if all of it belongs to one.

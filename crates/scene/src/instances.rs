@@ -207,21 +207,19 @@ impl Instances {
         &self.list[self.list.partition_point(|instance| instance.first <= index) - 1]
     }
 
+    /// Checks that shapes are the last of a mesh.
+    pub(crate) fn check(&self, mesh: &Mesh) -> Result<(), GeometryError> {
+        let ends = (self.shapes.end as usize, self.vertices.end as usize);
+        let are_last = self.shapes.is_empty() || ends == (mesh.triangles.len(), mesh.positions.len());
+        are_last.then_some(()).ok_or(GeometryError::ShapesNotLast)
+    }
+
     /// Places the stored triangles of a shape by a map that is [held](Affine::holds); there must be numbers for them.
     pub(crate) fn place(&mut self, triangles: Range<u32>, map: &DMat4, object: u32) {
         let (place, back) = Affine::both_ways(map);
         let first = FIRST_INSTANCED + self.count;
         self.count += triangles.len() as u32;
         self.list.push(Instance { triangles, first, place, back, object, bounds: Bounds::EMPTY });
-    }
-}
-
-impl Instances {
-    /// Checks that shapes are where they are expected.
-    pub(crate) fn check(&self, mesh: &Mesh) -> Result<(), GeometryError> {
-        let is_there = self.is_empty()
-            || (self.shapes().end <= mesh.triangles.len() && self.vertices.end as usize <= mesh.positions.len());
-        is_there.then_some(()).ok_or(GeometryError::ShapesNotLast)
     }
 }
 
@@ -237,9 +235,7 @@ impl Mesh {
         if let Some(place) = places.iter().position(|place| !Affine::holds(place)) {
             return Err(GeometryError::Place { place });
         }
-        if !self.instances.is_empty() && self.instances.shapes().end != self.triangles.len() {
-            return Err(GeometryError::ShapesNotLast);
-        }
+        self.instances.check(self)?;
         let flat = shape.flattened()?;
         if flat.triangles.is_empty() || places.is_empty() {
             return Ok(());
@@ -253,7 +249,7 @@ impl Mesh {
         }
         // 1. The shape, and behind it the same with its corners in reverse order, if it is mirrored anywhere.
         let (first_vertex, first) = (self.positions.len() as u32, self.triangles.len() as u32);
-        if self.instances.is_empty() {
+        if self.instances.shapes.is_empty() {
             (self.instances.shapes, self.instances.vertices) = (first..first, first_vertex..first_vertex);
         }
         self.append_vertices(&flat);
@@ -269,20 +265,27 @@ impl Mesh {
         self.instances.shapes.end = self.triangles.len() as u32;
         self.instances.vertices.end = self.positions.len() as u32;
         // 2. Its places.
-        if self.objects.runs().0.is_empty() {
-            self.objects.begin(0, if first == 0 { object } else { UNNAMED });
-        }
-        let object = self.objects.number(object);
+        let before = self.instances.list.len();
         for place in places {
             let start = first + if mirrors(place) { count as u32 } else { 0 };
-            self.instances.place(start..start + count as u32, place, object);
+            self.place(start..start + count as u32, place, object);
         }
-        self.find_instance_bounds();
+        self.find_bounds_of_instances(|number| number >= before);
         Ok(())
     }
 
+    /// Places the stored triangles of a shape as the object `object`, see [`Instances::place`].
+    pub(crate) fn place(&mut self, triangles: Range<u32>, map: &DMat4, object: &str) {
+        if self.objects.runs().0.is_empty() {
+            // What nobody named has the first number.
+            self.objects.begin(0, if self.instances.shapes.start == 0 { object } else { UNNAMED });
+        }
+        let object = self.objects.number(object);
+        self.instances.place(triangles, map, object);
+    }
+
     /// Vertices of another mesh behind those that are there; what attributes either does not have becomes neutral.
-    fn append_vertices(&mut self, other: &Mesh) {
+    pub(crate) fn append_vertices(&mut self, other: &Mesh) {
         fn append<T: Copy>(to: &mut Vec<T>, from: &[T], (before, after): (usize, usize), none: T) {
             if to.is_empty() && from.is_empty() {
                 return;
@@ -302,19 +305,12 @@ impl Mesh {
 
     /// Number of triangles that rays may meet, those of instances in all their places.
     pub fn triangle_count(&self) -> usize {
-        self.triangles.len() - self.instances.shapes().len() + self.instances.triangle_count()
+        self.own_triangles().len() + self.instances.triangle_count()
     }
 
-    /// Whether a stored triangle is where it is stored, not only a part of a shape.
-    #[inline]
-    pub fn is_own(&self, stored: usize) -> bool {
-        !self.instances.shapes().contains(&stored)
-    }
-
-    /// The stored triangles that are where they are stored.
-    pub fn own_triangles(&self) -> impl Iterator<Item = usize> + Clone + use<> {
-        let Range { start, end } = self.instances.shapes();
-        (0..start).chain(end..self.triangles.len())
+    /// The stored triangles that are where they are stored: those of shapes come after them.
+    pub fn own_triangles(&self) -> Range<usize> {
+        0..if self.instances.shapes.is_empty() { self.triangles.len() } else { self.instances.shapes().start }
     }
 
     /// The instance that has a triangle.
@@ -392,21 +388,16 @@ impl Mesh {
     }
 
     fn find_bounds_of_instances(&mut self, are_asked: impl Fn(usize) -> bool + Sync) {
-        let mut shapes: Vec<Range<u32>> =
-            self.instances.list.iter().map(|instance| instance.triangles.clone()).collect();
-        shapes.sort_unstable_by_key(|shape| shape.start);
-        shapes.dedup();
-        let points: Vec<Vec<Vec3>> = shapes
-            .par_iter()
-            .map(|shape| {
-                self.vertices_that_count(shape.clone()).iter().map(|&vertex| self.positions[vertex as usize]).collect()
-            })
-            .collect();
+        let list = self.instances.list.iter().enumerate();
+        let shapes = shapes_of(list.filter(|(number, _)| are_asked(*number)).map(|(_, instance)| instance));
+        let points = |shape: &Range<u32>| -> Vec<Vec3> {
+            self.vertices_that_count(shape.clone()).iter().map(|&vertex| self.positions[vertex as usize]).collect()
+        };
+        let points: Vec<Vec<Vec3>> = shapes.par_iter().map(points).collect();
         let asked = self.instances.list.par_iter_mut().enumerate().filter(|(number, _)| are_asked(*number));
         asked.for_each(|(_, instance)| {
-            let shape = shapes.partition_point(|shape| shape.start < instance.triangles.start);
-            let place = instance.place;
-            instance.bounds = Bounds::around(points[shape].iter().map(|&point| place.point(point)));
+            let (place, points) = (instance.place, &points[number_of_shape(&shapes, instance)]);
+            instance.bounds = Bounds::around(points.iter().map(|&point| place.point(point)));
         });
     }
 
@@ -418,37 +409,34 @@ impl Mesh {
     /// [`GeometryError::TooLarge`]
     pub fn flattened(&self) -> Result<Mesh, GeometryError> {
         let mut flat = self.without_shapes();
-        let copies =
-            self.instances.list.par_iter().map(|instance| (instance, self.vertices_of(instance.triangles.clone())));
-        let copies: Vec<(&Instance, Vec<u32>)> = copies.collect();
-        let vertices = copies.iter().map(|(_, vertices)| vertices.len()).sum::<usize>();
-        check_room(flat.positions.len() + vertices, self.triangle_count())?;
-        for (instance, vertices) in copies {
-            flat.append_instance(self, instance, &vertices);
+        let shapes = shapes_of(self.instances.list.iter());
+        let vertices: Vec<Vec<u32>> = shapes.par_iter().map(|shape| self.vertices_of(shape.clone())).collect();
+        let vertices_of = |instance: &Instance| &vertices[number_of_shape(&shapes, instance)];
+        let count: usize = self.instances.list.iter().map(|instance| vertices_of(instance).len()).sum();
+        check_room(flat.positions.len() + count, self.triangle_count())?;
+        for instance in &self.instances.list {
+            flat.append_instance(self, instance, vertices_of(instance));
         }
         Ok(flat)
     }
 
     /// Without what belongs to shapes.
     fn without_shapes(&self) -> Mesh {
-        let Range { start, end } = self.instances.vertices;
-        fn without<T: Copy>(values: &[T], (start, end): (u32, u32)) -> Vec<T> {
-            let (start, end) = (values.len().min(start as usize), values.len().min(end as usize));
-            [&values[..start], &values[end..]].concat()
+        fn first<T: Copy>(values: &[T], count: usize) -> Vec<T> {
+            values[..count.min(values.len())].to_vec()
         }
-        let of_vertices = (start, end);
-        let of_triangles = (self.instances.shapes.start, self.instances.shapes.end);
-        let mut triangles = without(&self.triangles, of_triangles);
-        triangles.iter_mut().flatten().filter(|vertex| **vertex >= end).for_each(|vertex| *vertex -= end - start);
+        let Instances { shapes, vertices, .. } = &self.instances;
+        let triangles = self.own_triangles().len();
+        let vertices = if shapes.is_empty() { self.positions.len() } else { vertices.start as usize };
         Mesh {
-            positions: without(&self.positions, of_vertices),
-            normals: without(&self.normals, of_vertices),
-            uvs: without(&self.uvs, of_vertices),
-            colors: without(&self.colors, of_vertices),
-            opacities: without(&self.opacities, of_vertices),
-            triangles,
-            materials: without(&self.materials, of_triangles),
-            objects: self.objects.without(self.instances.shapes.clone()),
+            positions: first(&self.positions, vertices),
+            normals: first(&self.normals, vertices),
+            uvs: first(&self.uvs, vertices),
+            colors: first(&self.colors, vertices),
+            opacities: first(&self.opacities, vertices),
+            triangles: first(&self.triangles, triangles),
+            materials: first(&self.materials, triangles),
+            objects: self.objects.without(shapes.clone()),
             instances: Instances::default(),
         }
     }
@@ -505,6 +493,19 @@ impl Mesh {
         opacities.clear();
         Cow::Owned(boxes)
     }
+}
+
+/// The stored triangles of the shapes of instances, each once, in order.
+fn shapes_of<'a>(instances: impl Iterator<Item = &'a Instance>) -> Vec<Range<u32>> {
+    let mut shapes: Vec<Range<u32>> = instances.map(|instance| instance.triangles.clone()).collect();
+    shapes.sort_unstable_by_key(|shape| (shape.start, shape.end));
+    shapes.dedup();
+    shapes
+}
+
+/// Which of [these](shapes_of) is that of an instance.
+fn number_of_shape(shapes: &[Range<u32>], Instance { triangles, .. }: &Instance) -> usize {
+    shapes.partition_point(|shape| (shape.start, shape.end) < (triangles.start, triangles.end))
 }
 
 /// The triangles of a box, counter-clockwise seen from outside, by the corners' bits: x, y, z.

@@ -108,20 +108,27 @@ impl Rig {
 
     /// Whether each node moves, by itself or with its parent.
     pub(crate) fn moving(&self) -> Vec<bool> {
-        let mut moving: Vec<bool> = Vec::with_capacity(self.nodes.len());
-        for node in &self.nodes {
-            moving.push(node.moves() || node.parent.is_some_and(|parent| moving[parent as usize]));
-        }
-        moving
+        self.with_parents(Node::moves)
     }
 
     /// Whether each node is enlarged or lessened over time, by itself or with its parent.
     pub(crate) fn scaling(&self) -> Vec<bool> {
-        let mut scaling: Vec<bool> = Vec::with_capacity(self.nodes.len());
+        self.with_parents(Node::scales)
+    }
+
+    /// Whether something holds for each node, or for one that moves it.
+    fn with_parents(&self, holds: impl Fn(&Node) -> bool) -> Vec<bool> {
+        let mut all: Vec<bool> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
-            scaling.push(node.scales() || node.parent.is_some_and(|parent| scaling[parent as usize]));
+            all.push(holds(node) || node.parent.is_some_and(|parent| all[parent as usize]));
         }
-        scaling
+        all
+    }
+
+    /// Whether a node is enlarged or lessened over time, by itself or with its parent.
+    pub(crate) fn scales(&self, number: u32) -> bool {
+        let mut up = std::iter::successors(Some(number), |&number| self.nodes[number as usize].parent);
+        up.any(|number| self.nodes[number as usize].scales())
     }
 
     /// From the coordinates of each node to the world's, at `time` or at rest.

@@ -143,13 +143,16 @@ impl<'a> Meshes<'a> {
                 }
                 Ok(())
             };
+            if !(shared.contains(&shown.mesh) && may_be_shared(shown, survey, rigged)) {
+                add(shown, instances.as_ref(), draft)?;
+                continue;
+            }
             let places: Vec<DMat4> = match &instances {
                 Some(instances) => instances.transforms().collect(),
                 None => vec![DMat4::IDENTITY],
             };
             let mover = rigged.mover(shown.node.0);
-            let can_move = mover.is_none() || places.iter().all(|place| Affine::holds(&(shown.transform * *place)));
-            if !(can_move && shared.contains(&shown.mesh) && may_be_shared(shown, survey, rigged)) {
+            if mover.is_some() && !places.iter().all(|place| Affine::holds(&(shown.transform * *place))) {
                 add(shown, instances.as_ref(), draft)?;
                 continue;
             }
