@@ -60,7 +60,7 @@ COLD Normals instanced_normals(const Instanced *instances, unsigned count, const
 }
 
 DEVICE Normals load_normals(const Triangles &triangles, const Vec3 *normals, const Indices *indices, unsigned triangle) {
-    if (triangle < FIRST_INSTANCED)
+    if (!INSTANCES || triangle < FIRST_INSTANCED)
         return stored_normals(normals, indices[triangle]);
     return instanced_normals(triangles.instances, triangles.instance_count, normals, indices, triangle);
 }

@@ -1,7 +1,8 @@
 // Shapes in many places, and the triangles that rays meet there: twin of instanced.rs, bit by bit.
 //
 // Where triangles are told by index, those of instances begin at FIRST_INSTANCED; where by their place in a structure, too: then they are in the
-// order of the shape's leaves. What looks them up is in functions of its own, so that others keep their registers.
+// order of the shape's leaves. What looks them up is in functions of its own, and not in modules without INSTANCES: it would take registers
+// from loops over triangles. Scenes with instances use modules with CUT_OUTS, where there are two.
 #pragma once
 
 #include "accel/triangle.cuh"
@@ -83,14 +84,14 @@ COLD unsigned stored_of_instance(const Instanced *instances, unsigned count, uns
 
 // The corners of the triangle `index`, where it is in the scene.
 DEVICE Corners corners_at(const Triangles &triangles, unsigned index) {
-    if (index < FIRST_INSTANCED)
+    if (!INSTANCES || index < FIRST_INSTANCED)
         return load_corners(triangles.stored + index);
     return instanced_corners(triangles.stored, triangles.instances, triangles.instance_count, index);
 }
 
 // Where the triangle `index` is stored: its vertices and its material.
 DEVICE unsigned stored_index(const Triangles &triangles, unsigned index) {
-    return index < FIRST_INSTANCED ? index : stored_of_instance(triangles.instances, triangles.instance_count, index);
+    return !INSTANCES || index < FIRST_INSTANCED ? index : stored_of_instance(triangles.instances, triangles.instance_count, index);
 }
 
 // The triangle `index` where it is stored.

@@ -145,6 +145,19 @@ DEVICE bool form_meets(const ShaftForm &shaft, const Vec3 &low, const Vec3 &high
     return first <= last + REGION_ROUNDING;
 }
 
+// The way from the middle of a shaft's first box to that of its second; zero for other forms.
+DEVICE Vec3 heading_of(const BoxForm &) { return splat(0.0f); }
+DEVICE Vec3 heading_of(const NearForm &) { return splat(0.0f); }
+DEVICE Vec3 heading_of(const ShaftForm &shaft) {
+    const Faces &low = shaft.faces->low, &high = shaft.faces->high;
+    return 0.5f * (low.to - low.from + high.to - high.from);
+}
+
+// The octant that a direction points into: in the order of slot xor this, near children of a node come last.
+DEVICE unsigned octant_of(const Vec3 &direction) {
+    return (direction.x >= 0.0f ? 4u : 0u) | (direction.y >= 0.0f ? 2u : 0u) | (direction.z >= 0.0f ? 1u : 0u);
+}
+
 // ---- Regions ----
 
 template <class Form>

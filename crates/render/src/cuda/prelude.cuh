@@ -43,6 +43,11 @@
 #define CUT_OUTS 0
 #endif
 
+// Whether it is for scenes with shapes in many places: see accel/instanced.cuh.
+#ifndef INSTANCES
+#define INSTANCES 1
+#endif
+
 #define KERNEL_OF_STRUCTURE(structure, name, Record, threads, blocks)                                                            \
     KERNEL(name##_##structure, Record, threads, blocks) { name(args, args.scene.structure); }
 #define KERNEL_PER_STRUCTURE(name, Record, threads, blocks) PER_STRUCTURE(KERNEL_OF_STRUCTURE, name, Record, threads, blocks)

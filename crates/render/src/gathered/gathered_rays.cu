@@ -1,4 +1,8 @@
 // Gathered light on a CUDA device, the steps that ask an acceleration structure: see mod.rs. Launched by cuda/.
+#ifndef CUT_OUTS
+// Scenes with instances use the module with CUT_OUTS.
+#define INSTANCES 0
+#endif
 #include "cuda/prelude.cuh"
 
 #include "gathered/bounce.cuh"

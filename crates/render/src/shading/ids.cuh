@@ -6,7 +6,7 @@
 
 // The number of a triangle's object: that of its instance, or of the last run that begins at it or before.
 DEVICE unsigned object_of(const Scene &scene, unsigned triangle) {
-    if (triangle >= FIRST_INSTANCED)
+    if (INSTANCES && triangle >= FIRST_INSTANCED)
         return __ldg(&instance_of(scene.triangles.instances, scene.triangles.instance_count, triangle)->object) + 1;
     unsigned low = 0, high = scene.object_runs;
     while (low < high) {

@@ -3,10 +3,12 @@
 
 #include "accel/sieve.cuh"
 
-// A search in progress: the nodes still to be entered.
+// A search in progress: the nodes still to be entered. Those nearest to where the region begins are on top: what hides most is often near.
 struct BvhSearch {
     unsigned *stack;
     unsigned height;
+    // The octant that the region points into: in the order of slot xor this, near children come last.
+    unsigned octant;
     // Children of nodes that were not looked at, node · 8 + slot, and their number.
     const unsigned *starts;
     unsigned start_count;
@@ -17,16 +19,16 @@ struct BvhSearch {
 DEVICE unsigned search_words(const Bvh &bvh) { return (STACK_OF_ROUNDS + STACK_PER_LEVEL * bvh.depth + 3) / 4 * 4; }
 
 template <class Form>
-DEVICE BvhSearch begin_search(const Bvh &bvh, const Region<Form> &, unsigned *memory) {
+DEVICE BvhSearch begin_search(const Bvh &bvh, const Region<Form> &region, unsigned *memory) {
     if (lane_of_thread() == 0)
         memory[0] = 0;
     __syncwarp();
-    return BvhSearch{memory, bvh.node_count != 0 ? 1u : 0u, memory, 0};
+    return BvhSearch{memory, bvh.node_count != 0 ? 1u : 0u, octant_of(heading_of(region.form)), memory, 0};
 }
 
 template <class Form>
 DEVICE BvhSearch begin_search_at(const Bvh &bvh, const Region<Form> &region, unsigned *memory, const unsigned *starts, unsigned count) {
-    return count == FROM_ROOT ? begin_search(bvh, region, memory) : BvhSearch{memory, 0, starts, count};
+    return count == FROM_ROOT ? begin_search(bvh, region, memory) : BvhSearch{memory, 0, octant_of(heading_of(region.form)), starts, count};
 }
 
 DEVICE bool goes_on(const Bvh &, const BvhSearch &search) { return (search.height | search.start_count) != 0; }
@@ -72,31 +74,47 @@ DEVICE bool meets_slot(const Region<Form> &region, const Slot &slot) {
     return slot.meta != 0 && meets(region, slot.low, slot.high, 0.0f);
 }
 
-// One round: takes up to four nodes off the stack; each gets eight lanes, one per child. Or takes up to 32 starts, while the stack is
-// so short that it holds them.
-template <bool SIEVED, class Form>
-DEVICE void next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch &search, unsigned *found, unsigned &count) {
-    const unsigned lane = lane_of_thread();
-    unsigned number = 0, slot = lane % 8;
+// What a lane does in a round: looks at a slot of a node.
+struct Turn {
     bool active;
-    if (search.start_count != 0 && search.height < 4) {
+    // The slot is one of the starts; otherwise the node was at `entry` of the stack, and the slot is yet to be put in order.
+    bool begins;
+    unsigned number, slot, entry;
+};
+
+// Takes up to four nodes off the stack, if that leaves it so short that they may add to it what they will, otherwise one; each gets
+// eight lanes, one per child. Or takes up to 32 starts, while the stack is so short that it holds them.
+template <class Search>
+DEVICE Turn next_turn(Search &search, unsigned tallest) {
+    const unsigned lane = lane_of_thread();
+    Turn turn = {false, search.start_count != 0 && search.height < 4, 0, lane % 8, 0};
+    if (turn.begins) {
         const unsigned taken = min(search.start_count, WARP);
         search.start_count -= taken;
-        active = lane < taken;
-        const unsigned start = search.starts[search.start_count + (active ? lane : 0)] & ~LEAF_START;
-        number = start / 8;
-        slot = start % 8;
+        turn.active = lane < taken;
+        const unsigned start = search.starts[search.start_count + (turn.active ? lane : 0)] & ~LEAF_START;
+        turn.number = start / 8;
+        turn.slot = start % 8;
     } else {
-        const unsigned taken = search.height + 4 * STACK_PER_LEVEL <= STACK_OF_ROUNDS ? min(search.height, 4u) : 1;
+        const unsigned taken = search.height <= tallest ? min(search.height, 4u) : 1;
         search.height -= taken;
-        active = lane / 8 < taken;
-        if (active)
-            number = search.stack[search.height + lane / 8];
+        turn.active = lane / 8 < taken;
+        turn.entry = search.height + lane / 8;
+        if (turn.active)
+            turn.number = search.stack[turn.entry];
     }
+    return turn;
+}
+
+// One round of a search.
+template <bool SIEVED, class Form>
+DEVICE void next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch &search, unsigned *found, unsigned &count) {
+    const Turn turn = next_turn(search, STACK_OF_ROUNDS - 4 * STACK_PER_LEVEL);
+    const unsigned slot = turn.begins ? turn.slot : turn.slot ^ search.octant;
     bool inner = false;
     unsigned child = 0, first = 0, triangles = 0;
-    if (active) {
-        const Slot box = load_slot(bvh.nodes + number, slot);
+    if (turn.active) {
+        const Slot box = load_slot(bvh.nodes + turn.number, slot);
         if (meets_slot(region, box)) {
             inner = box.inner;
             child = box.child;
@@ -162,30 +180,16 @@ DEVICE void place_slot(const Instanced *instance, Slot &slot) {
 // The same round; what is held in the scene's leaves goes onto the stack, the nodes of shapes with the numbers of their places.
 template <bool SIEVED, class Form>
 DEVICE void next_triangles(const InstancedBvh &bvh, const Region<Form> &region, InstancedSearch &search, unsigned *found, unsigned &count) {
-    const unsigned lane = lane_of_thread();
-    unsigned number = 0, slot = lane % 8, owner = 0;
-    bool active;
-    if (search.start_count != 0 && search.height < 4) {
-        const unsigned taken = min(search.start_count, WARP);
-        search.start_count -= taken;
-        active = lane < taken;
-        const unsigned start = search.starts[search.start_count + (active ? lane : 0)] & ~LEAF_START;
-        number = start / 8;
-        slot = start % 8;
-    } else {
-        const unsigned taken = search.height + 4 * MOST_HELD <= STACK_OF_INSTANCES ? min(search.height, 4u) : 1;
-        search.height -= taken;
-        active = lane / 8 < taken;
-        if (active) {
-            number = search.stack[search.height + lane / 8];
-            owner = search.owners[search.height + lane / 8];
-        }
-    }
+    const Turn turn = next_turn(search, STACK_OF_INSTANCES - 4 * MOST_HELD);
+    const unsigned owner = turn.active && !turn.begins ? search.owners[turn.entry] : 0;
     const Instanced *instance = owner != 0 ? bvh.instances + (owner - 1) : nullptr;
+    const Vec3 heading = heading_of(region.form);
+    const unsigned octant = octant_of(instance != nullptr ? placed_vector(instance->back, heading) : heading);
+    const unsigned slot = turn.begins ? turn.slot : turn.slot ^ octant;
     bool inner = false;
     unsigned child = 0, first = 0, triangles = 0;
-    if (active) {
-        Slot box = load_slot(bvh.nodes + number, slot);
+    if (turn.active) {
+        Slot box = load_slot(bvh.nodes + turn.number, slot);
         if (instance != nullptr)
             place_slot(instance, box);
         if (meets_slot(region, box)) {
@@ -259,13 +263,48 @@ DEVICE unsigned find_starts_in(const Tree &bvh, const Region<Form> &region, unsi
     return count;
 }
 
+// Puts the starts of a shaft in order, the nearest last: a search takes those first.
+template <class Tree, class Form>
+DEVICE unsigned sorted_starts(const Tree &bvh, const Region<Form> &region, unsigned *list, unsigned count) {
+    if (!Form::SLANTED || count == FROM_ROOT)
+        return count;
+    const unsigned lane = lane_of_thread();
+    const Vec3 heading = heading_of(region.form);
+    unsigned own[2] = {0, 0}, ranks[2] = {0, 0};
+    float ways[2] = {0.0f, 0.0f};
+    UNROLL
+    for (unsigned half = 0; half < 2; ++half) {
+        if (half * WARP + lane >= count)
+            continue;
+        own[half] = list[half * WARP + lane];
+        const unsigned start = own[half] & ~LEAF_START;
+        const Slot box = load_slot(bvh.nodes + start / 8, start % 8);
+        // A number in any case.
+        ways[half] = fminf(fmaxf(dot(heading, box.low + box.high), -F32_MAX), F32_MAX);
+    }
+    for (unsigned other = 0; other < count; ++other) {
+        const float low = __shfl_sync(ALL_LANES, ways[0], other % WARP), high = __shfl_sync(ALL_LANES, ways[1], other % WARP);
+        const float way = other < WARP ? low : high;
+        UNROLL
+        for (unsigned half = 0; half < 2; ++half)
+            ranks[half] += way > ways[half] || (way == ways[half] && other < half * WARP + lane) ? 1 : 0;
+    }
+    __syncwarp();
+    UNROLL
+    for (unsigned half = 0; half < 2; ++half)
+        if (half * WARP + lane < count)
+            list[ranks[half]] = own[half];
+    __syncwarp();
+    return count;
+}
+
 template <class Form>
 DEVICE unsigned find_starts(const Bvh &bvh, const Region<Form> &region, unsigned *list) {
-    return find_starts_in(bvh, region, list);
+    return sorted_starts(bvh, region, list, find_starts_in(bvh, region, list));
 }
 
 // In the scene's tree.
 template <class Form>
 DEVICE unsigned find_starts(const InstancedBvh &bvh, const Region<Form> &region, unsigned *list) {
-    return find_starts_in(bvh, region, list);
+    return sorted_starts(bvh, region, list, find_starts_in(bvh, region, list));
 }

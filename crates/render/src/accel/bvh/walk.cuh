@@ -115,6 +115,16 @@ DEVICE void meet_node(const BvhNode *node, const Slabs &slabs, float limit, uint
     triangles = Chosen{links.y, hits & TRIANGLE_HITS};
 }
 
+// Takes the nearest node out of a group, and puts the rest of the group onto the stack.
+DEVICE unsigned take_node(uint2 &nodes, unsigned octant, uint2 *stack, unsigned &height) {
+    const unsigned bit = 31 - __clz(nodes.y), siblings = nodes.y;
+    nodes.y &= ~(1u << bit);
+    if (nodes.y > TRIANGLE_HITS)
+        stack[height++] = nodes;
+    const unsigned slot = (bit - FIRST_INNER) ^ octant;
+    return nodes.x + __popc(siblings & ((1u << slot) - 1));
+}
+
 // Visits the triangles of all leaves whose boxes the ray meets between 0 and the visitor's limit, near octants first.
 template <class Visitor>
 DEVICE void walk_nodes(const Bvh &bvh, const Slabs &slabs, Visitor &visitor) {
@@ -126,12 +136,7 @@ DEVICE void walk_nodes(const Bvh &bvh, const Slabs &slabs, Visitor &visitor) {
     uint2 nodes = {0, ROOT_HIT};
     while (true) {
         // 2. Take the nearest node out of its group; keep the rest for later.
-        const unsigned bit = 31 - __clz(nodes.y), siblings = nodes.y;
-        nodes.y &= ~(1u << bit);
-        if (nodes.y > TRIANGLE_HITS)
-            stack[height++] = nodes;
-        const unsigned slot = (bit - FIRST_INNER) ^ slabs.octant;
-        const unsigned node = nodes.x + __popc(siblings & ((1u << slot) - 1));
+        const unsigned node = take_node(nodes, slabs.octant, stack, height);
 
         // 3, 4. Which of its children does the ray meet? Test the triangles of those that are leaves.
         Chosen triangles;
@@ -178,12 +183,7 @@ DEVICE void walk_instances(const InstancedBvh &bvh, Vec3 origin, Vec3 direction,
     uint2 nodes = {0, ROOT_HIT};
     while (true) {
         // 2. Take the nearest node out of its group; keep the rest for later.
-        const unsigned bit = 31 - __clz(nodes.y), siblings = nodes.y;
-        nodes.y &= ~(1u << bit);
-        if (nodes.y > TRIANGLE_HITS)
-            stack[height++] = nodes;
-        const unsigned slot = (bit - FIRST_INNER) ^ slabs.octant;
-        const unsigned node = nodes.x + __popc(siblings & ((1u << slot) - 1));
+        const unsigned node = take_node(nodes, slabs.octant, stack, height);
 
         // 3, 4. Which of its children does the ray meet? Test the triangles of those that are leaves; set aside what has to wait for instances.
         Chosen triangles;

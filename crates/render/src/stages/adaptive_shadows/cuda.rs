@@ -13,14 +13,14 @@ use super::first::{all_are_points, places};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceHits, DeviceRays, DeviceVisibility, DeviceWave};
-use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, PerStructure, Work, blocks_for, per_structure};
+use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, PerModule, PerStructure, Work, blocks_for, per_module, per_structure};
 use crate::shadow::Aim;
 use crate::shadow::launch::SampleSets;
 use crate::stages::primary_rays::cuda::closest_hits;
 use crate::stages::shadow_rays::cuda::shadow_rays;
 
 const FIRST_RAYS: PerStructure = per_structure!("adaptive_shadows", "first_rays");
-const FIND_OPEN: Kernel = Kernel { module: "adaptive_shadows", name: "find_open" };
+const FIND_OPEN: PerModule = per_module!("adaptive_shadows", "find_open");
 const LIST_OPEN: Kernel = Kernel { module: "adaptive_shadows", name: "list_open" };
 const OPEN_RAYS: PerStructure = per_structure!("adaptive_shadows", "open_rays");
 /// Lights that are processed at once, which bounds answers and entries.
@@ -116,7 +116,7 @@ impl<'a, R: Runtime> Band<'a, R> {
 
         // 2. Where neighbours disagree.
         let all = blocks_for(&(0..blocks), BLOCK);
-        cuda.launch(FIND_OPEN, all, &record)?;
+        cuda.launch(FIND_OPEN.of(wave.scene), all, &record)?;
         let count = cuda.scan_total(&counts)?;
         if count == 0 {
             return Ok(());

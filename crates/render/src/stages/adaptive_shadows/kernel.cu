@@ -3,6 +3,10 @@
 // 1. `first_rays_*`: one ray from each surface point to each light, one thread per ray.
 // 2. `find_open`: where neighbours agree, the share is theirs; elsewhere it is negative for now. `list_open`: where that is.
 // 3. `open_rays_*`: a ray to each sample from there, one thread per surface point and light.
+#ifndef CUT_OUTS
+// Scenes with instances use the module with CUT_OUTS.
+#define INSTANCES 0
+#endif
 #include "cuda/prelude.cuh"
 
 #include "cuda/rays.cuh"
@@ -84,7 +88,6 @@ DEVICE void load_answers(const AdaptiveShadows &args, unsigned light, int left, 
     }
 }
 
-#if !CUT_OUTS
 KERNEL(find_open, AdaptiveShadows, BLOCK, 4) {
     SHARED(unsigned, near, [EDGE * EDGE]);
     SHARED(unsigned, warps, [BLOCK / WARP]);
@@ -119,7 +122,6 @@ KERNEL(find_open, AdaptiveShadows, BLOCK, 4) {
         sum += warps[warp];
     args.counts[blockIdx.x] = sum;
 }
-#endif
 
 #if !CUT_OUTS
 KERNEL(list_open, AdaptiveShadows, BLOCK, 4) {

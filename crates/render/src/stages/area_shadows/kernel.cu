@@ -1,5 +1,9 @@
 // The reference on a CUDA device: twin of cpu.rs. A warp takes 32 surface points, one after the other; lanes are triangles.
 // `area_shadows_N_*`: samples in up to N words of bits.
+#ifndef CUT_OUTS
+// Scenes with instances use the module with CUT_OUTS.
+#define INSTANCES 0
+#endif
 #include "cuda/prelude.cuh"
 
 #include "accel/search.cuh"

@@ -3,7 +3,7 @@
 use lightmesh_layout::constants::{ITEM_WARPS, MOST_LIGHTS};
 use lightmesh_layout::stages::Interpolate;
 
-use crate::cuda::{Kernel, Runtime};
+use crate::cuda::Runtime;
 use crate::data::wave::Seen;
 use crate::error::RenderError;
 use crate::gpu::cells::DeviceCells;
@@ -11,13 +11,13 @@ use crate::gpu::lit::DeviceLit;
 use crate::gpu::masks::DeviceMasks;
 use crate::gpu::points::DevicePoints;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
-use crate::gpu::{BLOCK, Cuda, PerStructure, Work, blocks_for, per_structure, sampling, warps_for};
+use crate::gpu::{BLOCK, Cuda, PerModule, PerStructure, Work, blocks_for, per_module, per_structure, sampling, warps_for};
 use crate::light_mesh::window_bricks;
 
 /// The inputs of formula (3).
 pub(crate) type DeviceSeen<'a, R> = Seen<'a, DeviceCells<R>, DeviceMasks<R>, DevicePoints<R>, DeviceLit<R>>;
 
-const INTERPOLATE: Kernel = Kernel { module: "interpolate", name: "interpolate" };
+const INTERPOLATE: PerModule = per_module!("interpolate", "interpolate");
 const FALLBACK: PerStructure = per_structure!("interpolate", "fallback");
 /// Items, and blocks of rays, in the first launches.
 const FIRST_ITEMS: u64 = 4096;
@@ -57,11 +57,12 @@ pub(crate) fn interpolate<R: Runtime>(
     // 1. The weighted means.
     let cost = lights.max(1) as u64;
     let work = Work { units: cells.count as u64, cost, first: FIRST_ITEMS, progress: cells.count as u64 };
-    cuda.in_pieces(wave.job, INTERPOLATE, work, |piece| {
+    let interpolate = INTERPOLATE.of(wave.scene);
+    cuda.in_pieces(wave.job, interpolate, work, |piece| {
         let count = piece.end - piece.start;
         let words = window_bricks(mesh.template.reach()) + MOST_LIGHTS * mesh.template.words() as u32;
         cuda.launch(
-            INTERPOLATE,
+            interpolate,
             warps_for(&piece, ITEM_WARPS, words),
             &Interpolate { first: piece.start, count, ..record },
         )

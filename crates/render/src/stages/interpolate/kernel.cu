@@ -1,6 +1,10 @@
 // Step 5, first half, on a CUDA device: the weighted mean of what a surface point's light points see. Formula (3).
 //
 // `interpolate`: one warp per item; `fallback_*`: long tests of surface points without usable light points.
+#ifndef CUT_OUTS
+// Scenes with instances use the module with CUT_OUTS.
+#define INSTANCES 0
+#endif
 #include "cuda/prelude.cuh"
 
 #include "accel/walk.cuh"
@@ -239,7 +243,6 @@ DEVICE void list_fallbacks(const Interpolate &args, unsigned ray, bool falls_bac
         args.fallback_rays[place] = ray;
 }
 
-#if !CUT_OUTS
 KERNEL(interpolate, Interpolate, ITEM_WARPS * WARP, 8) {
     DYNAMIC_SHARED(unsigned, shared);
     const LightMesh &mesh = args.mesh;
@@ -280,7 +283,6 @@ KERNEL(interpolate, Interpolate, ITEM_WARPS * WARP, 8) {
     count(tally_shard(args.tally).fallbacks, fell_back);
     list_fallbacks(args, own.ray, fell_back);
 }
-#endif
 
 // The visible share of each light that is still unknown, from the surface point's own rays.
 template <typename Structure>

@@ -1,4 +1,8 @@
 // Step 4 on a CUDA device: which lights does each light point see? Twin of cpu.rs, one thread per light point.
+#ifndef CUT_OUTS
+// Scenes with instances use the module with CUT_OUTS.
+#define INSTANCES 0
+#endif
 #include "cuda/prelude.cuh"
 
 #include "light_mesh/bricks.cuh"

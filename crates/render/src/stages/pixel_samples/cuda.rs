@@ -13,13 +13,13 @@ use crate::footprint::Cone;
 use crate::gpu::film::DeviceFilm;
 use crate::gpu::rays::{DeviceHits, DeviceRays};
 use crate::gpu::samples::{DeviceSampled, DeviceSamples};
-use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerStructure, Work, blocks_for, per_structure};
+use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerModule, PerStructure, Work, blocks_for, per_module, per_structure};
 use crate::job::Job;
 
 const CAST: PerStructure = per_structure!("pixel_samples", "pixel_samples");
-const NEAREST: Kernel = Kernel { module: "pixel_samples", name: "nearest_samples" };
-const IDS: Kernel = Kernel { module: "pixel_samples", name: "count_ids" };
-const MERGE: Kernel = Kernel { module: "pixel_samples", name: "merge_samples" };
+const NEAREST: PerModule = per_module!("pixel_samples", "nearest_samples");
+const IDS: PerModule = per_module!("pixel_samples", "count_ids");
+const MERGE: PerModule = per_module!("pixel_samples", "merge_samples");
 /// Logarithm of the number of samples of a pixel that neighbouring threads cast.
 const MOST_TOGETHER: u32 = 3;
 /// Number of blocks in the first launch.
@@ -84,10 +84,10 @@ pub(crate) fn pixel_samples<R: Runtime>(
         })
     };
     if film.has_mattes() {
-        launch(IDS)?;
+        launch(IDS.of(scene))?;
     }
     if film.keeps_samples() {
-        launch(NEAREST)?;
+        launch(NEAREST.of(scene))?;
     }
 
     // 2. Which pixels are shared, and which samples of the others lie on one surface?
@@ -95,8 +95,9 @@ pub(crate) fn pixel_samples<R: Runtime>(
         state.clear()?;
     } else {
         let work = Work { units: blocks * u64::from(record.lanes), cost: 1, first: FIRST, progress: 0 };
-        cuda.in_pieces(job, MERGE, work, |piece| {
-            cuda.launch(MERGE, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
+        let merge = MERGE.of(scene);
+        cuda.in_pieces(job, merge, work, |piece| {
+            cuda.launch(merge, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
         })?;
     }
     let hits = Arc::new(planes);

@@ -1,4 +1,8 @@
 // The samples of pixels on a CUDA device: twin of cpu.rs, one thread per sample.
+#ifndef CUT_OUTS
+// Scenes with instances use the module with CUT_OUTS.
+#define INSTANCES 0
+#endif
 #include "cuda/prelude.cuh"
 
 #include "accel/walk.cuh"
@@ -56,7 +60,6 @@ DEVICE void count_sample(const PixelSamples &args, unsigned ids, unsigned ray, u
 }
 
 // The numbers of what samples see: how many see each, and the nearest one's.
-#if !CUT_OUTS
 KERNEL(count_ids, PixelSamples, BLOCK, 4) {
     unsigned ray;
     if (!ray_of_thread(args.rays, (unsigned)(args.first_block + blockIdx.x), threadIdx.x, ray))
@@ -77,10 +80,8 @@ KERNEL(count_ids, PixelSamples, BLOCK, 4) {
         args.ids[args.film_pixels + ray] = material;
     }
 }
-#endif
 
 // Coverage, and the layers of the nearest sample.
-#if !CUT_OUTS
 KERNEL(nearest_samples, PixelSamples, BLOCK, 4) {
     unsigned ray;
     if (!ray_of_thread(args.rays, (unsigned)(args.first_block + blockIdx.x), threadIdx.x, ray))
@@ -100,7 +101,6 @@ KERNEL(nearest_samples, PixelSamples, BLOCK, 4) {
         }
     }
 }
-#endif
 
 // The facet of one lane.
 DEVICE Facet broadcast(const Facet &facet, unsigned lane) {
@@ -143,7 +143,6 @@ DEVICE unsigned owner_of(const Sampled &own, unsigned lanes, unsigned base) {
 }
 
 // 2. Which pixels are shared, and which samples of the others lie on one surface? A thread for each sample, those of a pixel in one warp.
-#if !CUT_OUTS
 KERNEL(merge_samples, PixelSamples, BLOCK, 4) {
     const unsigned long long block = args.first_block + blockIdx.x;
     const unsigned width = args.lanes, lane = lane_of_thread();
@@ -184,4 +183,3 @@ KERNEL(merge_samples, PixelSamples, BLOCK, 4) {
             store_hit(args.centers, place.ray, Hit{INFINITE, 0.0f, 0.0f, Hit::NONE});
     }
 }
-#endif

@@ -1,4 +1,8 @@
 // Step 1 on a CUDA device: what does each ray see? Twin of cpu.rs, one thread per ray.
+#ifndef CUT_OUTS
+// Scenes with instances use the module with CUT_OUTS.
+#define INSTANCES 0
+#endif
 #include "cuda/prelude.cuh"
 
 #include "accel/walk.cuh"

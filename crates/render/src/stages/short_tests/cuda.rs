@@ -5,16 +5,16 @@ use lightmesh_layout::constants::{
 };
 use lightmesh_layout::stages::ShortTests;
 
-use crate::cuda::{Kernel, Runtime};
+use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::gpu::cells::DeviceCells;
 use crate::gpu::masks::DeviceMasks;
 use crate::gpu::rays::DeviceWave;
-use crate::gpu::{Cuda, PerStructure, Work, per_structure, warps_for};
+use crate::gpu::{Cuda, PerModule, PerStructure, Work, per_module, per_structure, warps_for};
 use crate::light_mesh::LightMesh;
 use crate::settings;
 
-const HALF_BALLS: Kernel = Kernel { module: "short_tests", name: "half_balls_of_items" };
+const HALF_BALLS: PerModule = per_module!("short_tests", "half_balls_of_items");
 const BY_CELL: PerStructure = per_structure!("short_tests", "short_tests_by_cell");
 /// For templates whose masks do not fit into shared memory: the masks stay in global memory, where they end up anyway.
 const BY_CELL_LARGE: PerStructure = per_structure!("short_tests", "short_tests_by_cell_large");
@@ -65,11 +65,11 @@ pub(crate) fn short_tests<R: Runtime>(
             cuda.launch(kernel, warps_for(&piece, WARPS, shared), &arguments)
         })
     };
-    if !by_cell {
-        each_item(HALF_BALLS, 0, 0)?;
-    }
     if scene.cut_out {
         cuda.bring_lines(kernels.cut_out_module, mesh)?;
+    }
+    if !by_cell {
+        each_item(HALF_BALLS.of(scene), 0, 0)?;
     }
     each_item(kernels.of(scene), shared, cells.count as u64)?;
     Ok(DeviceMasks { masks, words })

@@ -3,6 +3,10 @@
 // 1. `short_tests_by_cell_*`: twin of cells.rs and batch.rs, one warp per item.
 // 2. `half_balls_of_items`, `short_tests_plain_*`: twin of plain.rs, the reference: every segment walks through the
 //    acceleration structure.
+#ifndef CUT_OUTS
+// Scenes with instances use the module with CUT_OUTS.
+#define INSTANCES 0
+#endif
 #include "cuda/prelude.cuh"
 
 #include "stages/short_tests/by_cell.cuh"
@@ -13,10 +17,8 @@ KERNEL_PER_STRUCTURE(short_tests_by_cell, ShortTests, WARP, 32)
 
 KERNEL_PER_STRUCTURE(short_tests_by_cell_large, ShortTests, WARP, 32)
 
-#if !CUT_OUTS
 KERNEL(half_balls_of_items, ShortTests, WARP, 32) {
     half_balls_of_item(args);
 }
-#endif
 
 KERNEL_PER_STRUCTURE(short_tests_plain, ShortTests, WARP, 32)
