@@ -4,7 +4,7 @@
 //! file intact. Several of them can appear together: see [`Frame::ready`]. [`check_writable`] detects problems before
 //! any time is spent on rendering.
 
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use lightmesh_files::{Output, PublishError, Ready, TargetError};
@@ -194,21 +194,38 @@ impl Frame {
     /// [`SaveError`]; nothing is written then.
     pub fn ready_to(&self, output: Output, options: &SaveOptions) -> Result<Ready, SaveError> {
         let format = known_format(output.path(), options)?;
-        self.written(output, format, |output| {
-            check_storable(format, options, self.alpha().is_some())?;
-            match format {
-                #[cfg(feature = "bmp")]
-                Format::Bmp => bmp::write(self, &options.display, output),
-                #[cfg(feature = "png")]
-                Format::Png => png::write(self, &options.display, output),
-                #[cfg(feature = "exr")]
-                Format::Exr => exr::write(self, options, output),
-                #[cfg(feature = "jpeg")]
-                Format::Jpg => jpg::write(self, &options.display, output),
-                #[allow(unreachable_patterns, reason = "unless all features are on")]
-                other => Err(EncodeError::NotBuilt { format: other, feature: other.feature() }),
-            }
-        })
+        self.written(output, format, |output| self.write(format, options, output))
+    }
+
+    /// The bytes of a file of this format.
+    ///
+    /// # Errors
+    /// [`EncodeError`] if the format cannot store the image so.
+    pub fn encode(&self, format: Format, options: &SaveOptions) -> Result<Vec<u8>, EncodeError> {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        self.write(format, options, &mut bytes)?;
+        Ok(bytes.into_inner())
+    }
+
+    fn write(
+        &self,
+        format: Format,
+        options: &SaveOptions,
+        output: &mut (impl Write + Seek),
+    ) -> Result<(), EncodeError> {
+        check_storable(format, options, self.alpha().is_some())?;
+        match format {
+            #[cfg(feature = "bmp")]
+            Format::Bmp => bmp::write(self, &options.display, output),
+            #[cfg(feature = "png")]
+            Format::Png => png::write(self, &options.display, output),
+            #[cfg(feature = "exr")]
+            Format::Exr => exr::write(self, options, output),
+            #[cfg(feature = "jpeg")]
+            Format::Jpg => jpg::write(self, &options.display, output),
+            #[allow(unreachable_patterns, reason = "unless all features are on")]
+            other => Err(EncodeError::NotBuilt { format: other, feature: other.feature() }),
+        }
     }
 
     #[cfg(feature = "png")]

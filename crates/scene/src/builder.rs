@@ -155,6 +155,47 @@ impl SceneBuilder {
         Ok(())
     }
 
+    /// Adds a part that is stored once for several places, each of them an object with this name; `material` returns the material of each of its
+    /// triangles.
+    ///
+    /// # Errors
+    ///
+    /// As [`SceneBuilder::add`], and [`GeometryError::Place`] if a map cannot be inverted, or distorts too much; then nothing was added.
+    pub fn add_instances<P: Position>(
+        &mut self,
+        part: MeshPart<P>,
+        places: &[DMat4],
+        object: &str,
+        material: impl Fn(usize) -> u32,
+    ) -> Result<(), GeometryError> {
+        part.check()?;
+        if let Some(place) = places.iter().position(|place| !Affine::holds(place)) {
+            return Err(GeometryError::Place { place });
+        }
+        let count = part.triangles.len();
+        let all = self.shapes.triangles + count.saturating_mul(places.len());
+        check_room(self.vertex_count() + part.positions.len(), self.triangle_count() + 2 * count)?;
+        if all >= MOST_INSTANCED {
+            return Err(GeometryError::TooLarge { vertices: self.vertex_count(), triangles: all });
+        }
+        // The shape, and behind it the same with its corners in reverse order for places that mirror.
+        let is_mirrored = places.iter().any(mirrors);
+        let mut own = None;
+        self.exchange_shapes(&mut own);
+        let first = self.triangle_count();
+        self.append(part, &DMat4::IDENTITY, &material);
+        if is_mirrored {
+            self.append(part, &DMat4::IDENTITY, &material);
+            self.reverse(first + count..first + 2 * count);
+        }
+        self.exchange_shapes(&mut own);
+        for place in places {
+            let first = first + if mirrors(place) { count } else { 0 };
+            self.place(first..first + count, place, Some(object));
+        }
+        Ok(())
+    }
+
     /// [`SceneBuilder::add`] for a part that is known to be consistent, such as those from loaders.
     pub(crate) fn append<P: Position>(
         &mut self,

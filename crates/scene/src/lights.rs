@@ -48,7 +48,7 @@ impl Lights {
     }
 
     /// The light of a sky or a panorama in addition to all others.
-    pub(crate) fn add(&mut self, Surroundings { environment, sun }: Surroundings) {
+    pub fn add(&mut self, Surroundings { environment, sun }: Surroundings) {
         self.list.splice(0..0, sun);
         self.environment = Some(environment.into());
     }

@@ -73,6 +73,30 @@ impl Naming {
     }
 }
 
+impl Matte {
+    /// The pictures of a Cryptomatte, two ranks in each: per pixel the identifier and the share of one thing, and those of the next.
+    pub fn cryptomatte(&self) -> Vec<Vec<[f32; 4]>> {
+        let identifiers = identifiers(&self.names);
+        let pair = |rank: Option<&Rank>, pixel: usize| {
+            let of = |rank: &Rank| [f32::from_bits(identifiers[rank.number[pixel] as usize]), rank.share[pixel]];
+            rank.map_or([0.0; 2], of)
+        };
+        let picture = |ranks: &[Rank]| {
+            let pixel = |pixel| {
+                let ([a, b], [c, d]) = (pair(ranks.first(), pixel), pair(ranks.get(1), pixel));
+                [a, b, c, d]
+            };
+            (0..self.nearest.len()).map(pixel).collect()
+        };
+        self.ranks.chunks(2).map(picture).collect()
+    }
+
+    /// The names with their identifiers, as the JSON of a Cryptomatte's manifest.
+    pub fn manifest(&self) -> String {
+        manifest(&self.names)
+    }
+}
+
 /// The identifiers of things by number, as bits of floats; that of nothing is 0.
 pub(super) fn identifiers(names: &[String]) -> Vec<u32> {
     [0].into_iter().chain(names.iter().map(|name| identifier(name))).collect()

@@ -1,8 +1,4 @@
-//! Metallic-roughness materials (glTF 2.0, appendix B): the base colour is k_d, and k_s what the layer above reflects at normal incidence,
-//! 0.04 unless `KHR_materials_ior` or `KHR_materials_specular` specify another; the rest are [facets](crate::Facets).
-//!
-//! With `KHR_materials_transmission`, the share of the light that is not scattered goes through, times b, as glass of the index that
-//! `KHR_materials_ior` specifies: straight on through thin walls, or bent and absorbed by the body that `KHR_materials_volume` says there is.
+//! Metallic-roughness materials (glTF 2.0, appendix B), see [`Principled`].
 //!
 //! An unlit material (`KHR_materials_unlit`) shows its base colour, tinted, whatever the lights: k_a = k_d = k_s = 0, and the colour
 //! is what the surface emits. It still casts shadows, like everything else.
@@ -17,13 +13,10 @@ use super::{
     extras::{self, MaterialExtras, OpacityExtras},
     left_out::LeftOut,
 };
-use crate::{Dielectric, Facets, LoadError, Material, Opacity, OpacityMode, TextureUse};
+use crate::{LoadError, Material, Opacity, OpacityMode, Principled, TextureUse};
 
 /// Above this roughness, what is behind glass is visibly blurred.
 const CLEAR: f32 = 0.1;
-
-/// Higher Phong exponents look like mirrors, and cause problems in `f32`.
-const SHARPEST: f32 = 10_000.0;
 
 /// The material without its texture, by our own extras if the file has them. `tinted`: whether a texture or vertex colours are going
 /// to tint it.
@@ -110,12 +103,8 @@ fn transmission<'a>(of: &'a document::Material) -> Option<&'a Transmission> {
 /// What is transmitted; else what an `alphaMode` other than OPAQUE says, by the alpha of its base colour and `texture`. A cutoff or
 /// factor that is no number, or negative, counts as 0.
 pub(super) fn opacity(of: &document::Material, texture: Option<TextureUse>) -> Option<Opacity> {
-    if let Some(transmission) = transmission(of) {
-        let defaults = MetallicRoughness::default();
-        let pbr = of.pbr_metallic_roughness.as_deref().unwrap_or(&defaults);
-        let [r, g, b, _] = pbr.base_color_factor;
-        let share = transmission.transmission_factor.min(1.0) * (1.0 - pbr.metallic_factor.clamp(0.0, 1.0));
-        return Some(Opacity::blend(1.0 - share).with_filter(Vec3::new(r, g, b).clamp(Vec3::ZERO, Vec3::ONE)));
+    if transmission(of).is_some() {
+        return principled(of).material().opacity;
     }
     let mode = match of.alpha_mode.as_deref()? {
         "MASK" => OpacityMode::Mask { cutoff: of.alpha_cutoff.unwrap_or(Opacity::CUTOFF).max(0.0) },
@@ -128,115 +117,40 @@ pub(super) fn opacity(of: &document::Material, texture: Option<TextureUse>) -> O
 
 /// The material in glTF's own terms.
 pub(super) fn translated(of: &document::Material, tinted: bool) -> Material {
+    let all = principled(of);
+    if is_unlit(of) {
+        return unlit(all.base.max(Vec3::ZERO), tinted);
+    }
+    // What it lets through is said apart: by its textures, too.
+    Material { opacity: None, ..all.material() }
+}
+
+fn principled(of: &document::Material) -> Principled {
     let defaults = MetallicRoughness::default();
     let pbr = of.pbr_metallic_roughness.as_deref().unwrap_or(&defaults);
     let [r, g, b, _] = pbr.base_color_factor;
-    let base = Vec3::new(r, g, b).max(Vec3::ZERO);
-    let extensions = of.extensions.as_deref();
-    if is_unlit(of) {
-        return unlit(base, tinted);
+    let no_extensions = MaterialExtensions::default();
+    let extensions = of.extensions.as_deref().unwrap_or(&no_extensions);
+    let specular = extensions.specular.as_ref();
+    let strength = extensions.emissive_strength.as_ref().map_or(1.0, |strength| strength.emissive_strength);
+    let volume = extensions.volume.as_ref().filter(|volume| volume.thickness_factor > 0.0);
+    let attenuated =
+        |volume: &Volume| volume.attenuation_distance.map(|distance| (volume.attenuation_color.into(), distance));
+    Principled {
+        base: Vec3::new(r, g, b),
+        metallic: pbr.metallic_factor,
+        roughness: pbr.roughness_factor,
+        ior: extensions.ior.as_ref().map(|ior| ior.ior),
+        specular: specular.map_or(1.0, |specular| specular.specular_factor),
+        specular_color: specular.map_or(Vec3::ONE, |specular| specular.specular_color_factor.into()),
+        transmission: transmission(of).map_or(0.0, |transmission| transmission.transmission_factor),
+        thin: volume.is_none(),
+        attenuation: volume.and_then(attenuated),
+        emission: strength * Vec3::from(of.emissive_factor),
     }
-    let mut material = match transmission(of) {
-        None => faceted(base, pbr.metallic_factor, pbr.roughness_factor, extensions),
-        // What glass reflects is Fresnel's.
-        Some(_) => Material {
-            shininess: shininess(pbr.roughness_factor),
-            dielectric: Some(boundary(extensions)),
-            ..Material::matt(base)
-        },
-    };
-    let strength = extensions.and_then(|extensions| extensions.emissive_strength.as_ref());
-    let strength = strength.map_or(1.0, |strength| strength.emissive_strength);
-    material.emission = (strength * Vec3::from(of.emissive_factor)).max(Vec3::ZERO);
-    material.lamp = true;
-    material
-}
-
-fn faceted(base: Vec3, metallic: f32, roughness: f32, extensions: Option<&MaterialExtensions>) -> Material {
-    let share = |factor: f32| factor.clamp(0.0, 1.0);
-    let (layer, grazing) = reflectance(extensions);
-    let facets = Facets::new(share(roughness)).with_metallic(share(metallic)).with_grazing(grazing);
-    Material::matt(base).with_ks(layer).with_facets(facets)
-}
-
-/// The lobe of a body's highlights, which is Phong's: as wide as facets of this roughness are (Walter et al. 2007).
-fn shininess(roughness: f32) -> f32 {
-    (2.0 / roughness.clamp(0.0, 1.0).powi(4) - 2.0).clamp(1.0, SHARPEST)
 }
 
 fn unlit(base: Vec3, tinted: bool) -> Material {
     let (emission, emission_tinted) = if tinted { (Vec3::ZERO, base) } else { (base, Vec3::ZERO) };
     Material { ka: Vec3::ZERO, kd: Vec3::ZERO, ks: Vec3::ZERO, emission, emission_tinted, ..Material::default() }
-}
-
-/// The boundary of what transmits light.
-fn boundary(extensions: Option<&MaterialExtensions>) -> Dielectric {
-    let ior =
-        extensions.and_then(|extensions| extensions.ior.as_ref()).map_or(Dielectric::GLASS, |ior| ior.ior.max(1.0));
-    let volume = extensions.and_then(|extensions| extensions.volume.as_ref());
-    let glass = Dielectric::new(ior);
-    match volume.filter(|volume| volume.thickness_factor > 0.0) {
-        None => glass.with_thin(true),
-        Some(Volume { attenuation_color, attenuation_distance, .. }) => match attenuation_distance {
-            Some(distance) if *distance > 0.0 => glass.with_attenuation(*attenuation_color, *distance),
-            _ => glass,
-        },
-    }
-}
-
-/// What the layer reflects at normal and at grazing incidence, apart from a metal.
-fn reflectance(extensions: Option<&MaterialExtensions>) -> (Vec3, f32) {
-    let ior = extensions.and_then(|extensions| extensions.ior.as_ref()).map_or(Facets::LAYER, |ior| match ior.ior {
-        // As defined by the extension: a surface that reflects everything.
-        0.0 => 1.0,
-        ior => ((ior.max(1.0) - 1.0) / (ior.max(1.0) + 1.0)).powi(2),
-    });
-    let (factor, color) = extensions
-        .and_then(|extensions| extensions.specular.as_ref())
-        .map_or((1.0, Vec3::ONE), |specular| (specular.specular_factor, specular.specular_color_factor.into()));
-    let factor = factor.clamp(0.0, 1.0);
-    ((ior * color).clamp(Vec3::ZERO, Vec3::ONE) * factor, factor)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const COPPER: Vec3 = Vec3::new(0.95, 0.64, 0.54);
-
-    fn plain(metallic: f32, roughness: f32) -> Material {
-        faceted(COPPER, metallic, roughness, None)
-    }
-
-    #[test]
-    fn factors_are_facets_of_the_base_colour() {
-        let copper = plain(0.75, 0.5);
-        assert_eq!((copper.kd, copper.ks), (COPPER, Vec3::splat(0.04)));
-        assert_eq!(copper.facets, Some(Facets { roughness: 0.5, metallic: 0.75, grazing: 1.0 }));
-    }
-
-    #[test]
-    fn the_lobe_of_glass_is_as_wide_as_its_roughness_says() {
-        assert!((shininess(0.5) - 30.0).abs() < 1e-4);
-        assert_eq!((shininess(0.0), shininess(1.0)), (SHARPEST, 1.0));
-    }
-
-    #[test]
-    fn factors_out_of_range_are_brought_back() {
-        assert_eq!(plain(7.0, -1.0), plain(1.0, 0.0));
-        assert_eq!(plain(-1.0, 3.0), plain(0.0, 1.0));
-    }
-
-    #[test]
-    fn the_index_of_refraction_and_the_specular_factor_set_the_reflectance() {
-        let of = |extensions: &str| reflectance(Some(&serde_json::from_str(extensions).unwrap()));
-        let near = |(found, grazing): (Vec3, f32), expected: [f32; 3], end: f32| {
-            (found - Vec3::from(expected)).length() < 1e-6 && grazing == end
-        };
-        assert!(near(of(r#"{"KHR_materials_ior": {}}"#), [0.04; 3], 1.0));
-        assert!(near(of(r#"{"KHR_materials_ior": {"ior": 2}}"#), [1.0 / 9.0; 3], 1.0));
-        assert!(near(of(r#"{"KHR_materials_ior": {"ior": 1}}"#), [0.0; 3], 1.0));
-        let halved = r#"{"KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [1, 0, 100]}}"#;
-        assert!(near(of(halved), [0.02, 0.0, 0.5], 0.5));
-    }
 }
