@@ -11,7 +11,9 @@ use crate::gpu::lit::DeviceLit;
 use crate::gpu::masks::DeviceMasks;
 use crate::gpu::points::DevicePoints;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
-use crate::gpu::{BLOCK, Cuda, PerModule, PerStructure, Work, blocks_for, per_module, per_structure, sampling, warps_for};
+use crate::gpu::{
+    BLOCK, Cuda, PerModule, PerStructure, Work, blocks_for, per_module, per_structure, sampling, warps_for,
+};
 use crate::light_mesh::window_bricks;
 
 /// The inputs of formula (3).

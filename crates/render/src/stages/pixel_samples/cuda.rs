@@ -13,7 +13,9 @@ use crate::footprint::Cone;
 use crate::gpu::film::DeviceFilm;
 use crate::gpu::rays::{DeviceHits, DeviceRays};
 use crate::gpu::samples::{DeviceSampled, DeviceSamples};
-use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerModule, PerStructure, Work, blocks_for, per_module, per_structure};
+use crate::gpu::{
+    BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerModule, PerStructure, Work, blocks_for, per_module, per_structure,
+};
 use crate::job::Job;
 
 const CAST: PerStructure = per_structure!("pixel_samples", "pixel_samples");
