@@ -12,7 +12,7 @@ use clap::{Arg, Args, CommandFactory, Parser, Subcommand};
 use lightmesh::scene::{Instancing, SceneFormat};
 
 pub(crate) use bench::{BenchArgs, BenchCommand, BenchCompareArgs, SuiteArgs};
-pub(crate) use render::RenderArgs;
+pub(crate) use render::{ExposureArgs, FormArgs, ImageArgs, RenderArgs, StorageArgs};
 pub(crate) use words::{Progress, Switch, Up};
 
 use crate::color::When;

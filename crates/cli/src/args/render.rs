@@ -54,10 +54,6 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "F", requires = "output", conflicts_with = "partial", help_heading = "Film")]
     pub(crate) fps: Option<FrameRate>,
 
-    /// The animation of a glTF file that is played, by name [default: the first, and those after it that move other things]
-    #[arg(long, value_name = "NAME", help_heading = "Film")]
-    pub(crate) animation: Option<String>,
-
     /// Go on with a film that has ended early, as if it had not: frames whose files are as manifest.json beside them
     /// records are kept, and all others rendered with the recorded exposure and step. Refused if scene or settings are
     /// not those of the film; begins the film if there is no record of it
@@ -72,10 +68,60 @@ pub(crate) struct RenderArgs {
     #[arg(long, requires = "output", help_heading = "Film")]
     pub(crate) overwrite: bool,
 
-    /// Format of the output image [default: by the extension]
-    #[arg(long, value_parser = words::image_format(), help_heading = "Image")]
-    pub(crate) format: Option<Format>,
+    #[command(flatten)]
+    pub(crate) form: FormArgs,
 
+    #[command(flatten)]
+    pub(crate) storage: StorageArgs,
+
+    #[command(flatten)]
+    pub(crate) exposure: ExposureArgs,
+
+    #[command(flatten)]
+    pub(crate) image: ImageArgs,
+
+    #[command(flatten)]
+    pub(crate) machine: MachineArgs,
+
+    /// Write per-pixel data as a multilayer exr: colour, depth, normal, position, visibility and radiance of each light, number of light
+    /// points used, ids and Cryptomattes of objects and materials; `-` is standard output [default: off]
+    #[arg(long, value_name = "F.exr", requires = "output", help_heading = "Image")]
+    pub(crate) layers: Option<PathBuf>,
+
+    /// Read what light points see from this file before the first image, if it exists, and write it there after the last: for later
+    /// runs, other cameras and other devices, with --lookup half-ball. Images are the same without it. A file of other surfaces
+    /// or another step, or one that is damaged, is replaced, with a warning; a light that has changed is computed anew
+    #[arg(long, value_name = "F", requires = "output", help_heading = "Machine")]
+    pub(crate) mesh_file: Option<PathBuf>,
+
+    /// Write counts, timings and all resolved settings as JSON; `-` is standard output. The time of the render excludes
+    /// file input and output [default: off]
+    #[arg(long, value_name = "F.json", requires = "output", help_heading = "Reports")]
+    pub(crate) stats: Option<PathBuf>,
+
+    /// How to show progress on stderr
+    #[arg(long, value_enum, default_value_t = Progress::Auto, help_heading = "Reports")]
+    pub(crate) progress: Progress,
+
+    /// Print only errors, and progress only if --progress requests it
+    #[arg(short, long, help_heading = "Reports")]
+    pub(crate) quiet: bool,
+
+    /// Print more: why no CUDA device can be used; how many normals were made (--smooth); seconds of each stage, counts and memory
+    #[arg(short, long, conflicts_with = "quiet", help_heading = "Reports")]
+    pub(crate) verbose: bool,
+}
+
+impl RenderArgs {
+    /// The output image; an empty path if there is none.
+    pub(crate) fn picture(&self) -> &Path {
+        self.output.as_deref().unwrap_or(Path::new(""))
+    }
+}
+
+/// What an image shows, and how it is computed.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct ImageArgs {
     /// How visibility is computed
     #[arg(long, value_parser = words::mode(), default_value_t = Mode::LightMesh, help_heading = "Method")]
     pub(crate) mode: Mode,
@@ -133,40 +179,6 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "X,Y,W,H", help_heading = "Image")]
     pub(crate) crop: Option<Crop>,
 
-    /// Transfer function of 8-bit files; exr files are always linear
-    #[arg(long, value_parser = words::transfer(), default_value_t = Transfer::Srgb, help_heading = "Image")]
-    pub(crate) transfer: Transfer,
-
-    /// Exposure of 8-bit files in stops, each of which doubles the brightness; auto brings any light level into range, whatever a ground
-    /// shows. Does not affect exr files and --layers [default: auto if a light has a photometric unit (inverse-square falloff), else 0]
-    #[arg(long, value_name = "STOPS|auto", allow_negative_numbers = true, help_heading = "Image")]
-    pub(crate) exposure: Option<Exposure>,
-
-    /// How 8-bit and 16-bit files show what is brighter than white; exr files are always linear
-    #[arg(long, value_parser = words::view(), default_value_t = View::Standard, help_heading = "Image")]
-    pub(crate) view: View,
-
-    /// Bits per channel of png files
-    #[arg(long, value_name = "N", value_parser = words::bit_depth(), default_value = "8", help_heading = "Image")]
-    pub(crate) bit_depth: BitDepth,
-
-    /// Round 8-bit codes up and down in a fine fixed pattern, so that smooth gradients have no bands. Exact codes, such as black and white,
-    /// stay as they are; files become larger
-    #[arg(long, value_enum, default_value_t = Switch::Off, help_heading = "Image")]
-    pub(crate) dither: Switch,
-
-    /// Numbers of exr files; depth, positions, counts and mattes of --layers are always float, ids whole numbers
-    #[arg(long, value_parser = words::exr_type(), default_value_t = ExrSamples::Float, help_heading = "Image")]
-    pub(crate) exr_type: ExrSamples,
-
-    /// Lossless compression of exr files
-    #[arg(long, value_parser = words::exr_compression(), default_value_t = ExrCompression::Zip, help_heading = "Image")]
-    pub(crate) exr_compression: ExrCompression,
-
-    /// How --layers are divided
-    #[arg(long, value_parser = words::exr_parts(), default_value_t = ExrParts::Single, help_heading = "Image")]
-    pub(crate) exr_parts: ExrParts,
-
     /// What is behind the scene: a colour, as one number, r,g,b or "#rrggbb" (sRGB), or transparent, which writes an alpha channel to png and exr
     /// files; mirrors then still reflect the scene's background [default: the scene's, else black]
     #[arg(long, value_name = "COLOUR|transparent", allow_hyphen_values = true, help_heading = "Image")]
@@ -182,11 +194,6 @@ pub(crate) struct RenderArgs {
     /// same result
     #[arg(long, help_heading = "Image")]
     pub(crate) partial: bool,
-
-    /// Write per-pixel data as a multilayer exr: colour, depth, normal, position, visibility and radiance of each light, number of light
-    /// points used, ids and Cryptomattes of objects and materials; `-` is standard output [default: off]
-    #[arg(long, value_name = "F.exr", requires = "output", help_heading = "Image")]
-    pub(crate) layers: Option<PathBuf>,
 
     /// Position, target and vertical field of view in degrees, as in "0,2,5;0,1,0;45" [default: the scene's first camera, else
     /// one that frames the scene]
@@ -235,26 +242,6 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "FILE[;OPTIONS]", conflicts_with = "sky", help_heading = "Scene")]
     pub(crate) environment: Option<EnvironmentSpec>,
 
-    /// Crease angle in degrees: OBJ, PLY and STL files without normals are smooth across edges where triangles meet at less, and across no
-    /// other edge. off shows every triangle as it is. OBJ smoothing groups are honoured; glTF files and files with normals are not changed
-    /// [default: 30; off with --lookup half-ball]
-    #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, help_heading = "Scene")]
-    pub(crate) smooth: Option<Smooth>,
-
-    /// Whether meshes that a scene shows in many places are stored once: what takes too long or too much memory as copies becomes possible.
-    /// Rays take longer. Grids and brute force need copies
-    #[arg(long, value_name = "WHEN", value_parser = words::instances(), default_value_t = Instancing::Auto, help_heading = "Scene")]
-    pub(crate) instances: Instancing,
-
-    /// Device: auto, cpu, cuda (the first CUDA device that works) or cuda:N; auto uses the fastest that works, cuda before cpu,
-    /// and reports which and why. `lightmesh info --devices` lists devices; CUDA_VISIBLE_DEVICES hides and renumbers them
-    #[arg(long, value_name = "DEVICE", default_value = "auto", help_heading = "Machine")]
-    pub(crate) device: Device,
-
-    /// CPU threads [default: all]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1024), help_heading = "Machine")]
-    pub(crate) threads: Option<u32>,
-
     /// Acceleration structure
     #[arg(long, value_parser = words::acceleration(), default_value_t = Acceleration::Auto, help_heading = "Machine")]
     pub(crate) accel: Acceleration,
@@ -266,34 +253,82 @@ pub(crate) struct RenderArgs {
     /// Load the acceleration grid saved by `lightmesh grid`; implies --accel grid
     #[arg(long, value_name = "F", help_heading = "Machine")]
     pub(crate) grid_file: Option<PathBuf>,
-
-    /// Read what light points see from this file before the first image, if it exists, and write it there after the last: for later
-    /// runs, other cameras and other devices, with --lookup half-ball. Images are the same without it. A file of other surfaces
-    /// or another step, or one that is damaged, is replaced, with a warning; a light that has changed is computed anew
-    #[arg(long, value_name = "F", requires = "output", help_heading = "Machine")]
-    pub(crate) mesh_file: Option<PathBuf>,
-
-    /// Write counts, timings and all resolved settings as JSON; `-` is standard output. The time of the render excludes
-    /// file input and output [default: off]
-    #[arg(long, value_name = "F.json", requires = "output", help_heading = "Reports")]
-    pub(crate) stats: Option<PathBuf>,
-
-    /// How to show progress on stderr
-    #[arg(long, value_enum, default_value_t = Progress::Auto, help_heading = "Reports")]
-    pub(crate) progress: Progress,
-
-    /// Print only errors, and progress only if --progress requests it
-    #[arg(short, long, help_heading = "Reports")]
-    pub(crate) quiet: bool,
-
-    /// Print more: why no CUDA device can be used; how many normals were made (--smooth); seconds of each stage, counts and memory
-    #[arg(short, long, conflicts_with = "quiet", help_heading = "Reports")]
-    pub(crate) verbose: bool,
 }
 
-impl RenderArgs {
-    /// The output image; an empty path if there is none.
-    pub(crate) fn picture(&self) -> &Path {
-        self.output.as_deref().unwrap_or(Path::new(""))
-    }
+/// How bright image files are.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct ExposureArgs {
+    /// Exposure of 8-bit files in stops, each of which doubles the brightness; auto brings any light level into range, whatever a ground
+    /// shows. Does not affect exr files and --layers [default: auto if a light has a photometric unit (inverse-square falloff), else 0]
+    #[arg(long, value_name = "STOPS|auto", allow_negative_numbers = true, help_heading = "Image")]
+    pub(crate) exposure: Option<Exposure>,
+}
+
+/// How image files store what they show.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct StorageArgs {
+    /// Format of the output image [default: by the extension]
+    #[arg(long, value_parser = words::image_format(), help_heading = "Image")]
+    pub(crate) format: Option<Format>,
+
+    /// Transfer function of 8-bit files; exr files are always linear
+    #[arg(long, value_parser = words::transfer(), default_value_t = Transfer::Srgb, help_heading = "Image")]
+    pub(crate) transfer: Transfer,
+
+    /// How 8-bit and 16-bit files show what is brighter than white; exr files are always linear
+    #[arg(long, value_parser = words::view(), default_value_t = View::Standard, help_heading = "Image")]
+    pub(crate) view: View,
+
+    /// Bits per channel of png files
+    #[arg(long, value_name = "N", value_parser = words::bit_depth(), default_value = "8", help_heading = "Image")]
+    pub(crate) bit_depth: BitDepth,
+
+    /// Round 8-bit codes up and down in a fine fixed pattern, so that smooth gradients have no bands. Exact codes, such as black and white,
+    /// stay as they are; files become larger
+    #[arg(long, value_enum, default_value_t = Switch::Off, help_heading = "Image")]
+    pub(crate) dither: Switch,
+
+    /// Numbers of exr files; depth, positions, counts and mattes of --layers are always float, ids whole numbers
+    #[arg(long, value_parser = words::exr_type(), default_value_t = ExrSamples::Float, help_heading = "Image")]
+    pub(crate) exr_type: ExrSamples,
+
+    /// Lossless compression of exr files
+    #[arg(long, value_parser = words::exr_compression(), default_value_t = ExrCompression::Zip, help_heading = "Image")]
+    pub(crate) exr_compression: ExrCompression,
+
+    /// How --layers are divided
+    #[arg(long, value_parser = words::exr_parts(), default_value_t = ExrParts::Single, help_heading = "Image")]
+    pub(crate) exr_parts: ExrParts,
+}
+
+/// How meshes and animations are read.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct FormArgs {
+    /// The animation of a glTF file that is played, by name [default: the first, and those after it that move other things]
+    #[arg(long, value_name = "NAME", help_heading = "Film")]
+    pub(crate) animation: Option<String>,
+
+    /// Crease angle in degrees: OBJ, PLY and STL files without normals are smooth across edges where triangles meet at less, and across no
+    /// other edge. off shows every triangle as it is. OBJ smoothing groups are honoured; glTF files and files with normals are not changed
+    /// [default: 30; off with --lookup half-ball]
+    #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, help_heading = "Scene")]
+    pub(crate) smooth: Option<Smooth>,
+
+    /// Whether meshes that a scene shows in many places are stored once: what takes too long or too much memory as copies becomes possible.
+    /// Rays take longer. Grids and brute force need copies
+    #[arg(long, value_name = "WHEN", value_parser = words::instances(), default_value_t = Instancing::Auto, help_heading = "Scene")]
+    pub(crate) instances: Instancing,
+}
+
+/// What the work is done by.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct MachineArgs {
+    /// Device: auto, cpu, cuda (the first CUDA device that works) or cuda:N; auto uses the fastest that works, cuda before cpu,
+    /// and reports which and why. `lightmesh info --devices` lists devices; CUDA_VISIBLE_DEVICES hides and renumbers them
+    #[arg(long, value_name = "DEVICE", default_value = "auto", help_heading = "Machine")]
+    pub(crate) device: Device,
+
+    /// CPU threads [default: all]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1024), help_heading = "Machine")]
+    pub(crate) threads: Option<u32>,
 }

@@ -17,7 +17,7 @@ pub(super) fn checksum(args: &RenderArgs, scene: &Scene) -> Result<String, Manif
     if scene.files.is_empty() {
         hash.update(source.as_os_str().as_encoded_bytes());
     }
-    let panorama = args.environment.as_ref().map(|spec| &spec.file);
+    let panorama = args.image.environment.as_ref().map(|spec| &spec.file);
     for file in scene.files.iter().chain(panorama) {
         add(&mut hash, file, directory(source))?;
     }

@@ -20,13 +20,18 @@ macro_rules! values {
 }
 
 pub(super) fn of(args: &RenderArgs) -> BTreeMap<String, String> {
-    let image = values![args;
-        turntable, fps, animation, sun, format, mode, bounces, step, radius, weight, lookup, quality, aa, filter, samples, seed, size, crop, transfer, exposure,
-        view, bit_depth, dither, exr_type, exr_compression, exr_parts, background,
+    let film = values![args; turntable, fps, sun];
+    let form = values![args.form; animation, smooth, instances];
+    let storage =
+        values![args.storage; format, transfer, view, bit_depth, dither, exr_type, exr_compression, exr_parts];
+    let exposure = values![args.exposure; exposure];
+    let image = values![args.image;
+        mode, bounces, step, radius, weight, lookup, quality, aa, filter, samples, seed, size, crop, background, ground, camera,
+        camera_name, up, lights, falloff, ambient, ambient_light, sky, environment,
     ];
-    let scene = values![args; ground, camera, camera_name, up, lights, falloff, ambient, ambient_light, sky, environment, smooth, instances];
     let reading = values![args.scene.reading; scene_format];
-    image.into_iter().chain(scene).chain(reading).collect()
+    let all = [&film[..], &form, &storage, &exposure, &image, &reading];
+    all.concat().into_iter().collect()
 }
 
 fn flag(field: &str) -> String {

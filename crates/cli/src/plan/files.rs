@@ -6,7 +6,7 @@ use lightmesh::SaveError;
 use lightmesh::image::{Display, ExrOptions, Format, SaveOptions, check_image};
 
 use super::{Container, PlanError};
-use crate::args::{RenderArgs, Switch};
+use crate::args::{RenderArgs, StorageArgs, Switch};
 use crate::destination::{Destination, check_one_on_stdout, is_standard};
 use crate::output::{OutputError, Outputs, check_writable, input};
 use crate::value::{Background, Exposure, numbered};
@@ -58,7 +58,7 @@ impl PictureFiles {
         let picture = name(OUTPUT, args.picture())?;
         let layers = args.layers.as_deref().map(|path| name("--layers", path)).transpose()?;
         let stats = args.stats.as_deref().map(|path| name("--stats", path)).transpose()?;
-        let options = options(args);
+        let options = save_options(&args.storage);
         if movie.is_some() {
             picture.check_writable().map_err(SaveError::from)?;
         } else {
@@ -77,8 +77,8 @@ impl PictureFiles {
         mesh.map_or(Ok(()), check_mesh)?;
         let outputs = Outputs::new(all.into_iter().chain([("--mesh-file", mesh)]).chain(hours_of_sun(args)))?;
         outputs.keep("the scene", input(&args.scene.scene))?;
-        outputs.keep("--grid-file", args.grid_file.as_deref())?;
-        Ok(PictureFiles { picture, movie, options, exposure: args.exposure, layers, stats, outputs })
+        outputs.keep("--grid-file", args.image.grid_file.as_deref())?;
+        Ok(PictureFiles { picture, movie, options, exposure: args.exposure.exposure, layers, stats, outputs })
     }
 
     /// The files that are written for the image alone.
@@ -98,7 +98,8 @@ pub(super) fn hours_of_sun(args: &RenderArgs) -> impl Iterator<Item = (&'static 
     args.sun_hours.iter().map(|path| ("--sun-hours", Some(&**path)))
 }
 
-pub(super) fn options(args: &RenderArgs) -> SaveOptions {
+/// How image files store what they show, except for the exposure.
+pub(crate) fn save_options(args: &StorageArgs) -> SaveOptions {
     let display = Display::default()
         .with_view(args.view)
         .with_transfer(args.transfer)
@@ -115,12 +116,12 @@ pub(super) fn options(args: &RenderArgs) -> SaveOptions {
 fn check_picture(picture: &Destination, args: &RenderArgs, options: &SaveOptions) -> Result<(), PlanError> {
     picture.check_binary(OUTPUT)?;
     let path = match picture {
-        Destination::Stdout if args.format.is_none() => return Err(PlanError::NoFormat),
+        Destination::Stdout if args.storage.format.is_none() => return Err(PlanError::NoFormat),
         Destination::Stdout => Path::new("standard output"),
         Destination::File(path) => path,
     };
-    let size = args.crop.map_or(args.size.0, |crop| crop.size);
-    check_image(path, options, size, args.background == Some(Background::Transparent))?;
+    let size = args.image.crop.map_or(args.image.size.0, |crop| crop.size);
+    check_image(path, options, size, args.image.background == Some(Background::Transparent))?;
     Ok(picture.check_writable().map_err(SaveError::from)?)
 }
 

@@ -3,7 +3,7 @@
 mod files;
 mod film;
 mod movie;
-mod scene;
+pub(crate) mod scene;
 mod settings;
 mod sun;
 
@@ -18,10 +18,12 @@ use crate::args::{RenderArgs, SceneArg};
 use crate::manifest::ManifestError;
 use crate::output::OutputError;
 use crate::value::{Frames, Smooth, SunSpec};
-pub(crate) use files::PictureFiles;
+pub(crate) use files::{PictureFiles, save_options};
 pub(crate) use film::{Film, Motion, Work};
 pub(crate) use movie::{Container, MovieChoiceError};
-pub(crate) use scene::{ChoiceError, SceneChoices};
+pub(crate) use scene::ChoiceError;
+pub(crate) use scene::SceneChoices;
+pub(crate) use settings::settings;
 pub(crate) use sun::{HoursFile, HoursFormat, SunMoment, SunStudy};
 
 /// Why a command line is invalid.
@@ -162,7 +164,8 @@ impl RenderPlan {
 
     /// Checks that the flags are consistent and that every output can be written.
     pub(crate) fn new(args: &RenderArgs) -> Result<RenderPlan, PlanError> {
-        let settings = settings::settings(args)?;
+        let (format, memory_limit) = (args.scene.format(), args.scene.reading.memory_limit.map(|limit| limit.0));
+        let settings = settings(&args.image, format, memory_limit)?.with_layers(args.layers.is_some());
         let sun = SunStudy::new(args)?;
         let film = Film::new(args, sun.as_ref())?;
         let files = match (&film, &sun) {
@@ -172,12 +175,12 @@ impl RenderPlan {
         };
         Ok(RenderPlan {
             scene: args.scene.clone(),
-            smooth: args.smooth.unwrap_or_else(|| usual_smooth(&settings)).0,
+            smooth: args.form.smooth.unwrap_or_else(|| usual_smooth(&settings)).0,
             instancing: instancing(args, &settings),
-            choices: SceneChoices::new(args, sun.as_ref())?,
+            choices: SceneChoices::new(&args.image, format, memory_limit)?.under_sun(sun.as_ref()),
             settings,
-            device: args.device,
-            threads: args.threads.and_then(|threads| NonZeroUsize::new(threads as usize)),
+            device: args.machine.device,
+            threads: args.machine.threads.and_then(|threads| NonZeroUsize::new(threads as usize)),
             files,
             film,
             mesh_file: args.mesh_file.clone(),
@@ -199,7 +202,7 @@ fn others(count: usize) -> String {
 /// Grids and brute force hold no instances.
 fn instancing(args: &RenderArgs, settings: &Settings) -> Instancing {
     match settings.acceleration {
-        Acceleration::Auto | Acceleration::Bvh => args.instances,
+        Acceleration::Auto | Acceleration::Bvh => args.form.instances,
         _ => Instancing::Never,
     }
 }

@@ -63,10 +63,10 @@ impl Container {
     pub(super) fn of_film(args: &RenderArgs) -> Result<Option<Container>, MovieChoiceError> {
         let Some(container) = Container::from_path(args.picture()) else { return Ok(None) };
         let path = args.picture().to_owned();
-        if args.format.is_some() {
+        if args.storage.format.is_some() {
             return Err(MovieChoiceError::Format { path });
         }
-        if args.background == Some(Background::Transparent) {
+        if args.image.background == Some(Background::Transparent) {
             return Err(MovieChoiceError::Alpha { path });
         }
         match [("--resume", args.resume), ("--skip-existing", args.skip_existing)].into_iter().find(|(_, given)| *given)

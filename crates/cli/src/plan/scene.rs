@@ -11,16 +11,19 @@ use lightmesh::{Observer, Scene};
 use lightmesh_memory::Budget;
 
 use super::SunStudy;
-use crate::args::{self, RenderArgs};
+use crate::args::{self, ImageArgs};
 use crate::value::{Background, Color, EnvironmentSpec, LightSpec, SkySpec};
 
 /// Why a scene cannot be had as typed.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum ChoiceError {
+pub enum ChoiceError {
+    /// There is no camera of this name.
     #[error(transparent)]
     Camera(#[from] UnknownCamera),
+    /// The sky is none.
     #[error("--sky: {0}")]
     Sky(#[from] SkyError),
+    /// The panorama cannot be used.
     #[error("--environment: {0}")]
     Environment(#[from] EnvironmentError),
 }
@@ -47,8 +50,12 @@ pub(crate) struct SceneChoices {
 const GROUND_BACKGROUND: f32 = 0.8;
 
 impl SceneChoices {
-    pub(super) fn new(args: &RenderArgs, sun: Option<&SunStudy>) -> Result<SceneChoices, CameraError> {
-        let format = args.scene.format();
+    /// For a scene in this format.
+    pub(crate) fn new(
+        args: &ImageArgs,
+        format: Option<SceneFormat>,
+        memory_limit: Option<u64>,
+    ) -> Result<SceneChoices, CameraError> {
         let up = args.up.of(format);
         let is_open = |format| matches!(format, SceneFormat::Obj | SceneFormat::Ply | SceneFormat::Stl);
         let camera = args.camera.map(|view| {
@@ -64,11 +71,16 @@ impl SceneChoices {
             falloff: args.falloff,
             ambient: args.ambient,
             background: args.background,
-            sky: sun.map(|sun| sun.sky_at(0)).or(args.sky),
+            sky: args.sky,
             environment: args.environment.clone(),
             ground: args.ground,
-            budget: Budget::new(args.scene.reading.memory_limit.map(|limit| limit.0)),
+            budget: Budget::new(memory_limit),
         })
+    }
+
+    /// With the sky of a study's first moment.
+    pub(super) fn under_sun(self, sun: Option<&SunStudy>) -> SceneChoices {
+        SceneChoices { sky: sun.map(|sun| sun.sky_at(0)).or(self.sky), ..self }
     }
 
     /// Applies camera, lights, surroundings, ambient term and background to the scene; reports which defaults had to be added. Returns what the image is to
@@ -123,8 +135,13 @@ impl SceneChoices {
         Ok((self.ground && is_open).then_some(GROUND_BACKGROUND))
     }
 
+    /// Whether the scene gets a ground.
+    pub(crate) fn has_ground(&self) -> bool {
+        self.ground
+    }
+
     /// What is up, and why it is not what is usual.
-    fn up(&self, scene: &Scene) -> (Up, String) {
+    pub(crate) fn up(&self, scene: &Scene) -> (Up, String) {
         let suggested = || {
             let info = scene.suggested_up()?;
             let up: Up = info.axis.parse().ok()?;

@@ -1,13 +1,18 @@
 //! Conversion of flags to [`Settings`].
 
+use lightmesh::scene::SceneFormat;
 use lightmesh::{Acceleration, Settings};
 
 use super::PlanError;
-use crate::args::RenderArgs;
+use crate::args::ImageArgs;
 use crate::value::Background;
 
-/// All settings except the camera, which is part of the scene.
-pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
+/// All settings of an image of a scene in this format, except the camera, which is part of the scene.
+pub(crate) fn settings(
+    args: &ImageArgs,
+    format: Option<SceneFormat>,
+    memory_limit: Option<u64>,
+) -> Result<Settings, PlanError> {
     if let Some(crop) = args.crop.filter(|crop| !crop.is_within(args.size.0)) {
         return Err(PlanError::Crop { crop, size: args.size.0 });
     }
@@ -15,7 +20,7 @@ pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
         .with_mode(args.mode)
         .with_bounces(args.bounces)
         .with_size(args.size.0)
-        .with_up(args.up.of(args.scene.format()))
+        .with_up(args.up.of(format))
         .with_lookup(args.lookup)
         .with_quality(args.quality)
         .with_ambient_light(args.ambient_light)
@@ -23,7 +28,6 @@ pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
         .with_short_tests(args.short_tests)
         .with_acceleration(acceleration(args)?)
         .with_seed(args.seed)
-        .with_layers(args.layers.is_some())
         .with_partial(args.partial)
         .with_transparent(args.background == Some(Background::Transparent));
     // Omitted flags leave their settings open.
@@ -33,12 +37,12 @@ pub(super) fn settings(args: &RenderArgs) -> Result<Settings, PlanError> {
     settings.weight = args.weight;
     settings.samples = args.samples;
     settings.aa = args.aa;
-    settings.memory_limit = args.scene.reading.memory_limit.map(|limit| limit.0);
+    settings.memory_limit = memory_limit;
     Ok(settings)
 }
 
 /// Grid parameters imply the grid. The parser has rejected `--grid` together with `--grid-file`.
-fn acceleration(args: &RenderArgs) -> Result<Acceleration, PlanError> {
+fn acceleration(args: &ImageArgs) -> Result<Acceleration, PlanError> {
     let described = match (args.grid, &args.grid_file) {
         (Some(dims), _) => Some(("--grid", Acceleration::Grid(Some(dims.0)))),
         (None, Some(file)) => Some(("--grid-file", Acceleration::GridFile(file.clone()))),

@@ -66,7 +66,7 @@ impl SunStudy {
     /// The study that is asked for, if one is. Fails if there is no sun, or a file cannot be written.
     pub(super) fn new(args: &RenderArgs) -> Result<Option<SunStudy>, PlanError> {
         let Some(spec) = args.sun else { return Ok(None) };
-        let sky = args.sky.unwrap_or_else(SkySpec::clear);
+        let sky = args.image.sky.unwrap_or_else(SkySpec::clear);
         if !matches!(sky.sky.kind, SkyKind::Clear { .. }) {
             return Err(PlanError::SunWithoutSky);
         }
@@ -102,9 +102,17 @@ impl SunStudy {
         let picture = Destination::File(self.outputs.first().map_or_else(PathBuf::new, |output| output.path.clone()));
         let outputs = Outputs::new(super::files::hours_of_sun(args))?;
         outputs.keep("the scene", input(&args.scene.scene))?;
-        outputs.keep("--grid-file", args.grid_file.as_deref())?;
-        let options = super::files::options(args);
-        Ok(PictureFiles { picture, movie: None, options, exposure: args.exposure, layers: None, stats: None, outputs })
+        outputs.keep("--grid-file", args.image.grid_file.as_deref())?;
+        let options = super::save_options(&args.storage);
+        Ok(PictureFiles {
+            picture,
+            movie: None,
+            options,
+            exposure: args.exposure.exposure,
+            layers: None,
+            stats: None,
+            outputs,
+        })
     }
 
     /// Which moments have no frame, for a note.

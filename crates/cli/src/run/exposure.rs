@@ -6,17 +6,16 @@
 use std::borrow::Cow;
 
 use glam::Vec3;
-use lightmesh::image::{self, Format};
+use lightmesh::image;
+use lightmesh::render::PreparedScene;
 use lightmesh::scene::Falloff;
-use lightmesh::{Frame, Observer, Scene, Settings};
+use lightmesh::{Frame, Observer, RenderError, Scene, Settings};
 
-use crate::plan::{PictureFiles, RenderPlan};
-use crate::progress::Watcher;
 use crate::value::Exposure;
 
 /// How the exposure is found.
 #[derive(Clone)]
-pub(super) struct Metering {
+pub(crate) struct Metering {
     exposure: Exposure,
     has_ground: bool,
     /// What a ground is metered without and put in front of.
@@ -33,8 +32,7 @@ enum Behind {
 
 impl Metering {
     /// Sets the background of a scene whose ground shows `shown` if the exposure is known; else a ground's is black until it is.
-    pub(super) fn new(scene: &mut Scene, plan: &RenderPlan, shown: Option<f32>) -> Metering {
-        let exposure = exposure(scene, &plan.files);
+    pub(crate) fn new(scene: &mut Scene, exposure: Exposure, is_transparent: bool, shown: Option<f32>) -> Metering {
         let has_ground = scene.geometry.materials.iter().any(|material| material.catcher);
         let background = &mut scene.lights.background;
         let behind = match (exposure, shown) {
@@ -46,7 +44,7 @@ impl Metering {
                 *background = Some(Vec3::ZERO);
                 Some(Behind::Shown(shown))
             }
-            (Exposure::Auto, None) if has_ground && !plan.settings.transparent => {
+            (Exposure::Auto, None) if has_ground && !is_transparent => {
                 let radiance = background.replace(Vec3::ZERO);
                 Some(Behind::Radiance(radiance.unwrap_or_default()))
             }
@@ -71,34 +69,63 @@ impl Metering {
     }
 
     /// Whether the image is first rendered without its background.
-    pub(super) fn is_apart(&self) -> bool {
+    fn is_apart(&self) -> bool {
         self.behind.is_some()
     }
 
     /// Whether mirrors show the background that is missing.
-    pub(super) fn is_reflected(&self, settings: &Settings) -> bool {
+    fn is_reflected(&self, settings: &Settings) -> bool {
         self.is_apart() && settings.bounces > 0
     }
 
+    /// Renders an image by `render`, and puts what is missing behind it; also returns its exposure in stops.
+    pub(crate) fn picture(
+        &self,
+        prepared: &PreparedScene,
+        settings: &Settings,
+        observer: &dyn Observer,
+        mut render: impl FnMut(&PreparedScene, &Settings) -> Result<Frame, RenderError>,
+    ) -> Result<(Frame, f32), RenderError> {
+        // An automatic exposure is that of the whole image.
+        let mut settings = settings.clone();
+        let crop = settings.crop.take_if(|_| self.is_automatic());
+        settings.transparent |= self.is_apart();
+        let mut frame = render(prepared, &settings)?;
+        let stops = self.stops(&frame, observer);
+        if let Some(background) = self.background(stops) {
+            if self.is_reflected(&settings) && !observer.cancelled() {
+                settings.transparent = false;
+                let lights = prepared.scene.lights.clone().with_background(background);
+                frame = render(&prepared.with_lights(lights), &settings)?;
+            } else {
+                frame = self.put_behind(frame, background);
+            }
+        }
+        if let Some(crop) = crop {
+            frame = frame.cropped(crop).expect("settings were checked: the crop is in the image");
+        }
+        Ok((frame, stops))
+    }
+
     /// The background of an image that was rendered without it.
-    pub(super) fn background(&self, stops: f32) -> Option<Vec3> {
+    fn background(&self, stops: f32) -> Option<Vec3> {
         self.behind.map(|behind| behind.radiance(stops))
     }
 
     /// Puts a background behind such an image.
-    pub(super) fn put_behind(&self, frame: Frame, background: Vec3) -> Frame {
+    fn put_behind(&self, frame: Frame, background: Vec3) -> Frame {
         let Frame { image, mut stats } = frame;
         (stats.settings.background, stats.settings.transparent) = (background.to_array(), false);
         Frame { image: image.over(background.to_array()), stats }
     }
 
     /// The exposure in stops.
-    pub(super) fn stops(&self, frame: &Frame, watcher: &Watcher) -> f32 {
+    fn stops(&self, frame: &Frame, observer: &dyn Observer) -> f32 {
         match self.exposure {
             Exposure::Stops(stops) => stops,
             Exposure::Auto => {
                 let stops = finished_part(frame).auto_exposure();
-                watcher.note(&format!("exposure auto: using {stops} stops (--exposure {stops} keeps this value)"));
+                observer.note(&format!("exposure auto: using {stops} stops (--exposure {stops} keeps this value)"));
                 stops
             }
         }
@@ -114,11 +141,10 @@ impl Behind {
     }
 }
 
-/// Exposure of the image file: none if it stores linear values. Candela and lux say nothing of the range of a screen.
-fn exposure(scene: &Scene, files: &PictureFiles) -> Exposure {
+/// The exposure of image files that are asked for with `chosen`. Candela and lux say nothing of the range of a screen.
+pub(crate) fn exposure(scene: &Scene, chosen: Option<Exposure>) -> Exposure {
     let photometric = scene.lights.iter().any(|light| light.falloff == Falloff::InverseSquare);
-    match files.exposure {
-        _ if files.format() == Some(Format::Exr) => Exposure::Stops(0.0),
+    match chosen {
         Some(chosen) => chosen,
         None if photometric => Exposure::Auto,
         None => Exposure::Stops(0.0),

@@ -19,8 +19,11 @@ mod report;
 mod sun;
 mod sun_hours;
 
+pub(crate) use exposure::{Metering, exposure};
 use lightmesh::Scene;
 pub(crate) use movie::MovieError;
+pub(crate) use open::read_options;
+pub(crate) use render::describe;
 
 use crate::args::Command;
 use crate::failure::Failure;

@@ -139,7 +139,7 @@ impl Movie {
         let (path, program) = (args.picture().to_owned(), program());
         let output = Output::to(&path)?;
         let Some(file) = output.temporary_path() else { return Err(MovieError::NoFile { path }) };
-        let [width, height] = args.crop.map_or(args.size.0, |crop| crop.size);
+        let [width, height] = args.image.crop.map_or(args.image.size.0, |crop| crop.size);
         let even = [width, height].map(|side| side.next_multiple_of(2));
         if even != [width, height] {
             let [wide, high] = even;

@@ -39,14 +39,7 @@ pub(super) fn read(
     form: MeshForm,
     animation: Option<&str>,
 ) -> Result<Scene, Failure> {
-    let options = LoadOptions::default()
-        .with_format(reading.scene_format)
-        .with_allow_outside(reading.allow_outside)
-        .with_strict(reading.strict)
-        .with_smooth(form.smooth)
-        .with_instancing(form.instancing)
-        .with_animation(animation.map(str::to_owned))
-        .with_memory_limit(reading.memory_limit.map(|limit| limit.0));
+    let options = read_options(reading, form, animation);
     if !is_standard(path) {
         let open = || Scene::open_with(path, &options);
         return Ok(memory::during(format!("reading {}", path.display()), open)?);
@@ -57,4 +50,16 @@ pub(super) fn read(
     }
     let read = || Scene::from_reader(io::stdin().lock(), STANDARD_INPUT, format, &options);
     Ok(memory::during(format!("reading {STANDARD_INPUT}"), read)?)
+}
+
+/// How a scene is read.
+pub(crate) fn read_options(reading: ReadingArgs, form: MeshForm, animation: Option<&str>) -> LoadOptions {
+    LoadOptions::default()
+        .with_format(reading.scene_format)
+        .with_allow_outside(reading.allow_outside)
+        .with_strict(reading.strict)
+        .with_smooth(form.smooth)
+        .with_instancing(form.instancing)
+        .with_animation(animation.map(str::to_owned))
+        .with_memory_limit(reading.memory_limit.map(|limit| limit.0))
 }

@@ -2,14 +2,14 @@
 
 use std::time::Instant;
 
-use glam::{DMat4, Vec3};
+use glam::{DMat4, DVec3, Vec3};
 use lightmesh::image::{self, Description, Format, Ready, SaveOptions};
 use lightmesh::render::{Choice, PreparedScene, Stats, devices};
 use lightmesh::scene::Camera;
 use lightmesh::{Device, Frame, Observer, RenderError, Renderer, SaveError, Scene, Settings};
 use lightmesh_memory::Bytes;
 
-use super::exposure::Metering;
+use super::exposure::{Metering, exposure};
 use super::mesh_file::Mesh;
 use super::{BUILDING, film, movie, open::open, range, sun};
 use crate::args::RenderArgs;
@@ -17,6 +17,7 @@ use crate::failure::Failure;
 use crate::plan::{PictureFiles, RenderPlan};
 use crate::progress::Watcher;
 use crate::report::Report;
+use crate::value::Exposure;
 use crate::{interrupt, memory, output};
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
@@ -29,7 +30,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let using = using(&choice, args.verbose);
     let renderer = Renderer::on(choice, plan.threads.map(usize::from))?;
     let start = Instant::now();
-    let animation = args.animation.as_deref();
+    let animation = args.form.animation.as_deref();
     let mut scene = open(&plan.scene, plan.meshes(), animation, &plan.files.outputs, &watcher)?;
     let work = plan.film.as_ref().map(|film| film.work(args, &scene)).transpose()?;
     let load = start.elapsed().as_secs_f64();
@@ -45,7 +46,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         plan.files.outputs.keep("the environment", Some(file))?;
     }
     let behind = plan.choices.apply(&mut scene, &watcher)?;
-    let metering = Metering::new(&mut scene, &plan, behind);
+    let metering = metering(&mut scene, &plan, behind);
     let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;
     film::explain(&scene, plan.film.is_some(), &watcher);
     let studio =
@@ -60,7 +61,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let mesh = Mesh::open(&plan, (&renderer, &prepared), false, &watcher)?;
     let finish = || finish(&renderer, (prepared, mesh), &scene, &plan, &metering, load, &watcher);
-    let frame = if args.partial { interrupt::keeping(finish) } else { finish() }?;
+    let frame = if args.image.partial { interrupt::keeping(finish) } else { finish() }?;
     if interrupt::requested() {
         // The last message says what is written.
         return Ok(());
@@ -70,6 +71,13 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     watcher.summary(&summary(&frame, &plan.files));
     Ok(())
+}
+
+/// How the image is exposed: not at all if its file stores linear values.
+fn metering(scene: &mut Scene, plan: &RenderPlan, behind: Option<f32>) -> Metering {
+    let is_linear = plan.files.format() == Some(Format::Exr);
+    let exposure = if is_linear { Exposure::Stops(0.0) } else { exposure(scene, plan.files.exposure) };
+    Metering::new(scene, exposure, plan.settings.transparent, behind)
 }
 
 /// The device that was chosen. That no CUDA device was, is only said where one could be expected, or to those who ask.
@@ -134,33 +142,15 @@ impl Studio<'_> {
         mut render: impl FnMut(&PreparedScene, &Settings) -> Result<Frame, RenderError> + Send,
     ) -> Result<(Frame, f32), Failure> {
         let Studio { prepared, plan, load, watcher, .. } = *self;
-        // An automatic exposure is that of the whole image.
-        let mut settings = settings.clone();
-        let crop = settings.crop.take_if(|_| metering.is_automatic());
-        settings.transparent |= metering.is_apart();
-        let mut render = |prepared: &PreparedScene, settings: &Settings| {
+        let (mut frame, stops) = metering.picture(prepared, settings, watcher, |prepared, settings| {
             memory::during(memory::RENDERING, || interrupt::watched(|| render(prepared, settings)))
-        };
-        let mut frame = render(prepared, &settings)?;
-        let stops = metering.stops(&frame, watcher);
-        if let Some(background) = metering.background(stops) {
-            if metering.is_reflected(&settings) && !watcher.cancelled() {
-                settings.transparent = false;
-                let lights = prepared.scene.lights.clone().with_background(background);
-                frame = render(&prepared.with_lights(lights), &settings)?;
-            } else {
-                frame = metering.put_behind(frame, background);
-            }
-        }
+        })?;
         if plan.settings.partial {
             interrupt::remark(rows(&frame));
         } else if watcher.cancelled() {
             return Err(RenderError::Cancelled.into());
         }
         frame.stats.seconds.load = load;
-        if let Some(crop) = crop {
-            frame = frame.cropped(crop).expect("the plan has checked that the crop is in the image");
-        }
         Ok((frame, stops))
     }
 }
@@ -188,7 +178,7 @@ pub(super) fn save(
         let warnings = range::warnings(&frame, &display, metering.has_ground());
         warnings.iter().for_each(|(what, text)| watcher.warning_about(what, text));
     }
-    let mut options = files.options.clone().with_description(description(&frame, scene, camera));
+    let mut options = files.options.clone().with_description(describe(&frame, scene.to_world(Vec3::ZERO), camera));
     options.display.exposure = stops;
     memory::during("writing the image", || write(renderer, &mut frame, scene, (plan, files), &options))?;
     Ok(frame)
@@ -249,8 +239,8 @@ fn encode(image: &image::Frame, files: &PictureFiles, options: &SaveOptions) -> 
 /// Settings that say nothing about an image: the machine, and ways to the same result.
 const MACHINE: [&str; 6] = ["device", "threads", "memory_limit", "rows_per_band", "accel", "short_tests"];
 
-/// What exr files say about the image.
-fn description(frame: &Frame, scene: &Scene, camera: Option<&Camera>) -> Description {
+/// What exr files say about an image of a scene whose local frame lies at `origin`.
+pub(crate) fn describe(frame: &Frame, origin: DVec3, camera: Option<&Camera>) -> Description {
     let mut settings = serde_json::json!(frame.stats.settings);
     // The bytes of an image do not depend on the machine.
     if let Some(settings) = settings.as_object_mut() {
@@ -262,7 +252,6 @@ fn description(frame: &Frame, scene: &Scene, camera: Option<&Camera>) -> Descrip
         .with_settings(settings.to_string());
     let Some(camera) = camera else { return description };
     let [width, height] = frame.stats.settings.size.map(f64::from);
-    let origin = scene.to_world(Vec3::ZERO);
     // Columns of a matrix for column vectors are rows of one for row vectors.
     let rows = |matrix: DMat4| matrix.as_mat4().to_cols_array();
     description.with_camera(rows(camera.from_world(origin)), rows(camera.from_world_to_image(origin, width / height)))
