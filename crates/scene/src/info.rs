@@ -175,10 +175,11 @@ fn light_info(scene: &Scene, light: &Light) -> LightInfo {
             info.direction = Some(direction.to_array().map(shortest));
             info.angle = (angle > 0.0).then(|| shortest(angle.to_degrees()));
         }
-        LightKind::Spot { direction, inner, outer, .. } => {
+        LightKind::Spot { direction, inner, outer, radius, .. } => {
             info.direction = Some(direction.to_array().map(shortest));
             info.inner = Some(shortest(inner.to_degrees()));
             info.outer = Some(shortest(outer.to_degrees()));
+            info.radius = (radius > 0.0).then(|| shortest(radius));
         }
         LightKind::Sphere { radius, .. } => info.radius = Some(shortest(radius)),
         LightKind::Disk { normal, radius, .. } => {

@@ -445,12 +445,16 @@ fn light_entry(light: &Light) -> Value {
         LightKind::Directional { angle, .. } if angle > 0.0 => Some(angle),
         _ => None,
     };
+    let radius = match light.kind {
+        LightKind::Spot { radius, .. } if radius > 0.0 => Some(radius),
+        _ => None,
+    };
     let kind = match light.kind {
         LightKind::Directional { .. } => "directional",
         LightKind::Spot { .. } => "spot",
         _ => "point",
     };
-    let extras = LightExtras { shape, spread, angle, no_falloff: light.falloff == Falloff::None };
+    let extras = LightExtras { shape, spread, angle, radius, no_falloff: light.falloff == Falloff::None };
     let mut entry = json!({"name": light.name, "type": kind, "color": color.to_array(), "intensity": strongest});
     if extras != LightExtras::default() {
         entry["extras"] = json!({"lightmesh": extras});

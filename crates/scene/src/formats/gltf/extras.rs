@@ -154,6 +154,9 @@ pub(crate) struct LightExtras {
     /// Angular diameter of a directional light, radians.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) angle: Option<f32>,
+    /// Radius of the ball that a spot light is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) radius: Option<f32>,
     /// Falloff `none`; else inverse-square, as in glTF.
     #[serde(default)]
     pub(crate) no_falloff: bool,

@@ -209,7 +209,7 @@ pub(crate) struct LightEntry {
     /// The axis of a disk, instead of `direction`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) normal: Option<Vector>,
-    /// Sphere and disk.
+    /// Sphere and disk. Spot: it is a ball of this radius, and its shadows are soft. Default: 0, a point.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) radius: Option<Number>,
     /// Point: radius of the ball over which soft shadows distribute the points that replace it. Default: 0.

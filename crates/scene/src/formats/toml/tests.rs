@@ -168,6 +168,11 @@ fn lights_of_all_kinds() {
         position = [0, 5, 0]
         direction = [0, 0, -1]
         size = [2, 4]
+        [[light]]
+        kind = "spot"
+        position = [0, 5, 0]
+        direction = [0, -1, 0]
+        radius = 0.25
         [[sphere]]
         center = [0, 0, 0]
         radius = 1
@@ -180,13 +185,15 @@ fn lights_of_all_kinds() {
     assert_eq!(*kinds[1], LightKind::Directional { direction: Vec3::NEG_Y, angle });
     let (inner, outer) = (20f64.to_radians() as f32, 30f64.to_radians() as f32);
     let up = Vec3::new(0.0, 5.0, 0.0);
-    assert_eq!(*kinds[2], LightKind::Spot { position: up, direction: Vec3::NEG_Y, inner, outer });
+    assert_eq!(*kinds[2], LightKind::Spot { position: up, direction: Vec3::NEG_Y, inner, outer, radius: 0.0 });
     assert_eq!(scene.lights[2].intensity, Vec3::new(1.0, 2.0, 3.0));
     assert_eq!(scene.lights[2].falloff, Falloff::InverseSquare);
     assert_eq!(*kinds[3], LightKind::Sphere { position, radius: 0.5 });
     assert_eq!(*kinds[4], LightKind::Disk { position, normal: Vec3::Z, radius: 0.5 });
     assert_eq!(*kinds[5], LightKind::Rectangle { position, half_u: Vec3::X, half_v: 2.0 * Vec3::Z });
     assert_eq!(*kinds[6], LightKind::Rectangle { position: up, half_u: Vec3::X, half_v: 2.0 * Vec3::Y });
+    let outer = std::f32::consts::FRAC_PI_4;
+    assert_eq!(*kinds[7], LightKind::Spot { position: up, direction: Vec3::NEG_Y, inner: 0.0, outer, radius: 0.25 });
 }
 
 #[test]

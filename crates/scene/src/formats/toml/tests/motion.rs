@@ -71,6 +71,12 @@ fn cameras_follow_their_targets_and_lights_their_keys() {
         name = "sun"
         [light.motion]
         key = [{ time = 0, intensity = 0 }, { time = 1, intensity = [1, 0.5, 0], radius = 2 }]
+        [[light]]
+        kind = "spot"
+        position = [0, 5, 0]
+        direction = [0, -1, 0]
+        [light.motion]
+        key = [{ time = 0, radius = 0 }, { time = 1, radius = 2 }]
         [[triangle]]
         a = [0, 0, 0]
         b = [1, 0, 0]
@@ -87,6 +93,7 @@ fn cameras_follow_their_targets_and_lights_their_keys() {
     assert_eq!((light.intensity, light.name.as_str()), (Vec3::new(1.0, 0.5, 0.0), "sun"));
     assert_eq!(light.kind, LightKind::Sphere { position: Vec3::new(0.0, 5.0, 0.0), radius: 2.0 });
     assert_eq!(scene.at(0.5).lights[0].intensity.x, 0.5);
+    assert!(matches!(scene.at(0.5).lights[1].kind, LightKind::Spot { radius: 1.0, .. }));
 }
 
 #[test]
