@@ -1,6 +1,6 @@
 //! A scene file that refers to its triangles in a GLB next to it.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::own_lights;
 use crate::{
@@ -80,6 +80,7 @@ fn camera_entry(scene: &Scene, camera: &Camera) -> CameraEntry {
         hfov: None,
         projection: None,
         height: None,
+        shift: (camera.shift != Vec2::ZERO).then(|| anywhere(camera.shift.to_array().map(shortest))),
         motion: None,
     };
     match camera.projection {

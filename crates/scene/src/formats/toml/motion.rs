@@ -94,6 +94,7 @@ const CAMERA: &[Property<CameraEntry, CameraKey>] = &[
     property!(vfov, number, |table| table.hfov.is_none() && table.height.is_none()),
     property!(hfov, number, |table| table.hfov.is_some()),
     property!(height, number, |table| table.height.is_some()),
+    property!(shift, 2, |_| true, |value| value.to_vec(), |values| [values[0], values[1]]),
 ];
 
 /// What a light's keys may give.

@@ -1,6 +1,6 @@
 //! Cameras and lights.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
 use super::*;
@@ -54,6 +54,20 @@ fn a_camera_behind_its_picture_is_set_right() {
     let mut document = furnished();
     document["cameras"][1]["orthographic"]["ymag"] = json!(-2);
     assert_eq!(open(&document).cameras[1].projection, Projection::Orthographic { height: 4.0 });
+}
+
+#[test]
+fn cameras_may_have_a_shift() {
+    let mut document = furnished();
+    document["cameras"][0]["extras"] = json!({"lightmesh": {"shift": [0.25, -0.5]}});
+    document["cameras"][1]["extras"] = json!({"lightmesh": {"shift": [0, 1]}});
+    let [top, plan] = &open(&document).cameras[..] else { panic!() };
+    assert_eq!((top.shift, plan.shift), (Vec2::new(0.25, -0.5), Vec2::Y));
+    assert_eq!(top.projection, Projection::Perspective(Fov::Vertical(90.0)));
+    for shift in [1001.0, -1e300] {
+        document["cameras"][1]["extras"]["lightmesh"]["shift"][0] = json!(shift);
+        assert!(error(&document).contains("camera 1 has extras.lightmesh.shift = ["), "{}", error(&document));
+    }
 }
 
 #[test]
