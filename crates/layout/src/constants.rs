@@ -47,9 +47,9 @@ constants_of_records! {
         POINT = 0;
         /// Parallel light.
         DIRECTIONAL = 1;
-        /// A spot.
+        /// A spot without a size.
         SPOT = 2;
-        /// A ball. This kind and all that follow are area lights.
+        /// A ball, with a cone if it is a spot. This kind and all that follow are area lights.
         SPHERE = 3;
         /// A disk.
         DISK = 4;

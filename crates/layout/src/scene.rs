@@ -14,7 +14,7 @@ records! {
         kind: u32,
         /// Direction of a directional light or a spot, or the normal of a disk or of an emissive surface.
         direction: Vec3,
-        /// Radius of a sphere or disk, spread of a point light. Of the disk that a directional light comes from: at distance 1.
+        /// Radius of a sphere, disk or spot, spread of a point light. Of the disk that a directional light comes from: at distance 1.
         radius: f32,
         /// Half edge of a rectangle, or a tangent of a disk or of a directional light's disk.
         half_u: Vec3,
@@ -29,7 +29,7 @@ records! {
         intensity: Vec3,
         /// Cosine of a spot's outer angle.
         cos_outer: f32,
-        /// 1 / (cos inner − cos outer) of a spot.
+        /// 1 / (cos inner − cos outer) of a spot; 0 for lights without a cone.
         cone_scale: f32,
         /// A power of two: vectors to the light are multiplied by it, so that their products with triangles do not overflow.
         scale: f32,

@@ -167,8 +167,9 @@ const fn sobol_2_by_bytes() -> [[u32; 256]; 4] {
 pub fn light_point(light: &Light, from: Vec3, reach: f32, u: Vec3) -> Vec3 {
     match light.kind {
         LightKind::Point { position, spread } => position + spread * in_ball(u),
-        LightKind::Sphere { position, radius } => position + radius * in_ball(u),
-        LightKind::Spot { position, .. } => position,
+        LightKind::Sphere { position, radius } | LightKind::Spot { position, radius, .. } => {
+            position + radius * in_ball(u)
+        }
         LightKind::Directional { direction, angle } => {
             from - reach * direction + in_disk(direction, reach * disk_radius(angle), u)
         }

@@ -73,6 +73,9 @@ pub struct CameraStats {
     pub vfov: Option<f32>,
     /// Height of the image in scene units; none for a perspective camera.
     pub height: Option<f32>,
+    /// By how much the image is to the right of the viewing direction and above it, in heights of the image, if it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shift: Option<[f32; 2]>,
 }
 
 /// Every setting as used.

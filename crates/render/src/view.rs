@@ -67,6 +67,7 @@ impl Window {
 pub struct View {
     window: Window,
     origin: Vec3,
+    /// From there to the middle of the plane one unit away (perspective), or the direction of all rays.
     forward: Vec3,
     /// From one pixel's centre to the next one on the right, on the plane one unit away (perspective) or in scene units.
     right: Vec3,
@@ -78,15 +79,16 @@ pub struct View {
 impl View {
     /// The view of `camera` in an image of `size` pixels.
     pub fn new(camera: &Camera, size: [u32; 2]) -> View {
-        let (right, up, forward) = camera.basis();
+        let (right, up, _) = camera.basis();
         let [width, height] = size.map(|pixels| pixels as f32);
+        let (origin, forward) = camera.middle(width / height);
         let (perspective, picture_height) = match camera.projection {
-            Projection::Perspective(fov) => (true, 2.0 * (0.5 * fov.vertical(width / height).to_radians()).tan()),
+            Projection::Perspective(fov) => (true, fov.height(width / height)),
             Projection::Orthographic { height } => (false, height),
         };
         let pixel = picture_height / height;
         let window = Window::all(size);
-        View { window, origin: camera.position, forward, right: pixel * right, down: -pixel * up, perspective }
+        View { window, origin, forward, right: pixel * right, down: -pixel * up, perspective }
     }
 
     /// The same camera for the pixels of a window alone.
@@ -110,7 +112,7 @@ impl View {
         if self.perspective { [0.0, pixel] } else { [pixel, 0.0] }
     }
 
-    /// Where the camera is.
+    /// Where the camera is; the middle of an orthographic image.
     pub(crate) fn origin(&self) -> Vec3 {
         self.origin
     }
@@ -233,6 +235,39 @@ mod tests {
         }
         let window = Window { size: [5, 4], first: [1, 25], whole: [40, 30] };
         assert_eq!(window.grown(3), Window { size: [9, 8], first: [0, 22], whole: [40, 30] });
+    }
+
+    #[test]
+    fn a_shifted_image_is_a_window_of_a_larger_one() {
+        // 24 pixels to the right and 12 up.
+        let shift = [0.5, 0.25];
+        let vfov = |rows: f32| 2.0 * (rows / 48.0 * 25f32.to_radians().tan()).atan().to_degrees();
+        let perspective = |rows: f32| Projection::Perspective(Fov::Vertical(vfov(rows)));
+        let orthographic = |rows: f32| Projection::Orthographic { height: 3.0 * rows / 48.0 };
+        let horizontal = |columns: f32| Projection::Perspective(Fov::Horizontal(vfov(columns)));
+        let pairs = [
+            [perspective(48.0), perspective(72.0)],
+            [orthographic(48.0), orthographic(72.0)],
+            [horizontal(64.0), horizontal(112.0)],
+        ];
+        for [own, larger] in pairs {
+            let direction = Vec3::new(0.3, -0.5, -0.8);
+            let camera = |projection: Projection| {
+                let camera = Camera::look_to(Vec3::new(1.0, 2.0, 3.0), direction, Vec3::Y, 50.0).unwrap();
+                camera.with_projection(projection)
+            };
+            let view = View::new(&camera(own).with_shift(shift), [64, 48]);
+            let window = Window { size: [64, 48], first: [48, 0], whole: [112, 72] };
+            let whole = View::new(&camera(larger), [112, 72]).with_window(window);
+            for index in 0..64 * 48 {
+                let (found, expected) = (view.ray(index), whole.ray(index));
+                assert!(found.direction.distance(expected.direction) < 1e-6, "{own:?}: {found:?}, {expected:?}");
+                assert!(found.origin.distance(expected.origin) < 1e-6, "{own:?}: {found:?}, {expected:?}");
+            }
+            for (found, expected) in view.spacing().into_iter().zip(whole.spacing()) {
+                assert!((found - expected).abs() < 1e-6);
+            }
+        }
     }
 
     #[test]

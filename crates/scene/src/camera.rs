@@ -1,6 +1,6 @@
 //! Cameras: the viewpoints of images.
 
-use glam::{DMat4, DVec3, DVec4, Quat, Vec3};
+use glam::{DMat4, DVec3, DVec4, Quat, Vec2, Vec3};
 
 /// The field of view of a perspective camera. The other angle follows from the image's aspect ratio, because pixels are square.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +19,11 @@ impl Fov {
             Fov::Horizontal(degrees) => 2.0 * ((0.5 * degrees.to_radians()).tan() / aspect).atan().to_degrees(),
         }
     }
+
+    /// The height of the image one unit before the camera.
+    pub fn height(self, aspect: f32) -> f32 {
+        2.0 * (0.5 * self.vertical(aspect).to_radians()).tan()
+    }
 }
 
 /// How a camera maps directions or points to the image.
@@ -32,6 +37,9 @@ pub enum Projection {
         height: f32,
     },
 }
+
+/// The largest shift of a camera, in heights of the image.
+pub(crate) const LARGEST_SHIFT: f32 = 1000.0;
 
 /// A camera in the scene's local frame (see [`Geometry::origin`](crate::Geometry::origin)).
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +55,9 @@ pub struct Camera {
     pub up: Vec3,
     /// Perspective or orthographic.
     pub projection: Projection,
+    /// By how much the image is to the right of the view direction, and above it, in heights of the image: as with a lens that is shifted,
+    /// what is parallel to the image stays undistorted. Fields of view are those without it.
+    pub shift: Vec2,
     /// The number of its motion in the scene's animation.
     pub(crate) motion: Option<u32>,
 }
@@ -119,6 +130,7 @@ impl Camera {
             direction: forward.as_vec3(),
             up: upper_edge(forward, up).as_vec3(),
             projection: Projection::Perspective(Fov::Vertical(vfov)),
+            shift: Vec2::ZERO,
             motion: None,
         })
     }
@@ -131,6 +143,22 @@ impl Camera {
     /// The same position and direction with another projection.
     pub fn with_projection(self, projection: Projection) -> Camera {
         Camera { projection, ..self }
+    }
+
+    /// The same camera with an image further to the right and up, see [`Camera::shift`]. Both are limited to the range from −1000 to 1000;
+    /// NaN counts as 0.
+    ///
+    /// ```
+    /// use lightmesh_scene::{Camera, glam::Vec3};
+    ///
+    /// // All of a tower from the ground, with upright edges.
+    /// let camera = Camera::look_to(Vec3::new(0.0, 1.7, 40.0), Vec3::NEG_Z, Vec3::Y, 50.0)?.with_shift([0.0, 0.4]);
+    /// assert_eq!(camera.shift.y, 0.4);
+    /// # Ok::<(), lightmesh_scene::CameraError>(())
+    /// ```
+    pub fn with_shift(self, shift: impl Into<Vec2>) -> Camera {
+        let limited = |part: f32| if part.is_nan() { 0.0 } else { part.clamp(-LARGEST_SHIFT, LARGEST_SHIFT) };
+        Camera { shift: shift.into().map(limited), ..self }
     }
 
     /// The same direction and projection from another position, in the local frame.
@@ -166,8 +194,26 @@ impl Camera {
         };
         let scale = DVec3::new(1.0 / (half * aspect), 1.0 / half, -1.0);
         let last = if perspective { DVec4::NEG_Z } else { DVec4::W };
-        let projection = DMat4::from_cols(DVec4::X * scale.x, DVec4::Y * scale.y, DVec4::Z * scale.z, last).transpose();
+        // Twice, since the image is two units high.
+        let shift = 2.0 * self.shift.as_dvec2();
+        let (x, y) = (DVec4::X * scale.x - shift.x / aspect * last, DVec4::Y * scale.y - shift.y * last);
+        let projection = DMat4::from_cols(x, y, DVec4::Z * scale.z, last).transpose();
         projection * self.from_world(origin)
+    }
+
+    /// The ray through the middle of an image `aspect` times as wide as high: where it starts, and its direction, which is one unit long
+    /// along the view direction.
+    pub fn middle(&self, aspect: f32) -> (Vec3, Vec3) {
+        let (right, up, forward) = self.basis();
+        // Not added where it is zero, so that zeros keep their signs.
+        if self.shift == Vec2::ZERO {
+            return (self.position, forward);
+        }
+        let aside = |height: f32| height * (self.shift.x * right + self.shift.y * up);
+        match self.projection {
+            Projection::Perspective(fov) => (self.position, forward + aside(fov.height(aspect))),
+            Projection::Orthographic { height } => (self.position + aside(height), forward),
+        }
     }
 
     /// The camera's axes: right, up and forward, orthonormal. Forward is the view direction.
@@ -207,6 +253,33 @@ mod tests {
             let corner = camera.from_world_to_image(origin, 2.0).project_point3(eye + DVec3::new(8.0, -4.0, -4.0));
             assert!((corner.truncate() - glam::DVec2::new(1.0, -1.0)).length() < 1e-6, "{corner}");
         }
+    }
+
+    #[test]
+    fn a_shift_moves_the_edges_of_the_image() {
+        let origin = DVec3::new(1000.0, 0.0, -7.0);
+        let camera = Camera::look_at(Vec3::new(1.0, 2.0, 3.0), Vec3::new(1.0, 2.0, -5.0), Vec3::Y, 90.0).unwrap();
+        let eye = origin + DVec3::new(1.0, 2.0, 3.0);
+        let orthographic = camera.clone().with_projection(Projection::Orthographic { height: 8.0 });
+        for camera in [camera, orthographic].map(|camera| camera.with_shift([0.5, -0.25])) {
+            // At a distance of 4 the image is 8 units high: its middle is 4 units to the right and 2 below.
+            let seen = |x, y| camera.from_world_to_image(origin, 2.0).project_point3(eye + DVec3::new(x, y, -4.0));
+            for (at, place) in [([4.0, -2.0], [0.0, 0.0]), ([12.0, -6.0], [1.0, -1.0]), ([-4.0, 2.0], [-1.0, 1.0])] {
+                let found = seen(at[0], at[1]).truncate();
+                assert!((found - glam::DVec2::from(place)).length() < 1e-6, "{found}, not {place:?}");
+            }
+            let (from, direction) = camera.middle(2.0);
+            let met = from + 4.0 * direction - camera.position;
+            assert!(met.distance(Vec3::new(4.0, -2.0, -4.0)) < 1e-5, "{met}");
+        }
+    }
+
+    #[test]
+    fn a_shift_without_sense_becomes_the_nearest_with_some() {
+        let camera = Camera::look_to(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 50.0).unwrap();
+        let shifted = |x, y| camera.clone().with_shift([x, y]).shift;
+        assert_eq!(shifted(f32::NAN, f32::INFINITY), Vec2::new(0.0, LARGEST_SHIFT));
+        assert_eq!(shifted(-1e9, 0.1), Vec2::new(-LARGEST_SHIFT, 0.1));
     }
 
     #[test]

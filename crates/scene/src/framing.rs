@@ -11,7 +11,7 @@ mod sight;
 use std::cell::LazyCell;
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::{
     Bounds, Camera, Fov, Light, Mesh, Projection, Scene, Up,
@@ -130,6 +130,7 @@ impl Scene {
                 direction,
                 up: up.axis(),
                 projection: Projection::Perspective(Fov::Vertical(VFOV)),
+                shift: Vec2::ZERO,
                 motion: None,
             };
             camera.position = fitting(mesh, &bounds, &camera);

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use glam::Vec2;
 use lightmesh_files::visible;
 use serde::Serialize;
 
@@ -122,6 +123,9 @@ pub struct CameraInfo {
     /// Height of an orthographic image.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub height: Option<f64>,
+    /// By how much the image is to the right of the viewing direction and above it, in heights of the image, if it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shift: Option<[f64; 2]>,
 }
 
 impl Scene {
@@ -175,10 +179,11 @@ fn light_info(scene: &Scene, light: &Light) -> LightInfo {
             info.direction = Some(direction.to_array().map(shortest));
             info.angle = (angle > 0.0).then(|| shortest(angle.to_degrees()));
         }
-        LightKind::Spot { direction, inner, outer, .. } => {
+        LightKind::Spot { direction, inner, outer, radius, .. } => {
             info.direction = Some(direction.to_array().map(shortest));
             info.inner = Some(shortest(inner.to_degrees()));
             info.outer = Some(shortest(outer.to_degrees()));
+            info.radius = (radius > 0.0).then(|| shortest(radius));
         }
         LightKind::Sphere { radius, .. } => info.radius = Some(shortest(radius)),
         LightKind::Disk { normal, radius, .. } => {
@@ -207,6 +212,7 @@ fn camera_info(scene: &Scene, camera: &Camera) -> CameraInfo {
         vfov: vfov.map(shortest),
         hfov: hfov.map(shortest),
         height: height.map(shortest),
+        shift: (camera.shift != Vec2::ZERO).then(|| camera.shift.to_array().map(shortest)),
     }
 }
 
@@ -293,11 +299,12 @@ impl fmt::Display for CameraInfo {
         }
         write!(f, "at {}, along {}", triple(&self.position), triple(&self.direction))?;
         match (self.hfov, self.vfov, self.height) {
-            (Some(hfov), ..) => write!(f, ", hfov {}°", rounded(hfov)),
-            (_, Some(vfov), _) => write!(f, ", vfov {}°", rounded(vfov)),
-            (.., Some(height)) => write!(f, ", orthographic, height {}", rounded(height)),
-            _ => Ok(()),
+            (Some(hfov), ..) => write!(f, ", hfov {}°", rounded(hfov))?,
+            (_, Some(vfov), _) => write!(f, ", vfov {}°", rounded(vfov))?,
+            (.., Some(height)) => write!(f, ", orthographic, height {}", rounded(height))?,
+            _ => {}
         }
+        self.shift.map_or(Ok(()), |[x, y]| write!(f, ", shift {} {}", rounded(x), rounded(y)))
     }
 }
 

@@ -62,7 +62,7 @@ pub enum LightKind {
         /// `direction` comes from. The sun's is 0.0093. 0: parallel light.
         angle: f32,
     },
-    /// A point light with a cone; between the two angles it fades to zero.
+    /// A light with a cone; between the two angles it fades to zero.
     Spot {
         /// Its position.
         position: Vec3,
@@ -72,6 +72,9 @@ pub enum LightKind {
         inner: f32,
         /// Half-angle where the light ends, radians, at least `inner`.
         outer: f32,
+        /// Above 0, the light is a ball of this radius, with a cone from each of its points: it casts the shadows of a
+        /// [`LightKind::Sphere`]. 0: a point.
+        radius: f32,
     },
     /// A ball of light.
     Sphere {
@@ -160,7 +163,7 @@ impl Light {
     }
 
     /// A point light with a cone around `direction`, of any length: full strength up to the half-angle `inner`, zero beyond `outer`,
-    /// radians.
+    /// radians; see [`Light::with_radius`].
     ///
     /// # Errors
     ///
@@ -171,7 +174,7 @@ impl Light {
             let remedy = "give half-angles in radians, 0 <= inner <= outer <= pi/2, outer above 0";
             return Err(LightError { kind: "spot", what: "cone", value: format!("{inner} to {outer}"), remedy });
         }
-        Ok(Light::new(LightKind::Spot { position, direction, inner, outer }))
+        Ok(Light::new(LightKind::Spot { position, direction, inner, outer, radius: 0.0 }))
     }
 
     /// A ball of light.
@@ -271,6 +274,25 @@ impl Light {
         }
     }
 
+    /// The same spot light as a ball of this radius; 0, or what is not a length, makes it a point. Lights of other kinds stay unchanged.
+    ///
+    /// ```
+    /// use lightmesh_scene::{Light, glam::Vec3};
+    ///
+    /// let lamp = Light::spot(Vec3::new(0.0, 3.0, 0.0), Vec3::NEG_Y, 0.3, 0.5)?.with_radius(0.05);
+    /// assert!(lamp.has_size());
+    /// # Ok::<(), lightmesh_scene::LightError>(())
+    /// ```
+    pub fn with_radius(self, length: f32) -> Light {
+        match self.kind {
+            LightKind::Spot { position, direction, inner, outer, .. } => {
+                let radius = usable_radius(length);
+                Light { kind: LightKind::Spot { position, direction, inner, outer, radius }, ..self }
+            }
+            _ => self,
+        }
+    }
+
     /// The centre of the light; `None` for a directional light.
     pub fn position(&self) -> Option<Vec3> {
         match self.kind {
@@ -300,7 +322,8 @@ impl Light {
         match self.kind {
             LightKind::Sphere { .. } | LightKind::Disk { .. } | LightKind::Rectangle { .. } => true,
             LightKind::Directional { angle, .. } => angle > 0.0,
-            LightKind::Point { .. } | LightKind::Spot { .. } => false,
+            LightKind::Spot { radius, .. } => radius > 0.0,
+            LightKind::Point { .. } => false,
         }
     }
 }
@@ -309,6 +332,11 @@ impl Light {
 pub(crate) fn usable_angle(radians: f32) -> f32 {
     // Not `clamp`, which keeps NaN.
     radians.max(0.0).min(LARGEST_ANGLE.to_radians() as f32)
+}
+
+/// The nearest radius that a spot light can have; 0 for what is not a length.
+pub(crate) fn usable_radius(length: f32) -> f32 {
+    if length.is_finite() { length.max(0.0) } else { 0.0 }
 }
 
 fn unit(kind: &'static str, what: &'static str, vector: Vec3) -> Result<Vec3, LightError> {

@@ -45,10 +45,9 @@ impl<'a> Noticed<'a> {
         let around = |middle: Vec3, half: Vec3| Bounds { min: middle - half, max: middle + half };
         match *light {
             LightKind::Point { position, spread } => around(position, Vec3::splat(spread)),
-            LightKind::Spot { position, .. } => around(position, Vec3::ZERO),
-            LightKind::Sphere { position, radius } | LightKind::Disk { position, radius, .. } => {
-                around(position, Vec3::splat(radius))
-            }
+            LightKind::Sphere { position, radius }
+            | LightKind::Spot { position, radius, .. }
+            | LightKind::Disk { position, radius, .. } => around(position, Vec3::splat(radius)),
             LightKind::Rectangle { position, half_u, half_v } => around(position, half_u.abs() + half_v.abs()),
             LightKind::Directional { direction, angle } => {
                 let length = self.far + points.center().length();

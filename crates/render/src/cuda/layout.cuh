@@ -720,9 +720,9 @@ struct alignas(4) Light {
         POINT = 0u,
         // Parallel light.
         DIRECTIONAL = 1u,
-        // A spot.
+        // A spot without a size.
         SPOT = 2u,
-        // A ball. This kind and all that follow are area lights.
+        // A ball, with a cone if it is a spot. This kind and all that follow are area lights.
         SPHERE = 3u,
         // A disk.
         DISK = 4u,

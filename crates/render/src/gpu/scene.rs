@@ -461,8 +461,9 @@ fn light(geometry: &PreparedGeometry, light: &lightmesh_scene::Light) -> Light {
             record.radius = disk_radius(angle);
             (record.half_u, record.half_v) = (vec3(tangent), vec3(bitangent));
         }
-        LightKind::Spot { direction, inner, outer, .. } => {
-            (record.kind, record.direction) = (Light::SPOT, vec3(direction));
+        LightKind::Spot { direction, inner, outer, radius, .. } => {
+            record.kind = if light.has_size() { Light::SPHERE } else { Light::SPOT };
+            (record.direction, record.radius) = (vec3(direction), radius);
             record.cos_outer = outer.cos();
             record.cone_scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
         }

@@ -1,5 +1,6 @@
 //! The statistics of a render.
 
+use glam::Vec2;
 use lightmesh_scene::Projection;
 
 use super::resolve::Resolved;
@@ -99,5 +100,6 @@ fn camera(resolved: &Resolved) -> CameraStats {
         up: camera.up.to_array(),
         vfov,
         height,
+        shift: (camera.shift != Vec2::ZERO).then_some(camera.shift.to_array()),
     }
 }

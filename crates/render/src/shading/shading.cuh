@@ -52,7 +52,7 @@ DEVICE Vec3 mirroring(const Surface &surface) {
 DEVICE float cone(const Light &light, Vec3 direction) {
     if (light.surface)
         return larger(-dot(direction, light.direction), 0.0f);
-    if (light.kind != Light::SPOT)
+    if (light.cone_scale == 0.0f)
         return 1.0f;
     const float linear = (-dot(direction, light.direction) - light.cos_outer) * light.cone_scale;
     const float clamped = fminf(fmaxf(linear, 0.0f), 1.0f);

@@ -142,10 +142,10 @@ pub(crate) fn above_horizon(point: &SurfacePoint, light: &Light, reach: f32) -> 
 #[inline(always)]
 pub(crate) fn size(light: &Light, reach: f32) -> f32 {
     match light.kind {
-        LightKind::Sphere { radius, .. } | LightKind::Disk { radius, .. } => radius,
+        LightKind::Sphere { radius, .. } | LightKind::Disk { radius, .. } | LightKind::Spot { radius, .. } => radius,
         LightKind::Rectangle { half_u, half_v, .. } => (half_u.length_squared() + half_v.length_squared()).sqrt(),
         LightKind::Directional { angle, .. } => reach * disk_radius(angle),
-        LightKind::Point { .. } | LightKind::Spot { .. } => 0.0,
+        LightKind::Point { .. } => 0.0,
     }
 }
 

@@ -211,6 +211,7 @@ impl<'a> Emitter<'a> {
     pub(crate) fn radius(&self) -> f32 {
         match self.light.kind {
             LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } => radius,
+            LightKind::Spot { radius, .. } if radius > 0.0 => radius,
             _ => f32::INFINITY,
         }
     }
@@ -232,19 +233,20 @@ fn spread(light: &Light) -> f32 {
     match light.kind {
         LightKind::Point { spread, .. } => spread,
         LightKind::Directional { angle, .. } => disk_radius(angle),
-        LightKind::Sphere { radius, .. } | LightKind::Disk { radius, .. } => radius,
-        LightKind::Rectangle { .. } | LightKind::Spot { .. } => 0.0,
+        LightKind::Sphere { radius, .. } | LightKind::Disk { radius, .. } | LightKind::Spot { radius, .. } => radius,
+        LightKind::Rectangle { .. } => 0.0,
     }
 }
 
 /// Half the edges of the box around a light, if a directional one is `reach` away.
 fn half_extent(light: &Light, reach: f32) -> Vec3 {
     match light.kind {
-        LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } => Vec3::splat(radius),
+        LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } | LightKind::Spot { radius, .. } => {
+            Vec3::splat(radius)
+        }
         LightKind::Disk { normal, radius, .. } => radius * shadow_of_disc(normal),
         LightKind::Rectangle { half_u, half_v, .. } => half_u.abs() + half_v.abs(),
         LightKind::Directional { direction, angle } => reach * disk_radius(angle) * shadow_of_disc(direction),
-        LightKind::Spot { .. } => Vec3::ZERO,
     }
 }
 
@@ -382,7 +384,7 @@ pub(crate) fn disc_of(light: &Light, center: Vec3, reach: f32) -> (Vec3, Vec3, f
             let (tangent, bitangent) = normal.any_orthonormal_pair();
             (tangent, bitangent, radius)
         }
-        LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } => {
+        LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } | LightKind::Spot { radius, .. } => {
             let (tangent, bitangent) = facing(center);
             (tangent, bitangent, radius)
         }
@@ -390,7 +392,7 @@ pub(crate) fn disc_of(light: &Light, center: Vec3, reach: f32) -> (Vec3, Vec3, f
             let (tangent, bitangent) = direction.any_orthonormal_pair();
             (tangent, bitangent, reach * disk_radius(angle))
         }
-        LightKind::Spot { .. } | LightKind::Rectangle { .. } => (Vec3::X, Vec3::Y, 0.0),
+        LightKind::Rectangle { .. } => (Vec3::X, Vec3::Y, 0.0),
     }
 }
 

@@ -87,7 +87,8 @@ fn lights_without_a_size_have_hard_shadows() {
     let hard = kinds().into_iter().filter(|kind| match kind {
         LightKind::Point { spread, .. } => *spread == 0.0,
         LightKind::Directional { angle, .. } => *angle == 0.0,
-        kind => matches!(kind, LightKind::Spot { .. }),
+        LightKind::Spot { radius, .. } => *radius == 0.0,
+        _ => false,
     });
     let scene = pile(DVec3::ZERO, &hard.collect::<Vec<_>>());
     assert_eq!(scene.lights.len(), 3);

@@ -20,7 +20,8 @@ pub(crate) fn kinds() -> Vec<LightKind> {
         LightKind::Point { position, spread: 0.4 },
         LightKind::Directional { direction: slanted, angle: 0.0 },
         LightKind::Directional { direction: Vec3::new(-0.95, -0.3, 0.1).normalize(), angle: 0.5 },
-        LightKind::Spot { position, direction: -position.normalize(), inner: 0.2, outer: 0.6 },
+        LightKind::Spot { position, direction: -position.normalize(), inner: 0.2, outer: 0.6, radius: 0.0 },
+        LightKind::Spot { position: -position, direction: position.normalize(), inner: 0.2, outer: 1.2, radius: 0.3 },
         LightKind::Disk { position: Vec3::new(2.0, 1.0, -2.0), normal: slanted, radius: 1.1 },
         LightKind::Rectangle { position: Vec3::new(0.0, 2.5, 2.0), half_u: 0.3 * Vec3::X, half_v: 0.9 * Vec3::Z },
         LightKind::Sphere { position: Vec3::new(0.0, 0.2, 0.0), radius: 0.5 },
@@ -56,6 +57,26 @@ fn lists_are_the_reference_for_every_light_and_number_of_samples() {
             let partial = seen.iter().filter(|&&share| share > 0.0 && share < 1.0).count();
             assert!(samples == 1 || partial > seen.len() / 100, "{samples} samples: {partial} of {}", seen.len());
         }
+    }
+}
+
+#[test]
+fn a_soft_spot_casts_the_shadows_of_a_ball() {
+    let (position, radius) = (Vec3::new(1.0, 6.0, 2.0), 0.7);
+    let direction = -position.normalize();
+    let spot = |inner, outer| LightKind::Spot { position, direction, inner, outer, radius };
+    let [whole, narrow] = [spot(1.5, 1.5), spot(0.1, 0.3)].map(|kind| pile(DVec3::ZERO, &[kind]));
+    let ball = pile(DVec3::ZERO, &[LightKind::Sphere { position, radius }]);
+    let mesh = mode(Mode::LightMesh, SIZE).with_lookup(Lookup::HalfBall).with_samples(16).with_layers(true);
+    let adaptive = lists(16).with_lookup(Lookup::Adaptive);
+    for settings in [lists(16), area(16), adaptive, mesh] {
+        let [ball, whole, narrow] = [&ball, &whole, &narrow].map(|scene| render(scene, &settings));
+        assert!(same_bits(&whole, &ball), "{settings:?}");
+        assert_eq!(visibilities(&narrow), visibilities(&ball), "{settings:?}");
+        let seen = visibilities(&ball);
+        assert!(seen.iter().filter(|&&share| share > 0.0 && share < 1.0).count() > seen.len() / 100, "{settings:?}");
+        let lit = |frame: &Frame| frame.color().iter().filter(|color| color[0] > 0.0).count();
+        assert!(0 < lit(&narrow) && 2 * lit(&narrow) < lit(&ball), "{} of {}", lit(&narrow), lit(&ball));
     }
 }
 

@@ -92,11 +92,12 @@ fn a_wide_sun_shines_from_all_of_its_disk() {
 #[test]
 fn a_spot_fades_between_its_two_angles() {
     // The spot is above the pixel and rotated by `angle`.
-    let lit = |angle: f32| {
+    let lit_by = |angle: f32, radius: f32| {
         let direction = Vec3::new(angle.sin(), -angle.cos(), 0.0);
         let position = Vec3::new(0.0, 4.0, 0.0);
-        grey(|| floor(matt(1.0)).light(LightKind::Spot { position, direction, inner: 0.3, outer: 0.6 }))
+        grey(|| floor(matt(1.0)).light(LightKind::Spot { position, direction, inner: 0.3, outer: 0.6, radius }))
     };
+    let lit = |angle| lit_by(angle, 0.0);
     for angle in [0.0, 0.2, 0.29] {
         assert_near(lit(angle), 1.0);
     }
@@ -106,6 +107,12 @@ fn a_spot_fades_between_its_two_angles() {
     // KHR_lights_punctual: the square of the share of the way between the cosines.
     let share = (0.45f32.cos() - 0.6f32.cos()) / (0.3f32.cos() - 0.6f32.cos());
     assert!((lit(0.45) - share * share).abs() < 1e-5, "{}", lit(0.45));
+
+    // A ball of 0.4 seen from a distance of 4: each of its points has its own cone.
+    assert!((lit_by(0.0, 0.4) - 1.0).abs() < 0.01, "{}", lit_by(0.0, 0.4));
+    assert!((lit_by(0.45, 0.4) - lit(0.45)).abs() < 0.05, "{}", lit_by(0.45, 0.4));
+    assert!(lit_by(0.62, 0.4) > 0.0);
+    assert_eq!(lit_by(0.8, 0.4), 0.0);
 }
 
 #[test]

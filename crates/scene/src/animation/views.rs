@@ -8,6 +8,7 @@ use glam::{DMat4, DVec3, Vec3};
 use crate::{
     Camera, Light, LightKind,
     formats::toml::{unit, upright},
+    light::usable_radius,
     usable::is_place,
 };
 
@@ -64,15 +65,18 @@ impl Carried for Light {
     fn carried(&self, transform: &DMat4) -> Option<Light> {
         let direction = |direction: Vec3| Some(turned(transform, direction)?.as_vec3());
         let edge = |edge: Vec3| transform.transform_vector3(edge.as_dvec3()).as_vec3();
+        let scale = transform.x_axis.truncate().length() as f32;
         let length = |length: f32| {
-            let length = length * transform.x_axis.truncate().length() as f32;
+            let length = length * scale;
             (length > 0.0 && length.is_finite()).then_some(length)
         };
         let mut light = self.clone();
         match &mut light.kind {
             LightKind::Point { .. } => {}
-            LightKind::Directional { direction: way, .. } | LightKind::Spot { direction: way, .. } => {
+            LightKind::Directional { direction: way, .. } => *way = direction(*way)?,
+            LightKind::Spot { direction: way, radius, .. } => {
                 *way = direction(*way)?;
+                *radius = usable_radius(*radius * scale);
             }
             LightKind::Sphere { radius, .. } => *radius = length(*radius)?,
             LightKind::Disk { normal, radius, .. } => {

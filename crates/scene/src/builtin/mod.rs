@@ -26,7 +26,7 @@ mod surfaces;
 #[cfg(test)]
 mod tests;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 pub use childpark::childpark;
 pub use garden::garden;
@@ -77,6 +77,7 @@ impl Composition {
             direction: (self.target - self.eye).normalize(),
             up: Vec3::Y,
             projection: Projection::Perspective(Fov::Vertical(self.vfov)),
+            shift: Vec2::ZERO,
             motion: None,
         };
         let geometry = Geometry { mesh: self.mesh, materials: self.palette.0, ..Geometry::default() };

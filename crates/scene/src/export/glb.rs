@@ -6,7 +6,7 @@
 
 use std::{collections::HashMap, path::Path};
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
 use super::{ExportError, own_lights, pictures::Pictures, refused};
@@ -400,24 +400,29 @@ fn opacity_extras(opacity: &Opacity, index: usize, pictures: &Pictures) -> Opaci
 fn camera_entry(scene: &Scene, camera: &Camera) -> Value {
     // Other programs need clipping planes: wide enough to contain the scene from anywhere near it.
     let size = f64::from(scene.geometry.mesh.bounds().diagonal()).max(1.0);
-    match camera.projection {
+    let shift = (camera.shift != Vec2::ZERO).then_some(camera.shift.to_array());
+    let mut own = CameraExtras { shift, ..CameraExtras::default() };
+    let mut entry = match camera.projection {
         Projection::Perspective(fov) => {
             let radians = match fov {
                 Fov::Vertical(degrees) => f64::from(degrees).to_radians(),
                 Fov::Horizontal(_) => f64::from(fov.vertical(1.0)).to_radians(),
             };
-            let mut entry = json!({"type": "perspective", "perspective": {"yfov": radians, "znear": 1e-4 * size}});
             if let Fov::Horizontal(hfov) = fov {
-                entry["extras"] = json!({"lightmesh": CameraExtras { hfov }});
+                own.hfov = Some(hfov);
             }
-            entry
+            json!({"type": "perspective", "perspective": {"yfov": radians, "znear": 1e-4 * size}})
         }
         Projection::Orthographic { height } => {
             let mag = 0.5 * f64::from(height);
             let planes = json!({"xmag": mag, "ymag": mag, "znear": 0.0, "zfar": 100.0 * size});
             json!({"type": "orthographic", "orthographic": planes})
         }
+    };
+    if own != CameraExtras::default() {
+        entry["extras"] = json!({"lightmesh": own});
     }
+    entry
 }
 
 fn camera_node(scene: &Scene, index: usize, camera: &Camera) -> Value {
@@ -445,12 +450,16 @@ fn light_entry(light: &Light) -> Value {
         LightKind::Directional { angle, .. } if angle > 0.0 => Some(angle),
         _ => None,
     };
+    let radius = match light.kind {
+        LightKind::Spot { radius, .. } if radius > 0.0 => Some(radius),
+        _ => None,
+    };
     let kind = match light.kind {
         LightKind::Directional { .. } => "directional",
         LightKind::Spot { .. } => "spot",
         _ => "point",
     };
-    let extras = LightExtras { shape, spread, angle, no_falloff: light.falloff == Falloff::None };
+    let extras = LightExtras { shape, spread, angle, radius, no_falloff: light.falloff == Falloff::None };
     let mut entry = json!({"name": light.name, "type": kind, "color": color.to_array(), "intensity": strongest});
     if extras != LightExtras::default() {
         entry["extras"] = json!({"lightmesh": extras});

@@ -100,20 +100,34 @@ fn scene(offset: DVec3) -> Scene {
         light(LightKind::Directional { direction, angle: 0.0 }, Falloff::None),
         light(LightKind::Directional { direction, angle: 0.0093 }, Falloff::InverseSquare),
         Light::directional(Vec3::NEG_Z).unwrap().with_angle(std::f32::consts::PI).with_intensity(Vec3::splat(0.2)),
-        light(LightKind::Spot { position, direction, inner: 0.3, outer: 0.7 }, Falloff::InverseSquare),
-        light(LightKind::Spot { position, direction, inner: 0.0, outer: std::f32::consts::FRAC_PI_2 }, Falloff::None),
+        light(LightKind::Spot { position, direction, inner: 0.3, outer: 0.7, radius: 0.0 }, Falloff::InverseSquare),
+        light(
+            LightKind::Spot { position, direction, inner: 0.0, outer: std::f32::consts::FRAC_PI_2, radius: 0.0 },
+            Falloff::None,
+        ),
+        light(LightKind::Spot { position, direction, inner: 0.1, outer: 0.7, radius: 0.07 }, Falloff::None),
         light(LightKind::Sphere { position, radius: 0.33 }, Falloff::None),
         light(LightKind::Disk { position, normal: direction, radius: 0.33 }, Falloff::InverseSquare),
         light(LightKind::Rectangle { position, half_u, half_v }, Falloff::None),
         Light::point(position).with_intensity(Vec3::ZERO),
     ];
     let up = direction.cross(Vec3::Y).cross(direction).normalize();
-    let camera =
-        |projection| Camera { name: "c".into(), position: at(5.5, 4.4, 3.3), direction, up, projection, motion: None };
+    let camera = |projection| Camera {
+        name: "c".into(),
+        position: at(5.5, 4.4, 3.3),
+        direction,
+        up,
+        projection,
+        shift: Vec2::ZERO,
+        motion: None,
+    };
     scene.cameras = vec![
         camera(Projection::Perspective(Fov::Vertical(41.3))),
         camera(Projection::Perspective(Fov::Horizontal(73.1))),
         camera(Projection::Orthographic { height: 7.7 }),
+        camera(Projection::Perspective(Fov::Vertical(41.3))).with_shift([0.1, -0.3]),
+        camera(Projection::Perspective(Fov::Horizontal(73.1))).with_shift([0.0, 1.7]),
+        camera(Projection::Orthographic { height: 7.7 }).with_shift([-1.1, 0.0]),
     ];
     scene.lights.ambient = Some(Vec3::new(0.1, 0.2, 0.3));
     scene.lights.background = Some(Vec3::new(0.6, 0.75, 0.9));

@@ -1,6 +1,6 @@
 //! A scene file that refers to its triangles in a GLB next to it.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::own_lights;
 use crate::{
@@ -80,6 +80,7 @@ fn camera_entry(scene: &Scene, camera: &Camera) -> CameraEntry {
         hfov: None,
         projection: None,
         height: None,
+        shift: (camera.shift != Vec2::ZERO).then(|| anywhere(camera.shift.to_array().map(shortest))),
         motion: None,
     };
     match camera.projection {
@@ -125,12 +126,13 @@ fn light_entry(scene: &Scene, light: &Light) -> LightEntry {
             // The largest angle in `f32` radians may be a little more than that in degrees.
             entry.angle = (angle > 0.0).then(|| anywhere(f64::from(angle).to_degrees().min(LARGEST_ANGLE)));
         }
-        LightKind::Spot { direction, inner, outer, .. } => {
+        LightKind::Spot { direction, inner, outer, radius, .. } => {
             // A right angle in `f32` radians is a little more than 90 degrees.
             let degrees = |angle: f32| anywhere(f64::from(angle).to_degrees().min(90.0));
             entry.kind = anywhere(LightKindName::Spot);
             entry.direction = Some(vector(direction));
             (entry.inner, entry.outer) = (Some(degrees(inner)), Some(degrees(outer)));
+            entry.radius = (radius > 0.0).then(|| number(radius));
         }
         LightKind::Sphere { radius, .. } => {
             entry.kind = anywhere(LightKindName::Sphere);

@@ -77,12 +77,13 @@ fn seen(sight: &Sight, bounds: &Bounds, camera: &Camera) -> Vec<Point> {
 
 /// The free space ahead: from the eye, or where its view enters the scene, to what is met in the middle of the image.
 fn ahead(sight: &Sight, bounds: &Bounds, camera: &Camera) -> (Vec3, Vec3) {
-    let (right, up, forward) = camera.basis();
+    let (right, up, _) = camera.basis();
+    let (eye, forward) = camera.middle(1.0);
     let Projection::Perspective(_) = camera.projection else {
-        return within(sight, bounds, camera.position, forward);
+        return within(sight, bounds, eye, forward);
     };
     let rays = FAN.iter().flat_map(|x| FAN.map(|y| (forward + *x * right + y * up).normalize()));
-    let mut free: Vec<(Vec3, Vec3)> = rays.map(|ray| within(sight, bounds, camera.position, ray)).collect();
+    let mut free: Vec<(Vec3, Vec3)> = rays.map(|ray| within(sight, bounds, eye, ray)).collect();
     free.sort_by(|a, b| a.0.distance(a.1).total_cmp(&b.0.distance(b.1)));
     free[free.len() / 2]
 }

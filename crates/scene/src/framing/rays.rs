@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::{Camera, Fov, Projection};
 
@@ -27,7 +27,9 @@ pub(super) fn sparse_rays(camera: &Camera) -> Vec<[Vec3; 2]> {
     let (right, up, forward) = camera.basis();
     let at = |number: usize| (2 * number + 1) as f32 / RAYS as f32 - 1.0;
     let ray = |number: usize| {
-        let aside = at(number % RAYS) * right + at(number / RAYS) * up;
+        // Half the image is a unit.
+        let place = Vec2::new(at(number % RAYS), at(number / RAYS)) + 2.0 * camera.shift;
+        let aside = place.x * right + place.y * up;
         match camera.projection {
             Projection::Perspective(fov) => [camera.position, (forward + tangent(fov) * aside).normalize()],
             Projection::Orthographic { height } => [camera.position + 0.5 * height * aside, forward],

@@ -2,7 +2,7 @@
 
 use std::f32::consts::TAU;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::rays::{AROUND, directions, sparse_rays};
@@ -153,6 +153,7 @@ fn longest_view(sight: &Sight, bounds: &Bounds, up: Vec3, places: &[Place]) -> C
         direction: forward.normalize(),
         up,
         projection: Projection::Perspective(Fov::Vertical(VFOV)),
+        shift: Vec2::ZERO,
         motion: None,
     }
 }

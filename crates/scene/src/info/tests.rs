@@ -1,4 +1,4 @@
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::*;
 use crate::SceneBuilder;
@@ -17,6 +17,7 @@ fn scene() -> Scene {
         direction: Vec3::NEG_Z,
         up: Vec3::Y,
         projection: Projection::Perspective(Fov::Vertical(50.0)),
+        shift: Vec2::ZERO,
         motion: None,
     };
     let plan = Projection::Orthographic { height: 4.0 };

@@ -12,17 +12,22 @@ fn a_light_is_built_in_one_expression() {
     let ball = Light::sphere(Vec3::Y, 0.5).unwrap();
     assert_eq!(ball.clone().with_spread(2.0), ball);
     assert_eq!(ball.clone().with_angle(0.1), ball);
+    assert_eq!(ball.clone().with_radius(0.1), ball);
+    let spot = Light::spot(Vec3::Y, Vec3::X, 0.1, 0.2).unwrap().with_radius(0.5);
+    let kind = LightKind::Spot { position: Vec3::Y, direction: Vec3::X, inner: 0.1, outer: 0.2, radius: 0.5 };
+    assert_eq!(spot.kind, kind);
 }
 
 #[test]
 fn area_lights_have_a_size() {
     let sun = |angle| Light::directional(Vec3::NEG_Y).unwrap().with_angle(angle);
-    for light in
-        [sun(0.1), sun(1e-40), Light::sphere(Vec3::Y, 0.5).unwrap(), Light::disk(Vec3::Y, Vec3::X, 0.5).unwrap()]
-    {
+    let spot = |radius| Light::spot(Vec3::Y, Vec3::X, 0.1, 0.2).unwrap().with_radius(radius);
+    let (ball, disk) = (Light::sphere(Vec3::Y, 0.5).unwrap(), Light::disk(Vec3::Y, Vec3::X, 0.5).unwrap());
+    for light in [sun(0.1), sun(1e-40), spot(0.1), ball, disk] {
         assert!(light.has_size(), "{light:?}");
     }
-    let points = [sun(0.0), Light::point(Vec3::Y).with_spread(0.5), Light::spot(Vec3::Y, Vec3::X, 0.1, 0.2).unwrap()];
+    let points =
+        [sun(0.0), Light::point(Vec3::Y).with_spread(0.5), spot(0.0), spot(-0.1), spot(f32::NAN), spot(f32::INFINITY)];
     for light in points {
         assert!(!light.has_size(), "{light:?}");
     }

@@ -11,6 +11,7 @@ pub(super) struct PixelGrid {
     /// The camera's axes.
     right: Vec3,
     up: Vec3,
+    /// To the middle of the image, one unit before the camera.
     forward: Vec3,
     /// From one pixel to the next, one unit before the camera or anywhere.
     pitch: f32,
@@ -21,10 +22,11 @@ pub(super) struct PixelGrid {
 
 impl PixelGrid {
     pub(super) fn new(camera: &Camera, [width, height]: [u32; 2]) -> PixelGrid {
-        let (right, up, forward) = camera.basis();
+        let (right, up, _) = camera.basis();
         let [width, height] = [width, height].map(|side| side as f32);
+        let (_, forward) = camera.middle(width / height);
         let (whole, is_perspective) = match camera.projection {
-            Projection::Perspective(fov) => (2.0 * (0.5 * fov.vertical(width / height).to_radians()).tan(), true),
+            Projection::Perspective(fov) => (fov.height(width / height), true),
             Projection::Orthographic { height } => (height, false),
         };
         let middle = [0.5 * width - 0.5, 0.5 * height - 0.5];

@@ -120,13 +120,17 @@ fn what_leans_shows_more_of_itself() {
     let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 90.0).unwrap();
     let grid = PixelGrid::new(&camera, [64, 64]);
     // A wall at distance 3 is 6 units wide in the image.
-    let places = (0..64 * 64).map(|pixel| [pixel % 64, pixel / 64]);
-    let wall = |place: [u32; 2]| {
-        let [x, y] = place.map(|side| (side as f32 - 31.5) / 32.0);
-        grid.area(place, 3.0 * (1.0 + x * x + y * y).sqrt(), Vec3::Z)
-    };
-    let area: f32 = places.map(wall).sum();
-    assert!((area - 36.0).abs() < 0.05, "{area}");
+    let places = || (0..64 * 64).map(|pixel| [pixel % 64, pixel / 64]);
+    for shift in [[0.0, 0.0], [0.5, -0.25]] {
+        let grid = PixelGrid::new(&camera.clone().with_shift(shift), [64, 64]);
+        let wall = |place: [u32; 2]| {
+            let [x, y] = place.map(|side| (side as f32 - 31.5) / 32.0);
+            let (x, y) = (x + 2.0 * shift[0], 2.0 * shift[1] - y);
+            grid.area(place, 3.0 * (1.0 + x * x + y * y).sqrt(), Vec3::Z)
+        };
+        let area: f32 = places().map(wall).sum();
+        assert!((area - 36.0).abs() < 0.05, "{area}");
+    }
     let leaning = grid.area([31, 31], 3.0, Vec3::new(0.0, 0.6, 0.8));
     assert!((leaning / grid.area([31, 31], 3.0, Vec3::Z) - 1.25).abs() < 0.02);
 }

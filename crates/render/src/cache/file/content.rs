@@ -79,8 +79,10 @@ fn write_seen(output: &mut impl Write, Seen { kind, sampling }: &Seen) -> io::Re
     let (name, numbers): (u8, Vec<f32>) = match *kind {
         LightKind::Point { position, spread } => (0, [&position.to_array()[..], &[spread]].concat()),
         LightKind::Directional { direction, angle } => (1, [&direction.to_array()[..], &[angle]].concat()),
-        LightKind::Spot { position, direction, inner, outer } => {
-            (2, [&position.to_array()[..], &direction.to_array(), &[inner, outer]].concat())
+        LightKind::Spot { position, direction, inner, outer, radius } => {
+            let point = [&position.to_array()[..], &direction.to_array(), &[inner, outer]].concat();
+            // Without a radius as before there were any.
+            if radius > 0.0 { (6, [&point[..], &[radius]].concat()) } else { (2, point) }
         }
         LightKind::Sphere { position, radius } => (3, [&position.to_array()[..], &[radius]].concat()),
         LightKind::Disk { position, normal, radius } => {
@@ -275,11 +277,12 @@ impl<R: Read> Input<R> {
         let kind = match name {
             0 => LightKind::Point { position: self.vector()?, spread: self.float()? },
             1 => LightKind::Directional { direction: self.vector()?, angle: self.float()? },
-            2 => LightKind::Spot {
+            2 | 6 => LightKind::Spot {
                 position: self.vector()?,
                 direction: self.vector()?,
                 inner: self.float()?,
                 outer: self.float()?,
+                radius: if name == 6 { self.float()? } else { 0.0 },
             },
             3 => LightKind::Sphere { position: self.vector()?, radius: self.float()? },
             4 => LightKind::Disk { position: self.vector()?, normal: self.vector()?, radius: self.float()? },

@@ -22,8 +22,9 @@ fn section(scene: &PreparedScene) -> Section {
     let kinds = [
         LightKind::Point { position: at, spread: 0.5 },
         LightKind::Directional { direction: Vec3::NEG_Y, angle: 0.01 },
-        LightKind::Spot { position: at, direction: Vec3::X, inner: 0.1, outer: 0.2 },
+        LightKind::Spot { position: at, direction: Vec3::X, inner: 0.1, outer: 0.2, radius: 0.0 },
         LAMP,
+        LightKind::Spot { position: at, direction: Vec3::X, inner: 0.1, outer: 0.2, radius: 0.5 },
         LightKind::Disk { position: at, normal: Vec3::Z, radius: 2.0 },
         LightKind::Rectangle { position: at, half_u: Vec3::X, half_v: Vec3::Y },
     ];
@@ -80,10 +81,10 @@ fn what_is_loaded_is_what_was_saved() {
     assert_eq!(load(&path, &scene, Budget::default()).unwrap(), [section(&scene)]);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left next to it");
     let cache = MeshCache::load(&path, &scene, Budget::default()).unwrap();
-    assert_eq!(cache.len(), 6 * 68);
+    assert_eq!(cache.len(), 7 * 68);
     // What was not asked for stays.
     let again = cache.save(&path, &scene).unwrap().unwrap();
-    assert_eq!((again.values, again.bytes), (6 * 68, bytes.len() as u64));
+    assert_eq!((again.values, again.bytes), (7 * 68, bytes.len() as u64));
     assert_eq!(std::fs::read(&path).unwrap(), bytes);
     assert_eq!(MeshCache::new().save(folder.path().join("none"), &scene).unwrap(), None);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is known, nothing is written");

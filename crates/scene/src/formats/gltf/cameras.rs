@@ -3,31 +3,46 @@
 
 use std::{f64::consts::PI, path::Path};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::{
     container::malformed,
     document,
     extras::{self, CameraExtras},
 };
-use crate::{Camera, Fov, LoadError, Projection};
+use crate::{Camera, Fov, LoadError, Projection, camera::LARGEST_SHIFT};
 
 /// A camera in the coordinates of a node.
-pub(super) fn camera(name: String, projection: Projection) -> Camera {
-    Camera { name, position: Vec3::ZERO, direction: Vec3::NEG_Z, up: Vec3::Y, projection, motion: None }
+pub(super) fn camera(name: String, Lens { projection, shift }: Lens) -> Camera {
+    Camera { name, position: Vec3::ZERO, direction: Vec3::NEG_Z, up: Vec3::Y, projection, shift, motion: None }
 }
 
-/// The projection of camera number `index` of the document.
-pub(super) fn projection(path: &Path, index: u32, camera: &document::Camera) -> Result<Projection, LoadError> {
+/// What a camera of the document says.
+#[derive(Clone, Copy)]
+pub(super) struct Lens {
+    projection: Projection,
+    shift: Vec2,
+}
+
+/// That of camera number `index` of the document.
+pub(super) fn lens(path: &Path, index: u32, camera: &document::Camera) -> Result<Lens, LoadError> {
+    let own: CameraExtras = extras::read(path, &format!("camera {index}"), camera.extras)?.unwrap_or_default();
+    let shift = Vec2::from(own.shift.unwrap_or_default());
+    if shift.abs().max_element() > LARGEST_SHIFT {
+        return Err(malformed(path, format!("camera {index} has extras.lightmesh.shift = {shift}")));
+    }
+    Ok(Lens { projection: projection(path, index, camera, &own)?, shift })
+}
+
+fn projection(path: &Path, index: u32, camera: &document::Camera, own: &CameraExtras) -> Result<Projection, LoadError> {
     let bad = |what: &str, value: f64| Err(malformed(path, format!("camera {index} has {what} = {value}")));
     if let Some(perspective) = &camera.perspective {
         if !(perspective.yfov > 0.0 && perspective.yfov < PI) {
             return bad("yfov", perspective.yfov);
         }
-        let own: Option<CameraExtras> = extras::read(path, &format!("camera {index}"), camera.extras)?;
-        return match own {
-            Some(own) if own.hfov > 0.0 && own.hfov < 180.0 => Ok(Projection::Perspective(Fov::Horizontal(own.hfov))),
-            Some(own) => bad("extras.lightmesh.hfov", own.hfov.into()),
+        return match own.hfov {
+            Some(hfov) if hfov > 0.0 && hfov < 180.0 => Ok(Projection::Perspective(Fov::Horizontal(hfov))),
+            Some(hfov) => bad("extras.lightmesh.hfov", hfov.into()),
             None => Ok(Projection::Perspective(Fov::Vertical(perspective.yfov.to_degrees() as f32))),
         };
     }

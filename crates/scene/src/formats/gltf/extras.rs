@@ -154,6 +154,9 @@ pub(crate) struct LightExtras {
     /// Angular diameter of a directional light, radians.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) angle: Option<f32>,
+    /// Radius of the ball that a spot light is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) radius: Option<f32>,
     /// Falloff `none`; else inverse-square, as in glTF.
     #[serde(default)]
     pub(crate) no_falloff: bool,
@@ -168,11 +171,16 @@ pub(crate) enum ShapeExtras {
     Rectangle { half_u: [f32; 3], half_v: [f32; 3] },
 }
 
-/// Of a camera: the full horizontal field of view in degrees, if that is the one that is fixed.
+/// Of a camera.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CameraExtras {
-    pub(crate) hfov: f32,
+    /// The full horizontal field of view in degrees, if that is the one that is fixed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) hfov: Option<f32>,
+    /// By how much the image is to the right of the view direction and above it, in heights of the image.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) shift: Option<[f32; 2]>,
 }
 
 /// Of a scene.

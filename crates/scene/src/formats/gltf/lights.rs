@@ -12,7 +12,10 @@ use super::{
     document::{self, Spot},
     extras::{LightExtras, ShapeExtras},
 };
-use crate::{Falloff, Light, LightKind, LoadError, light::usable_angle};
+use crate::{
+    Falloff, Light, LightKind, LoadError,
+    light::{usable_angle, usable_radius},
+};
 
 /// Light number `index` of the document in the coordinates of a node, still without a name. `None` if its type is unknown.
 pub(super) fn read(
@@ -32,7 +35,8 @@ pub(super) fn read(
         ("directional", None) => LightKind::Directional { direction, angle: usable_angle(own.angle.unwrap_or(0.0)) },
         ("spot", None) => {
             let (inner, outer) = cone(path, index, light.spot.as_deref().unwrap_or(&Spot::default()))?;
-            LightKind::Spot { position, direction, inner, outer }
+            let radius = usable_radius(own.radius.unwrap_or(0.0));
+            LightKind::Spot { position, direction, inner, outer, radius }
         }
         ("point", None) => LightKind::Point { position, spread: spread(own) },
         _ => return Ok(None),

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use super::{
-    cameras, container::malformed, document::Document, extras, extras::LightExtras, left_out::LeftOut, lights,
-    nodes::Placed, rigged::Rigged,
+    cameras, cameras::Lens, container::malformed, document::Document, extras, extras::LightExtras, left_out::LeftOut,
+    lights, nodes::Placed, rigged::Rigged,
 };
 use crate::{
-    Camera, Light, LoadError, Projection,
+    Camera, Light, LoadError,
     animation::views::{Carried, Motion, numbered},
     draft::Draft,
 };
@@ -20,7 +20,7 @@ pub(super) struct Views<'a> {
     path: &'a Path,
     document: &'a Document<'a>,
     /// By camera, once a node has used it.
-    projections: Vec<Option<Projection>>,
+    lenses: Vec<Option<Lens>>,
     /// By light, once a node has used it.
     extras: Vec<Option<LightExtras>>,
 }
@@ -30,7 +30,7 @@ impl<'a> Views<'a> {
         Views {
             path,
             document,
-            projections: vec![None; document.cameras.len()],
+            lenses: vec![None; document.cameras.len()],
             extras: vec![None; document.extensions.lights_punctual.lights.len()],
         }
     }
@@ -62,12 +62,12 @@ impl<'a> Views<'a> {
         draft: &mut Draft,
     ) -> Result<(), LoadError> {
         let camera = self.document.cameras.get(index as usize).ok_or_else(|| self.missing("camera", index))?;
-        let slot = &mut self.projections[index as usize];
-        let projection = match *slot {
+        let slot = &mut self.lenses[index as usize];
+        let lens = match *slot {
             Some(known) => known,
-            None => *slot.insert(cameras::projection(self.path, index, camera)?),
+            None => *slot.insert(cameras::lens(self.path, index, camera)?),
         };
-        let own = cameras::camera(name(camera.name.as_deref(), placed), projection);
+        let own = cameras::camera(name(camera.name.as_deref(), placed), lens);
         let camera = own.carried(&placed.transform).ok_or_else(|| flat(self.path, placed))?;
         let motion = mover.map(|node| numbered(&mut draft.animation.cameras, Motion::Node(node, own.into())));
         let camera = Camera { motion, ..camera };

@@ -1,6 +1,6 @@
 //! `[camera]` to [`Camera`].
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::{
     check::{Source, unit},
@@ -34,6 +34,7 @@ pub(super) fn read(source: &Source, table: &Spanned<CameraEntry>) -> Result<(Cam
         direction: direction.as_vec3(),
         up: up.as_vec3(),
         projection: projection(source, table)?,
+        shift: entry.shift.as_ref().map_or(Ok(Vec2::ZERO), |shift| source.shift("shift", shift))?,
         motion: None,
     };
     Ok((camera, position))

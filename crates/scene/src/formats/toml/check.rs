@@ -2,12 +2,13 @@
 
 use std::{collections::HashMap, fmt::Debug, ops::Range, path::Path};
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::schema::{Color, Number, Text, Vector};
 use super::spanned::Spanned;
 use crate::{
     LoadError,
+    camera::LARGEST_SHIFT,
     error::Place,
     quote::{abridged, quote},
 };
@@ -125,6 +126,17 @@ impl Source<'_> {
         } else {
             Err(self.refuse(key, value, "has a component that is not positive", "give lengths above 0"))
         }
+    }
+
+    /// A shift of an image.
+    pub(super) fn shift(&self, key: &str, value: &Spanned<[f64; 2]>) -> Result<Vec2, LoadError> {
+        let shift = DVec2::from(*value.get_ref()).as_vec2();
+        self.all_finite(key, value, value.get_ref())?;
+        if shift.abs().max_element() <= LARGEST_SHIFT {
+            return Ok(shift);
+        }
+        let problem = format!("is more than {LARGEST_SHIFT} heights of the image");
+        Err(self.refuse(key, value, &problem, "give numbers such as 0.5"))
     }
 
     /// A colour or intensity: finite, no channel below 0.

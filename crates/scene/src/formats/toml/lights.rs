@@ -51,7 +51,14 @@ fn kind(source: &Source, table: &Spanned<LightEntry>, position: DVec3) -> Result
         }
         LightKindName::Spot => {
             let (inner, outer) = cone(source, entry)?;
-            LightKind::Spot { position: local, direction: direction(source, table, position)?.as_vec3(), inner, outer }
+            let radius = entry.radius.as_ref().map_or(Ok(0.0), |radius| source.between("radius", radius, 0.0, 1e18))?;
+            LightKind::Spot {
+                position: local,
+                direction: direction(source, table, position)?.as_vec3(),
+                inner,
+                outer,
+                radius: radius as f32,
+            }
         }
         LightKindName::Sphere => LightKind::Sphere { position: local, radius: radius(source, table)? },
         LightKindName::Disk => LightKind::Disk {
@@ -87,7 +94,7 @@ fn refuse_foreign_keys(source: &Source, table: &Spanned<LightEntry>) -> Result<(
     let taken: &[&str] = match entry.kind.get_ref() {
         LightKindName::Point => &["position", "spread"],
         LightKindName::Directional => &["direction", "angle"],
-        LightKindName::Spot => &["position", "direction", "target", "inner", "outer"],
+        LightKindName::Spot => &["position", "direction", "target", "inner", "outer", "radius"],
         LightKindName::Sphere => &["position", "radius"],
         LightKindName::Disk => &["position", "direction", "target", "normal", "radius"],
         LightKindName::Rectangle => &["position", "direction", "target", "u", "v", "size", "up"],

@@ -14,7 +14,7 @@ use super::{
     lights,
     motion_schema::{CameraKey, InterpolationName, LightKey, ObjectMotionEntry},
     parts,
-    schema::{CameraEntry, Color, LightEntry, Number, Scale},
+    schema::{CameraEntry, Color, LightEntry, LightKindName, Number, Scale},
     spanned::Spanned,
 };
 use crate::{
@@ -94,6 +94,7 @@ const CAMERA: &[Property<CameraEntry, CameraKey>] = &[
     property!(vfov, number, |table| table.hfov.is_none() && table.height.is_none()),
     property!(hfov, number, |table| table.hfov.is_some()),
     property!(height, number, |table| table.height.is_some()),
+    property!(shift, 2, |_| true, |value| value.to_vec(), |values| [values[0], values[1]]),
 ];
 
 /// What a light's keys may give.
@@ -102,7 +103,7 @@ const LIGHT: &[Property<LightEntry, LightKey>] = &[
     property!(direction, vector, |table| table.direction.is_some()),
     property!(target, vector, |table| table.target.is_some()),
     property!(normal, vector, |table| table.normal.is_some()),
-    property!(radius, number, |table| table.radius.is_some()),
+    property!(radius, number, |table| table.radius.is_some() || *table.kind.get_ref() == LightKindName::Spot),
     property!(angle, number, |_| true),
     property!(inner, number, |_| true),
     property!(outer, number, |_| true),

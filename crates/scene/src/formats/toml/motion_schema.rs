@@ -38,6 +38,8 @@ pub(crate) struct CameraKey {
     pub(crate) hfov: Option<Number>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) height: Option<Number>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) shift: Option<Spanned<[f64; 2]>>,
 }
 
 /// `[light.motion]`: what of the light changes over time.

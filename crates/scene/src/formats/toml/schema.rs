@@ -62,7 +62,7 @@ pub(crate) struct CameraEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) name: Option<Text>,
     pub(crate) position: Vector,
-    /// The point at the centre of the image; alternative: `direction`.
+    /// The point at the centre of an image without `shift`; alternative: `direction`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) target: Option<Vector>,
     /// The viewing direction; alternative: `target`.
@@ -83,6 +83,10 @@ pub(crate) struct CameraEntry {
     /// Height of an orthographic image, scene units.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) height: Option<Number>,
+    /// By how much the image is to the right of the viewing direction and above it, in heights of the image, as with a shifted lens: uprights
+    /// stay parallel. Default: [0, 0].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) shift: Option<Spanned<[f64; 2]>>,
     /// How it moves in a film.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) motion: Option<CameraMotionEntry>,
@@ -209,7 +213,7 @@ pub(crate) struct LightEntry {
     /// The axis of a disk, instead of `direction`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) normal: Option<Vector>,
-    /// Sphere and disk.
+    /// Sphere and disk. Spot: it is a ball of this radius, and its shadows are soft. Default: 0, a point.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) radius: Option<Number>,
     /// Point: radius of the ball over which soft shadows distribute the points that replace it. Default: 0.

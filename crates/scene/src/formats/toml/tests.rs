@@ -102,6 +102,7 @@ fn cameras_of_all_sorts() {
         target = [0, 0, 4]
         vfov = 40
         hfov = 90
+        shift = [0.25, -1]
         [[sphere]]
         center = [0, 1, 0]
         radius = 1
@@ -113,6 +114,7 @@ fn cameras_of_all_sorts() {
     assert_eq!(wide.projection, Projection::Perspective(Fov::Horizontal(90.0)));
     assert_eq!(both.projection, Projection::Perspective(Fov::Vertical(40.0)));
     assert!(both.up.dot(both.direction).abs() < 1e-6);
+    assert_eq!([plan.shift, both.shift], [Vec2::ZERO, Vec2::new(0.25, -1.0)]);
     assert!(scene.warnings[0].contains("room.toml:13") && scene.warnings[0].contains("vfov"), "{:?}", scene.warnings);
 }
 
@@ -168,6 +170,11 @@ fn lights_of_all_kinds() {
         position = [0, 5, 0]
         direction = [0, 0, -1]
         size = [2, 4]
+        [[light]]
+        kind = "spot"
+        position = [0, 5, 0]
+        direction = [0, -1, 0]
+        radius = 0.25
         [[sphere]]
         center = [0, 0, 0]
         radius = 1
@@ -180,13 +187,15 @@ fn lights_of_all_kinds() {
     assert_eq!(*kinds[1], LightKind::Directional { direction: Vec3::NEG_Y, angle });
     let (inner, outer) = (20f64.to_radians() as f32, 30f64.to_radians() as f32);
     let up = Vec3::new(0.0, 5.0, 0.0);
-    assert_eq!(*kinds[2], LightKind::Spot { position: up, direction: Vec3::NEG_Y, inner, outer });
+    assert_eq!(*kinds[2], LightKind::Spot { position: up, direction: Vec3::NEG_Y, inner, outer, radius: 0.0 });
     assert_eq!(scene.lights[2].intensity, Vec3::new(1.0, 2.0, 3.0));
     assert_eq!(scene.lights[2].falloff, Falloff::InverseSquare);
     assert_eq!(*kinds[3], LightKind::Sphere { position, radius: 0.5 });
     assert_eq!(*kinds[4], LightKind::Disk { position, normal: Vec3::Z, radius: 0.5 });
     assert_eq!(*kinds[5], LightKind::Rectangle { position, half_u: Vec3::X, half_v: 2.0 * Vec3::Z });
     assert_eq!(*kinds[6], LightKind::Rectangle { position: up, half_u: Vec3::X, half_v: 2.0 * Vec3::Y });
+    let outer = std::f32::consts::FRAC_PI_4;
+    assert_eq!(*kinds[7], LightKind::Spot { position: up, direction: Vec3::NEG_Y, inner: 0.0, outer, radius: 0.25 });
 }
 
 #[test]
@@ -258,7 +267,7 @@ fn a_mirrored_mesh_keeps_its_front() {
 
 /// Text with one mistake, and the expected message. Each names the line and a remedy after the semicolon.
 #[rustfmt::skip]
-const MISTAKES: [(&str, &str); 37] = [
+const MISTAKES: [(&str, &str); 40] = [
     ("[[sphere]]\ncenter = [0, 1, 0]\nradius = -1", "radius = -1 is not positive, room.toml:3; give a radius above 0"),
     ("[[sphere]]\ncenter = [0, 1, 0]\nradius = nan", "radius = nan is not finite, room.toml:3; "),
     ("[[sphere]]\ncenter = [0, inf, 0]\nradius = 1", "center = [0, inf, 0] is not finite, room.toml:2; "),
@@ -279,6 +288,9 @@ const MISTAKES: [(&str, &str); 37] = [
     ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nvfov = 180", "vfov = 180 is not under 180 degrees, room.toml:4; "),
     ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nprojection = \"orthographic\"", "key `height` is missing, room.toml:1; "),
     ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nheight = 3", "height = 3 has no meaning in a perspective camera, room.toml:4; "),
+    ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nshift = [0, 1001]", "shift = [0, 1001] is more than 1000 heights of the image, room.toml:4; "),
+    ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nshift = [nan, 0]", "shift"),
+    ("[[light]]\nkind = \"spot\"\nposition = [0, 0, 0]\ndirection = [0, 1, 0]\nradius = -1", "radius = -1 is not between 0 and"),
     ("[[light]]\nkind = \"lamp\"\nposition = [0, 0, 0]", "room.toml:2; use a value that is valid for `kind`"),
     ("[[light]]\nkind = \"point\"", "key `position` is missing, room.toml:1; "),
     ("[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\nradius = 1", "kind = \"point\" does not take `radius`, room.toml:2; it takes position, spread"),

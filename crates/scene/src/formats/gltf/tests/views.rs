@@ -1,6 +1,6 @@
 //! Cameras and lights.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
 use super::*;
@@ -21,7 +21,7 @@ fn cameras_and_lights_follow_their_nodes() {
     assert_eq!(point.intensity, Vec3::new(40.0, 20.0, 10.0));
     let LightKind::Directional { direction, angle } = sun.kind else { panic!("{sun:?}") };
     assert!(direction.distance(Vec3::NEG_Y) < 1e-6 && angle == 0.0);
-    assert_eq!(spot.kind, LightKind::Spot { position, direction: Vec3::NEG_Z, inner: 0.25, outer: 0.5 });
+    assert_eq!(spot.kind, LightKind::Spot { position, direction: Vec3::NEG_Z, inner: 0.25, outer: 0.5, radius: 0.0 });
 }
 
 #[test]
@@ -54,6 +54,20 @@ fn a_camera_behind_its_picture_is_set_right() {
     let mut document = furnished();
     document["cameras"][1]["orthographic"]["ymag"] = json!(-2);
     assert_eq!(open(&document).cameras[1].projection, Projection::Orthographic { height: 4.0 });
+}
+
+#[test]
+fn cameras_may_have_a_shift() {
+    let mut document = furnished();
+    document["cameras"][0]["extras"] = json!({"lightmesh": {"shift": [0.25, -0.5]}});
+    document["cameras"][1]["extras"] = json!({"lightmesh": {"shift": [0, 1]}});
+    let [top, plan] = &open(&document).cameras[..] else { panic!() };
+    assert_eq!((top.shift, plan.shift), (Vec2::new(0.25, -0.5), Vec2::Y));
+    assert_eq!(top.projection, Projection::Perspective(Fov::Vertical(90.0)));
+    for shift in [1001.0, -1e300] {
+        document["cameras"][1]["extras"]["lightmesh"]["shift"][0] = json!(shift);
+        assert!(error(&document).contains("camera 1 has extras.lightmesh.shift = ["), "{}", error(&document));
+    }
 }
 
 #[test]
@@ -121,6 +135,20 @@ fn a_directional_light_may_have_an_angle() {
         lights(&mut document)[1]["extras"] = json!({"lightmesh": {"angle": written}});
         let sun = &open(&document).lights[1];
         assert!(matches!(sun.kind, LightKind::Directional { angle, .. } if angle == expected), "{written}: {sun:?}");
+    }
+}
+
+#[test]
+fn a_spot_may_have_a_radius() {
+    for (written, expected) in [(0.1, 0.3), (0.0, 0.0), (-1.0, 0.0), (1e300, 0.0)] {
+        let mut document = furnished();
+        lights(&mut document)[2]["extras"] = json!({"lightmesh": {"radius": written}});
+        let spot = document["nodes"].as_array_mut().unwrap().iter_mut();
+        let is_spot = |node: &&mut Value| node["extensions"]["KHR_lights_punctual"]["light"] == json!(2);
+        spot.filter(is_spot).for_each(|node| node["scale"] = json!([3, 3, 3]));
+        let spot = &open(&document).lights[2];
+        let LightKind::Spot { radius, .. } = spot.kind else { panic!("{spot:?}") };
+        assert!((radius - expected).abs() < 1e-6, "{written}: {spot:?}");
     }
 }
 

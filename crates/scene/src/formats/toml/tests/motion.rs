@@ -63,7 +63,7 @@ fn cameras_follow_their_targets_and_lights_their_keys() {
         target = [0, 0, 0]
         [camera.motion]
         interpolation = "linear"
-        key = [{ time = 0, position = [0, 0, 8], vfov = 40 }, { time = 2, position = [8, 0, 0], vfov = 60 }]
+        key = [{ time = 0, position = [0, 0, 8], vfov = 40 }, { time = 2, position = [8, 0, 0], vfov = 60, shift = [0, 0.5] }, { time = 3, shift = [1, 0.5] }]
         [[light]]
         kind = "sphere"
         position = [0, 5, 0]
@@ -71,6 +71,12 @@ fn cameras_follow_their_targets_and_lights_their_keys() {
         name = "sun"
         [light.motion]
         key = [{ time = 0, intensity = 0 }, { time = 1, intensity = [1, 0.5, 0], radius = 2 }]
+        [[light]]
+        kind = "spot"
+        position = [0, 5, 0]
+        direction = [0, -1, 0]
+        [light.motion]
+        key = [{ time = 0, radius = 0 }, { time = 1, radius = 2 }]
         [[triangle]]
         a = [0, 0, 0]
         b = [1, 0, 0]
@@ -83,10 +89,12 @@ fn cameras_follow_their_targets_and_lights_their_keys() {
     assert_eq!(camera.position, Vec3::new(4.0, 0.0, 4.0));
     assert!((camera.direction + Vec3::new(0.5f32.sqrt(), 0.0, 0.5f32.sqrt())).length() < 1e-6);
     assert_eq!(camera.projection, Projection::Perspective(Fov::Vertical(50.0)));
+    assert_eq!((camera.shift, scene.at(2.5).cameras[0].shift), (Vec2::new(0.0, 0.5), Vec2::new(0.5, 0.5)));
     let light = &half.lights[0];
     assert_eq!((light.intensity, light.name.as_str()), (Vec3::new(1.0, 0.5, 0.0), "sun"));
     assert_eq!(light.kind, LightKind::Sphere { position: Vec3::new(0.0, 5.0, 0.0), radius: 2.0 });
     assert_eq!(scene.at(0.5).lights[0].intensity.x, 0.5);
+    assert!(matches!(scene.at(0.5).lights[1].kind, LightKind::Spot { radius: 1.0, .. }));
 }
 
 #[test]
