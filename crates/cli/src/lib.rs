@@ -1,7 +1,7 @@
 //! `lightmesh`: the light mesh method on the command line.
 //!
-//! [`args`] (as typed) ▶ [`plan`] (validated) ▶ [`run`](mod@run) (the work) ▶ exit code, in one direction. Anything that goes wrong is a
-//! [`Failure`], which knows its exit code. Results go to standard output; notes, progress and errors go to standard error.
+//! `args` (as typed) ▶ `plan` (validated) ▶ `run` (the work) ▶ exit code, in one direction. Anything that goes wrong is a
+//! `Failure`, which knows its exit code. Results go to standard output; notes, progress and errors go to standard error.
 //!
 //! It is a library so that other programs can contain the command line ([`run_command`]), and take the flags of `lightmesh render` for scenes
 //! and frames of their own ([`request`]).

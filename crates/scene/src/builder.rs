@@ -73,6 +73,11 @@ impl SceneBuilder {
         self.palette.len() as u32 - 1
     }
 
+    /// Number of materials so far, which is the index of the next.
+    pub fn material_count(&self) -> u32 {
+        self.palette.len() as u32
+    }
+
     /// Exchanges this with the builder of shapes, which are stored once, however often they are [placed](SceneBuilder::place): what is added to it
     /// is nowhere yet. The second call goes back.
     pub(crate) fn exchange_shapes(&mut self, kept: &mut Option<Box<SceneBuilder>>) {

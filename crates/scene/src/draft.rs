@@ -10,8 +10,8 @@ use glam::{DMat4, DVec3, Vec3};
 use lightmesh_memory::Short;
 
 use crate::{
-    Animation, Camera, CreaseAngle, Geometry, Instancing, Light, LightKind, LightMeshDefaults, Lights, LoadError,
-    LoadOptions, Material, MeshPart, Objects, Position, Scene, SceneBuilder, Surroundings, Texture,
+    Animation, Camera, CreaseAngle, Geometry, Instancing, Light, LightMeshDefaults, Lights, LoadError, LoadOptions,
+    Material, MeshPart, Objects, Position, Scene, SceneBuilder, Surroundings, Texture,
     animation::parts::{Hold, MovingInstance, MovingPart, Shape},
     border::{Border, beside},
     builder::mirrors,
@@ -497,8 +497,8 @@ impl Draft {
         let cameras = self.cameras.into_iter();
         let cameras = cameras.map(|(camera, world)| Camera { position: geometry.to_local(world), ..camera }).collect();
         let lights = self.lights.into_iter();
-        let list = lights.map(|(light, world)| moved(light, geometry.to_local(world))).collect();
-        let mut lights = Lights { list, ambient: self.ambient, background: self.background, environment: None };
+        let list = lights.map(|(light, world)| light.at(geometry.to_local(world))).collect();
+        let mut lights = Lights { list, ambient: self.ambient, background: self.background, ..Lights::default() };
         // What else the file says of lights, it means.
         if let Some(surroundings) = self.surroundings {
             lights.add(surroundings);
@@ -526,19 +526,6 @@ fn usable_in<P: Position>(transform: &DMat4) -> impl Fn(&P) -> bool + use<'_, P>
 /// The vertices of a part, copied.
 fn shape_of<P: Position>(part: &MeshPart<P>) -> Shape {
     Shape { positions: P::owned(part.positions.to_vec()), normals: part.normals.to_vec(), morph: None }
-}
-
-/// The light at another position.
-pub(crate) fn moved(mut light: Light, to: Vec3) -> Light {
-    match &mut light.kind {
-        LightKind::Point { position, .. }
-        | LightKind::Spot { position, .. }
-        | LightKind::Sphere { position, .. }
-        | LightKind::Disk { position, .. }
-        | LightKind::Rectangle { position, .. } => *position = to,
-        LightKind::Directional { .. } => {}
-    }
-    light
 }
 
 #[cfg(test)]

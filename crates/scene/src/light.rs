@@ -293,6 +293,19 @@ impl Light {
         }
     }
 
+    /// The same light at another position. Directional lights have none and stay unchanged.
+    pub fn at(mut self, to: Vec3) -> Light {
+        match &mut self.kind {
+            LightKind::Point { position, .. }
+            | LightKind::Spot { position, .. }
+            | LightKind::Sphere { position, .. }
+            | LightKind::Disk { position, .. }
+            | LightKind::Rectangle { position, .. } => *position = to,
+            LightKind::Directional { .. } => {}
+        }
+        self
+    }
+
     /// The centre of the light; `None` for a directional light.
     pub fn position(&self) -> Option<Vec3> {
         match self.kind {

@@ -26,12 +26,19 @@ pub struct Lights {
     pub background: Option<Vec3>,
     /// What surrounds the scene: the camera sees it unless there is a background, mirrors always. A sun in it is also in the list.
     pub environment: Option<Arc<Environment>>,
+    /// Whether the list is as it is meant to be: [`Scene::complete`](crate::Scene::complete) adds none, even if there are none, or faint ones.
+    pub chosen: bool,
 }
 
 impl Lights {
     /// Other lights with the same ambient intensity and background.
     pub fn with_list(self, list: Vec<Light>) -> Lights {
         Lights { list, ..self }
+    }
+
+    /// The same, to which none are added.
+    pub fn as_chosen(self) -> Lights {
+        Lights { chosen: true, ..self }
     }
 
     /// I_a of formula (1), per channel.
@@ -85,7 +92,7 @@ impl Lights {
     /// Whether a scene within `bounds` needs other lights: it has none, or only lamps that would not light it.
     pub(crate) fn are_missing(&self, bounds: &Bounds) -> bool {
         let are_faint = || self.are_lamps() && self.shown(bounds) < FAINT;
-        self.environment.is_none() && (self.list.is_empty() || are_faint())
+        !self.chosen && self.environment.is_none() && (self.list.is_empty() || are_faint())
     }
 
     /// Radiance of rays that hit nothing.

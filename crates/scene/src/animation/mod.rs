@@ -19,7 +19,7 @@ use self::{
     rig::Rig,
     views::{Carried, Motion},
 };
-use crate::{Camera, Geometry, Light, Scene, draft::moved};
+use crate::{Camera, Geometry, Light, Scene};
 
 /// How the things of a scene move. Times are in seconds from the beginning.
 #[derive(Debug, Default)]
@@ -96,7 +96,7 @@ impl Scene {
         for light in scene.lights.iter_mut() {
             if let Some((found, world)) = at(&animation.lights, light.motion, time, &places) {
                 let named = Light { name: std::mem::take(&mut light.name), motion: light.motion, ..found };
-                *light = moved(named, self.to_local(world));
+                *light = named.at(self.to_local(world));
             }
         }
         if animation.moves_surfaces() {

@@ -82,7 +82,7 @@ impl Composition {
         };
         let geometry = Geometry { mesh: self.mesh, materials: self.palette.0, ..Geometry::default() };
         let lights =
-            Lights { list: self.lights, ambient: Some(self.ambient), background: Some(self.sky), environment: None };
+            Lights { list: self.lights, ambient: Some(self.ambient), background: Some(self.sky), ..Lights::default() };
         Scene { lights, cameras: vec![camera], ..Scene::new(self.name, geometry) }
     }
 }
