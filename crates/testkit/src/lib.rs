@@ -27,6 +27,6 @@ pub use picture::{Picture, mean_difference, rms_difference};
 pub use random::Random;
 pub use scenes::{
     BALL_LIGHT, BOX_IN_MIRRORS, EYE_IN_MIRRORS, MIRROR_ROOM, glazed, half_plane, many_balls, mirror_room, open_floor,
-    perforated, pile, soup, thin_wall,
+    perforated, pile, soup, thicket, thin_wall,
 };
 pub use watch::{Watch, Watched};

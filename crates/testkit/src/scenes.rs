@@ -155,6 +155,29 @@ pub fn many_balls() -> Scene {
     scene
 }
 
+/// Clumps of small triangles, stored once for 60 places, between a floor and a wide light: what hides the light from neighbouring points are
+/// thousands of triangles, each a little.
+pub fn thicket() -> Scene {
+    let mut random = Random::new(3);
+    let mut clump = Mesh::default();
+    for number in 0..1000 {
+        let center = random.in_cube();
+        clump.positions.extend([(); 3].map(|()| (center + 0.05 * random.in_cube()).as_vec3()));
+        clump.triangles.push([0, 1, 2].map(|corner| 3 * number + corner));
+    }
+    clump.materials = vec![0; clump.triangles.len()];
+    let mut random = Random::new(4);
+    let places: Vec<DMat4> = (0..60)
+        .map(|_| DMat4::from_translation(DVec3::new(2.0, 0.4, 2.0) * random.in_cube() + 1.5 * DVec3::Y))
+        .collect();
+    let light = LightKind::Rectangle { position: 4.0 * Vec3::Y, half_u: 2.0 * Vec3::X, half_v: 1.5 * Vec3::Z };
+    let draft = SceneDraft::new().floor(0.0, 4.0).light(light);
+    let mut scene = draft.camera([0.0, 0.4, 4.0], [0.0, 0.0, 0.0]).finish("thicket");
+    let added = scene.geometry_mut().mesh.add_instances(&clump, &places, "clump");
+    added.expect("each place can be held");
+    scene
+}
+
 /// A place of a ball on a floor, in rows of five; each fourth mirrors.
 fn place(number: u32, random: &mut Random) -> DMat4 {
     let [x, z] = [number % 5, number / 5].map(|k| f64::from(k) - 2.0);

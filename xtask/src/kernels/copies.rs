@@ -14,7 +14,7 @@ use std::path::Path;
 use super::{LAYOUT, sources_under};
 
 /// Macros and numbers that only kernels use, and why.
-const ALLOWED: [(&str, &str); 26] = [
+const ALLOWED: [(&str, &str); 32] = [
     ("0x7ff0000000000000ll", "the bits of a double's exponent; Rust has functions for them"),
     ("CUT_OUTS", "the host chooses the module that was compiled with it"),
     ("INSTANCES", "modules without it are for scenes without instances; the host chooses"),
@@ -40,6 +40,12 @@ const ALLOWED: [(&str, &str); 26] = [
     ("1e20f", "the largest stretch of a shadow; infinite on the host, where it is not multiplied"),
     ("1e-20f", "its reciprocal"),
     ("1e30f", "larger than the stretch of any shadow"),
+    ("ROUND_COST", "what steps of occluder lists cost on a device; the host has its own"),
+    ("CHOICE_COST", "what steps of occluder lists cost on a device; the host has its own"),
+    ("CANDIDATE_COST", "what steps of occluder lists cost on a device; the host has its own"),
+    ("ROW_COST", "what steps of occluder lists cost on a device; the host has its own"),
+    ("RAY_COST", "what steps of occluder lists cost on a device; the host has its own"),
+    ("LEAST_SPENT", "what steps of occluder lists cost on a device; the host has its own"),
     ("1.000001f", "rounding of products that only occur in this search"),
 ];
 

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Acceleration, PreparedScene, Unobserved, View};
 use lightmesh_scene::{Falloff, LightKind, Material, Scene, Sky, SunPosition, Up};
-use lightmesh_testkit::{SceneDraft, glazed, half_plane, many_balls, mirror_room, perforated, pile, soup};
+use lightmesh_testkit::{SceneDraft, glazed, half_plane, many_balls, mirror_room, perforated, pile, soup, thicket};
 
 /// The structures, in the order of [`Subject::prepared`].
 pub(crate) const ACCELERATIONS: [Acceleration; 3] =
@@ -53,6 +53,9 @@ pub(crate) static GLAZED: Subject = subject("glazed", 0.25, true, || rounded(gla
 
 /// The same with shapes in many places.
 pub(crate) static GLAZED_INSTANCES: Subject = subject("glazed_instances", 0.4, true, || glazed(many_balls()));
+
+/// For occluder lists that give way to rays.
+pub(crate) static THICKET: Subject = subject("thicket", 0.4, true, thicket);
 
 /// For rays that are mirrored several times.
 pub(crate) static MIRRORS: Subject = subject("mirrors", 0.25, true, || mirror_room(0.9));

@@ -10,7 +10,7 @@ use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, UsedPoints};
 use lightmesh_render::{Job, LightGroup, Lit, LitBy, RayList, Sampling, ShortTests, Unobserved, Visibility};
 use lightmesh_scene::Weight;
 
-use crate::scenes::{SUBJECTS, Subject};
+use crate::scenes::{SUBJECTS, Subject, THICKET};
 use crate::trials::{Case, Target};
 
 /// Image size of the cases that compare hits.
@@ -70,6 +70,9 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
             }
         }
     }
+    cases.push(Case::new("thicket::bvh::occluder_lists".to_owned(), |cuda| {
+        Twins { samples: 16, ..Twins::new(cuda, &THICKET, 0, SMALL) }.occluder_lists();
+    }));
     cases
 }
 

@@ -1,5 +1,5 @@
 //! Rays to the samples of a light through a BVH, one after another. Whether a triangle hides a sample is decided as for a row of samples,
-//! with the bits of [`Sights::hide`](super::occlusion::Sights::hide). On the CPU only.
+//! with the bits of [`Sights::hide`](super::occlusion::Sights::hide). The twin on CUDA devices is sample_ray.cuh.
 
 use std::cell::Cell;
 

@@ -222,20 +222,31 @@ DEVICE void walk_instances(const InstancedBvh &bvh, Vec3 origin, Vec3 direction,
     }
 }
 
+// Visits what comes as close as `slack` to the segment from `origin` along `direction`.
 template <class Visitor>
-DEVICE void walk(const InstancedBvh &bvh, const Tally &, const Ray &ray, Visitor &visitor) {
-    walk_instances(bvh, ray.origin, ray.direction, 0.0f, visitor);
+DEVICE void walk_segment(const InstancedBvh &bvh, Vec3 origin, Vec3 direction, float slack, Visitor &visitor) {
+    walk_instances(bvh, origin, direction, slack, visitor);
 }
 
-DEVICE void walk_short(const InstancedBvh &bvh, Short &segment, float slack) {
-    walk_instances(bvh, segment.test.origin, segment.direction, slack, segment);
+template <class Visitor>
+DEVICE void walk_segment(const Bvh &bvh, Vec3 origin, Vec3 direction, float slack, Visitor &visitor) {
+    walk_nodes(bvh, slabs_of(origin, direction, slack), visitor);
+}
+
+template <class Visitor>
+DEVICE void walk(const InstancedBvh &bvh, const Tally &, const Ray &ray, Visitor &visitor) {
+    walk_segment(bvh, ray.origin, ray.direction, 0.0f, visitor);
 }
 
 template <class Visitor>
 DEVICE void walk(const Bvh &bvh, const Tally &, const Ray &ray, Visitor &visitor) {
-    walk_nodes(bvh, slabs_of(ray.origin, ray.direction, 0.0f), visitor);
+    walk_segment(bvh, ray.origin, ray.direction, 0.0f, visitor);
+}
+
+DEVICE void walk_short(const InstancedBvh &bvh, Short &segment, float slack) {
+    walk_segment(bvh, segment.test.origin, segment.direction, slack, segment);
 }
 
 DEVICE void walk_short(const Bvh &bvh, Short &segment, float slack) {
-    walk_nodes(bvh, slabs_of(segment.test.origin, segment.direction, slack), segment);
+    walk_segment(bvh, segment.test.origin, segment.direction, slack, segment);
 }

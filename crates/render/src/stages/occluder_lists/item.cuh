@@ -4,9 +4,25 @@
 #include "accel/search.cuh"
 #include "cuda/rays.cuh"
 #include "cuda/tally.cuh"
-#include "shadow/seen.cuh"
+#include "shadow/sample_ray.cuh"
 #include "shadow/terminator.cuh"
 #include "stages/occluder_lists/candidates.cuh"
+
+// What steps cost, in 64ths of that of a ray at a node; as on the CPU, see cpu.rs.
+
+// A round of a search.
+#define ROUND_COST 64
+// To choose among up to 32 triangles.
+#define CHOICE_COST 96
+// To test a candidate, and the same for each row of samples.
+#define CANDIDATE_COST 48
+#define ROW_COST 4
+// A ray.
+#define RAY_COST (300 * 64)
+// What is spent when lists are compared with rays for the first time.
+#define FIRST_CHECK (4 * RAY_COST)
+// Rays are considered when this many times what was spent exceeds their price.
+#define LEAST_SPENT 2.0f
 
 // What is known of the surface points that see anything of a light. Often it is the same for the next one.
 struct Around {
@@ -85,6 +101,14 @@ DEVICE void look(const Shadows &args, ItemSight &item, unsigned light, const Sam
     item.looked = true;
 }
 
+// The view and the rows of its samples, unless they are known.
+DEVICE void look_at_rows(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set, const RowTable &table) {
+    if (item.looked)
+        return;
+    look(args, item, light, set);
+    fill_row_offsets(item.sight, set, table);
+}
+
 // The samples in front of a surface that the emitter may reach below.
 template <unsigned WORDS>
 COLD Seen<WORDS> partly_unhidden(bool has, SurfacePoint point, Sight sight, Shape shape, const SampleRows &set, RowTable table) {
@@ -131,11 +155,12 @@ DEVICE bool test_candidates(const ItemSight &item, const RowTable &table, const 
     return true;
 }
 
-// 3. Chooses among up to 32 of the triangles found, one per lane, and tests them. Returns whether anything is still seen.
+// 3. Chooses among up to 32 of the triangles found, one per lane, and tests them. Returns whether anything is still seen. `tested` is the number of
+// candidates.
 template <unsigned WORDS, class Structure>
 DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set, const RowTable &table,
                        const Region<ShaftForm> &region, const Structure &structure, const ListMemory &memory, unsigned first,
-                       unsigned count, Seen<WORDS> &seen) {
+                       unsigned count, unsigned &tested, Seen<WORDS> &seen) {
     const unsigned lane = lane_of_thread();
     Occluding own;
     Choice choice = DROPPED;
@@ -148,12 +173,10 @@ DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, con
     }
     // A triangle that hides everything comes first; then there is nothing left to ask, unless it is cut out.
     const unsigned dark = __ballot_sync(ALL_LANES, choice == DARK), kept = __ballot_sync(ALL_LANES, choice == KEPT);
-    if ((dark | kept) == 0)
+    tested = __popc(dark | kept);
+    if (tested == 0)
         return true;
-    if (!item.looked) {
-        look(args, item, light, set);
-        fill_row_offsets(item.sight, set, table);
-    }
+    look_at_rows(args, item, light, set, table);
     __syncwarp();
     // The numbers of opacities take the places of the triangles, which have been read.
     unsigned cut = 0;
@@ -171,8 +194,31 @@ DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, con
             memory.found[first + place] = cut;
     }
     __syncwarp();
-    return test_candidates(item, table, memory.candidates, structure.coverage, memory.found + first, __popc(dark | kept), seen);
+    return test_candidates(item, table, memory.candidates, structure.coverage, memory.found + first, tested, seen);
 }
+
+// 5. Whether rays to the samples still seen cost less than going on, if candidates go on hiding samples as those have that `spent` so much. The
+// lanes' rays are cast side by side. `before` is the number of samples that the lane saw before the search.
+template <unsigned WORDS>
+DEVICE bool rays_are_cheaper(unsigned spent, unsigned before, const Seen<WORDS> &seen) {
+    const unsigned own = number(seen);
+    const float left = (float)warp_sum(own), hidden = (float)warp_sum(before - own), walks = warp_max((float)own);
+    const float going_on = (float)spent * left / (hidden + 1.0f);
+    return fminf(going_on, LEAST_SPENT * (float)spent) > (float)RAY_COST * walks;
+}
+
+// Rays in place of the rest of a search. This is a call, so that few registers are needed where there are none.
+template <unsigned WORDS, class Structure>
+COLD Seen<WORDS> rays_instead(const Structure &structure, float scale, SurfacePoint point, Sight sight, RowTable table, Seen<WORDS> seen) {
+    cast_to_samples<WORDS>(structure, scale, point, sight, table, seen);
+    return seen;
+}
+
+// Scenes of shapes in many places have them: in others, the registers cost more than rays gain.
+template <class Structure>
+constexpr bool HAS_RAYS = false;
+template <>
+constexpr bool HAS_RAYS<InstancedBvh> = true;
 
 // 2. The box around the surface points that are `alive`, and their tangent planes.
 DEVICE void look_around(const ItemSight &item, bool alive, const ListMemory &memory) {
@@ -226,18 +272,33 @@ DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, I
         *memory.shaft = shaft_of(origins, bounds, ball ? emitter.radius : INFINITE);
     __syncwarp();
     auto search = begin_search_at(structure, region, memory.search, memory.starts, start_count);
-    unsigned found = 0;
+    const unsigned before = number(seen);
+    unsigned found = 0, spent = 0, check = FIRST_CHECK;
     ROLLED
     while (goes_on(structure, search) || found != 0) {
         ROLLED
-        while (goes_on(structure, search) && found < WARP)
+        while (goes_on(structure, search) && found < WARP) {
             next_triangles<false>(structure, region, search, memory.found, found);
+            spent += ROUND_COST;
+        }
         const unsigned count = min(found, WARP);
         found -= count;
         // 3, 4. Candidates, and what they hide.
-        if (!test_found(args, item, light, set, table, region, structure, memory, found, count, seen))
+        unsigned tested;
+        if (!test_found(args, item, light, set, table, region, structure, memory, found, count, tested, seen))
             return 0;
         __syncwarp();
+        if constexpr (HAS_RAYS<Structure>) {
+            // 5. Rays instead of the rest.
+            spent += CHOICE_COST + tested * (CANDIDATE_COST + ROW_COST * set.rows);
+            if (spent < check || item.shape == SHAPE_POINT)
+                continue;
+            check = 2 * spent;
+            if (!rays_are_cheaper(spent, before, seen))
+                continue;
+            look_at_rows(args, item, light, set, table);
+            return number(rays_instead<WORDS>(structure, emitter.scale, item.point, item.sight, table, seen));
+        }
     }
     return number(seen);
 }
