@@ -1,0 +1,77 @@
+"""Soft shadows by the light mesh.
+
+    import lightmesh
+
+    scene = lightmesh.Scene.open("garden.toml")
+    renderer = lightmesh.Renderer()
+    frame = renderer.render(scene, size=(640, 480))
+    frame.save("garden.png")
+"""
+
+from ._errors import (
+    Cancelled,
+    DeviceError,
+    DeviceMemoryError,
+    GeometryError,
+    HostMemoryError,
+    LightmeshError,
+    MeshFileError,
+    MeshFileWarning,
+    SaveError,
+    SceneError,
+    SceneWarning,
+    SettingError,
+)
+from ._lightmesh import (
+    Camera,
+    Cancel,
+    Environment,
+    Frame,
+    Geometry,
+    Light,
+    Material,
+    Mattes,
+    MeshCache,
+    PreparedScene,
+    Progress,
+    Renderer,
+    Scene,
+    Texture,
+    __version__,
+    devices,
+    visibility,
+)
+from ._progress import follow
+
+__all__ = [
+    "Camera",
+    "Cancel",
+    "Cancelled",
+    "DeviceError",
+    "DeviceMemoryError",
+    "Environment",
+    "Frame",
+    "Geometry",
+    "GeometryError",
+    "HostMemoryError",
+    "Light",
+    "LightmeshError",
+    "Material",
+    "Mattes",
+    "MeshCache",
+    "MeshFileError",
+    "MeshFileWarning",
+    "PreparedScene",
+    "Progress",
+    "Renderer",
+    "SaveError",
+    "Scene",
+    "SceneError",
+    "SceneWarning",
+    "SettingError",
+    "Texture",
+    "__version__",
+    "devices",
+    "follow",
+    "visibility",
+]

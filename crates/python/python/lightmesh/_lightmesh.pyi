@@ -1,0 +1,563 @@
+"""The compiled module: everything that `lightmesh` exports comes from here, but for exceptions and helpers of progress bars."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, Literal, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from typing_extensions import Self, Unpack
+
+from .typing import Color, Falloff, ImageSettings, Instances, OpenSettings, Path, ProgressCallback, SaveSettings, Vector, WrapMode
+
+__all__ = [
+    "Camera",
+    "Cancel",
+    "Environment",
+    "Frame",
+    "Geometry",
+    "Light",
+    "Material",
+    "Mattes",
+    "MeshCache",
+    "PreparedScene",
+    "Progress",
+    "Renderer",
+    "Scene",
+    "Texture",
+    "__version__",
+    "command",
+    "devices",
+    "visibility",
+]
+
+@final
+class Texture:
+    """An image on a surface, with the way it is placed.
+
+    `pixels` has shape (H, W, 3) or (H, W, 4), `uint8`, row 0 at the top: colours as sRGB, data (normals, roughness) as they are. `wrap`
+    says how it goes on beyond its edges, across and down. `transform`, shape (2, 3), takes the texture coordinates of vertices to those
+    of the image, whose origin is the upper left corner.
+    """
+
+    def __new__(
+        cls,
+        pixels: NDArray[np.uint8],
+        *,
+        wrap: WrapMode | tuple[WrapMode, WrapMode] = "repeat",
+        transform: ArrayLike | None = None,
+        name: str = "",
+    ) -> Self: ...
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height, pixels."""
+    @property
+    def name(self) -> str:
+        """As it was given; may be empty."""
+    def placed(self, *, wrap: WrapMode | tuple[WrapMode, WrapMode] | None = None, transform: ArrayLike | None = None) -> Texture:
+        """The same image, placed otherwise; nothing is copied."""
+
+@final
+class Material:
+    """What a surface reflects, emits and lets through.
+
+    The constructor makes matt surfaces and mirrors of formula (1): `color` is k_d (and k_a), `specular` k_s with the Phong exponent
+    `shininess`. `Material.principled` is for everything that is described by metallic and roughness.
+    """
+
+    def __new__(
+        cls,
+        color: Color = 0.8,
+        *,
+        specular: Color = 0.0,
+        shininess: float = 20.0,
+        emission: Color = 0.0,
+        texture: Texture | None = None,
+        emission_texture: Texture | None = None,
+        normal_texture: Texture | None = None,
+        normal_scale: float = 1.0,
+        opacity: float = 1.0,
+        catcher: bool = False,
+        name: str = "",
+    ) -> Self: ...
+    @staticmethod
+    def principled(
+        color: Color = 0.8,
+        *,
+        metallic: float = 0.0,
+        roughness: float = 0.5,
+        ior: float = 1.5,
+        specular: float = 1.0,
+        specular_tint: Color = 1.0,
+        transmission: float = 0.0,
+        thin: bool = False,
+        emission: Color = 0.0,
+        alpha: float = 1.0,
+        alpha_mode: Literal["opaque", "mask", "blend"] = "opaque",
+        alpha_cutoff: float = 0.5,
+        texture: Texture | None = None,
+        emission_texture: Texture | None = None,
+        normal_texture: Texture | None = None,
+        normal_scale: float = 1.0,
+        metallic_roughness_texture: Texture | None = None,
+        name: str = "",
+    ) -> Material:
+        """A material of glTF's metallic-roughness model, read as from a glTF file.
+
+        `texture` tints `color`; its alpha counts with `alpha_mode` "mask" (what is below `alpha_cutoff` is not there) and "blend".
+        `metallic_roughness_texture` has roughness in its green and metallic in its blue channel, which are multiplied by the factors.
+        `transmission` is the share of what is not metal that goes through as through glass of index `ior`, straight on if `thin`.
+        """
+    @property
+    def name(self) -> str:
+        """As it was given; may be empty."""
+
+@final
+class Geometry:
+    """Triangles with materials, in one place or many."""
+
+    @staticmethod
+    def from_arrays(
+        vertices: ArrayLike,
+        triangles: ArrayLike,
+        *,
+        normals: ArrayLike | None = None,
+        uvs: ArrayLike | None = None,
+        colors: ArrayLike | None = None,
+        material: Material | None = None,
+        materials: Sequence[Material] | None = None,
+        material_indices: ArrayLike | None = None,
+        transforms: ArrayLike | None = None,
+        name: str = "",
+    ) -> Geometry:
+        """An object.
+
+        `vertices`: (V, 3) `float32` or `float64`, scene units. `triangles`: (T, 3) indices of vertices, counterclockwise seen from the front.
+        `normals`: (V, 3), need not be of unit length; `None`: flat. `uvs`: (V, 2), origin in the upper left corner of the image, as in glTF.
+        `colors`: (V, 3), linear, tint the material. `material` is that of all triangles; or `materials` is a list, and
+        `material_indices`, (T,), says which each triangle has. `transforms`: (4, 4), or (N, 4, 4) for N places, in which the object
+        is stored once; they are applied to column vectors.
+
+        Raises `GeometryError` for indices out of range and lengths that do not match.
+        """
+    @property
+    def name(self) -> str:
+        """As it was given; may be empty."""
+    @property
+    def vertex_count(self) -> int:
+        """In one place."""
+    @property
+    def triangle_count(self) -> int:
+        """In all places together."""
+    def placed(self, transforms: ArrayLike, *, name: str | None = None) -> Geometry:
+        """The same object in other places; its arrays are shared."""
+
+@final
+class Light:
+    """A light. With `falloff` "none", 1 fully lights a white surface that faces it, at any distance; with "inverse-square",
+    `intensity` is in candela (of a directional light in lux): a white surface that faces it at distance d shows I / (π d²), or I / π."""
+
+    @staticmethod
+    def point(position: Vector, *, spread: float = 0.0, intensity: Color = 1.0, falloff: Falloff = "none", name: str = "") -> Light:
+        """Light from one point, or, where shadows are soft, from a ball of radius `spread`."""
+    @staticmethod
+    def directional(direction: Vector, *, angle: float = 0.0, intensity: Color = 1.0, falloff: Falloff = "none", name: str = "") -> Light:
+        """Light that travels along `direction`, from a disk of the angular diameter `angle` in degrees; the sun's is 0.53."""
+    @staticmethod
+    def spot(
+        position: Vector,
+        direction: Vector,
+        *,
+        inner: float = 0.0,
+        outer: float = 45.0,
+        radius: float = 0.0,
+        intensity: Color = 1.0,
+        falloff: Falloff = "none",
+        name: str = "",
+    ) -> Light:
+        """A cone of light around `direction`, from a ball of `radius`: of full strength up to the half-angle `inner`, none beyond `outer`, degrees."""
+    @staticmethod
+    def sphere(position: Vector, radius: float, *, intensity: Color = 1.0, falloff: Falloff = "none", name: str = "") -> Light:
+        """Light from a ball."""
+    @staticmethod
+    def disk(
+        position: Vector,
+        normal: Vector,
+        radius: float,
+        *,
+        one_sided: bool = False,
+        intensity: Color = 1.0,
+        falloff: Falloff = "none",
+        name: str = "",
+    ) -> Light:
+        """A flat round light. It shines evenly to all sides; `one_sided`, like a surface: along `normal` with `intensity`, aside with the cosine."""
+    @staticmethod
+    def rectangle(
+        position: Vector,
+        half_u: Vector,
+        half_v: Vector,
+        *,
+        one_sided: bool = False,
+        intensity: Color = 1.0,
+        falloff: Falloff = "none",
+        name: str = "",
+    ) -> Light:
+        """A flat rectangular light: `half_u` and `half_v`, at a right angle, point from its centre to the middles of two sides. `one_sided`: towards half_u × half_v."""
+    @property
+    def kind(self) -> str:
+        """`point`, `directional`, `spot`, `sphere`, `disk` or `rectangle`."""
+    @property
+    def name(self) -> str:
+        """As it was given; may be empty."""
+    @property
+    def intensity(self) -> tuple[float, float, float]:
+        """Red, green and blue."""
+    @property
+    def falloff(self) -> Falloff:
+        """`none` or `inverse-square`."""
+    @property
+    def position(self) -> tuple[float, float, float] | None:
+        """World coordinates; `None` of a directional light."""
+    @property
+    def direction(self) -> tuple[float, float, float] | None:
+        """The way that the light of a directional light or the axis of a spot goes, of unit length; `None` of others."""
+    def replaced(self, *, position: Vector | None = None, direction: Vector | None = None, intensity: Color | None = None, name: str | None = None) -> Light:
+        """The same light elsewhere, or of other strength."""
+
+@final
+class Camera:
+    """A camera at `position` that looks at `target`, or along `direction`. `vfov` or `hfov` is the full vertical or horizontal field of view,
+    degrees (45° vertical if none is given); `height` in their place makes it orthographic: the image is as high in scene units. `shift` moves
+    the image, to the right and up, by shares of its height, as a shifted lens does: parallels stay parallel."""
+
+    def __new__(
+        cls,
+        position: Vector,
+        target: Vector | None = None,
+        *,
+        direction: Vector | None = None,
+        up: Vector = (0.0, 1.0, 0.0),
+        vfov: float | None = None,
+        hfov: float | None = None,
+        height: float | None = None,
+        shift: tuple[float, float] = (0.0, 0.0),
+        name: str = "",
+    ) -> Self: ...
+    @property
+    def name(self) -> str:
+        """As it was given; may be empty."""
+    @property
+    def position(self) -> tuple[float, float, float]:
+        """World coordinates."""
+    @property
+    def direction(self) -> tuple[float, float, float]:
+        """Of unit length."""
+    @property
+    def up(self) -> tuple[float, float, float]:
+        """What is up in the image."""
+
+@final
+class Environment:
+    """What surrounds a scene: an equirectangular panorama of linear radiance, (H, W, 3) `float32`, straight up in its first row, with
+    the north in its middle: -Z if `up` is "y", +Y if it is "z". East, +X, is to its right. `rotation` turns it clockwise as seen from above,
+    degrees; `strength` multiplies it. If it shows a sun, that becomes a light."""
+
+    def __new__(
+        cls, pixels: ArrayLike, *, up: Literal["y", "z"] = "y", rotation: float = 0.0, strength: float = 1.0, find_sun: bool = True, name: str = ""
+    ) -> Self: ...
+    @staticmethod
+    def open(path: Path, *, up: Literal["y", "z"] = "y", rotation: float = 0.0, strength: float = 1.0) -> Environment:
+        """Reads an .hdr or .exr file."""
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height, pixels."""
+
+@final
+class Scene:
+    """Geometry, lights and cameras. Geometry is shared and never changes; lights, cameras and surroundings can be set at any time.
+
+    Without `lights` (`None`), images show it by a key and a fill light, as the command line does; an empty list is darkness. `instances` says whether objects in many places are stored once ("always"), copied ("never"), or stored once if they have many
+    triangles in all ("auto"). What had to be corrected is a `SceneWarning`.
+    """
+
+    def __new__(
+        cls,
+        geometry: Geometry | Sequence[Geometry],
+        lights: Sequence[Light] | None = None,
+        camera: Camera | None = None,
+        *,
+        environment: Environment | None = None,
+        ambient: Color | None = None,
+        background: Color | None = None,
+        instances: Instances = "auto",
+        name: str = "",
+    ) -> Self: ...
+    @staticmethod
+    def open(path: Path, **settings: Unpack[OpenSettings]) -> Scene:
+        """Reads a .toml, .obj, .gltf, .glb, .ply or .stl file. Raises `SceneError`."""
+    @staticmethod
+    def builtin(name: str) -> Scene:
+        """A built-in scene: "gazebo", "childpark", "garden", also with options, as in "garden?lights=3"."""
+    @property
+    def lights(self) -> list[Light]:
+        """All lights; set a list to change them."""
+    @lights.setter
+    def lights(self, lights: Sequence[Light]) -> None: ...
+    @property
+    def cameras(self) -> list[Camera]:
+        """All cameras; set a list to change them."""
+    @cameras.setter
+    def cameras(self, cameras: Sequence[Camera]) -> None: ...
+    @property
+    def camera(self) -> Camera | None:
+        """The one that is used unless settings say otherwise: the first."""
+    @camera.setter
+    def camera(self, camera: Camera | None) -> None: ...
+    @property
+    def ambient(self) -> tuple[float, float, float] | None:
+        """Constant light from everywhere; `None`: gathered from surroundings, or chosen as on the command line."""
+    @ambient.setter
+    def ambient(self, color: Color | None) -> None: ...
+    @property
+    def background(self) -> tuple[float, float, float] | None:
+        """What is seen where nothing is; `None`: the environment, or black."""
+    @background.setter
+    def background(self, color: Color | None) -> None: ...
+    @property
+    def environment(self) -> Environment | None:
+        """What surrounds the scene."""
+    @environment.setter
+    def environment(self, environment: Environment | None) -> None: ...
+    @property
+    def name(self) -> str:
+        """As it was given; may be empty."""
+    @property
+    def triangle_count(self) -> int:
+        """As they are stored: of what is in many places, once if `instances` is "always"."""
+    @property
+    def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+        """Lowest and highest corner, world coordinates; `None` without triangles."""
+    @property
+    def objects(self) -> list[str]:
+        """Names of the objects, in the order of `Frame.ids`."""
+    @property
+    def materials(self) -> list[str]:
+        """Names of the materials, in the order of `Frame.material_ids`."""
+    @property
+    def warnings(self) -> list[str]:
+        """What the loader corrected, ignored or guessed."""
+    @property
+    def duration(self) -> float | None:
+        """Seconds of its animation; `None` if nothing moves."""
+    def at(self, time: float) -> Scene:
+        """The scene at a moment of its animation, in seconds."""
+    def with_geometry(self, geometry: Geometry | Sequence[Geometry], *, instances: Instances = "auto") -> Scene:
+        """Other geometry with the same lights, cameras and surroundings."""
+    def info(self) -> dict[str, Any]:
+        """What `lightmesh info` says of it."""
+
+@final
+class PreparedScene:
+    """A scene with its acceleration structure, ready to be rendered any number of times."""
+
+    @property
+    def scene(self) -> Scene:
+        """The scene, with the camera and surroundings of the settings."""
+    @property
+    def memory(self) -> int:
+        """Bytes that the structure takes."""
+    def with_lights(self, lights: Sequence[Light]) -> PreparedScene:
+        """The same with other lights; nothing is rebuilt."""
+    def with_camera(self, camera: Camera) -> PreparedScene:
+        """The same with another camera; nothing is rebuilt."""
+
+@final
+class MeshCache:
+    """What light points see and surfaces gather, kept from image to image. Images are the same without it."""
+
+    def __new__(cls) -> Self: ...
+    @staticmethod
+    def load(path: Path, prepared: PreparedScene) -> MeshCache:
+        """Reads a file of `save`, or of `--mesh-file`. Raises `MeshFileError`."""
+    def save(self, path: Path, prepared: PreparedScene) -> int:
+        """Writes the light points, and returns their number; without any, no file is written."""
+    def clear(self) -> None:
+        """Forgets everything."""
+    def __len__(self) -> int:
+        """Light points times lights."""
+    def __bool__(self) -> bool: ...
+    @property
+    def memory(self) -> int:
+        """Bytes on the host and on devices."""
+
+@final
+class Progress:
+    """How far a render has come."""
+
+    @property
+    def done(self) -> float:
+        """From 0 to 1."""
+    @property
+    def seconds(self) -> float:
+        """Since the beginning."""
+    @property
+    def left(self) -> float | None:
+        """Seconds that remain, if that can be told."""
+    @property
+    def stage(self) -> str:
+        """What is being done, by the names of `Frame.stats`."""
+
+@final
+class Cancel:
+    """Stops renders from another thread: those it was given to raise `Cancelled`, or with `partial` return what is finished."""
+
+    def __new__(cls) -> Self: ...
+    def cancel(self) -> None:
+        """From now on."""
+    @property
+    def cancelled(self) -> bool:
+        """Whether `cancel` was called."""
+
+@final
+class Mattes:
+    """Which things, objects or materials, pixels see. Things are numbered from 1; 0 is nothing."""
+
+    @property
+    def names(self) -> list[str]:
+        """The name of thing n is number n - 1."""
+    @property
+    def nearest(self) -> NDArray[np.uint32]:
+        """(H, W): what the nearest sample of each pixel sees."""
+    @property
+    def ranks(self) -> list[tuple[NDArray[np.uint32], NDArray[np.float32]]]:
+        """From the largest share of a pixel to the smallest: thing and share, (H, W) each."""
+    def cryptomatte(self) -> list[NDArray[np.float32]]:
+        """(H, W, 4) each, as Cryptomatte 1.2 lays them out: hash and share of two things."""
+    def manifest(self) -> str:
+        """The hashes of the names, as Cryptomatte's JSON."""
+
+@final
+class Frame:
+    """A rendered image. Its arrays are views into it that cannot be written; row 0 is the top. Those from `depth` on exist if it was
+    rendered with `layers=True`."""
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height."""
+    @property
+    def rgb(self) -> NDArray[np.float32]:
+        """(H, W, 3): linear radiance, Rec. 709 primaries, premultiplied."""
+    @property
+    def alpha(self) -> NDArray[np.float32] | None:
+        """(H, W): the covered share of each pixel, with `background="transparent"`."""
+    @property
+    def depth(self) -> NDArray[np.float32]:
+        """(H, W): distance along the ray, scene units; infinite where nothing is seen."""
+    @property
+    def normal(self) -> NDArray[np.float32]:
+        """(H, W, 3): unit geometric normal towards the viewer, world coordinates; 0 where nothing is seen."""
+    @property
+    def position(self) -> NDArray[np.float32]:
+        """(H, W, 3): world coordinates."""
+    @property
+    def visibility(self) -> list[NDArray[np.float32]]:
+        """(H, W) of each light: the share of it that is seen, from 0 to 1."""
+    @property
+    def lights(self) -> list[NDArray[np.float32]]:
+        """(H, W, 3) of each light: what the pixel shows of it alone. Empty if that is not known."""
+    @property
+    def rest(self) -> NDArray[np.float32] | None:
+        """(H, W, 3): what belongs to no light."""
+    @property
+    def used(self) -> NDArray[np.uint32]:
+        """(H, W): number of light points that a pixel was interpolated from."""
+    @property
+    def ids(self) -> Mattes:
+        """The objects that pixels see."""
+    @property
+    def material_ids(self) -> Mattes:
+        """The materials that pixels see."""
+    @property
+    def stats(self) -> dict[str, Any]:
+        """Counts, seconds, memory and settings: what `--stats` writes."""
+    @property
+    def exposure(self) -> float:
+        """Stops that image files are shown at, unless `save` says otherwise."""
+    @property
+    def finished_rows(self) -> int:
+        """All, unless the render was stopped with `partial=True`."""
+    @property
+    def notes(self) -> list[str]:
+        """What was chosen automatically."""
+    def save(self, path: Path, **settings: Unpack[SaveSettings]) -> None:
+        """Writes a bmp, png, exr or jpg file; the same bytes as the command line. Raises `SaveError`; no partial file is left."""
+    def save_layers(self, path: Path, **settings: Unpack[SaveSettings]) -> None:
+        """Writes all layers as a multilayer exr file."""
+    def to_png(self, **settings: Unpack[SaveSettings]) -> bytes:
+        """A png file, in memory."""
+    def _repr_png_(self) -> bytes: ...
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[np.float32]: ...
+
+@final
+class Renderer:
+    """Renders scenes on one device: "auto", "cpu", "cuda" or "cuda:1". Can be used by several threads at once; the interpreter is free while it
+    works. Raises `DeviceError` if the device cannot be used."""
+
+    def __new__(cls, device: str = "auto", *, threads: int | None = None) -> Self: ...
+    @property
+    def device(self) -> str:
+        """The device in use: "cpu" or "cuda:0"."""
+    @property
+    def reason(self) -> str:
+        """Which device that is, and why it was chosen."""
+    def prepare(
+        self,
+        scene: Scene,
+        *,
+        before: PreparedScene | None = None,
+        progress: ProgressCallback | None = None,
+        cancel: Cancel | None = None,
+        **settings: Unpack[ImageSettings],
+    ) -> PreparedScene:
+        """Builds the acceleration structure. `before` is the same scene at another moment: what has not moved is kept."""
+    def render(
+        self,
+        scene: Scene | PreparedScene,
+        *,
+        cache: MeshCache | None = None,
+        progress: ProgressCallback | None = None,
+        cancel: Cancel | None = None,
+        **settings: Unpack[ImageSettings],
+    ) -> Frame:
+        """Renders an image. The structure of the scene rendered last is kept: other lights and cameras cost no building."""
+    def visibility(
+        self,
+        points: ArrayLike,
+        normals: ArrayLike,
+        scene: Scene | PreparedScene,
+        lights: Sequence[Light] | None = None,
+        *,
+        progress: ProgressCallback | None = None,
+        cancel: Cancel | None = None,
+        **settings: Unpack[ImageSettings],
+    ) -> NDArray[np.float32]:
+        """The visible share of each light, (N, L), at surface points (N, 3) with these normals (N, 3), world coordinates: to bake vertex colours and
+        lightmaps. `lights` stand in for the scene's. What lies behind a surface is dark."""
+
+def visibility(
+    points: ArrayLike,
+    normals: ArrayLike,
+    scene: Scene | PreparedScene,
+    lights: Sequence[Light] | None = None,
+    *,
+    device: str = "auto",
+    **settings: Unpack[ImageSettings],
+) -> NDArray[np.float32]:
+    """`Renderer.visibility` on a renderer of its own."""
+
+def devices() -> list[dict[str, Any]]:
+    """What `lightmesh info --devices` lists."""
+
+def command(arguments: Sequence[str]) -> int:
+    """Runs the command line program with these arguments, and returns its exit code."""
+
+__version__: str

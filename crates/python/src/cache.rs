@@ -1,0 +1,71 @@
+//! What is kept from image to image.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use lightmesh::MeshCache as Kept;
+use lightmesh_memory::Budget;
+use pyo3::prelude::*;
+
+use crate::errors::OrRaise;
+use crate::renderer::PreparedScene;
+
+/// What light points see and surfaces gather, kept from image to image. Images are the same without it.
+#[pyclass(frozen, module = "lightmesh")]
+#[derive(Default)]
+pub(crate) struct MeshCache {
+    kept: Mutex<Kept>,
+}
+
+impl MeshCache {
+    /// The cache, which serves one image at a time. To be asked for without the interpreter: another thread may need it to be done.
+    pub(crate) fn lock(&self) -> MutexGuard<'_, Kept> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl MeshCache {
+    #[new]
+    fn new() -> MeshCache {
+        MeshCache::default()
+    }
+
+    /// Reads a file of `save`, or of `--mesh-file`. Raises `MeshFileError`.
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf, prepared: &PreparedScene) -> PyResult<MeshCache> {
+        let kept = py.detach(|| Kept::load(&path, prepared.prepared(), Budget::default())).or_raise()?;
+        Ok(MeshCache { kept: Mutex::new(kept) })
+    }
+
+    /// Writes the light points, and returns their number; without any, no file is written.
+    fn save(&self, py: Python<'_>, path: PathBuf, prepared: &PreparedScene) -> PyResult<u64> {
+        let saved = py.detach(|| self.lock().save(&path, prepared.prepared())).or_raise()?;
+        Ok(saved.map_or(0, |saved| saved.values))
+    }
+
+    /// Forgets everything.
+    fn clear(&self, py: Python<'_>) {
+        py.detach(|| self.lock().clear());
+    }
+
+    /// Light points times lights.
+    fn __len__(&self, py: Python<'_>) -> usize {
+        py.detach(|| self.lock().len() as usize)
+    }
+
+    /// Bytes on the host and on devices.
+    #[getter]
+    fn memory(&self, py: Python<'_>) -> u64 {
+        py.detach(|| self.lock().memory())
+    }
+
+    /// An empty cache is a cache, too.
+    fn __bool__(&self) -> bool {
+        true
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        format!("<lightmesh.MeshCache of {} values>", self.__len__(py))
+    }
+}

@@ -1,0 +1,171 @@
+//! Exceptions: which class stands for which error. The classes are Python's own, in `_errors.py`.
+
+use lightmesh::render::{MeshFileError, MeshSaveError};
+use lightmesh::scene::{CameraError, EnvironmentError, GeometryError, LightError};
+use lightmesh::{LoadError, RenderError, SaveError};
+use lightmesh_cli::request::{ChoiceError, RequestError, flag_of};
+use lightmesh_files::visible;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+
+/// The classes.
+mod class {
+    pyo3::import_exception!(lightmesh._errors, Cancelled);
+    pyo3::import_exception!(lightmesh._errors, DeviceError);
+    pyo3::import_exception!(lightmesh._errors, DeviceMemoryError);
+    pyo3::import_exception!(lightmesh._errors, GeometryError);
+    pyo3::import_exception!(lightmesh._errors, HostMemoryError);
+    pyo3::import_exception!(lightmesh._errors, LightmeshError);
+    pyo3::import_exception!(lightmesh._errors, MeshFileError);
+    pyo3::import_exception!(lightmesh._errors, SaveError);
+    pyo3::import_exception!(lightmesh._errors, SceneError);
+    pyo3::import_exception!(lightmesh._errors, SettingError);
+}
+
+/// The exception for an error, with its message.
+pub(crate) trait IntoException {
+    fn into_exception(self) -> PyErr;
+}
+
+/// The result with an exception in place of an error.
+pub(crate) trait OrRaise<T> {
+    fn or_raise(self) -> Result<T, PyErr>;
+}
+
+impl<T, E: IntoException> OrRaise<T> for Result<T, E> {
+    fn or_raise(self) -> Result<T, PyErr> {
+        self.map_err(IntoException::into_exception)
+    }
+}
+
+/// What names in files contain does not control a terminal that shows the message.
+fn text(error: &impl std::fmt::Display) -> String {
+    visible(&error.to_string()).into_owned()
+}
+
+/// A setting that cannot be used.
+pub(crate) fn setting(message: impl Into<String>) -> PyErr {
+    class::SettingError::new_err(message.into())
+}
+
+/// An argument of another type than is needed.
+pub(crate) fn wrong_type(needed: &str, object: &Bound<'_, PyAny>) -> PyErr {
+    let found = object.get_type().name().map_or_else(|_| "another type".to_owned(), |name| name.to_string());
+    PyTypeError::new_err(format!("give {needed}, not {found}"))
+}
+
+/// Arrays that do not make geometry.
+pub(crate) fn geometry(message: impl Into<String>) -> PyErr {
+    class::GeometryError::new_err(message.into())
+}
+
+impl IntoException for RequestError {
+    fn into_exception(self) -> PyErr {
+        match self {
+            RequestError::Unknown { name, similar } => {
+                let underscored = |name: &str| name.replace('-', "_");
+                let similar = similar.map_or(String::new(), |name| format!(". Did you mean '{}'?", underscored(&name)));
+                PyTypeError::new_err(format!("unexpected keyword argument '{}'{similar}", underscored(&name)))
+            }
+            other => setting(text(&other)),
+        }
+    }
+}
+
+impl IntoException for ChoiceError {
+    fn into_exception(self) -> PyErr {
+        setting(text(&self))
+    }
+}
+
+impl IntoException for LoadError {
+    fn into_exception(self) -> PyErr {
+        let message = text(&self);
+        match self.root() {
+            LoadError::Memory { .. } | LoadError::SmoothMemory { .. } => class::HostMemoryError::new_err(message),
+            _ => class::SceneError::new_err(message),
+        }
+    }
+}
+
+impl IntoException for EnvironmentError {
+    fn into_exception(self) -> PyErr {
+        class::SceneError::new_err(text(&self))
+    }
+}
+
+impl IntoException for GeometryError {
+    fn into_exception(self) -> PyErr {
+        geometry(text(&self))
+    }
+}
+
+impl IntoException for LightError {
+    fn into_exception(self) -> PyErr {
+        setting(text(&self))
+    }
+}
+
+impl IntoException for CameraError {
+    fn into_exception(self) -> PyErr {
+        setting(text(&self))
+    }
+}
+
+impl IntoException for RenderError {
+    fn into_exception(self) -> PyErr {
+        // The message, and the keyword arguments that may mend it.
+        let names = self.settings().into_iter().map(|setting| flag_of(setting)[2..].replace('-', "_"));
+        let names = names.collect::<Vec<_>>().join(", ");
+        let message = text(&self);
+        let message = if names.is_empty() { message } else { format!("{message} ({names})") };
+        match self {
+            RenderError::Cancelled => class::Cancelled::new_err("the render was cancelled"),
+            RenderError::Device { .. } | RenderError::DeviceFault { .. } => class::DeviceError::new_err(message),
+            RenderError::DeviceMemory { .. } => class::DeviceMemoryError::new_err(message),
+            RenderError::Memory { .. } | RenderError::BuildMemory { .. } | RenderError::TextureMemory { .. } => {
+                class::HostMemoryError::new_err(message)
+            }
+            RenderError::Geometry(_) | RenderError::Points { .. } | RenderError::Point { .. } => {
+                class::GeometryError::new_err(message)
+            }
+            RenderError::Setting { .. }
+            | RenderError::Lattice(_)
+            | RenderError::Template(_)
+            | RenderError::Grid(_)
+            | RenderError::GridFile(_)
+            | RenderError::Threads { .. } => class::SettingError::new_err(message),
+            _ => class::LightmeshError::new_err(message),
+        }
+    }
+}
+
+impl IntoException for SaveError {
+    fn into_exception(self) -> PyErr {
+        class::SaveError::new_err(text(&self))
+    }
+}
+
+impl IntoException for lightmesh::image::EncodeError {
+    fn into_exception(self) -> PyErr {
+        class::SaveError::new_err(text(&self))
+    }
+}
+
+impl IntoException for lightmesh::image::PublishError {
+    fn into_exception(self) -> PyErr {
+        class::SaveError::new_err(text(&self))
+    }
+}
+
+impl IntoException for MeshFileError {
+    fn into_exception(self) -> PyErr {
+        class::MeshFileError::new_err(text(&self))
+    }
+}
+
+impl IntoException for MeshSaveError {
+    fn into_exception(self) -> PyErr {
+        class::SaveError::new_err(text(&self))
+    }
+}

@@ -1,0 +1,61 @@
+//! The Python package `lightmesh`, see `python/lightmesh/_lightmesh.pyi` for what each class promises.
+//!
+//! Classes wrap the types of the Rust library; flags of the command line are keyword arguments ([`flags`]). Arrays of frames are views of the frame's
+//! own memory. Whatever takes time runs on another thread while the interpreter is free ([`watch`]).
+
+mod cache;
+mod camera;
+mod convert;
+mod devices;
+mod environment;
+mod errors;
+mod flags;
+mod frame;
+mod geometry;
+mod light;
+mod material;
+mod mattes;
+mod renderer;
+mod scene;
+mod texture;
+mod watch;
+
+use pyo3::prelude::*;
+
+/// Soft shadows by the light mesh.
+#[pymodule]
+mod _lightmesh {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::cache::MeshCache;
+    #[pymodule_export]
+    use crate::camera::Camera;
+    #[pymodule_export]
+    use crate::devices::{command, devices};
+    #[pymodule_export]
+    use crate::environment::Environment;
+    #[pymodule_export]
+    use crate::frame::Frame;
+    #[pymodule_export]
+    use crate::geometry::Geometry;
+    #[pymodule_export]
+    use crate::light::Light;
+    #[pymodule_export]
+    use crate::material::Material;
+    #[pymodule_export]
+    use crate::mattes::Mattes;
+    #[pymodule_export]
+    use crate::renderer::{PreparedScene, Renderer, visibility};
+    #[pymodule_export]
+    use crate::scene::Scene;
+    #[pymodule_export]
+    use crate::texture::Texture;
+    #[pymodule_export]
+    use crate::watch::{Cancel, Progress};
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,357 @@
+//! Rendering.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::Vec3;
+use lightmesh::render::{Choice, MeshFileError, PreparedScene as Prepared};
+use lightmesh::scene::{Geometry, Up};
+use lightmesh::{Device, Observer, RenderError, Renderer as Engine};
+use lightmesh_cli::request::{ChoiceError, Flag, ImageRequest, Staged};
+use numpy::{PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::cache::MeshCache;
+use crate::camera::Camera;
+use crate::convert;
+use crate::environment::Environment;
+use crate::errors::{self, IntoException, OrRaise};
+use crate::flags;
+use crate::frame::Frame;
+use crate::light::Light;
+use crate::scene::Scene;
+use crate::watch::{self, Cancel, Watch, Wishes};
+
+/// Renders scenes on one device: "auto", "cpu", "cuda" or "cuda:1". Can be used by several threads at once; the interpreter is free while it
+/// works. Raises `DeviceError` if the device cannot be used.
+#[pyclass(frozen, module = "lightmesh")]
+pub(crate) struct Renderer {
+    engine: Engine,
+    device: String,
+    reason: String,
+    /// What was rendered last, so that its structure stays alive.
+    last: Mutex<Option<Kept>>,
+}
+
+/// A scene with its acceleration structure, ready to be rendered any number of times.
+#[pyclass(frozen, module = "lightmesh")]
+#[derive(Clone)]
+pub(crate) struct PreparedScene {
+    /// As it was given, with the camera and the surroundings of the settings.
+    scene: Scene,
+    /// The settings that it was prepared with, which hold for its images, too.
+    flags: Vec<Flag>,
+    kept: Kept,
+}
+
+/// A structure that is alive.
+#[derive(Clone)]
+struct Kept {
+    /// The geometry that the scene was given with.
+    given: Arc<Geometry>,
+    /// What is up, if a ground was added.
+    ground: Option<Up>,
+    prepared: Prepared,
+}
+
+/// What goes wrong on the way to a frame.
+enum Failure {
+    Choice(ChoiceError),
+    Render(RenderError),
+}
+
+impl From<ChoiceError> for Failure {
+    fn from(error: ChoiceError) -> Failure {
+        Failure::Choice(error)
+    }
+}
+
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Failure {
+        Failure::Render(error)
+    }
+}
+
+impl IntoException for Failure {
+    fn into_exception(self) -> PyErr {
+        match self {
+            Failure::Choice(error) => error.into_exception(),
+            Failure::Render(error) => error.into_exception(),
+        }
+    }
+}
+
+/// What is to be rendered.
+pub(crate) enum Subject<'py> {
+    Prepared(Bound<'py, PreparedScene>),
+    Scene(Bound<'py, Scene>),
+}
+
+impl<'py> FromPyObject<'_, 'py> for Subject<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Subject<'py>> {
+        if let Ok(prepared) = object.cast::<PreparedScene>() {
+            return Ok(Subject::Prepared(prepared.to_owned()));
+        }
+        match object.cast::<Scene>() {
+            Ok(scene) => Ok(Subject::Scene(scene.to_owned())),
+            Err(_) => Err(errors::wrong_type("a Scene or a PreparedScene", &object)),
+        }
+    }
+}
+
+/// A scene with the settings of an image of it.
+struct Order {
+    scene: Scene,
+    flags: Vec<Flag>,
+    request: ImageRequest,
+    /// Its structure, if there is one.
+    kept: Option<Kept>,
+}
+
+impl Order {
+    /// Takes objects out of the settings, and makes flags of the rest.
+    fn new(subject: &Subject<'_>, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Order> {
+        let (mut scene, known, kept) = match subject {
+            Subject::Scene(scene) => (scene.try_borrow()?.clone(), Vec::new(), None),
+            Subject::Prepared(prepared) => {
+                let PreparedScene { scene, flags, kept } = prepared.get();
+                (scene.clone(), flags.clone(), Some(kept.clone()))
+            }
+        };
+        let settings = settings.map(|settings| settings.copy()).transpose()?;
+        let mut is_seen_from = |settings: &Bound<'_, PyDict>| -> PyResult<()> {
+            if let Some(camera) = taken::<Camera>(settings, "camera")? {
+                scene.set_camera(Some(camera));
+                settings.set_item("camera_name", settings.py().None())?;
+            }
+            if let Some(environment) = taken::<Environment>(settings, "environment")? {
+                scene.set_environment(Some(environment));
+            }
+            Ok(())
+        };
+        settings.as_ref().map_or(Ok(()), &mut is_seen_from)?;
+        let flags = flags::merged(&known, flags::of(settings.as_ref())?);
+        let request = ImageRequest::new(&flags, scene.format).or_raise()?;
+        Ok(Order { scene, flags, request, kept })
+    }
+
+    /// The scene with everything that the settings say, how it is exposed, and its structure.
+    fn prepare(
+        &self,
+        engine: &Engine,
+        last: &Mutex<Option<Kept>>,
+        before: Option<&Prepared>,
+        watch: &Watch,
+    ) -> Result<(Kept, Staged), Failure> {
+        let given = &self.scene.world.geometry;
+        let ground = self.request.has_ground().then(|| self.request.up(&self.scene.world));
+        let mut world = self.scene.world.clone();
+        let staged = self.request.stage(&mut world, watch)?;
+        let last = || last.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_same = |kept: &Kept| Arc::ptr_eq(&kept.given, given) && kept.ground == ground;
+        let known = self.kept.clone().filter(is_same).or_else(|| last().clone().filter(is_same));
+        if let Some(known) = &known {
+            // The ground that was added now is the same.
+            world.geometry = Arc::clone(&known.prepared.scene.geometry);
+        }
+        let settings = self.request.settings();
+        let prepared = match before {
+            Some(before) => engine.prepare_moved(before, &world, settings, watch)?,
+            None => engine.prepare(&world, settings, watch)?,
+        };
+        let kept = Kept { given: Arc::clone(given), ground, prepared };
+        *last() = Some(kept.clone());
+        Ok((kept, staged))
+    }
+}
+
+/// An object of this class among settings, which it is taken out of.
+fn taken<T: for<'a, 'py> FromPyObject<'a, 'py>>(settings: &Bound<'_, PyDict>, name: &str) -> PyResult<Option<T>> {
+    let Some(value) = settings.get_item(name)? else { return Ok(None) };
+    let Ok(object) = value.extract::<T>() else { return Ok(None) };
+    settings.del_item(name)?;
+    Ok(Some(object))
+}
+
+#[pymethods]
+impl PreparedScene {
+    /// The scene, with the camera and surroundings of the settings.
+    #[getter]
+    fn scene(&self) -> Scene {
+        self.scene.clone()
+    }
+
+    /// Bytes that the structure takes.
+    #[getter]
+    fn memory(&self) -> usize {
+        self.kept.prepared.geometry.memory()
+    }
+
+    /// The same with other lights; nothing is rebuilt.
+    fn with_lights(&self, lights: Vec<Light>) -> PreparedScene {
+        let mut changed = self.clone();
+        changed.scene.set_lights(lights);
+        changed
+    }
+
+    /// The same with another camera; nothing is rebuilt.
+    fn with_camera(&self, camera: Camera) -> PreparedScene {
+        let mut changed = self.clone();
+        changed.scene.set_camera(Some(camera));
+        changed.flags.retain(|flag| !matches!(&*flag.name, "camera" | "camera-name"));
+        changed
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<lightmesh.PreparedScene of {:?}>", self.scene.world.name)
+    }
+}
+
+impl PreparedScene {
+    /// The structure with its scene.
+    pub(crate) fn prepared(&self) -> &Prepared {
+        &self.kept.prepared
+    }
+}
+
+#[pymethods]
+impl Renderer {
+    #[new]
+    #[pyo3(signature = (device = "auto", *, threads = None))]
+    fn new(py: Python<'_>, device: &str, threads: Option<usize>) -> PyResult<Renderer> {
+        let device: Device = device.parse().map_err(|error| errors::setting(format!("{error}")))?;
+        let made = || {
+            let choice = Choice::of(device)?;
+            let (chosen, reason) = (choice.device.to_string(), choice.reason.clone());
+            Ok((Engine::on(choice, threads)?, chosen, reason))
+        };
+        let (engine, device, reason) = py.detach(made).map_err(|error: RenderError| error.into_exception())?;
+        Ok(Renderer { engine, device, reason, last: Mutex::default() })
+    }
+
+    /// The device in use: "cpu" or "cuda:0".
+    #[getter]
+    fn device(&self) -> &str {
+        &self.device
+    }
+
+    /// Which device that is, and why it was chosen.
+    #[getter]
+    fn reason(&self) -> &str {
+        &self.reason
+    }
+
+    /// Builds the acceleration structure. `before` is the same scene at another moment: what has not moved is kept.
+    #[pyo3(signature = (scene, *, before = None, progress = None, cancel = None, **settings))]
+    fn prepare(
+        &self,
+        py: Python<'_>,
+        scene: Bound<'_, Scene>,
+        before: Option<&PreparedScene>,
+        progress: Option<Py<PyAny>>,
+        cancel: Option<Cancel>,
+        settings: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<PreparedScene> {
+        let order = Order::new(&Subject::Scene(scene), settings)?;
+        let before = before.map(PreparedScene::prepared);
+        let prepare = |watch: &Watch| match watch.cancelled() {
+            true => Err(RenderError::Cancelled.into()),
+            false => order.prepare(&self.engine, &self.last, before, watch),
+        };
+        let (kept, _) = watch::run(py, Wishes { progress, cancel }, prepare)?.or_raise()?;
+        Ok(PreparedScene { scene: order.scene, flags: order.flags, kept })
+    }
+
+    /// Renders an image. The structure of the scene rendered last is kept: other lights and cameras cost no building.
+    #[pyo3(signature = (scene, *, cache = None, progress = None, cancel = None, **settings))]
+    fn render(
+        &self,
+        py: Python<'_>,
+        scene: Subject<'_>,
+        cache: Option<&MeshCache>,
+        progress: Option<Py<PyAny>>,
+        cancel: Option<Cancel>,
+        settings: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Frame> {
+        let order = Order::new(&scene, settings)?;
+        let render =
+            |watch: &Watch| {
+                let (kept, staged) = order.prepare(&self.engine, &self.last, None, watch)?;
+                let mut cache = cache.map(MeshCache::lock);
+                let (frame, stops) =
+                    staged.picture(&kept.prepared, order.request.settings(), watch, |prepared, settings| {
+                        match &mut cache {
+                            Some(cache) => self.engine.render_with(cache, prepared, settings, watch),
+                            None => self.engine.render_prepared(prepared, settings, watch),
+                        }
+                    })?;
+                let refused = cache.and_then(|mut cache| cache.refused());
+                Ok((Frame::new(frame, stops, watch.notes(), &kept.prepared.scene), refused))
+            };
+        let rendered = watch::run(py, Wishes { progress, cancel }, render)?;
+        let (frame, refused): (Frame, Option<MeshFileError>) =
+            rendered.map_err(|error: Failure| error.into_exception())?;
+        if let Some(refused) = refused {
+            let category = py.import("lightmesh._errors")?.getattr("MeshFileWarning")?;
+            py.import("warnings")?.call_method1("warn", (refused.to_string(), category))?;
+        }
+        Ok(frame)
+    }
+
+    /// The visible share of each light, (N, L), at surface points (N, 3) with these normals (N, 3), world coordinates: to bake vertex colours and
+    /// lightmaps. `lights` stand in for the scene's. What lies behind a surface is dark.
+    #[pyo3(signature = (points, normals, scene, lights = None, *, progress = None, cancel = None, **settings))]
+    #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
+    fn visibility<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+        normals: &Bound<'py, PyAny>,
+        scene: Subject<'_>,
+        lights: Option<Vec<Light>>,
+        progress: Option<Py<PyAny>>,
+        cancel: Option<Cancel>,
+        settings: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut order = Order::new(&scene, settings)?;
+        if let Some(lights) = lights {
+            order.scene.set_lights(lights);
+        }
+        // Those that an image gets by default are nobody's.
+        order.scene.world.lights.chosen = true;
+        let points = convert::points("points", points)?.double();
+        let normals = convert::vectors("normals", normals)?;
+        let find = |watch: &Watch| {
+            let (kept, _) = order.prepare(&self.engine, &self.last, None, watch)?;
+            let world = &kept.prepared.scene;
+            let local: Vec<Vec3> = points.iter().map(|&point| world.to_local(point)).collect();
+            let found = self.engine.visibility(&kept.prepared, &local, &normals, order.request.settings(), watch)?;
+            Ok::<_, Failure>(([found.lights(), found.points()], found.into_shares()))
+        };
+        let (shape, shares) = watch::run(py, Wishes { progress, cancel }, find)?.or_raise()?;
+        // By light, then point, in memory.
+        let array: Bound<'py, PyArray2<f32>> = convert::owned(py, shares).reshape(shape)?;
+        array.getattr("T")
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<lightmesh.Renderer on {}>", self.device)
+    }
+}
+
+/// `Renderer.visibility` on a renderer of its own.
+#[pyfunction]
+#[pyo3(signature = (points, normals, scene, lights = None, *, device = "auto", **settings))]
+pub(crate) fn visibility<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    normals: &Bound<'py, PyAny>,
+    scene: Subject<'_>,
+    lights: Option<Vec<Light>>,
+    device: &str,
+    settings: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    Renderer::new(py, device, None)?.visibility(py, points, normals, scene, lights, None, None, settings)
+}
