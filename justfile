@@ -47,6 +47,40 @@ readme:
 drawings:
     cargo xtask drawings
 
+# The Python package in an environment of its own, target/python
+_python:
+    python3 -m venv target/python
+    target/python/bin/python -m pip install --quiet --disable-pip-version-check ./crates/python
+
+# The wheel of the Python package, in target/wheels; needs maturin
+wheel *flags="--release":
+    maturin build --locked --manifest-path crates/python/Cargo.toml --out target/wheels {{flags}}
+
+# Build the Python package, and test it
+python-test *flags: _python
+    target/python/bin/python -m pip install --quiet --disable-pip-version-check --requirement .ci/python.txt
+    target/python/bin/python -m pytest crates/python/tests {{flags}}
+
+# Run the notebooks and the book's page on Python, or those that are named
+notebooks *files="notebooks/*.ipynb book/src/python.md": _python
+    target/python/bin/python -m pip install --quiet --disable-pip-version-check --requirement .ci/python.txt
+    target/python/bin/python notebooks/run.py {{files}}
+
+# The Blender add-on as an extension, in target/blender, with the wheels that are named
+addon *wheels="target/wheels/*.whl":
+    python3 blender/build.py --out target/blender $(printf -- '--wheel %s ' {{wheels}})
+
+# Test the Blender add-on in Blender as a Python module, which needs Python 3.11; the version is 4.5 or 5.0
+addon-test version="4.5" wheel="target/wheels/*.whl":
+    python3.11 -m venv target/blender-{{version}}
+    target/blender-{{version}}/bin/python -m pip install --quiet --disable-pip-version-check --requirement .ci/blender-{{version}}.txt
+    target/blender-{{version}}/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --force-reinstall {{wheel}}
+    target/blender-{{version}}/bin/python -m pytest blender/tests
+
+# Package the crates and show the order in which they are published; uploads nothing. Without --no-verify each is built from its package
+publish-order *flags="--no-verify":
+    cargo publish --workspace --dry-run --locked {{flags}}
+
 # Everything a change must pass
 ci:
     .ci/run

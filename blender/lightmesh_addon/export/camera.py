@@ -1,0 +1,62 @@
+"""Cameras: from Blender's view and projection matrices, which have sensor fit, shift, zoom and offset in them."""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+import lightmesh
+import numpy as np
+
+
+class CameraError(Exception):
+    """A camera that cannot be shown."""
+
+
+def of_object(
+    obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, size: tuple[int, int], aspect: tuple[float, float] = (1.0, 1.0)
+) -> lightmesh.Camera:
+    """The camera of an evaluated object, for the whole image of `size` pixels."""
+    data = obj.data
+    if obj.type != "CAMERA":
+        raise CameraError(f"The scene looks through “{obj.name}”, which is no camera: choose one in the scene's properties.")
+    if data.type not in ("PERSP", "ORTHO"):
+        kind = {"PANO": "panoramic"}.get(data.type, data.type.lower())
+        raise CameraError(f"Camera “{obj.name}” is {kind}: choose Perspective or Orthographic in its lens settings.")
+    width, height = size
+    window = obj.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=aspect[0], scale_y=aspect[1])
+    return of_matrices(np.array(obj.matrix_world), np.array(window), size, name=obj.name)
+
+
+def of_matrices(world: np.ndarray, window: np.ndarray, size: tuple[int, int], name: str = "", back: float = 0.0) -> lightmesh.Camera:
+    """The camera with the matrix `world` and the projection `window`. Orthographic ones are moved `back`: a viewport sees what is behind its
+    eye, too."""
+    right, up, behind = (column / np.linalg.norm(column) for column in world[:3, :3].T)
+    position, direction = world[:3, 3], -behind
+    if window[3, 3] == 0.0:
+        # The middle of the image is where x of the projection is 0, in heights of the image: these are 2 / window[1, 1] at distance 1.
+        shift = (0.5 * window[0, 2] * window[1, 1] / window[0, 0], 0.5 * window[1, 2])
+        lens = {"vfov": math.degrees(2.0 * math.atan(1.0 / window[1, 1]))}
+    else:
+        shift = (-0.5 * window[0, 3] * window[1, 1] / window[0, 0], -0.5 * window[1, 3])
+        lens = {"height": 2.0 / window[1, 1]}
+        position = position - back * direction
+    return lightmesh.Camera(position, direction=direction, up=up, shift=tuple(map(float, shift)), name=name, **lens)
+
+
+def full_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
+    """Width and height of the image without a border, as Blender rounds them."""
+    share = render.resolution_percentage
+    return max(1, render.resolution_x * share // 100), max(1, render.resolution_y * share // 100)
+
+
+def border(render: bpy.types.RenderSettings, size: tuple[int, int]) -> tuple[int, int, int, int] | None:
+    """The part of the image that is rendered, as column, row, width and height with row 0 at the top; `None` for all of it."""
+    if not render.use_border:
+        return None
+    width, height = size
+    left, right = int(render.border_min_x * width), int(render.border_max_x * width)
+    bottom, top = int(render.border_min_y * height), int(render.border_max_y * height)
+    if right <= left or top <= bottom or (left, bottom, right, top) == (0, 0, width, height):
+        return None
+    return left, height - top, right - left, top - bottom

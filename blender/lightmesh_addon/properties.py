@@ -1,0 +1,92 @@
+"""Settings of scenes and view layers."""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+
+QUALITIES = [
+    ("DRAFT", "Draft", "16 samples of each light in a pixel, and 4 of each pixel"),
+    ("GOOD", "Good", "64 samples of each light in a pixel, and 8 of each pixel"),
+    ("FINAL", "Final", "256 samples of each light in a pixel, and 16 of each pixel"),
+]
+MODES = [
+    ("LISTS", "Occluder Lists", "Exact soft shadows: what can hide a light is looked up once for neighbouring pixels"),
+    ("ADAPTIVE", "Adaptive Rays", "One shadow ray for each light, and all samples where neighbouring pixels disagree"),
+    ("HALF_BALL", "Half-Ball", "Shadows interpolated from light points: the thesis' method"),
+    ("RAY_TRACE", "Hard Shadows", "One shadow ray for each light"),
+    ("AREA", "Area Shadows", "Shadow rays to samples of each light: the reference"),
+]
+AMBIENT = [
+    ("AUTO", "Automatic", "Gathered if the world or lamps shine, else none"),
+    ("CONSTANT", "Unshadowed", "What the world gives to a surface with nothing in between: fast"),
+    ("MESH", "Gathered", "From the world and from other surfaces, after up to four reflections"),
+    ("RAYS", "Gathered by Rays", "By thousands of rays from each surface point: slow"),
+]
+#: Kept, because Blender does not keep the texts of items that a function returns.
+_devices = []
+
+
+def device_items(self=None, context: bpy.types.Context | None = None) -> list[tuple[str, str, str, int]]:
+    """The devices of this machine; numbers stay the same on machines with others."""
+    if not _devices:
+        _devices.append(("auto", "Automatic", "A CUDA device if one can be used, else the CPU", 0))
+        try:
+            import lightmesh
+
+            found = lightmesh.devices()
+        except Exception:  # Without the package, rendering says what is missing.
+            found = []
+        for device in found:
+            name = device["device"]
+            if device.get("usable"):
+                label = device.get("name") or name
+                number = 1 if name == "cpu" else 2 if name == "cuda" else 10 + int(name.rpartition(":")[2])
+                _devices.append((name, f"{label} ({name})" if label != name else name, device.get("remark") or "", number))
+    return _devices
+
+
+class LightmeshSceneSettings(bpy.types.PropertyGroup):
+    quality: EnumProperty(name="Quality", items=QUALITIES, default="GOOD", description="How smooth soft shadows and edges are")
+    mode: EnumProperty(name="Shadows", items=MODES, default="LISTS", description="How visibility of lights is computed")
+    device: EnumProperty(name="Device", items=device_items, description="What renders")
+    samples: IntProperty(name="Light Samples", min=0, max=65535, default=0, description="Samples of each light; 0: by quality")
+    pixel_samples: IntProperty(name="Pixel Samples", min=0, max=65536, soft_max=64, default=0, description="Samples of each pixel; 0: by quality")
+    bounces: IntProperty(name="Mirror Bounces", min=0, max=64, default=2, description="Greatest depth of mirror reflections")
+    ambient_light: EnumProperty(
+        name="Ambient Light", items=AMBIENT, default="AUTO", description="What stands for light that comes from no light directly"
+    )
+    step: FloatProperty(
+        name="Step",
+        min=0.0,
+        default=0.0,
+        subtype="DISTANCE",
+        unit="LENGTH",
+        description="Distance of light points; 0: from the size of a pixel in the scene",
+    )
+    radius: FloatProperty(name="Radius", min=1.0, soft_max=5.0, default=2.1, description="Radius of interpolation in steps")
+    seed: IntProperty(name="Seed", min=0, default=0, description="Seed of the sampling pattern: the same seed gives the same image")
+
+
+class LightmeshViewLayerSettings(bpy.types.PropertyGroup):
+    use_pass_visibility: BoolProperty(
+        name="Light Visibility",
+        default=False,
+        description="A pass for each light: the share of it that is seen",
+        update=lambda self, context: context.view_layer.update_render_passes(),
+    )
+
+
+CLASSES = (LightmeshSceneSettings, LightmeshViewLayerSettings)
+
+
+def register() -> None:
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.Scene.lightmesh = PointerProperty(type=LightmeshSceneSettings)
+    bpy.types.ViewLayer.lightmesh = PointerProperty(type=LightmeshViewLayerSettings)
+
+
+def unregister() -> None:
+    del bpy.types.ViewLayer.lightmesh
+    del bpy.types.Scene.lightmesh
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
