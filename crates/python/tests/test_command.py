@@ -5,6 +5,7 @@ import json
 import re
 import subprocess
 import sys
+import typing
 from pathlib import Path
 
 import numpy as np
@@ -119,6 +120,27 @@ def test_every_keyword_is_a_flag_and_every_flag_is_a_keyword():
     keywords = {keyword for settings in SETTINGS for keyword in settings.__annotations__}
     assert keywords <= flags, keywords - flags
     assert flags - keywords == NOT_OF_A_FRAME
+
+
+def literals(annotation: object) -> set[object]:
+    """All values of the literals in an annotation."""
+    if typing.get_origin(annotation) is typing.Literal:
+        return set(typing.get_args(annotation))
+    return set().union(*map(literals, typing.get_args(annotation)))
+
+
+@pytest.mark.parametrize("settings", SETTINGS)
+def test_literals_are_what_flags_take(settings):
+    """The choices in the stubs are the possible values of the command line's help."""
+    sections = re.split(r"^ {2,6}(?:-\w, )?--([a-z-]+)", run("render", "--help").stdout, flags=re.MULTILINE)
+    choices = dict(zip(sections[1::2], sections[2::2], strict=True))
+    for keyword, annotation in typing.get_type_hints(settings).items():
+        text = choices[keyword.replace("_", "-")]
+        possible = set(re.findall(r"^ +- ([\w-]+):", text, re.MULTILINE)) if "Possible values:" in text else set()
+        possible |= {value for found in re.findall(r"\[possible values: ([^\]]*)\]", text) for value in re.split(r",\s+", found)}
+        ours = {str(value) for value in literals(annotation)}
+        if possible and ours:
+            assert ours == possible, keyword
 
 
 @pytest.mark.parametrize("settings", SETTINGS)

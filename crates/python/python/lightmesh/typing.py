@@ -45,13 +45,13 @@ class ImageSettings(TypedDict, total=False):
     camera_name: str | None
     up: Literal["auto", "y", "z"] | None
     ambient: Color | str | None
-    ambient_light: Literal["auto", "constant", "mesh"] | None
+    ambient_light: Literal["auto", "constant", "mesh", "rays"] | None
     sky: str | None
     environment: Environment | Path | None
     exposure: float | Literal["auto"] | None
     partial: bool | None
     layers: bool | None
-    accel: Literal["auto", "grid", "bvh", "brute-force"] | None
+    accel: Literal["auto", "grid", "bvh"] | None
     grid: tuple[int, int, int] | str | None
     grid_file: Path | None
     memory_limit: int | str | None
@@ -62,7 +62,7 @@ class SaveSettings(TypedDict, total=False):
     format: Literal["bmp", "png", "exr", "jpg"] | None
     transfer: Literal["srgb", "linear"] | None
     exposure: float | Literal["auto"] | None
-    view: Literal["standard", "neutral"] | None
+    view: Literal["standard", "neutral", "agx"] | None
     bit_depth: Literal[8, 16] | None
     dither: bool | None
     exr_type: Literal["float", "half"] | None
