@@ -2,7 +2,7 @@
 
     python bench/python/border.py target/release/lightmesh -o bench/python/border-cpu.json [--device cuda]
 
-Childpark at 1024×1024, in turns: the command line program, in its own words (`--stats`, reading the scene, rendering and exposing), and the package, by
+Childpark at 1024×1024, in turns: the command line program, in its own words (`--stats`: reading the scene, building, rendering), and the package, by
 the clock around `Scene.builtin`, `render` and a look at every pixel of `Frame.rgb`. Starting Python and importing NumPy is reported beside it: a
 program does that once. Then 1000 renders with layers and a kept mesh: resident memory and, on CUDA, free device memory, after a third and after all.
 """
@@ -96,14 +96,18 @@ def main() -> None:
     parser.add_argument("-o", "--output", type=Path)
     options = parser.parse_args()
     renderer = lightmesh.Renderer(options.device)
-    result: dict[str, Any] = {"version": lightmesh.__version__, "device": renderer.reason, "scene": "childpark", "size": list(SIZE), "rows": []}
+    result: dict[str, Any] = {"version": lightmesh.__version__, "device": renderer.reason, "scene": "childpark", "size": list(SIZE)}
+    result["rows"] = []
     for quality in ("draft", "good"):
         by_package(renderer, quality)
-        turns = [(by_command(options.program, renderer.device, quality), *by_package(renderer, quality)) for _ in range(options.repetitions)]
+        once = lambda: (by_command(options.program, renderer.device, quality), *by_package(renderer, quality))  # noqa: B023, E731
+        turns = [once() for _ in range(options.repetitions)]
         command, package, inside = (statistics.median(column) for column in zip(*turns, strict=True))
-        row = {"quality": quality, "command_s": command, "package_s": package, "inside_s": inside, "ratio": package / command, "border": package / inside - 1.0}
-        result["rows"].append(row)
-        print(f"{quality}: command {command:.4f} s, package {package:.4f} s ({package / command:.3f}); outside the renderer {100 * row['border']:.2f} %", flush=True)
+        ratio, border = package / command, package / inside - 1.0
+        result["rows"].append(
+            {"quality": quality, "command_s": command, "package_s": package, "inside_s": inside, "ratio": ratio, "border": border}
+        )
+        print(f"{quality}: command {command:.4f} s, package {package:.4f} s ({ratio:.3f}); outside the renderer {border:.2%}", flush=True)
     result["start_s"] = statistics.median(starting() for _ in range(5))
     result["leaks"] = leaks(renderer, options.renders)
     print(json.dumps(result["leaks"]))

@@ -40,11 +40,11 @@ impl Camera {
     #[new]
     #[pyo3(
         signature = (
-            position, target = None, *, direction = None, up = None, vfov = None, hfov = None, height = None, shift = (0.0, 0.0), name =
-            String::new()
+            position, target = None, *, direction = None, up = None, vfov = None, hfov = None, height = None,
+            shift = (0.0, 0.0), name = String::new()
         ),
-        text_signature = "(position, target = None, *, direction = None, up = (0.0, 1.0, 0.0), vfov = None, hfov = None, height = None, shift = (0.0, \
-            0.0), name = '')"
+        text_signature = "(position, target=None, *, direction=None, up=(0.0, 1.0, 0.0), vfov=None, hfov=None, height=None, shift=(0.0, 0.0), \
+            name='')"
     )]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(

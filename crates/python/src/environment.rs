@@ -29,7 +29,7 @@ impl Environment {
     #[new]
     #[pyo3(
         signature = (pixels, *, up = "y", rotation = 0.0, strength = 1.0, find_sun = true, name = String::new()),
-        text_signature = "(pixels, *, up = 'y', rotation = 0.0, strength = 1.0, find_sun = True, name = '')"
+        text_signature = "(pixels, *, up='y', rotation=0.0, strength=1.0, find_sun=True, name='')"
     )]
     fn new(
         pixels: &Bound<'_, PyAny>,

@@ -127,14 +127,14 @@ impl Frame {
         planes(slf.as_any(), frame.pixels(), &frame.layers()?.position)
     }
 
-    /// (H, W) of each light: the share of it that is seen, from 0 to 1.
+    /// (H, W) of each light, then of each lamp: the share of it that is seen, from 0 to 1.
     #[getter]
     fn visibility<'py>(slf: &Bound<'py, Self>) -> PyResult<Vec<Bound<'py, PyArray2<f32>>>> {
         let frame = slf.get();
         frame.layers()?.visibility.iter().map(|of_light| plane(slf.as_any(), frame.pixels(), of_light)).collect()
     }
 
-    /// (H, W, 3) of each light: what the pixel shows of it alone. Empty if that is not known.
+    /// (H, W, 3) of each light, then of each lamp: what the pixel shows of it alone. Empty if that is not known.
     #[getter]
     fn lights<'py>(slf: &Bound<'py, Self>) -> PyResult<Vec<Bound<'py, PyArray3<f32>>>> {
         let frame = slf.get();

@@ -49,11 +49,11 @@ impl Geometry {
     #[staticmethod]
     #[pyo3(
         signature = (
-            vertices, triangles, *, normals = None, uvs = None, colors = None, material = None, materials = None, material_indices = None,
-            transforms = None, name = String::new()
+            vertices, triangles, *, normals = None, uvs = None, colors = None, material = None, materials = None,
+            material_indices = None, transforms = None, name = String::new()
         ),
-        text_signature = "(vertices, triangles, *, normals = None, uvs = None, colors = None, material = None, materials = None, material_indices = None, \
-            transforms = None, name = '')"
+        text_signature = "(vertices, triangles, *, normals=None, uvs=None, colors=None, material=None, materials=None, material_indices=None, \
+            transforms=None, name='')"
     )]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn from_arrays(

@@ -73,7 +73,7 @@ impl Light {
     #[staticmethod]
     #[pyo3(
         signature = (position, *, spread = 0.0, intensity = None, falloff = String::from("none"), name = String::new()),
-        text_signature = "(position, *, spread = 0.0, intensity = 1.0, falloff = 'none', name = '')"
+        text_signature = "(position, *, spread=0.0, intensity=1.0, falloff='none', name='')"
     )]
     fn point(
         position: Vector,
@@ -90,7 +90,7 @@ impl Light {
     #[staticmethod]
     #[pyo3(
         signature = (direction, *, angle = 0.0, intensity = None, falloff = String::from("none"), name = String::new()),
-        text_signature = "(direction, *, angle = 0.0, intensity = 1.0, falloff = 'none', name = '')"
+        text_signature = "(direction, *, angle=0.0, intensity=1.0, falloff='none', name='')"
     )]
     fn directional(
         direction: Vector,
@@ -106,14 +106,15 @@ impl Light {
         Common { intensity, falloff, name }.of(light, DVec3::ZERO)
     }
 
-    /// A cone of light around `direction`, from a ball of `radius`: of full strength up to the half-angle `inner`, none beyond `outer`, degrees.
+    /// A cone of light around `direction`, from a ball of `radius`: of full strength up to the half-angle `inner`, none beyond `outer`,
+    /// in degrees.
     #[staticmethod]
     #[pyo3(
         signature = (
-            position, direction, *, inner = 0.0, outer = 45.0, radius = 0.0, intensity = None, falloff = String::from("none"), name =
-            String::new()
+            position, direction, *, inner = 0.0, outer = 45.0, radius = 0.0, intensity = None, falloff = String::from("none"),
+            name = String::new()
         ),
-        text_signature = "(position, direction, *, inner = 0.0, outer = 45.0, radius = 0.0, intensity = 1.0, falloff = 'none', name = '')"
+        text_signature = "(position, direction, *, inner=0.0, outer=45.0, radius=0.0, intensity=1.0, falloff='none', name='')"
     )]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn spot(
@@ -136,7 +137,7 @@ impl Light {
     #[staticmethod]
     #[pyo3(
         signature = (position, radius, *, intensity = None, falloff = String::from("none"), name = String::new()),
-        text_signature = "(position, radius, *, intensity = 1.0, falloff = 'none', name = '')"
+        text_signature = "(position, radius, *, intensity=1.0, falloff='none', name='')"
     )]
     fn sphere(
         position: Vector,
@@ -153,9 +154,10 @@ impl Light {
     #[staticmethod]
     #[pyo3(
         signature = (
-            position, normal, radius, *, one_sided = false, intensity = None, falloff = String::from("none"), name = String::new()
+            position, normal, radius, *, one_sided = false, intensity = None, falloff = String::from("none"),
+            name = String::new()
         ),
-        text_signature = "(position, normal, radius, *, one_sided = False, intensity = 1.0, falloff = 'none', name = '')"
+        text_signature = "(position, normal, radius, *, one_sided=False, intensity=1.0, falloff='none', name='')"
     )]
     fn disk(
         position: Vector,
@@ -172,13 +174,15 @@ impl Light {
         Common { intensity, falloff, name }.of(light, position.0)
     }
 
-    /// A flat rectangular light: `half_u` and `half_v`, at a right angle, point from its centre to the middles of two sides. `one_sided`: towards half_u × half_v.
+    /// A flat rectangular light: `half_u` and `half_v`, at a right angle, point from its centre to the middles of two sides.
+    /// `one_sided`: towards half_u × half_v.
     #[staticmethod]
     #[pyo3(
         signature = (
-            position, half_u, half_v, *, one_sided = false, intensity = None, falloff = String::from("none"), name = String::new()
+            position, half_u, half_v, *, one_sided = false, intensity = None, falloff = String::from("none"),
+            name = String::new()
         ),
-        text_signature = "(position, half_u, half_v, *, one_sided = False, intensity = 1.0, falloff = 'none', name = '')"
+        text_signature = "(position, half_u, half_v, *, one_sided=False, intensity=1.0, falloff='none', name='')"
     )]
     fn rectangle(
         position: Vector,

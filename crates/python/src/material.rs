@@ -69,6 +69,8 @@ impl Material {
     pub(crate) fn build(&self, album: &mut Album) -> Surface {
         let Images { color, emission, normals, metallic_roughness } = &self.images;
         let mut surface = self.surface.clone();
+        // No light stands for it, unless the scene makes lamps.
+        surface.lamp = false;
         surface.texture = color.as_ref().map(|texture| album.add(texture));
         surface.emission_texture = emission.as_ref().map(|texture| album.add(texture));
         let of_normals = |(texture, scale): &(Texture, f32)| NormalMap::new(album.add(texture)).with_scale(*scale);
@@ -87,11 +89,11 @@ impl Material {
     #[new]
     #[pyo3(
         signature = (
-            color = None, *, specular = None, shininess = 20.0, emission = None, texture = None, emission_texture = None, normal_texture =
-            None, normal_scale = 1.0, opacity = 1.0, catcher = false, name = String::new()
+            color = None, *, specular = None, shininess = 20.0, emission = None, texture = None, emission_texture = None,
+            normal_texture = None, normal_scale = 1.0, opacity = 1.0, catcher = false, name = String::new()
         ),
-        text_signature = "(color = 0.8, *, specular = 0.0, shininess = 20.0, emission = 0.0, texture = None, emission_texture = None, normal_texture = \
-            None, normal_scale = 1.0, opacity = 1.0, catcher = False, name = '')"
+        text_signature = "(color=0.8, *, specular=0.0, shininess=20.0, emission=0.0, texture=None, emission_texture=None, \
+            normal_texture=None, normal_scale=1.0, opacity=1.0, catcher=False, name='')"
     )]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
@@ -132,13 +134,14 @@ impl Material {
     #[staticmethod]
     #[pyo3(
         signature = (
-            color = None, *, metallic = 0.0, roughness = 0.5, ior = 1.5, specular = 1.0, specular_tint = None, transmission = 0.0, thin =
-            false, emission = None, alpha = 1.0, alpha_mode = "opaque", alpha_cutoff = 0.5, texture = None, emission_texture = None,
-            normal_texture = None, normal_scale = 1.0, metallic_roughness_texture = None, name = String::new()
+            color = None, *, metallic = 0.0, roughness = 0.5, ior = 1.5, specular = 1.0, specular_tint = None,
+            transmission = 0.0, thin = false, emission = None, alpha = 1.0, alpha_mode = "opaque", alpha_cutoff = 0.5,
+            texture = None, emission_texture = None, normal_texture = None, normal_scale = 1.0,
+            metallic_roughness_texture = None, name = String::new()
         ),
-        text_signature = "(color = 0.8, *, metallic = 0.0, roughness = 0.5, ior = 1.5, specular = 1.0, specular_tint = 1.0, transmission = 0.0, thin = \
-            False, emission = 0.0, alpha = 1.0, alpha_mode = 'opaque', alpha_cutoff = 0.5, texture = None, emission_texture = None, \
-            normal_texture = None, normal_scale = 1.0, metallic_roughness_texture = None, name = '')"
+        text_signature = "(color=0.8, *, metallic=0.0, roughness=0.5, ior=1.5, specular=1.0, specular_tint=1.0, transmission=0.0, thin=False, \
+            emission=0.0, alpha=1.0, alpha_mode='opaque', alpha_cutoff=0.5, texture=None, emission_texture=None, \
+            normal_texture=None, normal_scale=1.0, metallic_roughness_texture=None, name='')"
     )]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn principled(

@@ -317,7 +317,7 @@ impl Renderer {
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut order = Order::new(&scene, settings)?;
         if let Some(lights) = lights {
-            order.scene.set_lights(lights);
+            order.scene.set_all_lights(&lights);
         }
         // Those that an image gets by default are nobody's.
         order.scene.world.lights.chosen = true;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 use lightmesh::Scene as World;
-use lightmesh::scene::{Instancing, Lights, SceneFormat};
+use lightmesh::scene::{self, Instancing, Lights, SceneFormat};
 use lightmesh_cli::request;
 use lightmesh_files::visible;
 use pyo3::prelude::*;
@@ -24,14 +24,19 @@ const BUILTIN: &str = "builtin:";
 
 /// Geometry, lights and cameras. Geometry is shared and never changes; lights, cameras and surroundings can be set at any time.
 ///
-/// Without `lights` (`None`), images show it by a key and a fill light, as the command line does; an empty list is darkness. `instances` says whether objects in many places are stored once ("always"), copied ("never"), or stored once if they have many
-/// triangles in all ("auto"). What had to be corrected is a `SceneWarning`.
+/// Without `lights` (`None`), images show it by a key and a fill light, as the command line does; an empty list is darkness. `instances`
+/// says whether objects in many places are stored once ("always"), copied ("never"), or stored once if they have many triangles in all
+/// ("auto"). Small surfaces that emit get lights, `lamps`, as those of files have; in a frame they come after `lights`. What had to be
+/// corrected is a `SceneWarning`.
 #[pyclass(module = "lightmesh")]
 #[derive(Clone)]
 pub(crate) struct Scene {
     pub(crate) world: World,
     /// The format of its file, by which it may be known what is up.
     pub(crate) format: Option<SceneFormat>,
+    /// Whether small surfaces that emit have lights, and these, which stay whatever lights are set: the last ones of the world.
+    makes_lamps: bool,
+    lamps: Vec<scene::Light>,
 }
 
 /// Objects, one or more.
@@ -74,10 +79,10 @@ impl Scene {
     #[new]
     #[pyo3(
         signature = (
-            geometry, lights = None, camera = None, *, environment = None, ambient = None, background = None, instances = "auto", name
-            = String::new()
+            geometry, lights = None, camera = None, *, environment = None, ambient = None, background = None,
+            instances = "auto", lamps = true, name = String::new()
         ),
-        text_signature = "(geometry, lights = None, camera = None, *, environment = None, ambient = None, background = None, instances = 'auto', name = '')"
+        text_signature = "(geometry, lights=None, camera=None, *, environment=None, ambient=None, background=None, instances='auto', lamps=True, name='')"
     )]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
@@ -89,10 +94,12 @@ impl Scene {
         ambient: Option<Color>,
         background: Option<Color>,
         instances: &str,
+        lamps: bool,
         name: String,
     ) -> PyResult<Scene> {
         let world = geometry.scene(py, &name, instances)?;
-        let mut scene = Scene { world, format: None };
+        let mut scene = Scene { makes_lamps: lamps, ..Scene::of(world, None) };
+        scene.add_lamps();
         if let Some(lights) = lights {
             scene.set_lights(lights);
         }
@@ -112,7 +119,7 @@ impl Scene {
         let world = py.detach(|| World::open_with(&path, &options)).or_raise()?;
         let chosen = settings.and_then(|settings| settings.get_item("scene_format").ok().flatten());
         let chosen = chosen.and_then(|format| format.extract::<String>().ok()?.parse().ok());
-        let scene = Scene { world, format: chosen.or_else(|| SceneFormat::from_path(&path)) };
+        let scene = Scene::of(world, chosen.or_else(|| SceneFormat::from_path(&path)));
         scene.warn(py)?;
         Ok(scene)
     }
@@ -122,19 +129,20 @@ impl Scene {
     fn builtin(py: Python<'_>, name: &str) -> PyResult<Scene> {
         let name = name.strip_prefix(BUILTIN).unwrap_or(name);
         let world = py.detach(|| World::open(format!("{BUILTIN}{name}"))).or_raise()?;
-        Ok(Scene { world, format: None })
+        Ok(Scene::of(world, None))
     }
 
     /// All lights; set a list to change them.
     #[getter]
     fn lights(&self) -> Vec<Light> {
-        self.world.lights.iter().map(|light| Light::of(light, &self.world)).collect()
+        let own = self.world.lights.len() - self.lamps.len();
+        self.world.lights.iter().take(own).map(|light| Light::of(light, &self.world)).collect()
     }
 
     #[setter]
     pub(crate) fn set_lights(&mut self, lights: Vec<Light>) {
-        self.world.lights.list = lights.iter().map(|light| light.within(&self.world)).collect();
-        self.world.lights.chosen = true;
+        let own = lights.iter().map(|light| light.within(&self.world)).collect();
+        self.change_own(|lights| (lights.list, lights.chosen) = (own, true));
     }
 
     /// All cameras; set a list to change them.
@@ -189,7 +197,7 @@ impl Scene {
 
     #[setter]
     pub(crate) fn set_environment(&mut self, environment: Option<Environment>) {
-        surround(&mut self.world.lights, environment.as_ref());
+        self.change_own(|lights| surround(lights, environment.as_ref()));
     }
 
     /// As it was given; may be empty.
@@ -250,7 +258,8 @@ impl Scene {
         let (lights, cameras) = (self.lights(), self.cameras());
         world.lights = self.world.lights.clone();
         let chosen = world.lights.chosen;
-        let mut scene = Scene { world, format: self.format };
+        let mut scene = Scene { makes_lamps: self.makes_lamps, ..Scene::of(world, self.format) };
+        scene.add_lamps();
         scene.set_lights(lights);
         scene.world.lights.chosen = chosen;
         scene.set_cameras(cameras);
@@ -269,6 +278,36 @@ impl Scene {
 }
 
 impl Scene {
+    /// A scene as it was read; its lights are all its own.
+    fn of(world: World, format: Option<SceneFormat>) -> Scene {
+        Scene { world, format, makes_lamps: false, lamps: Vec::new() }
+    }
+
+    /// Makes lights for small surfaces that emit, as files that are opened have them.
+    fn add_lamps(&mut self) {
+        if !self.makes_lamps {
+            return;
+        }
+        let own = std::mem::take(&mut self.world.lights.list);
+        self.world.add_lamps();
+        self.lamps = std::mem::replace(&mut self.world.lights.list, own);
+        self.world.lights.list.extend(self.lamps.iter().cloned());
+    }
+
+    /// Changes the lights that are no lamps.
+    fn change_own(&mut self, change: impl FnOnce(&mut Lights)) {
+        let own = self.world.lights.len() - self.lamps.len();
+        self.world.lights.list.truncate(own);
+        change(&mut self.world.lights);
+        self.world.lights.list.extend(self.lamps.iter().cloned());
+    }
+
+    /// With these lights, and nothing else.
+    pub(crate) fn set_all_lights(&mut self, lights: &[Light]) {
+        self.lamps.clear();
+        self.world.lights.list = lights.iter().map(|light| light.within(&self.world)).collect();
+    }
+
     /// Python's warnings of what was corrected, ignored or guessed.
     fn warn(&self, py: Python<'_>) -> PyResult<()> {
         if self.world.warnings.is_empty() {

@@ -50,7 +50,7 @@ impl Texture {
     #[new]
     #[pyo3(
         signature = (pixels, *, wrap = None, transform = None, name = String::new()),
-        text_signature = "(pixels, *, wrap = 'repeat', transform = None, name = '')"
+        text_signature = "(pixels, *, wrap='repeat', transform=None, name='')"
     )]
     fn new(
         pixels: &Bound<'_, PyAny>,

@@ -1,7 +1,7 @@
 //! Work that takes time: it runs on a thread of its own, so that the thread which asked for it can report progress and obey Ctrl-C.
 //!
-//! That thread lets go of the interpreter and looks in on the work now and then. Whatever is raised there, by a signal's handler or by a callback, stops
-//! the work and is raised to the caller. Callbacks are called by the caller's thread alone.
+//! That thread lets go of the interpreter and looks in on the work now and then. Whatever is raised there, by a signal's handler or by a callback,
+//! stops the work and is raised to the caller. Callbacks are called by the caller's thread alone.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -16,10 +16,13 @@ from lightmesh import Scene
 from lightmesh.typing import ImageSettings, OpenSettings, SaveSettings
 
 RENDER = {"size": (96, 64), "seed": 7}
+#: The same on the command line.
+GAZEBO = ("render", "builtin:gazebo", "--device", "cpu", "--size", "96x64", "--seed", "7")
 SETTINGS = (ImageSettings, SaveSettings, OpenSettings)
 #: Flags about files, several images, the device or the program itself.
 NOT_OF_A_FRAME = set(
-    "color device fps frames help mesh_file output overwrite progress quiet resume skip_existing stats sun sun_hours threads turntable verbose".split()
+    "color device fps frames help mesh_file output overwrite progress quiet resume skip_existing stats sun sun_hours threads "
+    "turntable verbose".split()
 )
 
 
@@ -60,7 +63,7 @@ def test_same_bits_as_the_command_line(tmp_path, renderer, flags):
     """The same file, byte by byte, for every format of pixels."""
     settings = RENDER | flags
     frame = renderer.render(Scene.builtin("gazebo"), **settings)
-    arguments = ["render", "builtin:gazebo", "--device", "cpu", "--size", "96x64", "--seed", "7"]
+    arguments = [*GAZEBO]
     for name, value in flags.items():
         text = ",".join(map(str, value)) if isinstance(value, tuple) else str(value)
         arguments += [f"--{name}"] if value is True else [f"--{name}", text]
@@ -80,7 +83,7 @@ def pixels(path: Path) -> bytes:
 def test_layers_are_those_of_the_command_line(tmp_path, renderer):
     frame = renderer.render(Scene.builtin("gazebo"), layers=True, **RENDER)
     by_command, by_package = tmp_path / "command.exr", tmp_path / "package.exr"
-    result = run("render", "builtin:gazebo", "--device", "cpu", "--size", "96x64", "--seed", "7", "--layers", str(by_command), "-o", str(tmp_path / "o.png"))
+    result = run(*GAZEBO, "--layers", str(by_command), "-o", str(tmp_path / "o.png"))
     assert result.returncode == 0, result.stderr
     frame.save_layers(by_package)
     assert pixels(by_package) == pixels(by_command)
@@ -89,7 +92,7 @@ def test_layers_are_those_of_the_command_line(tmp_path, renderer):
 def test_stats_are_those_of_the_command_line(tmp_path, renderer):
     frame = renderer.render(Scene.builtin("gazebo"), **RENDER)
     path = tmp_path / "stats.json"
-    assert run("render", "builtin:gazebo", "--device", "cpu", "--size", "96x64", "--seed", "7", "--stats", str(path), "-o", str(tmp_path / "o.png")).returncode == 0
+    assert run(*GAZEBO, "--stats", str(path), "-o", str(tmp_path / "o.png")).returncode == 0
     stats = json.loads(path.read_text())
     assert frame.stats["counts"] == stats["counts"]
     # Those of the file come on top.

@@ -139,6 +139,38 @@ def test_emission_texture(renderer):
     np.testing.assert_allclose(image[16, 29], (0.5, 1.0, 2.0), rtol=1e-4)
 
 
+def panel() -> Geometry:
+    """A small square that shines, above the floor."""
+    corners = np.array([(-0.3, 2, -0.3), (0.3, 2, -0.3), (0.3, 2, 0.3), (-0.3, 2, 0.3)], np.float32)
+    return Geometry.from_arrays(corners, [(0, 1, 2), (0, 2, 3)], material=Material.principled(0.0, emission=20.0), name="panel")
+
+
+def test_small_surfaces_that_shine_are_lamps(renderer):
+    """They are sampled as lights, which stay when others are set, and are not gathered a second time."""
+    view = Camera((0.0, 1.5, 6.0), (0.0, 0.5, 0.0))
+    scene = Scene([floor(), panel()], [], view)
+    assert scene.lights == []
+    settings = {"size": (40, 30), "ambient_light": "mesh", "layers": True}
+    lamp = renderer.render(scene, **settings)
+    assert len(lamp.visibility) == 1
+    # The reference casts thousands of rays from each point, at surfaces that lamps do not stand for.
+    expected = renderer.render(Scene([floor(), panel()], [], view, lamps=False), size=(40, 30), ambient_light="rays").rgb
+    np.testing.assert_allclose(lamp.rgb[-5:].mean(), expected[-5:].mean(), rtol=0.05)
+    scene.lights = [Light.point((0.0, 3.0, 0.0), intensity=0.0)]
+    scene.environment = Environment(np.zeros((8, 16, 3), np.float32))
+    assert len(scene.lights) == 1
+    both = renderer.render(scene, **settings)
+    assert len(both.visibility) == 2
+    np.testing.assert_allclose(both.rgb[-5:].mean(), lamp.rgb[-5:].mean(), rtol=0.01)
+
+
+def test_surfaces_shine_beside_one_sided_lights(renderer):
+    """Without lamps, what they emit is gathered, whatever lights there are."""
+    lights = [Light.rectangle((0.0, 9.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.0, 0.1), one_sided=True, intensity=0.0)]
+    scene = Scene([floor(), panel()], lights, Camera((0.0, 1.5, 6.0), (0.0, 0.5, 0.0)), lamps=False)
+    assert renderer.render(scene, size=(40, 30), ambient_light="mesh").rgb[-5:].mean() > 1e-3
+
+
 def test_lights_read_back():
     lights = [
         Light.point((1.0, 2.0, 3.0), name="lamp"),

@@ -84,8 +84,9 @@ pub enum Viewpoint {
 
 impl Scene {
     /// Completes the scene so that it can be rendered: adds [`Scene::default_camera`] if it has no camera, and
-    /// [`Scene::default_lights`], placed relative to its first camera, if it has no light, or only lamps too faint to light it, unless they are [chosen](crate::Lights::chosen); with lights
-    /// inside, also an ambient term of 0.2 if none is set. Returns what was added.
+    /// [`Scene::default_lights`], placed relative to its first camera, if it has no light, or only lamps too faint to light it,
+    /// unless they are [chosen](crate::Lights::chosen); with lights inside, also an ambient term of 0.2 if none is set. Returns what
+    /// was added.
     pub fn complete(&mut self, up: Up) -> Added {
         let mut added = Added {
             camera: self.cameras.is_empty(),

@@ -174,7 +174,8 @@ class Light:
         falloff: Falloff = "none",
         name: str = "",
     ) -> Light:
-        """A cone of light around `direction`, from a ball of `radius`: of full strength up to the half-angle `inner`, none beyond `outer`, degrees."""
+        """A cone of light around `direction`, from a ball of `radius`: of full strength up to the half-angle `inner`, none beyond `outer`,
+        in degrees."""
     @staticmethod
     def sphere(position: Vector, radius: float, *, intensity: Color = 1.0, falloff: Falloff = "none", name: str = "") -> Light:
         """Light from a ball."""
@@ -201,7 +202,8 @@ class Light:
         falloff: Falloff = "none",
         name: str = "",
     ) -> Light:
-        """A flat rectangular light: `half_u` and `half_v`, at a right angle, point from its centre to the middles of two sides. `one_sided`: towards half_u × half_v."""
+        """A flat rectangular light: `half_u` and `half_v`, at a right angle, point from its centre to the middles of two sides.
+        `one_sided`: towards half_u × half_v."""
     @property
     def kind(self) -> str:
         """`point`, `directional`, `spot`, `sphere`, `disk` or `rectangle`."""
@@ -220,7 +222,9 @@ class Light:
     @property
     def direction(self) -> tuple[float, float, float] | None:
         """The way that the light of a directional light or the axis of a spot goes, of unit length; `None` of others."""
-    def replaced(self, *, position: Vector | None = None, direction: Vector | None = None, intensity: Color | None = None, name: str | None = None) -> Light:
+    def replaced(
+        self, *, position: Vector | None = None, direction: Vector | None = None, intensity: Color | None = None, name: str | None = None
+    ) -> Light:
         """The same light elsewhere, or of other strength."""
 
 @final
@@ -275,8 +279,10 @@ class Environment:
 class Scene:
     """Geometry, lights and cameras. Geometry is shared and never changes; lights, cameras and surroundings can be set at any time.
 
-    Without `lights` (`None`), images show it by a key and a fill light, as the command line does; an empty list is darkness. `instances` says whether objects in many places are stored once ("always"), copied ("never"), or stored once if they have many
-    triangles in all ("auto"). What had to be corrected is a `SceneWarning`.
+    Without `lights` (`None`), images show it by a key and a fill light, as the command line does; an empty list is darkness. `instances`
+    says whether objects in many places are stored once ("always"), copied ("never"), or stored once if they have many triangles in all
+    ("auto"). Small surfaces that emit get lights, `lamps`, as those of files have; in a frame they come after `lights`. What had to be
+    corrected is a `SceneWarning`.
     """
 
     def __new__(
@@ -289,6 +295,7 @@ class Scene:
         ambient: Color | None = None,
         background: Color | None = None,
         instances: Instances = "auto",
+        lamps: bool = True,
         name: str = "",
     ) -> Self: ...
     @staticmethod
@@ -460,10 +467,10 @@ class Frame:
         """(H, W, 3): world coordinates."""
     @property
     def visibility(self) -> list[NDArray[np.float32]]:
-        """(H, W) of each light: the share of it that is seen, from 0 to 1."""
+        """(H, W) of each light, then of each lamp: the share of it that is seen, from 0 to 1."""
     @property
     def lights(self) -> list[NDArray[np.float32]]:
-        """(H, W, 3) of each light: what the pixel shows of it alone. Empty if that is not known."""
+        """(H, W, 3) of each light, then of each lamp: what the pixel shows of it alone. Empty if that is not known."""
     @property
     def rest(self) -> NDArray[np.float32] | None:
         """(H, W, 3): what belongs to no light."""
