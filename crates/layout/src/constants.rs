@@ -441,8 +441,6 @@ constants! {
     SITE_RADIUS: f32 = 1.5;
     /// The cells around one, and itself, in which they are: the ball around a place ends two cells away, at most.
     CELLS_AROUND: u32 = 5 * 5 * 5;
-    /// Places of a warp in more cells than these ask for the cells around them one by one.
-    MOST_CELLS_TOGETHER: u32 = 4;
     /// The distance from each other's tangent planes within which they count, in cells.
     SITE_THICKNESS: f32 = 0.75;
     /// The cosine of the angle between normals beyond which they do not.

@@ -327,8 +327,6 @@
 #define SITE_RADIUS 0x1.8p0f
 // The cells around one, and itself, in which they are: the ball around a place ends two cells away, at most.
 #define CELLS_AROUND 125u
-// Places of a warp in more cells than these ask for the cells around them one by one.
-#define MOST_CELLS_TOGETHER 4u
 // The distance from each other's tangent planes within which they count, in cells.
 #define SITE_THICKNESS 0x1.8p-1f
 // The cosine of the angle between normals beyond which they do not.

@@ -77,19 +77,28 @@ DEVICE void find_second(const Bounce &args, unsigned site) {
     node.known = 2;
 }
 
-// Adds to what the rays of a site see what is reflected of light that lights do not give.
+// Adds to what the rays of a site see what is reflected of light that lights do not give. One warp.
 DEVICE void add_reflected(const Bounce &args, unsigned site) {
     const Fans &fans = args.fans;
-    const unsigned first = site * rays_of_fan(fans), end = first + rays_of_fan(fans);
+    const unsigned rays = rays_of_fan(fans), start = site * rays, lane = lane_of_thread();
     Vec3 all = splat(0.0f);
     float count = 0.0f;
-    for (unsigned ray = first; ray < end; ++ray)
-        if (asks_node(fans.seen[ray]) && fans.seen[ray].node != NO_NUMBER) {
-            all = all + args.nodes[fans.seen[ray].node].second;
-            count += 1.0f;
+    for (unsigned first = 0; first < rays; first += WARP) {
+        Vec3 value = {};
+        bool sees = false;
+        if (first + lane < rays) {
+            const SeenRay &seen = fans.seen[start + first + lane];
+            sees = asks_node(seen) && seen.node != NO_NUMBER;
+            value = sees ? args.nodes[seen.node].second : value;
         }
+        const unsigned lanes = __ballot_sync(ALL_LANES, sees);
+        count += (float)__popc(lanes);
+        // In the order of the rays.
+        for (unsigned rest = lanes; rest != 0; rest &= rest - 1)
+            all = all + warp_broadcast(value, __ffs(rest) - 1);
+    }
     const Vec3 mean = count > 0.0f ? all / count : splat(0.0f);
-    for (unsigned ray = first; ray < end; ++ray) {
+    for (unsigned ray = start + lane; ray < start + rays; ray += WARP) {
         SeenRay &seen = fans.seen[ray];
         if (asks_node(seen))
             seen.radiance = seen.radiance + seen.kd * (seen.node == NO_NUMBER ? mean : args.nodes[seen.node].second);

@@ -49,15 +49,19 @@ KERNEL(find_cells, Lookup, BLOCK, 4) {
 }
 
 KERNEL(count_links, Lookup, BLOCK, 4) {
-    unsigned place;
-    if (thread_has_work(args.count, place))
-        args.offsets[place] = args.places[place].share > 0.0f ? find_links(args, args.places[place], nullptr) : 0;
+    unsigned number;
+    const bool is_place = thread_has_work(args.count, number);
+    const LightPlace place = is_place ? args.places[number] : LightPlace{};
+    const unsigned count = find_links(args, place.share > 0.0f, place, 0, nullptr);
+    if (is_place)
+        args.offsets[number] = count;
 }
 
 KERNEL(fill_links, Lookup, BLOCK, 4) {
-    unsigned place;
-    if (thread_has_work(args.count, place) && args.places[place].share > 0.0f)
-        find_links(args, args.places[place], args.links + args.offsets[place]);
+    unsigned number;
+    const bool is_place = thread_has_work(args.count, number);
+    const LightPlace place = is_place ? args.places[number] : LightPlace{};
+    find_links(args, place.share > 0.0f, place, is_place ? args.offsets[number] : 0, args.links);
 }
 
 KERNEL(value_links, Lookup, BLOCK, 4) {
@@ -108,7 +112,7 @@ KERNEL(sum_second, Bounce, BLOCK, 4) {
 
 KERNEL(reflect, Bounce, BLOCK, 4) {
     unsigned site;
-    if (thread_has_work(args.fans.count, site))
+    if (warp_has_work(args.fans.count, site))
         add_reflected(args, site);
 }
 

@@ -11,15 +11,6 @@ DEVICE IVec3 cell_around(IVec3 middle, unsigned index) {
     return middle + IVec3{(int)(index % 5) - 2, (int)(index / 5 % 5) - 2, (int)(index / 25) - 2};
 }
 
-// Whether sites of a cell may count for a place: if it is near, and near the tangent plane.
-DEVICE bool may_use(const LightPlace &place, float size, IVec3 cell) {
-    const Vec3 way = corner_of_cell(place.level, cell) + splat(0.5f * size) - place.position;
-    const float half = SITE_MARGIN * size;
-    const Vec3 outside = max(abs(way) - splat(half), splat(0.0f));
-    const float slab = SITE_THICKNESS * size + half * element_sum(abs(place.normal));
-    return length_squared(outside) < SITE_RADIUS * SITE_RADIUS * size * size && fabsf(dot(place.normal, way)) < slab;
-}
-
 // The weight of a site: it falls with the distance, with the angle between normals, and with the distance from tangent planes.
 DEVICE float site_weight(const LightPlace &place, float size, Vec3 position, Vec3 normal) {
     const Vec3 way = position - place.position;
@@ -74,76 +65,113 @@ DEVICE bool balance_slope(const Balance &balance, float &x, float &y) {
     return true;
 }
 
-// Whether sites of each of the cells around `middle` may count for any of the lanes that `ask`, of the same level: a bit for each.
-DEVICE void cells_for_any(bool ask, const LightPlace &place, IVec3 middle, unsigned *wanted) {
-    const float size = size_of_level(place.level);
-    for (unsigned index = 0; index < CELLS_AROUND; ++index) {
-        const bool any = __ballot_sync(ALL_LANES, ask && may_use(place, size, cell_around(middle, index))) != 0;
-        wanted[index / WARP] = (index % WARP == 0 ? 0 : wanted[index / WARP]) | (unsigned)any << index % WARP;
-    }
+// Those of a warp's places that lie in one cell.
+struct Around {
+    int level;
+    IVec3 cell;
+    Bounds bounds;
+    // Their normal, and the least and the greatest height along it, if they share one.
+    bool is_flat;
+    Vec3 normal;
+    float least, most;
+};
+
+// Takes the places in the cell of the lowest lane of `rest` out of it. `is_there`: the lane's own place is one of them.
+DEVICE Around take_around(unsigned &rest, const LightPlace &place, IVec3 own, bool &is_there) {
+    const unsigned first = __ffs(rest) - 1;
+    Around around;
+    around.level = __shfl_sync(ALL_LANES, place.level, first);
+    around.cell = IVec3{__shfl_sync(ALL_LANES, own.x, first), __shfl_sync(ALL_LANES, own.y, first), __shfl_sync(ALL_LANES, own.z, first)};
+    is_there = (rest >> lane_of_thread() & 1) && place.level == around.level && own.x == around.cell.x && own.y == around.cell.y &&
+               own.z == around.cell.z;
+    rest &= ~__ballot_sync(ALL_LANES, is_there);
+    const Vec3 low = is_there ? place.position : splat(INFINITE), high = is_there ? place.position : splat(-INFINITE);
+    around.bounds = Bounds{{warp_min(low.x), warp_min(low.y), warp_min(low.z)}, {warp_max(high.x), warp_max(high.y), warp_max(high.z)}};
+    around.normal = warp_broadcast(place.normal, first);
+    around.is_flat = __ballot_sync(ALL_LANES, is_there && !(place.normal == around.normal)) == 0;
+    const float height = dot(around.normal, place.position);
+    around.least = warp_min(is_there ? height : INFINITE);
+    around.most = warp_max(is_there ? height : -INFINITE);
+    return around;
 }
 
-// Asks for the cells in which sites may count for a place.
-DEVICE void ask_cells_of(const Lookup &args, const LightPlace &place, IVec3 middle) {
-    const float size = size_of_level(place.level);
-    for (unsigned index = 0; index < CELLS_AROUND; ++index)
-        if (may_use(place, size, cell_around(middle, index)))
-            add_name(args.table.cells, name_of_cell(place.level, cell_around(middle, index)));
+// Whether sites of a cell may count: only if it is near some place and its tangent plane.
+DEVICE bool may_use(const Around &around, IVec3 cell) {
+    const float size = size_of_level(around.level);
+    const Vec3 middle = corner_of_cell(around.level, cell) + splat(0.5f * size);
+    const float half = SITE_MARGIN * size;
+    const Vec3 outside = max(max(around.bounds.low - middle, middle - around.bounds.high) - splat(half), splat(0.0f));
+    if (length_squared(outside) >= SITE_RADIUS * SITE_RADIUS * size * size)
+        return false;
+    const float height = dot(around.normal, middle), slab = SITE_THICKNESS * size + half * element_sum(abs(around.normal));
+    return !around.is_flat || (around.least - slab < height && height < around.most + slab);
 }
 
-// In how many cells the lanes' places are.
-DEVICE unsigned cells_of_warp(bool has, const LightPlace &place, IVec3 own) {
-    const unsigned same = __match_any_sync(ALL_LANES, has ? cell_key(place.level, own) : 0ull);
-    return __popc(__ballot_sync(ALL_LANES, has && (same & lanes_below(lane_of_thread())) == 0));
-}
-
-// Asks for the cells in which sites may count for the places of a warp. Places in one cell mostly want the same ones, so that these are asked for
-// once: a thousand threads that insert one name would wait for each other. Where rays scattered the places, each asks for itself.
+// Asks for the cells in which sites may count for the places of a warp.
 DEVICE void ask_cells(const Lookup &args, bool has, const LightPlace &place) {
-    const unsigned lane = lane_of_thread();
     const IVec3 own = has ? cell_at(place.level, place.position) : IVec3{0, 0, 0};
-    if (cells_of_warp(has, place, own) > MOST_CELLS_TOGETHER) {
-        if (has && !is_abandoned(args.table.cells))
-            ask_cells_of(args, place, own);
-        return;
-    }
     unsigned rest = __ballot_sync(ALL_LANES, has && !is_abandoned(args.table.cells));
     while (rest != 0) {
-        const unsigned first = __ffs(rest) - 1;
-        const int level = __shfl_sync(ALL_LANES, place.level, first);
-        const IVec3 middle = {__shfl_sync(ALL_LANES, own.x, first), __shfl_sync(ALL_LANES, own.y, first), __shfl_sync(ALL_LANES, own.z, first)};
-        const bool same = has && place.level == level && own.x == middle.x && own.y == middle.y && own.z == middle.z;
-        unsigned wanted[(CELLS_AROUND + WARP - 1) / WARP];
-        cells_for_any(same, place, middle, wanted);
-        for (unsigned index = lane; index < CELLS_AROUND; index += WARP)
-            if (wanted[index / WARP] >> lane & 1)
-                add_name(args.table.cells, name_of_cell(level, cell_around(middle, index)));
+        bool is_there;
+        const Around around = take_around(rest, place, own, is_there);
+        for (unsigned index = lane_of_thread(); index < CELLS_AROUND; index += WARP) {
+            const IVec3 cell = cell_around(around.cell, index);
+            if (may_use(around, cell))
+                add_name(args.table.cells, name_of_cell(around.level, cell));
+        }
         __syncwarp();
-        rest &= ~__ballot_sync(ALL_LANES, same);
     }
 }
 
-// Counts the sites of a place, and writes them with their weights to `links`, unless that is null.
-DEVICE unsigned find_links(const Lookup &args, const LightPlace &place, Link *links) {
-    const float size = size_of_level(place.level);
-    const IVec3 middle = cell_at(place.level, place.position);
+// Lists the sites of the cells around.
+DEVICE unsigned list_sites(const Lookup &args, const Around &around, unsigned *sites) {
     unsigned count = 0;
-    for (unsigned index = 0; index < CELLS_AROUND; ++index) {
-        const IVec3 cell = cell_around(middle, index);
-        if (!may_use(place, size, cell))
-            continue;
-        const unsigned long long range = args.table.ranges[number_of(args.table.cells, cell_key(place.level, cell))];
-        const unsigned first = (unsigned)range, sites = (unsigned)(range >> 32);
-        for (unsigned site = first; site < first + sites; ++site) {
-            const float weight = site_weight(place, size, args.table.sites[site].position, args.table.sites[site].normal);
-            if (weight <= 0.0f)
-                continue;
-            if (links != nullptr)
-                links[count] = Link{site, weight};
-            ++count;
-        }
+    for (unsigned from = 0; from < CELLS_AROUND; from += WARP) {
+        const unsigned index = from + lane_of_thread();
+        const IVec3 cell = cell_around(around.cell, index);
+        unsigned long long range = 0;
+        if (index < CELLS_AROUND && may_use(around, cell))
+            range = args.table.ranges[number_of(args.table.cells, cell_key(around.level, cell))];
+        const unsigned first = (unsigned)range, own = (unsigned)(range >> 32), end = count + warp_running_sum(own);
+        for (unsigned site = 0; site < own; ++site)
+            sites[end - own + site] = first + site;
+        count = __shfl_sync(ALL_LANES, end, WARP - 1);
     }
+    __syncwarp();
     return count;
+}
+
+// Counts the sites of a warp's places, and writes them with their weights to `links`, unless that is null; those of the lane's own begin at
+// `begin`. For one place after the other, each lane weighs a site.
+DEVICE unsigned find_links(const Lookup &args, bool has, const LightPlace &place, unsigned begin, Link *links) {
+    SHARED(unsigned, lists, [BLOCK / WARP][CELLS_AROUND * SURFACE_KINDS]);
+    unsigned *sites = lists[threadIdx.x / WARP];
+    const unsigned lane = lane_of_thread();
+    const IVec3 own = has ? cell_at(place.level, place.position) : IVec3{0, 0, 0};
+    unsigned rest = __ballot_sync(ALL_LANES, has), end = begin;
+    while (rest != 0) {
+        bool is_there;
+        const Around around = take_around(rest, place, own, is_there);
+        const float size = size_of_level(around.level);
+        const unsigned count = list_sites(args, around, sites), places = __ballot_sync(ALL_LANES, is_there);
+        for (unsigned from = 0; from < count; from += WARP) {
+            const bool is_site = from + lane < count;
+            const unsigned site = is_site ? sites[from + lane] : 0;
+            const Vec3 position = args.table.sites[site].position, normal = args.table.sites[site].normal;
+            for (unsigned next = places; next != 0; next &= next - 1) {
+                const unsigned asking = __ffs(next) - 1;
+                const LightPlace asked = {warp_broadcast(place.position, asking), around.level, warp_broadcast(place.normal, asking), 1.0f};
+                const float weight = is_site ? site_weight(asked, size, position, normal) : 0.0f;
+                const unsigned found = __ballot_sync(ALL_LANES, weight > 0.0f), start = __shfl_sync(ALL_LANES, end, asking);
+                if (links != nullptr && weight > 0.0f)
+                    links[start + __popc(found & lanes_below(lane))] = Link{site, weight};
+                if (lane == asking)
+                    end += __popc(found);
+            }
+        }
+        __syncwarp();
+    }
+    return end - begin;
 }
 
 // Changes weights so that the weighted mean of the positions of sites is the place itself, as far as that is possible.
@@ -160,22 +188,55 @@ DEVICE void balance(const Lookup &args, const LightPlace &place, Link *links, un
     }
 }
 
-// Takes their weight from sites that a place does not see, and balances the others.
+// A link of a place that something may hide.
+struct DoubtfulLink {
+    unsigned place, link;
+};
+
+// Whether something may be in the way to the site of a link.
+DEVICE bool is_doubtful(const Lookup &args, const DoubtfulLink &asked) {
+    const unsigned site = args.links[asked.link].site;
+    const float nearest = args.nearest != nullptr ? args.nearest[asked.place] : args.fine[args.table.values[site] - 1].nearest;
+    return may_be_hidden(args.places[asked.place], args.table.sites[site].position, nearest);
+}
+
+// Takes its weight from a link if its place does not see the site.
+template <class Structure>
+DEVICE void hide_link(const Lookup &args, const Structure &structure, const DoubtfulLink &asked) {
+    const Site &site = args.table.sites[args.links[asked.link].site];
+    if (occluded(structure, args.tally, site_segment(args.places[asked.place], site)))
+        args.links[asked.link].weight = 0.0f;
+}
+
+// Takes their weight from sites that a place does not see, and balances the others. The links of a warp's places follow each other: doubtful ones
+// wait until there is one for each lane.
 template <class Structure>
 DEVICE void settle_links(const Lookup &args, const Structure &structure) {
-    const unsigned index = blockIdx.x * BLOCK + threadIdx.x;
-    if (index >= args.count)
-        return;
-    const LightPlace place = args.places[index];
-    Link *links = args.links + args.offsets[index];
-    const unsigned count = args.offsets[index + 1] - args.offsets[index];
-    for (unsigned link = 0; link < count; ++link) {
-        const Site &site = args.table.sites[links[link].site];
-        const float nearest = args.nearest != nullptr ? args.nearest[index] : args.fine[args.table.values[links[link].site] - 1].nearest;
-        if (may_be_hidden(place, site.position, nearest) && occluded(structure, args.tally, site_segment(place, site)))
-            links[link].weight = 0.0f;
+    SHARED(DoubtfulLink, lists, [BLOCK / WARP][2 * WARP]);
+    DoubtfulLink *doubtful = lists[threadIdx.x / WARP];
+    const unsigned index = blockIdx.x * BLOCK + threadIdx.x, lane = lane_of_thread();
+    const unsigned begin = args.offsets[min(index, args.count)], end = args.offsets[min(index + 1, args.count)];
+    const unsigned last = __shfl_sync(ALL_LANES, end, WARP - 1);
+    unsigned count = 0;
+    for (unsigned from = __shfl_sync(ALL_LANES, begin, 0); from < last; from += WARP) {
+        const DoubtfulLink own = {index - lane + warp_owner(end, from + lane), from + lane};
+        const bool has = from + lane < last && is_doubtful(args, own);
+        const unsigned lanes = __ballot_sync(ALL_LANES, has);
+        if (has)
+            doubtful[count + __popc(lanes & lanes_below(lane))] = own;
+        count += __popc(lanes);
+        __syncwarp();
+        if (count < WARP)
+            continue;
+        count -= WARP;
+        hide_link(args, structure, doubtful[count + lane]);
+        __syncwarp();
     }
-    balance(args, place, links, count);
+    if (lane < count)
+        hide_link(args, structure, doubtful[lane]);
+    __syncwarp();
+    if (index < args.count)
+        balance(args, args.places[index], args.links + begin, end - begin);
 }
 
 // Numbers the sites with a weight that have no value yet.

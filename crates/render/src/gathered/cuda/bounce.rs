@@ -65,7 +65,7 @@ impl<R: Runtime> DeviceBounce<R> {
     /// Adds to what rays see what is reflected of light that lights do not give.
     pub(super) fn complete(&mut self, device: &Device<R>, fans: &DeviceFans<R>) -> Result<(), RenderError> {
         self.resolve(device, fans, ORDERS as u32)?;
-        device.threads("reflect", fans.sites, &self.record(fans, ORDERS as u32))
+        device.warps("reflect", fans.sites, &self.record(fans, ORDERS as u32))
     }
 
     /// Finds the sites that rays see; what arrives there after up to `order` reflections is known.
