@@ -339,9 +339,13 @@ records! {
         alone: Out<u32>,
         /// Their number.
         alone_count: Out<u32>,
-        /// These as sites.
+        /// These as sites, as coarse as what they ask.
         sites: Out<Site>,
-        /// What those gather.
+        /// The same as places that ask.
+        asked: Out<LightPlace>,
+        /// What those receive as fine sites.
+        own: In<FineLight>,
+        /// What they gather as coarse ones; only if all surface points gather for themselves.
         far: In<FarLight>,
         /// The mean radiance that each surface point receives, by ray.
         light: Out<Vec3>,

@@ -1466,6 +1466,8 @@ struct alignas(8) GatherPoints {
     unsigned *alone;
     unsigned *alone_count;
     Site *sites;
+    LightPlace *asked;
+    const FineLight *own;
     const FarLight *far;
     Vec3 *light;
     Vec3 *normals;
@@ -1483,7 +1485,7 @@ struct alignas(8) GatherPoints {
     unsigned all_alone;
     unsigned spare;
 };
-static_assert(sizeof(GatherPoints) == 1776, "size of GatherPoints");
+static_assert(sizeof(GatherPoints) == 1792, "size of GatherPoints");
 static_assert(PLACE_OF(GatherPoints, scene) == 0, "place of GatherPoints::scene");
 static_assert(PLACE_OF(GatherPoints, rays) == 680, "place of GatherPoints::rays");
 static_assert(PLACE_OF(GatherPoints, hits) == 800, "place of GatherPoints::hits");
@@ -1494,22 +1496,24 @@ static_assert(PLACE_OF(GatherPoints, means) == 1648, "place of GatherPoints::mea
 static_assert(PLACE_OF(GatherPoints, alone) == 1656, "place of GatherPoints::alone");
 static_assert(PLACE_OF(GatherPoints, alone_count) == 1664, "place of GatherPoints::alone_count");
 static_assert(PLACE_OF(GatherPoints, sites) == 1672, "place of GatherPoints::sites");
-static_assert(PLACE_OF(GatherPoints, far) == 1680, "place of GatherPoints::far");
-static_assert(PLACE_OF(GatherPoints, light) == 1688, "place of GatherPoints::light");
-static_assert(PLACE_OF(GatherPoints, normals) == 1696, "place of GatherPoints::normals");
-static_assert(PLACE_OF(GatherPoints, samples) == 1704, "place of GatherPoints::samples");
-static_assert(PLACE_OF(GatherPoints, sampled_pixels) == 1712, "place of GatherPoints::sampled_pixels");
-static_assert(PLACE_OF(GatherPoints, sample_count) == 1720, "place of GatherPoints::sample_count");
-static_assert(PLACE_OF(GatherPoints, first_sampled) == 1724, "place of GatherPoints::first_sampled");
-static_assert(PLACE_OF(GatherPoints, eye) == 1728, "place of GatherPoints::eye");
-static_assert(PLACE_OF(GatherPoints, spacing) == 1740, "place of GatherPoints::spacing");
-static_assert(PLACE_OF(GatherPoints, pixels) == 1748, "place of GatherPoints::pixels");
-static_assert(PLACE_OF(GatherPoints, least_level) == 1752, "place of GatherPoints::least_level");
-static_assert(PLACE_OF(GatherPoints, first) == 1756, "place of GatherPoints::first");
-static_assert(PLACE_OF(GatherPoints, count) == 1760, "place of GatherPoints::count");
-static_assert(PLACE_OF(GatherPoints, first_alone) == 1764, "place of GatherPoints::first_alone");
-static_assert(PLACE_OF(GatherPoints, all_alone) == 1768, "place of GatherPoints::all_alone");
-static_assert(PLACE_OF(GatherPoints, spare) == 1772, "place of GatherPoints::spare");
+static_assert(PLACE_OF(GatherPoints, asked) == 1680, "place of GatherPoints::asked");
+static_assert(PLACE_OF(GatherPoints, own) == 1688, "place of GatherPoints::own");
+static_assert(PLACE_OF(GatherPoints, far) == 1696, "place of GatherPoints::far");
+static_assert(PLACE_OF(GatherPoints, light) == 1704, "place of GatherPoints::light");
+static_assert(PLACE_OF(GatherPoints, normals) == 1712, "place of GatherPoints::normals");
+static_assert(PLACE_OF(GatherPoints, samples) == 1720, "place of GatherPoints::samples");
+static_assert(PLACE_OF(GatherPoints, sampled_pixels) == 1728, "place of GatherPoints::sampled_pixels");
+static_assert(PLACE_OF(GatherPoints, sample_count) == 1736, "place of GatherPoints::sample_count");
+static_assert(PLACE_OF(GatherPoints, first_sampled) == 1740, "place of GatherPoints::first_sampled");
+static_assert(PLACE_OF(GatherPoints, eye) == 1744, "place of GatherPoints::eye");
+static_assert(PLACE_OF(GatherPoints, spacing) == 1756, "place of GatherPoints::spacing");
+static_assert(PLACE_OF(GatherPoints, pixels) == 1764, "place of GatherPoints::pixels");
+static_assert(PLACE_OF(GatherPoints, least_level) == 1768, "place of GatherPoints::least_level");
+static_assert(PLACE_OF(GatherPoints, first) == 1772, "place of GatherPoints::first");
+static_assert(PLACE_OF(GatherPoints, count) == 1776, "place of GatherPoints::count");
+static_assert(PLACE_OF(GatherPoints, first_alone) == 1780, "place of GatherPoints::first_alone");
+static_assert(PLACE_OF(GatherPoints, all_alone) == 1784, "place of GatherPoints::all_alone");
+static_assert(PLACE_OF(GatherPoints, spare) == 1788, "place of GatherPoints::spare");
 
 struct alignas(4) TileBox {
     Vec3 low;

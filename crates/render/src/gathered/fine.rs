@@ -57,6 +57,14 @@ pub(super) fn ensure(
     }
 }
 
+/// What sites receive that belong to no cell, as coarse as what they ask.
+pub(super) fn plain(scene: &Scene, coarse: &mut Coarse, sites: &[Site], fans: &Fans) -> Vec<Light> {
+    let each = |sites: &[Site]| -> Vec<Light> {
+        received(scene, coarse, sites, fans).into_iter().map(|fine| fine.light).collect()
+    };
+    sites.chunks(scene.fans_at_once(fans.near)).flat_map(each).collect()
+}
+
 fn received(scene: &Scene, coarse: &mut Coarse, sites: &[Site], fans: &Fans) -> Vec<Fine> {
     let fan = fans.near;
     // 1. What is near.

@@ -4,7 +4,7 @@
 //!    is left out.
 //! 2. **Near** light, which does not, is found at [`fine`] sites, a few pixels apart, by few and short rays: what they hit takes the place of
 //!    the far light that they would have seen. So only the difference is noisy.
-//! 3. A surface point takes the weighted mean of the fine sites around it ([`lookup`]).
+//! 3. A surface point takes the weighted mean of the fine sites around it ([`lookup`]), or counts as one itself if it sees none.
 //!
 //! What rays hit is lit by the lights, by a shadow ray each, and by what was reflected before ([`bounce`]). All of this belongs to cells of
 //! space ([`cells`]) and depends on nothing but the cell, the scene and the seed: not on what else was asked for, nor on the camera. So it can
@@ -215,11 +215,16 @@ fn gather_part(
     let asks: Vec<Ask> = seen.flat_map_iter(asks).collect();
     let normal = |ask: &Ask| normal_seen(wave, first + ask.index);
 
-    // 2. to 3. The mean of fine sites. Where there is none, rays from the point itself.
+    // 2. to 3. The mean of fine sites. Where there is none, the point counts as one itself.
     let means = if how.alone { vec![None; asks.len()] } else { means(scene, how, kept, &asks, normal) };
     let alone: Vec<&Ask> = asks.iter().zip(&means).filter(|(_, mean)| mean.is_none()).map(|(ask, _)| ask).collect();
     let sites: Vec<Site> = alone.iter().map(|ask| site_of(ask, how.alone)).collect();
-    let own = far::plain(scene, &mut kept.bounce, &sites, how.fans.far);
+    let SurfaceLight { far_cells, far, bounce, .. } = kept;
+    let own = if how.alone {
+        far::plain(scene, bounce, &sites, how.fans.far)
+    } else {
+        fine::plain(scene, &mut Coarse { cells: far_cells, known: far, bounce }, &sites, &how.fans)
+    };
     let own = alone.iter().zip(own).map(|(ask, own): (&&Ask, Light)| (*ask, own.at(normal(ask) - ask.point.normal)));
     let means = asks.iter().zip(means).filter_map(|(ask, mean)| Some((ask, mean?)));
     for (ask, mean) in means.chain(own) {

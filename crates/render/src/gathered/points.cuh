@@ -78,14 +78,17 @@ DEVICE void site_of_alone(const GatherPoints &args, unsigned index) {
     const SurfacePoint point = surface_point_of(args.scene, args.rays, args.hits, args.first + place / 2);
     const unsigned long long x = __float_as_uint(point.position.x), y = __float_as_uint(point.position.y), z = __float_as_uint(point.position.z);
     const unsigned long long seed = args.all_alone ? 0 : x ^ y << 21 ^ z << 42;
-    args.sites[index] = Site{point.position, args.places[place].level + COARSER, point.origin, point.normal, seed};
+    const int level = args.places[place].level + COARSER;
+    args.sites[index] = Site{point.position, level, point.origin, point.normal, seed};
+    args.asked[index] = LightPlace{point.position, level, point.normal, 1.0f};
 }
 
-// What it gathers.
+// What it receives.
 DEVICE void find_mean_alone(const GatherPoints &args, unsigned index) {
     const unsigned place = args.alone[args.first_alone + index];
     const Vec3 normal = args.places[place].normal;
-    args.means[place] = light_at(args.far[index].light, normal_at(args, place, normal) - normal);
+    const SurfaceLight &light = args.all_alone ? args.far[index].light : args.own[index].light;
+    args.means[place] = light_at(light, normal_at(args, place, normal) - normal);
 }
 
 // Both answers for a ray.

@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use bytemuck::Zeroable;
-use lightmesh_layout::In;
 use lightmesh_layout::constants::{COARSER, NEAR_CELLS, NEAR_REACH};
-use lightmesh_layout::gathered::{FineLight, GatherFine, TakeSites};
+use lightmesh_layout::gathered::{FineLight, GatherFine, LightPlace, Site, TakeSites};
+use lightmesh_layout::{In, Out};
 
 use super::bounce::DeviceBounce;
 use super::cells::{DeviceCells, Nearest};
@@ -30,6 +30,18 @@ pub(super) struct Coarse<'a, R: Runtime> {
     pub(super) fans: &'a Fans,
 }
 
+/// Sites, as coarse as what they ask, and the same as places that ask.
+pub(super) struct Asking<R: Runtime> {
+    pub(super) sites: Buffer<R, Site>,
+    pub(super) places: Buffer<R, LightPlace>,
+}
+
+/// Where results go: the number of the first, in a list.
+struct Target {
+    fine: Out<FineLight>,
+    first: usize,
+}
+
 impl<R: Runtime> DeviceFine<R> {
     pub(super) fn new(cuda: &Cuda<R>) -> Result<DeviceFine<R>, RenderError> {
         Ok(DeviceFine { fine: cuda.pool().room("fine light", 0)? })
@@ -51,67 +63,19 @@ impl<R: Runtime> DeviceFine<R> {
         let at_once = device.at_once(coarse.fans.near);
         for first in new.clone().step_by(at_once) {
             device.wave.job.check()?;
-            self.receive(device, cells, first..new.end.min(first + at_once), coarse)?;
-        }
-        Ok(())
-    }
-
-    fn receive(
-        &self,
-        device: &Device<R>,
-        cells: &DeviceCells<R>,
-        numbers: Range<usize>,
-        coarse: &mut Coarse<R>,
-    ) -> Result<(), RenderError> {
-        let (pool, count) = (device.cuda.pool(), numbers.len());
-        // 1. What is near. Sites are as coarse as what they ask.
-        let places = pool.room("fine sites that ask", count)?;
-        let from = TakeSites {
-            sites: cells.sites(),
-            numbers: cells.owners(),
-            places: places.output(),
-            first: numbers.start as u32,
-            coarser: COARSER,
-            ..TakeSites::zeroed()
-        };
-        let sites = taken(device, from, count)?;
-        let from = Sites { sites, reach: NEAR_REACH * NEAR_CELLS, nodes: None };
-        let mut fans = DeviceFans::cast(device, from, coarse.fans.near)?;
-        let nearest = fans.nearest(device)?;
-
-        // 2. The coarse sites around that are seen, and what they gather.
-        let links = coarse.cells.links(device, &places)?;
-        coarse.cells.settle(device, &places, &links, Nearest::OfPlaces(nearest.input()))?;
-        let new = coarse.cells.value(device, &places, &links)?;
-        coarse.far.extend(device, coarse.cells, new, coarse.bounce, coarse.fans.far)?;
-
-        // 3. What near rays see.
-        fans.see(device)?;
-        coarse.bounce.complete(device, &fans)?;
-
-        // 4. Both together; more rays of their own for sites that see no coarse one.
-        let alone = pool.room::<u32>("fine sites that see no coarse one", count)?;
-        let alone_count = pool.zeros::<u32>("number of fine sites that see no coarse one", 1)?;
-        let record = GatherFine {
-            fans: fans.record,
-            lookup: coarse.cells.lookup(device, &places, &links),
-            far: coarse.far.input(),
-            fine: self.fine.output(),
-            alone: alone.output(),
-            alone_count: alone_count.output(),
-            first: numbers.start as u32,
-            ..GatherFine::zeroed()
-        };
-        device.warps("gather_fine", count, &record)?;
-        let count = read_count(&alone_count)?;
-        let at_once = device.at_once(coarse.fans.far[0]);
-        for first in (0..count).step_by(at_once) {
-            let count = at_once.min(count - first);
-            let from = TakeSites { sites: fans.record.sites, numbers: alone.input(), ..TakeSites::zeroed() };
-            let sites = taken(device, TakeSites { first: first as u32, ..from }, count)?;
-            let own = far::plain(device, coarse.bounce, sites, coarse.fans.far)?;
-            let record = GatherFine { far: own.input(), first_alone: first as u32, count: count as u32, ..record };
-            device.threads("take_light", count, &record)?;
+            let count = at_once.min(new.end - first);
+            let places = device.cuda.pool().room("fine sites that ask", count)?;
+            let from = TakeSites {
+                sites: cells.sites(),
+                numbers: cells.owners(),
+                places: places.output(),
+                first: first as u32,
+                // As coarse as what they ask.
+                coarser: COARSER,
+                ..TakeSites::zeroed()
+            };
+            let asking = Asking { sites: taken(device, from, count)?, places };
+            receive(device, asking, coarse, Target { fine: self.fine.output(), first })?;
         }
         Ok(())
     }
@@ -120,4 +84,65 @@ impl<R: Runtime> DeviceFine<R> {
     pub(super) fn memory(&self) -> u64 {
         self.fine.bytes()
     }
+}
+
+/// What sites receive that belong to no cell: no more than can be cast at once.
+pub(super) fn plain<R: Runtime>(
+    device: &Device<R>,
+    asking: Asking<R>,
+    coarse: &mut Coarse<R>,
+) -> Result<Buffer<R, FineLight>, RenderError> {
+    let fine = device.cuda.pool().room("light of sites of no cell", asking.places.len())?;
+    receive(device, asking, coarse, Target { fine: fine.output(), first: 0 })?;
+    Ok(fine)
+}
+
+fn receive<R: Runtime>(
+    device: &Device<R>,
+    asking: Asking<R>,
+    coarse: &mut Coarse<R>,
+    target: Target,
+) -> Result<(), RenderError> {
+    let Asking { sites, places } = asking;
+    let (pool, count) = (device.cuda.pool(), places.len());
+    // 1. What is near.
+    let from = Sites { sites, reach: NEAR_REACH * NEAR_CELLS, nodes: None };
+    let mut fans = DeviceFans::cast(device, from, coarse.fans.near)?;
+    let nearest = fans.nearest(device)?;
+
+    // 2. The coarse sites around that are seen, and what they gather.
+    let links = coarse.cells.links(device, &places)?;
+    coarse.cells.settle(device, &places, &links, Nearest::OfPlaces(nearest.input()))?;
+    let new = coarse.cells.value(device, &places, &links)?;
+    coarse.far.extend(device, coarse.cells, new, coarse.bounce, coarse.fans.far)?;
+
+    // 3. What near rays see.
+    fans.see(device)?;
+    coarse.bounce.complete(device, &fans)?;
+
+    // 4. Both together; more rays of their own for sites that see no coarse one.
+    let alone = pool.room::<u32>("fine sites that see no coarse one", count)?;
+    let alone_count = pool.zeros::<u32>("number of fine sites that see no coarse one", 1)?;
+    let record = GatherFine {
+        fans: fans.record,
+        lookup: coarse.cells.lookup(device, &places, &links),
+        far: coarse.far.input(),
+        fine: target.fine,
+        alone: alone.output(),
+        alone_count: alone_count.output(),
+        first: target.first as u32,
+        ..GatherFine::zeroed()
+    };
+    device.warps("gather_fine", count, &record)?;
+    let count = read_count(&alone_count)?;
+    let at_once = device.at_once(coarse.fans.far[0]);
+    for first in (0..count).step_by(at_once) {
+        let count = at_once.min(count - first);
+        let from = TakeSites { sites: fans.record.sites, numbers: alone.input(), ..TakeSites::zeroed() };
+        let sites = taken(device, TakeSites { first: first as u32, ..from }, count)?;
+        let own = far::plain(device, coarse.bounce, sites, coarse.fans.far)?;
+        let record = GatherFine { far: own.input(), first_alone: first as u32, count: count as u32, ..record };
+        device.threads("take_light", count, &record)?;
+    }
+    Ok(())
 }

@@ -25,7 +25,7 @@ use bounce::DeviceBounce;
 use cells::{DeviceCells, Nearest};
 use device::{Device, read_count};
 use far::DeviceFar;
-use fine::DeviceFine;
+use fine::{Asking, Coarse, DeviceFine};
 
 /// Surface points that are processed at once, and rays that are cast at once, at least.
 const LEAST_AT_ONCE: usize = 1 << 18;
@@ -165,18 +165,19 @@ fn gather_part<R: Runtime>(
     }
 
     // 2. The fine sites around that are seen, and what they receive.
+    let mut coarse = Coarse { cells: far_cells, far, bounce, fans: &how.fans };
     let links = match how.alone {
         true => None,
         false => {
             let links = fine_cells.links(device, &places)?;
             let new = fine_cells.value(device, &places, &links)?;
-            fine.extend(device, fine_cells, new, &mut fine::Coarse { cells: far_cells, far, bounce, fans: &how.fans })?;
+            fine.extend(device, fine_cells, new, &mut coarse)?;
             fine_cells.settle(device, &places, &links, Nearest::OfSites(fine.input()))?;
             Some(links)
         }
     };
 
-    // 3. The mean. Where there is none, rays from the point itself.
+    // 3. The mean. Where there is none, the point counts as a fine site itself.
     let record = match &links {
         Some(links) => GatherPoints { lookup: fine_cells.lookup(device, &places, links), fine: fine.input(), ..record },
         None => GatherPoints { all_alone: 1, ..record },
@@ -184,14 +185,26 @@ fn gather_part<R: Runtime>(
     let both = GatherPoints { count: places.len() as u32, ..record };
     device.threads("mean_light", places.len(), &both)?;
     let count = read_count(&alone_count)?;
-    let at_once = device.at_once(how.fans.far[0]);
+    let at_once = device.at_once(if how.alone { how.fans.far[0] } else { how.fans.near });
     for first in (0..count).step_by(at_once) {
         let count = at_once.min(count - first);
         let sites = cuda.pool().room("surface points that see no site", count)?;
-        let some = GatherPoints { sites: sites.output(), first_alone: first as u32, count: count as u32, ..record };
+        let asked = cuda.pool().room("these as places that ask", count)?;
+        let some = GatherPoints {
+            sites: sites.output(),
+            asked: asked.output(),
+            first_alone: first as u32,
+            count: count as u32,
+            ..record
+        };
         device.threads("take_alone", count, &some)?;
-        let own = far::plain(device, bounce, sites, how.fans.far)?;
-        device.threads("give_alone", count, &GatherPoints { far: own.input(), ..some })?;
+        if how.alone {
+            let far = far::plain(device, coarse.bounce, sites, how.fans.far)?;
+            device.threads("give_alone", count, &GatherPoints { far: far.input(), ..some })?;
+        } else {
+            let own = fine::plain(device, Asking { sites, places: asked }, &mut coarse)?;
+            device.threads("give_alone", count, &GatherPoints { own: own.input(), ..some })?;
+        }
     }
     device.threads("add_means", rays.len(), &record)
 }
