@@ -29,6 +29,8 @@ pub use findings::Findings;
 pub use machine::commit;
 pub use output::{OutputError, check_output_folder};
 pub use plan::{Plan, Suite};
-pub(crate) use results::{ANTIALIASING, FILM, FLIGHT, LIGHT, MANY_LIGHTS, SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};
+pub(crate) use results::{
+    ANTIALIASING, FILM, FLICKER, FLIGHT, LIGHT, MANY_LIGHTS, SHADOWS, STAGES, WHOLE, WHOLE_FRAMES,
+};
 pub use results::{Gpu, Key, Machine, Picture, Program, Results, Row, Samples};
 pub use suites::{run, run_keeping};

@@ -25,7 +25,7 @@ pub enum Suite {
     Stages,
     /// Several samples of a pixel: time and errors.
     Antialiasing,
-    /// A film with gathered light: flicker, and what is kept from frame to frame.
+    /// A film: flicker of gathered light and of soft shadows, and what is kept from frame to frame.
     Flight,
     /// What cut-outs, mirrors, gathered light and lamps cost.
     Light,
@@ -77,7 +77,9 @@ impl Suite {
             Suite::Antialiasing => {
                 "what several samples of a pixel cost and gain, against a converged image, on any scene"
             }
-            Suite::Flight => "flicker of a film with gathered light, and what it gains by keeping it, on any scene",
+            Suite::Flight => {
+                "flicker of a film with gathered light and with soft shadows, and what it gains by keeping light, on any scene"
+            }
             Suite::Light => "what cut-outs, mirrors, gathered light and a thousand lamps cost, on any scene",
             Suite::Film => "what films gain by keeping what frames have in common, on any scene",
         }

@@ -104,8 +104,11 @@ pub(crate) const SHADOWS: &str = "shadows";
 /// The experiment that compares defaults.
 pub(crate) const WHOLE_FRAMES: &str = "whole frames";
 
-/// The experiment on flicker.
+/// The experiment on a flight with gathered light.
 pub(crate) const FLIGHT: &str = "flight";
+
+/// The experiment on flicker of shadows.
+pub(crate) const FLICKER: &str = "flicker";
 
 /// The experiment on what films keep.
 pub(crate) const FILM: &str = "film";

@@ -1,4 +1,5 @@
-//! A slow flight through a scene under a sky, with gathered light: whether the film flickers, and what is gained by keeping what was gathered.
+//! A slow flight through a scene: whether the film flickers, with gathered light and with soft shadows, and what is gained by keeping what was
+//! gathered.
 //!
 //! From frame to frame the camera goes ahead by 1/2400 of the scene's diagonal and turns by a tenth of a degree. A frame is compared with the
 //! one before, moved to where its surfaces are seen now ([`reproject`]): nothing but the view has changed, so that they should be the same. The
@@ -17,8 +18,11 @@
 //! * `fresh`: some frames once more without it. `differing_frames` counts those that are not the same to the bit;
 //! * `rays`: pairs of frames in which surface points gather for themselves. `kept_flicker` and `kept_gathered_flicker` are those of the flight
 //!   in the same pairs, `flicker_by_rays` and `gathered_by_rays` the ratios: above 1 the flight flickers more.
+//!
+//! These are under a sky and without other lights. The flicker of shadows of the scene's own lights is in another experiment ([`shadows`]).
 
 mod reproject;
+mod shadows;
 
 use std::time::{Duration, Instant};
 
@@ -47,7 +51,9 @@ const WAY: f32 = 1.0 / 2400.0;
 const TURN: f32 = 0.1;
 /// Where the sun stands: its light comes into courtyards, but not everywhere.
 const SUN: SunPosition = SunPosition { elevation: 55.0, azimuth: 200.0 };
-/// The part of the time that the flight itself may take.
+/// The part of the time for gathered light.
+const PART_FOR_GATHERED: f64 = 0.75;
+/// The part of that which the flight itself may take.
 const PART_FOR_FLIGHT: f64 = 0.6;
 
 pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings) -> Result<(), BenchError> {
@@ -56,8 +62,10 @@ pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings)
     subjects::each(plan, observer, |subject, share| {
         let scene = PreparedScene::new(&under_a_sky(&subject.scene)?, &Acceleration::Auto, &Silent(observer))?;
         for engine in &engines {
+            let (begin, share) = (Instant::now(), share / engines.len() as u32);
             let flight = Flight::new(plan, subject, engine, &scene);
-            flight.measure(plan, share / engines.len() as u32, observer, findings)?;
+            flight.measure(plan, share.mul_f64(PART_FOR_GATHERED), observer, findings)?;
+            shadows::measure(plan, subject, engine, share.saturating_sub(begin.elapsed()), observer, findings)?;
         }
         Ok(())
     })
@@ -108,16 +116,9 @@ impl Series {
 
 impl Flight<'_> {
     fn new<'a>(plan: &Plan, subject: &Subject, engine: &'a Engine, scene: &'a PreparedScene) -> Flight<'a> {
-        let width = plan.side_or(WIDTHS);
-        let frames = plan.frames.unwrap_or(FRAMES[usize::from(plan.quick)]).max(2);
-        let settings = Settings::default().with_size([width, (3 * width / 4).max(1)]).with_aa(1).with_layers(true);
-        let keys = vec![
-            ("scene", subject.name.as_str().into()),
-            ("size", f64::from(width).into()),
-            ("frames", f64::from(frames).into()),
-            ("accel", scene.geometry.accelerator.name().into()),
-        ];
-        Flight { engine, scene, settings: settings.with_ambient_light(AmbientSource::Mesh), frames, keys }
+        let frames = frames(plan);
+        let settings = settings(plan).with_ambient_light(AmbientSource::Mesh);
+        Flight { engine, scene, settings, frames, keys: keys(plan, subject, scene) }
     }
 
     fn measure(
@@ -128,9 +129,8 @@ impl Flight<'_> {
         findings: &mut Findings,
     ) -> Result<(), BenchError> {
         let begin = Instant::now();
-        let pairs = PAIRS[usize::from(plan.quick)].min(self.frames - 1);
-        // The first frames of pairs that are rendered by rays, all along the way.
-        let chosen: Vec<u32> = (0..pairs).map(|pair| (2 * pair + 1) * (self.frames - 1) / (2 * pairs)).collect();
+        // Pairs of frames that are rendered by rays.
+        let chosen = pairs(self.frames, PAIRS[usize::from(plan.quick)]);
 
         // 1. The flight.
         let (mut kept, mut fresh) = (Series::default(), Series::default());
@@ -153,7 +153,7 @@ impl Flight<'_> {
                 fresh.add(&again);
             }
             let stops = *exposure.get_or_insert_with(|| frame.image.auto_exposure());
-            let shot = Shot { camera: self.camera(number), frame: frame.image };
+            let shot = Shot { camera: camera(self.scene, number), frame: frame.image };
             changes.extend(last.as_ref().map(|last| change(last, &shot, stops)).transpose()?);
             last = Some(shot);
         }
@@ -175,8 +175,9 @@ impl Flight<'_> {
             let Some(of_flight) = changes.get(pair as usize) else { break };
             if !own.is_empty() && begin.elapsed() >= share {
                 findings.notes.push(format!(
-                    "Because of the time budget {} of {pairs} pairs of frames were rendered by rays.",
-                    own.len()
+                    "Because of the time budget {} of {} pairs of frames were rendered by rays.",
+                    own.len(),
+                    chosen.len()
                 ));
                 break;
             }
@@ -185,7 +186,7 @@ impl Flight<'_> {
                 observer.note(&format!("frame {number} by rays"));
                 let frame = self.render(number, AmbientSource::Rays, Some(&mut cache), observer)?;
                 by_rays.add(&frame);
-                shots.push(Shot { camera: self.camera(number), frame: frame.image });
+                shots.push(Shot { camera: camera(self.scene, number), frame: frame.image });
             }
             own.push(change(&shots[0], &shots[1], exposure)?);
             of_kept.push(of_flight.clone());
@@ -203,16 +204,6 @@ impl Flight<'_> {
         Row::new(FLIGHT, keys.chain(self.engine.keys()))
     }
 
-    /// Where the camera is in a frame: ahead at constant height, turned to its left.
-    fn camera(&self, number: u32) -> Camera {
-        let mut camera = self.scene.scene.cameras[0].clone();
-        let (along, up) = (number as f32, camera.up.normalize());
-        let ahead = (camera.direction - camera.direction.dot(up) * up).normalize_or_zero();
-        let position = camera.position + along * WAY * self.scene.geometry.bounds.diagonal() * ahead;
-        camera.direction = Quat::from_axis_angle(up, (along * TURN).to_radians()) * camera.direction;
-        camera.with_position(position)
-    }
-
     fn render(
         &self,
         number: u32,
@@ -220,7 +211,7 @@ impl Flight<'_> {
         cache: Option<&mut MeshCache>,
         observer: &dyn Observer,
     ) -> Result<Frame, BenchError> {
-        let settings = self.settings.clone().with_ambient_light(light).with_camera(self.camera(number));
+        let settings = self.settings.clone().with_ambient_light(light).with_camera(camera(self.scene, number));
         let (renderer, silent) = (&self.engine.renderer, Silent(observer));
         let frame = match cache {
             Some(cache) => renderer.render_with(cache, self.scene, &settings, &silent),
@@ -228,6 +219,42 @@ impl Flight<'_> {
         };
         Ok(frame?)
     }
+}
+
+/// Frames of a flight.
+fn frames(plan: &Plan) -> u32 {
+    plan.frames.unwrap_or(FRAMES[usize::from(plan.quick)]).max(2)
+}
+
+/// What all frames have in common.
+fn settings(plan: &Plan) -> Settings {
+    let width = plan.side_or(WIDTHS);
+    Settings::default().with_size([width, (3 * width / 4).max(1)]).with_aa(1).with_layers(true)
+}
+
+fn keys(plan: &Plan, subject: &Subject, scene: &PreparedScene) -> Vec<(&'static str, Key)> {
+    vec![
+        ("scene", subject.name.as_str().into()),
+        ("size", f64::from(plan.side_or(WIDTHS)).into()),
+        ("frames", f64::from(frames(plan)).into()),
+        ("accel", scene.geometry.accelerator.name().into()),
+    ]
+}
+
+/// The first frames of some pairs, all along the way.
+fn pairs(frames: u32, wanted: u32) -> Vec<u32> {
+    let pairs = wanted.min(frames - 1);
+    (0..pairs).map(|pair| (2 * pair + 1) * (frames - 1) / (2 * pairs)).collect()
+}
+
+/// Where the camera is in a frame: ahead at constant height, turned to its left.
+fn camera(scene: &PreparedScene, number: u32) -> Camera {
+    let mut camera = scene.scene.cameras[0].clone();
+    let (along, up) = (number as f32, camera.up.normalize());
+    let ahead = (camera.direction - camera.direction.dot(up) * up).normalize_or_zero();
+    let position = camera.position + along * WAY * scene.geometry.bounds.diagonal() * ahead;
+    camera.direction = Quat::from_axis_angle(up, (along * TURN).to_radians()) * camera.direction;
+    camera.with_position(position)
 }
 
 fn mean(values: impl Iterator<Item = f64> + Clone) -> Option<f64> {
@@ -285,7 +312,7 @@ mod tests {
     #[test]
     fn a_flight_has_its_flicker_its_rays_and_its_reference() {
         let findings = found(Plan { frames: Some(5), ..Plan::new(true) });
-        let [kept, fresh, rays] = &findings.rows[..] else { panic!("{findings:?}") };
+        let [kept, fresh, rays, shadows @ ..] = &findings.rows[..] else { panic!("{findings:?}") };
         assert_eq!([kept, fresh, rays].map(|row| row.keys["light"].clone()), ["kept", "fresh", "rays"].map(Key::from));
         assert_eq!((kept.values["pairs"], kept.seconds[WHOLE].0.len()), (4.0, 4));
         assert_eq!((fresh.values["differing_frames"], fresh.seconds[WHOLE].0.len()), (0.0, 2));
@@ -294,12 +321,26 @@ mod tests {
         assert!(rays.values["gather_rays_per_pixel"] > 500.0 && rays.values["flicker_by_rays"] > 0.0);
         assert!([kept, rays].iter().all(|row| (0.2..1.0).contains(&row.values["compared_share"])), "{findings:?}");
         assert_eq!(findings.notes, Vec::<String>::new());
+
+        let methods = ["area", "lists", "half-ball", "reference"].map(Key::from);
+        assert_eq!(shadows.iter().map(|row| row.keys["shadows"].clone()).collect::<Vec<_>>(), methods);
+        assert_eq!(shadows.iter().map(|row| row.values["pairs"]).collect::<Vec<_>>(), [3.0, 3.0, 3.0, 1.0]);
+        assert!(shadows.iter().all(|row| row.values["compared_share"] > 0.2 && row.values["flicker"] > 0.0));
+        let [area, .., reference] = shadows else { panic!("{findings:?}") };
+        assert_eq!(area.values["flicker_by_area"], 1.0);
+        assert!(reference.values["flicker_by_area"] < 1.0 && area.values["flicker"] < 0.1, "{findings:?}");
     }
 
     #[test]
     fn without_time_a_flight_is_short() {
         let findings = found(Plan { budget: Duration::ZERO, frames: Some(9), ..Plan::new(true) });
-        assert_eq!((findings.rows.len(), findings.rows[0].values["pairs"]), (3, 1.0));
-        assert_eq!(findings.notes, ["Because of the time budget the flight ended after 2 frames."]);
+        assert_eq!((findings.rows.len(), findings.rows[0].values["pairs"]), (7, 1.0));
+        assert_eq!(
+            findings.notes,
+            [
+                "Because of the time budget the flight ended after 2 frames.",
+                "Because of the time budget shadows were compared in 1 of 3 pairs of frames."
+            ]
+        );
     }
 }

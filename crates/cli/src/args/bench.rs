@@ -14,8 +14,8 @@ use crate::value::{Budget, Smooth};
 /// Suites: `thesis` reproduces all tables and figures of the thesis, `quality` measures errors relative to converged area shadows
 /// and the cost of shadow rays with equal error, `rays` measures rays per second for each acceleration structure, `stages` the time
 /// of each stage by acceleration structure, kind of short tests and radius, `antialiasing` time and errors of several samples of a
-/// pixel, `flight` the flicker of a film with gathered light and what it gains by keeping it, `light` what cut-outs, mirrors, gathered
-/// light and lamps cost. A table is printed; --json saves all rows, for `lightmesh bench compare` and `lightmesh report`. To name a file
+/// pixel, `flight` the flicker of a film with gathered light and with soft shadows and what it gains by keeping light, `light` what
+/// cut-outs, mirrors, gathered light and lamps cost, `film` what films gain by keeping what frames have in common. A table is printed; --json saves all rows, for `lightmesh bench compare` and `lightmesh report`. To name a file
 /// `compare`, write ./compare.
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true)]

@@ -12,7 +12,7 @@ use super::document::{Block, Column};
 use super::numbers;
 use super::runs::{Measured, Runs, distinct};
 use crate::Key;
-pub(crate) use crate::{ANTIALIASING, FILM, FLIGHT, LIGHT, MANY_LIGHTS, SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};
+pub(crate) use crate::{ANTIALIASING, FILM, FLICKER, FLIGHT, LIGHT, MANY_LIGHTS, SHADOWS, STAGES, WHOLE, WHOLE_FRAMES};
 
 /// Time against the number of lights, and the break-even.
 pub(crate) const LIGHTS: &str = "figure 11";
@@ -60,7 +60,7 @@ pub(crate) fn of(experiment: &str, runs: &Runs) -> (String, Vec<Block>) {
         "rays" => rays::rates(&rows),
         STAGES => thesis::by_stage(&rows),
         // They have errors, but in tables of their own.
-        SHADOWS | ANTIALIASING | FLIGHT | FILM | LIGHT => generic::blocks(experiment, &rows),
+        SHADOWS | ANTIALIASING | FLIGHT | FLICKER | FILM | LIGHT => generic::blocks(experiment, &rows),
         WHOLE_FRAMES => shadows::whole_frames(&rows),
         MANY_LIGHTS => shadows::many_lights(&rows),
         _ if quality::fits(&rows) => quality::errors(experiment, &rows),
@@ -89,6 +89,7 @@ pub(crate) fn title(experiment: &str) -> String {
         ANTIALIASING => "Antialiasing: time and errors by those of one sample of a pixel",
         MANY_LIGHTS => "Many lights: time and memory of occluder lists",
         FLIGHT => "A flight with gathered light: flicker, rays and time",
+        FLICKER => "Flicker of soft shadows on that flight",
         FILM => "Films: what is kept from frame to frame",
         LIGHT => "What light costs: cut-outs, mirrors, gathered light, lamps",
         "soft shadows" => "Soft shadows with other renderers",
