@@ -1,4 +1,4 @@
-//! Saved light points: what they see of each light, for later runs and for other devices.
+//! Saved light points and gathered light: what light points see of each light, and what surfaces gather, for later runs and for other devices.
 //!
 //! A file is a header, compressed content (Zstandard), and a trailer. All numbers are little-endian:
 //!
@@ -19,6 +19,8 @@
 
 mod content;
 mod fault;
+mod gathered;
+mod input;
 mod pack;
 
 use std::io::{self, BufWriter, Write};
@@ -28,13 +30,14 @@ use lightmesh_files::{Output, Portion, ReadError, read};
 use lightmesh_memory::{Budget, Short};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
-use super::Section;
+use super::Content;
 use crate::prepared::PreparedScene;
 pub use fault::{MeshFault, MeshFileError, MeshSaveError};
 
 const MAGIC: [u8; 8] = *b"LM MESH\0";
-/// To be raised with every change of the format, and of what decides what light points see.
-const VERSION: u32 = 1;
+/// To be raised with every change of the format, of what decides what light points see, and
+/// of how light is gathered.
+const VERSION: u32 = 2;
 const HEADER: usize = 24;
 const TRAILER: usize = 16;
 
@@ -44,24 +47,26 @@ const TRAILER: usize = 16;
 pub struct SavedMesh {
     /// Values of light points: light points times lights.
     pub values: u64,
+    /// Sites that gathered light.
+    pub sites: u64,
     /// Bytes of the file.
     pub bytes: u64,
 }
 
 /// Writes what is known of a scene's geometry, whole or not at all.
-pub(super) fn write(path: &Path, scene: &PreparedScene, sections: &[Section]) -> Result<u64, MeshSaveError> {
+pub(super) fn write(path: &Path, scene: &PreparedScene, content: &Content) -> Result<u64, MeshSaveError> {
     let file = Output::to(path)?;
-    write_to(file, scene, sections).map_err(|reason| MeshSaveError::Write { path: path.into(), reason })
+    write_to(file, scene, content).map_err(|reason| MeshSaveError::Write { path: path.into(), reason })
 }
 
-fn write_to(mut file: Output, scene: &PreparedScene, sections: &[Section]) -> io::Result<u64> {
+fn write_to(mut file: Output, scene: &PreparedScene, content: &Content) -> io::Result<u64> {
     let mut output = Hashed { inner: BufWriter::new(&mut file), hash: Xxh3::new(), bytes: 0 };
     output.write_all(&MAGIC)?;
     output.write_all(&VERSION.to_le_bytes())?;
     output.write_all(&(scene.geometry.triangles.stored().len() as u32).to_le_bytes())?;
     output.write_all(&scene.geometry.hash().to_le_bytes())?;
     let mut counted = Hashed { inner: pack::encoder(&mut output)?, hash: Xxh3::new(), bytes: 0 };
-    content::write(&mut counted, sections)?;
+    content::write(&mut counted, content)?;
     let length = counted.bytes;
     pack::finish(counted.inner)?;
     output.write_all(&length.to_le_bytes())?;
@@ -95,7 +100,7 @@ impl<W: Write> Write for Hashed<W> {
 }
 
 /// Reads what was saved of a scene's geometry.
-pub(super) fn load(path: &Path, scene: &PreparedScene, budget: Budget) -> Result<Vec<Section>, MeshFileError> {
+pub(super) fn load(path: &Path, scene: &PreparedScene, budget: Budget) -> Result<Content, MeshFileError> {
     let portion = |wanted| Portion { wanted, budget };
     let bytes = |wanted| read(path, portion(wanted)).map_err(unread);
     // What is no mesh is not read.
@@ -111,7 +116,7 @@ fn unread(error: ReadError) -> MeshFault {
 }
 
 /// Decodes all bytes of a file.
-fn decode(bytes: &[u8], scene: &PreparedScene, budget: Budget) -> Result<Vec<Section>, MeshFault> {
+fn decode(bytes: &[u8], scene: &PreparedScene, budget: Budget) -> Result<Content, MeshFault> {
     // 1. Is it what was saved for this geometry?
     let header = Header::parse(bytes)?;
     let Some((content, hash)) = bytes.split_last_chunk::<8>() else { return Err(MeshFault::Damaged(CUT_OFF)) };
