@@ -112,10 +112,10 @@ fn same_files<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
     let rays = |frame: &Frame| frame.stats.counts.gather_rays;
     assert!(rays(&with) < rays(&fresh) && rays(&with_on_host) < rays(&fresh_on_host), "what was read is used");
     // 2. It is all there again.
-    assert_eq!(on_host.save(&again, scene).unwrap(), Some(saved));
-    assert!(bytes(&again) == bytes(&of_device), "the host writes another file");
+    assert_eq!(on_host.save(&again, scene).unwrap().map(|again| again.sites >= saved.sites), Some(true));
+    assert!(!R::EXACT || bytes(&again) == bytes(&of_device), "the host writes another file");
     kept.save(&again, scene).unwrap();
-    assert!(bytes(&again) == bytes(&of_host), "the device writes another file");
+    assert!(!R::EXACT || bytes(&again) == bytes(&of_host), "the device writes another file");
     // 3. A device adds to what it read.
     let elsewhere = self::settings(subject, 1.5);
     let mut kept = Kept::load(&of_device, scene, Default::default()).unwrap();

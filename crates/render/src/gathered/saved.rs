@@ -143,11 +143,11 @@ impl SavedNode {
     }
 
     /// Whether a surface was found.
-    pub(super) fn is_somewhere(&self) -> bool {
+    pub(crate) fn is_somewhere(&self) -> bool {
         self.place != SavedPlace::default()
     }
 
-    /// What is known of nodes that nothing reaches is known.
+    /// All is known of nodes where no surface was found.
     pub(super) fn completed(self) -> SavedNode {
         if self.is_somewhere() { self } else { SavedNode { known: ORDERS as u8, ..self } }
     }

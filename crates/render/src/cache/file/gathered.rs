@@ -11,11 +11,13 @@
 //! | 56 or 2104 each | values: the words of [`FineLight`] or [`FarLight`] |
 //! | 8 | number of nodes |
 //! | 1 to 9, 1 each | their names, as the keys; how many values are known |
-//! | 64 each | as of sites; the distance of what is nearest; values |
+//! | 1, 36 each | 1 if a surface was found there, else 0; if so, as of sites |
+//! | 28 each | the distance of what is nearest; values |
 
 use std::io::{self, Read, Write};
 
 use bytemuck::Pod;
+use glam::Vec3;
 use lightmesh_layout::constants::SURFACE_KINDS;
 use lightmesh_layout::gathered::{FarLight, FineLight};
 
@@ -29,6 +31,10 @@ use crate::gathered::saved::{
 
 /// Added to the kind of a site that has a value.
 const HAS_VALUE: u8 = 1 << 4;
+/// More cells or nodes than this have no numbers.
+const MOST: u64 = 1 << 28;
+/// By how much the square of the length of a unit vector may differ from 1.
+const ROUNDING: f32 = 1e-3;
 
 pub(super) fn write(output: &mut impl Write, saved: &SavedGathered) -> io::Result<()> {
     let SavedLight { fine, far, nodes } = &saved.light;
@@ -63,7 +69,10 @@ fn write_nodes(output: &mut impl Write, nodes: &[SavedNode]) -> io::Result<()> {
         before = node.name;
     }
     nodes.iter().try_for_each(|node| {
-        write_words(output, &node.place)?;
+        output.write_all(&[node.is_somewhere().into()])?;
+        if node.is_somewhere() {
+            write_words(output, &node.place)?;
+        }
         write_words(output, &node.nearest)?;
         write_words(output, &node.values)
     })
@@ -112,9 +121,10 @@ impl<R: Read> Input<R> {
         let names = self.keys(END_OF_NAMES, ORDERS as u8)?;
         let mut nodes = Vec::new();
         for (name, known) in names {
+            let [is_somewhere] = self.bytes()?;
             let node = SavedNode {
                 name,
-                place: self.place()?,
+                place: if is_somewhere == 0 { SavedPlace::default() } else { self.place()? },
                 nearest: self.words()?,
                 known: known as u8,
                 values: self.words()?,
@@ -128,7 +138,7 @@ impl<R: Read> Input<R> {
     /// Keys below `end` that ascend, each with a number from 1 to `most`.
     fn keys(&mut self, end: u64, most: u8) -> Result<Vec<(u64, u32)>, MeshFault> {
         let count = self.long()?;
-        if count > u64::from(MOST) {
+        if count > MOST {
             return Err(MeshFault::Damaged("it has more cells than there can be"));
         }
         let mut keys: Vec<(u64, u32)> = Vec::new();
@@ -149,9 +159,11 @@ impl<R: Read> Input<R> {
         Ok(keys)
     }
 
+    /// A point of the surfaces: rays can begin there.
     fn place(&mut self) -> Result<SavedPlace, MeshFault> {
         let place: SavedPlace = self.words()?;
-        if place.as_flattened().iter().all(|number| number.is_finite()) {
+        let is_finite = place.as_flattened().iter().all(|number| number.is_finite());
+        if is_finite && (Vec3::from(place[2]).length_squared() - 1.0).abs() < ROUNDING {
             Ok(place)
         } else {
             Err(MeshFault::Damaged("it has surfaces that are nowhere"))
@@ -168,6 +180,3 @@ impl<R: Read> Input<R> {
         Ok(value)
     }
 }
-
-/// More cells or nodes than this have no numbers.
-const MOST: u32 = 1 << 28;

@@ -50,11 +50,12 @@ fn gathered(scene: &PreparedScene) -> SavedGathered {
     let site = |(kind, has_value)| SavedSite { kind, has_value, place };
     let cells = vec![(0, 1), (5 << 51, 3), ((1 << 59) - 1, 2)];
     let sites: Vec<SavedSite> = [(0, true), (1, false), (7, true), (11, false), (2, false), (3, true)].map(site).into();
-    let node = |(name, known)| SavedNode { name, place, nearest: f32::INFINITY, known, values: [[0.5; 3], [0.75; 3]] };
+    let node =
+        |(name, known, place)| SavedNode { name, place, nearest: f32::INFINITY, known, values: [[0.5; 3], [0.75; 3]] };
     let light = SavedLight {
         fine: SavedCells { cells: cells.clone(), sites: sites.clone(), values: vec![words(1); 3] },
         far: SavedCells { cells: cells[..1].into(), sites: sites[..1].into(), values: vec![words(2)] },
-        nodes: [(3, 1), (4 << 55, 2), ((1 << 63) - 1, 2)].map(node).into(),
+        nodes: [(3, 1, place), (4 << 55, 2, Default::default()), ((1 << 63) - 1, 2, place)].map(node).into(),
     };
     SavedGathered { geometry: scene.geometry.hash(), sources: 0x1234_5678_9abc_def0, light }
 }
@@ -250,7 +251,9 @@ fn gathered_light_that_cannot_be_is_refused() {
     assert!(refused(&[&none, &none, &number(1), &[9, 3]]).contains("more than it can have"));
     assert!(refused(&[&number(1), &[9, 1], &[12]]).contains("of no kind"));
     assert!(refused(&[&number(1), &[9, 1], &[0x20]]).contains("of no kind"));
-    assert!(refused(&[&number(1), &[9, 1], &[0], &[0xff; 36]]).contains("nowhere"));
+    for place in [[f32::NAN; 9], [0.0; 9], [1.0; 9]] {
+        assert!(refused(&[&number(1), &[9, 1], &[0], bytemuck::cast_slice(&place)]).contains("nowhere"));
+    }
     assert!(decoded(&with_content(&file, &[0, 0, 0, 0, 2]), &scene).is_err());
 }
 
@@ -262,7 +265,9 @@ fn gathered_light_takes_no_more_memory_than_there_is() {
     let cells = [&(1u64 << 26).to_le_bytes()[..], &[1; 64 << 20]].concat();
     assert_too_large(&with_content(&file, &of_gathered(&[&cells])), &scene);
     let many = 1u64 << 20;
-    let cells = [&many.to_le_bytes()[..], &[1; 2 << 20], &[0; 37 << 20]].concat();
+    let place: Vec<u8> =
+        [0f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0].iter().flat_map(|axis| axis.to_le_bytes()).collect();
+    let cells = [&many.to_le_bytes()[..], &[1; 2 << 20], &[0; 1 << 20], &place.repeat(1 << 20)].concat();
     assert_too_large(&with_content(&file, &of_gathered(&[&cells])), &scene);
     let none = 0u64.to_le_bytes();
     let nodes = [&many.to_le_bytes()[..], &[1; 2 << 20], &[0; 64 << 20]].concat();
