@@ -4,9 +4,10 @@
 //! for an area light, the sampling. As long as these stay the same, no long test has to be repeated. A [`MeshCache`] belongs to the
 //! caller; an image is bit-identical with and without it.
 //!
-//! A backend keeps a [`Table`] for each geometry: a row for each brick, a column for each light. Tables of all backends go to the same
-//! [files](file), and come from there, by way of one [form](stored).
+//! A backend keeps a [`Table`] for each geometry: a row for each brick, a column for each light. What all
+//! backends keep goes to the same [files](file), and comes from there, by way of one [form](content).
 
+mod content;
 mod device;
 mod file;
 mod host;
@@ -17,9 +18,10 @@ mod stored;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
 
-use glam::{UVec3, Vec3};
 use lightmesh_memory::Budget;
 
+use content::save;
+pub(crate) use content::{Content, Places, SavedGathered, Section};
 pub use device::DeviceTable;
 pub use file::{MeshFault, MeshFileError, MeshSaveError, SavedMesh};
 pub use host::HostTable;
@@ -49,63 +51,6 @@ pub struct MeshCache {
     read: Content,
     /// The file.
     file: PathBuf,
-}
-
-/// What a file holds of one geometry.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Section {
-    /// Hash of the geometry.
-    geometry: u64,
-    places: Places,
-    stored: Stored,
-}
-
-/// What surfaces of a geometry gathered, as files hold it.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct SavedGathered {
-    /// Hash of the geometry.
-    geometry: u64,
-    /// Hash of all that it depends on.
-    sources: u64,
-    light: SavedLight,
-}
-
-/// What files hold.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Content {
-    points: Vec<Section>,
-    gathered: Vec<SavedGathered>,
-}
-
-impl Content {
-    fn is_empty(&self) -> bool {
-        self.points.is_empty() && self.gathered.is_empty()
-    }
-
-    /// Number of values of light points.
-    fn len(&self) -> u64 {
-        self.points.iter().map(Section::len).sum()
-    }
-
-    /// Number of sites that gathered light.
-    fn sites(&self) -> u64 {
-        self.gathered.iter().map(|gathered| gathered.light.len()).sum()
-    }
-
-    /// Bytes that light points take.
-    fn memory_of_points(&self) -> u64 {
-        self.points.iter().map(|section| section.stored.memory()).sum()
-    }
-
-    /// Bytes that gathered light takes.
-    fn memory_of_gathered(&self) -> u64 {
-        self.gathered.iter().map(|gathered| gathered.light.memory()).sum()
-    }
-
-    fn append(&mut self, other: &mut Content) {
-        self.points.append(&mut other.points);
-        self.gathered.append(&mut other.gathered);
-    }
 }
 
 impl MeshCache {
@@ -197,31 +142,6 @@ impl MeshCache {
     }
 }
 
-impl Section {
-    /// Number of values.
-    fn len(&self) -> u64 {
-        self.stored.len()
-    }
-}
-
-/// Writes the largest section of each geometry of a scene, and most of what its surfaces gathered.
-fn save(path: &Path, scene: &PreparedScene, content: Content) -> Result<Option<SavedMesh>, MeshSaveError> {
-    let Content { mut points, mut gathered } = content;
-    let order: Vec<u64> = scene.geometry.all_parts().iter().map(|geometry| geometry.hash()).collect();
-    let place = |section: &Section| order.iter().position(|&hash| hash == section.geometry);
-    points.retain(|section| section.len() > 0 && place(section).is_some());
-    points.sort_by_key(|section| (place(section), u64::MAX - section.len()));
-    points.dedup_by_key(|section| section.geometry);
-    gathered.retain(|gathered| gathered.light.len() > 0 && gathered.geometry == scene.geometry.hash());
-    gathered.sort_by_key(|gathered| u64::MAX - gathered.light.len());
-    gathered.truncate(1);
-    let content = Content { points, gathered };
-    if content.is_empty() {
-        return Ok(None);
-    }
-    Ok(Some(SavedMesh { values: content.len(), sites: content.sites(), bytes: file::write(path, scene, &content)? }))
-}
-
 /// What a backend knows about the light points of one geometry.
 #[allow(clippy::len_without_is_empty, reason = "not needed")]
 pub trait Table: Default {
@@ -286,14 +206,6 @@ struct Known<T> {
     geometry: Weak<PreparedGeometry>,
     places: Places,
     table: T,
-}
-
-/// What determines the positions of light points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Places {
-    anchor: Vec3,
-    step: f32,
-    number: UVec3,
 }
 
 /// What surfaces of a geometry gather.

@@ -1,4 +1,5 @@
-//! Saved light points and gathered light: what light points see of each light, and what surfaces gather, for later runs and for other devices.
+//! Saved light points and gathered light: what light points see of each light, and what surfaces gather, for later runs and for other
+//! devices.
 //!
 //! A file is a header, compressed content (Zstandard), and a trailer. All numbers are little-endian:
 //!
@@ -13,8 +14,8 @@
 //! | 8 | hash of everything before (XXH3) |
 //!
 //! A file is accepted only if it belongs to the geometry and its hash is right; light points at other places than an image's are found out
-//! with the first image ([`MeshFault::OtherStep`]), and a light other than the file's makes only its own values stale. What a file says of its
-//! size is never believed: memory is taken as content appears, and within the budget. A hash is no signature: a file that someone forges
+//! with the first image ([`MeshFault::OtherStep`]), as are other sources of gathered light ([`MeshFault::OtherSources`]), and a light other than
+//! the file's makes only its own values stale. What a file says of its size is never believed: memory is taken as content appears, and within the budget. A hash is no signature: a file that someone forges
 //! with care yields wrong shadows, but nothing worse.
 
 mod content;
