@@ -1,12 +1,8 @@
 //! What mesh files hold, in the form that is the same for all backends: light points and gathered light.
 
-use std::path::Path;
-
 use glam::{UVec3, Vec3};
 
-use super::file;
 use super::stored::Stored;
-use super::{MeshSaveError, SavedMesh};
 use crate::gathered::saved::SavedLight;
 use crate::prepared::PreparedScene;
 
@@ -65,6 +61,20 @@ impl Content {
         self.points.append(&mut other.points);
         self.gathered.append(&mut other.gathered);
     }
+
+    /// The largest section of each geometry of a scene, and most of what its surfaces gathered.
+    pub(super) fn only_of(self, scene: &PreparedScene) -> Content {
+        let Content { mut points, mut gathered } = self;
+        let order: Vec<u64> = scene.geometry.all_parts().iter().map(|geometry| geometry.hash()).collect();
+        let place = |section: &Section| order.iter().position(|&hash| hash == section.geometry);
+        points.retain(|section| section.len() > 0 && place(section).is_some());
+        points.sort_by_key(|section| (place(section), u64::MAX - section.len()));
+        points.dedup_by_key(|section| section.geometry);
+        gathered.retain(|gathered| gathered.light.len() > 0 && gathered.geometry == scene.geometry.hash());
+        gathered.sort_by_key(|gathered| u64::MAX - gathered.light.len());
+        gathered.truncate(1);
+        Content { points, gathered }
+    }
 }
 
 impl Section {
@@ -80,22 +90,4 @@ pub(crate) struct Places {
     pub(super) anchor: Vec3,
     pub(super) step: f32,
     pub(super) number: UVec3,
-}
-
-/// Writes the largest section of each geometry of a scene, and most of what its surfaces gathered.
-pub(super) fn save(path: &Path, scene: &PreparedScene, content: Content) -> Result<Option<SavedMesh>, MeshSaveError> {
-    let Content { mut points, mut gathered } = content;
-    let order: Vec<u64> = scene.geometry.all_parts().iter().map(|geometry| geometry.hash()).collect();
-    let place = |section: &Section| order.iter().position(|&hash| hash == section.geometry);
-    points.retain(|section| section.len() > 0 && place(section).is_some());
-    points.sort_by_key(|section| (place(section), u64::MAX - section.len()));
-    points.dedup_by_key(|section| section.geometry);
-    gathered.retain(|gathered| gathered.light.len() > 0 && gathered.geometry == scene.geometry.hash());
-    gathered.sort_by_key(|gathered| u64::MAX - gathered.light.len());
-    gathered.truncate(1);
-    let content = Content { points, gathered };
-    if content.is_empty() {
-        return Ok(None);
-    }
-    Ok(Some(SavedMesh { values: content.len(), sites: content.sites(), bytes: file::write(path, scene, &content)? }))
 }

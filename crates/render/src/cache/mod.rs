@@ -20,7 +20,6 @@ use std::sync::{Arc, Weak};
 
 use lightmesh_memory::Budget;
 
-use content::save;
 pub(crate) use content::{Content, Places, SavedGathered, Section};
 pub use device::DeviceTable;
 pub use file::{MeshFault, MeshFileError, MeshSaveError, SavedMesh};
@@ -83,7 +82,7 @@ impl MeshCache {
             content.append(&mut kept.content(path, scene)?);
         }
         content.append(&mut self.read.clone());
-        save(path, scene, content)
+        file::save(path, scene, content)
     }
 
     /// Why light points, or gathered light, of the file that the cache was loaded from could not be used, if that turned out with an image. Says
@@ -286,7 +285,7 @@ impl<T: Table> Kept<T> {
     /// As [`MeshCache::save`].
     pub fn save(&self, path: impl AsRef<Path>, scene: &PreparedScene) -> Result<Option<SavedMesh>, MeshSaveError> {
         let path = path.as_ref();
-        save(path, scene, self.content(path, scene)?)
+        file::save(path, scene, self.content(path, scene)?)
     }
 
     /// All that is known of a scene's geometry, in the form of files; `path` is for messages.

@@ -28,6 +28,7 @@ use lightmesh_scene::LightKind;
 use super::super::stored::{Stored, StoredAnswers, StoredColumn};
 use super::super::{Content, Places, Section, Seen};
 use super::input::Input;
+use super::output::write_difference;
 use super::{MeshFault, gathered, pack};
 
 /// Bits of a brick's key.
@@ -105,20 +106,6 @@ fn write_seen(output: &mut impl Write, Seen { kind, sampling }: &Seen) -> io::Re
     let (samples, seed) = sampling.unwrap_or_default();
     output.write_all(&samples.to_le_bytes())?;
     output.write_all(&seed.to_le_bytes())
-}
-
-pub(super) fn write_difference(output: &mut impl Write, mut value: u64) -> io::Result<()> {
-    let mut bytes = [0; 10];
-    let mut count = 0;
-    loop {
-        let rest = value >> 7;
-        bytes[count] = (value & 0x7f) as u8 | if rest == 0 { 0 } else { 0x80 };
-        count += 1;
-        value = rest;
-        if rest == 0 {
-            return output.write_all(&bytes[..count]);
-        }
-    }
 }
 
 fn floats(output: &mut impl Write, numbers: &[f32]) -> io::Result<()> {

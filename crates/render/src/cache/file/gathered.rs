@@ -23,8 +23,8 @@ use lightmesh_layout::gathered::{FarLight, FineLight};
 
 use super::super::SavedGathered;
 use super::MeshFault;
-use super::content::write_difference;
 use super::input::Input;
+use super::output::write_difference;
 use crate::gathered::saved::{
     END_OF_CELLS, END_OF_NAMES, ORDERS, SavedCells, SavedLight, SavedNode, SavedPlace, SavedSite,
 };

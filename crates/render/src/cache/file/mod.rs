@@ -13,15 +13,16 @@
 //! | 8 | bytes of the content before compression |
 //! | 8 | hash of everything before (XXH3) |
 //!
-//! A file is accepted only if it belongs to the geometry and its hash is right; light points at other places than an image's are found out
-//! with the first image ([`MeshFault::OtherStep`]), as are other sources of gathered light ([`MeshFault::OtherSources`]), and a light other than
-//! the file's makes only its own values stale. What a file says of its size is never believed: memory is taken as content appears, and within the budget. A hash is no signature: a file that someone forges
-//! with care yields wrong shadows, but nothing worse.
+//! A file is accepted only if it belongs to the geometry and its hash is right. Light points at other places than an image's are found out
+//! with the first image ([`MeshFault::OtherStep`]), as are other sources of gathered light ([`MeshFault::OtherSources`]); a light other than
+//! the file's makes only its own values stale. What a file says of its size is never believed: memory is taken as content appears, and within
+//! the budget. A hash is no signature: a file that someone forges with care yields wrong light, but nothing worse.
 
 mod content;
 mod fault;
 mod gathered;
 mod input;
+mod output;
 mod pack;
 
 use std::io::{self, BufWriter, Write};
@@ -54,8 +55,17 @@ pub struct SavedMesh {
     pub bytes: u64,
 }
 
+/// Writes what there is of a scene's geometry. `None` if that is nothing, and no file is written.
+pub(super) fn save(path: &Path, scene: &PreparedScene, content: Content) -> Result<Option<SavedMesh>, MeshSaveError> {
+    let content = content.only_of(scene);
+    if content.is_empty() {
+        return Ok(None);
+    }
+    Ok(Some(SavedMesh { values: content.len(), sites: content.sites(), bytes: write(path, scene, &content)? }))
+}
+
 /// Writes what is known of a scene's geometry, whole or not at all.
-pub(super) fn write(path: &Path, scene: &PreparedScene, content: &Content) -> Result<u64, MeshSaveError> {
+fn write(path: &Path, scene: &PreparedScene, content: &Content) -> Result<u64, MeshSaveError> {
     let file = Output::to(path)?;
     write_to(file, scene, content).map_err(|reason| MeshSaveError::Write { path: path.into(), reason })
 }
