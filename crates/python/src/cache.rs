@@ -38,7 +38,7 @@ impl MeshCache {
         Ok(MeshCache { kept: Mutex::new(kept) })
     }
 
-    /// Writes the light points, and returns their number; without any, no file is written.
+    /// Writes light points and gathered light, and returns the number of light points; if nothing is kept, no file is written.
     fn save(&self, py: Python<'_>, path: PathBuf, prepared: &PreparedScene) -> PyResult<u64> {
         let saved = py.detach(|| self.lock().save(&path, prepared.prepared())).or_raise()?;
         Ok(saved.map_or(0, |saved| saved.values))

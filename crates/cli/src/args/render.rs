@@ -88,9 +88,11 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "F.exr", requires = "output", help_heading = "Image")]
     pub(crate) layers: Option<PathBuf>,
 
-    /// Read what light points see from this file before the first image, if it exists, and write it there after the last: for later
-    /// runs, other cameras and other devices, with --lookup half-ball. Images are the same without it. A file of other surfaces
-    /// or another step, or one that is damaged, is replaced, with a warning; a light that has changed is computed anew
+    /// Read what light points see, and the light that surfaces gathered, from this file before the first image, if it exists, and write
+    /// it there after the last: for later runs, other cameras and other devices, with --lookup half-ball or --ambient-light mesh.
+    /// Images are the same without it. A file of other surfaces or another step, or one that is damaged, is replaced, with a
+    /// warning; so is its gathered light alone if lights, surroundings or materials are others. What light points see of a light that
+    /// has changed is computed anew
     #[arg(long, value_name = "F", requires = "output", help_heading = "Machine")]
     pub(crate) mesh_file: Option<PathBuf>,
 

@@ -1,8 +1,8 @@
-//! `--mesh-file`: what light points see, from an earlier run and for later ones.
+//! `--mesh-file`: what light points see and what surfaces gather, from an earlier run and for later ones.
 
 use std::path::Path;
 
-use lightmesh::render::{MeshFileError, PreparedScene, SavedMesh};
+use lightmesh::render::{AmbientSource, MeshFileError, PreparedScene, SavedMesh};
 use lightmesh::{Lookup, MeshCache, Mode, Observer, Renderer};
 use lightmesh_memory::Bytes;
 
@@ -11,9 +11,9 @@ use crate::memory;
 use crate::plan::RenderPlan;
 use crate::progress::Watcher;
 
-/// What light points see, and the file that it is kept in.
+/// What light points see and surfaces gather, and the file that it is kept in.
 pub(super) struct Mesh<'a> {
-    /// What is known of them.
+    /// What is known of it.
     pub(super) cache: MeshCache,
     file: Option<&'a Path>,
 }
@@ -29,11 +29,12 @@ impl<'a> Mesh<'a> {
         let mut mesh = Mesh { cache: MeshCache::new(), file: None };
         let Some(path) = plan.mesh_file.as_deref() else { return Ok(mesh) };
         let has_points = plan.settings.mode == Mode::LightMesh && plan.settings.resolved_lookup() == Lookup::HalfBall;
-        if !has_points || moves {
+        let gathers = plan.settings.ambient_light.for_scene(&prepared.scene) == AmbientSource::Mesh;
+        if !(has_points || gathers) || moves {
             let why = if moves {
                 "surfaces move in this film, and a mesh belongs to one place of them"
             } else {
-                "only --lookup half-ball has light points"
+                "only --lookup half-ball has light points, and only --ambient-light mesh keeps gathered light"
             };
             watcher.note(&format!("--mesh-file {} is not used: {why}", path.display()));
             return Ok(mesh);
@@ -45,7 +46,8 @@ impl<'a> Mesh<'a> {
         let load = || renderer.load_cache(path, prepared, &plan.settings);
         match memory::during(format!("reading {}", path.display()), load) {
             Ok(cache) => {
-                watcher.note(&format!("{}: {} values of light points were read", path.display(), cache.len()));
+                let what = amount(cache.len(), cache.sites_read());
+                watcher.note(&format!("{}: {what} were read", path.display()));
                 mesh.cache = cache;
             }
             Err(error) if error.fault.is_replaceable() => refused(&error, watcher),
@@ -61,7 +63,7 @@ impl<'a> Mesh<'a> {
 
     /// Says so if the first image has shown that the file is of no use. To be called after each image.
     pub(super) fn check(&mut self, watcher: &Watcher) {
-        if let Some(error) = self.cache.refused() {
+        while let Some(error) = self.cache.refused() {
             refused(&error, watcher);
         }
     }
@@ -70,16 +72,28 @@ impl<'a> Mesh<'a> {
     pub(super) fn save(&self, prepared: &PreparedScene, watcher: &Watcher) -> Result<(), Failure> {
         let Some(path) = self.file else { return Ok(()) };
         let saved = memory::during(format!("writing {}", path.display()), || self.cache.save(path, prepared))?;
-        if let Some(SavedMesh { values, bytes, .. }) = saved {
-            let (path, bytes) = (path.display(), Bytes(bytes));
-            watcher.note(&format!("{path}: {values} values of light points were written, {bytes}"));
+        if let Some(SavedMesh { values, sites, bytes, .. }) = saved {
+            let (path, what, bytes) = (path.display(), amount(values, sites), Bytes(bytes));
+            watcher.note(&format!("{path}: {what} were written, {bytes}"));
         }
         Ok(())
     }
 }
 
-/// Says that a file is of no use.
+/// How much a file holds.
+fn amount(values: u64, sites: u64) -> String {
+    let of_points = format!("{values} values of light points");
+    let of_sites = format!("{sites} sites of gathered light");
+    match (values, sites) {
+        (_, 0) => of_points,
+        (0, _) => of_sites,
+        _ => format!("{of_points} and {of_sites}"),
+    }
+}
+
+/// Says that a file, or a part of it, is of no use.
 fn refused(error: &MeshFileError, watcher: &Watcher) {
     let (path, fault) = (error.path.display(), &error.fault);
-    watcher.warning(&format!("{path}: {fault}; the mesh is built anew and replaces it"));
+    let what = if fault.is_of_gathered_light() { "light is gathered anew" } else { "the mesh is built anew" };
+    watcher.warning(&format!("{path}: {fault}; {what} and replaces it"));
 }

@@ -104,6 +104,41 @@ fn a_stale_or_damaged_file_is_replaced_with_a_warning() {
     assert!(replaced(&place, &lamp).contains("belongs to another scene"));
 }
 
+/// Under a sky, without light points: the same image, with fewer rays; of another sky nothing is used, and light is gathered anew.
+#[test]
+fn gathered_light_is_kept_from_run_to_run() {
+    let place = Place::new();
+    let rays = |name: &str| place.json(name)["counts"]["gather_rays"].as_u64().unwrap();
+    let render = |sky: &[&str]| {
+        let render = [&["render", "room.toml", "--size", "48x32", "--sky"][..], sky].concat();
+        let done = place.good(&[&render[..], &["-o", "with.exr", "--stats", "with.json"], &MESH].concat());
+        place.good(&[&render[..], &["-o", "without.exr", "--stats", "without.json"]].concat());
+        assert!(place.read("with.exr") == place.read("without.exr"), "{sky:?}: the image differs");
+        (done, [rays("with.json"), rays("without.json")])
+    };
+    let (first, [made, all]) = render(&["clear"]);
+    assert!(made == all && first.stderr.contains(" sites of gathered light were written"), "{first:?}");
+    let (again, [made, all]) = render(&["clear"]);
+    assert!(again.stderr.contains(" sites of gathered light were read"), "{again:?}");
+    assert!(4 * made < all && !again.stderr.contains("warning"), "{made} of {all}: {again:?}");
+    let (other, [made, all]) = render(&["uniform"]);
+    let warning = "room.mesh: has light gathered from other lights, surroundings or materials";
+    assert!(made == all && other.stderr.contains(warning), "{other:?}");
+    assert!(other.stderr.contains("; light is gathered anew and replaces it"), "{other:?}");
+    let (again, [made, all]) = render(&["uniform"]);
+    assert!(4 * made < all && !again.stderr.contains("warning"), "{again:?}");
+    // Each surface point for itself: nothing is kept.
+    let done = place.good(
+        &[
+            &["render", "room.toml", "--size", "8x6", "--sky", "clear", "--ambient-light", "rays"][..],
+            &["-o", "a.exr"],
+            &MESH,
+        ]
+        .concat(),
+    );
+    assert!(done.stderr.contains("--mesh-file room.mesh is not used: "), "{done:?}");
+}
+
 #[test]
 fn what_is_no_mesh_is_left_alone() {
     let place = Place::new();

@@ -1,5 +1,7 @@
 //! Gathered light: the same bits on the CPU and on a device, with what was gathered before or without.
 
+use std::path::Path;
+
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{AmbientSource, Frame, Kept, Quality, Settings, Step, Unobserved, render_on, render_on_with};
 
@@ -19,6 +21,8 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         }
         let name = format!("{}::gathered::kept", subject.name);
         cases.push(Case::new(name, move |cuda| same_as_without(cuda, subject)));
+        let name = format!("{}::gathered::files", subject.name);
+        cases.push(Case::new(name, move |cuda| same_files(cuda, subject)));
     }
     for subject in [&SURROUNDED, &LAMPS] {
         let name = format!("{}::gathered::rays", subject.name);
@@ -80,4 +84,41 @@ fn same_as_without<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
     assert_eq!(first[0], first[1], "nothing is known");
     assert!(moved[0] <= moved[1], "some is");
     assert!(back[0] <= first[0], "all is, but for points that see no site");
+}
+
+/// Both write the same file, and each reads that of the other.
+fn same_files<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
+    let folder = tempfile::tempdir().unwrap();
+    let [of_device, of_host, again] = ["device.mesh", "host.mesh", "again.mesh"].map(|name| folder.path().join(name));
+    let (scene, settings) = (subject.prepared(0), settings(subject, 0.0));
+    let (mut kept, mut on_host) = (Kept::default(), Kept::default());
+    let fresh = render_on_with(cuda, &mut kept, scene, &settings, &Unobserved).unwrap();
+    let fresh_on_host = render_on_with(&Cpu, &mut on_host, scene, &settings, &Unobserved).unwrap();
+    let saved = kept.save(&of_device, scene).unwrap();
+    assert_eq!(saved.is_some(), on_host.save(&of_host, scene).unwrap().is_some());
+    let Some(saved) = saved else { return };
+    assert!(saved.sites > 0, "{saved:?}");
+    let bytes = |path: &Path| std::fs::read(path).unwrap();
+    assert!(!R::EXACT || bytes(&of_device) == bytes(&of_host), "the files differ");
+
+    // 1. The device reads what the host wrote, and the host what the device wrote.
+    let mut kept = Kept::load(&of_host, scene, Default::default()).unwrap();
+    let with = render_on_with(cuda, &mut kept, scene, &settings, &Unobserved).unwrap();
+    let mut on_host = Kept::load(&of_device, scene, Default::default()).unwrap();
+    let with_on_host = render_on_with(&Cpu, &mut on_host, scene, &settings, &Unobserved).unwrap();
+    if R::EXACT {
+        assert!(gathered(&with) == gathered(&fresh) && gathered(&with_on_host) == gathered(&fresh_on_host));
+    }
+    let rays = |frame: &Frame| frame.stats.counts.gather_rays;
+    assert!(rays(&with) < rays(&fresh) && rays(&with_on_host) < rays(&fresh_on_host), "what was read is used");
+    // 2. It is all there again.
+    assert_eq!(on_host.save(&again, scene).unwrap().map(|again| again.sites >= saved.sites), Some(true));
+    assert!(!R::EXACT || bytes(&again) == bytes(&of_device), "the host writes another file");
+    kept.save(&again, scene).unwrap();
+    assert!(!R::EXACT || bytes(&again) == bytes(&of_host), "the device writes another file");
+    // 3. A device adds to what it read.
+    let elsewhere = self::settings(subject, 1.5);
+    let mut kept = Kept::load(&of_device, scene, Default::default()).unwrap();
+    let with = render_on_with(cuda, &mut kept, scene, &elsewhere, &Unobserved).unwrap();
+    assert!(gathered(&with) == gathered(&render_on(cuda, scene, &elsewhere, &Unobserved).unwrap()));
 }

@@ -386,7 +386,7 @@ class MeshCache:
     def load(path: Path, prepared: PreparedScene) -> MeshCache:
         """Reads a file of `save`, or of `--mesh-file`. Raises `MeshFileError`."""
     def save(self, path: Path, prepared: PreparedScene) -> int:
-        """Writes the light points, and returns their number; without any, no file is written."""
+        """Writes light points and gathered light, and returns the number of light points; if nothing is kept, no file is written."""
     def clear(self) -> None:
         """Forgets everything."""
     def __len__(self) -> int:

@@ -13,6 +13,7 @@ use super::{Allowance, Noticed, Seen, Table};
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gathered::cuda::DeviceSurfaceLight;
+use crate::gathered::saved::SavedLight;
 use crate::gpu::points::DevicePoints;
 use crate::gpu::{BLOCK, Cuda, blocks_for};
 use crate::light_mesh::{BrickKey, brick_hash};
@@ -70,6 +71,14 @@ impl<R: Runtime> Table for DeviceTable<R> {
 
     fn memory_of(light: &DeviceSurfaceLight<R>) -> u64 {
         light.memory()
+    }
+
+    fn saved_light(light: &DeviceSurfaceLight<R>) -> Result<SavedLight, RenderError> {
+        light.saved()
+    }
+
+    fn restored_light(saved: SavedLight) -> DeviceSurfaceLight<R> {
+        DeviceSurfaceLight::restored(saved)
     }
 
     fn len(&self) -> u64 {

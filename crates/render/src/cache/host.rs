@@ -9,6 +9,7 @@ use super::stored::{POINTS, Readable, ReadableAnswers, SLACK, Stored, StoredAnsw
 use super::{Allowance, Noticed, Seen, Table};
 use crate::data::lit::LitBy;
 use crate::gathered::SurfaceLight;
+use crate::gathered::saved::SavedLight;
 use crate::light_mesh::{BrickKey, bits};
 
 /// Rows of bricks, columns of lights. Known values do not move when bricks are added or lights change.
@@ -42,6 +43,14 @@ impl Table for HostTable {
 
     fn memory_of(light: &SurfaceLight) -> u64 {
         light.memory()
+    }
+
+    fn saved_light(light: &SurfaceLight) -> Result<SavedLight, Infallible> {
+        Ok(light.saved())
+    }
+
+    fn restored_light(saved: SavedLight) -> SurfaceLight {
+        SurfaceLight::restored(saved)
     }
 
     fn len(&self) -> u64 {

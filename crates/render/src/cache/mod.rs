@@ -4,9 +4,10 @@
 //! for an area light, the sampling. As long as these stay the same, no long test has to be repeated. A [`MeshCache`] belongs to the
 //! caller; an image is bit-identical with and without it.
 //!
-//! A backend keeps a [`Table`] for each geometry: a row for each brick, a column for each light. Tables of all backends go to the same
-//! [files](file), and come from there, by way of one [form](stored).
+//! A backend keeps a [`Table`] for each geometry: a row for each brick, a column for each light. What all
+//! backends keep goes to the same [files](file), and comes from there, by way of one [form](content).
 
+mod content;
 mod device;
 mod file;
 mod host;
@@ -17,9 +18,9 @@ mod stored;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
 
-use glam::{UVec3, Vec3};
 use lightmesh_memory::Budget;
 
+pub(crate) use content::{Content, Places, SavedGathered, Section};
 pub use device::DeviceTable;
 pub use file::{MeshFault, MeshFileError, MeshSaveError, SavedMesh};
 pub use host::HostTable;
@@ -30,6 +31,7 @@ use stored::Stored;
 use crate::cuda::Driver;
 use crate::error::RenderError;
 use crate::gathered::Sources;
+use crate::gathered::saved::SavedLight;
 use crate::light_mesh::Lattice;
 use crate::prepared::{PreparedGeometry, PreparedScene};
 
@@ -45,18 +47,9 @@ pub struct MeshCache {
     /// What is kept in the memory of CUDA devices, by the device's id.
     devices: Vec<(u64, Kept<DeviceTable<Driver>>)>,
     /// What was read from a file, until it is asked for where images are rendered.
-    read: Vec<Section>,
+    read: Content,
     /// The file.
     file: PathBuf,
-}
-
-/// What a file holds of one geometry.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Section {
-    /// Hash of the geometry.
-    geometry: u64,
-    places: Places,
-    stored: Stored,
 }
 
 impl MeshCache {
@@ -66,8 +59,8 @@ impl MeshCache {
     }
 
     /// A cache with what was [saved](MeshCache::save) for the geometry of `scene`, on any device. Values for a light that has changed since
-    /// are computed anew, and replaced. If light points of an image are at other places, nothing of the file is used:
-    /// [`MeshCache::refused`]. At most as much memory is taken as `budget` allows.
+    /// are computed anew, and replaced. If light points of an image are at other places, none of the file's are used; if what surfaces gather
+    /// depends on anything that has changed, it is gathered anew: [`MeshCache::refused`] says so. At most as much memory is taken as `budget` allows.
     ///
     /// # Errors
     /// [`MeshFileError`] if the file cannot be read, is of another kind or version, belongs to other geometry, is damaged, or does not fit into
@@ -77,36 +70,38 @@ impl MeshCache {
         Ok(MeshCache { read: file::load(path, scene, budget)?, file: path.into(), ..MeshCache::default() })
     }
 
-    /// Writes what light points of a scene's geometry see, whole or not at all, in the form that is the same for all devices. `None` if nothing
-    /// is known of it, and no file is written then. Light that surfaces gathered is not saved.
+    /// Writes what light points of a scene's geometry see, and what its surfaces gathered, whole or not at all, in the form that is the same for
+    /// all devices. `None` if nothing is known of it, and no file is written then.
     ///
     /// # Errors
     /// [`MeshSaveError`] if the file cannot be written, or a device fails.
     pub fn save(&self, path: impl AsRef<Path>, scene: &PreparedScene) -> Result<Option<SavedMesh>, MeshSaveError> {
         let path = path.as_ref();
-        let mut sections = self.host.sections(path, scene)?;
+        let mut content = self.host.content(path, scene)?;
         for (_, kept) in &self.devices {
-            sections.append(&mut kept.sections(path, scene)?);
+            content.append(&mut kept.content(path, scene)?);
         }
-        sections.extend_from_slice(&self.read);
-        save(path, scene, sections)
+        content.append(&mut self.read.clone());
+        file::save(path, scene, content)
     }
 
-    /// Why nothing was used of the file that the cache was loaded from, if that turned out with an image. Says so once.
+    /// Why light points, or gathered light, of the file that the cache was loaded from could not be used, if that turned out with an image. Says
+    /// so once; to be asked until there is nothing more.
     pub fn refused(&mut self) -> Option<MeshFileError> {
-        let on_devices = self.devices.iter_mut().find_map(|(_, kept)| kept.refused.take());
-        let fault = self.host.refused.take().or(on_devices)?;
+        let on_devices = self.devices.iter_mut().find_map(|(_, kept)| kept.refused.pop());
+        let fault = self.host.refused.pop().or(on_devices)?;
         Some(MeshFileError { path: self.file.clone(), fault })
     }
 
-    /// Number of values that were read from a file and not yet asked for.
-    fn unused(&self) -> u64 {
-        self.read.iter().map(Section::len).sum()
+    /// Number of sites whose gathered light was read from a file and not yet asked for.
+    pub fn sites_read(&self) -> u64 {
+        let on_devices: u64 = self.devices.iter().map(|(_, kept)| kept.read.sites()).sum();
+        self.read.sites() + self.host.read.sites() + on_devices
     }
 
     /// Number of cached values: light points times lights.
     pub fn len(&self) -> u64 {
-        self.unused() + self.host.len() + self.devices.iter().map(|(_, kept)| kept.len()).sum::<u64>()
+        self.read.len() + self.host.len() + self.devices.iter().map(|(_, kept)| kept.len()).sum::<u64>()
     }
 
     /// Whether the cache is empty.
@@ -116,13 +111,13 @@ impl MeshCache {
 
     /// Bytes used, on the host and on devices.
     pub fn memory(&self) -> u64 {
-        let read: u64 = self.read.iter().map(|section| section.stored.memory()).sum();
+        let read = self.read.memory_of_points() + self.read.memory_of_gathered();
         read + self.host.memory() + self.devices.iter().map(|(_, kept)| kept.memory()).sum::<u64>()
     }
 
     /// Empties the cache and frees its memory.
     pub fn clear(&mut self) {
-        self.read.clear();
+        self.read = Content::default();
         self.host.clear();
         self.devices.clear();
     }
@@ -146,27 +141,6 @@ impl MeshCache {
     }
 }
 
-impl Section {
-    /// Number of values.
-    fn len(&self) -> u64 {
-        self.stored.len()
-    }
-}
-
-/// Writes the largest section of each geometry of a scene.
-fn save(path: &Path, scene: &PreparedScene, mut sections: Vec<Section>) -> Result<Option<SavedMesh>, MeshSaveError> {
-    let order: Vec<u64> = scene.geometry.all_parts().iter().map(|geometry| geometry.hash()).collect();
-    let place = |section: &Section| order.iter().position(|&hash| hash == section.geometry);
-    sections.retain(|section| section.len() > 0 && place(section).is_some());
-    sections.sort_by_key(|section| (place(section), u64::MAX - section.len()));
-    sections.dedup_by_key(|section| section.geometry);
-    if sections.is_empty() {
-        return Ok(None);
-    }
-    let values = sections.iter().map(Section::len).sum();
-    Ok(Some(SavedMesh { values, bytes: file::write(path, scene, &sections)? }))
-}
-
 /// What a backend knows about the light points of one geometry.
 #[allow(clippy::len_without_is_empty, reason = "not needed")]
 pub trait Table: Default {
@@ -177,6 +151,12 @@ pub trait Table: Default {
 
     /// Bytes that this uses.
     fn memory_of(light: &Self::Light) -> u64;
+
+    /// What surfaces gather, in the form that is the same for all backends.
+    fn saved_light(light: &Self::Light) -> Result<SavedLight, Self::Error>;
+
+    /// The same for this backend.
+    fn restored_light(saved: SavedLight) -> Self::Light;
 
     /// Number of cached values: light points times lights.
     fn len(&self) -> u64;
@@ -214,9 +194,9 @@ pub struct Kept<T: Table> {
     tables: Vec<Known<T>>,
     gathered: Vec<Gathered<T::Light>>,
     /// What was read from a file, until its geometry is asked for.
-    read: Vec<Section>,
+    read: Content,
     /// Why some of it could not be used.
-    refused: Option<MeshFault>,
+    refused: Vec<MeshFault>,
     allowance: Allowance,
 }
 
@@ -227,14 +207,6 @@ struct Known<T> {
     table: T,
 }
 
-/// What determines the positions of light points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Places {
-    anchor: Vec3,
-    step: f32,
-    number: UVec3,
-}
-
 /// What surfaces of a geometry gather.
 struct Gathered<L> {
     geometry: Weak<PreparedGeometry>,
@@ -242,13 +214,20 @@ struct Gathered<L> {
     light: L,
 }
 
+impl<L> Gathered<L> {
+    /// Whether it belongs to the geometry of `scene`.
+    fn is_of(&self, scene: &PreparedScene) -> bool {
+        self.geometry.as_ptr() == Arc::as_ptr(&scene.geometry)
+    }
+}
+
 impl<T: Table> Default for Kept<T> {
     fn default() -> Kept<T> {
         Kept {
             tables: Vec::new(),
             gathered: Vec::new(),
-            read: Vec::new(),
-            refused: None,
+            read: Content::default(),
+            refused: Vec::new(),
             allowance: Allowance::default(),
         }
     }
@@ -257,26 +236,25 @@ impl<T: Table> Default for Kept<T> {
 impl<T: Table> Kept<T> {
     /// Number of cached values: light points times lights.
     pub fn len(&self) -> u64 {
-        let read: u64 = self.read.iter().map(Section::len).sum();
-        self.tables.iter().map(|known| known.table.len()).sum::<u64>() + read
+        self.tables.iter().map(|known| known.table.len()).sum::<u64>() + self.read.len()
     }
 
     /// Whether nothing is kept: no values, and no gathered light.
     pub fn is_empty(&self) -> bool {
-        self.len() == 0 && self.gathered.is_empty()
+        self.len() == 0 && self.gathered.is_empty() && self.read.is_empty()
     }
 
     /// Bytes used.
     pub fn memory(&self) -> u64 {
         let gathered: u64 = self.gathered.iter().map(|gathered| T::memory_of(&gathered.light)).sum();
-        self.memory_of_tables() + gathered
+        self.memory_of_tables() + gathered + self.read.memory_of_gathered()
     }
 
     /// Removes everything.
     pub(crate) fn clear(&mut self) {
         self.tables.clear();
         self.gathered.clear();
-        self.read.clear();
+        self.read = Content::default();
     }
 
     /// Begins an image that has light points, if `left` bytes are left for it: bricks that were not used for the longest give way if what is
@@ -290,8 +268,7 @@ impl<T: Table> Kept<T> {
 
     /// Bytes that light points take.
     fn memory_of_tables(&self) -> u64 {
-        let read: u64 = self.read.iter().map(|section| section.stored.memory()).sum();
-        self.tables.iter().map(|known| known.table.memory()).sum::<u64>() + read
+        self.tables.iter().map(|known| known.table.memory()).sum::<u64>() + self.read.memory_of_points()
     }
 
     /// [`MeshCache::load`] for one backend.
@@ -308,30 +285,52 @@ impl<T: Table> Kept<T> {
     /// As [`MeshCache::save`].
     pub fn save(&self, path: impl AsRef<Path>, scene: &PreparedScene) -> Result<Option<SavedMesh>, MeshSaveError> {
         let path = path.as_ref();
-        save(path, scene, self.sections(path, scene)?)
+        file::save(path, scene, self.content(path, scene)?)
     }
 
-    /// All that is known of the light points of a scene's geometry, in the form of files; `path` is for messages.
-    fn sections(&self, path: &Path, scene: &PreparedScene) -> Result<Vec<Section>, MeshSaveError> {
-        let mut sections = self.read.clone();
+    /// All that is known of a scene's geometry, in the form of files; `path` is for messages.
+    fn content(&self, path: &Path, scene: &PreparedScene) -> Result<Content, MeshSaveError> {
+        let failed = |reason: T::Error| MeshSaveError::Device { path: path.into(), reason: Box::new(reason.into()) };
+        let mut content = self.read.clone();
         for geometry in scene.geometry.all_parts() {
             for known in self.tables.iter().filter(|known| known.geometry.as_ptr() == Arc::as_ptr(geometry)) {
-                let failed =
-                    |reason: T::Error| MeshSaveError::Device { path: path.into(), reason: Box::new(reason.into()) };
                 let stored = known.table.stored().map_err(failed)?;
-                sections.push(Section { geometry: geometry.hash(), places: known.places, stored });
+                content.points.push(Section { geometry: geometry.hash(), places: known.places, stored });
             }
         }
-        Ok(sections)
+        for gathered in self.gathered.iter().filter(|gathered| gathered.is_of(scene)) {
+            content.gathered.push(SavedGathered {
+                geometry: scene.geometry.hash(),
+                sources: gathered.sources.hash(scene),
+                light: T::saved_light(&gathered.light).map_err(failed)?,
+            });
+        }
+        Ok(content)
     }
 
     /// Takes out what surfaces gathered from the same sources; nothing if there are others. Removes that of geometry that no longer exists.
     pub(crate) fn take_gathered(&mut self, scene: &PreparedScene, sources: &Sources) -> T::Light {
         self.gathered.retain(|gathered| gathered.geometry.strong_count() > 0);
-        let same = |gathered: &Gathered<T::Light>| gathered.geometry.as_ptr() == Arc::as_ptr(&scene.geometry);
-        let Some(index) = self.gathered.iter().position(same) else { return T::Light::default() };
+        let Some(index) = self.gathered.iter().position(|gathered| gathered.is_of(scene)) else {
+            return self.restored_gathered(scene, sources).unwrap_or_default();
+        };
         let Gathered { sources: known, light, .. } = self.gathered.swap_remove(index);
         if known == *sources { light } else { T::Light::default() }
+    }
+
+    /// What surfaces gathered of which a file was read, if it depends on nothing else.
+    fn restored_gathered(&mut self, scene: &PreparedScene, sources: &Sources) -> Option<T::Light> {
+        if self.read.gathered.is_empty() {
+            return None;
+        }
+        let hash = scene.geometry.hash();
+        let index = self.read.gathered.iter().position(|gathered| gathered.geometry == hash)?;
+        let gathered = self.read.gathered.swap_remove(index);
+        if gathered.sources != sources.hash(scene) {
+            self.refused.push(MeshFault::OtherSources);
+            return None;
+        }
+        Some(T::restored_light(gathered.light))
     }
 
     /// Keeps what surfaces gather.
@@ -363,14 +362,14 @@ impl<T: Table> Kept<T> {
 
     /// The table of geometry of which a file was read, if its light points are at the same places.
     fn restored(&mut self, scene: &PreparedScene, places: &Places) -> Option<T> {
-        if self.read.is_empty() {
+        if self.read.points.is_empty() {
             return None;
         }
         let hash = scene.geometry.hash();
-        let index = self.read.iter().position(|section| section.geometry == hash)?;
-        let mut section = self.read.swap_remove(index);
+        let index = self.read.points.iter().position(|section| section.geometry == hash)?;
+        let mut section = self.read.points.swap_remove(index);
         if section.places != *places {
-            self.refused = Some(MeshFault::OtherStep { found: section.places.step, expected: places.step });
+            self.refused.push(MeshFault::OtherStep { found: section.places.step, expected: places.step });
             return None;
         }
         section.stored.limit(self.allowance.most);

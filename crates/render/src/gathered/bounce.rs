@@ -23,7 +23,7 @@ use super::scene::Scene;
 use crate::stages::primary_rays::cpu::batch;
 
 /// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's.
-pub(super) const ORDERS: usize = 2;
+pub(crate) const ORDERS: usize = 2;
 /// The rays of a site.
 pub(super) const FAN: Fan = Fan::new(BOUNCE_SIDE);
 
@@ -42,7 +42,7 @@ impl Spot {
 
 /// What a site's rays hit.
 #[derive(Default)]
-struct Links {
+pub(super) struct Links {
     /// The sites there, with the weights of what they receive.
     seen: Vec<(u32, Vec3)>,
     /// The weight of what hits do not see of their sites.
@@ -50,27 +50,27 @@ struct Links {
 }
 
 /// A site, and what its rays see.
-struct Node {
-    site: Site,
+pub(super) struct Node {
+    pub(super) site: Site,
     /// What arrives with the last reflection alone; `None` if its rays were not cast.
-    first: Option<Vec3>,
+    pub(super) first: Option<Vec3>,
     /// The distance of what is nearest in front of it.
-    nearest: f32,
+    pub(super) nearest: f32,
     /// What its rays hit, with their weights.
-    hits: Vec<(Spot, Vec3)>,
+    pub(super) hits: Vec<(Spot, Vec3)>,
     /// The sites there, once they are needed.
-    links: Links,
+    pub(super) links: Links,
     /// How many of the values are known: what arrives after up to one, two, … reflections.
-    known: usize,
-    values: [Vec3; ORDERS],
+    pub(super) known: usize,
+    pub(super) values: [Vec3; ORDERS],
 }
 
 /// All sites so far.
 #[derive(Default)]
 pub(super) struct Bounce {
-    numbers: HashMap<Name, u32, BuildHasherDefault<CellHasher>>,
-    nodes: Vec<Node>,
-    hits: usize,
+    pub(super) numbers: HashMap<Name, u32, BuildHasherDefault<CellHasher>>,
+    pub(super) nodes: Vec<Node>,
+    pub(super) hits: usize,
 }
 
 impl Bounce {

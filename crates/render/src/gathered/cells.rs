@@ -75,7 +75,7 @@ pub(super) struct Site {
 #[derive(Default)]
 pub(super) struct Cells {
     /// The first site of each cell, and their number.
-    ranges: HashMap<CellKey, (u32, u32), BuildHasherDefault<CellHasher>>,
+    pub(super) ranges: HashMap<CellKey, (u32, u32), BuildHasherDefault<CellHasher>>,
     pub(super) sites: Vec<Site>,
 }
 

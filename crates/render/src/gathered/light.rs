@@ -11,7 +11,7 @@ pub(super) struct Light {
     /// Mean radiance, by the cosine: irradiance by π.
     pub(super) mean: Vec3,
     /// How it changes as the normal turns: along x, y and z.
-    tilt: [Vec3; 3],
+    pub(super) tilt: [Vec3; 3],
 }
 
 impl Light {
@@ -45,8 +45,8 @@ impl Light {
 /// Radiance by direction: sums and numbers of rays.
 #[derive(Clone, Copy)]
 pub(super) struct Bins {
-    sums: [Vec3; BINS],
-    counts: [f32; BINS],
+    pub(super) sums: [Vec3; BINS],
+    pub(super) counts: [f32; BINS],
 }
 
 impl Bins {

@@ -19,14 +19,16 @@ mod fine;
 mod light;
 mod lookup;
 mod rays;
+pub(crate) mod saved;
 mod scene;
 
 use std::sync::Arc;
 
 use glam::Vec3;
 use lightmesh_layout::constants::{BLEND_FROM, COARSER};
-use lightmesh_scene::{Bounds, Environment};
+use lightmesh_scene::{Bounds, Environment, Geometry};
 use rayon::prelude::*;
+use xxhash_rust::xxh3::Xxh3;
 
 use crate::data::wave::HostWave;
 use crate::prepared::PreparedScene;
@@ -152,6 +154,40 @@ impl Sources {
     pub(crate) fn new(scene: &PreparedScene, seed: u64, how: &Gathering) -> Sources {
         let lights = &scene.scene.lights;
         Sources { lights: lights.list.clone(), environment: lights.environment.clone(), seed, fans: how.fans }
+    }
+}
+
+impl Sources {
+    /// Hash of these sources, and of the surfaces of `scene`: of all that decides what is gathered there. Unlike addresses, it is the same in
+    /// all processes.
+    pub(crate) fn hash(&self, scene: &PreparedScene) -> u64 {
+        let mut hash = Xxh3::new();
+        let mut add = |bytes: &[u8]| {
+            hash.update(&(bytes.len() as u64).to_le_bytes());
+            hash.update(bytes);
+        };
+        // 1. Surfaces.
+        add(&scene.geometry.hash().to_le_bytes());
+        let Geometry { mesh, materials, textures, .. } = &*scene.scene.geometry;
+        add(bytemuck::cast_slice(mesh.triangles.as_flattened()));
+        add(bytemuck::cast_slice(&mesh.normals));
+        add(bytemuck::cast_slice(&mesh.uvs));
+        add(bytemuck::cast_slice(&mesh.colors));
+        add(bytemuck::cast_slice(&mesh.opacities));
+        add(bytemuck::cast_slice(&mesh.materials));
+        add(format!("{:?} {materials:?}", mesh.instances).as_bytes());
+        for texture in textures.iter() {
+            add(bytemuck::cast_slice(&texture.size));
+            add(texture.texels.as_flattened());
+        }
+        // 2. Lights and surroundings.
+        let Sources { lights, environment, seed, fans } = self;
+        add(format!("{lights:?} {seed} {fans:?}").as_bytes());
+        if let Some(environment) = environment {
+            add(format!("{:?} {:?} {:?}", environment.size(), environment.frame(), environment.sun()).as_bytes());
+            add(bytemuck::cast_slice(environment.texels().as_flattened()));
+        }
+        hash.digest()
     }
 }
 

@@ -4,7 +4,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DVec3, Vec3};
 use lightmesh_render::{
-    AmbientSource, Device, Frame, MeshCache, Observer, PreparedScene, RenderError, Renderer, Settings, Step, Unobserved,
+    AmbientSource, Device, Frame, MeshCache, Observer, PreparedScene, Quality, RenderError, Renderer, Settings, Step,
+    Unobserved,
 };
 use lightmesh_scene::{Camera, LightKind, Lights, Scene, Sky, SunPosition, Up};
 use lightmesh_testkit::{Picture, pile};
@@ -122,6 +123,66 @@ fn a_camera_that_moves_finds_light_that_was_gathered() {
     assert!(cache.memory() > 100_000 && !cache.is_empty());
     cache.clear();
     assert!(cache.memory() == 0 && cache.is_empty());
+}
+
+/// A yard under a sky.
+fn yard(elevation: f64) -> Scene {
+    let mut scene = pile(DVec3::ZERO, &[LAMP]);
+    scene.lights.surround(Sky::clear(SunPosition { elevation, azimuth: 100.0 }).surroundings(Up::Y).unwrap());
+    scene
+}
+
+/// What another process would see: the same scene, prepared anew, and a file.
+#[test]
+fn gathered_light_of_a_file_is_used_where_all_that_it_depends_on_is_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, second] = ["first.mesh", "second.mesh"].map(|name| folder.path().join(name));
+    let settings = small(4).with_ambient_light(AmbientSource::Mesh).with_aa(1);
+    let mut cache = MeshCache::new();
+    let scene = prepared(&yard(30.0));
+    let fresh = renderer().render_with(&mut cache, &scene, &settings, &Unobserved).unwrap();
+    let saved = cache.save(&path, &scene).unwrap().unwrap();
+    assert!(saved.values > 0 && saved.sites > 0, "{saved:?}");
+
+    // 1. The same: the same image, and the same file again.
+    let scene = prepared(&yard(30.0));
+    let mut cache = MeshCache::load(&path, &scene, Default::default()).unwrap();
+    assert_eq!(cache.sites_read(), saved.sites);
+    let again = renderer().render_with(&mut cache, &scene, &settings, &Unobserved).unwrap();
+    assert!(Picture::new(&again).bits() == Picture::new(&fresh).bits(), "the image differs");
+    let [before, rays] = [&fresh, &again].map(|frame| frame.stats.counts.gather_rays);
+    assert!(2 * rays < before, "{rays} of {before}");
+    assert!(cache.refused().is_none() && cache.sites_read() == 0);
+    assert_eq!(cache.save(&second, &scene).unwrap(), Some(saved));
+    assert!(std::fs::read(&path).unwrap() == std::fs::read(&second).unwrap(), "what is known is the same");
+    // From elsewhere it is added to.
+    let elsewhere = settings.clone().with_camera(aside(&scene, 0.3));
+    same(&mut cache, &scene, &elsewhere);
+    assert!(cache.save(&second, &scene).unwrap().unwrap().sites > saved.sites);
+
+    // 2. Not the same: it is dropped alone, and this is said once.
+    let mut painted = yard(30.0);
+    painted.geometry_mut().materials[0].kd *= 0.5;
+    let mut bright = yard(30.0);
+    bright.lights.list[0].intensity *= 2.0;
+    for (changed, settings) in [
+        (yard(31.0), settings.clone()),
+        (painted, settings.clone()),
+        (bright, settings.clone()),
+        (yard(30.0), settings.clone().with_quality(Quality::Draft)),
+        (yard(30.0), settings.clone().with_seed(5)),
+    ] {
+        let scene = prepared(&changed);
+        let mut cache = MeshCache::load(&path, &scene, Default::default()).unwrap();
+        let with = renderer().render_with(&mut cache, &scene, &settings, &Unobserved).unwrap();
+        let without = renderer().render_prepared(&scene, &settings, &Unobserved).unwrap();
+        assert!(Picture::new(&with).bits() == Picture::new(&without).bits(), "the image differs");
+        assert_eq!(with.stats.counts.gather_rays, without.stats.counts.gather_rays, "nothing of it is used");
+        assert!(settings.seed != 0 || with.stats.counts.long_tests_saved > 0, "light points are");
+        let error = cache.refused().unwrap();
+        assert!(error.fault.is_of_gathered_light() && error.fault.is_replaceable(), "{error}");
+        assert!(cache.refused().is_none());
+    }
 }
 
 #[test]

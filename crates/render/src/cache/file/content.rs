@@ -1,4 +1,4 @@
-//! The content of a mesh file: a section for each geometry that light points were tested against. That is one, or, if light goes through
+//! The content of a mesh file. It has a section for each geometry that light points were tested against. That is one, or, if light goes through
 //! surfaces, one for each part that the scene is taken into.
 //!
 //! | bytes | what |
@@ -16,28 +16,37 @@
 //! | 8 each | the light points whose value is known, by brick |
 //! | 8 each | without a size: those that see the light, by brick |
 //! | 1 or 2 each | with a size: the rays that reached the light, of each known light point; one byte up to 255 samples |
+//! | 1 | 1 if there is [gathered light](super::gathered), which follows; 0 otherwise |
 
 use std::io::{self, BufReader, Read, Write};
 
-use glam::{UVec3, Vec3};
+use glam::UVec3;
 use lightmesh_layout::constants::AXIS_BITS;
 use lightmesh_memory::Budget;
 use lightmesh_scene::LightKind;
 
 use super::super::stored::{Stored, StoredAnswers, StoredColumn};
-use super::super::{Places, Section, Seen};
-use super::{MeshFault, pack, short};
+use super::super::{Content, Places, Section, Seen};
+use super::input::Input;
+use super::output::write_difference;
+use super::{MeshFault, gathered, pack};
 
 /// Bits of a brick's key.
 const KEY_BITS: u32 = 3 * AXIS_BITS;
-/// Numbers that are read at once: memory is taken as they appear.
+/// Numbers that are written at once.
 const AT_ONCE: usize = 1 << 16;
 /// More lights than this are no scene's.
 const MOST_LIGHTS: u32 = 1 << 20;
 /// Samples up to this have shares of one byte.
 const SMALL: u32 = 255;
 
-pub(super) fn write(output: &mut impl Write, sections: &[Section]) -> io::Result<()> {
+pub(super) fn write(output: &mut impl Write, Content { points, gathered }: &Content) -> io::Result<()> {
+    write_points(output, points)?;
+    output.write_all(&[gathered.len() as u8])?;
+    gathered.iter().try_for_each(|saved| gathered::write(output, saved))
+}
+
+fn write_points(output: &mut impl Write, sections: &[Section]) -> io::Result<()> {
     output.write_all(&(sections.len() as u32).to_le_bytes())?;
     for Section { geometry, places: Places { anchor, step, number }, stored } in sections {
         output.write_all(&geometry.to_le_bytes())?;
@@ -99,20 +108,6 @@ fn write_seen(output: &mut impl Write, Seen { kind, sampling }: &Seen) -> io::Re
     output.write_all(&seed.to_le_bytes())
 }
 
-fn write_difference(output: &mut impl Write, mut value: u64) -> io::Result<()> {
-    let mut bytes = [0; 10];
-    let mut count = 0;
-    loop {
-        let rest = value >> 7;
-        bytes[count] = (value & 0x7f) as u8 | if rest == 0 { 0 } else { 0x80 };
-        count += 1;
-        value = rest;
-        if rest == 0 {
-            return output.write_all(&bytes[..count]);
-        }
-    }
-}
-
 fn floats(output: &mut impl Write, numbers: &[f32]) -> io::Result<()> {
     numbers.iter().try_for_each(|number| output.write_all(&number.to_le_bytes()))
 }
@@ -124,88 +119,39 @@ fn longs(output: &mut impl Write, numbers: &[u64]) -> io::Result<()> {
     })
 }
 
-/// Decodes the sections, each of which belongs to one of the `geometries`, from `packed`, whose content has `length` bytes.
-pub(super) fn read(packed: &[u8], length: u64, budget: Budget, geometries: &[u64]) -> Result<Vec<Section>, MeshFault> {
+/// Decodes the sections, each of which belongs to one of the `geometries`, from `packed`, whose content has `length` bytes. Gathered light belongs
+/// to the first of these.
+pub(super) fn read(packed: &[u8], length: u64, budget: Budget, geometries: &[u64]) -> Result<Content, MeshFault> {
     let packed = pack::decoder(packed).map_err(|reason| MeshFault::Read(reason.into()))?;
     let mut input = Input { inner: BufReader::with_capacity(AT_ONCE, packed.take(length)), budget };
     let count = input.int()?;
     if count as usize > geometries.len() {
         return Err(MeshFault::Damaged("it has more geometry than its scene"));
     }
-    let mut sections = Vec::new();
+    let mut content = Content::default();
     for _ in 0..count {
         let section = input.section()?;
         if !geometries.contains(&section.geometry) {
             return Err(MeshFault::Damaged("it has geometry that is not its scene's"));
         }
-        sections.push(section);
+        content.points.push(section);
+    }
+    match (input.bytes()?, geometries) {
+        ([0], _) => {}
+        ([1], [geometry, ..]) => content.gathered.push(input.gathered(*geometry)?),
+        _ => return Err(MeshFault::Damaged("it has gathered light more than once")),
     }
     // Nothing may follow, neither in the content nor beyond its length.
     let is_read = input.inner.buffer().is_empty() && input.inner.get_ref().limit() == 0;
     let packed = input.inner.get_mut();
     packed.set_limit(1);
     match packed.read(&mut [0]) {
-        Ok(0) if is_read => Ok(sections),
-        _ => Err(MeshFault::Damaged("it holds more than its light points")),
+        Ok(0) if is_read => Ok(content),
+        _ => Err(MeshFault::Damaged("it holds more than it says")),
     }
-}
-
-/// What is not compressed as it should be.
-const UNPACKED: MeshFault = MeshFault::Damaged("it cannot be decompressed");
-
-/// Content that is read, and the memory for it.
-struct Input<R> {
-    inner: R,
-    budget: Budget,
 }
 
 impl<R: Read> Input<R> {
-    fn bytes<const N: usize>(&mut self) -> Result<[u8; N], MeshFault> {
-        let mut bytes = [0; N];
-        self.inner.read_exact(&mut bytes).map_err(|_| UNPACKED)?;
-        Ok(bytes)
-    }
-
-    fn int(&mut self) -> Result<u32, MeshFault> {
-        self.bytes().map(u32::from_le_bytes)
-    }
-
-    fn long(&mut self) -> Result<u64, MeshFault> {
-        self.bytes().map(u64::from_le_bytes)
-    }
-
-    fn float(&mut self) -> Result<f32, MeshFault> {
-        self.bytes().map(f32::from_le_bytes)
-    }
-
-    fn vector(&mut self) -> Result<Vec3, MeshFault> {
-        Ok(Vec3::new(self.float()?, self.float()?, self.float()?))
-    }
-
-    /// `count` numbers of `N` bytes each.
-    fn numbers<const N: usize, T>(&mut self, count: u64, number: impl Fn([u8; N]) -> T) -> Result<Vec<T>, MeshFault> {
-        let mut numbers = Vec::new();
-        let mut bytes = vec![0; N * AT_ONCE.min(count as usize)];
-        let mut left = count;
-        while left > 0 {
-            let some = left.min(AT_ONCE as u64) as usize;
-            let bytes = &mut bytes[..N * some];
-            self.inner.read_exact(bytes).map_err(|_| UNPACKED)?;
-            self.hold(&numbers, some)?;
-            numbers.extend(bytes.as_chunks::<N>().0.iter().map(|&bytes| number(bytes)));
-            left -= some as u64;
-        }
-        Ok(numbers)
-    }
-
-    /// Asks for memory for `more` values: growing takes twice as much as there is, while it is moved.
-    fn hold<T>(&mut self, values: &Vec<T>, more: usize) -> Result<(), MeshFault> {
-        if values.len() + more > values.capacity() {
-            short((2 * (values.len() + more) * size_of::<T>()) as u64, self.budget)?;
-        }
-        Ok(())
-    }
-
     fn section(&mut self) -> Result<Section, MeshFault> {
         let geometry = self.long()?;
         let (anchor, step) = (self.vector()?, self.float()?);
@@ -234,18 +180,6 @@ impl<R: Read> Input<R> {
             bricks.push(key);
         }
         Ok(bricks)
-    }
-
-    fn difference(&mut self) -> Result<u64, MeshFault> {
-        let mut value = 0;
-        for shift in (0..KEY_BITS.next_multiple_of(7)).step_by(7) {
-            let [byte] = self.bytes()?;
-            value |= u64::from(byte & 0x7f) << shift;
-            if byte & 0x80 == 0 {
-                return Ok(value);
-            }
-        }
-        Err(MeshFault::Damaged("its bricks are not in order"))
     }
 
     fn column(&mut self, bricks: usize) -> Result<StoredColumn, MeshFault> {

@@ -79,6 +79,9 @@ pub enum MeshFault {
         /// The step of the image.
         expected: f32,
     },
+    /// Its gathered light depends on something that has changed.
+    #[error("has light gathered from other lights, surroundings or materials, or with another seed or quality")]
+    OtherSources,
     /// It is cut off, or its content is not as written.
     #[error("is damaged: {0}")]
     Damaged(&'static str),
@@ -91,6 +94,11 @@ impl MeshFault {
     /// Whether the file is one of ours that is stale or damaged: it may be replaced.
     pub fn is_replaceable(&self) -> bool {
         !matches!(self, MeshFault::Read(_) | MeshFault::NotAMesh | MeshFault::Memory(_))
+    }
+
+    /// Whether light points of the file may be used nonetheless.
+    pub fn is_of_gathered_light(&self) -> bool {
+        matches!(self, MeshFault::OtherSources)
     }
 
     /// What to do about it.

@@ -1,4 +1,5 @@
-//! Saved light points: what they see of each light, for later runs and for other devices.
+//! Saved light points and gathered light: what light points see of each light, and what surfaces gather, for later runs and for other
+//! devices.
 //!
 //! A file is a header, compressed content (Zstandard), and a trailer. All numbers are little-endian:
 //!
@@ -12,13 +13,16 @@
 //! | 8 | bytes of the content before compression |
 //! | 8 | hash of everything before (XXH3) |
 //!
-//! A file is accepted only if it belongs to the geometry and its hash is right; light points at other places than an image's are found out
-//! with the first image ([`MeshFault::OtherStep`]), and a light other than the file's makes only its own values stale. What a file says of its
-//! size is never believed: memory is taken as content appears, and within the budget. A hash is no signature: a file that someone forges
-//! with care yields wrong shadows, but nothing worse.
+//! A file is accepted only if it belongs to the geometry and its hash is right. Light points at other places than an image's are found out
+//! with the first image ([`MeshFault::OtherStep`]), as are other sources of gathered light ([`MeshFault::OtherSources`]); a light other than
+//! the file's makes only its own values stale. What a file says of its size is never believed: memory is taken as content appears, and within
+//! the budget. A hash is no signature: a file that someone forges with care yields wrong light, but nothing worse.
 
 mod content;
 mod fault;
+mod gathered;
+mod input;
+mod output;
 mod pack;
 
 use std::io::{self, BufWriter, Write};
@@ -28,13 +32,14 @@ use lightmesh_files::{Output, Portion, ReadError, read};
 use lightmesh_memory::{Budget, Short};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
-use super::Section;
+use super::Content;
 use crate::prepared::PreparedScene;
 pub use fault::{MeshFault, MeshFileError, MeshSaveError};
 
 const MAGIC: [u8; 8] = *b"LM MESH\0";
-/// To be raised with every change of the format, and of what decides what light points see.
-const VERSION: u32 = 1;
+/// To be raised with every change of the format, of what decides what light points see, and
+/// of how light is gathered.
+const VERSION: u32 = 2;
 const HEADER: usize = 24;
 const TRAILER: usize = 16;
 
@@ -44,24 +49,35 @@ const TRAILER: usize = 16;
 pub struct SavedMesh {
     /// Values of light points: light points times lights.
     pub values: u64,
+    /// Sites that gathered light.
+    pub sites: u64,
     /// Bytes of the file.
     pub bytes: u64,
 }
 
-/// Writes what is known of a scene's geometry, whole or not at all.
-pub(super) fn write(path: &Path, scene: &PreparedScene, sections: &[Section]) -> Result<u64, MeshSaveError> {
-    let file = Output::to(path)?;
-    write_to(file, scene, sections).map_err(|reason| MeshSaveError::Write { path: path.into(), reason })
+/// Writes what there is of a scene's geometry. `None` if that is nothing, and no file is written.
+pub(super) fn save(path: &Path, scene: &PreparedScene, content: Content) -> Result<Option<SavedMesh>, MeshSaveError> {
+    let content = content.only_of(scene);
+    if content.is_empty() {
+        return Ok(None);
+    }
+    Ok(Some(SavedMesh { values: content.len(), sites: content.sites(), bytes: write(path, scene, &content)? }))
 }
 
-fn write_to(mut file: Output, scene: &PreparedScene, sections: &[Section]) -> io::Result<u64> {
+/// Writes what is known of a scene's geometry, whole or not at all.
+fn write(path: &Path, scene: &PreparedScene, content: &Content) -> Result<u64, MeshSaveError> {
+    let file = Output::to(path)?;
+    write_to(file, scene, content).map_err(|reason| MeshSaveError::Write { path: path.into(), reason })
+}
+
+fn write_to(mut file: Output, scene: &PreparedScene, content: &Content) -> io::Result<u64> {
     let mut output = Hashed { inner: BufWriter::new(&mut file), hash: Xxh3::new(), bytes: 0 };
     output.write_all(&MAGIC)?;
     output.write_all(&VERSION.to_le_bytes())?;
     output.write_all(&(scene.geometry.triangles.stored().len() as u32).to_le_bytes())?;
     output.write_all(&scene.geometry.hash().to_le_bytes())?;
     let mut counted = Hashed { inner: pack::encoder(&mut output)?, hash: Xxh3::new(), bytes: 0 };
-    content::write(&mut counted, sections)?;
+    content::write(&mut counted, content)?;
     let length = counted.bytes;
     pack::finish(counted.inner)?;
     output.write_all(&length.to_le_bytes())?;
@@ -95,7 +111,7 @@ impl<W: Write> Write for Hashed<W> {
 }
 
 /// Reads what was saved of a scene's geometry.
-pub(super) fn load(path: &Path, scene: &PreparedScene, budget: Budget) -> Result<Vec<Section>, MeshFileError> {
+pub(super) fn load(path: &Path, scene: &PreparedScene, budget: Budget) -> Result<Content, MeshFileError> {
     let portion = |wanted| Portion { wanted, budget };
     let bytes = |wanted| read(path, portion(wanted)).map_err(unread);
     // What is no mesh is not read.
@@ -111,7 +127,7 @@ fn unread(error: ReadError) -> MeshFault {
 }
 
 /// Decodes all bytes of a file.
-fn decode(bytes: &[u8], scene: &PreparedScene, budget: Budget) -> Result<Vec<Section>, MeshFault> {
+fn decode(bytes: &[u8], scene: &PreparedScene, budget: Budget) -> Result<Content, MeshFault> {
     // 1. Is it what was saved for this geometry?
     let header = Header::parse(bytes)?;
     let Some((content, hash)) = bytes.split_last_chunk::<8>() else { return Err(MeshFault::Damaged(CUT_OFF)) };

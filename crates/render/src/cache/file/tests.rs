@@ -5,8 +5,9 @@ use lightmesh_scene::LightKind;
 use lightmesh_testkit::pile;
 
 use super::super::stored::{Stored, StoredAnswers, StoredColumn};
-use super::super::{MeshCache, Places, Seen};
+use super::super::{MeshCache, Places, SavedGathered, Section, Seen};
 use super::*;
+use crate::gathered::saved::{SavedCells, SavedLight, SavedNode, SavedSite};
 use crate::observer::Unobserved;
 use crate::settings::Acceleration;
 
@@ -43,11 +44,39 @@ fn section(scene: &PreparedScene) -> Section {
     Section { geometry: scene.geometry.hash(), places, stored: Stored { bricks, ages: vec![0; 5], columns } }
 }
 
+/// Cells with one site and with several, some of which have a value.
+fn gathered(scene: &PreparedScene) -> SavedGathered {
+    let place = [[1.0, -2.5, 1e-7], [1.0, -2.4, 0.0], [0.0, 1.0, 0.0]];
+    let site = |(kind, has_value)| SavedSite { kind, has_value, place };
+    let cells = vec![(0, 1), (5 << 51, 3), ((1 << 59) - 1, 2)];
+    let sites: Vec<SavedSite> = [(0, true), (1, false), (7, true), (11, false), (2, false), (3, true)].map(site).into();
+    let node =
+        |(name, known, place)| SavedNode { name, place, nearest: f32::INFINITY, known, values: [[0.5; 3], [0.75; 3]] };
+    let light = SavedLight {
+        fine: SavedCells { cells: cells.clone(), sites: sites.clone(), values: vec![words(1); 3] },
+        far: SavedCells { cells: cells[..1].into(), sites: sites[..1].into(), values: vec![words(2)] },
+        nodes: [(3, 1, place), (4 << 55, 2, Default::default()), ((1 << 63) - 1, 2, place)].map(node).into(),
+    };
+    SavedGathered { geometry: scene.geometry.hash(), sources: 0x1234_5678_9abc_def0, light }
+}
+
+/// A value whose words are all different.
+fn words<V: bytemuck::Pod>(first: u32) -> V {
+    let mut value = V::zeroed();
+    let words: &mut [u32] = bytemuck::cast_slice_mut(std::slice::from_mut(&mut value));
+    (first..).zip(words).for_each(|(number, word)| *word = number.wrapping_mul(0x0101_0107));
+    value
+}
+
+fn all(scene: &PreparedScene) -> Content {
+    Content { points: vec![section(scene)], gathered: vec![gathered(scene)] }
+}
+
 /// A saved mesh as bytes, and a folder to change it in.
 fn saved(scene: &PreparedScene) -> (tempfile::TempDir, PathBuf, Vec<u8>) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.mesh");
-    let bytes = write(&path, scene, &[section(scene)]).unwrap();
+    let bytes = write(&path, scene, &all(scene)).unwrap();
     let content = std::fs::read(&path).unwrap();
     assert_eq!(content.len() as u64, bytes);
     (folder, path, content)
@@ -58,7 +87,7 @@ fn fault(scene: &PreparedScene, path: &Path, bytes: &[u8]) -> MeshFault {
     load(path, scene, Budget::default()).unwrap_err().fault
 }
 
-fn decoded(bytes: &[u8], scene: &PreparedScene) -> Result<Vec<Section>, MeshFault> {
+fn decoded(bytes: &[u8], scene: &PreparedScene) -> Result<Content, MeshFault> {
     decode(bytes, scene, Budget::default())
 }
 
@@ -78,14 +107,25 @@ fn content(file: &[u8]) -> Vec<u8> {
 fn what_is_loaded_is_what_was_saved() {
     let scene = scene(0.0);
     let (folder, path, bytes) = saved(&scene);
-    assert_eq!(load(&path, &scene, Budget::default()).unwrap(), [section(&scene)]);
+    assert_eq!(load(&path, &scene, Budget::default()).unwrap(), all(&scene));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left next to it");
     let cache = MeshCache::load(&path, &scene, Budget::default()).unwrap();
-    assert_eq!(cache.len(), 7 * 68);
+    assert_eq!((cache.len(), cache.sites_read()), (7 * 68, 4));
     // What was not asked for stays.
     let again = cache.save(&path, &scene).unwrap().unwrap();
-    assert_eq!((again.values, again.bytes), (7 * 68, bytes.len() as u64));
+    assert_eq!((again.values, again.sites, again.bytes), (7 * 68, 4, bytes.len() as u64));
     assert_eq!(std::fs::read(&path).unwrap(), bytes);
+    // Each without the other.
+    let light = Content { gathered: vec![gathered(&scene)], ..Content::default() };
+    write(&path, &scene, &light).unwrap();
+    assert_eq!(load(&path, &scene, Budget::default()).unwrap(), light);
+    let cache = MeshCache::load(&path, &scene, Budget::default()).unwrap();
+    assert!(!cache.is_empty() && cache.memory() > 2000);
+    assert_eq!(cache.len(), 0);
+    assert_eq!(cache.save(&path, &scene).unwrap().map(|saved| (saved.values, saved.sites)), Some((0, 4)));
+    let points = Content { points: vec![section(&scene)], ..Content::default() };
+    write(&path, &scene, &points).unwrap();
+    assert_eq!(load(&path, &scene, Budget::default()).unwrap(), points);
     assert_eq!(MeshCache::new().save(folder.path().join("none"), &scene).unwrap(), None);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is known, nothing is written");
 }
@@ -119,9 +159,12 @@ fn each_fault_has_its_name() {
     let (folder, path, bytes) = saved(&scene);
     let other = fault(&scene, &path, b"P6 640 480 255");
     assert!(matches!(other, MeshFault::NotAMesh) && !other.is_replaceable());
-    let mut newer = bytes.clone();
-    newer[8] = 2;
-    assert!(matches!(fault(&scene, &path, &newer), MeshFault::Version { found: 2 }));
+    for found in [1, 3] {
+        let mut other = bytes.clone();
+        other[8] = found;
+        let fault = fault(&scene, &path, &other);
+        assert!(matches!(fault, MeshFault::Version { found: version } if version == u32::from(found)), "{fault}");
+    }
     std::fs::write(&path, &bytes).unwrap();
     let moved = self::scene(0.5);
     let error = load(&path, &moved, Budget::default()).unwrap_err();
@@ -134,7 +177,7 @@ fn each_fault_has_its_name() {
     assert!(message.contains("scene.mesh") && message.contains("save the mesh again"), "{message}");
     let error = load(folder.path(), &scene, Budget::default()).unwrap_err();
     assert!(error.to_string().contains("not a regular file") && !error.fault.is_replaceable(), "{error}");
-    assert!(matches!(write(&path.join("below"), &scene, &[]).unwrap_err(), MeshSaveError::Target(_)));
+    assert!(matches!(write(&path.join("below"), &scene, &Content::default()).unwrap_err(), MeshSaveError::Target(_)));
 }
 
 /// A hash is easy to forge: what follows it must be harmless.
@@ -143,7 +186,7 @@ fn forged_content_is_refused_or_harmless() {
     let scene = scene(0.0);
     let (_folder, _, bytes) = saved(&scene);
     let content = content(&bytes);
-    assert_eq!(decoded(&with_content(&bytes, &content), &scene).unwrap(), [section(&scene)]);
+    assert_eq!(decoded(&with_content(&bytes, &content), &scene).unwrap(), all(&scene));
     let mut refused = 0;
     for at in 0..content.len() {
         for value in [0, 1, 0x7f, 0x80, 0xff] {
@@ -171,7 +214,63 @@ fn sizes_beyond_the_content_allocate_nothing() {
     bomb.resize(64 << 20, 1);
     let bomb = with_content(&bytes, &bomb);
     assert!(bomb.len() < 1 << 16, "{} bytes", bomb.len());
+    assert_too_large(&bomb, &scene);
+}
+
+/// Decodes a small file with much in it.
+fn assert_too_large(bomb: &[u8], scene: &PreparedScene) {
+    assert!(bomb.len() < 1 << 17, "{} bytes", bomb.len());
     let limit = lightmesh_memory::held() + (32 << 20);
-    let found = decode(&bomb, &scene, Budget::new(Some(limit))).unwrap_err();
+    let found = decode(bomb, scene, Budget::new(Some(limit))).unwrap_err();
     assert!(matches!(found, MeshFault::Memory(_)) && !found.is_replaceable(), "{found}");
+}
+
+/// The content of a file with nothing but this of gathered light.
+fn of_gathered(rest: &[&[u8]]) -> Vec<u8> {
+    [&[0, 0, 0, 0, 1][..], &7u64.to_le_bytes(), &rest.concat()].concat()
+}
+
+#[test]
+fn gathered_light_that_cannot_be_is_refused() {
+    let scene = scene(0.0);
+    let (_folder, _, file) = saved(&scene);
+    let number = |count: u64| count.to_le_bytes();
+    let refused = |rest: &[&[u8]]| match decoded(&with_content(&file, &of_gathered(rest)), &scene) {
+        Err(MeshFault::Damaged(why)) => why,
+        other => panic!("{other:?}"),
+    };
+    let none = number(0);
+    assert!(decoded(&with_content(&file, &of_gathered(&[&none, &none, &none])), &scene).is_ok());
+    assert!(refused(&[&number(u64::MAX)]).contains("more cells than there can be"));
+    assert!(refused(&[&none, &none, &number(1 << 40)]).contains("more cells than there can be"));
+    assert!(refused(&[&number(2), &[9, 1, 0, 1]]).contains("not in order"));
+    for beyond in [&[0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x08, 1][..], &[0xff; 12]] {
+        assert!(refused(&[&number(1), beyond]).contains("not in order"));
+    }
+    assert!(refused(&[&number(1), &[9, 0]]).contains("more than it can have"));
+    assert!(refused(&[&number(1), &[9, 13]]).contains("more than it can have"));
+    assert!(refused(&[&none, &none, &number(1), &[9, 3]]).contains("more than it can have"));
+    assert!(refused(&[&number(1), &[9, 1], &[12]]).contains("of no kind"));
+    assert!(refused(&[&number(1), &[9, 1], &[0x20]]).contains("of no kind"));
+    for place in [[f32::NAN; 9], [0.0; 9], [1.0; 9]] {
+        assert!(refused(&[&number(1), &[9, 1], &[0], bytemuck::cast_slice(&place)]).contains("nowhere"));
+    }
+    assert!(decoded(&with_content(&file, &[0, 0, 0, 0, 2]), &scene).is_err());
+}
+
+#[test]
+fn gathered_light_takes_no_more_memory_than_there_is() {
+    let scene = scene(0.0);
+    let (_folder, _, file) = saved(&scene);
+    // Many cells; many sites; many nodes.
+    let cells = [&(1u64 << 26).to_le_bytes()[..], &[1; 64 << 20]].concat();
+    assert_too_large(&with_content(&file, &of_gathered(&[&cells])), &scene);
+    let many = 1u64 << 20;
+    let place: Vec<u8> =
+        [0f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0].iter().flat_map(|axis| axis.to_le_bytes()).collect();
+    let cells = [&many.to_le_bytes()[..], &[1; 2 << 20], &[0; 1 << 20], &place.repeat(1 << 20)].concat();
+    assert_too_large(&with_content(&file, &of_gathered(&[&cells])), &scene);
+    let none = 0u64.to_le_bytes();
+    let nodes = [&many.to_le_bytes()[..], &[1; 2 << 20], &[0; 64 << 20]].concat();
+    assert_too_large(&with_content(&file, &of_gathered(&[&none, &none, &nodes])), &scene);
 }

@@ -18,14 +18,14 @@ const NODES_AT_ONCE: usize = 1 << 16;
 
 /// All sites that rays of others hit.
 pub(super) struct DeviceBounce<R: Runtime> {
-    names: DeviceNames<R>,
-    nodes: Buffer<R, Node>,
-    sites: Buffer<R, Site>,
-    stamps: Buffer<R, u32>,
-    listed: Buffer<R, u32>,
-    listed_count: Buffer<R, u32>,
+    pub(super) names: DeviceNames<R>,
+    pub(super) nodes: Buffer<R, Node>,
+    pub(super) sites: Buffer<R, Site>,
+    pub(super) stamps: Buffer<R, u32>,
+    pub(super) listed: Buffer<R, u32>,
+    pub(super) listed_count: Buffer<R, u32>,
     /// The number of the last list.
-    stamp: u32,
+    pub(super) stamp: u32,
 }
 
 impl<R: Runtime> DeviceBounce<R> {

@@ -20,16 +20,16 @@ const CELLS_AT_ONCE: usize = 1 << 15;
 
 /// Cells with their sites. Some of these have a value, which is stored elsewhere by its number.
 pub(super) struct DeviceCells<R: Runtime> {
-    names: DeviceNames<R>,
-    ranges: Buffer<R, u64>,
-    sites: Buffer<R, Site>,
-    site_count: Buffer<R, u32>,
+    pub(super) names: DeviceNames<R>,
+    pub(super) ranges: Buffer<R, u64>,
+    pub(super) sites: Buffer<R, Site>,
+    pub(super) site_count: Buffer<R, u32>,
     /// By site.
-    values: Buffer<R, u32>,
-    owners: Buffer<R, u32>,
-    value_count: Buffer<R, u32>,
-    site_number: usize,
-    value_number: usize,
+    pub(super) values: Buffer<R, u32>,
+    pub(super) owners: Buffer<R, u32>,
+    pub(super) value_count: Buffer<R, u32>,
+    pub(super) site_number: usize,
+    pub(super) value_number: usize,
 }
 
 /// The sites that places take light from.

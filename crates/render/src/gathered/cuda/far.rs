@@ -17,7 +17,7 @@ use crate::gpu::Cuda;
 
 /// What coarse sites gather, by the number of its value.
 pub(super) struct DeviceFar<R: Runtime> {
-    far: Buffer<R, FarLight>,
+    pub(super) far: Buffer<R, FarLight>,
 }
 
 /// Where results go: the number of the first, in a list.

@@ -19,7 +19,7 @@ use crate::gpu::Cuda;
 
 /// What fine sites receive, by the number of its value.
 pub(super) struct DeviceFine<R: Runtime> {
-    fine: Buffer<R, FineLight>,
+    pub(super) fine: Buffer<R, FineLight>,
 }
 
 /// What coarse sites know.

@@ -10,11 +10,13 @@ mod fans;
 mod far;
 mod fine;
 mod names;
+mod saved;
 
 use bytemuck::Zeroable;
 use lightmesh_layout::gathered::{GatherPoints, LightPlace};
 use lightmesh_layout::geometry::Vec3;
 
+use super::saved::SavedLight;
 use super::{Gathering, PART_KEPT};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
@@ -38,14 +40,19 @@ const BYTES_OF_RAY: u64 = 3 * 160;
 /// What takes memory at once, at least: also tables while they grow.
 const LEAST_BYTES: u64 = (BYTES_OF_POINT + BYTES_OF_RAY) * LEAST_AT_ONCE as u64 + (64 << 20);
 
+/// Tables take at most so many times the memory of what is saved: half of their slots are empty, or more.
+const TIMES_OF_SAVED: u64 = 4;
+
 /// What was gathered for a scene, on a device.
 pub struct DeviceSurfaceLight<R: Runtime> {
     kept: Option<Kept<R>>,
+    /// What was read from a file, until the device is at hand; nothing else is kept then.
+    saved: Option<SavedLight>,
 }
 
 impl<R: Runtime> Default for DeviceSurfaceLight<R> {
     fn default() -> DeviceSurfaceLight<R> {
-        DeviceSurfaceLight { kept: None }
+        DeviceSurfaceLight { kept: None, saved: None }
     }
 }
 
@@ -79,6 +86,16 @@ impl<R: Runtime> DeviceSurfaceLight<R> {
     pub(crate) fn memory(&self) -> u64 {
         self.kept.as_ref().map_or(0, Kept::memory)
     }
+
+    /// Takes out what is kept, in the device's memory: what is known, or of a file if it takes no more than `most` bytes.
+    fn take(&mut self, device: &Device<R>, most: Option<u64>) -> Result<Kept<R>, RenderError> {
+        let fits = |saved: &SavedLight| most.is_none_or(|most| TIMES_OF_SAVED * saved.memory() <= most);
+        match (self.kept.take(), self.saved.take().filter(fits)) {
+            (Some(kept), _) => Ok(kept),
+            (None, Some(saved)) => Kept::restored(device, &saved),
+            (None, None) => Kept::new(device.cuda),
+        }
+    }
 }
 
 /// The mean radiance that each surface point of a wave receives, on a device.
@@ -106,11 +123,12 @@ pub(crate) fn gather<R: Runtime>(
     let result = cuda.pool().zeros("gathered light", rays)?;
     for first in (0..rays).step_by(at_once) {
         wave.job.check()?;
-        if cuda.memory_left().is_some_and(|left| light.memory() > (left + light.memory()) / PART_KEPT) {
+        let most = cuda.memory_left().map(|left| (left + light.memory()) / PART_KEPT);
+        if most.is_some_and(|most| light.memory() > most) {
             light.kept = None;
         }
         // In case of an error it is lost: tables may be incomplete.
-        let mut kept = light.kept.take().map_or_else(|| Kept::new(cuda), Ok)?;
+        let mut kept = light.take(&device, most)?;
         let count = at_once.min(rays - first);
         gather_part(&device, how, &mut kept, first..first + count, &result)?;
         light.kept = Some(kept);

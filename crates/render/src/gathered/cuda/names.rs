@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use bytemuck::Zeroable;
 use lightmesh_layout::constants::FULL_TABLE;
 use lightmesh_layout::gathered::{Name, Names};
 
@@ -84,6 +85,24 @@ impl<R: Runtime> DeviceNames<R> {
         device.threads("add_names_again", count, &larger.record())?;
         *self = DeviceNames { known: self.known, ..larger };
         Ok(())
+    }
+
+    /// All names, by number.
+    pub(super) fn read(&self) -> Result<Vec<Name>, RenderError> {
+        let mut names = vec![Name::zeroed(); self.known];
+        self.names.read_into(0, &mut names)?;
+        Ok(names)
+    }
+
+    /// A table of these names, which are numbered in their order.
+    pub(super) fn restored(device: &Device<R>, names: Vec<Name>) -> Result<DeviceNames<R>, RenderError> {
+        let count = names.len();
+        let capacity = FIRST_CAPACITY.max((2 * count).next_power_of_two());
+        let table = DeviceNames::with_capacity(device.cuda, capacity)?;
+        table.names.write(&names)?;
+        table.count.write(&[count as u32])?;
+        device.threads("add_names_again", count, &table.record())?;
+        Ok(DeviceNames { known: count, ..table })
     }
 
     /// Bytes in the device's memory.

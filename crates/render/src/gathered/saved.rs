@@ -1,0 +1,312 @@
+//! Gathered light in the form in which it goes to files and to other devices: cells in ascending order, without the numbers that sites and nodes
+//! got in the order in which they were found. It is the same whoever gathered it, and in whatever order.
+//!
+//! Cells none of whose sites has gathered anything are left out: which of them there are depends on how places are grouped. They are found
+//! again when they are asked for. Of nodes, what arrives there is kept, and not what their rays hit.
+
+use bytemuck::Pod;
+use glam::Vec3;
+use lightmesh_layout::constants::{CELL_INDEX_BITS, LEVEL_BIAS};
+use lightmesh_layout::gathered::{Bins as BinsRecord, FarLight, FineLight, SurfaceLight as LightRecord};
+
+use super::SurfaceLight;
+pub(crate) use super::bounce::ORDERS;
+use super::bounce::{Bounce, Node};
+use super::cells::{CellKey, Cells, Site};
+use super::far::Far;
+use super::fine::Fine;
+use super::light::{Bins, Light};
+use crate::surface::SurfacePoint;
+
+/// What was gathered.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SavedLight {
+    pub(crate) fine: SavedCells<FineLight>,
+    pub(crate) far: SavedCells<FarLight>,
+    /// In the order of their names.
+    pub(crate) nodes: Vec<SavedNode>,
+}
+
+/// Cells with their sites, and what these gather.
+#[derive(Clone, Debug)]
+pub(crate) struct SavedCells<V> {
+    /// In ascending order, each with the number of its sites.
+    pub(crate) cells: Vec<(CellKey, u32)>,
+    /// Those of all cells, one after the other.
+    pub(crate) sites: Vec<SavedSite>,
+    /// Of those sites that have a value, in their order.
+    pub(crate) values: Vec<V>,
+}
+
+/// A site of a cell, which tells its level.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct SavedSite {
+    /// Its kind of surface.
+    pub(crate) kind: u8,
+    pub(crate) has_value: bool,
+    pub(crate) place: SavedPlace,
+}
+
+/// A point of the surfaces: position, where rays begin, and normal.
+pub(crate) type SavedPlace = [[f32; 3]; 3];
+
+/// What arrives at a site that rays of others hit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct SavedNode {
+    /// Its cell and its kind of surface.
+    pub(crate) name: u64,
+    /// All zeros if no such surface was found.
+    pub(crate) place: SavedPlace,
+    /// The distance of what is nearest in front of it.
+    pub(crate) nearest: f32,
+    /// How many of the values are known.
+    pub(crate) known: u8,
+    pub(crate) values: [[f32; 3]; ORDERS],
+}
+
+/// Bits of a kind of surface in names.
+const KIND_BITS: u32 = 4;
+const KIND: u64 = (1 << KIND_BITS) - 1;
+/// Cells have smaller keys than this.
+pub(crate) const END_OF_CELLS: CellKey = 1 << (3 * CELL_INDEX_BITS + u8::BITS);
+/// Nodes have smaller names than this.
+pub(crate) const END_OF_NAMES: u64 = END_OF_CELLS << KIND_BITS;
+
+/// The level of a cell.
+pub(super) fn level_of_key(key: CellKey) -> i32 {
+    (key >> (3 * CELL_INDEX_BITS)) as i32 - LEVEL_BIAS
+}
+
+impl SavedLight {
+    /// Number of sites that gathered light.
+    pub(crate) fn len(&self) -> u64 {
+        (self.fine.values.len() + self.far.values.len()) as u64
+    }
+
+    /// Bytes in memory.
+    pub(crate) fn memory(&self) -> u64 {
+        self.fine.memory() + self.far.memory() + size_of_val(&self.nodes[..]) as u64
+    }
+}
+
+impl<V> Default for SavedCells<V> {
+    fn default() -> SavedCells<V> {
+        SavedCells { cells: Vec::new(), sites: Vec::new(), values: Vec::new() }
+    }
+}
+
+impl<V: Pod> PartialEq for SavedCells<V> {
+    /// To the bit.
+    fn eq(&self, other: &SavedCells<V>) -> bool {
+        let [bits, others] = [self, other].map(|cells| bytemuck::cast_slice::<V, u8>(&cells.values));
+        self.cells == other.cells && self.sites == other.sites && bits == others
+    }
+}
+
+impl<V> SavedCells<V> {
+    fn memory(&self) -> u64 {
+        (size_of_val(&self.cells[..]) + size_of_val(&self.sites[..]) + size_of_val(&self.values[..])) as u64
+    }
+
+    /// Adds a cell that follows those before. It is left out if none of its sites has a value.
+    pub(super) fn add(&mut self, key: CellKey, sites: impl Iterator<Item = (u64, SavedPlace, Option<V>)>) {
+        let (first, valued) = (self.sites.len(), self.values.len());
+        for (seed, place, value) in sites {
+            self.sites.push(SavedSite { kind: (seed & KIND) as u8, has_value: value.is_some(), place });
+            self.values.extend(value);
+        }
+        if self.values.len() == valued {
+            self.sites.truncate(first);
+        } else {
+            self.cells.push((key, (self.sites.len() - first) as u32));
+        }
+    }
+
+    /// Each site with the key of its cell.
+    pub(super) fn sites(&self) -> impl Iterator<Item = (CellKey, &SavedSite)> {
+        let keys = self.cells.iter().flat_map(|&(key, count)| (0..count).map(move |_| key));
+        keys.zip(&self.sites)
+    }
+}
+
+impl SavedNode {
+    pub(super) fn level(&self) -> i32 {
+        level_of_key(self.name >> KIND_BITS)
+    }
+
+    pub(super) fn kind(&self) -> u32 {
+        (self.name & KIND) as u32
+    }
+
+    pub(super) fn cell(&self) -> CellKey {
+        self.name >> KIND_BITS
+    }
+
+    /// Whether a surface was found.
+    pub(crate) fn is_somewhere(&self) -> bool {
+        self.place != SavedPlace::default()
+    }
+
+    /// All is known of nodes where no surface was found.
+    pub(super) fn completed(self) -> SavedNode {
+        if self.is_somewhere() { self } else { SavedNode { known: ORDERS as u8, ..self } }
+    }
+}
+
+/// The seed of a site.
+pub(super) fn seed_of(key: CellKey, kind: u8) -> u64 {
+    key << KIND_BITS | u64::from(kind)
+}
+
+impl SurfaceLight {
+    /// All that is known.
+    pub(crate) fn saved(&self) -> SavedLight {
+        SavedLight {
+            fine: self.fine_cells.saved(|site| Some(FineLight::from(self.fine.get(site)?.as_ref()?))),
+            far: self.far_cells.saved(|site| Some(FarLight::from(&**self.far.get(site)?.as_ref()?))),
+            nodes: self.bounce.saved(),
+        }
+    }
+
+    /// What was saved.
+    pub(crate) fn restored(saved: SavedLight) -> SurfaceLight {
+        let SavedLight { fine, far, nodes } = saved;
+        SurfaceLight {
+            fine_cells: Cells::restored(&fine),
+            far_cells: Cells::restored(&far),
+            fine: by_site(&fine, |fine| Fine::from(fine)),
+            far: by_site(&far, |far| Box::new(Far::from(far))),
+            bounce: Bounce::restored(&nodes),
+        }
+    }
+}
+
+/// The values of sites.
+fn by_site<V, T>(saved: &SavedCells<V>, restored: impl Fn(&V) -> T) -> Vec<Option<T>> {
+    let mut values = saved.values.iter().map(restored);
+    saved.sites.iter().map(|site| if site.has_value { values.next() } else { None }).collect()
+}
+
+impl Cells {
+    fn saved<V>(&self, value: impl Fn(usize) -> Option<V>) -> SavedCells<V> {
+        let mut keys: Vec<CellKey> = self.ranges.keys().copied().collect();
+        keys.sort_unstable();
+        let mut saved = SavedCells::default();
+        for key in keys {
+            let site = |number: u32| {
+                let site = &self.sites[number as usize];
+                (site.seed, place_of(&site.point), value(number as usize))
+            };
+            saved.add(key, self.of(key).map(site));
+        }
+        saved
+    }
+
+    fn restored<V>(saved: &SavedCells<V>) -> Cells {
+        let mut first = 0;
+        let range = |&(key, count): &(CellKey, u32)| {
+            let range = (first, count);
+            first += count;
+            (key, range)
+        };
+        let site = |(key, site): (CellKey, &SavedSite)| Site {
+            point: point_at(site.place),
+            level: level_of_key(key),
+            seed: seed_of(key, site.kind),
+        };
+        Cells { ranges: saved.cells.iter().map(range).collect(), sites: saved.sites().map(site).collect() }
+    }
+}
+
+impl Bounce {
+    fn saved(&self) -> Vec<SavedNode> {
+        let node = |(&name, &number): (&u64, &u32)| {
+            let node = &self.nodes[number as usize];
+            let (place, known) = (place_of(&node.site.point), node.known as u8);
+            let values = node.values.map(|value| value.to_array());
+            SavedNode { name, place, nearest: node.nearest, known, values }.completed()
+        };
+        let mut nodes: Vec<SavedNode> = self.numbers.iter().map(node).filter(|node| node.known > 0).collect();
+        nodes.sort_unstable_by_key(|node| node.name);
+        nodes
+    }
+
+    fn restored(saved: &[SavedNode]) -> Bounce {
+        let numbers = saved.iter().zip(0..).map(|(node, number)| (node.name, number)).collect();
+        let node = |node: &SavedNode| Node {
+            site: Site { point: point_at(node.place), level: node.level(), seed: node.name },
+            // If more of it is asked, its rays are cast again.
+            first: if node.is_somewhere() { None } else { Some(Vec3::ZERO) },
+            nearest: node.nearest,
+            hits: Vec::new(),
+            links: Default::default(),
+            known: node.known.into(),
+            values: node.values.map(Vec3::from),
+        };
+        Bounce { numbers, nodes: saved.iter().map(node).collect(), hits: 0 }
+    }
+}
+
+fn place_of(point: &SurfacePoint) -> SavedPlace {
+    [point.position, point.origin, point.normal].map(|vector| vector.to_array())
+}
+
+fn point_at(place: SavedPlace) -> SurfacePoint {
+    let [position, origin, normal] = place.map(Vec3::from);
+    SurfacePoint { position, origin, normal }
+}
+
+impl From<&Light> for LightRecord {
+    fn from(light: &Light) -> LightRecord {
+        let vector = |vector: Vec3| vector.to_array().into();
+        LightRecord { mean: vector(light.mean), tilt: light.tilt.map(vector) }
+    }
+}
+
+impl From<&LightRecord> for Light {
+    fn from(light: &LightRecord) -> Light {
+        Light { mean: vector_of(light.mean), tilt: light.tilt.map(vector_of) }
+    }
+}
+
+impl From<&Bins> for BinsRecord {
+    fn from(bins: &Bins) -> BinsRecord {
+        BinsRecord { sums: bins.sums.map(|sum| sum.to_array().into()), counts: bins.counts }
+    }
+}
+
+impl From<&BinsRecord> for Bins {
+    fn from(bins: &BinsRecord) -> Bins {
+        Bins { sums: bins.sums.map(vector_of), counts: bins.counts }
+    }
+}
+
+impl From<&Fine> for FineLight {
+    fn from(fine: &Fine) -> FineLight {
+        FineLight { light: (&fine.light).into(), nearest: fine.nearest, spare: 0 }
+    }
+}
+
+impl From<&FineLight> for Fine {
+    fn from(fine: &FineLight) -> Fine {
+        Fine { light: (&fine.light).into(), nearest: fine.nearest }
+    }
+}
+
+impl From<&Far> for FarLight {
+    fn from(far: &Far) -> FarLight {
+        let (all, beyond) = ((&far.all).into(), (&far.beyond).into());
+        FarLight { light: (&far.light).into(), all, beyond, has_near: far.has_near.into(), spare: 0 }
+    }
+}
+
+impl From<&FarLight> for Far {
+    fn from(far: &FarLight) -> Far {
+        let (all, beyond) = ((&far.all).into(), (&far.beyond).into());
+        Far { light: (&far.light).into(), all, beyond, has_near: far.has_near != 0 }
+    }
+}
+
+fn vector_of(vector: lightmesh_layout::geometry::Vec3) -> Vec3 {
+    Vec3::new(vector.x, vector.y, vector.z)
+}
