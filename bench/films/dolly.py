@@ -24,7 +24,7 @@ import time
 from pathlib import Path
 
 from films import Film, Films
-from moved import changed, flicker, moved
+from moved import beside, changed, flicker, moved
 from stages import BALLS, ball_scene, dolly_scene
 
 DIRECT = {
@@ -53,8 +53,8 @@ def main():
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         films = Films(plan, plan.pictures or Path(folder))
-        for part in plan.only:
-            for one in {"dolly": dolly, "sky": sky, "ball": ball}[part](plan, films):
+        for measure in [measure for part in plan.only for measure in PARTS[part]]:
+            for one in measure(plan, films):
                 rows.append(one)
                 print(one["id"], json.dumps(one["values"]), flush=True)
     kept = []
@@ -63,7 +63,8 @@ def main():
         made = {one["experiment"] for one in rows}
         kept = [one for one in json.loads(plan.output.read_text())["rows"] if one["experiment"] not in made]
     if plan.output:
-        plan.output.write_text(json.dumps(results(plan, started, time.perf_counter() - start, kept + rows), indent=2) + "\n")
+        notes = [f"{films.reused} films were there and have been used again."] if films.reused else []
+        plan.output.write_text(written(results(plan, started, time.perf_counter() - start, kept + rows, notes)))
     failed = [one["id"] for one in rows if one["values"].get("holds") == 0.0]
     if failed:
         sys.exit("does not hold: " + "; ".join(failed))
@@ -111,11 +112,11 @@ def sky(plan, films):
     plain = films.scene("dolly", dolly_scene(films.park, plan.frames, sky=False))
     geometry = films.render("dolly geometry", plain, ["--mode", "ray-trace", "--aa", "1"], f"1-{plan.frames}")
     pairs = [(number, number + 1) for number in range(1, plan.frames)]
-    of_sky = {"experiment": "sky dolly"}
     gathered = {}
     for aa in plan.aa:
         film = gathered[aa] = films.render(f"sky gathered aa {aa}", scene, [*SKY["gathered"], "--aa", str(aa)], f"1-{plan.frames}")
-        yield row(**of_sky, keys={**keys(plan), "technique": "gathered", "aa": aa, "frames": plan.frames}, values=flickers(films, film, geometry, pairs, aa))
+        values = flickers(films, film, geometry, pairs, aa)
+        yield row("sky dolly", {**keys(plan), "technique": "gathered", "aa": aa, "frames": plan.frames}, values)
     if plan.pairs and 1 in gathered:
         some, (column, line, width, height) = [(first, first + 1) for first in plan.pairs], plan.crop
         part, crop = [line, line + height, column, column + width], ",".join(map(str, plan.crop))
@@ -129,7 +130,7 @@ def sky(plan, films):
             found["gathered"][by] = found["gathered"][kind] / found["rays"][kind]
         found["gathered"]["holds"] = float(found["gathered"]["by_rays"] <= 1.0)
         for name, values in found.items():
-            yield row(**of_sky, keys={**keys(plan), "technique": name, "aa": 1, "frames": 2 * len(some), "crop": crop}, values=values)
+            yield row("sky dolly", {**keys(plan), "technique": name, "aa": 1, "frames": 2 * len(some), "crop": crop}, values)
 
 
 def flickers(films, film, geometry, pairs, aa):
@@ -168,18 +169,68 @@ def ball(plan, films):
                 yield row("ball", {**keys(plan), "technique": name, "ball": place, "lights": lights, "frames": plan.ball_frames}, values)
 
 
+def ball_by_rays(plan, films):
+    """Rows of how much gathered light changes from the first frame to the last, a part of the image, beside rays."""
+    if not plan.pairs:
+        return
+    scene = films.scene("ball in sight sky", ball_scene(films.park, plan.ball_frames, "in sight", sky=True))
+    column, line, width, height = plan.crop
+    part, crop = [line, line + height, column, column + width], ",".join(map(str, plan.crop))
+    light = {}
+    for name, flags in SKY.items():
+        film = Film(name, [], part)
+        for number in (1, plan.ball_frames):
+            of = [*flags, "--aa", "1", "--crop", crop]
+            film.join(films.render(f"ball in sight {name} part {number}", scene, of, f"{number}-{number}", part))
+        light[name] = film[1], film[plan.ball_frames]
+    for name, values in beside(light["gathered"], light["rays"]).items():
+        settings = {**keys(plan), "aa": 1, "ball": "in sight", "crop": crop, "frames": 2}
+        yield row("ball by rays", {**settings, "technique": name}, values)
+
+
 def keys(plan):
     place = {"device": "cuda"} if plan.device == "cuda" else {"device": "cpu", "threads": plan.threads}
     return {"scene": "childpark", "size": plan.size[0], **place}
 
 
 def row(experiment, keys, values):
-    words = " ".join(f"{name}={key}" for name, key in sorted(keys.items()))
-    values = {name: float(f"{value:.{DIGITS}g}") for name, value in values.items()}
+    keys = dict(sorted(keys.items()))
+    words = " ".join(f"{name}={key}" for name, key in keys.items())
+    keys = {name: float(key) if isinstance(key, int) else key for name, key in keys.items()}
+    values = {name: float(f"{value:.{DIGITS}g}") for name, value in sorted(values.items())}
     return {"id": f"{experiment}: {words}", "experiment": experiment, "keys": keys, "seconds": {}, "values": values}
 
 
-def results(plan, started, seconds, rows):
+def written(results):
+    """Results as `lightmesh bench --json` writes them: a line for each member and row."""
+    members = []
+    for name, value in results.items():
+        if isinstance(value, dict):
+            lines = ",\n".join(f"    {json.dumps(inner)}: {compact(of)}" for inner, of in value.items())
+            members.append(f'  "{name}": {{\n{lines}\n  }}')
+        elif isinstance(value, list) and value:
+            members.append(f'  "{name}": [\n' + ",\n".join(f"    {compact(one)}" for one in value) + "\n  ]")
+        else:
+            members.append(f'  "{name}": {compact(value)}')
+    return "{\n" + ",\n".join(members) + "\n}\n"
+
+
+def compact(value):
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{json.dumps(name)}: {compact(of)}" for name, of in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(compact, value)) + "]"
+    if isinstance(value, float):
+        # Rust writes numbers from 1e-5 on without an exponent, and others as 1.5e-7.
+        text = repr(value)
+        mantissa, _, exponent = text.partition("e")
+        if not exponent:
+            return text
+        return f"{value:.{len(mantissa.replace('.', '').lstrip('-')) + 4}f}" if int(exponent) == -5 else f"{mantissa}e{int(exponent)}"
+    return json.dumps(value, ensure_ascii=False)
+
+
+def results(plan, started, seconds, rows, notes):
     version = subprocess.run([plan.lightmesh, "--version"], check=True, stdout=subprocess.PIPE, text=True).stdout.split()[1]
     command = "python bench/films/dolly.py -o docs/results/film-dolly.json"
     if (plan.size, plan.frames, plan.device) != ([480, 270], 12, "cpu"):
@@ -194,7 +245,7 @@ def results(plan, started, seconds, rows):
         "seconds": round(seconds, 3),
         "rows": rows,
         "pictures": [],
-        "notes": [],
+        "notes": notes,
     }
 
 
@@ -209,6 +260,10 @@ def memory():
 
 def now():
     return datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+PARTS = {"dolly": [dolly], "sky": [sky], "ball": [ball, ball_by_rays]}
+"""What `--only` names."""
 
 
 if __name__ == "__main__":

@@ -56,6 +56,7 @@ class Films:
     def __init__(self, plan, folder):
         self.plan, self.folder = plan, folder.resolve()
         self.folder.mkdir(parents=True, exist_ok=True)
+        self.reused = 0
         self.program = str(Path(plan.lightmesh).resolve())
         park = self.folder / "park.toml"
         subprocess.run([self.program, "export", "builtin:childpark", "-o", park, "--quiet"], check=True)
@@ -76,7 +77,9 @@ class Films:
         # What a film is of: the same command and scene need no second one.
         stamp = hashlib.sha256(json.dumps([command[1:], scene.read_text(), version(self.program)]).encode()).hexdigest()
         mark = self.folder / f"{stem}.stamp"
-        if not mark.exists() or mark.read_text() != stamp:
+        if mark.exists() and mark.read_text() == stamp:
+            self.reused += 1
+        else:
             subprocess.run([*command, *outputs, "--overwrite", "--quiet"], check=True)
             mark.write_text(stamp)
         return Film(name, found, part)

@@ -184,3 +184,18 @@ def changed(film, truth, numbers, radius, rounding):
         "influenced_share": influenced / count,
         "map": places,
     }
+
+
+def beside(gathered, rays):
+    """How much the ambient and gathered light of two frames differs, by two means, where no ball is: in codes of 8 bits."""
+    same = np.ones(gathered[0].depth.shape, dtype=bool)
+    for one, other in (gathered, rays):
+        same &= (one.ids == other.ids).all(axis=-1)
+    one, other = (255.0 * np.abs(shown(last.color) - shown(first.color)).max(axis=-1) for first, last in (gathered, rays))
+    lit = same & ~grown((gathered[0].visibility != gathered[1].visibility).any(axis=-1), MARGIN)
+    found = {}
+    for name, codes in {"gathered": one, "rays": other}.items():
+        found[name] = {"codes": float(codes[lit].mean()), "largest_codes": float(codes[lit].max()), "beyond_a_code": float((codes[lit] > 1.0).mean())}
+    more = (one - other)[lit]
+    found["gathered"] |= {"more_than_rays": float(more.max()), "half_a_code_more": float((more > 0.5).mean())}
+    return found

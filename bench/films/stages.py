@@ -10,7 +10,7 @@ POSITION, TARGET = (13.0, 68.0, 114.0), (5.0, 33.0, 44.0)
 STEP = (0.25, -0.12, -0.28)
 """How far the dolly goes from frame to frame: less than a pixel in the middle of the scene, at 480×270."""
 
-SKY = "\n[sky]\nkind = \"clear\"\nsun = [40, 225]\n"
+SKY = '\n[sky]\nkind = "clear"\nsun = [40, 225]\n'
 
 BALLS = {
     "in sight": [(28.0, 1.5, -18.0), (46.0, 1.5, -16.0)],
