@@ -6,7 +6,7 @@ seen before; and a camera that stands still while a ball moves far away. README.
 
     cargo build --release
     python3 -m venv target/films
-    target/films/bin/pip install numpy OpenEXR flip-evaluator pillow
+    target/films/bin/pip install -r bench/films/requirements.txt
     target/films/bin/python bench/films/dolly.py -o docs/results/film-dolly.json
 """
 
@@ -82,7 +82,7 @@ def arguments():
     add("--ball-frames", type=int, default=6, help="with the ball, default %(default)s")
     add("--aa", type=int, nargs="+", default=[1, 8], help="samples of a pixel in the dolly, default: 1 8")
     add("--pairs", type=int, nargs="*", default=[3, 9], help="first frames of pairs that are rendered by rays, default: 3 9")
-    add("--crop", type=int, nargs=4, default=[150, 110, 180, 100], help="column, row, width and height of what rays render")
+    add("--crop", type=int, nargs=4, default=[230, 120, 190, 110], help="column, row, width and height of what rays render")
     add("--device", choices=["cpu", "cuda"], default="cpu")
     plan = parser.parse_args()
     plan.threads = os.cpu_count()
@@ -123,14 +123,15 @@ def sky(plan, films):
         parts = {"gathered": Film("sky gathered part", gathered[1].frames, part, whole=True)}
         for name, flags in {"rays": SKY["rays"], "reference": [*SKY["rays"], "--quality", "final"]}.items():
             film = parts[name] = Film(f"sky {name} part", [], part)
-            for first, last in some:
+            # The reference takes minutes for a frame: one pair.
+            for first, last in some if name == "rays" else some[:1]:
                 film.join(films.render(f"sky {name} aa 1 {first}", scene, [*flags, "--aa", "1", "--crop", crop], f"{first}-{last}", part))
-        found = {name: flickers(films, film, geometry, some, 1) for name, film in parts.items()}
+        found = {name: flickers(films, film, geometry, some if name != "reference" else some[:1], 1) for name, film in parts.items()}
         for kind, by in {"flicker": "by_rays", "rest_flicker": "rest_by_rays"}.items():
             found["gathered"][by] = found["gathered"][kind] / found["rays"][kind]
-        found["gathered"]["holds"] = float(found["gathered"]["by_rays"] <= 1.0)
+        found["gathered"]["holds"] = float(max(found["gathered"]["by_rays"], found["gathered"]["rest_by_rays"]) <= 1.0)
         for name, values in found.items():
-            yield row("sky dolly", {**keys(plan), "technique": name, "aa": 1, "frames": 2 * len(some), "crop": crop}, values)
+            yield row("sky dolly", {**keys(plan), "technique": name, "aa": 1, "frames": 2 * int(values["pairs"]), "crop": crop}, values)
 
 
 def flickers(films, film, geometry, pairs, aa):
