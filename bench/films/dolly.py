@@ -145,7 +145,12 @@ def flickers(films, film, geometry, pairs, aa):
         one.pop("map", None)
         found.append(one)
     values = {name: statistics.fmean(one[name] for one in found) for name in found[0]}
-    return {**values, "largest_flicker": max(one["flicker"] for one in found), "pairs": len(pairs)}
+    largest = {name: max(one[of] for one in found) for name, of in LARGEST.items()}
+    return {**values, **largest, "pairs": len(pairs)}
+
+
+LARGEST = {"largest_flicker": "flicker", "rest_largest_codes": "rest_largest_codes"}
+"""Of all pairs."""
 
 
 def ball(plan, films):

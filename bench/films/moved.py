@@ -118,6 +118,7 @@ def flicker(before, after, way, part):
         "visibility_rmse": float(np.sqrt(((shadows - before.visibility)[known] ** 2).mean())),
         "rest_flicker": float(rest[known].mean()),
         "rest_codes": float(rest_codes[known].mean()),
+        "rest_largest_codes": float(rest_codes[known].max()),
         "not_moved": float(still[known].mean()),
         "compared_share": float(known.mean()),
         "position_error": float(way.error),
