@@ -131,7 +131,9 @@ def sky(plan, films):
             found["gathered"][by] = found["gathered"][kind] / found["rays"][kind]
         found["gathered"]["holds"] = float(max(found["gathered"]["by_rays"], found["gathered"]["rest_by_rays"]) <= 1.0)
         for name, values in found.items():
-            yield row("sky dolly", {**keys(plan), "technique": name, "aa": 1, "frames": 2 * int(values["pairs"]), "crop": crop}, values)
+            yield row(
+                "sky dolly", {**keys(plan), "technique": name, "aa": 1, "frames": 2 * int(values["pairs"]), "crop": place_of(plan.crop)}, values
+            )
 
 
 def flickers(films, film, geometry, pairs, aa):
@@ -190,8 +192,13 @@ def ball_by_rays(plan, films):
             film.join(films.render(f"ball in sight {name} part {number}", scene, of, f"{number}-{number}", part))
         light[name] = film[1], film[plan.ball_frames]
     for name, values in beside(light["gathered"], light["rays"]).items():
-        settings = {**keys(plan), "aa": 1, "ball": "in sight", "crop": crop, "frames": 2}
+        settings = {**keys(plan), "aa": 1, "ball": "in sight", "crop": place_of(plan.crop), "frames": 2}
         yield row("ball by rays", {**settings, "technique": name}, values)
+
+
+def place_of(crop):
+    column, line, width, height = crop
+    return f"{width}x{height}+{column}+{line}"
 
 
 def keys(plan):

@@ -119,11 +119,22 @@ def flicker(before, after, way, part):
         "rest_flicker": float(rest[known].mean()),
         "rest_codes": float(rest_codes[known].mean()),
         "rest_largest_codes": float(rest_codes[known].max()),
+        "rest_worst_material": max((float(rest[some].mean()) for some in materials(before, known)), default=0.0),
         "not_moved": float(still[known].mean()),
         "compared_share": float(known.mean()),
         "position_error": float(way.error),
         "map": errors,
     }
+
+
+MANY = 200
+"""Pixels of a material from which on it counts by itself."""
+
+
+def materials(frame, known):
+    """For each material that is much seen, its pixels among those that are compared."""
+    alone = [known & (frame.ids[..., 1] == material) for material in np.unique(frame.ids[..., 1][known])]
+    return [pixels for pixels in alone if pixels.sum() >= MANY]
 
 
 def change(before, after, way, part):
