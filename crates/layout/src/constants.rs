@@ -433,8 +433,9 @@ constants! {
     SITE_INWARDS: f32 = 0.0625;
     /// Sites lie in the cube around their cell's middle with this half edge, in cells: half a cell, and more since they move inwards from edges.
     SITE_MARGIN: f32 = 0.625;
-    /// A site is open if nothing is above it within this distance, in cells.
-    SITE_OPEN: f32 = 0.5;
+    /// A site is open if nothing is above it within this distance, in cells: as far as layers in a cell may be from each other. With half of it,
+    /// the ground below a floor would take the cell's only site from the floor.
+    SITE_OPEN: f32 = 1.0;
     /// How many points of a kind are looked at for an open one.
     SITE_CANDIDATES: u32 = 4;
     /// The distance within which sites count, in cells.

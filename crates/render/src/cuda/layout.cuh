@@ -319,8 +319,9 @@
 #define SITE_INWARDS 0x1p-4f
 // Sites lie in the cube around their cell's middle with this half edge, in cells: half a cell, and more since they move inwards from edges.
 #define SITE_MARGIN 0x1.4p-1f
-// A site is open if nothing is above it within this distance, in cells.
-#define SITE_OPEN 0x1p-1f
+// A site is open if nothing is above it within this distance, in cells: as far as layers in a cell may be from each other. With half of it,
+// the ground below a floor would take the cell's only site from the floor.
+#define SITE_OPEN 0x1p0f
 // How many points of a kind are looked at for an open one.
 #define SITE_CANDIDATES 4u
 // The distance within which sites count, in cells.
