@@ -56,8 +56,9 @@ pub struct PreparedGeometry {
     acceleration: Acceleration,
     /// Build time in seconds, until the first image reports it.
     unreported: Mutex<f64>,
+    /// About the middle of the bounds.
     center: Vec3,
-    /// Slightly more than the diagonal of the bounds; 1 if they are empty.
+    /// More than the distance from there to any triangle.
     far: f32,
 }
 
@@ -294,8 +295,7 @@ impl Structures<'_> {
         let bounds = Bounds::around(own.filter(|triangle| triangle.is_usable()).flat_map(Triangle::corners));
         let instances = geometry.mesh.instances.list();
         let bounds = instances.iter().fold(bounds, |all, Instance { bounds, .. }| around_both(all, *bounds));
-        let (center, far) =
-            if bounds.is_empty() { (Vec3::ZERO, 1.0) } else { (bounds.center(), 1.25 * bounds.diagonal()) };
+        let (center, far) = middle_and_reach(&bounds);
         let mut prepared = PreparedGeometry {
             triangles: match accelerator.form() {
                 Form::Bvh(bvh) => Triangles::new(triangles.into(), Arc::clone(bvh.instances())),
@@ -576,12 +576,47 @@ impl Preparations {
     }
 }
 
+/// Where suns are seen from: a point about the middle of the bounds, and more than the distance from there to any triangle. Both are
+/// multiples of a power of two, so that they rarely change when objects move: the segments to a sun would change with them, by rounding.
+fn middle_and_reach(bounds: &Bounds) -> (Vec3, f32) {
+    if bounds.is_empty() {
+        return (Vec3::ZERO, 1.0);
+    }
+    let diagonal = bounds.diagonal().max(f32::MIN_POSITIVE);
+    let mut size = f32::from_bits(diagonal.to_bits() & f32::INFINITY.to_bits());
+    if size < diagonal {
+        size *= 2.0;
+    }
+    // No corner is farther than half the diagonal, and half that of a cube of this size.
+    ((bounds.center() / size).round() * size, 1.5 * size)
+}
+
 #[cfg(test)]
 mod tests {
     use lightmesh_scene::Mesh;
 
     use super::*;
     use crate::observer::Unobserved;
+
+    #[test]
+    fn suns_are_beyond_all_corners_and_stay_while_bounds_change_little() {
+        let bounds = |min: [f32; 3], max: [f32; 3]| Bounds { min: min.into(), max: max.into() };
+        for (min, max) in
+            [([-1.0; 3], [1.0; 3]), ([100.0, 0.0, -3.0], [101.0, 1e-3, 7.0]), ([1e6, -4.0, 5.0], [1e6 + 8.0, 1.0, 9.0])]
+        {
+            let bounds = bounds(min, max);
+            let (middle, far) = middle_and_reach(&bounds);
+            for corner in 0..8 {
+                let pick = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
+                let distance = Vec3::from([0, 1, 2].map(pick)).distance(middle);
+                assert!(distance < 0.95 * far, "{bounds:?}: {distance} and {far}");
+            }
+            assert!(far <= 3.001 * bounds.diagonal(), "{bounds:?}: {far}");
+        }
+        let park = middle_and_reach(&bounds([-90.0, 0.0, -90.0], [90.0, 30.0, 90.0]));
+        let with_a_ball = middle_and_reach(&bounds([-90.0, 0.0, -90.0], [93.0, 30.0, 91.0]));
+        assert_eq!(park, with_a_ball);
+    }
 
     #[test]
     fn triangles_that_do_not_fit_are_refused_before_anything_is_built() {
