@@ -80,12 +80,12 @@ Exit codes:
   130  interrupted (143 by SIGTERM, 129 by SIGHUP)
 
 Environment (flags win over variables):
-  LIGHTMESH_DEVICE      sets --device of `lightmesh render`, LIGHTMESH_MEMORY_LIMIT --memory-limit,
-                        and so for each of its flags except -o, --light, -q and -v
+  LIGHTMESH_DEVICE      sets --device of `lightmesh render`
+  LIGHTMESH_…           sets any other of its flags but -o, --light, -q, -v,
+                        as LIGHTMESH_MEMORY_LIMIT does for --memory-limit
   LIGHTMESH_FFMPEG      names the program that encodes movies
   CUDA_VISIBLE_DEVICES  hides and renumbers GPUs
-  NO_COLOR, CLICOLOR_FORCE, CLICOLOR=0
-                        decide about colours
+  NO_COLOR, CLICOLOR_FORCE, CLICOLOR=0 decide about colours
 
 Examples:
   lightmesh render builtin:childpark -o park.png

@@ -87,7 +87,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "F", requires = "output", help_heading = "Machine")]
     pub(crate) mesh_file: Option<PathBuf>,
 
-    /// Write counts, timings and all resolved settings as JSON; `-` is standard output [default: off]
+    /// Write counts, timings and resolved settings as JSON; `-` is standard output [default: off]
     #[arg(long, value_name = "F.json", requires = "output", help_heading = "Reports")]
     pub(crate) stats: Option<PathBuf>,
 
@@ -131,7 +131,7 @@ pub(crate) struct ImageArgs {
     #[arg(long, value_name = "R", allow_negative_numbers = true, help_heading = "Method")]
     pub(crate) radius: Option<Positive>,
 
-    /// Weight light points at distance d by this function of q = d/r [default: the scene's, else smooth]
+    /// Weight light points at distance d by their q = d/r [default: the scene's, else smooth]
     #[arg(long, value_parser = words::weight(), help_heading = "Method")]
     pub(crate) weight: Option<Weight>,
 
@@ -169,8 +169,8 @@ pub(crate) struct ImageArgs {
     #[arg(long, value_name = "WxH", default_value = "1024x1024", help_heading = "Image")]
     pub(crate) size: Size,
 
-    /// Render only this part: column and row of its first pixel, width and height; its pixels are those of the whole
-    /// image [default: the whole image]
+    /// Render only this part: column and row of its first pixel, width and height; its pixels stay the same [default: the
+    /// whole image]
     #[arg(long, value_name = "X,Y,W,H", help_heading = "Image")]
     pub(crate) crop: Option<Crop>,
 
@@ -196,7 +196,7 @@ pub(crate) struct ImageArgs {
     #[arg(long, value_name = "NAME", conflicts_with = "camera", help_heading = "Scene")]
     pub(crate) camera_name: Option<String>,
 
-    /// Set the up axis for --camera, and for the camera that a scene without one gets
+    /// Set the up axis for --camera, and for scenes without a camera
     #[arg(long, value_enum, default_value_t = Up::Auto, help_heading = "Scene")]
     pub(crate) up: Up,
 
@@ -218,8 +218,8 @@ pub(crate) struct ImageArgs {
     #[arg(long, value_name = "SOURCE", value_parser = words::ambient_light(), default_value_t = AmbientSource::Auto, help_heading = "Scene")]
     pub(crate) ambient_light: AmbientSource,
 
-    /// Set the sky: clear, uniform or gradient, as in "clear;sun=40,225"; other options are place, time, turbidity, ground,
-    /// color, zenith, horizon, north, strength, alone [default: none]
+    /// Set the sky: clear, uniform or gradient, as in "clear;sun=40,225"; also place, time, turbidity, ground, color,
+    /// zenith, horizon, north, strength, alone [default: none]
     #[arg(long, value_name = "SPEC", allow_hyphen_values = true, help_heading = "Scene")]
     pub(crate) sky: Option<SkySpec>,
 
@@ -257,11 +257,11 @@ pub(crate) struct StorageArgs {
     #[arg(long, value_parser = words::image_format(), help_heading = "Image")]
     pub(crate) format: Option<Format>,
 
-    /// Encode 8-bit and 16-bit files by this transfer function; exr files stay linear
+    /// Encode 8-bit and 16-bit files by this function; exr files stay linear
     #[arg(long, value_parser = words::transfer(), default_value_t = Transfer::Srgb, help_heading = "Image")]
     pub(crate) transfer: Transfer,
 
-    /// Map colours brighter than white in 8-bit and 16-bit files; exr files stay linear
+    /// Map 8-bit and 16-bit files to the range of screens; exr files stay linear
     #[arg(long, value_parser = words::view(), default_value_t = View::Standard, help_heading = "Image")]
     pub(crate) view: View,
 

@@ -102,7 +102,7 @@ fn what_cannot_be_encoded_is_refused_before_the_work() {
         assert!(kept.contains("write frames, as in -o film.####.png, and join them with ffmpeg"), "{kept}");
     }
     assert!(refused(&[], &["-o", "a.mp4", "--background", "transparent"]).contains("movies have no alpha"));
-    assert!(refused(&[], &["-o", "a.mp4", "--format", "png"]).contains("--format is that of an image"));
+    assert!(refused(&[], &["-o", "a.mp4", "--format", "png"]).contains("--format names an image format"));
     assert!(
         refused(&[], &["-o", "a.mp4", "--stats", "a.json"]).contains("--stats a.json is one file, but a film has one")
     );

@@ -44,7 +44,7 @@ impl View {
         match self {
             Self::Standard => "Colours as they are, clipped at white",
             Self::Neutral => "Khronos PBR Neutral: colours of materials as they are, highlights compressed",
-            Self::Agx => "AgX, base look, as in Blender 4: compressed as on film, bright colours turn white",
+            Self::Agx => "AgX base look, as in Blender 4: compressed as on film, bright colours whiten",
         }
     }
 
