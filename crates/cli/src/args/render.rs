@@ -261,7 +261,7 @@ pub(crate) struct StorageArgs {
     #[arg(long, value_parser = words::transfer(), default_value_t = Transfer::Srgb, help_heading = "Image")]
     pub(crate) transfer: Transfer,
 
-    /// Map 8-bit and 16-bit files to the range of screens; exr files stay linear
+    /// Show colours brighter than white in this way; exr files stay linear
     #[arg(long, value_parser = words::view(), default_value_t = View::Standard, help_heading = "Image")]
     pub(crate) view: View,
 
