@@ -81,8 +81,8 @@ Exit codes:
 
 Environment (flags win over variables):
   LIGHTMESH_DEVICE      sets --device of `lightmesh render`
-  LIGHTMESH_…           sets any other of its flags but -o, --light, -q, -v,
-                        as LIGHTMESH_MEMORY_LIMIT does for --memory-limit
+  LIGHTMESH_GRID_FILE   sets --grid-file, and so on for its flags
+                        except -o, --light, -q and -v
   LIGHTMESH_FFMPEG      names the program that encodes movies
   CUDA_VISIBLE_DEVICES  hides and renumbers GPUs
   NO_COLOR, CLICOLOR_FORCE, CLICOLOR=0 decide about colours
