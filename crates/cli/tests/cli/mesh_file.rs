@@ -31,11 +31,14 @@ fn a_second_run_tests_nothing() {
         let place = Place::new();
         let (first, [made, saved]) = same(&place, lights);
         assert!(made > 1000 && saved == 0, "{made} {saved}");
-        assert!(first.stderr.contains("room.mesh: ") && first.stderr.contains(" were written"), "{first:?}");
+        assert!(first.stderr.contains("room.mesh: wrote "), "{first:?}");
         let written = place.read("room.mesh");
         let (again, counts) = same(&place, lights);
         assert_eq!(counts, [0, made]);
-        assert!(again.stderr.contains("values of light points were read"), "{again:?}");
+        assert!(
+            again.stderr.contains("room.mesh: read ") && again.stderr.contains(" values of light points\n"),
+            "{again:?}"
+        );
         assert!(place.read("room.mesh") == written, "what is known is the same");
         // Another camera finds some of it, and adds what it lacks.
         let aside = [lights, &["--camera", "0.5,2,6;0,1,0;45"]].concat();
@@ -117,9 +120,17 @@ fn gathered_light_is_kept_from_run_to_run() {
         (done, [rays("with.json"), rays("without.json")])
     };
     let (first, [made, all]) = render(&["clear"]);
-    assert!(made == all && first.stderr.contains(" sites of gathered light were written"), "{first:?}");
+    assert!(
+        made == all
+            && first.stderr.contains("room.mesh: wrote ")
+            && first.stderr.contains(" sites of gathered light, "),
+        "{first:?}"
+    );
     let (again, [made, all]) = render(&["clear"]);
-    assert!(again.stderr.contains(" sites of gathered light were read"), "{again:?}");
+    assert!(
+        again.stderr.contains("room.mesh: read ") && again.stderr.contains(" sites of gathered light\n"),
+        "{again:?}"
+    );
     assert!(4 * made < all && !again.stderr.contains("warning"), "{made} of {all}: {again:?}");
     let (other, [made, all]) = render(&["uniform"]);
     let warning = "room.mesh: has light gathered from other lights, surroundings or materials";

@@ -1,4 +1,4 @@
-//! Which light points may have noticed that things moved.
+//! Which cached light points a motion invalidates.
 //!
 //! What a light point sees of a light depends only on triangles between them. So it is the same as before if no triangle that moved comes
 //! near the hull of the point and the light, where it was and where it is: the hull of two boxes is the union of all boxes between them,
@@ -12,7 +12,7 @@ use crate::light_mesh::{BrickKey, Lattice, point_of};
 use crate::moved::around_both;
 use crate::prepared::PreparedGeometry;
 
-/// Tells which bricks of light points may see a light otherwise than before.
+/// Tells which bricks of light points a motion invalidates for a light.
 pub struct Noticed<'a> {
     /// Around what moved, and enlarged for rounding.
     boxes: Vec<Bounds>,
@@ -31,7 +31,7 @@ impl<'a> Noticed<'a> {
         Noticed { boxes: boxes.iter().map(enlarged).collect(), lattice, far: 4.0 * (size + lattice.step) }
     }
 
-    /// Whether light points of a brick may see a light of this kind otherwise.
+    /// Whether what light points of a brick see of a light of this kind may have changed.
     pub(crate) fn by(&self, brick: BrickKey, light: &LightKind) -> bool {
         let first = self.lattice.point(point_of(brick << POINT_BITS));
         let last = first + self.lattice.step * ((1 << BRICK_BITS) - 1) as f32;

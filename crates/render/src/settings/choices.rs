@@ -327,12 +327,10 @@ impl AmbientSource {
     /// A short description.
     pub fn help(self) -> &'static str {
         match self {
-            AmbientSource::Auto => {
-                "The mesh with a sky, an environment or lamps alone, unless --ambient is set; else a constant"
-            }
-            AmbientSource::Constant => "A constant, or what a sky gives to surfaces with nothing in between",
+            AmbientSource::Auto => "Mesh with sky, environment or only lamps; constant otherwise, or by --ambient",
+            AmbientSource::Constant => "The ambient intensity; under a sky by direction, without shadows",
             AmbientSource::Mesh => "Gathered from the sky and other surfaces, in place of --ambient",
-            AmbientSource::Rays => "Gathered by thousands of rays from each surface point: slow, the reference of mesh",
+            AmbientSource::Rays => "Gathered by thousands of rays at each surface point: slow, the reference",
         }
     }
 
