@@ -1,4 +1,4 @@
-//! Which light points may have noticed that things moved.
+//! Which cached light points a motion invalidates.
 //!
 //! What a light point sees of a light depends only on triangles between them. So it is the same as before if no triangle that moved comes
 //! near the hull of the point and the light, where it was and where it is: the hull of two boxes is the union of all boxes between them,
