@@ -1,10 +1,4 @@
 //! Kernels that exist once per acceleration structure.
-//!
-//! From the template function `long_tests`, the macro `KERNEL_PER_STRUCTURE` generates `long_tests_bvh`, `long_tests_grid` and others;
-//! `per_structure!` names them on the host, which launches the one for the scene's structure. Both take the names from one table,
-//! `lightmesh_layout::Structure`. Kernels that test triangles are in two modules: `<stage>_cut_out.cu` includes `kernel.cu` with
-//! `CUT_OUTS`, for scenes with cut-outs. Kernels for shapes in many places are in the second module alone, so that other scenes pay nothing for
-//! them; kernels that do not test triangles are compiled only once.
 
 #[cfg(doc)]
 use lightmesh_layout::Structure;
