@@ -8,12 +8,12 @@ use std::process::Command;
 
 use crate::{Outcome, Verdict};
 
-/// Writes the tables of METHOD and of the page of results from the results they name; with `check` only compares them.
+/// Writes the tables of the pages on results and on the thesis' method from the results they name; with `check` only compares them.
 pub(crate) fn readme(root: &Path, check: bool) -> Outcome {
-    run(root, "lightmesh-bench", "readme", &["docs/results/README.md", "METHOD.md"], check)
+    run(root, "lightmesh-bench", "readme", &["docs/results/README.md", "docs/method/thesis.md"], check)
 }
 
-/// Writes the drawings of METHOD; with `check` only compares them.
+/// Writes the drawings of docs/method; with `check` only compares them.
 pub(crate) fn drawings(root: &Path, check: bool) -> Outcome {
     run(root, "lightmesh-render", "drawings", &["docs/drawings"], check)
 }

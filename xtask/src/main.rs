@@ -8,6 +8,7 @@ mod corpus;
 mod docs;
 mod examples;
 mod kernels;
+mod map;
 mod pages;
 mod references;
 
@@ -19,8 +20,9 @@ const USAGE: &str = "\
 usage: cargo xtask check-docs          checks that every file that the documents name exists
        cargo xtask circles             checks that no modules of the renderer import each other in a circle
        cargo xtask kernels [--check]   writes the layout header, the kernels' PTX and docs/kernels.md
-       cargo xtask readme [--check]    writes the tables of docs/results and METHOD from the results they name
-       cargo xtask drawings [--check]  writes the drawings of METHOD to docs/drawings
+       cargo xtask map [--check]       writes docs/map.md: each source file with the first sentence of its header
+       cargo xtask readme [--check]    writes the tables of docs/results and docs/method from the results they name
+       cargo xtask drawings [--check]  writes the drawings of docs/method to docs/drawings
        cargo xtask fuzz-corpus [DIR]   fills fuzz/corpus with the seeds, the scenes here and the models in DIR
 
 With --check nothing is written: the command fails if a file is out of date.";
@@ -54,6 +56,8 @@ fn main() -> ExitCode {
         ["circles"] => circles::check(root),
         ["kernels"] => kernels::run(root, false),
         ["kernels", "--check"] => kernels::run(root, true),
+        ["map"] => map::run(root, false),
+        ["map", "--check"] => map::run(root, true),
         ["readme"] => examples::readme(root, false),
         ["readme", "--check"] => examples::readme(root, true),
         ["drawings"] => examples::drawings(root, false),

@@ -1,4 +1,4 @@
-//! What determines what light points see of a light.
+//! The key of a cached column: everything that determines what light points see of one light.
 
 use lightmesh_scene::{Light, LightKind};
 

@@ -1,4 +1,9 @@
 //! Groups of lights: what surface points see is held for a group at a time, so that memory does not grow with the number of lights.
+//!
+//! A wave has the group of four lights that its shadow stages work on, shading adds it to each ray's sum, and its memory serves the next group. The
+//! light's terms are added in the same order as without groups, so that the bits are the same. Except for the half-ball, whose light points keep
+//! the visibility of all lights, memory thus does not grow with their number: occluder lists take at most 32 bytes per pixel. Layers, and visibility
+//! at given points, are for all lights.
 
 use std::ops::Range;
 

@@ -1,5 +1,5 @@
-//! Where surfaces are that are cut out, leaves and fences on a few triangles, and how opaque are those that light goes through. Twin of the
-//! decisions: `coverage.cuh`.
+//! Alpha: at which points a triangle that is cut out, such as a leaf or a fence, has a surface, and how opaque one is that lets light through.
+//! Twin of the decisions: `coverage.cuh`.
 //!
 //! ```text
 //! opacity at (u, v) = mask(A · uv) × opacity of the corners,      a surface where that is at least the cutoff

@@ -1,4 +1,4 @@
-//! Saved grids.
+//! Grid files, of `lightmesh grid`.
 //!
 //! A file is a header, the flat form, and for each stored triangle its position in the list that the grid was built from; the
 //! triangles themselves come from the scene. All numbers are little-endian:

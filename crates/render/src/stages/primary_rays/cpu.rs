@@ -1,4 +1,4 @@
-//! Step 1 on the CPU.
+//! Step 1 on the CPU: camera rays in blocks of pixels, so that consecutive rays are coherent.
 
 use std::ops::Range;
 
