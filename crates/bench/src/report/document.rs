@@ -29,8 +29,6 @@ pub(crate) struct Section {
 pub(crate) enum Block {
     /// A paragraph.
     Text(String),
-    /// Sentences.
-    List(Vec<String>),
     Table(Table),
     /// An SVG file.
     Plot(Image),

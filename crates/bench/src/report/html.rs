@@ -58,10 +58,6 @@ fn section(index: usize, section: &Section) -> String {
 fn block(block: &Block) -> String {
     match block {
         Block::Text(text) => format!("<p>{}</p>\n", escaped(text)),
-        Block::List(texts) => {
-            let items: String = texts.iter().map(|text| format!("<li>{}</li>\n", escaped(text))).collect();
-            format!("<ul>\n{items}</ul>\n")
-        }
         Block::Table(table) => self::table(table),
         Block::Plot(plot) => figure("plot", &String::from_utf8_lossy(&plot.bytes), &plot.title),
         Block::Pictures(images) => {

@@ -40,7 +40,6 @@ fn escaped(text: &str) -> String {
 fn block(block: &Block) -> String {
     match block {
         Block::Text(text) => format!("{}\n", escaped(text)),
-        Block::List(texts) => texts.iter().map(|text| format!("- {}\n", escaped(text))).collect(),
         Block::Table(table) if table.caption.is_empty() => self::table(table),
         Block::Table(table) => format!("{}\n\n{}", escaped(&table.caption), self::table(table)),
         Block::Plot(plot) => {

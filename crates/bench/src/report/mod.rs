@@ -168,9 +168,7 @@ fn opened(path: &Path) -> Result<Results, ReportError> {
 fn document(runs: &Runs) -> Result<Document, Fault> {
     let gallery = Gallery::new(runs)?;
     let mut sections = Vec::from_iter(side_by_side::section(runs, &gallery)?);
-    let mut experiments = runs.experiments();
-    experiments.sort_by_key(|experiment| layout::place(experiment));
-    for experiment in experiments {
+    for experiment in runs.experiments() {
         let mut blocks = layout::blocks(experiment, runs);
         // Images stand above the tables about them.
         let tables = blocks.iter().position(|block| matches!(block, Block::Table(_))).unwrap_or(blocks.len());

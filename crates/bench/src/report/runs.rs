@@ -1,6 +1,6 @@
 //! Results side by side: several result files, each a run of a suite.
 
-use super::numbers;
+use super::{layout, numbers};
 use crate::{Key, Results, Row, WHOLE};
 
 /// Keys that say where a row was measured rather than what.
@@ -126,11 +126,13 @@ impl Runs {
         self.0.iter().flat_map(move |run| run.results.rows.iter().map(move |row| Measured { run, row, several }))
     }
 
-    /// Names of experiments with rows or images, in order of appearance.
+    /// Names of experiments with rows or images, in the order of a report.
     pub(crate) fn experiments(&self) -> Vec<&str> {
         let rows = self.all().map(|measured| measured.row.experiment.as_str());
         let pictures = self.0.iter().flat_map(|run| &run.results.pictures).map(|picture| picture.experiment.as_str());
-        distinct(rows.chain(pictures))
+        let mut experiments = distinct(rows.chain(pictures));
+        experiments.sort_by_key(|experiment| layout::place(experiment));
+        experiments
     }
 }
 

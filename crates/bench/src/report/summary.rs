@@ -29,9 +29,16 @@ pub(crate) fn section(runs: &Runs) -> Section {
 /// Notes of the runs; `None` if there are none.
 pub(crate) fn notes(runs: &Runs) -> Option<Section> {
     let label = |run: &Run| if runs.0.len() > 1 { format!("{}: ", run.label) } else { String::new() };
-    let of = |run: &Run| run.results.notes.iter().map(|note| label(run) + note).collect::<Vec<_>>();
-    let notes: Vec<String> = runs.0.iter().flat_map(of).collect();
-    (!notes.is_empty()).then(|| Section { title: "Notes".to_owned(), blocks: vec![Block::List(notes)] })
+    let of =
+        |run: &Run| run.results.notes.iter().map(|note| Block::Text(label(run) + &short(note))).collect::<Vec<_>>();
+    let blocks: Vec<Block> = runs.0.iter().flat_map(of).collect();
+    (!blocks.is_empty()).then(|| Section { title: "Notes".to_owned(), blocks })
+}
+
+/// The note, without the rest of a long list.
+fn short(note: &str) -> String {
+    let begin = note.char_indices().nth(240).and_then(|(end, _)| note[..end].rsplit_once("; "));
+    begin.map_or_else(|| note.to_owned(), |(begin, _)| format!("{begin}; and more, which the result file lists."))
 }
 
 fn gpus(gpus: &[Gpu]) -> String {

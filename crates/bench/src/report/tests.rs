@@ -149,7 +149,10 @@ fn figures_and_sections_of_the_default_come_first() {
     results.rows.push(timed("whole frames", &[("method", "lists".into())], 1.0));
     let text = report(results.clone()).unwrap().markdown();
     let headings: Vec<&str> = text.lines().filter(|line| line.starts_with("## ")).collect();
-    assert_eq!((headings[0], headings.last()), ("## Whole frames by occluder lists, the default, and others", Some(&"## Notes")));
+    assert_eq!(
+        (headings[0], headings.last()),
+        ("## Whole frames by occluder lists, the default, and others", Some(&"## Notes"))
+    );
     assert!(headings[1].starts_with("## Full frames"), "{headings:?}");
     let html = report(results).unwrap().html();
     let place = |text: &str| html.find(text).unwrap_or_else(|| panic!("no {text}"));
@@ -252,6 +255,15 @@ fn pictures_of_two_runs_are_shown_where_they_differ() {
     assert!(one.contains("1 are identical, 1 differ") && one.matches("<img").count() == 5, "{one}");
     let sizes = two(&|picture| picture.png = png(8, 0.6));
     assert!(sizes.contains("2 have different sizes") && sizes.matches("<img").count() == 3, "{sizes}");
+}
+
+#[test]
+fn long_notes_end_early() {
+    let mut results = thesis(2.0);
+    results.notes = vec![(0..100).map(|row| format!("row {row}; ")).collect(), "short".to_owned()];
+    let text = report(results).unwrap().markdown();
+    assert!(text.contains("row 30; row 31") && !text.contains("row 40"), "{text}");
+    assert!(text.ends_with("; and more, which the result file lists.\n\nshort\n"), "{text}");
 }
 
 #[test]
