@@ -16,13 +16,13 @@ const COUNT: usize = 4;
 
 /// Ratios: an experiment, a key and its word in the rows that count, the value, and its meaning.
 const MEANS: [(&str, [&str; 2], &str, &str); 7] = [
-    (WHOLE_FRAMES, ["method", "lists"], "faster_than_half_ball", "half-ball's time by that of occluder lists"),
-    (WHOLE_FRAMES, ["method", "lists"], "nearer_than_half_ball", "half-ball's error by that of occluder lists"),
-    ("equal error", ["lookup", "lists"], "faster_than_area", "time of as exact shadow rays by that of occluder lists"),
-    ("programs at equal error", ["program", "Cycles"], "times", "time of as exact Cycles by that of occluder lists"),
-    ("programs at equal error", ["program", "Mitsuba"], "times", "time of as exact Mitsuba by that of occluder lists"),
-    (FLICKER, ["shadows", "lists"], "flicker_by_area", "flicker of occluder lists by that of 64 shadow rays"),
-    (FILM, ["shadows", "lists"], "time_ratio", "time of a film's frame by that of a frame alone: occluder lists"),
+    (WHOLE_FRAMES, ["method", "lists"], "faster_than_half_ball", "half-ball's time over occluder lists' time"),
+    (WHOLE_FRAMES, ["method", "lists"], "nearer_than_half_ball", "half-ball's error over occluder lists' error"),
+    ("equal error", ["lookup", "lists"], "faster_than_area", "time of as exact shadow rays over occluder lists' time"),
+    ("programs at equal error", ["program", "Cycles"], "times", "time of as exact Cycles over occluder lists' time"),
+    ("programs at equal error", ["program", "Mitsuba"], "times", "time of as exact Mitsuba over occluder lists' time"),
+    (FLICKER, ["shadows", "lists"], "flicker_by_area", "flicker of occluder lists over 64 shadow rays' flicker"),
+    (FILM, ["shadows", "lists"], "time_ratio", "time of a film's frame over a lone frame's: occluder lists"),
 ];
 
 /// The figures of a report.

@@ -4,6 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 use super::document::{Block, Cell, Column, Document, Figure, Image, Section, Table};
+use super::summary;
 
 const STYLE: &str = include_str!("report.css");
 const SCRIPT: &str = include_str!("report.js");
@@ -85,8 +86,9 @@ fn table(table: &Table) -> String {
     let rows: String = table.rows.iter().zip(above).map(|(row, above)| line(row, above, &table.columns)).collect();
     let caption = if table.caption.is_empty() { "All rows.".to_owned() } else { escaped(&table.caption) };
     let open = if table.folded { "" } else { " open=\"\"" };
+    let facts = if table.name == summary::TABLE { " class=\"facts\"" } else { "" };
     format!(
-        "<details{open}>\n<summary>{caption}</summary>\n<div class=\"scroll\" tabindex=\"0\">\n<table>\n\
+        "<details{open}>\n<summary>{caption}</summary>\n<div class=\"scroll\" tabindex=\"0\">\n<table{facts}>\n\
          <thead>\n{groups}<tr>{titles}</tr>\n</thead>\n<tbody>\n{rows}</tbody>\n</table>\n</div>\n</details>\n"
     )
 }

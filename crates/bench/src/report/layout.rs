@@ -1,4 +1,4 @@
-//! What a report shows of an experiment: plots if it has some, a table of keys, times and values, and a folded one of stages and
+//! The blocks of an experiment: plots if it has some, a table of keys, times and values, and a folded one of stages and
 //! counts. Only the timings and figure 11 of the thesis have tables of their own.
 
 use super::document::{Block, Cell, Column, Table};
@@ -14,14 +14,9 @@ pub(crate) const BREAK_EVEN: &str = "figure 11, break-even";
 const ORDER: &str = "scene lights size frames cost with light step radius weight lookup short_tests mode method samples quality aa \
                      program rays accel device threads";
 
-/// Experiments in the order of a report, those that compare the default method first; their headings, and what readers of their
-/// tables need to know.
+/// Experiments in the order of a report, those that compare the default method first: names, headings and captions.
 const EXPERIMENTS: [(&str, &str, &str); 23] = [
-    (
-        WHOLE_FRAMES,
-        "Whole frames by occluder lists, the default, and others",
-        "Faster, nearer: half-ball's by the row's.",
-    ),
+    (WHOLE_FRAMES, "Whole frames by occluder lists, the default, and others", "Faster, nearer: half-ball over row."),
     ("errors", "Errors against time", ""),
     (
         "equal error",
@@ -29,11 +24,15 @@ const EXPERIMENTS: [(&str, &str, &str); 23] = [
         "Area: shadow rays with the same error. Upper bound: a single ray already has a smaller error. Not reached: no measured \
          number of rays has an error this small.",
     ),
-    ("programs at equal error", "Other renderers as exact as occluder lists", "Times: their time by that of lists."),
+    (
+        "programs at equal error",
+        "Other renderers as exact as occluder lists",
+        "Times: their time over the lists' time.",
+    ),
     ("soft shadows", "Soft shadows with other renderers", ""),
     ("equal time", "Error in equal time", "Area: as many shadow rays as fit into the time of the light mesh."),
     ("reference", "References, and their remaining errors", ""),
-    (MANY_LIGHTS, "Many lights by occluder lists", "By one: the time of each light by that of a single one."),
+    (MANY_LIGHTS, "Many lights by occluder lists", "By one: each light's time over a single light's."),
     (SHADOWS, "Occluder lists against their reference, ordinary and adaptive rays", ""),
     ("figure 1", "Figure 1: area shadows", "Errors are relative to the first row."),
     ("timings", "Full frames: the table of the thesis", ""),
@@ -49,9 +48,9 @@ const EXPERIMENTS: [(&str, &str, &str); 23] = [
     ("figures 12-15", "Figures 12 to 15: images for growing R", "Errors are relative to the first row of figure 1."),
     (FLIGHT, "A flight with gathered light: flicker, rays and time", ""),
     (FLICKER, "Flicker of soft shadows on that flight", ""),
-    (FILM, "Films: what is kept from frame to frame", "Ratios: by a frame for which nothing is kept."),
-    (LIGHT, "What light costs: cut-outs, mirrors, gathered light, lamps", ""),
-    (ANTIALIASING, "Antialiasing: time and errors by those of one sample of a pixel", ""),
+    (FILM, "Films that keep parts of earlier frames", "Ratios: over a frame for which nothing is kept."),
+    (LIGHT, "The cost of light: cut-outs, mirrors, gathered light, lamps", ""),
+    (ANTIALIASING, "Antialiasing: time and errors over one sample of a pixel", ""),
     (STAGES, "Time by stage", ""),
     ("rays", "Rays per second", ""),
 ];
@@ -196,8 +195,7 @@ fn heading(name: &str) -> String {
 }
 
 fn spaced(name: &str) -> String {
-    let name = name.strip_suffix("_seconds").map_or_else(|| name.to_owned(), |name| format!("{name} ms"));
-    name.trim_end_matches("_bytes").replace('_', " ")
+    name.replace("_seconds", " ms").trim_end_matches("_bytes").replace('_', " ")
 }
 
 /// A value, formatted according to its name.
@@ -205,7 +203,7 @@ fn value(row: &Measured, name: &str) -> Cell {
     Cell::number(row.value(name), |value| match name {
         _ if name.ends_with("_bytes") => numbers::bytes(value),
         _ if name.ends_with("share") => numbers::percent(value),
-        _ if name.ends_with("_seconds") => numbers::milliseconds(value),
+        _ if name.contains("_seconds") => numbers::milliseconds(value),
         _ if value.fract() == 0.0 => numbers::count(value),
         _ => numbers::significant(value, 3),
     })

@@ -24,7 +24,7 @@ pub(crate) fn text(document: &Document) -> String {
     out
 }
 
-/// Escapes tables, tags, emphasis, and what would not be seen.
+/// Escapes tables, tags, emphasis and invisible letters.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in visible(&text.replace('\n', " ")).chars() {

@@ -5,9 +5,15 @@ use super::numbers;
 use super::runs::{Run, Runs};
 use crate::Gpu;
 
+/// The name of the table of facts, which are sentences.
+pub(crate) const TABLE: &str = "runs";
+
+/// A fact about a run.
+type Fact = fn(&Run) -> String;
+
 /// One column per run, one line per fact.
 pub(crate) fn section(runs: &Runs) -> Section {
-    let facts: [(&str, fn(&Run) -> String); 9] = [
+    let facts: [(&str, Fact); 9] = [
         ("Suite", |run| format!("{}{}", run.results.suite, if run.results.quick { ", the short version" } else { "" })),
         ("CPU", |run| format!("{}, {} threads", run.results.machine.cpu, run.results.machine.threads)),
         ("Memory", |run| numbers::bytes(run.results.machine.memory_bytes as f64)),
@@ -18,12 +24,12 @@ pub(crate) fn section(runs: &Runs) -> Section {
         ("Command", |run| run.results.program.command.clone()),
         ("Started, took", |run| format!("{}, {}", run.results.started, duration(run.results.seconds))),
     ];
-    let mut table = Table::new("runs", "One column per result file.", facts.len());
+    let mut table = Table::new(TABLE, "One column per result file.", facts.len());
     table.add(Column::words("fact", ""), facts.iter().map(|(name, _)| (*name).into()));
     for run in &runs.0 {
         table.add(Column::words(&run.label, &run.label), facts.iter().map(|(_, fact)| Cell::from(fact(run))));
     }
-    Section { title: "What was run".to_owned(), blocks: vec![Block::Table(table)] }
+    Section { title: "Runs and machines".to_owned(), blocks: vec![Block::Table(table)] }
 }
 
 /// Notes of the runs; `None` if there are none.

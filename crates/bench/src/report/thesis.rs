@@ -12,9 +12,9 @@ use crate::WHOLE;
 /// To be said beside every ratio to the thesis' figures.
 pub(crate) const SCENES: &str = "The three scenes are in the spirit of the thesis' scenes, not the same.";
 
-const CAPTION: &str = "Hard: hard shadows, one shadow ray per pixel and light; ratio: the light mesh's time by that. Full frames are timed \
+const CAPTION: &str = "Hard: hard shadows, one shadow ray per pixel and light; ratio: the light mesh over these. Full frames are timed \
                        by the host's clock with transfers, stages by the GPU without. Speed-up: the thesis' seconds on a CPU (Core i7-950) \
-                       or a GPU (Tesla C2070), like the device used here, by the median.";
+                       or a GPU (Tesla C2070), like the device used here, over the median.";
 
 /// Keys that only some modes have.
 const OF_A_MODE: [&str; 4] = ["mode", "step", "radius", "weight"];
@@ -22,8 +22,8 @@ const OF_A_MODE: [&str; 4] = ["mode", "step", "radius", "weight"];
 /// Stages that move data to a GPU and back.
 const TRANSFERS: [&str; 2] = ["upload", "download"];
 
-/// A figure of a row.
-type Figure<'a> = &'a dyn Fn(&Measured) -> Option<f64>;
+/// A column: its name, group and title, its figure of a row, and how that is written.
+type Figures<'a> = (&'a str, &'a str, &'a str, &'a dyn Fn(&Measured) -> Option<f64>, fn(f64) -> String);
 
 /// A line for each frame of the light mesh on each device: its time, hard shadows, and the thesis' seconds.
 pub(super) fn timings(rows: &[Measured]) -> Table {
@@ -36,7 +36,7 @@ pub(super) fn timings(rows: &[Measured]) -> Table {
     let by_hard = |row: &Measured, seconds: fn(&Measured) -> Option<f64>| Some(seconds(row)? / seconds(&hard(row)?)?);
     let (milliseconds, seconds) = (numbers::milliseconds, |seconds| numbers::significant(seconds, 3));
     let [frame, gpu, thesis] = ["full frame, ms", "stages on the GPU, ms", "thesis, s"];
-    let columns: [(&str, &str, &str, Figure, fn(f64) -> String); 10] = [
+    let columns: [Figures; 10] = [
         ("min", frame, "min", &|row| row.row.seconds.get(WHOLE)?.min(), milliseconds),
         ("median", frame, "median", &|row| row.whole(), milliseconds),
         ("hard", frame, "hard", &|row| hard(row)?.whole(), milliseconds),
