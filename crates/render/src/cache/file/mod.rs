@@ -1,7 +1,7 @@
 //! Saved light points and gathered light: what light points see of each light, and what surfaces gather, for later runs and for other
 //! devices.
 //!
-//! A file is a header, compressed content (Zstandard), and a trailer. All numbers are little-endian:
+//! A file is a header, compressed content (deflate, RFC 1951), and a trailer. All numbers are little-endian:
 //!
 //! | bytes | what |
 //! |---|---|
@@ -39,7 +39,7 @@ pub use fault::{MeshFault, MeshFileError, MeshSaveError};
 const MAGIC: [u8; 8] = *b"LM MESH\0";
 /// To be raised with every change of the format, of what decides what light points see, and
 /// of how light is gathered.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const HEADER: usize = 24;
 const TRAILER: usize = 16;
 
