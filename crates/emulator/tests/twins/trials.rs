@@ -82,6 +82,7 @@ fn on_emulator() -> Vec<Trial> {
             (case.run)(&Cuda::new(Arc::new(Emulator::new())));
             Ok(())
         })
+        .with_ignored_flag(cfg!(no_cxx))
     };
     cases().map(trial).collect()
 }
