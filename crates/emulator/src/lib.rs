@@ -17,7 +17,8 @@
 //!
 //! A kernel file is any `.cu` under `crates/render/src`; `build.rs` finds it, and compiles it with `shim/shim.h` in place of CUDA. The
 //! module is named after the folder of a `kernel.cu`, and after the file otherwise. `LIGHTMESH_EMULATE=primary_rays,scan cargo test -p
-//! lightmesh-emulator` builds only these modules; then launches of others fail. A CUDA name that the shim lacks does not compile: add
+//! lightmesh-emulator` builds only these modules; then launches of others fail. If no C++ compiler works, all do, and tests are ignored:
+//! `LIGHTMESH_REQUIRE_CXX=1` makes that an error. A CUDA name that the shim lacks does not compile: add
 //! it to `shim/numbers.h`, `shim/atomics.h` or `shim/collectives.h`.
 //!
 //! # Detected errors

@@ -93,7 +93,7 @@ fn on_emulator() -> Vec<Trial> {
             (case.run)(&Cuda::new(Arc::new(Emulator::new())));
             Ok(())
         })
-        .with_ignored_flag(left_out)
+        .with_ignored_flag(left_out || cfg!(no_cxx))
     };
     cases().map(trial).collect()
 }

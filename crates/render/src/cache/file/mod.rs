@@ -1,7 +1,7 @@
 //! Saved light points and gathered light: what light points see of each light, and what surfaces gather, for later runs and for other
 //! devices.
 //!
-//! A file is a header, compressed content (Zstandard), and a trailer. All numbers are little-endian:
+//! A file is a header, compressed content (deflate, RFC 1951), and a trailer. All numbers are little-endian:
 //!
 //! | bytes | what |
 //! |---|---|
@@ -39,7 +39,7 @@ pub use fault::{MeshFault, MeshFileError, MeshSaveError};
 const MAGIC: [u8; 8] = *b"LM MESH\0";
 /// To be raised with every change of the format, of what decides what light points see, and
 /// of how light is gathered.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const HEADER: usize = 24;
 const TRAILER: usize = 16;
 
@@ -76,10 +76,7 @@ fn write_to(mut file: Output, scene: &PreparedScene, content: &Content) -> io::R
     output.write_all(&VERSION.to_le_bytes())?;
     output.write_all(&(scene.geometry.triangles.stored().len() as u32).to_le_bytes())?;
     output.write_all(&scene.geometry.hash().to_le_bytes())?;
-    let mut counted = Hashed { inner: pack::encoder(&mut output)?, hash: Xxh3::new(), bytes: 0 };
-    content::write(&mut counted, content)?;
-    let length = counted.bytes;
-    pack::finish(counted.inner)?;
+    let length = write_packed(&mut output, content)?;
     output.write_all(&length.to_le_bytes())?;
     let hash = output.hash.digest();
     output.write_all(&hash.to_le_bytes())?;
@@ -88,6 +85,14 @@ fn write_to(mut file: Output, scene: &PreparedScene, content: &Content) -> io::R
     drop(output);
     file.commit()?;
     Ok(bytes)
+}
+
+/// Returns how many bytes there were before compression.
+fn write_packed(output: &mut impl Write, content: &Content) -> io::Result<u64> {
+    let mut counted = Hashed { inner: pack::encoder(output)?, hash: Xxh3::new(), bytes: 0 };
+    content::write(&mut counted, content)?;
+    pack::finish(counted.inner)?;
+    Ok(counted.bytes)
 }
 
 /// A writer that hashes and counts everything written.

@@ -1,3 +1,4 @@
+use std::io::Read;
 use std::path::PathBuf;
 
 use glam::{DVec3, UVec3, Vec3};
@@ -30,14 +31,16 @@ fn section(scene: &PreparedScene) -> Section {
         LightKind::Rectangle { position: at, half_u: Vec3::X, half_v: Vec3::Y },
     ];
     let bricks = vec![0, 1, 5, 1 << 20, (1 << 57) - 1];
-    let known = vec![1, u64::MAX, 0b1010, 0, 1 << 63];
+    let known = [1, u64::MAX, 0b1010, 0, 1 << 63];
+    let other = [u64::MAX, 1, 0b1010, 0, 1 << 63];
     let column = |(index, kind): (usize, LightKind)| {
         let sampling = [None, Some((4, 7)), Some((999, u64::MAX))][index % 3];
         let answers = match sampling {
             None => StoredAnswers::Bits(vec![1, 0xff00, 0b1000, 0, 0]),
             Some((samples, _)) => StoredAnswers::Shares((0..68).map(|share| (share % (samples + 1)) as u16).collect()),
         };
-        StoredColumn { seen: Seen { kind, sampling }, known: known.clone(), answers }
+        let known = if index == 1 { other } else { known };
+        StoredColumn { seen: Seen { kind, sampling }, known: known.into(), answers }
     };
     let columns = kinds.into_iter().enumerate().map(column).collect();
     let places = Places { anchor: Vec3::new(0.1, 0.2, 0.3), step: 0.25, number: UVec3::new(7, 2_097_151, 0) };
@@ -93,14 +96,25 @@ fn decoded(bytes: &[u8], scene: &PreparedScene) -> Result<Content, MeshFault> {
 
 /// A file with other content, and a hash and a length that are right.
 fn with_content(file: &[u8], content: &[u8]) -> Vec<u8> {
-    let packed = zstd::encode_all(content, 3).unwrap();
-    let mut bytes = [&file[..HEADER], &packed, &(content.len() as u64).to_le_bytes()].concat();
+    with_packed(file, &packed(content), content.len())
+}
+
+fn with_packed(file: &[u8], packed: &[u8], length: usize) -> Vec<u8> {
+    let mut bytes = [&file[..HEADER], packed, &(length as u64).to_le_bytes()].concat();
     bytes.extend(xxh3_64(&bytes).to_le_bytes());
     bytes
 }
 
+fn packed(content: &[u8]) -> Vec<u8> {
+    let mut encoder = pack::encoder(Vec::new()).unwrap();
+    encoder.write_all(content).unwrap();
+    encoder.finish().unwrap()
+}
+
 fn content(file: &[u8]) -> Vec<u8> {
-    zstd::decode_all(&file[HEADER..file.len() - TRAILER]).unwrap()
+    let mut content = Vec::new();
+    pack::decoder(&file[HEADER..file.len() - TRAILER]).unwrap().read_to_end(&mut content).unwrap();
+    content
 }
 
 #[test]
@@ -159,7 +173,7 @@ fn each_fault_has_its_name() {
     let (folder, path, bytes) = saved(&scene);
     let other = fault(&scene, &path, b"P6 640 480 255");
     assert!(matches!(other, MeshFault::NotAMesh) && !other.is_replaceable());
-    for found in [1, 3] {
+    for found in [1, 2, 4] {
         let mut other = bytes.clone();
         other[8] = found;
         let fault = fault(&scene, &path, &other);
@@ -198,6 +212,31 @@ fn forged_content_is_refused_or_harmless() {
     }
     assert!(refused > 100, "{refused}");
     assert!(decoded(&with_content(&bytes, &[&content[..], &[0]].concat()), &scene).is_err());
+    // Nothing follows what is compressed, and it has an end.
+    let packed = packed(&content);
+    assert!(decoded(&with_packed(&bytes, &packed, content.len()), &scene).is_ok());
+    assert!(decoded(&with_packed(&bytes, &[&packed[..], &[0]].concat(), content.len()), &scene).is_err());
+    for length in 0..packed.len() {
+        assert!(decoded(&with_packed(&bytes, &packed[..length], content.len()), &scene).is_err(), "{length} bytes");
+    }
+}
+
+/// Where the first light's known values begin in the content of [`all`]: after five bricks, and a point's kind, numbers and samples.
+const KNOWN: usize = 52 + 1 + 1 + 1 + 3 + 9 + 17 + 12;
+
+#[test]
+fn lights_share_what_is_known_of_their_places() {
+    let scene = scene(0.0);
+    let (_folder, _, bytes) = saved(&scene);
+    let content = content(&bytes);
+    assert_eq!(content[KNOWN], 0);
+    assert_eq!(content[KNOWN + 1..][..8], 1u64.to_le_bytes());
+    let mut first = content;
+    first[KNOWN] = 1;
+    match decoded(&with_content(&bytes, &first), &scene) {
+        Err(MeshFault::Damaged(why)) => assert!(why.contains("of no light"), "{why}"),
+        other => panic!("{other:?}"),
+    }
 }
 
 #[test]
@@ -212,14 +251,22 @@ fn sizes_beyond_the_content_allocate_nothing() {
     let mut bomb = content(&bytes)[..52].to_vec();
     bomb[44..52].copy_from_slice(&(1u64 << 26).to_le_bytes());
     bomb.resize(64 << 20, 1);
-    let bomb = with_content(&bytes, &bomb);
-    assert!(bomb.len() < 1 << 16, "{} bytes", bomb.len());
-    assert_too_large(&bomb, &scene);
+    assert_too_large(&with_content(&bytes, &bomb), &scene);
+    // Lights by the thousand that know as much as the first, in a byte each.
+    let bricks = 1u64 << 13;
+    let light = |same: &[u8]| [&[0][..], &[0; 16 + 12], same, &vec![0; 8 * bricks as usize]].concat();
+    let mut bomb = content(&bytes)[..52].to_vec();
+    bomb[40..44].copy_from_slice(&1000u32.to_le_bytes());
+    bomb[44..52].copy_from_slice(&bricks.to_le_bytes());
+    bomb.extend([&[0][..], &vec![1; bricks as usize - 1]].concat());
+    bomb.extend(light(&[&[0][..], &vec![0; 8 * bricks as usize]].concat()));
+    bomb.extend(light(&[1]).repeat(999));
+    assert_too_large(&with_content(&bytes, &bomb), &scene);
 }
 
 /// Decodes a small file with much in it.
 fn assert_too_large(bomb: &[u8], scene: &PreparedScene) {
-    assert!(bomb.len() < 1 << 17, "{} bytes", bomb.len());
+    assert!(bomb.len() < 1 << 20, "{} bytes", bomb.len());
     let limit = lightmesh_memory::held() + (32 << 20);
     let found = decode(bomb, scene, Budget::new(Some(limit))).unwrap_err();
     assert!(matches!(found, MeshFault::Memory(_)) && !found.is_replaceable(), "{found}");
