@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [33, 27];
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     let mut cases = Vec::new();
     for subject in SUBJECTS.iter().chain([&SURROUNDED, &LAMPS, &GLAZED]) {
-        let structures = if subject.small { ACCELERATIONS.len() } else { 2 };
+        let structures = if subject.small { R::STRUCTURES } else { 2 };
         for structure in 0..structures {
             let name = format!("{}::gathered::{structure}", subject.name);
             cases.push(Case::new(name, move |cuda| same_light(cuda, subject, structure)));

@@ -1035,12 +1035,8 @@ static_assert(PLACE_OF(SampleRows, surplus) == 652, "place of SampleRows::surplu
 static_assert(PLACE_OF(SampleRows, entering) == 656, "place of SampleRows::entering");
 static_assert(PLACE_OF(SampleRows, leaving) == 660, "place of SampleRows::leaving");
 
-// DO(structure, …) for each acceleration structure, by the name of its field in `Scene`. Instances are in modules with CUT_OUTS alone.
-#if CUT_OUTS
+// DO(structure, …) for each acceleration structure, by the name of its field in `Scene`.
 #define PER_STRUCTURE(DO, ...) DO(bvh, __VA_ARGS__) DO(grid, __VA_ARGS__) DO(brute_force, __VA_ARGS__) DO(instanced, __VA_ARGS__)
-#else
-#define PER_STRUCTURE(DO, ...) DO(bvh, __VA_ARGS__) DO(grid, __VA_ARGS__) DO(brute_force, __VA_ARGS__)
-#endif
 
 struct alignas(8) LightMesh {
     enum : unsigned {

@@ -11,7 +11,7 @@
 //
 //     KERNEL_PER_STRUCTURE(name, Record, THREADS, BLOCKS)
 //
-// generates a kernel for each: name_bvh, name_grid, name_brute_force. The host names them with `per_structure!`.
+// generates a kernel for each that the module walks: name_bvh, name_grid and so on. The host names them with `per_structure!`.
 //
 // Variables of a block, declared inside functions, and variables set by the host, declared outside:
 //
@@ -48,7 +48,24 @@
 #define INSTANCES 1
 #endif
 
-#define KERNEL_OF_STRUCTURE(structure, name, Record, threads, blocks)                                                            \
+// Which structures a module walks: 1 or 0 each. The reference, a test of every triangle, is for the emulator alone: its shim sets it.
+#define WALKS_bvh 1
+#define WALKS_grid 1
+#ifndef WALKS_brute_force
+#define WALKS_brute_force 0
+#endif
+// Instances are in modules with CUT_OUTS alone.
+#if CUT_OUTS
+#define WALKS_instanced 1
+#else
+#define WALKS_instanced 0
+#endif
+
+#define KERNEL_OF_STRUCTURE(structure, ...) KERNEL_IF(WALKS_##structure, structure, __VA_ARGS__)
+#define KERNEL_IF(walks, ...) KERNEL_IF_EXPANDED(walks, __VA_ARGS__)
+#define KERNEL_IF_EXPANDED(walks, ...) KERNEL_IF_##walks(__VA_ARGS__)
+#define KERNEL_IF_0(...)
+#define KERNEL_IF_1(structure, name, Record, threads, blocks)                                                                    \
     KERNEL(name##_##structure, Record, threads, blocks) { name(args, args.scene.structure); }
 #define KERNEL_PER_STRUCTURE(name, Record, threads, blocks) PER_STRUCTURE(KERNEL_OF_STRUCTURE, name, Record, threads, blocks)
 

@@ -33,3 +33,4 @@ pub(crate) use mesh::sampling;
 pub(crate) use per_structure::{PerModule, PerStructure, per_module, per_structure};
 pub(crate) use rates::{Work, slices_of_rays};
 pub use scene::DeviceScene;
+pub(crate) use scene::check_structure;

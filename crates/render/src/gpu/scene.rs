@@ -21,6 +21,7 @@ use crate::error::RenderError;
 use crate::job::Job;
 use crate::prepared::{PreparedGeometry, PreparedScene, SeeThrough};
 use crate::sampling::disk_radius;
+use crate::settings::Acceleration;
 use crate::shading::ambient::AmbientLight;
 use crate::shading::tint::is_tinted;
 use crate::shading::{LightTargets, is_seen};
@@ -117,6 +118,16 @@ impl<R: Runtime> DeviceScene<R> {
                 2 * (STACK_OF_INSTANCES + MOST_HELD + per_level)
             }
         }
+    }
+}
+
+/// Fails if a device does not have the kernels of a structure.
+pub(crate) fn check_structure<R: Runtime>(runtime: &R, acceleration: &Acceleration) -> Result<(), RenderError> {
+    match acceleration {
+        Acceleration::BruteForce if !runtime.has_brute_force() => {
+            Err(RenderError::Structure { structure: acceleration.to_string(), device: runtime.name() })
+        }
+        _ => Ok(()),
     }
 }
 
