@@ -6,9 +6,6 @@
 
 #include "block.h"
 
-// The emulator alone has kernels that test every triangle.
-#define WALKS_brute_force 1
-
 #define DEVICE [[maybe_unused]] static inline
 #define COLD [[maybe_unused]] static __attribute__((noinline))
 

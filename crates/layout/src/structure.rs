@@ -37,7 +37,7 @@ structures! { $
     Grid = grid;
     /// A test of every triangle, always: the reference of tests, whose kernels exist in the emulator alone.
     BruteForce = brute_force;
-    /// A wide BVH over instances: only in modules for scenes in which triangles are cut out, so that others are not compiled for it.
+    /// A wide BVH over instances: in modules with INSTANCES alone.
     InstancedBvh = instanced;
 }
 

@@ -38,28 +38,34 @@
 #include "shim.h"
 #endif
 
-// Whether a module is for scenes in which triangles are cut out: see accel/coverage.cuh.
+// Whether a module tests what is cut out: see accel/coverage.cuh.
 #ifndef CUT_OUTS
 #define CUT_OUTS 0
 #endif
 
-// Whether it is for scenes with shapes in many places: see accel/instanced.cuh.
+// Whether it is for scenes with shapes in many places, too: see accel/instanced.cuh.
 #ifndef INSTANCES
 #define INSTANCES 1
 #endif
 
-// Which structures a module walks: 1 or 0 each. The reference, a test of every triangle, is for the emulator alone: its shim sets it.
+// Which structures a module walks: 1 or 0 each. Scenes with cut-outs or instances have no grid; some modules are for instances alone. The reference,
+// a test of every triangle, is for the emulator, which names the modules.
+#ifndef WALKS_bvh
 #define WALKS_bvh 1
+#endif
+#ifndef WALKS_grid
+#if INSTANCES
+#define WALKS_grid 0
+#else
 #define WALKS_grid 1
-#ifndef WALKS_brute_force
+#endif
+#endif
+#ifdef EMULATED_MODULE
+#define WALKS_brute_force WALKS_bvh
+#else
 #define WALKS_brute_force 0
 #endif
-// Instances are in modules with CUT_OUTS alone.
-#if CUT_OUTS
-#define WALKS_instanced 1
-#else
-#define WALKS_instanced 0
-#endif
+#define WALKS_instanced INSTANCES
 
 #define KERNEL_OF_STRUCTURE(structure, ...) KERNEL_IF(WALKS_##structure, structure, __VA_ARGS__)
 #define KERNEL_IF(walks, ...) KERNEL_IF_EXPANDED(walks, __VA_ARGS__)

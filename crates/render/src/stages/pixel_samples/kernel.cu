@@ -1,6 +1,7 @@
 // The samples of pixels on a CUDA device: twin of cpu.rs, one thread per sample.
-#ifndef CUT_OUTS
-// Scenes with instances use the module with CUT_OUTS.
+#define CUT_OUTS 1
+#ifndef INSTANCES
+// Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"

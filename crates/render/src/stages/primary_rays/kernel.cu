@@ -1,6 +1,7 @@
 // Step 1 on a CUDA device: what does each ray see? Twin of cpu.rs, one thread per ray.
-#ifndef CUT_OUTS
-// Scenes with instances use the module with CUT_OUTS.
+#define CUT_OUTS 1
+#ifndef INSTANCES
+// Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"
