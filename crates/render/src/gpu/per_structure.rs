@@ -7,7 +7,7 @@
 //!   opaque scenes, `<module>_cut_out` for those with cut-outs or instances;
 //! * elsewhere, `<module>` has the tests, behind a condition that is the same for all threads, and `<module>_instanced` is for scenes with instances.
 //!
-//! What that costs is in `docs/results/kernels.md`.
+//! What that costs is in `bench/kernels/README.md`.
 
 use lightmesh_layout::Structure;
 
@@ -15,7 +15,7 @@ use super::DeviceScene;
 use crate::cuda::{Kernel, Runtime};
 
 /// The modules that exist without and with tests of what is cut out.
-const DOUBLED: &[&str] = &["area_shadows", "occluder_lists", "short_tests"];
+const DOUBLED: &[&str] = &["occluder_lists", "pixel_samples", "primary_rays", "short_tests"];
 
 /// The modules that one kernel file is compiled to. Created by [`modules!`].
 #[derive(Clone, Copy, Debug)]

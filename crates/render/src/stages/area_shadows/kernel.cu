@@ -1,7 +1,8 @@
 // The reference on a CUDA device: twin of cpu.rs. A warp takes 32 surface points, one after the other; lanes are triangles.
 // `area_shadows_N_*`: samples in up to N words of bits.
-#ifndef CUT_OUTS
-// Scenes with cut-outs or instances use the module with CUT_OUTS.
+#define CUT_OUTS 1
+#ifndef INSTANCES
+// Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"
