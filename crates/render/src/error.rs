@@ -112,7 +112,9 @@ pub enum RenderError {
         reason: String,
     },
     /// The device does not have the kernels of an acceleration structure.
-    #[error("{device} has no kernels for the acceleration structure {structure}: choose bvh or grid, or the device cpu")]
+    #[error(
+        "{device} has no kernels for the acceleration structure {structure}: choose bvh or grid, or the device cpu"
+    )]
     Structure {
         /// The structure.
         structure: String,

@@ -54,7 +54,8 @@ pub(super) fn all(sources: &[&Source], check: bool) -> Result<Vec<Module>, Box<d
 fn in_a_process(source: &Source) -> Result<String, String> {
     let said = |bytes: Vec<u8>| String::from_utf8(bytes).map_err(|error| error.to_string());
     let program = std::env::current_exe().map_err(|error| error.to_string())?;
-    let output = Command::new(program).args(["kernels", ONE, &source.module]).output().map_err(|error| error.to_string())?;
+    let output =
+        Command::new(program).args(["kernels", ONE, &source.module]).output().map_err(|error| error.to_string())?;
     if output.status.success() { said(output.stdout) } else { Err(said(output.stderr)?) }
 }
 

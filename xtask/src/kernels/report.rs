@@ -6,8 +6,8 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 
-use super::{Module, in_parallel};
 use super::tools::Tools;
+use super::{Module, in_parallel};
 
 /// The oldest supported devices, and those on which speed is measured.
 const ARCHITECTURES: [&str; 2] = ["sm_75", "sm_90"];
@@ -44,7 +44,11 @@ pub(super) fn rows(report: &str, tools: &Tools, is_same: impl Fn(&str) -> bool) 
 }
 
 /// The report as Markdown; modules in `known` have these rows.
-pub(super) fn of(tools: &Tools, modules: &[Module], known: &BTreeMap<String, String>) -> Result<String, Box<dyn Error>> {
+pub(super) fn of(
+    tools: &Tools,
+    modules: &[Module],
+    known: &BTreeMap<String, String>,
+) -> Result<String, Box<dyn Error>> {
     let mut text = heading(tools);
     let rows = in_parallel(modules, |module| match known.get(&module.name) {
         Some(rows) => Ok(rows.clone()),
@@ -158,7 +162,12 @@ mod tests {
     #[test]
     fn rows_that_are_still_true_are_kept() {
         let path = std::path::PathBuf::new;
-        let tools = |version: &str| Tools { nvrtc: path(), nvrtc_version: (12, 0), ptxas: path(), ptxas_version: version.into() };
+        let tools = |version: &str| Tools {
+            nvrtc: path(),
+            nvrtc_version: (12, 0),
+            ptxas: path(),
+            ptxas_version: version.into(),
+        };
         let (one, two) = ("| one | `a` | 1 |\n| one | `b` | 1 |\n", "| two | `a` | 2 |\n");
         let report = format!("{}{one}{two}", heading(&tools("12.9")));
         let kept = rows(&report, &tools("12.9"), |module| module == "one");

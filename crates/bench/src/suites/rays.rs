@@ -90,7 +90,8 @@ fn cases<'a>(
 ) -> Vec<Case<'a>> {
     let mut cases = Vec::new();
     for engine in engines {
-        let has = |acceleration: &Acceleration| *acceleration != Acceleration::BruteForce || engine.thread_count.is_some();
+        let has =
+            |acceleration: &Acceleration| *acceleration != Acceleration::BruteForce || engine.thread_count.is_some();
         for ((_, side), scene) in structures.iter().zip(prepared).filter(|((acceleration, _), _)| has(acceleration)) {
             cases.extend([Mode::RayTrace, Mode::LightMesh].map(|mode| Case { mode, engine, scene, side: *side }));
         }

@@ -6,7 +6,8 @@ use libtest_mimic::Trial;
 use lightmesh_emulator::Emulator;
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{
-    Acceleration, AmbientSource, GivenPoints, Mode, Observer, PreparedScene, RenderError, Settings, Unobserved, render_on, visibility_on,
+    Acceleration, AmbientSource, GivenPoints, Mode, Observer, RenderError, Settings, Unobserved, render_on,
+    visibility_on,
 };
 
 use crate::scenes::{ACCELERATIONS, GLAZED, SUBJECTS, Subject};

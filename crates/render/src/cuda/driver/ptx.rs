@@ -29,7 +29,10 @@ impl Module {
         if code == ReturnCode::Ok && written.len() == self.bytes {
             Ok(text)
         } else {
-            Err(format!("the kernels of {} cannot be unpacked ({code:?}): this build of the program is damaged", self.name))
+            Err(format!(
+                "the kernels of {} cannot be unpacked ({code:?}): this build of the program is damaged",
+                self.name
+            ))
         }
     }
 }
