@@ -66,6 +66,7 @@ pub struct Emulator {
     ledger: Arc<Ledger>,
     /// Work is done when it is queued, one operation at a time.
     queue: Mutex<Queue>,
+    brute_force: bool,
 }
 
 #[derive(Default)]
@@ -105,8 +106,13 @@ impl Emulator {
         Emulator::with_ledger(Ledger::new(Some(bytes)))
     }
 
+    /// The same without the kernels that no device has: those that test every triangle.
+    pub fn without_brute_force(self) -> Emulator {
+        Emulator { brute_force: false, ..self }
+    }
+
     fn with_ledger(ledger: Ledger) -> Emulator {
-        Emulator { id: new_id(), ledger: Arc::new(ledger), queue: Mutex::default() }
+        Emulator { id: new_id(), ledger: Arc::new(ledger), queue: Mutex::default(), brute_force: true }
     }
 
     /// Makes the `number`-th allocation from now on fail, where 1 is the next; those after it succeed.
@@ -144,6 +150,10 @@ impl Runtime for Emulator {
 
     fn id(&self) -> u64 {
         self.id
+    }
+
+    fn has_brute_force(&self) -> bool {
+        self.brute_force
     }
 
     fn free_memory(&self) -> Option<u64> {

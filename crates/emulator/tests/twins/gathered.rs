@@ -24,7 +24,7 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     let mut cases = Vec::new();
     for subject in SUBJECTS.iter().chain([&SURROUNDED, &LAMPS, &GLAZED]) {
         let chosen = CHOSEN.contains(&subject.name);
-        let structures = if subject.small { ACCELERATIONS.len() } else { 2 };
+        let structures = if subject.small { R::STRUCTURES } else { 2 };
         for structure in 0..structures {
             let name = format!("{}::gathered::{structure}", subject.name);
             let of_large = subject.name == LARGE && structure == 0;

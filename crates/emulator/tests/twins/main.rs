@@ -16,6 +16,8 @@ mod scenes;
 #[cfg(unix)]
 mod stages;
 #[cfg(unix)]
+mod structures;
+#[cfg(unix)]
 mod textured;
 #[cfg(unix)]
 mod trials;

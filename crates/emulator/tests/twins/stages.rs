@@ -29,7 +29,7 @@ pub(crate) const SHARE_TOLERANCE: f32 = 1e-5;
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     let mut cases = Vec::new();
     for subject in &SUBJECTS {
-        for (index, name) in ["bvh", "grid", "brute_force"].into_iter().enumerate() {
+        for (index, name) in ["bvh", "grid", "brute_force"].into_iter().enumerate().take(R::STRUCTURES) {
             let mut add = |what: &str, run: fn(&Cuda<R>, &'static Subject, usize)| {
                 let name = format!("{}::{name}::{what}", subject.name);
                 cases.push(Case::new(name, move |cuda| run(cuda, subject, index)));

@@ -150,6 +150,14 @@ impl Grid {
         &self.triangles
     }
 
+    /// The triangles that it holds, each once, in the order of the list that it was built from.
+    pub(crate) fn held(&self) -> Vec<Triangle> {
+        let mut held: Vec<(u32, &Triangle)> = self.sources.iter().copied().zip(self.triangles.iter()).collect();
+        held.sort_unstable_by_key(|(source, _)| *source);
+        held.dedup_by_key(|(source, _)| *source);
+        held.into_iter().map(|(_, triangle)| *triangle).collect()
+    }
+
     /// Lowest corner of the outer grid, and edges of its cells.
     pub(crate) fn geometry(&self) -> (glam::DVec3, glam::Vec3) {
         (self.lattice.origin, self.lattice.size)

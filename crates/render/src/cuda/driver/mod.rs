@@ -88,6 +88,10 @@ impl Runtime for Driver {
         self.id
     }
 
+    fn has_brute_force(&self) -> bool {
+        false
+    }
+
     fn free_memory(&self) -> Option<u64> {
         memory::free(&self.context)
     }
