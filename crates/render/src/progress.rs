@@ -48,6 +48,12 @@ struct Current {
     share: u64,
 }
 
+impl Default for Work {
+    fn default() -> Work {
+        Work::new()
+    }
+}
+
 impl Work {
     /// Nothing is expected yet.
     pub fn new() -> Work {
