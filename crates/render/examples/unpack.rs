@@ -1,22 +1,12 @@
-//! How long it takes to unpack the kernels' PTX, module by module and all: `cargo run --release -p lightmesh-render --example unpack`.
+//! How long it takes to unpack the kernels' PTX, module by module and all: `cargo run --release -p lightmesh-render-examples --bin unpack`.
 //!
 //! What a driver does with it afterwards takes longer by far: a second or more to compile, milliseconds to find what it has compiled before.
 #![allow(clippy::print_stdout, reason = "a program for the terminal")]
 
 use std::time::Instant;
 
-use zlib_rs::{InflateConfig, ReturnCode, decompress_slice};
+use lightmesh_render::internals::cuda::{MODULES, Module};
 
-/// As in `cuda/driver/ptx.rs`.
-struct Module {
-    name: &'static str,
-    #[expect(dead_code, reason = "not packed")]
-    head: &'static str,
-    bytes: usize,
-    packed: &'static [u8],
-}
-
-const MODULES: &[Module] = include!(concat!(env!("OUT_DIR"), "/ptx.rs"));
 /// The median of so many is told.
 const REPETITIONS: usize = 21;
 
@@ -35,10 +25,10 @@ fn main() {
 fn seconds(module: &Module) -> f64 {
     let mut times = [0.0; REPETITIONS].map(|_: f64| {
         let start = Instant::now();
-        let mut text = vec![0; module.bytes];
-        let (text, code) = decompress_slice(&mut text, module.packed, InflateConfig::default());
-        assert!(code == ReturnCode::Ok && text.len() == module.bytes, "{}: {code:?}", module.name);
-        start.elapsed().as_secs_f64()
+        let text = module.unpacked();
+        let seconds = start.elapsed().as_secs_f64();
+        assert!(text.is_ok(), "{text:?}");
+        seconds
     });
     times.sort_by(f64::total_cmp);
     times[REPETITIONS / 2]

@@ -19,7 +19,9 @@ pub(crate) fn rows(levels: &[usize], seed: u64) -> Vec<Vec<usize>> {
     let mut open = BTreeSet::new();
     for (first, &levels_of_first) in levels.iter().enumerate() {
         for (second, &levels_of_second) in levels.iter().enumerate().skip(first + 1) {
-            open.extend((0..levels_of_first).flat_map(|a| (0..levels_of_second).map(move |b| [(first, a), (second, b)])));
+            open.extend(
+                (0..levels_of_first).flat_map(|a| (0..levels_of_second).map(move |b| [(first, a), (second, b)])),
+            );
         }
     }
     let mut rows = Vec::new();

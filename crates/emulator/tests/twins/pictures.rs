@@ -4,8 +4,8 @@ use glam::Vec3;
 use lightmesh_image::{Layers, Transfer};
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{
-    AmbientSource, Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, PreparedScene,
-    Settings, Step, Unobserved, render_on, visibility_on,
+    AmbientSource, Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, PreparedScene, Settings, Step,
+    Unobserved, render_on, visibility_on,
 };
 use lightmesh_scene::{Bounds, Up};
 use lightmesh_testkit::{Picture, Random, runs_all, seed};
@@ -131,14 +131,7 @@ impl Kind {
 }
 
 /// Compares one kind. `structure` is a place in [`ACCELERATIONS`].
-fn same<R: Target>(
-    cuda: &Cuda<R>,
-    subject: &'static Subject,
-    way: Way,
-    kind: Kind,
-    structure: usize,
-    size: [u32; 2],
-) {
+fn same<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, way: Way, kind: Kind, structure: usize, size: [u32; 2]) {
     let settings = settings(subject, way).with_size(size);
     match kind {
         Kind::Picture => same_picture(cuda, subject, structure, settings),

@@ -36,7 +36,9 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
             };
             add("hits", |cuda, subject, index| drop(Twins::new(cuda, subject, index, HITS)));
             if subject.small || name != "brute_force" {
-                add("shadow_rays", |cuda, subject, index| Twins::new(cuda, subject, index, size(subject)).shadow_rays());
+                add("shadow_rays", |cuda, subject, index| {
+                    Twins::new(cuda, subject, index, size(subject)).shadow_rays()
+                });
                 add("occluder_lists", |cuda, subject, index| {
                     Twins { samples: 16, ..Twins::new(cuda, subject, index, size(subject)) }.occluder_lists();
                 });

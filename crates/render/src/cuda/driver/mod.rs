@@ -8,12 +8,12 @@
 
 mod context;
 mod fault;
-mod library;
+pub(crate) mod library;
 mod mark;
 mod memory;
 mod module;
-mod open;
-mod ptx;
+pub(crate) mod open;
+pub(crate) mod ptx;
 mod transfer;
 
 use std::ffi::c_void;
