@@ -76,10 +76,7 @@ fn write_to(mut file: Output, scene: &PreparedScene, content: &Content) -> io::R
     output.write_all(&VERSION.to_le_bytes())?;
     output.write_all(&(scene.geometry.triangles.stored().len() as u32).to_le_bytes())?;
     output.write_all(&scene.geometry.hash().to_le_bytes())?;
-    let mut counted = Hashed { inner: pack::encoder(&mut output)?, hash: Xxh3::new(), bytes: 0 };
-    content::write(&mut counted, content)?;
-    let length = counted.bytes;
-    pack::finish(counted.inner)?;
+    let length = write_packed(&mut output, content)?;
     output.write_all(&length.to_le_bytes())?;
     let hash = output.hash.digest();
     output.write_all(&hash.to_le_bytes())?;
@@ -88,6 +85,14 @@ fn write_to(mut file: Output, scene: &PreparedScene, content: &Content) -> io::R
     drop(output);
     file.commit()?;
     Ok(bytes)
+}
+
+/// Returns how many bytes there were before compression.
+fn write_packed(output: &mut impl Write, content: &Content) -> io::Result<u64> {
+    let mut counted = Hashed { inner: pack::encoder(output)?, hash: Xxh3::new(), bytes: 0 };
+    content::write(&mut counted, content)?;
+    pack::finish(counted.inner)?;
+    Ok(counted.bytes)
 }
 
 /// A writer that hashes and counts everything written.
