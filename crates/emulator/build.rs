@@ -27,7 +27,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     if !has_compiler(&out)? {
         if env::var("LIGHTMESH_REQUIRE_CXX").is_ok_and(|value| value == "1") {
-            return Err("no C++ compiler works, and LIGHTMESH_REQUIRE_CXX=1 requires one; install one, or set CXX".into());
+            return Err(
+                "no C++ compiler works, and LIGHTMESH_REQUIRE_CXX=1 requires one; install one, or set CXX".into()
+            );
         }
         println!("cargo::warning=no C++ compiler works: tests on the emulator are ignored; install one, or set CXX");
         println!("cargo::rustc-cfg=no_cxx");
