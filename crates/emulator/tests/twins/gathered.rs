@@ -5,24 +5,36 @@ use std::path::Path;
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{AmbientSource, Frame, Kept, Quality, Settings, Step, Unobserved, render_on, render_on_with};
 
+use lightmesh_testkit::runs_all;
+
 use crate::pictures::same_frame;
 use crate::scenes::{ACCELERATIONS, GLAZED, LAMPS, SUBJECTS, SURROUNDED, Subject};
 use crate::trials::{Case, Target};
 
 const SIZE: [u32; 2] = [33, 27];
+/// A quarter of the pixels, for scenes with many triangles.
+const SMALL: [u32; 2] = [17, 13];
+
+/// What is gathered depends on lights, opacity and instances: these subjects have lamps, glass, cut-outs, instances and surroundings.
+const CHOSEN: [&str; 5] = ["lamps", "glazed", "cut_outs", "instances", "surrounded"];
+/// One scene with many triangles.
+const LARGE: &str = "childpark";
 
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     let mut cases = Vec::new();
     for subject in SUBJECTS.iter().chain([&SURROUNDED, &LAMPS, &GLAZED]) {
+        let chosen = CHOSEN.contains(&subject.name);
         let structures = if subject.small { ACCELERATIONS.len() } else { 2 };
         for structure in 0..structures {
             let name = format!("{}::gathered::{structure}", subject.name);
-            cases.push(Case::new(name, move |cuda| same_light(cuda, subject, structure)));
+            let of_large = subject.name == LARGE && structure == 0;
+            let case = Case::new(name, move |cuda| same_light(cuda, subject, structure));
+            cases.push(case.only_if(chosen || of_large));
         }
         let name = format!("{}::gathered::kept", subject.name);
-        cases.push(Case::new(name, move |cuda| same_as_without(cuda, subject)));
+        cases.push(Case::new(name, move |cuda| same_as_without(cuda, subject)).only_if(chosen));
         let name = format!("{}::gathered::files", subject.name);
-        cases.push(Case::new(name, move |cuda| same_files(cuda, subject)));
+        cases.push(Case::new(name, move |cuda| same_files(cuda, subject)).only_if(chosen));
     }
     for subject in [&SURROUNDED, &LAMPS] {
         let name = format!("{}::gathered::rays", subject.name);
@@ -36,8 +48,9 @@ fn settings(subject: &'static Subject, to_the_right: f32) -> Settings {
     let camera = scene.cameras.first().cloned().unwrap_or_else(|| scene.default_camera(Default::default()));
     let (right, ..) = camera.basis();
     let position = camera.position + to_the_right * subject.step * right;
+    let size = if subject.small || runs_all() { SIZE } else { SMALL };
     let settings = Settings::default().with_ambient_light(AmbientSource::Mesh).with_quality(Quality::Draft);
-    let settings = settings.with_size(SIZE).with_samples(4).with_step(Step::Fixed(subject.step)).with_aa(1);
+    let settings = settings.with_size(size).with_samples(4).with_step(Step::Fixed(subject.step)).with_aa(1);
     settings.with_camera(camera.with_position(position)).with_bounces(1).with_layers(true)
 }
 

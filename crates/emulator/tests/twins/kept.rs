@@ -4,11 +4,14 @@ use glam::Vec3;
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{Frame, Kept, PreparedScene, Settings, Step, Unobserved, render_on, render_on_with};
 use lightmesh_scene::{Light, LightKind};
+use lightmesh_testkit::runs_all;
 
 use crate::scenes::{SUBJECTS, Subject};
 use crate::trials::{Case, Target};
 
 const SIZE: [u32; 2] = [45, 37];
+/// For scenes with many triangles.
+const SMALL: [u32; 2] = [18, 13];
 
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     let case = |subject: &'static Subject| {
@@ -101,7 +104,7 @@ fn settings(subject: &'static Subject, step: usize) -> Settings {
     let position = camera.position + 3.0 * subject.step * step as f32 * right;
     Settings::default()
         .with_aa(1)
-        .with_size(SIZE)
+        .with_size(if subject.small || runs_all() { SIZE } else { SMALL })
         .with_bounces(2)
         .with_samples(4)
         .with_step(Step::Fixed(subject.step))

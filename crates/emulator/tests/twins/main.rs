@@ -8,6 +8,8 @@ mod gathered;
 #[cfg(unix)]
 mod kept;
 #[cfg(unix)]
+mod pairwise;
+#[cfg(unix)]
 mod pictures;
 #[cfg(unix)]
 mod scenes;

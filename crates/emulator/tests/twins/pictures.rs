@@ -4,17 +4,22 @@ use glam::Vec3;
 use lightmesh_image::{Layers, Transfer};
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{
-    Acceleration, AmbientSource, Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, PreparedScene,
+    AmbientSource, Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, PreparedScene,
     Settings, Step, Unobserved, render_on, visibility_on,
 };
 use lightmesh_scene::{Bounds, Up};
-use lightmesh_testkit::{Picture, Random};
+use lightmesh_testkit::{Picture, Random, seed};
 
-use crate::scenes::{GLAZED, GLAZED_INSTANCES, MIRRORS, SUBJECTS, SURROUNDED, Subject, TEXTURED};
+use crate::pairwise;
+use crate::scenes::{ACCELERATIONS, GLAZED, GLAZED_INSTANCES, MIRRORS, SUBJECTS, SURROUNDED, Subject, TEXTURED};
 use crate::stages::{SHARE_TOLERANCE, alike};
 use crate::trials::{Case, Target};
 
 const SIZE: [u32; 2] = [45, 37];
+const SMALL: [u32; 2] = [21, 17];
+
+/// Subjects whose peculiarities only images show.
+const OF_PICTURES: [&Subject; 4] = [&TEXTURED, &SURROUNDED, &GLAZED, &GLAZED_INSTANCES];
 
 /// A technique: its name, and the mode and lookup that select it.
 type Way = (&'static str, Mode, Lookup);
@@ -27,37 +32,123 @@ const WAYS: [Way; 5] = [
     ("area", Mode::Area, Lookup::Auto),
 ];
 
+/// What other techniques than the default are compared in by default, beside the [`sweep`]: four subjects, one kind each.
+const CHOSEN: [(&str, &str, Kind); 16] = [
+    ("adaptive", "garden", Kind::Picture),
+    ("adaptive", "surrounded", Kind::Samples),
+    ("adaptive", "all_lights", Kind::Points),
+    ("adaptive", "glazed_instances", Kind::Picture),
+    ("light-mesh", "garden", Kind::Points),
+    ("light-mesh", "surrounded", Kind::Picture),
+    ("light-mesh", "all_lights", Kind::Samples),
+    ("light-mesh", "glazed_instances", Kind::Points),
+    ("ray-trace", "garden", Kind::Samples),
+    ("ray-trace", "surrounded", Kind::Points),
+    ("ray-trace", "all_lights", Kind::Picture),
+    ("ray-trace", "glazed_instances", Kind::Samples),
+    ("area", "garden", Kind::Picture),
+    ("area", "surrounded", Kind::Points),
+    ("area", "all_lights", Kind::Samples),
+    ("area", "glazed_instances", Kind::Picture),
+];
+
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     let mut cases = Vec::new();
-    for subject in SUBJECTS.iter().chain([&TEXTURED, &SURROUNDED, &GLAZED, &GLAZED_INSTANCES]) {
+    for subject in SUBJECTS.iter().chain(OF_PICTURES) {
         for way in WAYS {
-            let (name, ..) = way;
-            let picture = format!("{}::picture::{name}", subject.name);
-            cases.push(Case::new(picture, move |cuda| same_picture(cuda, subject, settings(subject, way))));
-            let samples = format!("{}::samples::{name}", subject.name);
-            cases.push(Case::new(samples, move |cuda| same_picture(cuda, subject, settings(subject, way).with_aa(6))));
-            let points = format!("{}::points::{name}", subject.name);
-            cases.push(Case::new(points, move |cuda| same_at_points(cuda, subject, way)));
+            for kind in [Kind::Picture, Kind::Samples, Kind::Points] {
+                let name = format!("{}::{}::{}", subject.name, kind.name(), way.0);
+                let case = Case::new(name, move |cuda| same(cuda, subject, way, kind, 0, SIZE));
+                cases.push(case.only_if(way.0 == "lists" || CHOSEN.contains(&(way.0, subject.name, kind))));
+            }
         }
     }
     for bounces in [1, 6] {
         let settings = move || settings(&MIRRORS, WAYS[0]).with_bounces(bounces);
         let name = format!("{}::bounces::{bounces}", MIRRORS.name);
-        cases.push(Case::new(name, move |cuda| same_picture(cuda, &MIRRORS, settings())));
+        cases.push(Case::new(name, move |cuda| same_picture(cuda, &MIRRORS, 0, settings())));
     }
     for way in WAYS {
         let part = format!("{}::part::{}", TEXTURED.name, way.0);
         let crop = move || settings(&TEXTURED, way).with_aa(3).with_crop(Crop::new([17, 9], [15, 11]));
-        cases.push(Case::new(part, move |cuda| same_picture(cuda, &TEXTURED, crop())));
+        let case = Case::new(part, move |cuda| same_picture(cuda, &TEXTURED, 0, crop()));
+        cases.push(case.only_if(way.0 == "lists"));
         for aa in [1, 3] {
             for subject in [&TEXTURED, &SURROUNDED, &GLAZED] {
                 let ground = format!("{}::ground::{}::{aa}", subject.name, way.0);
-                let settings = move || settings(subject, way).with_aa(aa).with_size([21, 17]);
-                cases.push(Case::new(ground, move |cuda| same_shadows(cuda, subject, settings())));
+                let settings = move || settings(subject, way).with_aa(aa).with_size(SMALL);
+                let case = Case::new(ground, move |cuda| same_shadows(cuda, subject, 0, settings()));
+                cases.push(case.only_if(way.0 == "lists" && aa == 3));
             }
         }
     }
+    cases.extend(sweep());
     cases
+}
+
+/// Small subjects with all techniques, kinds and structures: cases in which every pair of two choices occurs, drawn by a seed that is part of
+/// their names.
+fn sweep<R: Target>() -> Vec<Case<R>> {
+    let subjects: Vec<_> = SUBJECTS.iter().filter(|subject| subject.small).chain(OF_PICTURES).collect();
+    let kinds = Kind::ALL;
+    let case = |row: &Vec<usize>| {
+        let (subject, way, kind, structure) = (subjects[row[0]], WAYS[row[1]], kinds[row[2]], row[3]);
+        let place = format!("sweep::{}::{}", seed(), subject.name);
+        let name = format!("{place}::{}::{}::{structure}", kind.name(), way.0);
+        Case::new(name, move |cuda: &Cuda<R>| same(cuda, subject, way, kind, structure, SMALL))
+    };
+    pairwise::rows(&[subjects.len(), WAYS.len(), kinds.len(), 2], seed()).iter().map(case).collect()
+}
+
+/// What is compared.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// An image by rays through the centres of pixels.
+    Picture,
+    /// One with several samples of each pixel.
+    Samples,
+    /// Visibility at given points.
+    Points,
+    /// What a ground catches, with alpha.
+    Ground,
+    /// A part of an image.
+    Part,
+}
+
+impl Kind {
+    const ALL: [Kind; 5] = [Kind::Picture, Kind::Samples, Kind::Points, Kind::Ground, Kind::Part];
+
+    fn name(self) -> &'static str {
+        match self {
+            Kind::Picture => "picture",
+            Kind::Samples => "samples",
+            Kind::Points => "points",
+            Kind::Ground => "ground",
+            Kind::Part => "part",
+        }
+    }
+}
+
+/// Compares one kind. `structure` is a place in [`ACCELERATIONS`].
+fn same<R: Target>(
+    cuda: &Cuda<R>,
+    subject: &'static Subject,
+    way: Way,
+    kind: Kind,
+    structure: usize,
+    size: [u32; 2],
+) {
+    let settings = settings(subject, way).with_size(size);
+    match kind {
+        Kind::Picture => same_picture(cuda, subject, structure, settings),
+        Kind::Samples => same_picture(cuda, subject, structure, settings.with_aa(6)),
+        Kind::Points => same_at_points(cuda, subject, structure, settings),
+        Kind::Ground => same_shadows(cuda, subject, structure, settings.with_aa(3)),
+        Kind::Part => {
+            let part = Crop::new([size[0] / 3, size[1] / 4], size.map(|length| length / 3));
+            same_picture(cuda, subject, structure, settings.with_aa(3).with_crop(part));
+        }
+    }
 }
 
 fn settings(subject: &Subject, (_, mode, lookup): Way) -> Settings {
@@ -68,16 +159,21 @@ fn settings(subject: &Subject, (_, mode, lookup): Way) -> Settings {
 }
 
 /// The image with these settings.
-fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, settings: Settings) {
-    same_frame(cuda, subject.prepared(0), settings);
+fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure: usize, settings: Settings) {
+    let settings = settings.with_acceleration(ACCELERATIONS[structure].clone());
+    same_frame(cuda, subject.prepared(structure), settings);
 }
 
 /// What a ground under the scene catches, with alpha.
-fn same_shadows<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, settings: Settings) {
+fn same_shadows<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure: usize, settings: Settings) {
     let mut scene = subject.scene().clone();
-    scene.add_ground(Up::Y);
-    let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
-    same_frame(cuda, &scene, settings.with_transparent(true));
+    // A ground adds triangles, which shapes stored once do not take.
+    if scene.geometry.mesh.instances.is_empty() {
+        scene.add_ground(Up::Y);
+    }
+    let acceleration = &ACCELERATIONS[structure];
+    let scene = PreparedScene::new(&scene, acceleration, &Unobserved).unwrap();
+    same_frame(cuda, &scene, settings.with_transparent(true).with_acceleration(acceleration.clone()));
 }
 
 pub(crate) fn same_frame<R: Target>(cuda: &Cuda<R>, scene: &PreparedScene, settings: Settings) -> [Frame; 2] {
@@ -96,8 +192,8 @@ pub(crate) fn same_frame<R: Target>(cuda: &Cuda<R>, scene: &PreparedScene, setti
 }
 
 /// Given points, all over the scene and a little outside of it, see the same.
-fn same_at_points<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, way: Way) {
-    let scene = subject.prepared(0);
+fn same_at_points<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure: usize, settings: Settings) {
+    let scene = subject.prepared(structure);
     let unit = Bounds { min: Vec3::ZERO, max: Vec3::ONE };
     let bounds = if scene.geometry.bounds.is_empty() { unit } else { scene.geometry.bounds };
     let mut random = Random::new(7);
@@ -105,7 +201,7 @@ fn same_at_points<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, way: Way
     let points: Vec<Vec3> = (0..1500).map(|_| bounds.center() + 0.6 * signed() * bounds.extent()).collect();
     let normals: Vec<Vec3> = points.iter().map(|_| signed()).collect();
     let given = GivenPoints::new(scene, &points, &normals).unwrap();
-    let settings = settings(subject, way);
+    let settings = settings.with_acceleration(ACCELERATIONS[structure].clone());
     let host = visibility_on(&Cpu, &given, &settings, &Unobserved).unwrap();
     let device = visibility_on(cuda, &given, &settings, &Unobserved).unwrap();
     let counted = |seen: &PointVisibility| counts(&seen.stats.counts);

@@ -9,6 +9,7 @@ use lightmesh_render::backend::{
 use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, UsedPoints};
 use lightmesh_render::{Job, LightGroup, Lit, LitBy, RayList, Sampling, ShortTests, Unobserved, Visibility};
 use lightmesh_scene::Weight;
+use lightmesh_testkit::runs_all;
 
 use crate::scenes::{SUBJECTS, Subject, THICKET};
 use crate::trials::{Case, Target};
@@ -17,7 +18,7 @@ use crate::trials::{Case, Target};
 const HITS: [u32; 2] = [64, 64];
 /// Image size of all others: no multiple of any tile.
 const SIZE: [u32; 2] = [45, 37];
-/// Image size of those with large templates.
+/// Image size of scenes with many triangles, and of cases with large templates.
 const SMALL: [u32; 2] = [18, 13];
 /// Image size of those in which threads have more rays than one launch casts.
 const TINY: [u32; 2] = [7, 5];
@@ -35,18 +36,18 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
             };
             add("hits", |cuda, subject, index| drop(Twins::new(cuda, subject, index, HITS)));
             if subject.small || name != "brute_force" {
-                add("shadow_rays", |cuda, subject, index| Twins::new(cuda, subject, index, SIZE).shadow_rays());
+                add("shadow_rays", |cuda, subject, index| Twins::new(cuda, subject, index, size(subject)).shadow_rays());
                 add("occluder_lists", |cuda, subject, index| {
-                    Twins { samples: 16, ..Twins::new(cuda, subject, index, SIZE) }.occluder_lists();
+                    Twins { samples: 16, ..Twins::new(cuda, subject, index, size(subject)) }.occluder_lists();
                 });
                 add("adaptive_shadows", |cuda, subject, index| {
-                    Twins { samples: 16, ..Twins::new(cuda, subject, index, SIZE) }.adaptive_shadows();
+                    Twins { samples: 16, ..Twins::new(cuda, subject, index, size(subject)) }.adaptive_shadows();
                 });
                 add("light_mesh_2.1", |cuda, subject, index| {
-                    Twins::new(cuda, subject, index, SIZE).light_mesh(2.1, Weight::Smooth);
+                    Twins::new(cuda, subject, index, size(subject)).light_mesh(2.1, Weight::Smooth);
                 });
                 add("light_mesh_3.1", |cuda, subject, index| {
-                    Twins::new(cuda, subject, index, SIZE).light_mesh(3.1, Weight::Quadratic);
+                    Twins::new(cuda, subject, index, size(subject)).light_mesh(3.1, Weight::Quadratic);
                 });
             }
             if subject.small && name == "bvh" {
@@ -74,6 +75,10 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         Twins { samples: 16, ..Twins::new(cuda, &THICKET, 0, SMALL) }.occluder_lists();
     }));
     cases
+}
+
+fn size(subject: &Subject) -> [u32; 2] {
+    if subject.small || runs_all() { SIZE } else { SMALL }
 }
 
 /// The same rays and hits on both sides.

@@ -1,4 +1,6 @@
 //! From cases to trials on the emulator and on every device.
+//!
+//! Cases beyond the part that runs by default are *ignored*, unless `LIGHTMESH_TESTS=all`.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -7,6 +9,7 @@ use lightmesh_emulator::Emulator;
 use lightmesh_render::backend::Cuda;
 use lightmesh_render::cuda::{Driver, Runtime, open_cuda};
 use lightmesh_render::{Device, devices};
+use lightmesh_testkit::runs_all;
 
 use crate::{gathered, kept, pictures, stages, textured};
 
@@ -34,6 +37,8 @@ impl Target for Driver {
 pub(crate) struct Case<R: Target> {
     /// Scene, structure and what is compared.
     name: String,
+    /// Whether it runs with `LIGHTMESH_TESTS=all` only.
+    extra: bool,
     run: Run<R>,
 }
 
@@ -41,7 +46,12 @@ type Run<R> = Box<dyn FnOnce(&Cuda<R>) + Send>;
 
 impl<R: Target> Case<R> {
     pub(crate) fn new(name: String, run: impl FnOnce(&Cuda<R>) + Send + 'static) -> Case<R> {
-        Case { name, run: Box::new(run) }
+        Case { name, extra: false, run: Box::new(run) }
+    }
+
+    /// The same case, left out by default unless it is one of the `chosen` ones.
+    pub(crate) fn only_if(self, chosen: bool) -> Case<R> {
+        Case { extra: !chosen, ..self }
     }
 }
 
@@ -78,10 +88,12 @@ fn number(device: &str) -> Option<u32> {
 /// Each trial has its own emulator.
 fn on_emulator() -> Vec<Trial> {
     let trial = |case: Case<Emulator>| {
+        let left_out = case.extra && !runs_all();
         Trial::test(format!("emulator::{}", case.name), || {
             (case.run)(&Cuda::new(Arc::new(Emulator::new())));
             Ok(())
         })
+        .with_ignored_flag(left_out)
     };
     cases().map(trial).collect()
 }
