@@ -10,10 +10,10 @@
 //! [`SaveOptions`] say how: exposure, [`View`], transfer function and bits of files that are looked at ([`Display`]), numbers and compression of
 //! exr files ([`ExrOptions`]). All of it is only applied here; everything else in the workspace uses linear values.
 //!
-//! Each format has a Cargo feature (`bmp`, `exr`, `jpeg`, `png`), and so has the comparison (`flip`); all are on by default.
+//! Each format has a Cargo feature (`bmp`, `exr`, `jpeg`, `png`); all are on by default.
 //!
 //! ```
-//! # #[cfg(all(feature = "flip", feature = "png"))] {
+//! # #[cfg(feature = "png")] {
 //! use lightmesh_image::{Frame, check_writable, compare};
 //!
 //! let folder = tempfile::tempdir()?;
@@ -31,13 +31,12 @@
 //! ```
 
 #![cfg_attr(
-    not(all(feature = "bmp", feature = "exr", feature = "flip", feature = "jpeg", feature = "png")),
+    not(all(feature = "bmp", feature = "exr", feature = "jpeg", feature = "png")),
     allow(dead_code, unused_imports, unused_variables, reason = "what several formats share is not used by each")
 )]
 
 #[cfg(feature = "bmp")]
 mod bmp;
-#[cfg(feature = "flip")]
 mod compare;
 #[cfg(any(feature = "exr", feature = "png"))]
 mod deflate;
@@ -57,7 +56,6 @@ mod png;
 mod save;
 mod transfer;
 
-#[cfg(feature = "flip")]
 pub use compare::{CompareError, Comparison, compare};
 pub use display::{BitDepth, Display, UnknownView, View};
 pub use format::Format;

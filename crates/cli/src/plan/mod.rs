@@ -208,6 +208,10 @@ fn instancing(args: &RenderArgs, settings: &Settings) -> Instancing {
 }
 
 fn usual_smooth(settings: &Settings) -> Smooth {
-    let is_thesis = settings.mode == Mode::LightMesh && settings.resolved_lookup() == Lookup::HalfBall;
-    if is_thesis { Smooth::OFF } else { Smooth::default() }
+    if has_light_points(settings) { Smooth::OFF } else { Smooth::default() }
+}
+
+/// Whether there is a lattice of light points, with its step: of all techniques, only the thesis' has one.
+pub(crate) fn has_light_points(settings: &Settings) -> bool {
+    settings.mode == Mode::LightMesh && settings.resolved_lookup() == Lookup::HalfBall
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use lightmesh::render::{Crop, PreparedScene};
 use lightmesh::scene::{Animation, Camera};
-use lightmesh::{Frame, Lookup, Mode, Observer, RenderError, Scene, Settings, Step};
+use lightmesh::{Frame, Observer, RenderError, Scene, Settings, Step};
 
 use super::BUILDING;
 use super::exposure::Metering;
@@ -17,7 +17,7 @@ use super::sun;
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::manifest::{Chosen, Ledger};
-use crate::plan::{Film, Motion, PictureFiles, Work};
+use crate::plan::{Film, Motion, PictureFiles, Work, has_light_points};
 use crate::progress::{FrameDone, Watcher};
 use crate::{interrupt, memory};
 
@@ -156,8 +156,7 @@ impl Reel<'_> {
     /// Exposure and step for the whole film, from frames across it: whichever of them are rendered, and by however many runs.
     fn chosen_across(&self) -> Result<Chosen, Failure> {
         let Studio { renderer, plan, watcher, .. } = *self.studio;
-        let has_step = plan.settings.mode == Mode::LightMesh && plan.settings.resolved_lookup() != Lookup::Lists;
-        let asks_step = has_step && matches!(plan.settings.step, None | Some(Step::Auto));
+        let asks_step = has_light_points(&plan.settings) && matches!(plan.settings.step, None | Some(Step::Auto));
         if !(self.metering.is_automatic() || asks_step) {
             return Ok(Chosen::default());
         }

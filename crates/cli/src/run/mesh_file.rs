@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use lightmesh::render::{AmbientSource, MeshFileError, PreparedScene, SavedMesh};
-use lightmesh::{Lookup, MeshCache, Mode, Observer, Renderer};
+use lightmesh::{MeshCache, Observer, Renderer};
 use lightmesh_memory::Bytes;
 
 use crate::failure::Failure;
 use crate::memory;
-use crate::plan::RenderPlan;
+use crate::plan::{RenderPlan, has_light_points};
 use crate::progress::Watcher;
 
 /// What light points see and surfaces gather, and the file that it is kept in.
@@ -28,9 +28,8 @@ impl<'a> Mesh<'a> {
     ) -> Result<Mesh<'a>, Failure> {
         let mut mesh = Mesh { cache: MeshCache::new(), file: None };
         let Some(path) = plan.mesh_file.as_deref() else { return Ok(mesh) };
-        let has_points = plan.settings.mode == Mode::LightMesh && plan.settings.resolved_lookup() == Lookup::HalfBall;
         let gathers = plan.settings.ambient_light.for_scene(&prepared.scene) == AmbientSource::Mesh;
-        if !(has_points || gathers) || moves {
+        if !(has_light_points(&plan.settings) || gathers) || moves {
             let why = if moves {
                 "surfaces move in this film, and a mesh belongs to one place of them"
             } else {

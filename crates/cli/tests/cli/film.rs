@@ -185,6 +185,20 @@ fn pixels_that_a_motion_does_not_reach_stay_as_they_are() {
     }
 }
 
+/// A step is asked of frames across the film, for which the scene is built again.
+#[test]
+fn only_light_points_need_the_scene_at_other_frames() {
+    let place = Place::new();
+    place.write("moving.toml", MOVING);
+    let film = ["render", "moving.toml", "--size", "16x12", "--fps", "25", "--frames", "1-3", "--progress", "json"];
+    let builds = |lookup: &str| {
+        let done = place.good(&[&film[..], &["--lookup", lookup, "-o", &format!("{lookup}.#.png")]].concat());
+        done.stderr.matches(r#"{"event":"begin","stage":"build""#).count()
+    };
+    // The scene as it is opened, and three frames.
+    assert_eq!(["lists", "adaptive", "half-ball"].map(builds), [4, 4, 9]);
+}
+
 #[test]
 fn scenes_that_do_not_move_have_no_film_of_their_own() {
     let place = balls();

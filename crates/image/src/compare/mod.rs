@@ -6,15 +6,16 @@
 //! viewer perceives when flipping between the images, at 67 pixels per degree: a 0.7 m wide 4K screen at 0.7 m. It gets display
 //! values rounded to 8 bits.
 
-use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, flip, magma_lut};
+mod flip;
+mod magma;
+
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 
 use crate::transfer::linear_to_srgb;
 use crate::{Frame, Transfer};
-
-/// Maximum number of pixels that the FLIP library can index.
-const MAX_PIXELS: usize = i32::MAX as usize / 3;
+use flip::flip;
+use magma::MAGMA;
 
 /// The difference between two frames; all 0 (and an infinite PSNR) if they look the same.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -59,29 +60,16 @@ pub enum CompareError {
         /// Row of the pixel, 0 at the top.
         y: usize,
     },
-    /// The frames have more pixels than FLIP supports.
-    #[error(
-        "cannot compare images of {width}x{height} pixels: the maximum is {MAX_PIXELS} pixels; compare parts of them"
-    )]
-    TooLarge {
-        /// Width in pixels.
-        width: u32,
-        /// Height in pixels.
-        height: u32,
-    },
 }
 
 /// Compares `test` with `reference`. FLIP is very nearly symmetric; the other measures are exactly symmetric.
 ///
 /// # Errors
-/// [`CompareError`] if the sizes differ, a value is NaN, or there are too many pixels.
+/// [`CompareError`] if the sizes differ, or a value is NaN.
 pub fn compare(reference: &Frame, test: &Frame) -> Result<Comparison, CompareError> {
     let (width, height) = (reference.width(), reference.height());
     if (width, height) != (test.width(), test.height()) {
         return Err(CompareError::Size { first: (width, height), second: (test.width(), test.height()) });
-    }
-    if reference.color().len() > MAX_PIXELS {
-        return Err(CompareError::TooLarge { width, height });
     }
     check_numbers("first", reference)?;
     check_numbers("second", test)?;
@@ -120,20 +108,21 @@ fn display(linear: f32) -> f64 {
 
 /// Mean FLIP, and the error map.
 fn flip_difference(reference: &Frame, test: &Frame) -> (f64, Frame) {
-    let error = flip(flip_image(reference), flip_image(test), DEFAULT_PIXELS_PER_DEGREE);
-    let values = error.to_vec();
-    let mean = values.iter().copied().map(f64::from).sum::<f64>() / values.len() as f64;
-
-    let map = error.apply_color_lut(&magma_lut()).to_vec();
-    let difference =
-        reference.recolored(|pixel| [0, 1, 2].map(|channel| Transfer::Srgb.decode(map[3 * pixel + channel])));
+    let [first, second] = [reference, test].map(codes);
+    let errors = flip(first.as_chunks().0, second.as_chunks().0, reference.width() as usize);
+    let mean = errors.iter().copied().map(f64::from).sum::<f64>() / errors.len() as f64;
+    let difference = reference.recolored(|pixel| {
+        let [_, red, green, blue] = MAGMA[(errors[pixel] * 255.0 + 0.5) as usize].to_be_bytes();
+        [red, green, blue].map(|code| Transfer::Srgb.decode(code))
+    });
     (mean, difference)
 }
 
-fn flip_image(frame: &Frame) -> FlipImageRgb8 {
-    let mut bytes = Vec::with_capacity(3 * frame.color().len());
-    Transfer::Srgb.encode_into(frame.color(), &mut bytes);
-    FlipImageRgb8::with_data(frame.width(), frame.height(), &bytes)
+/// Three sRGB codes for each pixel.
+fn codes(frame: &Frame) -> Vec<u8> {
+    let mut codes = Vec::with_capacity(3 * frame.color().len());
+    Transfer::Srgb.encode_into(frame.color(), &mut codes);
+    codes
 }
 
 /// JSON has no infinity; other formats get the same value for consistency.
