@@ -15,8 +15,8 @@ An entry of mutants.toml has
     kind = "statement"  if both are statements instead; an empty one leaves the step out;
     tests               where to look first: "PACKAGE/TARGET FILTER", where TARGET is `lib`, `bin`, or a test.
 
-The tests named there must pass without any error; this is tried first. An error that they miss meets all other tests. Results are written to
-the table in README.md, and kept in the folder of the build, so that a run that was stopped goes on.
+An error that the tests named there miss meets all others. A test that fails is run once more without any error, and must pass. Results are
+written to the table in README.md, and kept in the folder of the build, so that a run that was stopped goes on.
 Exit code: 0 if tests notice every error, 1 if they miss one, 2 if the list does not fit the tree, or tests fail without any error.
 """
 
@@ -38,8 +38,6 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 PACKAGES = ["memory", "files", "scene", "image", "layout", "render", "emulator", "lightmesh", "cli"]
 """Packages whose tests are run, if not told otherwise: those that make images."""
-PATIENCE = (60, 10)
-"""Tests may take so many seconds, and so many times what they take without any error: then they hang."""
 VARIABLE = "LIGHTMESH_MUTANT"
 FAILED = re.compile(r"^test (.+?)(?: - should panic)? \.\.\. FAILED")
 PASSED = re.compile(r"^test result: .*? (\d+) passed")
@@ -80,6 +78,7 @@ def main():
     parser.add_argument("--build", action="store_true", help="only build")
     parser.add_argument("--hints", action="store_true", help="only the tests that entries name")
     parser.add_argument("--full", action="store_true", help="what is missed meets the full extent of tests, too (LIGHTMESH_TESTS=all)")
+    parser.add_argument("--patience", type=float, default=1200, help="seconds after which a test program hangs")
     parser.add_argument("--fresh", action="store_true", help="forget results of earlier runs")
     plan = parser.parse_args()
     mutants = read_list(plan.list)
@@ -202,60 +201,35 @@ def build(tree, target, packages):
 
 
 class Outcome:
-    """What tests say: which one failed, if any; how many passed; how long it took."""
+    """What tests say: which one failed, if any; how many passed."""
 
-    def __init__(self, failed, passed, seconds):
-        self.failed, self.passed, self.seconds = failed, passed, seconds
+    def __init__(self, failed, is_named, passed):
+        self.failed, self.is_named, self.passed = failed, is_named, passed
 
 
 class Trials:
     def __init__(self, path, mutants, binaries, plan):
         self.path, self.mutants, self.binaries, self.plan = path, mutants, binaries, plan
-        self.lock, self.known, self.locks = threading.Lock(), {}, {}
+        self.lock, self.known, self.locks, self.problems = threading.Lock(), {}, {}, set()
         self.results = {} if plan.fresh or not path.is_file() else json.loads(path.read_text(encoding="utf-8"))
-        self.refused = []
 
     def run(self):
         chosen = self.plan.only.split(",") if self.plan.only else None
         if chosen and (unknown := set(chosen) - {mutant.id for mutant in self.mutants}):
             sys.exit(f"there is no error of the name {', '.join(sorted(unknown))}")
         asked = [mutant for mutant in self.mutants if (mutant.id in chosen if chosen else mutant.id not in self.results)]
-        # What is missed takes longest: begin with the tests that are named, all of them without any error.
         with ThreadPoolExecutor(self.plan.jobs) as pool:
-            for hint in pool.map(self.try_hint, sorted({hint for mutant in asked for hint in mutant.tests})):
-                if hint:
-                    print(hint, file=sys.stderr, flush=True)
-                    self.refused.append(hint)
             list(pool.map(self.try_mutant, asked))
         write_table(self.mutants, self.results)
         missed = [mutant.id for mutant in self.mutants if self.results.get(mutant.id, {}).get("test") == ""]
         found = sum(1 for mutant in self.mutants if self.results.get(mutant.id, {}).get("test"))
         print(f"tests notice {found} of {len(self.mutants)} errors" + (f"; they miss {', '.join(missed)}" if missed else ""))
-        return 1 if missed else 2 if self.refused else 0
-
-    def try_hint(self, hint):
-        """Why tests that are named are of no use."""
-        binary, filter_ = hint
-        if binary not in self.binaries:
-            return f"there is no {binary}: adapt `tests` in mutants.toml"
-        outcome = self.without_error(binary, filter_)
-        if outcome.failed:
-            return f"{binary} {filter_}: {outcome.failed} fails without any error"
-        return None if outcome.passed else f"{binary} {filter_}: no test has this name; adapt `tests` in mutants.toml"
-
-    def without_error(self, binary, filter_, full=False):
-        with self.lock:
-            lock = self.locks.setdefault((binary, filter_, full), threading.Lock())
-        with lock:
-            if (binary, filter_, full) not in self.known:
-                self.known[binary, filter_, full] = self.run_tests(0, binary, filter_, None, full)
-            return self.known[binary, filter_, full]
+        return 1 if missed else 2 if self.problems else 0
 
     def try_mutant(self, mutant):
         begin = time.monotonic()
-        hints = [(binary, filter_) for binary, filter_ in mutant.tests if binary in self.binaries]
         others = [] if self.plan.hints else [(binary, "") for binary in self.in_order(mutant)]
-        test = self.first_failure(mutant, hints + [other for other in others if other not in hints])
+        test = self.first_failure(mutant, mutant.tests + [other for other in others if other not in mutant.tests])
         result = {"test": test, "seconds": round(time.monotonic() - begin, 1)}
         if not test and self.plan.full:
             result["full"] = self.first_failure(mutant, [(binary, "") for binary in self.in_order(mutant)], full=True)
@@ -266,35 +240,56 @@ class Trials:
             print(f"{mutant.id}: {test or 'MISSED'} ({result['seconds']} s){full}", flush=True)
 
     def in_order(self, mutant):
-        """All programs, those of the package with the error first, then those that take least."""
-        seconds = lambda binary: self.known[binary, "", False].seconds if (binary, "", False) in self.known else 0
-        return sorted(self.binaries, key=lambda binary: (not binary.startswith(mutant.package() + "/"), seconds(binary), binary))
+        """All programs, those of the package with the error first."""
+        return sorted(self.binaries, key=lambda binary: (not binary.startswith(mutant.package() + "/"), binary))
 
     def first_failure(self, mutant, commands, full=False):
-        """The first test that fails with an error; empty if all pass."""
+        """The first test that fails with an error, and does not without it; empty if all pass."""
         for binary, filter_ in commands:
-            plain = self.without_error(binary, filter_, full)
-            if plain.failed or not plain.passed:
+            if binary not in self.binaries:
+                self.note(f"there is no {binary}: adapt `tests` in mutants.toml, or `--packages`")
                 continue
-            outcome = self.run_tests(mutant.number, binary, filter_, PATIENCE[0] + PATIENCE[1] * plain.seconds, full)
-            if outcome.failed:
+            outcome = self.run_tests(mutant.number, binary, filter_.split(), full)
+            if not outcome.failed:
+                if filter_ and not outcome.passed:
+                    self.note(f"{binary} has no test of the name {filter_}: adapt `tests` in mutants.toml")
+                continue
+            words = [outcome.failed, "--exact"] if outcome.is_named else filter_.split()
+            if self.passes(binary, words, full):
                 return f"{binary} {outcome.failed}"
+            self.note(f"{binary}: {outcome.failed} fails without any error, too")
         return ""
 
-    def run_tests(self, number, binary, filter_, limit, full=False):
+    def note(self, problem):
+        with self.lock:
+            if problem not in self.problems:
+                print(problem, file=sys.stderr, flush=True)
+            self.problems.add(problem)
+
+    def passes(self, binary, words, full):
+        """Whether tests pass without any error. Each is asked once."""
+        key = (binary, *words, full)
+        with self.lock:
+            lock = self.locks.setdefault(key, threading.Lock())
+        with lock:
+            if key not in self.known:
+                outcome = self.run_tests(0, binary, words, full)
+                self.known[key] = not outcome.failed and outcome.passed > 0
+            return self.known[key]
+
+    def run_tests(self, number, binary, words, full):
         """Runs tests until one fails."""
         program, folder = self.binaries[binary]
         environment = {**os.environ, VARIABLE: str(number), "CUDA_VISIBLE_DEVICES": "", "CARGO_MANIFEST_DIR": str(folder)}
         environment.pop("LIGHTMESH_TESTS", None)
         if full:
             environment["LIGHTMESH_TESTS"] = "all"
-        begin, failed, passed = time.monotonic(), "", 0
-        process = subprocess.Popen([program, *filter_.split()], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+        failed, passed = "", 0
+        process = subprocess.Popen([program, *words], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                                    stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace", start_new_session=True)
         hangs = threading.Event()
-        watch = threading.Timer(limit, lambda: hangs.set() or stop(process)) if limit else None
-        if watch:
-            watch.start()
+        watch = threading.Timer(self.plan.patience, lambda: hangs.set() or stop(process))
+        watch.start()
         for line in process.stdout:
             if found := FAILED.match(line):
                 failed = found.group(1)
@@ -304,13 +299,13 @@ class Trials:
         if failed:
             stop(process)
         code = process.wait()
-        if watch:
-            watch.cancel()
+        watch.cancel()
+        is_named = bool(failed)
         if not failed and hangs.is_set():
             failed = "(it hangs)"
         elif not failed and code != 0:
             failed = f"(it ends with {code})"
-        return Outcome(failed, passed, time.monotonic() - begin)
+        return Outcome(failed, is_named, passed)
 
 
 def stop(process):
